@@ -1,0 +1,1 @@
+//! State, model, forces, steppers and systems: one step of the world.

@@ -1,0 +1,1 @@
+//! Files: meshes, VTK, CSV, pictures, plots.

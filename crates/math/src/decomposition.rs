@@ -1,0 +1,3 @@
+//! Polar, singular-value and eigen-decompositions of 3×3 matrices.
+
+use crate::Mat3;

@@ -1,0 +1,144 @@
+//! Several `f64` side by side in one register, chosen at run time.
+
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+use pulp::Simd;
+
+use crate::Real;
+
+/// `S::F64_LANES` numbers with the token that proves the processor can compute with them.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes<S: Simd> {
+    simd: S,
+    values: S::f64s,
+}
+
+impl<S: Simd> Lanes<S> {
+    #[inline(always)]
+    pub fn new(simd: S, values: S::f64s) -> Self {
+        Self { simd, values }
+    }
+
+    #[inline(always)]
+    pub fn constant(simd: S, value: f64) -> Self {
+        Self { simd, values: simd.splat_f64s(value) }
+    }
+
+    /// The first `S::F64_LANES` entries of `values`.
+    ///
+    /// # Panics
+    /// If `values` is shorter than the lanes.
+    #[inline(always)]
+    pub fn load(simd: S, values: &[f64]) -> Self {
+        Self { simd, values: simd.partial_load_f64s(&values[..S::F64_LANES]) }
+    }
+
+    #[inline(always)]
+    pub fn store(self, values: &mut [f64]) {
+        self.simd.partial_store_f64s(&mut values[..S::F64_LANES], self.values);
+    }
+
+    #[inline(always)]
+    pub fn values(self) -> S::f64s {
+        self.values
+    }
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let mut values = self.values;
+        for value in bytemuck::cast_slice_mut::<_, f64>(std::slice::from_mut(&mut values)) {
+            *value = f(*value);
+        }
+        Self { simd: self.simd, values }
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $instruction:ident) => {
+        impl<S: Simd> $trait for Lanes<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self { simd: self.simd, values: self.simd.$instruction(self.values, other.values) }
+            }
+        }
+    };
+}
+operator!(Add, add, add_f64s);
+operator!(Sub, sub, sub_f64s);
+operator!(Mul, mul, mul_f64s);
+operator!(Div, div, div_f64s);
+
+macro_rules! operator_with_constant {
+    ($trait:ident, $method:ident) => {
+        impl<S: Simd> $trait<f64> for Lanes<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.$method(self.splat(other))
+            }
+        }
+    };
+}
+operator_with_constant!(Add, add);
+operator_with_constant!(Sub, sub);
+operator_with_constant!(Mul, mul);
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { simd: self.simd, values: self.simd.neg_f64s(self.values) }
+    }
+}
+
+impl<S: Simd> AddAssign for Lanes<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<S: Simd> SubAssign for Lanes<S> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<S: Simd> Real for Lanes<S> {
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        Self::constant(self.simd, value)
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Self { simd: self.simd, values: self.simd.mul_add_e_f64s(self.values, a.values, b.values) }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self { simd: self.simd, values: self.simd.sqrt_f64s(self.values) }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self { simd: self.simd, values: self.simd.abs_f64s(self.values) }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.select_less(other, self, other)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        other.select_less(self, self, other)
+    }
+    // one number after the other through the scalar function: the bits must not depend on the width
+    #[inline(always)]
+    fn ln(self) -> Self {
+        self.map(libm::log)
+    }
+    #[inline(always)]
+    fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
+        let mask = self.simd.less_than_f64s(self.values, other.values);
+        Self { simd: self.simd, values: self.simd.select_f64s(mask, if_less.values, otherwise.values) }
+    }
+}

@@ -1,0 +1,18 @@
+//! Small fixed-size algebra, written once over plain numbers, SIMD lanes and dual numbers.
+//!
+//! A kernel generic over [`Real`] serves as test oracle (`f64`), as the hot loop ([`Lanes`]) and as
+//! its own derivative check ([`Dual`]).
+
+mod dual;
+mod lanes;
+mod matrix;
+mod real;
+mod rotation;
+mod vector;
+
+pub use dual::Dual;
+pub use lanes::Lanes;
+pub use matrix::Mat3;
+pub use real::Real;
+pub use rotation::{exponential, logarithm, orthonormalised};
+pub use vector::Vec3;

@@ -1,0 +1,81 @@
+//! What a kernel may do with a number.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A number, or several side by side.
+///
+/// Constants enter through arithmetic with `f64` (`x * 2.0`, `x + 1.0`) or through [`Real::splat`] on a
+/// value at hand: a lane value carries the proof that the processor has its instructions, so a
+/// constant can only be made beside one.
+pub trait Real:
+    Copy
+    + Debug
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// The constant `value` in the lanes of `self`.
+    fn splat(self, value: f64) -> Self;
+    /// `self * a + b`, fused where the processor has the instruction.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    fn min(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self;
+    /// Natural logarithm; the same bits on every path of one number.
+    fn ln(self) -> Self;
+    /// `if_less` where `self < other`, else `otherwise`, lane by lane.
+    fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self;
+
+    fn zero(self) -> Self {
+        self.splat(0.0)
+    }
+
+    fn one(self) -> Self {
+        self.splat(1.0)
+    }
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn splat(self, value: f64) -> Self {
+        value
+    }
+    // not fused: without the processor's instruction `f64::mul_add` is a slow library call
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        libm::log(self)
+    }
+    #[inline(always)]
+    fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
+        if self < other { if_less } else { otherwise }
+    }
+}

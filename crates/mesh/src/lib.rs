@@ -1,0 +1,1 @@
+//! Elements, shape functions, quadrature, generators and quality of meshes.

@@ -1,0 +1,1 @@
+//! Scene files: text to specification to model and state.

@@ -1,0 +1,1 @@
+//! Block-sparse matrices, preconditioned Krylov methods, direct factors, Newton.

@@ -1,0 +1,1 @@
+//! Validation cases, benchmarks and the battery over all tables.
