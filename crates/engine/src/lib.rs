@@ -1,1 +1,35 @@
 //! State, model, forces, steppers and systems: one step of the world.
+//!
+//! A [`Model`] is constant, a [`State`] holds all that evolves, a [`Workspace`] is scratch; a [`World`] steps
+//! the three together. A [`Force`] is a term in a list; unknowns, rows and samples are in [`kinematics`].
+
+pub mod constraint;
+pub mod coupling;
+pub mod edit;
+pub mod force;
+mod hash;
+pub mod implicit;
+pub mod inertia;
+pub mod kinematics;
+pub mod linear;
+pub mod mass;
+pub mod snapshot;
+pub mod stability;
+pub mod state;
+pub mod steppers;
+pub mod system;
+pub mod tangent;
+pub mod world;
+
+pub use constraint::{Constraint, Motion};
+pub use edit::{Command, Edit, EditError};
+pub use force::{
+    Configuration, Declaration, Editable, Energy, Force, ParameterError, Scratch, TangentWeights,
+};
+pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
+pub use mass::Mass;
+pub use snapshot::SnapshotError;
+pub use state::{FieldRef, FieldState, Pair, State, SystemState};
+pub use steppers::{StepError, StepReport, Stepper};
+pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
+pub use world::{EnergyReport, Field, Model, Workspace, World, WorldError};

@@ -39,7 +39,8 @@ impl Mat3<f64> {
     /// The inverse, or `None` where the determinant is zero or not finite.
     pub fn try_inverse(self) -> Option<Self> {
         let determinant = self.determinant();
-        (determinant != 0.0 && determinant.is_finite()).then(|| self.cofactor().transpose() * (1.0 / determinant))
+        (determinant != 0.0 && determinant.is_finite())
+            .then(|| self.cofactor().transpose() * (1.0 / determinant))
     }
 
     pub fn is_finite(self) -> bool {
@@ -134,7 +135,8 @@ impl<R: Real> Mat3<R> {
     /// `Aᵀ B` without forming the transpose.
     #[inline(always)]
     pub fn transpose_mul(&self, other: &Self) -> Self {
-        let column = |b: Vec3<R>| Vec3::new(self.columns[0].dot(b), self.columns[1].dot(b), self.columns[2].dot(b));
+        let column =
+            |b: Vec3<R>| Vec3::new(self.columns[0].dot(b), self.columns[1].dot(b), self.columns[2].dot(b));
         Self { columns: [column(other.columns[0]), column(other.columns[1]), column(other.columns[2])] }
     }
 

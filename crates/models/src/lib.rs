@@ -1,1 +1,6 @@
 //! What the world is made of: solids, materials, loads, contact.
+
+#![allow(non_snake_case)] // symbols of the mathematics: F, P, K
+
+pub mod materials;
+pub mod solids;

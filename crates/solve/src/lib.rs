@@ -1,1 +1,31 @@
 //! Block-sparse matrices, preconditioned Krylov methods, direct factors, Newton.
+//!
+//! No physics: an unknown vector is a slice of [`souple_math::Vec3`], a matrix is sparse with 3×3 blocks.
+//! Sums run in an order fixed by the length of the vectors alone, so results have the same bits for
+//! any number of threads.
+#![allow(non_snake_case)] // symbols of the mathematics: A, L, S
+
+mod dense;
+pub mod direct;
+mod error;
+pub mod krylov;
+mod kernel;
+mod lu;
+mod matrix;
+pub mod modes;
+pub mod newton;
+mod operator;
+mod ordering;
+mod partition;
+mod pattern;
+pub mod precondition;
+pub mod reduce;
+pub mod solvers;
+
+pub use direct::DirectSolver;
+pub use error::SolveError;
+pub use lu::LuSolver;
+pub use matrix::BlockMatrix;
+pub use operator::LinearOperator;
+pub use pattern::{Pattern, PatternBuilder};
+pub use precondition::Preconditioner;

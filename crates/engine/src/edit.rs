@@ -1,0 +1,93 @@
+//! Changes made while a world runs: recorded commands between steps, so that replay repeats them.
+
+use souple_math::Vec3;
+
+use crate::constraint::Constraint;
+use crate::force::ParameterError;
+use crate::state::State;
+use crate::world::Model;
+
+/// One change.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// Sets a parameter of a force (see [`crate::Force::set_parameter`]).
+    SetParameter { system: usize, force: String, parameter: String, value: f64 },
+    /// Pins a velocity block where it is.
+    Pin { system: usize, block: u32 },
+    /// Frees a block from every constraint on it.
+    Unpin { system: usize, block: u32 },
+    /// Gives a velocity block a velocity [m/s or rad/s].
+    SetVelocity { system: usize, block: u32, velocity: Vec3 },
+}
+
+/// An edit and the period before which it was made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Command {
+    pub period: u64,
+    pub edit: Edit,
+}
+
+/// Why an edit was refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EditError {
+    #[error("there is no system {system}; the world has {count}")]
+    NoSystem { system: usize, count: usize },
+    #[error("system `{system}` has no force `{force}`; it has: {}", .known.join(", "))]
+    NoForce { system: String, force: String, known: Vec<String> },
+    #[error("system `{system}` has no velocity block {block}; it has {count}")]
+    NoBlock { system: String, block: u32, count: usize },
+    #[error("a velocity of {velocity:?} is not finite")]
+    NotFinite { velocity: [f64; 3] },
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+}
+
+impl Edit {
+    fn system(&self) -> usize {
+        match self {
+            Self::SetParameter { system, .. }
+            | Self::Pin { system, .. }
+            | Self::Unpin { system, .. }
+            | Self::SetVelocity { system, .. } => *system,
+        }
+    }
+
+    pub(crate) fn apply(&self, model: &mut Model, state: &mut State) -> Result<(), EditError> {
+        let (index, count) = (self.system(), model.systems.len());
+        let system = model.systems.get_mut(index).ok_or(EditError::NoSystem { system: index, count })?;
+        let state = &mut state.systems[index];
+        let check_block = |block: u32| {
+            let count = state.v.len();
+            let error = EditError::NoBlock { system: system.name.clone(), block, count };
+            if (block as usize) < count { Ok(()) } else { Err(error) }
+        };
+        match self {
+            Self::SetParameter { force: name, parameter, value, .. } => {
+                let known = || system.forces.iter().map(|force| force.name().to_owned()).collect();
+                let error = EditError::NoForce { system: system.name.clone(), force: name.clone(), known: known() };
+                let force = system.forces.iter_mut().find(|force| force.name() == name).ok_or(error)?;
+                force.set_parameter(parameter, *value)?;
+            }
+            Self::Pin { block, .. } => {
+                check_block(*block)?;
+                let row = system.kinematics.point_block_row(*block);
+                let start = row.map_or(Vec3::ZERO, |row| state.q[row as usize]);
+                system.constraints.retain(|constraint| constraint.block != *block);
+                system.constraints.push(Constraint::pin(*block, start));
+                state.v[*block as usize] = Vec3::ZERO;
+            }
+            Self::Unpin { block, .. } => {
+                check_block(*block)?;
+                system.constraints.retain(|constraint| constraint.block != *block);
+            }
+            Self::SetVelocity { block, velocity, .. } => {
+                check_block(*block)?;
+                if !velocity.is_finite() {
+                    return Err(EditError::NotFinite { velocity: velocity.to_array() });
+                }
+                state.v[*block as usize] = *velocity;
+            }
+        }
+        Ok(())
+    }
+}

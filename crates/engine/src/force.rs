@@ -1,0 +1,177 @@
+//! A force is a term in a list: what it declares, and what it answers.
+//!
+//! Forces address *rows* (see [`crate::kinematics`]) and are pure: `(positions, velocities, time, memory)` in,
+//! energy, force and derivatives out, as often as a stepper likes within one step. What a force remembers
+//! lives in [`crate::State`] and moves on once a step, in [`Force::advance_memory`].
+
+use std::any::Any;
+
+use souple_math::Vec3;
+use souple_solve::BlockMatrix;
+
+use crate::state::{FieldState, Pair};
+
+/// What a force reads: the rows as they stand, and its own memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Configuration<'a> {
+    /// Row positions [m].
+    pub positions: &'a [Vec3],
+    /// Row velocities [m/s].
+    pub velocities: &'a [Vec3],
+    /// [s]
+    pub time: f64,
+    /// Fraction of the loads that acts: 1 in dynamics, growing to 1 over the load steps of `static`.
+    pub load: f64,
+    /// This force's own memory.
+    pub memory: &'a [f64],
+    /// This force's own pairs, sorted by `(a, b)`.
+    pub pairs: &'a [Pair],
+    /// Driven parameters and exchanged quantities of the whole world.
+    pub driven: &'a [f64],
+    /// Committed fields of the whole world.
+    pub fields: &'a [FieldState],
+}
+
+/// What a force is, so that steppers and solvers can refuse what they cannot treat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Declaration {
+    /// The force is minus the gradient of [`Energy::stored`] at fixed memory and time.
+    pub conservative: bool,
+    /// The force depends on velocities.
+    pub velocity_terms: bool,
+    /// `∂f/∂x` and `∂f/∂v` are symmetric.
+    pub symmetric_tangent: bool,
+    /// Internal: no net force or torque on the world.
+    pub internal: bool,
+    /// The rows it couples change with its pairs.
+    pub changing_pattern: bool,
+}
+
+impl Declaration {
+    /// A conservative internal force without velocity terms.
+    pub const ELASTIC: Self = Self {
+        conservative: true,
+        velocity_terms: false,
+        symmetric_tangent: true,
+        internal: true,
+        changing_pattern: false,
+    };
+    /// A conservative force from outside.
+    pub const LOAD: Self = Self { internal: false, ..Self::ELASTIC };
+}
+
+/// Energy that a force accounts for [J].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    pub stored: f64,
+    /// Given off since the start, as far as the force's memory keeps account of it.
+    pub dissipated: f64,
+}
+
+/// `position · ∂f/∂x + velocity · ∂f/∂v`: what an implicit method asks of a force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TangentWeights {
+    pub position: f64,
+    pub velocity: f64,
+}
+
+/// A parameter that may be edited while the world runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Editable {
+    pub name: &'static str,
+    pub unit: &'static str,
+    pub value: f64,
+}
+
+/// Why a parameter was not changed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ParameterError {
+    #[error("force `{force}` has no parameter `{name}` that can be changed while running; it has: {}", .known.join(", "))]
+    Unknown { force: String, name: String, known: Vec<String> },
+    #[error("`{name}` of force `{force}` cannot be {value}; it must be {expected}")]
+    Unfit { force: String, name: String, value: f64, expected: String },
+}
+
+/// Buffers of one force, kept between calls; made by [`Force::new_scratch`], opaque to everyone else.
+pub type Scratch = Box<dyn Any + Send + Sync>;
+
+/// One term of the sum of forces.
+pub trait Force: Send + Sync {
+    /// Unique within a system: the body and what the force is, as `bar.material`.
+    fn name(&self) -> &str;
+
+    fn declaration(&self) -> Declaration;
+
+    /// Numbers of memory it keeps in State.
+    fn memory_len(&self) -> usize {
+        0
+    }
+
+    fn initial_memory(&self, memory: &mut [f64]) {
+        memory.fill(0.0);
+    }
+
+    fn new_scratch(&self) -> Scratch {
+        Box::new(())
+    }
+
+    fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy;
+
+    /// `out += f(x, v)` on rows [N].
+    fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]);
+
+    /// `out += (a ∂f/∂x + b ∂f/∂v) δ` with row displacements `delta`.
+    fn add_differential(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        delta: &[Vec3],
+        scratch: &mut Scratch,
+        out: &mut [Vec3],
+    );
+
+    /// The groups of rows it couples: each is a clique of the matrix pattern.
+    fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32]));
+
+    /// `matrix += a ∂f/∂x + b ∂f/∂v` over rows, in blocks of the pattern that its cliques made.
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    );
+
+    /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.
+    fn advance_memory(&self, _at: &Configuration, _timestep: f64, _memory: &mut [f64], _pairs: &mut [Pair]) {}
+
+    /// Pairs that may interact at this configuration, in any order; each comes with its initial state.
+    fn find_pairs(&self, _at: &Configuration, _scratch: &mut Scratch, _found: &mut Vec<Pair>) {}
+
+    /// What this force leaves out of its tangent, or would warn of, at this configuration.
+    fn warnings(&self, _at: &Configuration) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn editable(&self) -> Vec<Editable> {
+        Vec::new()
+    }
+
+    /// # Errors
+    /// There is no such parameter, or the value does not fit.
+    fn set_parameter(&mut self, name: &str, _value: f64) -> Result<(), ParameterError> {
+        Err(ParameterError::Unknown {
+            force: self.name().to_owned(),
+            name: name.to_owned(),
+            known: self.editable().iter().map(|parameter| parameter.name.to_owned()).collect(),
+        })
+    }
+
+    /// Bytes of constant data, for the memory report.
+    fn bytes(&self) -> usize {
+        0
+    }
+
+    /// The concrete force, for probes of quantities only it knows (stress, contact force).
+    fn as_any(&self) -> &dyn Any;
+}

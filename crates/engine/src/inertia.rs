@@ -1,0 +1,89 @@
+//! Forces to accelerations: `TᵀMT a = Tᵀ(f - M ẍ_bias)`, constrained components zero.
+
+use souple_math::Vec3;
+use souple_solve::BlockMatrix;
+
+use crate::kinematics::UnknownKind;
+use crate::linear::LinearSolver;
+use crate::state::SystemState;
+use crate::steppers::{StepError, StepReport};
+use crate::system::{Rows, Surroundings, System, SystemWorkspace};
+use crate::tangent::{add_congruent, constrain};
+
+/// `out = a(q, v)` of the state at `time`; leaves the rows placed there.
+///
+/// # Errors
+/// A force is not finite, or the mass matrix cannot be solved with.
+pub fn accelerations_at(
+    system: &System,
+    around: &Surroundings,
+    time: f64,
+    state: &SystemState,
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<StepReport, StepError> {
+    system.place_rows(&state.q, &state.v, time, &mut ws.rows);
+    let clock = std::time::Instant::now();
+    system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
+    ws.stages.forces += clock.elapsed().as_secs_f64();
+    if system.kinematics.is_trivial() && system.mass.is_lumped() {
+        // a = f / m
+        for ((a, f), mass) in out.iter_mut().zip(&ws.row_force).zip(&system.mass.diagonal) {
+            *a = *f * (1.0 / mass);
+        }
+        system.project_free(out);
+        return Ok(StepReport::default());
+    }
+    if system.kinematics.has_rigid_frames() {
+        subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
+    }
+    let mut rhs = std::mem::take(&mut ws.blocks[7]);
+    system.kinematics.forces_into(&state.q, &mut ws.row_force, &mut rhs);
+    system.project_free(&mut rhs);
+    let mut matrix = ws.tangent.take_mass_matrix(system);
+    assemble_generalised_mass(system, &state.q, &mut matrix);
+    out.fill(Vec3::ZERO);
+    let solved = LinearSolver::solve_mass(&matrix, &rhs, out);
+    ws.tangent.put_mass_matrix(matrix);
+    ws.blocks[7] = rhs;
+    let (iterations, residual) = solved.map_err(|error| StepError::Linear(error.to_string()))?;
+    Ok(StepReport { linear_iterations: iterations, linear_residual: residual, ..StepReport::default() })
+}
+
+/// `matrix = TᵀMT` with constrained directions set to the identity.
+fn assemble_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatrix) {
+    matrix.set_zero();
+    let kinematics = &system.kinematics;
+    let map = |row: u32| kinematics.position_map(row, q);
+    for (row, mass) in system.mass.diagonal.iter().enumerate() {
+        add_congruent(kinematics, matrix, (row, row), &map, &map, |left, right| left.transpose_mul(right) * *mass);
+    }
+    for &(a, b, mass) in &system.mass.couplings {
+        for pair in [(a as usize, b as usize), (b as usize, a as usize)] {
+            add_congruent(kinematics, matrix, pair, &map, &map, |left, right| left.transpose_mul(right) * mass);
+        }
+    }
+    constrain(system, matrix);
+}
+
+/// `f -= M ẍ_bias`, the acceleration rows have while velocity blocks stay as they are: `ω × (ω × a)` on the
+/// axes of rigid frames.
+fn subtract_bias(system: &System, state: &SystemState, rows: &Rows, bias: &mut [Vec3], force: &mut [Vec3]) {
+    bias.fill(Vec3::ZERO);
+    let mut row = 0;
+    for (kind, blocks) in system.kinematics.unknowns() {
+        if kind == UnknownKind::RigidFrame {
+            let omega = state.v[blocks.start + 1];
+            for k in 1..4 {
+                bias[row + k] = omega.cross(omega.cross(rows.positions[row + k]));
+            }
+        }
+        row += kind.row_count();
+    }
+    system.kinematics.derive_rows(bias);
+    let mut inertia = vec![Vec3::ZERO; force.len()];
+    system.mass.add_product(bias, &mut inertia);
+    for (force, inertia) in force.iter_mut().zip(&inertia) {
+        *force -= *inertia;
+    }
+}

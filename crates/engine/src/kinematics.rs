@@ -1,0 +1,513 @@
+//! Three spaces: *unknowns* move, *rows* follow them linearly, *samples* read rows.
+//!
+//! An unknown is a point (3 velocities), a rigid frame (6) or an affine frame (12). Its configuration is a
+//! run of [`Vec3`] *free rows*: a point is its position; a frame is its origin and its three axes, so that a
+//! material point `x = Σ weight · row` and a deformation gradient `F = Σ row ⊗ gradient` are linear in rows
+//! whatever carries them. Its velocity is a run of *blocks* of three: 1, 2 (linear, angular) or 4.
+//!
+//! The rigid reduction happens here and nowhere else: axes `aₖ` turn with `ȧₖ = ω × aₖ`, forces come back as
+//! the torque `Σ aₖ × fₖ`.
+//!
+//! After the free rows stand *derived* rows (hanging nodes, ghosts, attachments), each a weighted sum of
+//! earlier rows. Positions and velocities run forward through them; forces run back transposed, unless a
+//! row's [`Feedback`] says that it gives nothing back.
+
+use std::ops::Range;
+
+use souple_math::{Mat3, Vec3, exponential, logarithm, orthonormalised};
+
+/// What an unknown is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnknownKind {
+    Point,
+    RigidFrame,
+    AffineFrame,
+}
+
+impl UnknownKind {
+    /// Free rows of its configuration.
+    pub fn row_count(self) -> usize {
+        match self {
+            Self::Point => 1,
+            Self::RigidFrame | Self::AffineFrame => 4,
+        }
+    }
+
+    /// Blocks of three of its velocity.
+    pub fn block_count(self) -> usize {
+        match self {
+            Self::Point => 1,
+            Self::RigidFrame => 2,
+            Self::AffineFrame => 4,
+        }
+    }
+}
+
+/// Whether a derived row returns the forces on it to the rows that carry it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feedback {
+    /// `f_parent += weight · f_row`: virtual work and momentum are conserved.
+    Transpose,
+    /// One-way interpolation (the ghosts of Debunne 2000): not conservative.
+    None,
+}
+
+/// Consecutive unknowns of one kind.
+#[derive(Clone, Debug)]
+struct Run {
+    kind: UnknownKind,
+    first_row: usize,
+    first_block: usize,
+    count: usize,
+}
+
+/// A row that is `Σ weight · parent` over earlier rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DerivedRow {
+    pub parents: Vec<(u32, f64)>,
+    pub feedback: Feedback,
+}
+
+/// How a free row moves with its velocity block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Carrier {
+    /// `ẋ = v`: points, origins, affine axes.
+    Translation,
+    /// `ẋ = ω × x`: axes of rigid frames.
+    Rotation,
+}
+
+/// The map between unknowns and rows.
+#[derive(Clone, Debug, Default)]
+pub struct Kinematics {
+    runs: Vec<Run>,
+    /// Per free row: the velocity block that moves it, and how.
+    carriers: Vec<(u32, Carrier)>,
+    block_count: usize,
+    derived: Vec<DerivedRow>,
+    /// Per row (free and derived): its weights over free rows; what positions follow.
+    forward: Vec<Vec<(u32, f64)>>,
+    /// Per row: the free rows that receive its force, and the weights.
+    backward: Vec<Vec<(u32, f64)>>,
+}
+
+/// A derived row that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum KinematicsError {
+    #[error("derived row {row} hangs on row {parent}, which does not come before it; order rows so that each follows its parents, without cycles")]
+    NotEarlier { row: usize, parent: u32 },
+    #[error("derived row {row} has weight {weight} on row {parent}; weights are finite numbers")]
+    BadWeight { row: usize, parent: u32, weight: f64 },
+    #[error("derived row {row} hangs on nothing; give it at least one parent")]
+    Orphan { row: usize },
+}
+
+impl Kinematics {
+    /// Appends `count` unknowns of a kind; their free rows and velocity blocks follow those before.
+    ///
+    /// # Panics
+    /// After derived rows were added: free rows come first.
+    pub fn add_unknowns(&mut self, kind: UnknownKind, count: usize) -> UnknownRange {
+        assert!(self.derived.is_empty(), "free rows come before derived rows");
+        let (first_row, first_block) = (self.carriers.len(), self.block_count);
+        for unknown in 0..count {
+            let block = (first_block + unknown * kind.block_count()) as u32;
+            match kind {
+                UnknownKind::Point => self.carriers.push((block, Carrier::Translation)),
+                UnknownKind::RigidFrame => {
+                    self.carriers.push((block, Carrier::Translation));
+                    self.carriers.extend([(block + 1, Carrier::Rotation); 3]);
+                }
+                UnknownKind::AffineFrame => {
+                    self.carriers.extend((0..4).map(|k| (block + k, Carrier::Translation)));
+                }
+            }
+        }
+        for row in first_row..self.carriers.len() {
+            self.forward.push(vec![(row as u32, 1.0)]);
+            self.backward.push(vec![(row as u32, 1.0)]);
+        }
+        self.block_count += count * kind.block_count();
+        self.runs.push(Run { kind, first_row, first_block, count });
+        UnknownRange { rows: first_row..self.carriers.len(), blocks: first_block..self.block_count }
+    }
+
+    /// Appends a derived row and returns its index.
+    ///
+    /// # Errors
+    /// A parent does not come before it, a weight is not finite, or there is no parent.
+    pub fn add_derived_row(&mut self, derived: DerivedRow) -> Result<u32, KinematicsError> {
+        let row = self.row_count();
+        if derived.parents.is_empty() {
+            return Err(KinematicsError::Orphan { row });
+        }
+        for &(parent, weight) in &derived.parents {
+            if parent as usize >= row {
+                return Err(KinematicsError::NotEarlier { row, parent });
+            }
+            if !weight.is_finite() {
+                return Err(KinematicsError::BadWeight { row, parent, weight });
+            }
+        }
+        self.forward.push(compose(&derived.parents, &self.forward));
+        self.backward.push(match derived.feedback {
+            Feedback::Transpose => compose(&derived.parents, &self.backward),
+            Feedback::None => Vec::new(),
+        });
+        self.derived.push(derived);
+        Ok(row as u32)
+    }
+
+    pub fn row_count(&self) -> usize {
+        self.forward.len()
+    }
+
+    pub fn free_row_count(&self) -> usize {
+        self.carriers.len()
+    }
+
+    pub fn block_count(&self) -> usize {
+        self.block_count
+    }
+
+    /// Whether every unknown is a point and every row is an unknown: the maps are the identity.
+    pub fn is_trivial(&self) -> bool {
+        self.derived.is_empty() && !self.has_frames()
+    }
+
+    pub fn has_frames(&self) -> bool {
+        self.runs.iter().any(|run| run.kind != UnknownKind::Point)
+    }
+
+    pub fn has_rigid_frames(&self) -> bool {
+        self.runs.iter().any(|run| run.kind == UnknownKind::RigidFrame)
+    }
+
+    /// Whether some row takes forces without returning them: momentum is not conserved.
+    pub fn is_conservative(&self) -> bool {
+        self.derived.iter().all(|row| row.feedback == Feedback::Transpose)
+    }
+
+    /// Unknowns as (kind, blocks), in order.
+    pub fn unknowns(&self) -> impl Iterator<Item = (UnknownKind, Range<usize>)> {
+        self.runs.iter().flat_map(|run| {
+            let size = run.kind.block_count();
+            (0..run.count).map(move |i| (run.kind, run.first_block + i * size..run.first_block + (i + 1) * size))
+        })
+    }
+
+    /// Weights of a row over free rows, as positions follow them.
+    pub fn forward(&self, row: usize) -> &[(u32, f64)] {
+        &self.forward[row]
+    }
+
+    /// Free rows that receive the force on a row.
+    pub fn backward(&self, row: usize) -> &[(u32, f64)] {
+        &self.backward[row]
+    }
+
+    /// The velocity block that moves a free row.
+    pub fn block_of(&self, free_row: u32) -> u32 {
+        self.carriers[free_row as usize].0
+    }
+
+    /// The position block of a point unknown, or `None` for rows of frames and derived rows.
+    pub fn point_block(&self, row: u32) -> Option<u32> {
+        let run = self.runs.iter().find(|run| {
+            run.kind == UnknownKind::Point && (run.first_row..run.first_row + run.count).contains(&(row as usize))
+        })?;
+        Some((run.first_block + row as usize - run.first_row) as u32)
+    }
+
+    /// The free row that a velocity block translates: a point, an origin, an affine axis; `None` for the
+    /// angular block of a rigid frame.
+    pub fn point_block_row(&self, block: u32) -> Option<u32> {
+        let block = block as usize;
+        let size = |run: &Run| run.kind.block_count();
+        let holds = |run: &&Run| (run.first_block..run.first_block + run.count * size(run)).contains(&block);
+        let run = self.runs.iter().find(holds)?;
+        let (unknown, part) = ((block - run.first_block) / size(run), (block - run.first_block) % size(run));
+        let angular = run.kind == UnknownKind::RigidFrame && part == 1;
+        (!angular).then(|| (run.first_row + unknown * run.kind.row_count() + part) as u32)
+    }
+
+    /// Positions of all rows from the configuration `q` (free rows).
+    pub fn positions_into(&self, q: &[Vec3], rows: &mut [Vec3]) {
+        rows[..q.len()].copy_from_slice(q);
+        self.derive_rows(rows);
+    }
+
+    /// Velocities of all rows, `ẋ = T(q) v`.
+    pub fn velocities_into(&self, q: &[Vec3], v: &[Vec3], rows: &mut [Vec3]) {
+        for (row, &(block, carrier)) in self.carriers.iter().enumerate() {
+            rows[row] = match carrier {
+                Carrier::Translation => v[block as usize],
+                Carrier::Rotation => v[block as usize].cross(q[row]),
+            };
+        }
+        self.derive_rows(rows);
+    }
+
+    /// Fills derived rows from the free rows before them.
+    pub fn derive_rows(&self, rows: &mut [Vec3]) {
+        let free = self.carriers.len();
+        for (index, derived) in self.derived.iter().enumerate() {
+            rows[free + index] =
+                derived.parents.iter().map(|&(parent, weight)| rows[parent as usize] * weight).sum();
+        }
+    }
+
+    /// Generalised forces `Tᵀ f` on velocity blocks; `rows` is consumed as scratch.
+    pub fn forces_into(&self, q: &[Vec3], rows: &mut [Vec3], blocks: &mut [Vec3]) {
+        let free = self.carriers.len();
+        for (index, derived) in self.derived.iter().enumerate().rev() {
+            if derived.feedback == Feedback::Transpose {
+                let force = rows[free + index];
+                for &(parent, weight) in &derived.parents {
+                    rows[parent as usize] += force * weight;
+                }
+            }
+        }
+        blocks.fill(Vec3::ZERO);
+        for (row, &(block, carrier)) in self.carriers.iter().enumerate() {
+            blocks[block as usize] += match carrier {
+                Carrier::Translation => rows[row],
+                Carrier::Rotation => q[row].cross(rows[row]),
+            };
+        }
+    }
+
+    /// Moves a configuration by a displacement of its velocity blocks: points and affine axes add, rotations
+    /// advance by the exponential map from the left.
+    pub fn retract(&self, q: &mut [Vec3], displacement: &[Vec3]) {
+        self.retract_scaled(q, displacement, 1.0);
+    }
+
+    /// [`Kinematics::retract`] by `scale · displacement`.
+    pub fn retract_scaled(&self, q: &mut [Vec3], displacement: &[Vec3], scale: f64) {
+        for run in &self.runs {
+            for unknown in 0..run.count {
+                let row = run.first_row + unknown * run.kind.row_count();
+                let block = run.first_block + unknown * run.kind.block_count();
+                match run.kind {
+                    UnknownKind::Point => q[row] += displacement[block] * scale,
+                    UnknownKind::AffineFrame => {
+                        for k in 0..4 {
+                            q[row + k] += displacement[block + k] * scale;
+                        }
+                    }
+                    UnknownKind::RigidFrame => {
+                        q[row] += displacement[block] * scale;
+                        let axes = Mat3::from_columns(q[row + 1], q[row + 2], q[row + 3]);
+                        let turned = orthonormalised(&(exponential(displacement[block + 1] * scale) * axes));
+                        q[row + 1..row + 4].copy_from_slice(&turned.columns);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The displacement that [`Kinematics::retract`]s `from` to `to`.
+    pub fn difference(&self, to: &[Vec3], from: &[Vec3], displacement: &mut [Vec3]) {
+        for run in &self.runs {
+            for unknown in 0..run.count {
+                let row = run.first_row + unknown * run.kind.row_count();
+                let block = run.first_block + unknown * run.kind.block_count();
+                match run.kind {
+                    UnknownKind::Point => displacement[block] = to[row] - from[row],
+                    UnknownKind::AffineFrame => {
+                        for k in 0..4 {
+                            displacement[block + k] = to[row + k] - from[row + k];
+                        }
+                    }
+                    UnknownKind::RigidFrame => {
+                        displacement[block] = to[row] - from[row];
+                        let axes = |q: &[Vec3]| Mat3::from_columns(q[row + 1], q[row + 2], q[row + 3]);
+                        displacement[block + 1] = logarithm(&axes(to).mul_transpose(&axes(from)));
+                    }
+                }
+            }
+        }
+    }
+
+    /// `T` of a free row: the derivative of its position by the displacement of its block.
+    pub fn position_map(&self, free_row: u32, q: &[Vec3]) -> Mat3 {
+        match self.carriers[free_row as usize].1 {
+            Carrier::Translation => Mat3::IDENTITY,
+            // δa = δθ × a
+            Carrier::Rotation => -q[free_row as usize].cross_matrix(),
+        }
+    }
+
+    /// `D` of a free row: the derivative of its velocity `T(q) v(q)` by the displacement of its block, where
+    /// `v = difference(q, q_start) / h` as a one-step implicit method has it.
+    pub fn velocity_map(&self, free_row: u32, q: &[Vec3], v: &[Vec3], timestep: f64) -> Mat3 {
+        let (block, carrier) = self.carriers[free_row as usize];
+        match carrier {
+            Carrier::Translation => Mat3::IDENTITY * (1.0 / timestep),
+            Carrier::Rotation => {
+                // δ(ω × a) = ω × (δθ × a) + (J⁻¹ δθ / h) × a
+                let omega = v[block as usize];
+                let axis = q[free_row as usize].cross_matrix();
+                let inverse_jacobian = left_jacobian_inverse(omega * timestep);
+                -(omega.cross_matrix() * axis) - (axis * inverse_jacobian) * (1.0 / timestep)
+            }
+        }
+    }
+
+    /// The geometric block `∂(Tᵀ f)/∂θ` that a force `f` on a free row adds to its block's diagonal.
+    pub fn geometric_block(&self, free_row: u32, q: &[Vec3], force: Vec3) -> Option<(u32, Mat3)> {
+        match self.carriers[free_row as usize] {
+            (_, Carrier::Translation) => None,
+            // δ(a × f) = (δθ × a) × f = f × (a × δθ)
+            (block, Carrier::Rotation) => {
+                Some((block, force.cross_matrix() * q[free_row as usize].cross_matrix()))
+            }
+        }
+    }
+
+    /// Whether a row moves with a translation of the whole: 1 for points and origins, 0 for axes, and what
+    /// the weights make of it for derived rows.
+    pub fn translation_weight(&self, row: usize) -> f64 {
+        self.forward[row].iter().map(|&(free, weight)| if self.is_axis(free) { 0.0 } else { weight }).sum()
+    }
+
+    fn is_axis(&self, free_row: u32) -> bool {
+        self.runs
+            .iter()
+            .find(|run| {
+                let rows = run.first_row..run.first_row + run.count * run.kind.row_count();
+                rows.contains(&(free_row as usize))
+            })
+            .is_some_and(|run| !(free_row as usize - run.first_row).is_multiple_of(run.kind.row_count()))
+    }
+}
+
+/// Where unknowns stand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownRange {
+    pub rows: Range<usize>,
+    pub blocks: Range<usize>,
+}
+
+/// Weights over free rows of `Σ weight · parent`, parents expanded, each free row once, in order.
+fn compose(parents: &[(u32, f64)], expansions: &[Vec<(u32, f64)>]) -> Vec<(u32, f64)> {
+    let mut sum: Vec<(u32, f64)> = Vec::new();
+    for &(parent, weight) in parents {
+        for &(free, share) in &expansions[parent as usize] {
+            match sum.binary_search_by_key(&free, |entry| entry.0) {
+                Ok(at) => sum[at].1 += weight * share,
+                Err(at) => sum.insert(at, (free, weight * share)),
+            }
+        }
+    }
+    sum
+}
+
+/// `J⁻¹(θ)` with `log(exp(δ) exp(θ)) = θ + J⁻¹(θ) δ + O(δ²)`:
+/// `I - [θ]×/2 + (1/θ² - (1 + cos θ)/(2 θ sin θ)) [θ]×²`.
+fn left_jacobian_inverse(theta: Vec3) -> Mat3 {
+    let angle_sq = theta.length_sq();
+    // series below the switch: 1/12 + θ²/720, error θ⁴/30240
+    let quadratic = if angle_sq < 1e-4 {
+        1.0 / 12.0 + angle_sq / 720.0
+    } else {
+        let angle = angle_sq.sqrt();
+        1.0 / angle_sq - (1.0 + libm::cos(angle)) / (2.0 * angle * libm::sin(angle))
+    };
+    let skew = theta.cross_matrix();
+    Mat3::IDENTITY - skew * 0.5 + (skew * skew) * quadratic
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame_and_points() -> (Kinematics, Vec<Vec3>) {
+        let mut kinematics = Kinematics::default();
+        kinematics.add_unknowns(UnknownKind::Point, 2);
+        kinematics.add_unknowns(UnknownKind::RigidFrame, 1);
+        kinematics.add_unknowns(UnknownKind::AffineFrame, 1);
+        let rotation = exponential(Vec3::new(0.3, -0.2, 0.9));
+        let mut q = vec![Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 0.5, 0.25), Vec3::new(0.1, 0.2, 0.3)];
+        q.extend(rotation.columns);
+        q.extend([Vec3::ZERO, Vec3::X, Vec3::new(0.1, 1.1, 0.0), Vec3::Z]);
+        (kinematics, q)
+    }
+
+    fn displacement(kinematics: &Kinematics, scale: f64) -> Vec<Vec3> {
+        (0..kinematics.block_count())
+            .map(|i| Vec3::new((i as f64).sin(), (2.0 * i as f64).cos(), 0.3 + 0.1 * i as f64) * scale)
+            .collect()
+    }
+
+    /// `difference` inverts `retract`, for points and frames alike.
+    #[test]
+    fn difference_inverts_retract() {
+        let (kinematics, start) = frame_and_points();
+        let moved_by = displacement(&kinematics, 0.7);
+        let mut end = start.clone();
+        kinematics.retract(&mut end, &moved_by);
+        let mut back = vec![Vec3::ZERO; kinematics.block_count()];
+        kinematics.difference(&end, &start, &mut back);
+        for (got, wanted) in back.iter().zip(&moved_by) {
+            assert!((*got - *wanted).length() < 1e-14);
+        }
+    }
+
+    /// `velocity_map` is the derivative of `T(q) difference(q, q0)/h`, by central differences.
+    #[test]
+    fn velocity_map_is_the_derivative_of_row_velocities() {
+        let (kinematics, start) = frame_and_points();
+        let (h, step) = (0.1, 1e-6);
+        let moved_by = displacement(&kinematics, 0.4);
+        let rows_at = |extra: &[Vec3], scale: f64| {
+            let mut q = start.clone();
+            kinematics.retract(&mut q, &moved_by);
+            kinematics.retract_scaled(&mut q, extra, scale);
+            let mut v = vec![Vec3::ZERO; kinematics.block_count()];
+            kinematics.difference(&q, &start, &mut v);
+            v.iter_mut().for_each(|block| *block = *block * (1.0 / h));
+            let mut rows = vec![Vec3::ZERO; kinematics.row_count()];
+            kinematics.velocities_into(&q, &v, &mut rows);
+            (q, v, rows)
+        };
+        let direction = displacement(&kinematics, 1.0);
+        let (_, _, plus) = rows_at(&direction, step);
+        let (_, _, minus) = rows_at(&direction, -step);
+        let (q, v, _) = rows_at(&direction, 0.0);
+        for row in 0..kinematics.free_row_count() {
+            let numeric = (plus[row] - minus[row]) * (0.5 / step);
+            let map = kinematics.velocity_map(row as u32, &q, &v, h);
+            let exact = map * direction[kinematics.block_of(row as u32) as usize];
+            // central differences: step² times a third derivative of order 1/h, and rounding 1e-16/step
+            assert!((numeric - exact).length() < 1e-7, "row {row}: {numeric:?} {exact:?}");
+        }
+    }
+
+    /// Forces come back by the transpose: the power `f·ẋ` on rows equals that on blocks.
+    #[test]
+    fn virtual_work_is_conserved() {
+        let (mut kinematics, q) = frame_and_points();
+        let parents = vec![(0, 0.25), (3, 0.5), (7, -0.25)];
+        kinematics.add_derived_row(DerivedRow { parents, feedback: Feedback::Transpose }).unwrap();
+        let v = displacement(&kinematics, 1.0);
+        let mut rows = vec![Vec3::ZERO; kinematics.row_count()];
+        kinematics.velocities_into(&q, &v, &mut rows);
+        let mut force: Vec<Vec3> = (0..rows.len()).map(|i| Vec3::new(1.0, i as f64, -0.5)).collect();
+        let row_power: f64 = force.iter().zip(&rows).map(|(f, x)| f.dot(*x)).sum();
+        let mut generalised = vec![Vec3::ZERO; kinematics.block_count()];
+        kinematics.forces_into(&q, &mut force, &mut generalised);
+        let block_power: f64 = generalised.iter().zip(&v).map(|(f, x)| f.dot(*x)).sum();
+        assert!((row_power - block_power).abs() < 1e-13 * row_power.abs().max(1.0));
+    }
+
+    #[test]
+    fn a_row_must_follow_its_parents() {
+        let (mut kinematics, _) = frame_and_points();
+        let row = kinematics.row_count();
+        let cyclic = DerivedRow { parents: vec![(row as u32, 1.0)], feedback: Feedback::None };
+        let error = kinematics.add_derived_row(cyclic).unwrap_err();
+        assert_eq!(error, KinematicsError::NotEarlier { row, parent: row as u32 });
+    }
+}

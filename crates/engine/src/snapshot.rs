@@ -1,0 +1,179 @@
+//! State to bytes and back, bit for bit.
+
+use souple_math::Vec3;
+
+use crate::state::{FieldMut, Pair};
+use crate::{FieldState, State, SystemState};
+
+const MAGIC: &[u8; 8] = b"SOUPLE01";
+
+/// Bytes that are no snapshot, or not one of this model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SnapshotError {
+    #[error("this is no Souple snapshot: it starts with {found:02x?}, not with `SOUPLE01`")]
+    NotASnapshot { found: Vec<u8> },
+    #[error("the snapshot is cut off: {needed} bytes are needed at offset {offset}, {available} are there")]
+    CutOff { offset: usize, needed: u64, available: usize },
+    #[error("the snapshot goes on after its end: {extra} bytes too many")]
+    TooLong { extra: usize },
+    #[error("the snapshot has {found} {what}, the scene has {expected}; it is of another scene")]
+    OtherModel { what: String, found: u64, expected: usize },
+    #[error("a {what} of {bytes} bytes is not a whole number of entries")]
+    Ragged { what: &'static str, bytes: u64 },
+}
+
+impl State {
+    /// The state as bytes: magic, counts, then every field with its length, little-endian.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend((self.systems.len() as u64).to_le_bytes());
+        bytes.extend((self.fields.len() as u64).to_le_bytes());
+        for (_, field) in self.fields() {
+            let content = field.bytes();
+            bytes.extend((content.len() as u64).to_le_bytes());
+            bytes.extend_from_slice(content);
+        }
+        bytes
+    }
+
+    /// # Errors
+    /// The bytes are not a complete snapshot.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
+        let mut reader = Reader { bytes, offset: 0 };
+        let magic = reader.take(8).map_err(|_| SnapshotError::NotASnapshot { found: bytes.to_vec() })?;
+        if magic != MAGIC {
+            return Err(SnapshotError::NotASnapshot { found: magic.to_vec() });
+        }
+        let (systems, fields) = (reader.count()?, reader.count()?);
+        let mut state = Self {
+            systems: vec![SystemState::default(); systems],
+            fields: vec![FieldState::default(); fields],
+            ..Self::default()
+        };
+        for field in state.fields_mut() {
+            let length = reader.length()?;
+            let content = reader.take(length)?;
+            match field {
+                FieldMut::Integer(value) => *value = one("integer", content)?,
+                FieldMut::Integers(values) => *values = entries("list of integers", content)?,
+                FieldMut::Numbers(values) => *values = entries("list of numbers", content)?,
+                FieldMut::Vectors(values) => *values = entries::<Vec3>("list of vectors", content)?,
+                FieldMut::Pairs(values) => *values = entries::<Pair>("list of pairs", content)?,
+            }
+        }
+        match bytes.len() - reader.offset {
+            0 => Ok(state),
+            extra => Err(SnapshotError::TooLong { extra }),
+        }
+    }
+
+    /// Whether this state has the shape of `like` (a state of the same model).
+    ///
+    /// # Errors
+    /// Names the first count that differs.
+    pub fn check_shape(&self, like: &Self) -> Result<(), SnapshotError> {
+        let differ = |what: &str, found: usize, expected: usize| {
+            let error = SnapshotError::OtherModel { what: what.to_owned(), found: found as u64, expected };
+            if found == expected { Ok(()) } else { Err(error) }
+        };
+        differ("systems", self.systems.len(), like.systems.len())?;
+        differ("fields", self.fields.len(), like.fields.len())?;
+        differ("driven parameters", self.driven.len(), like.driven.len())?;
+        for (index, (mine, other)) in self.systems.iter().zip(&like.systems).enumerate() {
+            differ(&format!("free rows in system {index}"), mine.q.len(), other.q.len())?;
+            differ(&format!("velocity blocks in system {index}"), mine.v.len(), other.v.len())?;
+            differ(&format!("numbers of memory in system {index}"), mine.memory.len(), other.memory.len())?;
+        }
+        Ok(())
+    }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    offset: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, length: u64) -> Result<&'a [u8], SnapshotError> {
+        let available = self.bytes.len() - self.offset;
+        if length > available as u64 {
+            return Err(SnapshotError::CutOff { offset: self.offset, needed: length, available });
+        }
+        let content = &self.bytes[self.offset..self.offset + length as usize];
+        self.offset += length as usize;
+        Ok(content)
+    }
+
+    fn length(&mut self) -> Result<u64, SnapshotError> {
+        one("length", self.take(8)?)
+    }
+
+    /// A count of things that each take at least eight bytes, so that a garbled count cannot ask for more
+    /// memory than the file is long.
+    fn count(&mut self) -> Result<usize, SnapshotError> {
+        let count = self.length()?;
+        let available = self.bytes.len() - self.offset;
+        if count > (available / 8) as u64 {
+            let needed = count.saturating_mul(8);
+            return Err(SnapshotError::CutOff { offset: self.offset, needed, available });
+        }
+        Ok(count as usize)
+    }
+}
+
+fn one(what: &'static str, content: &[u8]) -> Result<u64, SnapshotError> {
+    content
+        .try_into()
+        .map(u64::from_le_bytes)
+        .map_err(|_| SnapshotError::Ragged { what, bytes: content.len() as u64 })
+}
+
+fn entries<T: bytemuck::Pod>(what: &'static str, content: &[u8]) -> Result<Vec<T>, SnapshotError> {
+    if !content.len().is_multiple_of(size_of::<T>()) {
+        return Err(SnapshotError::Ragged { what, bytes: content.len() as u64 });
+    }
+    Ok(bytemuck::allocation::pod_collect_to_vec(content))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state() -> State {
+        let system = SystemState {
+            q: vec![Vec3::new(1.0, f64::MIN_POSITIVE, -0.0)],
+            v: vec![Vec3::X, Vec3::Y],
+            memory: vec![0.1],
+            pairs: vec![Pair::new(1, 2, [0.5; 8])],
+            history: vec![],
+        };
+        let fields = vec![FieldState { values: vec![1.0, 2.0], indices: vec![7] }];
+        State { period: 9, systems: vec![system], driven: vec![3.0], fields, generators: vec![u64::MAX] }
+    }
+
+    #[test]
+    fn bytes_give_back_the_same_bits() {
+        let state = state();
+        let back = State::from_bytes(&state.to_bytes()).unwrap();
+        assert_eq!(back, state);
+        assert_eq!(back.hash(), state.hash());
+    }
+
+    /// Every truncation and every single flipped byte ends in an error or in a state, never in a panic.
+    #[test]
+    fn damaged_bytes_are_refused() {
+        let bytes = state().to_bytes();
+        for length in 0..bytes.len() {
+            assert!(State::from_bytes(&bytes[..length]).is_err(), "{length} bytes were accepted");
+        }
+        for at in 0..bytes.len() {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 0x80;
+            if let Ok(other) = State::from_bytes(&damaged) {
+                assert!(at < 8 || other.hash() != state().hash());
+            }
+        }
+        let longer = [bytes.as_slice(), &[0]].concat();
+        assert_eq!(State::from_bytes(&longer), Err(SnapshotError::TooLong { extra: 1 }));
+    }
+}

@@ -1,0 +1,83 @@
+//! The longest stable step of explicit methods: from the highest frequency of the linearised system.
+
+use souple_math::Vec3;
+
+use crate::force::TangentWeights;
+use crate::state::SystemState;
+use crate::steppers::Stability;
+use crate::system::{Surroundings, System, SystemWorkspace};
+
+/// What the highest frequency allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forecast {
+    /// Highest angular frequency of `M⁻¹ K` [rad/s], from below.
+    pub highest_frequency: f64,
+    /// The longest stable step of the system's stepper [s]; infinite where any step is stable.
+    pub longest_step: f64,
+}
+
+/// Iterations of the power method: the Rayleigh quotient of a mesh's spectrum is then within a few percent.
+const ITERATIONS: usize = 40;
+
+/// Highest frequency at the placed state, by the power method on `M⁻¹ K` with the lumped mass of rows.
+///
+/// A random-like but fixed start vector; the Rayleigh quotient approaches the highest frequency from below,
+/// so the step it allows is taken with a margin of 5 %.
+pub fn forecast(system: &System, state: &SystemState, around: &Surroundings, ws: &mut SystemWorkspace) -> Forecast {
+    let rows = system.kinematics.row_count();
+    let row_mass = lumped_row_mass(system);
+    let mut direction: Vec<Vec3> = (0..rows).map(start_vector).collect();
+    let mut product = vec![Vec3::ZERO; rows];
+    let weights = TangentWeights { position: -1.0, velocity: 0.0 };
+    let mut eigenvalue = 0.0;
+    for _ in 0..ITERATIONS {
+        system.project_free_rows(&mut direction);
+        system.kinematics.derive_rows(&mut direction);
+        // Rayleigh quotient (δ·K δ) / (δ·M δ)
+        system.sum_row_differentials(ws, state, around, weights, &direction, &mut product);
+        let stiffness: f64 = direction.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum();
+        let mass: f64 = direction.iter().zip(&row_mass).map(|(d, m)| m * d.length_sq()).sum();
+        if !(stiffness > 0.0 && mass > 0.0) {
+            break;
+        }
+        eigenvalue = f64::max(eigenvalue, stiffness / mass);
+        // δ <- M⁻¹ K δ, normalised
+        let mut largest: f64 = 0.0;
+        for ((d, k), m) in direction.iter_mut().zip(&product).zip(&row_mass) {
+            *d = if *m > 0.0 { *k * (1.0 / m) } else { Vec3::ZERO };
+            largest = largest.max(d.largest_component());
+        }
+        if largest == 0.0 || !largest.is_finite() {
+            break;
+        }
+        direction.iter_mut().for_each(|d| *d = *d * (1.0 / largest));
+    }
+    let highest_frequency = eigenvalue.sqrt();
+    let longest_step = match system.stepper.stability() {
+        Stability::Unconditional => f64::INFINITY,
+        Stability::Limited(limit) if highest_frequency > 0.0 => 0.95 * limit / highest_frequency,
+        // growth exp(ω² h t / 2): a tenth over a second's worth of the fastest oscillation's e-folds
+        Stability::Growing if highest_frequency > 0.0 => 0.2 / (highest_frequency * highest_frequency),
+        Stability::Limited(_) | Stability::Growing => f64::INFINITY,
+    };
+    Forecast { highest_frequency, longest_step }
+}
+
+/// Row sums of the mass.
+fn lumped_row_mass(system: &System) -> Vec<f64> {
+    let mut mass = system.mass.diagonal.clone();
+    for &(a, b, coupling) in &system.mass.couplings {
+        mass[a as usize] += coupling;
+        mass[b as usize] += coupling;
+    }
+    mass
+}
+
+/// A fixed vector without symmetry: components from a multiplicative hash of the index.
+fn start_vector(index: usize) -> Vec3 {
+    let number = |salt: u64| {
+        let mixed = (index as u64 * 3 + salt + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        (mixed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    Vec3::new(number(0), number(1), number(2))
+}

@@ -1,0 +1,129 @@
+//! Backward Euler: `M (v' - v) = h f(q', v')`, `q' = retract(q, h v')`.
+
+use souple_table::{Parameter, Range, Value};
+
+use crate::implicit::{ImplicitBuffers, ImplicitStep, NewtonSettings};
+use crate::linear::{self, SolverSettings};
+use crate::state::SystemState;
+use crate::system::{Surroundings, System, SystemWorkspace};
+
+use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+
+/// First order, stable at any step, damps what it does not resolve.
+#[derive(Clone, Debug)]
+pub struct BackwardEuler {
+    pub newton: NewtonMode,
+    pub solver: SolverSettings,
+}
+
+/// How far the nonlinear equation of a step is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NewtonMode {
+    /// One linearisation about the start (Baraff & Witkin 1998): cheap, right for small steps.
+    One,
+    /// To the tolerance, with line search.
+    Full(NewtonSettings),
+}
+
+const NEWTON: Parameter = Parameter::choice(
+    "newton",
+    &["full", "one"],
+    "`full`: to the tolerance, with line search; `one`: a single linearised solve per step",
+)
+.or(Value::Text("full"));
+
+/// Wanted unbalanced force, relative to the largest in the step.
+pub(super) const NEWTON_TOLERANCE: Parameter = Parameter::number(
+    "newton_tolerance",
+    "",
+    Range::open(0.0, 1.0),
+    "unbalanced force at which Newton's method stops, relative to the largest in the step",
+)
+.or(Value::Number(1e-8));
+
+pub(super) const NEWTON_ITERATIONS: Parameter =
+    Parameter::integer("newton_iterations", Range::closed(1.0, 1000.0), "iterations before a step is given up")
+        .or(Value::Integer(50));
+
+pub(super) const ENTRY: StepperEntry = StepperEntry {
+    name: "backward_euler",
+    summary: "first order, implicit: stable at any step, damps what the step does not resolve",
+    source: "Baraff & Witkin 1998, Large steps in cloth simulation, §3; Hairer & Wanner 1996, IV.3",
+    parameters: &[
+        NEWTON,
+        NEWTON_TOLERANCE,
+        NEWTON_ITERATIONS,
+        linear::SOLVER,
+        linear::PRECONDITIONER,
+        linear::TOLERANCE,
+        linear::MAX_ITERATIONS,
+        linear::MATRIX_FREE,
+    ],
+    build: |values| {
+        let settings = newton_settings(values);
+        let newton = if values.text("newton") == "one" { NewtonMode::One } else { NewtonMode::Full(settings) };
+        Box::new(BackwardEuler { newton, solver: SolverSettings::from_values(values) })
+    },
+};
+
+pub(super) fn newton_settings(values: &souple_table::Values) -> NewtonSettings {
+    NewtonSettings {
+        tolerance: values.number("newton_tolerance"),
+        max_iterations: values.integer("newton_iterations") as u32,
+    }
+}
+
+impl Stepper for BackwardEuler {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn stability(&self) -> Stability {
+        Stability::Unconditional
+    }
+
+    fn solver_settings(&self) -> SolverSettings {
+        self.solver.clone()
+    }
+
+    fn step(
+        &self,
+        system: &System,
+        around: &Surroundings,
+        start: f64,
+        timestep: f64,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError> {
+        let (q_start, v_start) = (next.q.clone(), next.v.clone());
+        system.place_rows(&q_start, &v_start, start, &mut ws.rows);
+        let start_row_velocities = ws.rows.velocities.clone();
+        let implicit = ImplicitStep {
+            system,
+            around: *around,
+            end: start + timestep,
+            timestep: Some(timestep),
+            q_start: &q_start,
+            v_start: &v_start,
+            start_row_velocities: &start_row_velocities,
+            has_potential: system.kinematics.is_trivial()
+                && system.forces.iter().all(|force| force.declaration().conservative),
+        };
+        let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
+        let report = match self.newton {
+            NewtonMode::One => implicit.solve_once(next, ws, &mut buffers),
+            NewtonMode::Full(settings) => implicit.solve_newton(settings, next, ws, &mut buffers),
+        };
+        ws.implicit = Some(buffers);
+        let report = report?;
+        // v' = difference(q', q)/h, the very velocity the equation was solved with
+        let mut v = std::mem::take(&mut next.v);
+        system.kinematics.difference(&next.q, &q_start, &mut v);
+        v.iter_mut().for_each(|block| *block = *block * (1.0 / timestep));
+        next.v = v;
+        system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
+        system.place_rows(&next.q, &next.v, start + timestep, &mut ws.rows);
+        system.advance_memory(&ws.rows, next, around, timestep);
+        Ok(report)
+    }
+}

@@ -1,0 +1,117 @@
+//! Ways to step in time: one file each and one line in [`TABLE`].
+
+mod backward_euler;
+mod explicit;
+mod position_verlet;
+mod runge_kutta_4;
+mod static_equilibrium;
+
+use souple_table::{Entry, Table, Values};
+
+use crate::linear::SolverSettings;
+use crate::state::SystemState;
+use crate::system::{Surroundings, System, SystemWorkspace};
+
+pub use backward_euler::{BackwardEuler, NewtonMode};
+pub use explicit::{ExplicitEuler, SymplecticEuler};
+pub use position_verlet::PositionVerlet;
+pub use runge_kutta_4::RungeKutta4;
+pub use static_equilibrium::StaticEquilibrium;
+
+/// What a step had to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    pub newton_iterations: u32,
+    pub linear_iterations: u32,
+    /// Largest relative residual among the linear solves.
+    pub linear_residual: f64,
+    /// Norm of the remaining unbalanced force over that at the start; 0 for explicit steppers.
+    pub newton_residual: f64,
+}
+
+impl StepReport {
+    /// The report of this step and those before it.
+    pub fn merge(&mut self, other: &Self) {
+        self.newton_iterations += other.newton_iterations;
+        self.linear_iterations += other.linear_iterations;
+        self.linear_residual = self.linear_residual.max(other.linear_residual);
+        self.newton_residual = self.newton_residual.max(other.newton_residual);
+    }
+}
+
+/// A step that could not finish; State is as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    #[error("the linear solve of a step failed: {0}")]
+    Linear(String),
+    #[error("Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take a smaller step, more load steps or `newton = \"one\"`")]
+    NewtonStalled { iterations: u32, residual: f64, wanted: f64 },
+    #[error("force `{force}` is not finite ({value:?} at row {row}, time {time} s)")]
+    ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
+    #[error("{0}")]
+    Field(String),
+    #[error("{field} is not finite after the step to {time} s; the step may be too long for what is stiff there")]
+    StateNotFinite { field: String, time: f64 },
+}
+
+/// How long a step may be for an oscillation of angular frequency `ω`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stability {
+    /// Any step.
+    Unconditional,
+    /// `h ω` below this.
+    Limited(f64),
+    /// No step without damping: amplitudes grow by `ω² h / 2` per second.
+    Growing,
+}
+
+/// A way to step.
+pub trait Stepper: Send + Sync {
+    /// Its name in the table.
+    fn name(&self) -> &'static str;
+
+    /// Why it cannot step this system, in words that name what stands in the way.
+    fn refuses(&self, _system: &System) -> Option<String> {
+        None
+    }
+
+    fn stability(&self) -> Stability;
+
+    /// How it solves linear systems; defaults for those that solve none but masses.
+    fn solver_settings(&self) -> SolverSettings {
+        SolverSettings::default()
+    }
+
+    /// Steps `next`, which holds the state at `start` seconds, on by `timestep` seconds.
+    ///
+    /// # Errors
+    /// The step cannot be finished; `next` is then worthless.
+    fn step(
+        &self,
+        system: &System,
+        around: &Surroundings,
+        start: f64,
+        timestep: f64,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError>;
+}
+
+/// Makes a stepper from its checked parameters.
+pub type BuildStepper = fn(&Values) -> Box<dyn Stepper>;
+
+/// All steppers.
+pub const TABLE: Table<BuildStepper> = Table {
+    kind: "stepper",
+    entries: &[
+        &explicit::EXPLICIT_EULER,
+        &explicit::SYMPLECTIC_EULER,
+        &position_verlet::ENTRY,
+        &runge_kutta_4::ENTRY,
+        &backward_euler::ENTRY,
+        &static_equilibrium::ENTRY,
+    ],
+};
+
+/// An entry of [`TABLE`].
+pub type StepperEntry = Entry<BuildStepper>;

@@ -1,0 +1,141 @@
+//! Statics: `f(q) = 0`, reached over load steps.
+
+use souple_math::Vec3;
+use souple_table::{Parameter, Range, Value};
+
+use crate::implicit::{ImplicitBuffers, ImplicitStep, NewtonSettings};
+use crate::linear::{self, SolverSettings};
+use crate::state::SystemState;
+use crate::system::{Surroundings, System, SystemWorkspace};
+
+use super::backward_euler::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings};
+use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+
+/// Equilibrium at the end of every step: loads and prescribed motion grow over `load_steps` in the first
+/// step from where the world starts; a load step that does not converge is halved.
+#[derive(Clone, Debug)]
+pub struct StaticEquilibrium {
+    pub load_steps: u32,
+    pub newton: NewtonSettings,
+    pub solver: SolverSettings,
+}
+
+const LOAD_STEPS: Parameter = Parameter::integer(
+    "load_steps",
+    Range::closed(1.0, 100_000.0),
+    "steps over which loads grow from nothing to all; halved by themselves where one does not converge",
+)
+.or(Value::Integer(1));
+
+/// Halvings of a load step before it is given up.
+const MAX_HALVINGS: u32 = 12;
+
+pub(super) const ENTRY: StepperEntry = StepperEntry {
+    name: "static",
+    summary: "equilibrium by Newton's method over load steps; no inertia, velocities are zero",
+    source: "Bonet & Wood 2008, §9.6",
+    parameters: &[
+        LOAD_STEPS,
+        NEWTON_TOLERANCE,
+        NEWTON_ITERATIONS,
+        linear::SOLVER,
+        linear::PRECONDITIONER,
+        linear::TOLERANCE,
+        linear::MAX_ITERATIONS,
+        linear::MATRIX_FREE,
+    ],
+    build: |values| {
+        Box::new(StaticEquilibrium {
+            load_steps: values.integer("load_steps") as u32,
+            newton: newton_settings(values),
+            solver: SolverSettings::from_values(values),
+        })
+    },
+};
+
+impl StaticEquilibrium {
+    /// Equilibrium under the fraction `load` of the loads, from the configuration in `next`.
+    fn equilibrate(
+        &self,
+        system: &System,
+        around: Surroundings,
+        end: f64,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+    ) -> Result<StepReport, StepError> {
+        let q_start = next.q.clone();
+        let at_rest = vec![Vec3::ZERO; system.kinematics.row_count()];
+        let implicit = ImplicitStep {
+            system,
+            around,
+            end,
+            timestep: None,
+            q_start: &q_start,
+            v_start: &[],
+            start_row_velocities: &at_rest,
+            has_potential: system.forces.iter().all(|force| force.declaration().conservative),
+        };
+        implicit.solve_newton(self.newton, next, ws, buffers)
+    }
+}
+
+impl Stepper for StaticEquilibrium {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn stability(&self) -> Stability {
+        Stability::Unconditional
+    }
+
+    fn solver_settings(&self) -> SolverSettings {
+        self.solver.clone()
+    }
+
+    fn step(
+        &self,
+        system: &System,
+        around: &Surroundings,
+        start: f64,
+        timestep: f64,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError> {
+        let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
+        let mut report = StepReport::default();
+        // the first step of a world starts from nothing; later ones continue under full load
+        let first = start == 0.0;
+        let mut reached = 0.0;
+        let mut stride = if first { 1.0 / f64::from(self.load_steps) } else { 1.0 };
+        let mut halvings = 0;
+        let outcome = loop {
+            let load = f64::min(1.0, reached + stride);
+            let fallback = next.q.clone();
+            let around = Surroundings { load: if first { load } else { 1.0 }, ..*around };
+            match self.equilibrate(system, around, start + timestep, next, ws, &mut buffers) {
+                Ok(part) => {
+                    report.merge(&part);
+                    reached = load;
+                    if reached >= 1.0 {
+                        break Ok(report);
+                    }
+                }
+                Err(error) => {
+                    next.q = fallback;
+                    halvings += 1;
+                    stride *= 0.5;
+                    if halvings > MAX_HALVINGS || !first {
+                        break Err(error);
+                    }
+                }
+            }
+        };
+        ws.implicit = Some(buffers);
+        let report = outcome?;
+        next.v.fill(Vec3::ZERO);
+        system.place_rows(&next.q, &next.v, start + timestep, &mut ws.rows);
+        system.advance_memory(&ws.rows, next, around, timestep);
+        Ok(report)
+    }
+}

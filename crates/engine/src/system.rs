@@ -1,0 +1,279 @@
+//! A system: bodies that step together. Its constant part, its scratch, and how its forces are summed.
+
+use std::ops::Range;
+
+use souple_math::Vec3;
+
+use crate::constraint::Constraint;
+use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
+use crate::implicit::ImplicitBuffers;
+use crate::kinematics::Kinematics;
+use crate::linear::LinearSolver;
+use crate::mass::Mass;
+use crate::state::{FieldState, Pair, SystemState, merge_pairs, pairs_of};
+use crate::steppers::Stepper;
+use crate::tangent::Tangent;
+
+/// The constant part of a system.
+pub struct System {
+    pub name: String,
+    pub kinematics: Kinematics,
+    pub mass: Mass,
+    pub forces: Vec<Box<dyn Force>>,
+    pub constraints: Vec<Constraint>,
+    pub stepper: Box<dyn Stepper>,
+    /// Whole steps in a period of the world.
+    pub steps_per_period: u32,
+}
+
+/// What a system reads of the world around it.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a> {
+    pub driven: &'a [f64],
+    pub fields: &'a [FieldState],
+    /// Fraction of the loads that acts (see [`Configuration::load`]).
+    pub load: f64,
+}
+
+/// Scratch of a system: nothing here outlives a step.
+pub struct SystemWorkspace {
+    pub scratches: Vec<Scratch>,
+    pub rows: Rows,
+    pub row_force: Vec<Vec3>,
+    pub row_scratch: Vec<Vec3>,
+    /// Buffers of the size of the velocity, for steppers.
+    pub blocks: [Vec<Vec3>; 8],
+    /// Buffers of the size of the configuration, for steppers.
+    pub configurations: [Vec<Vec3>; 4],
+    pub found_pairs: Vec<Pair>,
+    pub tangent: Tangent,
+    pub linear: LinearSolver,
+    pub implicit: Option<ImplicitBuffers>,
+    pub stages: StageTimes,
+}
+
+/// Rows as they stand for one evaluation.
+#[derive(Clone, Debug, Default)]
+pub struct Rows {
+    pub positions: Vec<Vec3>,
+    pub velocities: Vec<Vec3>,
+    pub time: f64,
+}
+
+/// Wall seconds spent by stage since the workspace was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageTimes {
+    pub pairs: f64,
+    pub forces: f64,
+    pub assembly: f64,
+    pub solve: f64,
+    pub advance: f64,
+}
+
+impl System {
+    /// Where each force's numbers stand in [`SystemState::memory`].
+    pub fn memory_ranges(&self) -> Vec<Range<usize>> {
+        let mut start = 0;
+        let next = |force: &Box<dyn Force>| {
+            let range = start..start + force.memory_len();
+            start = range.end;
+            range
+        };
+        self.forces.iter().map(next).collect()
+    }
+
+    fn memory_range(&self, force: usize) -> Range<usize> {
+        let start = self.forces[..force].iter().map(|force| force.memory_len()).sum();
+        start..start + self.forces[force].memory_len()
+    }
+
+    /// The state at rest in configuration `q`, with fresh memories.
+    pub fn initial_state(&self, q: Vec<Vec3>) -> SystemState {
+        let mut memory = vec![0.0; self.forces.iter().map(|force| force.memory_len()).sum()];
+        for (force, range) in self.forces.iter().zip(self.memory_ranges()) {
+            force.initial_memory(&mut memory[range]);
+        }
+        let v = vec![Vec3::ZERO; self.kinematics.block_count()];
+        SystemState { q, v, memory, ..SystemState::default() }
+    }
+
+    pub fn new_workspace(&self) -> SystemWorkspace {
+        let (rows, blocks) = (self.kinematics.row_count(), self.kinematics.block_count());
+        let zeros = |count: usize| vec![Vec3::ZERO; count];
+        SystemWorkspace {
+            scratches: self.forces.iter().map(|force| force.new_scratch()).collect(),
+            rows: Rows { positions: zeros(rows), velocities: zeros(rows), time: 0.0 },
+            row_force: zeros(rows),
+            row_scratch: zeros(rows),
+            blocks: std::array::from_fn(|_| zeros(blocks)),
+            configurations: std::array::from_fn(|_| zeros(self.kinematics.free_row_count())),
+            found_pairs: Vec::new(),
+            tangent: Tangent::default(),
+            linear: LinearSolver::new(self.stepper.solver_settings()),
+            implicit: None,
+            stages: StageTimes::default(),
+        }
+    }
+
+    /// Brings rows to `(q, v)` at `time`.
+    pub fn place_rows(&self, q: &[Vec3], v: &[Vec3], time: f64, rows: &mut Rows) {
+        self.kinematics.positions_into(q, &mut rows.positions);
+        self.kinematics.velocities_into(q, v, &mut rows.velocities);
+        rows.time = time;
+    }
+
+    /// What force number `force` sees.
+    pub fn view<'a>(
+        &self,
+        force: usize,
+        rows: &'a Rows,
+        state: &'a SystemState,
+        around: &Surroundings<'a>,
+    ) -> Configuration<'a> {
+        Configuration {
+            positions: &rows.positions,
+            velocities: &rows.velocities,
+            time: rows.time,
+            load: around.load,
+            memory: &state.memory[self.memory_range(force)],
+            pairs: &state.pairs[pairs_of(&state.pairs, force)],
+            driven: around.driven,
+            fields: around.fields,
+        }
+    }
+
+    /// `row_force = Σ f` at the placed rows.
+    pub fn sum_row_forces(
+        &self,
+        rows: &Rows,
+        state: &SystemState,
+        around: &Surroundings,
+        scratches: &mut [Scratch],
+        row_force: &mut [Vec3],
+    ) {
+        row_force.fill(Vec3::ZERO);
+        for (index, force) in self.forces.iter().enumerate() {
+            force.add_force(&self.view(index, rows, state, around), &mut scratches[index], row_force);
+        }
+    }
+
+    /// `(a ∂f/∂x + b ∂f/∂v) δ` summed over forces, for row displacements `delta`.
+    pub fn sum_row_differentials(
+        &self,
+        ws: &mut SystemWorkspace,
+        state: &SystemState,
+        around: &Surroundings,
+        weights: TangentWeights,
+        delta: &[Vec3],
+        out: &mut [Vec3],
+    ) {
+        out.fill(Vec3::ZERO);
+        for (index, force) in self.forces.iter().enumerate() {
+            let at = self.view(index, &ws.rows, state, around);
+            force.add_differential(&at, weights, delta, &mut ws.scratches[index], out);
+        }
+    }
+
+    /// Stored and dissipated energy of each force [J].
+    pub fn energies(&self, ws: &mut SystemWorkspace, state: &SystemState, around: &Surroundings) -> Vec<Energy> {
+        let scratches = &mut ws.scratches;
+        self.forces
+            .iter()
+            .enumerate()
+            .map(|(index, force)| force.energy(&self.view(index, &ws.rows, state, around), &mut scratches[index]))
+            .collect()
+    }
+
+    /// The new list of pairs at `(q, v)`: those still there keep their memory.
+    pub fn update_pairs(
+        &self,
+        ws: &mut SystemWorkspace,
+        state: &mut SystemState,
+        around: &Surroundings,
+    ) {
+        ws.found_pairs.clear();
+        for (index, force) in self.forces.iter().enumerate() {
+            let first = ws.found_pairs.len();
+            let at = self.view(index, &ws.rows, state, around);
+            force.find_pairs(&at, &mut ws.scratches[index], &mut ws.found_pairs);
+            for pair in &mut ws.found_pairs[first..] {
+                pair.force = index as u64;
+            }
+        }
+        merge_pairs(&mut state.pairs, &mut ws.found_pairs);
+    }
+
+    /// Moves memories and pair states on at the placed rows.
+    pub fn advance_memory(&self, rows: &Rows, state: &mut SystemState, around: &Surroundings, timestep: f64) {
+        if state.memory.is_empty() && state.pairs.is_empty() {
+            return;
+        }
+        // forces read the memory as it was: they are pure, and see their own part only
+        let before = SystemState { memory: state.memory.clone(), pairs: state.pairs.clone(), ..SystemState::default() };
+        for (index, force) in self.forces.iter().enumerate() {
+            let at = self.view(index, rows, &before, around);
+            let pairs = pairs_of(&state.pairs, index);
+            let memory = self.memory_range(index);
+            force.advance_memory(&at, timestep, &mut state.memory[memory], &mut state.pairs[pairs]);
+        }
+    }
+
+    /// Kinetic energy at the placed rows [J].
+    pub fn kinetic_energy(&self, rows: &Rows) -> f64 {
+        self.mass.kinetic_energy(&rows.velocities)
+    }
+
+    /// Linear [kg m/s] and angular momentum about the origin [kg m²/s] at the placed rows.
+    pub fn momentum(&self, rows: &Rows) -> (Vec3, Vec3) {
+        let mut momentum = vec![Vec3::ZERO; rows.velocities.len()];
+        self.mass.add_product(&rows.velocities, &mut momentum);
+        let linear = (0..momentum.len()).map(|row| momentum[row] * self.kinematics.translation_weight(row)).sum();
+        let angular = rows.positions.iter().zip(&momentum).map(|(x, p)| x.cross(*p)).sum();
+        (linear, angular)
+    }
+
+    /// Sets the constrained components of a configuration and its velocity to where they are led.
+    pub fn impose_constraints(&self, q: &mut [Vec3], v: &mut [Vec3], time: f64, load: f64) {
+        for constraint in &self.constraints {
+            let block = constraint.block as usize;
+            v[block] = constraint.free * v[block] + constraint.constrained() * constraint.velocity(time);
+            if let Some(row) = self.kinematics.point_block_row(constraint.block) {
+                let q = &mut q[row as usize];
+                *q += constraint.constrained() * (constraint.position(time, load) - *q);
+            }
+        }
+    }
+
+    /// Removes the constrained components of a vector over velocity blocks.
+    pub fn project_free(&self, blocks: &mut [Vec3]) {
+        for constraint in &self.constraints {
+            let block = &mut blocks[constraint.block as usize];
+            *block = constraint.free * *block;
+        }
+    }
+
+    /// Removes the constrained components of row displacements, where rows are points.
+    pub fn project_free_rows(&self, rows: &mut [Vec3]) {
+        for constraint in &self.constraints {
+            if let Some(row) = self.kinematics.point_block_row(constraint.block) {
+                let row = &mut rows[row as usize];
+                *row = constraint.free * *row;
+            }
+        }
+    }
+
+    /// A position for every velocity block (the frame's origin for all of its blocks), for orderings and
+    /// rigid modes.
+    pub fn block_positions(&self, row_positions: &[Vec3]) -> Vec<Vec3> {
+        if self.kinematics.is_trivial() {
+            return row_positions.to_vec();
+        }
+        let mut positions = vec![Vec3::ZERO; self.kinematics.block_count()];
+        let mut row = 0;
+        for (kind, blocks) in self.kinematics.unknowns() {
+            positions[blocks].fill(row_positions[row]);
+            row += kind.row_count();
+        }
+        positions
+    }
+}

@@ -1,0 +1,383 @@
+//! The matrix of an implicit step over velocity blocks, assembled from what forces say over rows.
+//!
+//! With rows `x(q)`, `δx = T δ`, row velocities `ẋ` with `δẋ = D δ`, and the unbalanced row force
+//! `g = M (ẋ - p)/h - f`, the residual is `r = Tᵀ g` and its derivative
+//!
+//! `A = ∂(Tᵀ)g + Tᵀ (M D / h - ∂f/∂x T - ∂f/∂v D)`,
+//!
+//! for points alone `M/h² - ∂f/∂x - (∂f/∂v)/h`. In statics `h` is infinite and the inertia absent.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use souple_math::{Mat3, Vec3};
+use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
+
+use crate::force::{Scratch, TangentWeights};
+use crate::kinematics::Kinematics;
+use crate::state::{Pair, SystemState};
+use crate::system::{Rows, Surroundings, System};
+
+/// Matrices of a system, kept between steps; patterns change only when what is coupled does.
+#[derive(Debug, Default)]
+pub struct Tangent {
+    /// `(force, a, b)` of the pairs that the row pattern was made for.
+    pattern_pairs: Option<Vec<(u64, u64, u64)>>,
+    /// `∂f/∂x` over rows; for points alone the whole system matrix.
+    rows: Option<BlockMatrix>,
+    /// `∂f/∂v` over rows, apart where `T` and `D` differ by more than a factor.
+    row_velocities: Option<BlockMatrix>,
+    /// Over velocity blocks, where rows are more than points.
+    blocks: Option<BlockMatrix>,
+    mass: Option<BlockMatrix>,
+    diagonal: Option<BlockMatrix>,
+}
+
+/// Where the matrix is taken.
+pub struct Linearisation<'a> {
+    pub system: &'a System,
+    pub state: &'a SystemState,
+    pub around: Surroundings<'a>,
+    pub rows: &'a Rows,
+    /// Configuration and velocity of the unknowns at the rows.
+    pub q: &'a [Vec3],
+    pub v: &'a [Vec3],
+    /// `None` in statics.
+    pub timestep: Option<f64>,
+    /// `g` over rows.
+    pub unbalanced: &'a [Vec3],
+}
+
+impl Linearisation<'_> {
+    fn velocity_map(&self, free_row: u32) -> Mat3 {
+        self.timestep.map_or(Mat3::ZERO, |h| self.system.kinematics.velocity_map(free_row, self.q, self.v, h))
+    }
+}
+
+impl Tangent {
+    /// The matrix at a linearisation, constrained directions replaced by the identity scaled like the rest.
+    pub fn assemble(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &BlockMatrix {
+        let system = at.system;
+        self.update_patterns(system, &at.state.pairs);
+        let trivial = system.kinematics.is_trivial();
+        let rate = at.timestep.map_or(0.0, f64::recip);
+        let mut rows = self.rows.take().unwrap_or_else(|| unreachable!("patterns were just made"));
+        rows.set_zero();
+        let weights = TangentWeights { position: -1.0, velocity: if trivial { -rate } else { 0.0 } };
+        add_row_blocks(at, weights, scratches, &mut rows);
+        if trivial {
+            // A = M/h² - ∂f/∂x - (∂f/∂v)/h
+            add_mass(system, rate * rate, &mut rows);
+            constrain(system, &mut rows);
+            return self.rows.insert(rows);
+        }
+        let kinematics = &system.kinematics;
+        let mut blocks = self.blocks.take().unwrap_or_else(|| unreachable!("patterns were just made"));
+        blocks.set_zero();
+        let position_map = |row: u32| kinematics.position_map(row, at.q);
+        let velocity_map = |row: u32| at.velocity_map(row);
+        // -Tᵀ ∂f/∂x T
+        transform_rows(kinematics, &rows, &mut blocks, &position_map, &position_map);
+        if at.timestep.is_some() && system.forces.iter().any(|force| force.declaration().velocity_terms) {
+            // -Tᵀ ∂f/∂v D
+            let mut damping = self.row_velocities.take().unwrap_or_else(|| BlockMatrix::zeros(rows.pattern().clone()));
+            damping.set_zero();
+            add_row_blocks(at, TangentWeights { position: 0.0, velocity: -1.0 }, scratches, &mut damping);
+            transform_rows(kinematics, &damping, &mut blocks, &position_map, &velocity_map);
+            self.row_velocities = Some(damping);
+        }
+        // Tᵀ M D / h
+        for (row, mass) in system.mass.diagonal.iter().enumerate() {
+            let scaled = |left: &Mat3, right: &Mat3| left.transpose_mul(right) * (mass * rate);
+            add_congruent(kinematics, &mut blocks, (row, row), &position_map, &velocity_map, scaled);
+        }
+        for &(a, b, mass) in &system.mass.couplings {
+            let scaled = |left: &Mat3, right: &Mat3| left.transpose_mul(right) * (mass * rate);
+            for pair in [(a as usize, b as usize), (b as usize, a as usize)] {
+                add_congruent(kinematics, &mut blocks, pair, &position_map, &velocity_map, scaled);
+            }
+        }
+        self.rows = Some(rows);
+        // ∂(Tᵀ) g
+        for row in 0..kinematics.row_count() {
+            for &(free, weight) in kinematics.backward(row) {
+                if let Some((block, geometric)) =
+                    kinematics.geometric_block(free, at.q, at.unbalanced[row] * weight)
+                {
+                    add_block(&mut blocks, block as usize, block as usize, &geometric);
+                }
+            }
+        }
+        constrain(system, &mut blocks);
+        self.blocks.insert(blocks)
+    }
+
+    /// The diagonal blocks alone, for preconditioning products without a matrix; for points only: rows of
+    /// frames and derived rows have their diagonal taken from the full matrix.
+    pub fn assemble_diagonal(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &BlockMatrix {
+        let system = at.system;
+        if !system.kinematics.is_trivial() {
+            return self.assemble(at, scratches);
+        }
+        let mut diagonal = self.diagonal.take().unwrap_or_else(|| {
+            let pattern = Pattern::diagonal(system.kinematics.block_count());
+            BlockMatrix::zeros(Arc::new(pattern.unwrap_or_else(|error| panic!("too many points: {error}"))))
+        });
+        diagonal.set_zero();
+        let rate = at.timestep.map_or(0.0, f64::recip);
+        add_row_blocks(at, TangentWeights { position: -1.0, velocity: -rate }, scratches, &mut diagonal);
+        add_mass(system, rate * rate, &mut diagonal);
+        constrain(system, &mut diagonal);
+        self.diagonal.insert(diagonal)
+    }
+
+    fn update_patterns(&mut self, system: &System, pairs: &[Pair]) {
+        let key: Vec<_> = if system.forces.iter().any(|force| force.declaration().changing_pattern) {
+            pairs.iter().map(|pair| (pair.force, pair.a, pair.b)).collect()
+        } else {
+            Vec::new()
+        };
+        if self.pattern_pairs.as_ref() == Some(&key) {
+            return;
+        }
+        let kinematics = &system.kinematics;
+        let mut over_rows = PatternBuilder::new(kinematics.row_count());
+        let mut over_blocks = PatternBuilder::new(kinematics.block_count());
+        let mut clique_blocks = Vec::new();
+        let mut add = |rows: &[u32]| {
+            over_rows.add_clique(rows).unwrap_or_else(|error| panic!("a force couples rows that are not there: {error}"));
+            if !kinematics.is_trivial() {
+                clique_blocks.clear();
+                clique_blocks.extend(rows.iter().flat_map(|&row| {
+                    let (forward, backward) = (kinematics.forward(row as usize), kinematics.backward(row as usize));
+                    forward.iter().chain(backward).map(|&(free, _)| kinematics.block_of(free))
+                }));
+                clique_blocks.sort_unstable();
+                clique_blocks.dedup();
+                over_blocks.add_clique(&clique_blocks).unwrap_or_else(|error| panic!("rows move with no block: {error}"));
+            }
+        };
+        for (index, force) in system.forces.iter().enumerate() {
+            force.visit_cliques(&pairs[crate::state::pairs_of(pairs, index)], &mut add);
+        }
+        for &(a, b, _) in &system.mass.couplings {
+            add(&[a, b]);
+        }
+        for row in 0..kinematics.row_count() {
+            add(&[row as u32]);
+        }
+        let build = |builder: PatternBuilder| {
+            Arc::new(builder.build().unwrap_or_else(|error| panic!("the matrix is too large: {error}")))
+        };
+        self.rows = Some(BlockMatrix::zeros(build(over_rows)));
+        self.row_velocities = None;
+        self.blocks = (!kinematics.is_trivial()).then(|| BlockMatrix::zeros(build(over_blocks)));
+        self.pattern_pairs = Some(key);
+    }
+
+    /// The buffer for `TᵀMT`; give it back with [`Tangent::put_mass_matrix`].
+    pub fn take_mass_matrix(&mut self, system: &System) -> BlockMatrix {
+        self.mass.take().unwrap_or_else(|| {
+            let kinematics = &system.kinematics;
+            let mut builder = PatternBuilder::new(kinematics.block_count());
+            let mut add = |rows: &[usize]| {
+                let blocks: Vec<u32> = rows
+                    .iter()
+                    .flat_map(|&row| kinematics.forward(row).iter().map(|&(free, _)| kinematics.block_of(free)))
+                    .collect();
+                builder.add_clique(&blocks).unwrap_or_else(|error| panic!("rows move with no block: {error}"));
+            };
+            (0..kinematics.row_count()).for_each(|row| add(&[row]));
+            system.mass.couplings.iter().for_each(|&(a, b, _)| add(&[a as usize, b as usize]));
+            let pattern = builder.build().unwrap_or_else(|error| panic!("the mass matrix is too large: {error}"));
+            BlockMatrix::zeros(Arc::new(pattern))
+        })
+    }
+
+    pub fn put_mass_matrix(&mut self, matrix: BlockMatrix) {
+        self.mass = Some(matrix);
+    }
+
+    /// Bytes of matrices held.
+    pub fn bytes(&self) -> usize {
+        let held = [&self.rows, &self.row_velocities, &self.blocks, &self.mass, &self.diagonal];
+        held.into_iter().flatten().map(BlockMatrix::bytes).sum()
+    }
+}
+
+fn add_row_blocks(at: &Linearisation, weights: TangentWeights, scratches: &mut [Scratch], matrix: &mut BlockMatrix) {
+    for (index, force) in at.system.forces.iter().enumerate() {
+        let view = at.system.view(index, at.rows, at.state, &at.around);
+        force.add_blocks(&view, weights, &mut scratches[index], matrix);
+    }
+}
+
+fn add_mass(system: &System, scale: f64, matrix: &mut BlockMatrix) {
+    if scale == 0.0 {
+        return;
+    }
+    for (row, mass) in system.mass.diagonal.iter().enumerate() {
+        add_block(matrix, row, row, &(Mat3::IDENTITY * (mass * scale)));
+    }
+    for &(a, b, mass) in &system.mass.couplings {
+        let block = Mat3::IDENTITY * (mass * scale);
+        add_block(matrix, a as usize, b as usize, &block);
+        add_block(matrix, b as usize, a as usize, &block);
+    }
+}
+
+/// Constrained directions become `scale · I`, with the mean diagonal as the scale so that the matrix stays
+/// as well conditioned as it was.
+pub fn constrain(system: &System, matrix: &mut BlockMatrix) {
+    if system.constraints.is_empty() {
+        return;
+    }
+    let mut projectors = vec![Mat3::IDENTITY; matrix.pattern().block_count()];
+    for constraint in &system.constraints {
+        projectors[constraint.block as usize] = constraint.free;
+    }
+    let mean = matrix.mean_diagonal().abs();
+    let scale = if mean > 0.0 { mean } else { 1.0 };
+    matrix.constrain(&projectors, scale).unwrap_or_else(|error| panic!("one projector per block: {error}"));
+}
+
+/// `matrix[a, b] += block`; blocks outside the pattern are dropped, so that a matrix of the diagonal alone
+/// can be assembled by the same text.
+#[inline]
+pub fn add_block(matrix: &mut BlockMatrix, a: usize, b: usize, block: &Mat3) {
+    if let Some(slot) = matrix.pattern().slot(a, b) {
+        matrix.add_at(slot, block);
+    }
+}
+
+/// `blocks += Leftᵀ rows Right`, expanding derived rows.
+fn transform_rows(
+    kinematics: &Kinematics,
+    rows: &BlockMatrix,
+    blocks: &mut BlockMatrix,
+    left_map: &dyn Fn(u32) -> Mat3,
+    right_map: &dyn Fn(u32) -> Mat3,
+) {
+    let pattern = rows.pattern().clone();
+    for a in 0..pattern.block_count() {
+        for slot in pattern.slots(a) {
+            let (b, value) = (pattern.columns()[slot] as usize, rows.values()[slot]);
+            let product = |left: &Mat3, right: &Mat3| left.transpose_mul(&(value * *right));
+            add_congruent(kinematics, blocks, (a, b), left_map, right_map, product);
+        }
+    }
+}
+
+/// `blocks[i, j] += w_ai w_bj product(Left_i, Right_j)` over the free rows `i` that receive the force on
+/// row `a` and the free rows `j` that carry row `b`.
+pub fn add_congruent(
+    kinematics: &Kinematics,
+    blocks: &mut BlockMatrix,
+    (a, b): (usize, usize),
+    left_map: &dyn Fn(u32) -> Mat3,
+    right_map: &dyn Fn(u32) -> Mat3,
+    product: impl Fn(&Mat3, &Mat3) -> Mat3,
+) {
+    for &(i, weight_i) in kinematics.backward(a) {
+        for &(j, weight_j) in kinematics.forward(b) {
+            let value = product(&left_map(i), &right_map(j)) * (weight_i * weight_j);
+            add_block(blocks, kinematics.block_of(i) as usize, kinematics.block_of(j) as usize, &value);
+        }
+    }
+}
+
+/// The matrix of [`Tangent::assemble`], known by its products alone.
+pub struct TangentOperator<'a> {
+    at: &'a Linearisation<'a>,
+    buffers: Mutex<OperatorBuffers<'a>>,
+}
+
+struct OperatorBuffers<'a> {
+    scratches: &'a mut [Scratch],
+    free: Vec<Vec3>,
+    row_positions: Vec<Vec3>,
+    row_velocities: Vec<Vec3>,
+    row_force: Vec<Vec3>,
+    row_inertia: Vec<Vec3>,
+}
+
+impl<'a> TangentOperator<'a> {
+    pub fn new(at: &'a Linearisation<'a>, scratches: &'a mut [Scratch]) -> Self {
+        let rows = || vec![Vec3::ZERO; at.system.kinematics.row_count()];
+        let buffers = OperatorBuffers {
+            scratches,
+            free: vec![Vec3::ZERO; at.system.kinematics.block_count()],
+            row_positions: rows(),
+            row_velocities: rows(),
+            row_force: rows(),
+            row_inertia: rows(),
+        };
+        Self { at, buffers: Mutex::new(buffers) }
+    }
+
+    /// `out = A δ` before constraints are imposed.
+    pub fn apply_unconstrained(&self, delta: &[Vec3], out: &mut [Vec3]) {
+        let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        self.product(delta, out, &mut buffers);
+    }
+
+    fn product(&self, delta: &[Vec3], out: &mut [Vec3], buffers: &mut OperatorBuffers) {
+        let (at, system) = (self.at, self.at.system);
+        let kinematics = &system.kinematics;
+        let OperatorBuffers { scratches, row_positions, row_velocities, row_force, row_inertia, .. } = buffers;
+        // δx = T δ,  δẋ = D δ
+        kinematics.velocities_into(at.q, delta, row_positions);
+        row_velocities.fill(Vec3::ZERO);
+        if at.timestep.is_some() {
+            for (row, velocity) in row_velocities[..kinematics.free_row_count()].iter_mut().enumerate() {
+                *velocity = at.velocity_map(row as u32) * delta[kinematics.block_of(row as u32) as usize];
+            }
+            kinematics.derive_rows(row_velocities);
+        }
+        // M δẋ / h - ∂f/∂x δx - ∂f/∂v δẋ
+        row_force.fill(Vec3::ZERO);
+        row_inertia.fill(Vec3::ZERO);
+        if let Some(h) = at.timestep {
+            system.mass.add_product(row_velocities, row_inertia);
+            row_force.iter_mut().zip(row_inertia.iter()).for_each(|(f, inertia)| *f += *inertia * (1.0 / h));
+        }
+        for (index, force) in system.forces.iter().enumerate() {
+            let view = at.system.view(index, at.rows, at.state, &at.around);
+            let position = TangentWeights { position: -1.0, velocity: 0.0 };
+            force.add_differential(&view, position, row_positions, &mut scratches[index], row_force);
+            if at.timestep.is_some() && force.declaration().velocity_terms {
+                let velocity = TangentWeights { position: 0.0, velocity: -1.0 };
+                force.add_differential(&view, velocity, row_velocities, &mut scratches[index], row_force);
+            }
+        }
+        kinematics.forces_into(at.q, row_force, out);
+        if kinematics.has_rigid_frames() {
+            for row in 0..kinematics.row_count() {
+                for &(free, weight) in kinematics.backward(row) {
+                    if let Some((block, geometric)) = kinematics.geometric_block(free, at.q, at.unbalanced[row] * weight) {
+                        out[block as usize] += geometric * delta[block as usize];
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl LinearOperator for TangentOperator<'_> {
+    fn block_count(&self) -> usize {
+        self.at.system.kinematics.block_count()
+    }
+
+    fn apply(&self, x: &[Vec3], y: &mut [Vec3]) {
+        let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut free = std::mem::take(&mut buffers.free);
+        free.copy_from_slice(x);
+        self.at.system.project_free(&mut free);
+        self.product(&free, y, &mut buffers);
+        buffers.free = free;
+        // S A S + (I - S)
+        for constraint in &self.at.system.constraints {
+            let block = constraint.block as usize;
+            y[block] = constraint.free * y[block] + constraint.constrained() * x[block];
+        }
+    }
+}

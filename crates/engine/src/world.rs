@@ -1,0 +1,302 @@
+//! The world: its constant model, its state, its scratch, and the step that joins them.
+
+use std::time::Instant;
+
+use souple_math::Vec3;
+
+use crate::coupling::CouplingSpring;
+use crate::edit::{Command, Edit, EditError};
+use crate::state::{FieldState, State};
+use crate::steppers::{StepError, StepReport};
+use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
+
+/// A field on a grid: steps itself in State from what rows did, and acts through ordinary forces that read
+/// the committed grid.
+pub trait Field: Send + Sync {
+    fn name(&self) -> &str;
+
+    /// Moves `field` on from `start` to `start + timestep` seconds, reading the committed rows of all systems.
+    ///
+    /// # Errors
+    /// The field cannot be stepped; says why.
+    fn step(&self, rows: &[Rows], start: f64, timestep: f64, field: &mut FieldState) -> Result<(), String>;
+}
+
+/// The constant part of a world.
+#[derive(Default)]
+pub struct Model {
+    /// Seconds in a period: all systems meet at its ends.
+    pub period: f64,
+    pub systems: Vec<System>,
+    pub couplings: Vec<CouplingSpring>,
+    pub fields: Vec<Box<dyn Field>>,
+    /// Counts the edits that made this model from the first.
+    pub generation: u64,
+}
+
+/// Scratch of the world.
+pub struct Workspace {
+    pub systems: Vec<SystemWorkspace>,
+    /// The next State, swapped in when a step is complete.
+    next: State,
+}
+
+/// A model, its state and its scratch, stepped together.
+pub struct World {
+    model: Model,
+    state: State,
+    workspace: Workspace,
+    /// All edits since the start, with the period each was made in.
+    log: Vec<Command>,
+    last_report: StepReport,
+}
+
+/// A step of the world that was refused; State is as it was.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("in {place}: {error}")]
+pub struct WorldError {
+    /// The system or field.
+    pub place: String,
+    pub error: StepError,
+}
+
+/// Energies of a world [J].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EnergyReport {
+    pub kinetic: f64,
+    /// Stored and dissipated, by the name of the force.
+    pub by_force: Vec<(String, crate::Energy)>,
+}
+
+impl EnergyReport {
+    /// Kinetic and stored.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.by_force.iter().map(|(_, energy)| energy.stored).sum::<f64>()
+    }
+}
+
+impl Model {
+    /// Starts a world at `state`.
+    pub fn start(self, state: State) -> World {
+        let systems = self.systems.iter().map(System::new_workspace).collect();
+        let workspace = Workspace { systems, next: state.clone() };
+        let mut world = World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
+        world.place_all_rows();
+        world
+    }
+
+    /// Seconds of a step of a system.
+    pub fn timestep(&self, system: usize) -> f64 {
+        self.period / f64::from(self.systems[system].steps_per_period)
+    }
+
+    /// Changes the model as an edit says.
+    ///
+    /// # Errors
+    /// The edit names what is not there or a value that does not fit; nothing is changed then.
+    pub fn apply(&mut self, state: &mut State, edit: &Edit) -> Result<(), EditError> {
+        edit.apply(self, state)?;
+        self.generation += 1;
+        Ok(())
+    }
+}
+
+impl World {
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Rows of a system as committed.
+    pub fn rows(&self, system: usize) -> &Rows {
+        &self.workspace.systems[system].rows
+    }
+
+    /// Simulated seconds.
+    pub fn time(&self) -> f64 {
+        self.state.period as f64 * self.model.period
+    }
+
+    /// All edits since the start.
+    pub fn log(&self) -> &[Command] {
+        &self.log
+    }
+
+    /// What the last step had to do.
+    pub fn last_report(&self) -> &StepReport {
+        &self.last_report
+    }
+
+    /// Wall time by stage, summed over systems.
+    pub fn stages(&self) -> StageTimes {
+        self.workspace.systems.iter().fold(StageTimes::default(), |mut sum, ws| {
+            sum.pairs += ws.stages.pairs;
+            sum.forces += ws.stages.forces;
+            sum.assembly += ws.stages.assembly;
+            sum.solve += ws.stages.solve;
+            sum.advance += ws.stages.advance;
+            sum
+        })
+    }
+
+    /// Bytes of forces, matrices and solvers.
+    pub fn bytes(&self) -> usize {
+        let forces: usize = self.model.systems.iter().flat_map(|s| &s.forces).map(|force| force.bytes()).sum();
+        let solvers: usize = self.workspace.systems.iter().map(|ws| ws.tangent.bytes() + ws.linear.bytes()).sum();
+        forces + solvers
+    }
+
+    /// Changes the world between steps, and keeps the command for replay.
+    ///
+    /// # Errors
+    /// See [`Model::apply`].
+    pub fn edit(&mut self, edit: Edit) -> Result<(), EditError> {
+        self.model.apply(&mut self.state, &edit)?;
+        self.log.push(Command { period: self.state.period, edit });
+        self.place_all_rows();
+        Ok(())
+    }
+
+    /// Continues from another state of the same model.
+    pub fn resume(&mut self, state: State) {
+        self.state = state;
+        self.place_all_rows();
+    }
+
+    /// One period of the world.
+    ///
+    /// # Errors
+    /// A system or field could not step; State is as it was.
+    pub fn step(&mut self) -> Result<(), WorldError> {
+        let start = self.time();
+        let mut next = std::mem::take(&mut self.workspace.next);
+        next.copy_from(&self.state);
+        let stepped = self.step_into(start, &mut next);
+        match stepped {
+            Ok(report) => {
+                next.period += 1;
+                std::mem::swap(&mut self.state, &mut next);
+                self.last_report = report;
+            }
+            Err(_) => self.place_all_rows(),
+        }
+        self.workspace.next = next;
+        stepped.map(|_| ())
+    }
+
+    fn step_into(&mut self, start: f64, next: &mut State) -> Result<StepReport, WorldError> {
+        let mut report = StepReport::default();
+        self.publish_slow_points(start, next);
+        for index in 0..self.model.systems.len() {
+            report.merge(&self.step_system(index, start, next)?);
+        }
+        self.exchange_impulses(next);
+        self.step_fields(start, next)?;
+        if let Some(field) = next.first_not_finite() {
+            let error = StepError::StateNotFinite { field, time: start + self.model.period };
+            return Err(WorldError { place: "the world".to_owned(), error });
+        }
+        Ok(report)
+    }
+
+    /// All steps of one system in a period.
+    fn step_system(&mut self, index: usize, start: f64, next: &mut State) -> Result<StepReport, WorldError> {
+        let mut report = StepReport::default();
+        let system = &self.model.systems[index];
+        let ws = &mut self.workspace.systems[index];
+        let timestep = self.model.timestep(index);
+        let has_pairs = system.forces.iter().any(|force| force.declaration().changing_pattern);
+        for step in 0..system.steps_per_period {
+            let time = start + f64::from(step) * timestep;
+            let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
+            let state = &mut next.systems[index];
+            if has_pairs {
+                let clock = Instant::now();
+                system.place_rows(&state.q, &state.v, time, &mut ws.rows);
+                system.update_pairs(ws, state, &around);
+                ws.stages.pairs += clock.elapsed().as_secs_f64();
+            }
+            let stepped = system.stepper.step(system, &around, time, timestep, state, ws);
+            let place = || format!("system `{}`", system.name);
+            report.merge(&stepped.map_err(|error| WorldError { place: place(), error })?);
+        }
+        let state = &next.systems[index];
+        system.place_rows(&state.q, &state.v, start + self.model.period, &mut ws.rows);
+        Ok(report)
+    }
+
+    fn publish_slow_points(&self, start: f64, next: &mut State) {
+        for coupling in &self.model.couplings {
+            let rows = &self.workspace.systems[coupling.slow_system].rows;
+            let row = coupling.slow_row as usize;
+            coupling.start_period(next, start, rows.positions[row], rows.velocities[row]);
+        }
+    }
+
+    fn exchange_impulses(&mut self, next: &mut State) {
+        for coupling in &self.model.couplings {
+            let fast = &self.model.systems[coupling.fast_system];
+            let force = fast.forces.iter().position(|force| force.name() == coupling.fast_name());
+            let Some(force) = force else { continue };
+            let range = fast.memory_ranges()[force].clone();
+            let row = coupling.slow_row as usize;
+            let moved = self.workspace.systems[coupling.slow_system].rows.positions[row] - coupling.published_position(&next.driven);
+            let memory = &mut next.systems[coupling.fast_system].memory[range];
+            coupling.end_period(&mut next.driven, memory, self.model.period, moved);
+        }
+    }
+
+    fn step_fields(&mut self, start: f64, next: &mut State) -> Result<(), WorldError> {
+        if self.model.fields.is_empty() {
+            return Ok(());
+        }
+        let rows: Vec<Rows> = self.workspace.systems.iter().map(|ws| ws.rows.clone()).collect();
+        for (field, state) in self.model.fields.iter().zip(&mut next.fields) {
+            field.step(&rows, start, self.model.period, state).map_err(|message| WorldError {
+                place: format!("field `{}`", field.name()),
+                error: StepError::Field(message),
+            })?;
+        }
+        Ok(())
+    }
+
+    fn place_all_rows(&mut self) {
+        let time = self.time();
+        for ((system, state), ws) in self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems) {
+            system.place_rows(&state.q, &state.v, time, &mut ws.rows);
+        }
+    }
+
+    /// Energies at the committed state.
+    pub fn energy(&mut self) -> EnergyReport {
+        let mut report = EnergyReport::default();
+        let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
+        for ((system, state), ws) in self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems) {
+            report.kinetic += system.kinetic_energy(&ws.rows);
+            let energies = system.energies(ws, state, &around);
+            report.by_force.extend(system.forces.iter().map(|force| force.name().to_owned()).zip(energies));
+        }
+        report
+    }
+
+    /// Linear [kg m/s] and angular momentum about the origin [kg m²/s].
+    pub fn momentum(&self) -> (Vec3, Vec3) {
+        self.model.systems.iter().zip(&self.workspace.systems).fold((Vec3::ZERO, Vec3::ZERO), |sum, (system, ws)| {
+            let (linear, angular) = system.momentum(&ws.rows);
+            (sum.0 + linear, sum.1 + angular)
+        })
+    }
+
+    /// Lends system `index`, its state and its workspace to a reader (probes, forecasts).
+    pub fn with_system<T>(
+        &mut self,
+        index: usize,
+        read: impl FnOnce(&System, &crate::SystemState, &Surroundings, &mut SystemWorkspace) -> T,
+    ) -> T {
+        let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
+        read(&self.model.systems[index], &self.state.systems[index], &around, &mut self.workspace.systems[index])
+    }
+}

@@ -1,0 +1,357 @@
+//! What an element is: reference nodes, polynomial basis, faces, edges, rules of quadrature.
+//!
+//! Shape functions are not written by hand: an element states a basis `m₁ … mₙ` as long as its list of nodes, and
+//! `N_a = Σ_m C_am m(ξ)` with `C = V⁻ᵀ`, `V_am = m(ξ_a)`, so that `N_a(ξ_b) = δ_ab`. Adding an element is one file
+//! of data and one line here.
+//!
+//! Node orders are those of VTK and Gmsh, which agree for these elements. One quirk: VTK's documentation draws
+//! the wedge with the normal of its first triangle pointing outward, Gmsh (and VTK's own parametric coordinates)
+//! with that normal pointing to the second triangle. We take the latter; files of the other kind are repaired
+//! by [`crate::Mesh::validate`] as inverted cells.
+
+mod hexahedron;
+mod prism;
+mod pyramid;
+mod quadrilateral;
+mod tetrahedron;
+mod triangle;
+
+use std::fmt;
+use std::sync::LazyLock;
+
+use souple_math::{Mat3, Vec3};
+use souple_table::{Entry, Table, UnknownName, nearest};
+
+use crate::quadrature::{QuadratureRule, RuleDefinition};
+
+/// Most nodes of any element, those to come included (hex20, hex27).
+pub const MAX_NODES: usize = 27;
+
+/// `√3/2`, height of the regular triangle.
+const SQRT_3_2: f64 = 0.866_025_403_784_438_6;
+/// `√(2/3)`, height of the regular tetrahedron.
+const SQRT_2_3: f64 = 0.816_496_580_927_726;
+
+/// The kind of a cell or of a facet of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum ElementKind {
+    Tri3,
+    Quad4,
+    Tet4,
+    Hex8,
+    Prism6,
+    Pyramid5,
+}
+
+/// All elements, in the order of [`ElementKind`].
+pub static ELEMENTS: Table<&'static Element> = Table {
+    kind: "element",
+    entries: &[
+        &triangle::TRI3,
+        &quadrilateral::QUAD4,
+        &tetrahedron::TET4,
+        &hexahedron::HEX8,
+        &prism::PRISM6,
+        &pyramid::PYRAMID5,
+    ],
+};
+
+/// `ξ^x η^y ζ^z / (1 - ζ)^w` for powers `[x, y, z, w]`; only pyramids have `w ≠ 0`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Monomial(pub [u8; 4]);
+
+/// A face of a cell: its nodes in the order of its own element, normal outward by the right-hand rule.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    pub kind: ElementKind,
+    pub nodes: &'static [u8],
+}
+
+/// The data of one element.
+#[derive(Debug)]
+pub struct Element {
+    pub kind: ElementKind,
+    /// Dimension of the reference cell: 2 or 3.
+    pub dimension: usize,
+    /// Reference coordinates of the nodes; surface elements have `ζ = 0`.
+    pub nodes: &'static [[f64; 3]],
+    /// Nodes of the regular cell, all edges of length one: the best quality there is.
+    pub regular: &'static [[f64; 3]],
+    /// As many functions as nodes.
+    pub basis: &'static [Monomial],
+    pub faces: &'static [Face],
+    pub edges: &'static [[u8; 2]],
+    /// Node order of the mirrored cell: turns an inverted cell into a good one.
+    pub mirrored: &'static [u8],
+    /// Volume (area) of the reference cell.
+    pub measure: f64,
+    /// By number of points.
+    pub rules: &'static [RuleDefinition],
+    /// Exact for the stiffness of linear elasticity on an affine cell.
+    pub default_rule: &'static str,
+    /// Exact for the energy of St. Venant–Kirchhoff (degree four in `F`) on an affine cell.
+    pub full_rule: &'static str,
+    /// Exact for products of two shape functions on an affine cell.
+    pub mass_rule: &'static str,
+    /// Smallest slack of the inequalities that define the reference cell: negative outside.
+    pub slack: fn(Vec3) -> f64,
+    /// Coefficients and rules, computed at first use.
+    derived: &'static LazyLock<Derived>,
+}
+
+/// What follows from the data of an element.
+#[derive(Debug)]
+struct Derived {
+    /// `C_am` by rows: coefficients of shape function `a`.
+    coefficients: Vec<f64>,
+    rules: Vec<QuadratureRule>,
+}
+
+impl ElementKind {
+    pub const ALL: [Self; 6] =
+        [Self::Tri3, Self::Quad4, Self::Tet4, Self::Hex8, Self::Prism6, Self::Pyramid5];
+
+    pub const fn node_count(self) -> usize {
+        match self {
+            Self::Tri3 => 3,
+            Self::Quad4 | Self::Tet4 => 4,
+            Self::Hex8 => 8,
+            Self::Prism6 => 6,
+            Self::Pyramid5 => 5,
+        }
+    }
+
+    /// 2 for surface elements, 3 for volumes.
+    pub fn dimension(self) -> usize {
+        self.element().dimension
+    }
+
+    pub fn element(self) -> &'static Element {
+        ELEMENTS.entries[self as usize].build
+    }
+
+    pub fn name(self) -> &'static str {
+        ELEMENTS.entries[self as usize].name
+    }
+
+    /// # Errors
+    /// The name is unknown; the error holds the nearest one.
+    pub fn from_name(name: &str) -> Result<Self, UnknownName> {
+        ELEMENTS.find(name).map(|entry| entry.build.kind)
+    }
+
+    pub fn faces(self) -> &'static [Face] {
+        self.element().faces
+    }
+
+    pub fn edges(self) -> &'static [[u8; 2]] {
+        self.element().edges
+    }
+
+    /// Values of the shape functions at `ξ`, one for each node.
+    pub fn shape(self, xi: Vec3) -> Shape<f64> {
+        self.element().shape(xi)
+    }
+
+    /// Gradients `∂N_a/∂ξ` at `ξ`, one for each node.
+    pub fn shape_gradients(self, xi: Vec3) -> Shape<Vec3> {
+        self.element().shape_gradients(xi)
+    }
+
+    /// All rules of quadrature, by number of points.
+    pub fn rules(self) -> &'static [QuadratureRule] {
+        &self.element().derived.rules
+    }
+
+    /// The rule that integrates the stiffness of linear elasticity exactly on an affine cell: the usual choice.
+    pub fn default_rule(self) -> &'static QuadratureRule {
+        self.own_rule(self.element().default_rule)
+    }
+
+    /// The rule that integrates the energy of St. Venant–Kirchhoff exactly on an affine cell.
+    pub fn full_rule(self) -> &'static QuadratureRule {
+        self.own_rule(self.element().full_rule)
+    }
+
+    /// The rule that integrates the consistent mass exactly on an affine cell.
+    pub fn mass_rule(self) -> &'static QuadratureRule {
+        self.own_rule(self.element().mass_rule)
+    }
+
+    fn own_rule(self, name: &str) -> &'static QuadratureRule {
+        self.rules().iter().find(|rule| rule.name == name).expect("an element names one of its own rules")
+    }
+
+    /// # Errors
+    /// The element has no rule of that name; the error lists those it has.
+    pub fn rule(self, name: &str) -> Result<&'static QuadratureRule, UnknownName> {
+        let names = || self.rules().iter().map(|rule| rule.name);
+        self.rules().iter().find(|rule| rule.name == name).ok_or_else(|| UnknownName {
+            kind: "quadrature rule",
+            name: name.to_owned(),
+            nearest: nearest(name, names()).map(str::to_owned),
+            known: names().map(str::to_owned).collect(),
+        })
+    }
+
+    /// The rule with the fewest points that integrates polynomials of total degree `degree` exactly.
+    pub fn rule_of_degree(self, degree: usize) -> Option<&'static QuadratureRule> {
+        self.rules().iter().find(|rule| rule.degree >= degree)
+    }
+
+    /// `∂x/∂ξ` of a cell with its nodes at `positions`, column `i` is `∂x/∂ξᵢ`. For surface elements the third
+    /// column is the unit normal, so that the determinant is the change of area.
+    pub fn jacobian(self, positions: &[Vec3], xi: Vec3) -> Mat3 {
+        let mut columns = [Vec3::ZERO; 3];
+        for (position, gradient) in positions.iter().zip(self.shape_gradients(xi).iter()) {
+            for axis in 0..3 {
+                columns[axis] += *position * gradient[axis];
+            }
+        }
+        if self.dimension() == 2 {
+            columns[2] = columns[0].cross(columns[1]).try_normalised().unwrap_or(Vec3::ZERO);
+        }
+        Mat3 { columns }
+    }
+
+    /// `x(ξ) = Σ N_a(ξ) x_a`.
+    pub fn position(self, positions: &[Vec3], xi: Vec3) -> Vec3 {
+        positions.iter().zip(self.shape(xi).iter()).map(|(position, weight)| *position * *weight).sum()
+    }
+}
+
+impl fmt::Display for ElementKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// One value for each node of an element, without allocation; reads as a slice.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape<T> {
+    values: [T; MAX_NODES],
+    len: usize,
+}
+
+impl<T> std::ops::Deref for Shape<T> {
+    type Target = [T];
+    fn deref(&self) -> &[T] {
+        &self.values[..self.len]
+    }
+}
+
+impl Element {
+    // N_a = Σ_m C_am m(ξ)
+    fn shape(&self, xi: Vec3) -> Shape<f64> {
+        let mut shape = Shape { values: [0.0; MAX_NODES], len: self.nodes.len() };
+        for (m, monomial) in self.basis.iter().enumerate() {
+            let value = monomial.value(xi);
+            for a in 0..shape.len {
+                shape.values[a] += self.derived.coefficients[a * shape.len + m] * value;
+            }
+        }
+        shape
+    }
+
+    fn shape_gradients(&self, xi: Vec3) -> Shape<Vec3> {
+        let mut shape = Shape { values: [Vec3::ZERO; MAX_NODES], len: self.nodes.len() };
+        for (m, monomial) in self.basis.iter().enumerate() {
+            let gradient = monomial.gradient(xi);
+            for a in 0..shape.len {
+                shape.values[a] += gradient * self.derived.coefficients[a * shape.len + m];
+            }
+        }
+        shape
+    }
+
+    fn derive(&self) -> Derived {
+        let rules = self.rules.iter().map(|definition| definition.build()).collect();
+        Derived { coefficients: inverse_transposed(&self.vandermonde(), self.nodes.len()), rules }
+    }
+
+    /// `V_am = m(ξ_a)`, by rows.
+    fn vandermonde(&self) -> Vec<f64> {
+        let value = |node: &[f64; 3], m: &Monomial| m.value(Vec3::from_array(*node));
+        self.nodes.iter().flat_map(|node| self.basis.iter().map(move |m| value(node, m))).collect()
+    }
+}
+
+impl Monomial {
+    pub fn value(self, xi: Vec3) -> f64 {
+        let Self([x, y, z, w]) = self;
+        power(xi.x, x) * power(xi.y, y) * power(xi.z, z) * inverse_height(xi, w)
+    }
+
+    /// `∂m/∂ξ`. At the apex of a pyramid, where it depends on the direction, the limit along the axis.
+    pub fn gradient(self, xi: Vec3) -> Vec3 {
+        let Self([x, y, z, w]) = self;
+        let (px, py, pz) = (power(xi.x, x), power(xi.y, y), power(xi.z, z));
+        let pw = inverse_height(xi, w);
+        // ∂(1-ζ)^-w/∂ζ = w (1-ζ)^-(w+1)
+        let dw = if w == 0 { 0.0 } else { f64::from(w) * inverse_height(xi, w + 1) };
+        Vec3::new(
+            slope(xi.x, x) * py * pz * pw,
+            px * slope(xi.y, y) * pz * pw,
+            px * py * (slope(xi.z, z) * pw + pz * dw),
+        )
+    }
+}
+
+fn power(base: f64, exponent: u8) -> f64 {
+    (0..exponent).fold(1.0, |product, _| product * base)
+}
+
+fn slope(base: f64, exponent: u8) -> f64 {
+    if exponent == 0 { 0.0 } else { f64::from(exponent) * power(base, exponent - 1) }
+}
+
+/// `(1-ζ)^-w`; zero at the apex, where it only multiplies functions that vanish there faster.
+fn inverse_height(xi: Vec3, w: u8) -> f64 {
+    let height = 1.0 - xi.z;
+    if w == 0 {
+        1.0
+    } else if height == 0.0 {
+        0.0
+    } else {
+        power(1.0 / height, w)
+    }
+}
+
+/// `V⁻ᵀ` by Gauss–Jordan elimination with partial pivoting.
+fn inverse_transposed(matrix: &[f64], n: usize) -> Vec<f64> {
+    let mut left = matrix.to_vec();
+    let mut right = vec![0.0; n * n];
+    for i in 0..n {
+        right[i * n + i] = 1.0;
+    }
+    for column in 0..n {
+        let pivot = (column..n)
+            .max_by(|a, b| left[a * n + column].abs().total_cmp(&left[b * n + column].abs()))
+            .expect("rows remain below the diagonal");
+        assert!(left[pivot * n + column].abs() > 1e-9, "the basis of an element does not span its nodes");
+        for j in 0..n {
+            left.swap(pivot * n + j, column * n + j);
+            right.swap(pivot * n + j, column * n + j);
+        }
+        let scale = 1.0 / left[column * n + column];
+        for j in 0..n {
+            left[column * n + j] *= scale;
+            right[column * n + j] *= scale;
+        }
+        for row in (0..n).filter(|row| *row != column) {
+            let factor = left[row * n + column];
+            for j in 0..n {
+                left[row * n + j] -= factor * left[column * n + j];
+                right[row * n + j] -= factor * right[column * n + j];
+            }
+        }
+    }
+    (0..n * n).map(|index| right[(index % n) * n + index / n]).collect()
+}
+
+/// The entry of an element in the table.
+type ElementEntry = Entry<&'static Element>;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,184 @@
+//! Laws that every element of the table obeys.
+
+use souple_math::Vec3;
+
+use super::*;
+
+/// Points inside the reference cell, away from its boundary.
+fn samples(kind: ElementKind) -> Vec<Vec3> {
+    let finest = kind.rules().last().unwrap();
+    finest.points.iter().map(|point| point.position).collect()
+}
+
+#[test]
+fn table_agrees_with_the_kinds() {
+    assert_eq!(ELEMENTS.entries.len(), ElementKind::ALL.len());
+    for (entry, kind) in ELEMENTS.entries.iter().zip(ElementKind::ALL) {
+        let element = entry.build;
+        assert_eq!(element.kind, kind);
+        assert_eq!(ElementKind::from_name(entry.name), Ok(kind));
+        assert_eq!(element.nodes.len(), kind.node_count());
+        assert_eq!(element.basis.len(), kind.node_count());
+        let [default, full, mass] = [kind.default_rule(), kind.full_rule(), kind.mass_rule()];
+        assert!(default.points.len() <= full.points.len() && default.points.len() <= mass.points.len());
+    }
+    assert_eq!(ElementKind::from_name("tet5").unwrap_err().nearest.as_deref(), Some("tet4"));
+}
+
+/// `N_a(ξ_b) = δ_ab`.
+#[test]
+fn shape_functions_are_one_at_their_node() {
+    for kind in ElementKind::ALL {
+        for (b, node) in kind.element().nodes.iter().enumerate() {
+            for (a, value) in kind.shape(Vec3::from_array(*node)).iter().enumerate() {
+                let expected = if a == b { 1.0 } else { 0.0 };
+                assert!((value - expected).abs() < 1e-15, "{kind}: N_{a} at node {b} is {value}");
+            }
+        }
+    }
+}
+
+/// `Σ N_a = 1`, `Σ ∂N_a = 0`, and linear fields are reproduced: `Σ N_a ξ_a = ξ`.
+#[test]
+fn shape_functions_reproduce_linear_fields() {
+    for kind in ElementKind::ALL {
+        let nodes: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
+        for xi in samples(kind) {
+            assert!((kind.shape(xi).iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            assert!(kind.shape_gradients(xi).iter().copied().sum::<Vec3>().length() < 1e-14);
+            assert!((kind.position(&nodes, xi) - xi).length() < 1e-14);
+        }
+    }
+}
+
+/// Gradients are the central differences of the shape functions, to O(h²) of their third derivatives.
+#[test]
+fn gradients_are_differences() {
+    let h = 1e-5;
+    for kind in ElementKind::ALL {
+        for xi in samples(kind) {
+            let gradients = kind.shape_gradients(xi);
+            for axis in 0..kind.dimension() {
+                let step = Vec3::AXES[axis] * h;
+                let (ahead, behind) = (kind.shape(xi + step), kind.shape(xi - step));
+                for a in 0..kind.node_count() {
+                    let difference = (ahead[a] - behind[a]) / (2.0 * h);
+                    // rounding 1e-16/h, and the third derivative of ξη/(1-ζ), below 6/(1-ζ)² with 1-ζ > 0.05
+                    assert!((gradients[a][axis] - difference).abs() < 1e-6 * 0.25, "{kind} {a} {axis}");
+                }
+            }
+        }
+    }
+}
+
+/// The value at the apex of a pyramid is its node's, and the gradient there is finite.
+#[test]
+fn pyramid_at_its_apex() {
+    let apex = Vec3::Z;
+    assert_eq!(ElementKind::Pyramid5.shape(apex)[4], 1.0);
+    assert!(ElementKind::Pyramid5.shape_gradients(apex).iter().all(|gradient| gradient.is_finite()));
+}
+
+/// Every rule integrates every monomial up to its degree, has positive weights and lies inside the cell.
+#[test]
+fn quadrature_is_exact_to_its_degree() {
+    for kind in ElementKind::ALL {
+        for rule in kind.rules() {
+            let weights: f64 = rule.points.iter().map(|point| point.weight).sum();
+            assert!((weights - kind.element().measure).abs() < 1e-14, "{kind} {}", rule.name);
+            assert_eq!(rule.name, format!("gauss_{}", rule.points.len()));
+            for point in &rule.points {
+                assert!(point.weight > 0.0 && (kind.element().slack)(point.position) > 0.0, "{kind} {}", rule.name);
+            }
+            for (x, y, z) in exponents(rule.degree, kind.dimension()) {
+                let monomial = Monomial([x, y, z, 0]);
+                let measured: f64 =
+                    rule.points.iter().map(|point| point.weight * monomial.value(point.position)).sum();
+                let expected = exact(kind, x.into(), y.into(), z.into());
+                assert!((measured - expected).abs() < 1e-14, "{kind} {} {monomial:?}: {measured}", rule.name);
+            }
+        }
+    }
+}
+
+/// Rules of the conical product also integrate the rational functions that pyramids are made of.
+#[test]
+fn quadrature_of_rational_functions() {
+    for (name, base_degree) in [("gauss_4", 3), ("gauss_8", 3), ("gauss_9", 5), ("gauss_27", 5)] {
+        for (r, s) in (0..=base_degree).flat_map(|r| (0..=base_degree).map(move |s| (r, s))) {
+            // ∫ (ξ/(1-ζ))^r (η/(1-ζ))^s dξ = ⅓ ∫∫ a^r b^s
+            let expected = line(r) * line(s) / 3.0;
+            let monomial = Monomial([r as u8, s as u8, 0, (r + s) as u8]);
+            let rule = ElementKind::Pyramid5.rule(name).unwrap();
+            let measured: f64 = rule.points.iter().map(|p| p.weight * monomial.value(p.position)).sum();
+            assert!((measured - expected).abs() < 1e-14, "{name} {r} {s}");
+        }
+    }
+}
+
+fn exponents(degree: usize, dimension: usize) -> Vec<(u8, u8, u8)> {
+    let d = degree as u8;
+    let deepest = if dimension == 2 { 0 } else { d };
+    let all = (0..=d).flat_map(|x| (0..=d).flat_map(move |y| (0..=deepest).map(move |z| (x, y, z))));
+    all.filter(|(x, y, z)| x + y + z <= d).collect()
+}
+
+fn factorial(n: usize) -> f64 {
+    (1..=n).map(|k| k as f64).product()
+}
+
+/// `∫_{-1}^{1} x^n dx`.
+fn line(n: usize) -> f64 {
+    if n % 2 == 1 { 0.0 } else { 2.0 / (n + 1) as f64 }
+}
+
+/// Exact integral of a monomial over the reference cell.
+fn exact(kind: ElementKind, x: usize, y: usize, z: usize) -> f64 {
+    // simplices: x! y! z! / (x + y + z + d)!
+    let triangle = factorial(x) * factorial(y) / factorial(x + y + 2);
+    match kind {
+        ElementKind::Tri3 => triangle,
+        ElementKind::Quad4 => line(x) * line(y),
+        ElementKind::Tet4 => factorial(x) * factorial(y) * factorial(z) / factorial(x + y + z + 3),
+        ElementKind::Hex8 => line(x) * line(y) * line(z),
+        ElementKind::Prism6 => triangle * line(z),
+        // ∫ ζ^z (1-ζ)^(x+y+2) dζ = z! (x+y+2)! / (x+y+z+3)!
+        ElementKind::Pyramid5 => {
+            line(x) * line(y) * factorial(z) * factorial(x + y + 2) / factorial(x + y + z + 3)
+        }
+    }
+}
+
+/// Faces have outward normals, and their edges cover the edges of the cell, each twice.
+#[test]
+fn faces_are_closed_and_outward() {
+    for kind in ElementKind::ALL.into_iter().filter(|kind| kind.dimension() == 3) {
+        let nodes: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
+        let centre = nodes.iter().copied().sum::<Vec3>() / nodes.len() as f64;
+        let mut directed = Vec::new();
+        for face in kind.faces() {
+            let corners: Vec<Vec3> = face.nodes.iter().map(|node| nodes[usize::from(*node)]).collect();
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            assert!(normal.dot(corners[0] - centre) > 0.0, "{kind} {face:?}");
+            let ring = face.nodes.iter().zip(face.nodes.iter().cycle().skip(1));
+            directed.extend(ring.map(|(a, b)| [*a, *b]));
+        }
+        assert_eq!(directed.len(), 2 * kind.edges().len());
+        for [a, b] in kind.edges() {
+            assert!(directed.contains(&[*a, *b]) && directed.contains(&[*b, *a]), "{kind} {a} {b}");
+        }
+    }
+}
+
+/// The mirrored order turns the sign of the Jacobian determinant on the whole cell.
+#[test]
+fn mirrored_order_turns_the_cell() {
+    for kind in ElementKind::ALL.into_iter().filter(|kind| kind.dimension() == 3) {
+        let element = kind.element();
+        let node = |a: &u8| Vec3::from_array(element.nodes[usize::from(*a)]);
+        let positions: Vec<Vec3> = element.mirrored.iter().map(node).collect();
+        for xi in samples(kind) {
+            assert!(kind.jacobian(&positions, xi).determinant() < 0.0, "{kind}");
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What can be wrong with a mesh.
+
+use crate::ElementKind;
+
+/// A mesh, or a request for one, that cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    #[error("the mesh has no points; expected at least one cell and its points")]
+    NoPoints,
+    #[error("the mesh has no cells; expected at least one volume cell (tet4, hex8, prism6, pyramid5)")]
+    NoCells,
+    #[error("points[{point}] is ({}, {}, {}); expected finite coordinates", .position[0], .position[1], .position[2])]
+    PointNotFinite { point: u32, position: [f64; 3] },
+    #[error("the mesh has {count} points; expected at most {}", u32::MAX)]
+    TooManyPoints { count: usize },
+    #[error("{kind} block holds {count} node numbers; expected a multiple of {}", .kind.node_count())]
+    BlockLength { kind: ElementKind, count: usize },
+    #[error("{list}[{cell}] ({kind}) refers to point {point}, but the mesh has {point_count} points")]
+    MissingPoint { list: &'static str, cell: u32, kind: ElementKind, point: u32, point_count: usize },
+    #[error("{list}[{cell}] ({kind}) has point {point} twice; expected {} different points", .kind.node_count())]
+    DuplicateNode { list: &'static str, cell: u32, kind: ElementKind, point: u32 },
+    #[error("{list} has a block of {kind}; expected elements of dimension {dimension}")]
+    WrongDimension { list: &'static str, kind: ElementKind, dimension: usize },
+    #[error("cells[{cell}] ({kind}) is flat: volume {volume:e} m³ for a size of {size:e} m; expected a positive volume")]
+    FlatCell { cell: u32, kind: ElementKind, volume: f64, size: f64 },
+    #[error(
+        "cells[{cell}] ({kind}) is tangled: its Jacobian determinant goes from {lowest:e} to {highest:e}; \
+         expected one sign (wrong order of nodes, or a concave cell)"
+    )]
+    TangledCell { cell: u32, kind: ElementKind, lowest: f64, highest: f64 },
+    #[error("group `{group}` refers to {list}[{index}], but the mesh has {count}")]
+    GroupOutOfRange { group: String, list: &'static str, index: u32, count: usize },
+    #[error("the face between cells {cells:?} (points {nodes:?}) is used {} times; expected at most 2", .cells.len())]
+    FaceUsedTooOften { cells: Vec<u32>, nodes: Vec<u32> },
+    #[error(
+        "cells[{cell}] meets cells {triangle_cells:?} by a quadrilateral cut in two triangles; \
+         expected a pyramid between them"
+    )]
+    QuadrilateralMeetsTriangles { cell: u32, triangle_cells: [u32; 2] },
+    #[error("the surface is open or badly oriented at the edge between points {a} and {b}; expected two triangles of opposite direction on each edge, there are {forward} and {backward}")]
+    OpenSurface { a: u32, b: u32, forward: u32, backward: u32 },
+    #[error("triangles[{triangle}] has no area; expected three points that are not on one line")]
+    FlatTriangle { triangle: u32 },
+    #[error("`{name}` is {value}; expected {expected}")]
+    Parameter { name: &'static str, value: String, expected: String },
+    #[error("{requested} cells were asked for; expected at most {limit}")]
+    TooManyCells { requested: f64, limit: u64 },
+    #[error(transparent)]
+    Value(#[from] souple_table::ValueError),
+    #[error(transparent)]
+    UnknownGenerator(#[from] souple_table::UnknownName),
+}

@@ -1,0 +1,41 @@
+//! Bars and boxes: grids of cubes stretched to a size.
+
+use souple_math::Vec3;
+use souple_table::{Parameter, Value, Values};
+
+use super::grid::{Cut, Grid};
+use super::{Build, GeneratorEntry};
+use crate::{Mesh, MeshError};
+
+const SIZE: Parameter = Parameter::vector("size", "m", "lengths along x, y, z");
+const CELLS: Parameter = Parameter::vector("cells", "", "numbers of cubes along x, y, z (whole numbers)");
+const ORIGIN: Parameter =
+    Parameter::vector("origin", "m", "the corner of least x, y, z").or(Value::Vector([0.0; 3]));
+
+pub(super) static BAR: GeneratorEntry = GeneratorEntry {
+    name: "bar",
+    summary: "bar along x from the origin; groups x_min, x_max, y_min, …",
+    source: "Kuhn 1960 for the tetrahedra",
+    parameters: &[SIZE, CELLS, Cut::PARAMETER, ORIGIN],
+    build: cuboid as Build,
+};
+
+pub(super) static BOX: GeneratorEntry = GeneratorEntry {
+    name: "box",
+    summary: "box from its lowest corner; groups x_min, x_max, y_min, …",
+    source: "Kuhn 1960 for the tetrahedra",
+    parameters: &[SIZE, CELLS, Cut::PARAMETER, ORIGIN],
+    build: cuboid as Build,
+};
+
+fn cuboid(values: &Values) -> Result<Mesh, MeshError> {
+    let size = values.vector("size");
+    if !size.iter().all(|length| *length > 0.0) {
+        let value = Value::Vector(size).to_string();
+        return Err(MeshError::Parameter { name: "size", value, expected: "three lengths above 0 [m]".to_owned() });
+    }
+    let (origin, size) = (Vec3::from_array(values.vector("origin")), Vec3::from_array(size));
+    let grid = Grid::new("cells", values.vector("cells"), Cut::from_values(values))?;
+    // origin + size ξ, with ξ = i/n computed first: the corners are exact
+    Ok(grid.mesh(|unit| origin + Vec3::new(size.x * unit.x, size.y * unit.y, size.z * unit.z)))
+}

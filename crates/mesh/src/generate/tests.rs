@@ -1,0 +1,141 @@
+//! Generated meshes: numbers of the reference, volumes, conformity, refusals.
+
+use souple_math::Vec3;
+use souple_table::Value;
+
+use super::*;
+use crate::ElementKind;
+
+const ELEMENTS: [&str; 5] = ["tet4", "hex8", "prism6", "pyramid5", "mixed"];
+
+fn bar(cells: [f64; 3], element: &'static str) -> Result<Mesh, MeshError> {
+    let values = Values::new()
+        .with("size", Value::Vector([1.0, 0.1, 0.1]))
+        .with("cells", Value::Vector(cells))
+        .with("element", Value::Text(element));
+    generate("bar", values)
+}
+
+fn sphere(cells: i64, element: &'static str) -> Mesh {
+    let values = Values::new()
+        .with("radius", Value::Number(0.5))
+        .with("cells", Value::Integer(cells))
+        .with("centre", Value::Vector([1.0, 2.0, 3.0]))
+        .with("element", Value::Text(element));
+    generate("sphere", values).unwrap()
+}
+
+/// The published counts of the reference bar: n = 3 has 1,620 tets and 496 nodes; its first cube as defined there.
+#[test]
+fn reference_bar_of_tetrahedra() {
+    for (n, cells, points) in [(3.0, 1620, 496), (6.0, 12960, 2989)] {
+        let mesh = bar([10.0 * n, n, n], "tet4").unwrap();
+        assert_eq!((mesh.cell_count(), mesh.points.len()), (cells, points));
+    }
+    let mesh = bar([30.0, 3.0, 3.0], "tet4").unwrap();
+    let id = |i: u32, j: u32, k: u32| i + 31 * (j + 4 * k);
+    // the cube (2, 1, 0), whose corner (0, 0, 0) is node (2, 1, 0)
+    let corner = |a: u32, b: u32, c: u32| id(2 + a, 1 + b, c);
+    let (o, xyz) = (corner(0, 0, 0), corner(1, 1, 1));
+    let expected = [
+        [o, corner(1, 0, 0), corner(1, 1, 0), xyz],
+        [o, corner(1, 0, 0), xyz, corner(1, 0, 1)],
+        [o, corner(0, 1, 0), xyz, corner(1, 1, 0)],
+        [o, corner(0, 1, 0), corner(0, 1, 1), xyz],
+        [o, corner(0, 0, 1), corner(1, 0, 1), xyz],
+        [o, corner(0, 0, 1), xyz, corner(0, 1, 1)],
+    ];
+    let first = 6 * (2 + 30);
+    for (local, nodes) in expected.into_iter().enumerate() {
+        assert_eq!(mesh.cell(first + local as u32).unwrap().nodes, nodes);
+    }
+    assert_eq!(mesh.points[id(30, 3, 3) as usize], Vec3::new(1.0, 0.1, 0.1));
+}
+
+/// Each cut fills the bar exactly, without repair, in one part, conforming, with a closed boundary of known area.
+#[test]
+fn bars_of_every_kind_are_sound() {
+    for element in ELEMENTS {
+        let mut mesh = bar([7.0, 2.0, 3.0], element).unwrap();
+        let repairs = mesh.validate().unwrap();
+        assert_eq!(repairs, crate::Repairs { component_count: 1, ..Default::default() }, "{element}");
+        // thousands of cells at most, each rounded to 1e-16
+        assert!((mesh.volume() - 0.01).abs() < 1e-15, "{element} {}", mesh.volume());
+        assert!((mesh.centroid() - Vec3::new(0.5, 0.05, 0.05)).length() < 1e-15);
+        mesh.faces().conforming().unwrap();
+        let surface = mesh.boundary_surface();
+        surface.check_closed().unwrap();
+        assert!((surface.area() - 0.42).abs() < 1e-14, "{element}");
+        assert!((surface.enclosed_volume() - 0.01).abs() < 1e-15);
+    }
+}
+
+/// The mixed bar has all four kinds.
+#[test]
+fn mixed_bar_has_every_kind() {
+    let mesh = bar([4.0, 1.0, 1.0], "mixed").unwrap();
+    let counts = [ElementKind::Hex8, ElementKind::Pyramid5, ElementKind::Tet4, ElementKind::Prism6]
+        .map(|kind| mesh.count_of(kind));
+    // one cube each; the layer between has five pyramids and two tets
+    assert_eq!(counts, [1, 5, 6 + 2, 2]);
+}
+
+#[test]
+fn sides_are_groups() {
+    let mesh = bar([4.0, 2.0, 3.0], "pyramid5").unwrap();
+    let bounds = mesh.bounds();
+    for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+        for (end, at) in [("min", bounds.low[axis]), ("max", bounds.high[axis])] {
+            let expected: Vec<u32> =
+                (0..mesh.points.len() as u32).filter(|p| mesh.points[*p as usize][axis] == at).collect();
+            assert_eq!(mesh.groups[&format!("{letter}_{end}")].points, expected);
+        }
+    }
+}
+
+/// Balls of every kind are valid, and their volume tends to 4/3 π r³ as the square of the cell size.
+#[test]
+fn balls_converge_to_the_sphere() {
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * 0.125;
+    for element in ELEMENTS {
+        let error = |cells| {
+            let mut mesh = sphere(cells, element);
+            let repairs = mesh.validate().unwrap();
+            assert_eq!(repairs, crate::Repairs { component_count: 1, ..Default::default() }, "{element} {cells}");
+            mesh.faces().conforming().unwrap();
+            mesh.boundary_surface().check_closed().unwrap();
+            for point in &mesh.groups["surface"].points {
+                let radius = (mesh.points[*point as usize] - Vec3::new(1.0, 2.0, 3.0)).length();
+                assert!((radius - 0.5).abs() < 1e-15);
+            }
+            exact - mesh.volume()
+        };
+        let rate = (error(6) / error(12)).log2();
+        assert!((rate - 2.0).abs() < 0.15, "{element} {rate}");
+    }
+}
+
+#[test]
+fn absurd_requests_are_refused() {
+    for cells in [[1e9, 1e9, 1e9], [1e300, 1e300, 1e300], [300.0, 300.0, 300.0]] {
+        assert!(matches!(bar(cells, "tet4"), Err(MeshError::TooManyCells { .. })), "{cells:?}");
+    }
+    for cells in [[0.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.5, 1.0, 1.0]] {
+        assert!(matches!(bar(cells, "tet4"), Err(MeshError::Parameter { name: "cells", .. })), "{cells:?}");
+    }
+    assert!(matches!(bar([f64::NAN, 1.0, 1.0], "tet4"), Err(MeshError::Value(_))));
+    assert!(matches!(bar([3.0, 1.0, 1.0], "mixed"), Err(MeshError::Parameter { .. })));
+    assert!(matches!(bar([1.0; 3], "tet10"), Err(MeshError::Value(_))));
+    assert!(matches!(generate("cone", Values::new()), Err(MeshError::UnknownGenerator(_))));
+    let flat = Values::new().with("size", Value::Vector([1.0, 0.0, 1.0])).with("cells", Value::Vector([1.0; 3]));
+    assert!(matches!(generate("box", flat), Err(MeshError::Parameter { name: "size", .. })));
+}
+
+/// Names, defaults and summaries of the table are usable: each entry builds from its required parameters.
+#[test]
+fn every_generator_is_described() {
+    for entry in GENERATORS.entries {
+        assert!(!entry.summary.is_empty() && !entry.source.is_empty());
+        assert!(matches!(entry.values(Values::new()), Err(souple_table::ValueError::Missing { .. })));
+    }
+}

@@ -1,0 +1,155 @@
+//! Volume, centroids, bounds and connected parts of a mesh.
+
+use souple_math::Vec3;
+
+use crate::{Cell, MAX_NODES, Mesh};
+
+/// An axis-aligned box around points [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundingBox {
+    pub low: Vec3,
+    pub high: Vec3,
+}
+
+impl BoundingBox {
+    /// The box of no point: `low = ∞`, `high = -∞`.
+    pub const EMPTY: Self = Self {
+        low: Vec3::new(f64::INFINITY, f64::INFINITY, f64::INFINITY),
+        high: Vec3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
+    };
+
+    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |bounds, point| bounds.with(point))
+    }
+
+    #[must_use]
+    pub fn with(self, point: Vec3) -> Self {
+        Self { low: self.low.min_components(point), high: self.high.max_components(point) }
+    }
+
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self { low: self.low.min_components(other.low), high: self.high.max_components(other.high) }
+    }
+
+    /// The box grown by `margin` on every side.
+    #[must_use]
+    pub fn grown(self, margin: f64) -> Self {
+        let margin = Vec3::new(margin, margin, margin);
+        Self { low: self.low - margin, high: self.high + margin }
+    }
+
+    pub fn size(self) -> Vec3 {
+        self.high - self.low
+    }
+
+    pub fn centre(self) -> Vec3 {
+        (self.low + self.high) * 0.5
+    }
+
+    pub fn diagonal(self) -> f64 {
+        self.size().length()
+    }
+
+    pub fn contains(self, point: Vec3) -> bool {
+        (0..3).all(|axis| self.low[axis] <= point[axis] && point[axis] <= self.high[axis])
+    }
+
+    pub fn overlaps(self, other: Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+
+    /// Squared distance from a point to the box, zero inside [m²].
+    pub fn distance_sq(self, point: Vec3) -> f64 {
+        let outside = (self.low - point).max_components(point - self.high).max_components(Vec3::ZERO);
+        outside.length_sq()
+    }
+}
+
+impl Mesh {
+    /// Box around all points.
+    pub fn bounds(&self) -> BoundingBox {
+        BoundingBox::of(self.points.iter().copied())
+    }
+
+    /// Volume of a cell [m³], exact: the Jacobian determinant is a polynomial that the default rule integrates
+    /// on hexahedra and prisms, and in the variables of the conical product on pyramids.
+    pub fn cell_volume(&self, cell: Cell<'_>) -> f64 {
+        let mut buffer = [Vec3::ZERO; MAX_NODES];
+        let positions = self.positions_into(cell.nodes, &mut buffer);
+        let rule = cell.kind.default_rule();
+        rule.points.iter().map(|p| p.weight * cell.kind.jacobian(positions, p.position).determinant()).sum()
+    }
+
+    /// Volumes of all cells, in their order [m³].
+    pub fn cell_volumes(&self) -> Vec<f64> {
+        self.cells().map(|cell| self.cell_volume(cell)).collect()
+    }
+
+    /// Total volume [m³].
+    pub fn volume(&self) -> f64 {
+        self.cells().map(|cell| self.cell_volume(cell)).sum()
+    }
+
+    /// Centre of volume `∫ x dV / ∫ dV` [m].
+    pub fn centroid(&self) -> Vec3 {
+        let mut moment = Vec3::ZERO;
+        let mut volume = 0.0;
+        let mut buffer = [Vec3::ZERO; MAX_NODES];
+        for cell in self.cells() {
+            let positions = self.positions_into(cell.nodes, &mut buffer);
+            for point in &cell.kind.default_rule().points {
+                let weight = point.weight * cell.kind.jacobian(positions, point.position).determinant();
+                moment += cell.kind.position(positions, point.position) * weight;
+                volume += weight;
+            }
+        }
+        moment / volume
+    }
+
+    /// Means of the nodes of each cell [m].
+    pub fn cell_centres(&self) -> Vec<Vec3> {
+        let mean = |nodes: &[u32]| {
+            nodes.iter().map(|node| self.points[*node as usize]).sum::<Vec3>() / nodes.len() as f64
+        };
+        self.cells().map(|cell| mean(cell.nodes)).collect()
+    }
+
+    /// Connected parts: the part of each cell, parts numbered by their first cell, and how many there are.
+    /// Two cells are of one part when a chain of cells that share points joins them.
+    pub fn components(&self) -> (Vec<u32>, usize) {
+        let mut parent: Vec<u32> = (0..self.points.len() as u32).collect();
+        for cell in self.cells() {
+            let first = root(&mut parent, cell.nodes[0]);
+            for &node in &cell.nodes[1..] {
+                let other = root(&mut parent, node);
+                let first = root(&mut parent, first);
+                // the smaller number is the root, whatever the order of the cells
+                let (low, high) = (first.min(other), first.max(other));
+                parent[high as usize] = low;
+            }
+        }
+        let mut number = vec![u32::MAX; self.points.len()];
+        let mut count = 0;
+        let mut part_of = |root: u32| {
+            let slot = &mut number[root as usize];
+            if *slot == u32::MAX {
+                *slot = count;
+                count += 1;
+            }
+            *slot
+        };
+        let parts = self.cells().map(|cell| part_of(root(&mut parent, cell.nodes[0]))).collect();
+        (parts, count as usize)
+    }
+}
+
+/// Root of a union-find forest, halving the path on the way.
+fn root(parent: &mut [u32], mut node: u32) -> u32 {
+    while parent[node as usize] != node {
+        let grandparent = parent[parent[node as usize] as usize];
+        parent[node as usize] = grandparent;
+        node = grandparent;
+    }
+    node
+}

@@ -1,0 +1,229 @@
+//! How well shaped cells are, and what the worst of a mesh are.
+//!
+//! Every measure is 1 for the regular cell of its kind (all edges equal), except angles.
+
+use souple_math::Vec3;
+
+use crate::{Cell, ElementKind, MAX_NODES, Mesh};
+
+/// Shape of one cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellQuality {
+    /// [m³]
+    pub volume: f64,
+    /// Longest edge × surface / volume, relative to the regular cell: 1 at best, ∞ for a flat cell.
+    pub aspect_ratio: f64,
+    /// Least determinant of the unit edge vectors at a corner, relative to the regular cell: 0 for a flat corner,
+    /// negative for an inverted one. Corners of three edges count, which leaves out the apex of a pyramid.
+    pub scaled_jacobian: f64,
+    /// Least angle between two faces, inside the cell [rad].
+    pub smallest_dihedral: f64,
+    /// Greatest angle between two faces, inside the cell [rad].
+    pub largest_dihedral: f64,
+}
+
+/// Counts of values in bins of equal width.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    pub low: f64,
+    pub high: f64,
+    pub counts: Vec<usize>,
+    pub mean: f64,
+}
+
+/// Quality of a whole mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QualitySummary {
+    pub cell_count: usize,
+    /// [m³]
+    pub volume: Histogram,
+    pub aspect_ratio: Histogram,
+    pub scaled_jacobian: Histogram,
+    /// [rad]
+    pub smallest_dihedral: Histogram,
+    /// Cell of least scaled Jacobian.
+    pub worst_cell: u32,
+}
+
+impl Histogram {
+    /// Values that are not finite are left out of bins and mean. Without values, all is zero.
+    pub fn of(values: &[f64], bins: usize) -> Self {
+        let finite = || values.iter().copied().filter(|value| value.is_finite());
+        let count = finite().count();
+        let mut counts = vec![0; bins.max(1)];
+        if count == 0 {
+            return Self { low: 0.0, high: 0.0, counts, mean: 0.0 };
+        }
+        let low = finite().fold(f64::INFINITY, f64::min);
+        let high = finite().fold(f64::NEG_INFINITY, f64::max);
+        let last = counts.len() - 1;
+        for value in finite() {
+            let bin = (value - low) / (high - low) * counts.len() as f64;
+            // one value only: 0/0 goes to the first bin
+            counts[(bin as usize).min(last)] += 1;
+        }
+        Self { low, high, counts, mean: finite().sum::<f64>() / count as f64 }
+    }
+}
+
+impl Mesh {
+    /// Shapes of all cells, in their order.
+    pub fn quality(&self) -> Vec<CellQuality> {
+        let regular = ElementKind::ALL.map(|kind| {
+            let nodes: Vec<Vec3> = kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
+            (kind.dimension() == 3).then(|| Shape::of(kind, &nodes))
+        });
+        let mut buffer = [Vec3::ZERO; MAX_NODES];
+        let relative = |cell: Cell<'_>| {
+            let shape = Shape::of(cell.kind, self.positions_into(cell.nodes, &mut buffer));
+            let ideal = regular[cell.kind as usize].as_ref().unwrap_or(&shape);
+            CellQuality {
+                volume: self.cell_volume(cell),
+                aspect_ratio: shape.slenderness(self.cell_volume(cell)) / ideal.slenderness(ideal.volume),
+                scaled_jacobian: shape.corner / ideal.corner,
+                smallest_dihedral: shape.dihedrals.0,
+                largest_dihedral: shape.dihedrals.1,
+            }
+        };
+        self.cells().map(relative).collect()
+    }
+
+    /// Histograms of `bins` bins over all cells.
+    pub fn quality_summary(&self, bins: usize) -> QualitySummary {
+        let cells = self.quality();
+        let histogram = |measure: fn(&CellQuality) -> f64| {
+            Histogram::of(&cells.iter().map(measure).collect::<Vec<_>>(), bins)
+        };
+        let jacobian = |cell: &usize| cells[*cell].scaled_jacobian;
+        let worst = (0..cells.len()).min_by(|a, b| jacobian(a).total_cmp(&jacobian(b)));
+        QualitySummary {
+            cell_count: cells.len(),
+            volume: histogram(|cell| cell.volume),
+            aspect_ratio: histogram(|cell| cell.aspect_ratio),
+            scaled_jacobian: histogram(|cell| cell.scaled_jacobian),
+            smallest_dihedral: histogram(|cell| cell.smallest_dihedral),
+            worst_cell: worst.unwrap_or(0) as u32,
+        }
+    }
+}
+
+/// Measures of a cell as it is.
+struct Shape {
+    longest_edge: f64,
+    surface: f64,
+    volume: f64,
+    /// Least determinant of unit edges at a corner.
+    corner: f64,
+    /// Least and greatest angle between faces [rad].
+    dihedrals: (f64, f64),
+}
+
+impl Shape {
+    fn of(kind: ElementKind, positions: &[Vec3]) -> Self {
+        let along = |[a, b]: [u8; 2]| positions[usize::from(b)] - positions[usize::from(a)];
+        let longest_edge = kind.edges().iter().map(|edge| along(*edge).length()).fold(0.0, f64::max);
+        let normals: Vec<Vec3> = kind.faces().iter().map(|face| area_vector(face.nodes, positions)).collect();
+        let rule = kind.default_rule();
+        Self {
+            longest_edge,
+            surface: normals.iter().map(|normal| normal.length()).sum(),
+            volume: rule.points.iter().map(|p| p.weight * kind.jacobian(positions, p.position).determinant()).sum(),
+            corner: least_corner(kind, positions),
+            dihedrals: dihedrals(kind, &normals),
+        }
+    }
+
+    fn slenderness(&self, volume: f64) -> f64 {
+        self.longest_edge * self.surface / volume
+    }
+}
+
+/// Area times outward normal of a face: half the sum of the cross products around it.
+fn area_vector(nodes: &[u8], positions: &[Vec3]) -> Vec3 {
+    let at = |place: usize| positions[usize::from(nodes[place % nodes.len()])] - positions[usize::from(nodes[0])];
+    (1..nodes.len() - 1).map(|place| at(place).cross(at(place + 1)) * 0.5).sum()
+}
+
+/// The interior angle at each edge is `π` less the angle between the outward normals.
+fn dihedrals(kind: ElementKind, normals: &[Vec3]) -> (f64, f64) {
+    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for edge in kind.edges() {
+        let mut sides = (0..normals.len()).filter(|f| edge.iter().all(|n| kind.faces()[*f].nodes.contains(n)));
+        if let (Some(f), Some(g)) = (sides.next(), sides.next()) {
+            let (u, v) = (normals[f], normals[g]);
+            let angle = std::f64::consts::PI - u.cross(v).length().atan2(u.dot(v));
+            least = least.min(angle);
+            greatest = greatest.max(angle);
+        }
+    }
+    (least, greatest)
+}
+
+fn least_corner(kind: ElementKind, positions: &[Vec3]) -> f64 {
+    let reference: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
+    let mut least = f64::INFINITY;
+    for corner in 0..positions.len() as u8 {
+        let other_end = |edge: &[u8; 2]| match *edge {
+            [a, b] if a == corner => Some(b),
+            [a, b] if b == corner => Some(a),
+            _ => None,
+        };
+        let ends: Vec<u8> = kind.edges().iter().filter_map(other_end).collect();
+        let [a, b, c] = ends[..] else { continue };
+        let triple = |nodes: &[Vec3]| {
+            let along = |end: u8| (nodes[usize::from(end)] - nodes[usize::from(corner)]).try_normalised();
+            let [a, b, c] = [a, b, c].map(|end| along(end).unwrap_or(Vec3::ZERO));
+            a.dot(b.cross(c))
+        };
+        // the reference cell says which order of the three edges is positive
+        least = least.min(triple(positions) * triple(&reference).signum());
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The regular cell of each kind has aspect ratio 1 and scaled Jacobian 1; its dihedral angles are known.
+    #[test]
+    fn regular_cells_are_perfect() {
+        let expected = [
+            (ElementKind::Tet4, (1.0_f64 / 3.0).acos()),
+            (ElementKind::Hex8, 0.5_f64 * std::f64::consts::PI),
+            (ElementKind::Prism6, std::f64::consts::FRAC_PI_3),
+            (ElementKind::Pyramid5, (1.0_f64 / 3.0).sqrt().acos()),
+        ];
+        for (kind, smallest) in expected {
+            let points: Vec<Vec3> = kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
+            for [a, b] in kind.edges() {
+                assert!(((points[usize::from(*a)] - points[usize::from(*b)]).length() - 1.0).abs() < 1e-15);
+            }
+            let nodes = (0..kind.node_count() as u32).collect();
+            let quality = Mesh::new(points, kind, nodes).quality()[0];
+            assert!((quality.aspect_ratio - 1.0).abs() < 1e-14, "{kind} {quality:?}");
+            assert!((quality.scaled_jacobian - 1.0).abs() < 1e-14, "{kind} {quality:?}");
+            assert!((quality.smallest_dihedral - smallest).abs() < 1e-14, "{kind} {quality:?}");
+        }
+    }
+
+    /// Stretching a cube by `s` along one axis: surface (2 + 4s), volume s, longest edge s.
+    #[test]
+    fn aspect_ratio_of_a_stretched_cube() {
+        let stretch = 3.0;
+        let regular = ElementKind::Hex8.element().regular;
+        let points = regular.iter().map(|[x, y, z]| Vec3::new(stretch * x, *y, *z)).collect();
+        let quality = Mesh::new(points, ElementKind::Hex8, (0..8).collect()).quality()[0];
+        assert!((quality.aspect_ratio - (2.0 + 4.0 * stretch) / 6.0).abs() < 1e-14);
+        assert!((quality.scaled_jacobian - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn histogram_counts_every_finite_value() {
+        let histogram = Histogram::of(&[0.0, 0.1, 0.9, 1.0, f64::NAN], 2);
+        assert_eq!((histogram.counts, histogram.low, histogram.high), (vec![2, 2], 0.0, 1.0));
+        assert_eq!(histogram.mean, 0.5);
+        assert_eq!(Histogram::of(&[2.0, 2.0], 3).counts, vec![2, 0, 0]);
+        assert_eq!(Histogram::of(&[], 3).counts, vec![0; 3]);
+    }
+}

@@ -1,0 +1,193 @@
+//! Triangulated surfaces: areas, normals, enclosed volume, closest points.
+
+use souple_math::Vec3;
+
+use crate::{BoundingBox, MeshError};
+
+/// A triangulated surface, its points numbered for itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleSurface {
+    /// Positions [m].
+    pub points: Vec<Vec3>,
+    /// Corners, counterclockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Point of the mesh that each point is; empty for a surface of its own.
+    pub mesh_points: Vec<u32>,
+    /// Cell (or facet) of the mesh that each triangle bounds; empty for a surface of its own.
+    pub cells: Vec<u32>,
+}
+
+/// Where on a triangle a closest point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    Face,
+    /// The edge from this corner to the next.
+    Edge(u8),
+    Corner(u8),
+}
+
+impl TriangleSurface {
+    /// A surface of its own.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, corners that do not exist or repeat.
+    pub fn new(points: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        if points.is_empty() {
+            return Err(MeshError::NoPoints);
+        }
+        if let Some(point) = points.iter().position(|point| !point.is_finite()) {
+            let position = points[point].to_array();
+            return Err(MeshError::PointNotFinite { point: point as u32, position });
+        }
+        for (triangle, corners) in triangles.iter().enumerate() {
+            let (cell, kind, list) = (triangle as u32, crate::ElementKind::Tri3, "triangles");
+            for (place, &point) in corners.iter().enumerate() {
+                if point as usize >= points.len() {
+                    return Err(MeshError::MissingPoint { list, cell, kind, point, point_count: points.len() });
+                }
+                if corners[..place].contains(&point) {
+                    return Err(MeshError::DuplicateNode { list, cell, kind, point });
+                }
+            }
+        }
+        Ok(Self { points, triangles, mesh_points: Vec::new(), cells: Vec::new() })
+    }
+
+    /// Triangles of a mesh, their points renumbered in ascending order.
+    pub(crate) fn from_mesh(points: &[Vec3], triangles: &[[u32; 3]], cells: Vec<u32>) -> Self {
+        let mut mesh_points: Vec<u32> = triangles.iter().flatten().copied().collect();
+        mesh_points.sort_unstable();
+        mesh_points.dedup();
+        let mut number = vec![0; points.len()];
+        for (new, old) in mesh_points.iter().enumerate() {
+            number[*old as usize] = new as u32;
+        }
+        Self {
+            points: mesh_points.iter().map(|point| points[*point as usize]).collect(),
+            triangles: triangles.iter().map(|corners| corners.map(|node| number[node as usize])).collect(),
+            mesh_points,
+            cells,
+        }
+    }
+
+    /// Corners of a triangle [m].
+    pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
+        self.triangles[triangle as usize].map(|point| self.points[point as usize])
+    }
+
+    /// Half the cross product of two sides: area times outward normal [m²].
+    pub fn area_vector(&self, triangle: u32) -> Vec3 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a) * 0.5
+    }
+
+    /// Total area [m²].
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len() as u32).map(|triangle| self.area_vector(triangle).length()).sum()
+    }
+
+    /// Enclosed volume of a closed surface, negative when it is inside out [m³].
+    pub fn enclosed_volume(&self) -> f64 {
+        // ⅙ Σ (a - o) · ((b - o) × (c - o)), o near the surface so that nothing large cancels
+        let origin = self.bounds().centre();
+        let tetrahedron = |corners: [Vec3; 3]| {
+            let [a, b, c] = corners.map(|corner| corner - origin);
+            a.dot(b.cross(c)) / 6.0
+        };
+        (0..self.triangles.len() as u32).map(|triangle| tetrahedron(self.corners(triangle))).sum()
+    }
+
+    pub fn bounds(&self) -> BoundingBox {
+        BoundingBox::of(self.points.iter().copied())
+    }
+
+    /// Unit normals of the points, see [`vertex_normals`].
+    pub fn vertex_normals(&self) -> Vec<Vec3> {
+        vertex_normals(&self.points, &self.triangles)
+    }
+
+    /// Edges with the number of triangles that run along them upward and downward in point number, ascending.
+    pub fn edge_uses(&self) -> Vec<([u32; 2], u32, u32)> {
+        let mut directed: Vec<([u32; 2], bool)> = Vec::with_capacity(3 * self.triangles.len());
+        for [a, b, c] in &self.triangles {
+            for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
+                directed.push(([from.min(to), from.max(to)], from < to));
+            }
+        }
+        directed.sort_unstable();
+        let count = |same: &[([u32; 2], bool)]| {
+            let forward = same.iter().filter(|(_, upward)| *upward).count() as u32;
+            (same[0].0, forward, same.len() as u32 - forward)
+        };
+        directed.chunk_by(|a, b| a.0 == b.0).map(count).collect()
+    }
+
+    /// # Errors
+    /// The first edge that is not shared by two triangles of opposite direction. Bodies that touch along an edge
+    /// have several such pairs and pass.
+    pub fn check_closed(&self) -> Result<(), MeshError> {
+        match self.edge_uses().into_iter().find(|(_, forward, backward)| forward != backward) {
+            Some(([a, b], forward, backward)) => Err(MeshError::OpenSurface { a, b, forward, backward }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Unit normals of points: normals of their triangles weighted by the angle at the point, which does not depend
+/// on how a flat part is cut. A point of no triangle, or of cancelling ones, gets zero.
+pub fn vertex_normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; points.len()];
+    for corners in triangles {
+        let [a, b, c] = corners.map(|point| points[point as usize]);
+        let Some(normal) = (b - a).cross(c - a).try_normalised() else { continue };
+        for (point, angle) in corners.iter().zip(corner_angles([a, b, c])) {
+            normals[*point as usize] += normal * angle;
+        }
+    }
+    normals.into_iter().map(|normal| normal.try_normalised().unwrap_or(Vec3::ZERO)).collect()
+}
+
+/// Angles at the corners of a triangle [rad].
+pub(crate) fn corner_angles([a, b, c]: [Vec3; 3]) -> [f64; 3] {
+    // atan2 of |u × v| and u · v is accurate for all angles
+    let angle = |at: Vec3, p: Vec3, q: Vec3| {
+        let (u, v) = (p - at, q - at);
+        u.cross(v).length().atan2(u.dot(v))
+    };
+    [angle(a, b, c), angle(b, c, a), angle(c, a, b)]
+}
+
+/// Closest point of a triangle to `p`: weights of its corners, and on what it lies (Ericson 2005, §5.1.5).
+pub fn closest_point_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> ([f64; 3], Feature) {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return ([1.0, 0.0, 0.0], Feature::Corner(0));
+    }
+    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
+    if d3 >= 0.0 && d4 <= d3 {
+        return ([0.0, 1.0, 0.0], Feature::Corner(1));
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let t = d1 / (d1 - d3);
+        return ([1.0 - t, t, 0.0], Feature::Edge(0));
+    }
+    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
+    if d6 >= 0.0 && d5 <= d6 {
+        return ([0.0, 0.0, 1.0], Feature::Corner(2));
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let t = d2 / (d2 - d6);
+        return ([1.0 - t, 0.0, t], Feature::Edge(2));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return ([0.0, 1.0 - t, t], Feature::Edge(1));
+    }
+    let scale = 1.0 / (va + vb + vc);
+    let (v, w) = (vb * scale, vc * scale);
+    ([1.0 - v - w, v, w], Feature::Face)
+}

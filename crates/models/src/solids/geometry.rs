@@ -1,0 +1,71 @@
+//! From node positions to the gradient at a sample, and back, for elements of a known node count.
+
+use souple_math::{Mat3, Real, Vec3};
+
+/// An element's nodes as the kernels see them; `reference` holds `∂N_a/∂ξ` at the sample.
+pub trait Geometry: Copy + Send + Sync + 'static {
+    const NODES: usize;
+
+    /// `∂x/∂ξ = Σ x_a ⊗ ∂N_a/∂ξ`.
+    fn gradient<R: Real>(positions: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R>;
+
+    /// `f_a -= H ∂N_a/∂ξ`: the transpose of [`Geometry::gradient`].
+    fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]);
+}
+
+/// The linear tetrahedron: gradients are differences of corners.
+#[derive(Clone, Copy, Debug)]
+pub struct Tetrahedron;
+
+impl Geometry for Tetrahedron {
+    const NODES: usize = 4;
+
+    #[inline(always)]
+    fn gradient<R: Real>(x: &[Vec3<R>], _: &[Vec3]) -> Mat3<R> {
+        Mat3::from_columns(x[1] - x[0], x[2] - x[0], x[3] - x[0])
+    }
+
+    #[inline(always)]
+    fn spread<R: Real>(stress: &Mat3<R>, _: &[Vec3], forces: &mut [Vec3<R>]) {
+        let [a, b, c] = stress.columns;
+        forces[0] += a + b + c;
+        forces[1] -= a;
+        forces[2] -= b;
+        forces[3] -= c;
+    }
+}
+
+/// Any element of `N` nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct Nodes<const N: usize>;
+
+impl<const N: usize> Geometry for Nodes<N> {
+    const NODES: usize = N;
+
+    #[inline(always)]
+    fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
+        let row = |pick: fn(&Vec3) -> f64| {
+            let mut sum = x[0] * x[0].x.splat(pick(&reference[0]));
+            for a in 1..N {
+                let factor = x[0].x.splat(pick(&reference[a]));
+                sum = Vec3::new(
+                    x[a].x.mul_add(factor, sum.x),
+                    x[a].y.mul_add(factor, sum.y),
+                    x[a].z.mul_add(factor, sum.z),
+                );
+            }
+            sum
+        };
+        Mat3::from_columns(row(|g| g.x), row(|g| g.y), row(|g| g.z))
+    }
+
+    #[inline(always)]
+    fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]) {
+        let like = stress.columns[0].x;
+        for a in 0..N {
+            let g = reference[a];
+            let gradient = Vec3::new(like.splat(g.x), like.splat(g.y), like.splat(g.z));
+            forces[a] -= *stress * gradient;
+        }
+    }
+}

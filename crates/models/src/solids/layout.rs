@@ -1,0 +1,135 @@
+//! How elements lie in memory: chunks of neighbouring elements, in blocks of eight lanes.
+//!
+//! A chunk numbers its own nodes, sums the forces of its elements on them in element order, and hands the
+//! partial sums to one gather over rows, in chunk order. Neither order depends on the number of threads.
+
+use souple_math::{Mat3, Vec3};
+use souple_mesh::{ElementKind, QuadratureRule};
+
+/// Elements side by side in a block.
+pub const LANES: usize = 8;
+/// Numbers per sample and element: the inverse of `∂X/∂ξ` by columns, then the volume.
+pub const SAMPLE_LEN: usize = 10;
+
+/// Samples a chunk holds at most, so that its data stay in the first-level cache.
+const SAMPLES_PER_CHUNK: usize = 256;
+
+/// A few hundred neighbouring samples.
+#[derive(Clone, Debug)]
+pub struct Chunk {
+    /// Cell numbers of the body, in lane order.
+    pub cells: Vec<u32>,
+    /// Row of each of the chunk's nodes.
+    pub rows: Vec<u32>,
+    /// Chunk node of `(block, node, lane)`; lanes past the last element repeat it.
+    pub connectivity: Vec<u16>,
+    /// `[block][sample][SAMPLE_LEN][lane]`; lanes past the last element have no volume.
+    pub samples: Vec<f64>,
+    /// `[block][parameter][lane]`.
+    pub parameters: Vec<f64>,
+    /// Where the chunk's nodes start among the partial sums.
+    pub first_partial: usize,
+}
+
+impl Chunk {
+    pub fn block_count(&self) -> usize {
+        self.cells.len().div_ceil(LANES)
+    }
+
+    /// Real elements in a block.
+    pub fn lanes_in(&self, block: usize) -> usize {
+        (self.cells.len() - block * LANES).min(LANES)
+    }
+
+    pub fn bytes(&self) -> usize {
+        4 * (self.cells.len() + self.rows.len())
+            + 2 * self.connectivity.len()
+            + 8 * (self.samples.len() + self.parameters.len())
+    }
+}
+
+/// A cell that has no volume to compute with.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{kind} cell {cell} is flat or inverted at rest: det ∂X/∂ξ = {determinant:e} at sample {sample}; it must be positive")]
+pub struct FlatCell {
+    pub kind: ElementKind,
+    pub cell: u32,
+    pub sample: usize,
+    pub determinant: f64,
+}
+
+/// Lays out `cells` (numbers with their rows) into chunks.
+///
+/// # Errors
+/// A cell is flat or inverted at a sample.
+pub fn chunks(
+    kind: ElementKind,
+    rule: &QuadratureRule,
+    rest_positions: &[Vec3],
+    cells: &[(u32, &[u32])],
+    parameters_of: &dyn Fn(u32) -> Vec<f64>,
+    first_partial: usize,
+) -> Result<Vec<Chunk>, FlatCell> {
+    let per_chunk = (SAMPLES_PER_CHUNK / rule.points.len() / LANES).max(1) * LANES;
+    let mut next_partial = first_partial;
+    cells
+        .chunks(per_chunk)
+        .map(|members| {
+            let chunk = lay_out(kind, rule, rest_positions, members, parameters_of, next_partial)?;
+            next_partial += chunk.rows.len();
+            Ok(chunk)
+        })
+        .collect()
+}
+
+fn lay_out(
+    kind: ElementKind,
+    rule: &QuadratureRule,
+    rest_positions: &[Vec3],
+    members: &[(u32, &[u32])],
+    parameters_of: &dyn Fn(u32) -> Vec<f64>,
+    first_partial: usize,
+) -> Result<Chunk, FlatCell> {
+    let nodes = kind.node_count();
+    let mut rows: Vec<u32> = members.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    let blocks = members.len().div_ceil(LANES);
+    let parameter_count = parameters_of(members[0].0).len();
+    let mut chunk = Chunk {
+        cells: members.iter().map(|(cell, _)| *cell).collect(),
+        connectivity: vec![0; blocks * nodes * LANES],
+        samples: vec![0.0; blocks * rule.points.len() * SAMPLE_LEN * LANES],
+        parameters: vec![0.0; blocks * parameter_count * LANES],
+        rows,
+        first_partial,
+    };
+    for slot in 0..blocks * LANES {
+        let (block, lane) = (slot / LANES, slot % LANES);
+        let (cell, cell_rows) = members[slot.min(members.len() - 1)];
+        for (a, row) in cell_rows.iter().enumerate() {
+            let local = chunk.rows.binary_search(row).unwrap_or_else(|_| unreachable!("collected above"));
+            chunk.connectivity[(block * nodes + a) * LANES + lane] = local as u16;
+        }
+        for (i, number) in parameters_of(cell).into_iter().enumerate() {
+            chunk.parameters[(block * parameter_count + i) * LANES + lane] = number;
+        }
+        let corners: Vec<Vec3> = cell_rows.iter().map(|row| rest_positions[*row as usize]).collect();
+        for (sample, point) in rule.points.iter().enumerate() {
+            let jacobian = kind.jacobian(&corners, point.position);
+            let determinant = jacobian.determinant();
+            let inverse = jacobian.try_inverse().filter(|inverse| determinant > 0.0 && inverse.is_finite());
+            let inverse = inverse.ok_or(FlatCell { kind, cell, sample, determinant })?;
+            let volume = if slot < members.len() { determinant * point.weight } else { 0.0 };
+            let at = (block * rule.points.len() + sample) * SAMPLE_LEN * LANES + lane;
+            for (i, number) in entries(&inverse).chain([volume]).enumerate() {
+                chunk.samples[at + i * LANES] = number;
+            }
+        }
+    }
+    Ok(chunk)
+}
+
+fn entries(matrix: &Mat3) -> impl Iterator<Item = f64> {
+    matrix.columns.into_iter().flat_map(|column| column.to_array())
+}
