@@ -163,7 +163,9 @@ impl ImplicitStep<'_> {
             }
             system.project_free(&mut buffers.rhs);
         }
-        let symmetric = system.kinematics.is_trivial()
+        // rigid frames turn on the way, and one-way rows take what they do not give
+        let symmetric = !system.kinematics.has_rigid_frames()
+            && system.kinematics.is_conservative()
             && system.forces.iter().all(|force| force.declaration().symmetric_tangent);
         buffers.direction.fill(Vec3::ZERO);
         let report = if linear.is_matrix_free() {

@@ -106,10 +106,15 @@ impl<'a> Lexer<'a> {
         }
         let starts = |(symbol, _): &&(&str, _)| rest.starts_with(symbol);
         // `**` begins with `*`, so what is foreign goes first, but for `!=` and `==`
-        let foreign = FOREIGN.iter().find(starts).filter(|_| !rest.starts_with("!=") && !rest.starts_with("=="));
+        let foreign =
+            FOREIGN.iter().find(starts).filter(|_| !rest.starts_with("!=") && !rest.starts_with("=="));
         if let Some((read, written_here)) = foreign {
             let expected = written_here.to_string();
-            return Err(ParseError::Unexpected { read: format!("`{read}`"), expected, span: self.take(read.len()) });
+            return Err(ParseError::Unexpected {
+                read: format!("`{read}`"),
+                expected,
+                span: self.take(read.len()),
+            });
         }
         if let Some((text, symbol)) = SYMBOLS.iter().find(|(symbol, _)| rest.starts_with(symbol)) {
             return Ok((Token::Symbol(*symbol), self.take(text.len())));
@@ -122,7 +127,8 @@ impl<'a> Lexer<'a> {
     /// Digits with at most one point, and `e` with a whole exponent.
     fn number(&mut self, rest: &str) -> Result<(Token, Span), ParseError> {
         let bytes = rest.as_bytes();
-        let digits_from = |at: usize| at + bytes[at..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let digits_from =
+            |at: usize| at + bytes[at..].iter().take_while(|byte| byte.is_ascii_digit()).count();
         let mut end = digits_from(0);
         if bytes.get(end) == Some(&b'.') {
             end = digits_from(end + 1);
@@ -167,11 +173,10 @@ mod tests {
         assert_eq!(tokens("1.5e-3"), [(Token::Number(1.5e-3), "1.5e-3")]);
         assert_eq!(tokens(" .5 "), [(Token::Number(0.5), ".5")]);
         assert_eq!(tokens("2e"), [(Token::Number(2.0), "2"), (Token::Word, "e")]);
-        assert_eq!(tokens("x_1<=y"), [
-            (Token::Word, "x_1"),
-            (Token::Symbol(Symbol::LessOrEqual), "<="),
-            (Token::Word, "y")
-        ]);
+        assert_eq!(
+            tokens("x_1<=y"),
+            [(Token::Word, "x_1"), (Token::Symbol(Symbol::LessOrEqual), "<="), (Token::Word, "y")]
+        );
         assert!(matches!(Lexer::new("1e999").next(), Err(ParseError::NumberTooLarge { .. })));
     }
 

@@ -30,12 +30,12 @@ impl<S: Simd> Lanes<S> {
     /// If `values` is shorter than the lanes.
     #[inline(always)]
     pub fn load(simd: S, values: &[f64]) -> Self {
-        Self { simd, values: simd.partial_load_f64s(&values[..S::F64_LANES]) }
+        Self { simd, values: S::as_simd_f64s(&values[..S::F64_LANES]).0[0] }
     }
 
     #[inline(always)]
     pub fn store(self, values: &mut [f64]) {
-        self.simd.partial_store_f64s(&mut values[..S::F64_LANES], self.values);
+        S::as_mut_simd_f64s(&mut values[..S::F64_LANES]).0[0] = self.values;
     }
 
     #[inline(always)]

@@ -130,7 +130,8 @@ impl Mesh {
 fn cut(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     let n = corners.len();
     let first = (0..n).min_by_key(|corner| corners[*corner]).unwrap_or(0);
-    (1..n.saturating_sub(1)).map(move |k| [corners[first], corners[(first + k) % n], corners[(first + k + 1) % n]])
+    (1..n.saturating_sub(1))
+        .map(move |k| [corners[first], corners[(first + k) % n], corners[(first + k + 1) % n]])
 }
 
 fn face_key(cell: Cell<'_>, face: usize) -> Key {

@@ -21,7 +21,9 @@ pub enum MeshError {
     DuplicateNode { list: &'static str, cell: u32, kind: ElementKind, point: u32 },
     #[error("{list} has a block of {kind}; expected elements of dimension {dimension}")]
     WrongDimension { list: &'static str, kind: ElementKind, dimension: usize },
-    #[error("cells[{cell}] ({kind}) is flat: volume {volume:e} m³ for a size of {size:e} m; expected a positive volume")]
+    #[error(
+        "cells[{cell}] ({kind}) is flat: volume {volume:e} m³ for a size of {size:e} m; expected a positive volume"
+    )]
     FlatCell { cell: u32, kind: ElementKind, volume: f64, size: f64 },
     #[error(
         "cells[{cell}] ({kind}) is tangled: its Jacobian determinant goes from {lowest:e} to {highest:e}; \
@@ -37,7 +39,10 @@ pub enum MeshError {
          expected a pyramid between them"
     )]
     QuadrilateralMeetsTriangles { cell: u32, triangle_cells: [u32; 2] },
-    #[error("the surface is open or badly oriented at the edge between points {a} and {b}; expected two triangles of opposite direction on each edge, there are {forward} and {backward}")]
+    #[error(
+        "the surface is open or badly oriented at the edge between points {a} and {b}: {forward} triangles run \
+         along it and {backward} against it; expected one of each"
+    )]
     OpenSurface { a: u32, b: u32, forward: u32, backward: u32 },
     #[error("triangles[{triangle}] has no area; expected three points that are not on one line")]
     FlatTriangle { triangle: u32 },

@@ -20,7 +20,7 @@ mod tree;
 mod validate;
 
 pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral};
-pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial};
+pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodeValues};
 pub use error::MeshError;
 pub use generate::{Build, GENERATORS, MAX_CELLS, generate};
 pub use locate::{CellLocator, Location};

@@ -150,7 +150,7 @@ mod tests {
     fn ball(element: &str) -> Mesh {
         let values = Values::new()
             .with("radius", Value::Number(1.0))
-            .with("cells", Value::Integer(4))
+            .with("cells", Value::Integer(8))
             .with("element", Value::Text(element));
         generate("sphere", values).unwrap()
     }
@@ -158,7 +158,11 @@ mod tests {
     fn carried(mesh: &Mesh, location: &Location) -> Vec3 {
         let cell = mesh.cell(location.cell).unwrap();
         let weights = location.weights();
-        cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| mesh.points[*node as usize] * *weight).sum()
+        cell.nodes
+            .iter()
+            .zip(weights.iter())
+            .map(|(node, weight)| mesh.points[*node as usize] * *weight)
+            .sum()
     }
 
     /// Every point of a quadrature rule is found in its own cell, at its own reference coordinates.
@@ -189,7 +193,10 @@ mod tests {
             let locator = CellLocator::new(&mesh);
             for point in &mesh.points {
                 let location = locator.carrier(*point).unwrap();
-                assert!((carried(&mesh, &location) - *point).length() < 1e-8, "{element} {point:?} {location:?}");
+                assert!(
+                    (carried(&mesh, &location) - *point).length() < 1e-8,
+                    "{element} {point:?} {location:?}"
+                );
             }
         }
     }

@@ -49,7 +49,7 @@ fn point(x: f64, y: f64, z: f64, weight: f64) -> QuadraturePoint {
 pub(crate) fn gauss_jacobi(count: usize, alpha: u32) -> Vec<(f64, f64)> {
     let mut roots: Vec<f64> = Vec::with_capacity(count);
     for k in 0..count {
-        let mut x = (std::f64::consts::PI * (4 * k + 3) as f64 / (4 * count + 2) as f64).cos();
+        let mut x = libm::cos(std::f64::consts::PI * (4 * k + 3) as f64 / (4 * count + 2) as f64);
         for _ in 0..100 {
             let (value, slope) = jacobi(count, f64::from(alpha), x);
             // Newton on P / Π (x - xᵢ), so that no root is found twice
@@ -84,10 +84,8 @@ fn jacobi(n: usize, alpha: f64, x: f64) -> (f64, f64) {
         let b = (s + 1.0) * (s * (s + 2.0) * x + alpha * alpha);
         let db = (s + 1.0) * s * (s + 2.0);
         let c = 2.0 * k * (k + alpha) * (s + 2.0);
-        let next = (
-            (b * current.0 - c * previous.0) / a,
-            (db * current.0 + b * current.1 - c * previous.1) / a,
-        );
+        let next =
+            ((b * current.0 - c * previous.0) / a, (db * current.0 + b * current.1 - c * previous.1) / a);
         (previous, current) = (current, next);
     }
     current
@@ -95,7 +93,9 @@ fn jacobi(n: usize, alpha: f64, x: f64) -> (f64, f64) {
 
 pub(crate) fn quadrilateral(count: usize) -> Vec<QuadraturePoint> {
     let line = gauss_jacobi(count, 0);
-    let row = |&(y, wy): &(f64, f64)| line.iter().map(move |&(x, wx)| point(x, y, 0.0, wx * wy)).collect::<Vec<_>>();
+    let row = |&(y, wy): &(f64, f64)| {
+        line.iter().map(move |&(x, wx)| point(x, y, 0.0, wx * wy)).collect::<Vec<_>>()
+    };
     line.iter().flat_map(row).collect()
 }
 

@@ -70,7 +70,8 @@ impl Mesh {
     /// Shapes of all cells, in their order.
     pub fn quality(&self) -> Vec<CellQuality> {
         let regular = ElementKind::ALL.map(|kind| {
-            let nodes: Vec<Vec3> = kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
+            let nodes: Vec<Vec3> =
+                kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
             (kind.dimension() == 3).then(|| Shape::of(kind, &nodes))
         });
         let mut buffer = [Vec3::ZERO; MAX_NODES];
@@ -127,7 +128,11 @@ impl Shape {
         Self {
             longest_edge,
             surface: normals.iter().map(|normal| normal.length()).sum(),
-            volume: rule.points.iter().map(|p| p.weight * kind.jacobian(positions, p.position).determinant()).sum(),
+            volume: rule
+                .points
+                .iter()
+                .map(|p| p.weight * kind.jacobian(positions, p.position).determinant())
+                .sum(),
             corner: least_corner(kind, positions),
             dihedrals: dihedrals(kind, &normals),
         }
@@ -140,7 +145,8 @@ impl Shape {
 
 /// Area times outward normal of a face: half the sum of the cross products around it.
 fn area_vector(nodes: &[u8], positions: &[Vec3]) -> Vec3 {
-    let at = |place: usize| positions[usize::from(nodes[place % nodes.len()])] - positions[usize::from(nodes[0])];
+    let at =
+        |place: usize| positions[usize::from(nodes[place % nodes.len()])] - positions[usize::from(nodes[0])];
     (1..nodes.len() - 1).map(|place| at(place).cross(at(place + 1)) * 0.5).sum()
 }
 
@@ -148,10 +154,11 @@ fn area_vector(nodes: &[u8], positions: &[Vec3]) -> Vec3 {
 fn dihedrals(kind: ElementKind, normals: &[Vec3]) -> (f64, f64) {
     let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
     for edge in kind.edges() {
-        let mut sides = (0..normals.len()).filter(|f| edge.iter().all(|n| kind.faces()[*f].nodes.contains(n)));
+        let mut sides =
+            (0..normals.len()).filter(|f| edge.iter().all(|n| kind.faces()[*f].nodes.contains(n)));
         if let (Some(f), Some(g)) = (sides.next(), sides.next()) {
             let (u, v) = (normals[f], normals[g]);
-            let angle = std::f64::consts::PI - u.cross(v).length().atan2(u.dot(v));
+            let angle = std::f64::consts::PI - libm::atan2(u.cross(v).length(), u.dot(v));
             least = least.min(angle);
             greatest = greatest.max(angle);
         }
@@ -195,7 +202,8 @@ mod tests {
             (ElementKind::Pyramid5, (1.0_f64 / 3.0).sqrt().acos()),
         ];
         for (kind, smallest) in expected {
-            let points: Vec<Vec3> = kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
+            let points: Vec<Vec3> =
+                kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
             for [a, b] in kind.edges() {
                 assert!(((points[usize::from(*a)] - points[usize::from(*b)]).length() - 1.0).abs() < 1e-15);
             }

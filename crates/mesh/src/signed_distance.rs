@@ -56,7 +56,8 @@ impl SignedDistance {
             }
         }
         let triangles = 0..surface.triangles.len() as u32;
-        if let Some(triangle) = triangles.clone().find(|t| surface.area_vector(*t).try_normalised().is_none()) {
+        if let Some(triangle) = triangles.clone().find(|t| surface.area_vector(*t).try_normalised().is_none())
+        {
             return Err(MeshError::FlatTriangle { triangle });
         }
         let boxes: Vec<Aabb> = triangles.map(|triangle| Aabb::of(surface.corners(triangle))).collect();
@@ -109,9 +110,9 @@ impl SignedDistance {
         }
     }
 
-    /// The closest point of the surface.
-    pub fn closest(&self, point: Vec3) -> ClosestPoint {
-        self.closest_within(point, f64::INFINITY).expect("a surface has at least one triangle")
+    /// The closest point of the surface; `None` where the point or the moved surface is not finite.
+    pub fn closest(&self, point: Vec3) -> Option<ClosestPoint> {
+        self.closest_within(point, f64::INFINITY)
     }
 
     /// The closest point of the surface if it is no farther than `limit` [m].
@@ -122,6 +123,9 @@ impl SignedDistance {
             let position = corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2];
             (weights, feature, position)
         };
+        if !point.is_finite() {
+            return None;
+        }
         let distance_sq = |triangle| (point - on(triangle).2).length_sq();
         let (triangle, _) = self.tree.nearest(point, limit * limit, distance_sq)?;
         let (weights, feature, position) = on(triangle);
@@ -140,9 +144,9 @@ impl SignedDistance {
         Some(ClosestPoint { triangle, weights, position, normal, distance })
     }
 
-    /// Distance to the surface, negative inside [m].
+    /// Distance to the surface, negative inside [m]; NaN where there is no closest point.
     pub fn distance(&self, point: Vec3) -> f64 {
-        self.closest(point).distance
+        self.closest(point).map_or(f64::NAN, |closest| closest.distance)
     }
 
     pub fn contains(&self, point: Vec3) -> bool {
@@ -201,7 +205,7 @@ mod tests {
     fn distance_to_a_cube() {
         let cube = SignedDistance::new(unit_cube(3.0)).unwrap();
         for point in probes() {
-            let closest = cube.closest(point);
+            let closest = cube.closest(point).unwrap();
             assert!((closest.distance - cube_distance(point)).abs() < 1e-14, "{point:?} {closest:?}");
             assert_eq!(cube.contains(point), cube_distance(point) < 0.0, "{point:?}");
             assert_eq!(cube.closest_within(point, 0.2).is_some(), cube_distance(point).abs() <= 0.2);
@@ -223,6 +227,18 @@ mod tests {
         for point in probes() {
             assert!((cube.distance(point + shift) - cube_distance(point)).abs() < 1e-13);
         }
+    }
+
+    /// Neither a point nor a surface that is not finite makes anything panic.
+    #[test]
+    fn not_finite() {
+        let mut cube = SignedDistance::new(unit_cube(1.0)).unwrap();
+        for bad in [f64::NAN, f64::INFINITY] {
+            let point = Vec3::new(0.5, bad, 0.5);
+            assert!(cube.closest(point).is_none() && cube.distance(point).is_nan() && !cube.contains(point));
+        }
+        cube.move_points(&[Vec3::new(f64::NAN, f64::NAN, f64::NAN); 8]);
+        assert!(cube.closest(Vec3::ZERO).is_none() && !cube.contains(Vec3::ZERO));
     }
 
     #[test]

@@ -43,7 +43,13 @@ impl TriangleSurface {
             let (cell, kind, list) = (triangle as u32, crate::ElementKind::Tri3, "triangles");
             for (place, &point) in corners.iter().enumerate() {
                 if point as usize >= points.len() {
-                    return Err(MeshError::MissingPoint { list, cell, kind, point, point_count: points.len() });
+                    return Err(MeshError::MissingPoint {
+                        list,
+                        cell,
+                        kind,
+                        point,
+                        point_count: points.len(),
+                    });
                 }
                 if corners[..place].contains(&point) {
                     return Err(MeshError::DuplicateNode { list, cell, kind, point });
@@ -152,42 +158,89 @@ pub(crate) fn corner_angles([a, b, c]: [Vec3; 3]) -> [f64; 3] {
     // atan2 of |u × v| and u · v is accurate for all angles
     let angle = |at: Vec3, p: Vec3, q: Vec3| {
         let (u, v) = (p - at, q - at);
-        u.cross(v).length().atan2(u.dot(v))
+        libm::atan2(u.cross(v).length(), u.dot(v))
     };
     [angle(a, b, c), angle(b, c, a), angle(c, a, b)]
 }
 
-/// Closest point of a triangle to `p`: weights of its corners, and on what it lies (Ericson 2005, §5.1.5).
+/// Closest point of a triangle to `p`: weights of its corners, and on what it lies.
+///
+/// Triangles squeezed to a line or a point, which a moving surface may hold, are answered by their edges.
 pub fn closest_point_on_triangle(p: Vec3, [a, b, c]: [Vec3; 3]) -> ([f64; 3], Feature) {
-    let (ab, ac) = (b - a, c - a);
-    let (d1, d2) = (ab.dot(p - a), ac.dot(p - a));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return ([1.0, 0.0, 0.0], Feature::Corner(0));
+    // areas of the triangles that the projection of p makes with each edge, times |(b-a) × (c-a)|
+    let normal = (b - a).cross(c - a);
+    let areas = [(b, c), (c, a), (a, b)].map(|(q, r)| (q - p).cross(r - p).dot(normal));
+    let sum = areas[0] + areas[1] + areas[2];
+    if areas.iter().all(|area| *area > 0.0) && sum.is_normal() {
+        return (areas.map(|area| area / sum), Feature::Face);
     }
-    let (d3, d4) = (ab.dot(p - b), ac.dot(p - b));
-    if d3 >= 0.0 && d4 <= d3 {
-        return ([0.0, 1.0, 0.0], Feature::Corner(1));
+    let mut best = ([1.0, 0.0, 0.0], Feature::Corner(0));
+    let mut least = f64::INFINITY;
+    for (edge, (q, r)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+        let along = r - q;
+        let length_sq = along.length_sq();
+        let t = if length_sq > 0.0 { ((p - q).dot(along) / length_sq).clamp(0.0, 1.0) } else { 0.0 };
+        let distance_sq = (q + along * t - p).length_sq();
+        if distance_sq < least {
+            let (from, to) = (edge, (edge + 1) % 3);
+            let mut weights = [0.0; 3];
+            (weights[from], weights[to]) = (1.0 - t, t);
+            let feature = if t == 0.0 {
+                Feature::Corner(from as u8)
+            } else if t == 1.0 {
+                Feature::Corner(to as u8)
+            } else {
+                Feature::Edge(edge as u8)
+            };
+            (best, least) = ((weights, feature), distance_sq);
+        }
     }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let t = d1 / (d1 - d3);
-        return ([1.0 - t, t, 0.0], Feature::Edge(0));
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn position(weights: [f64; 3], [a, b, c]: [Vec3; 3]) -> Vec3 {
+        a * weights[0] + b * weights[1] + c * weights[2]
     }
-    let (d5, d6) = (ab.dot(p - c), ac.dot(p - c));
-    if d6 >= 0.0 && d5 <= d6 {
-        return ([0.0, 0.0, 1.0], Feature::Corner(2));
+
+    /// Above each region of the plane around a triangle, the closest point is on the feature of that region.
+    #[test]
+    fn features_of_a_triangle() {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        for (x, y, feature, closest) in [
+            (0.25, 0.25, Feature::Face, (0.25, 0.25)),
+            (-1.0, -1.0, Feature::Corner(0), (0.0, 0.0)),
+            (3.0, 0.5, Feature::Corner(1), (1.0, 0.0)),
+            (0.5, 3.0, Feature::Corner(2), (0.0, 1.0)),
+            (0.25, -1.0, Feature::Edge(0), (0.25, 0.0)),
+            (1.0, 1.0, Feature::Edge(1), (0.5, 0.5)),
+            (-1.0, 0.25, Feature::Edge(2), (0.0, 0.25)),
+        ] {
+            let (weights, on) = closest_point_on_triangle(Vec3::new(x, y, 0.7), corners);
+            assert_eq!(on, feature, "{x} {y}");
+            let offset = position(weights, corners) - Vec3::new(closest.0, closest.1, 0.0);
+            assert!(offset.length() < 1e-15, "{x} {y} {weights:?}");
+        }
     }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let t = d2 / (d2 - d6);
-        return ([1.0 - t, 0.0, t], Feature::Edge(2));
+
+    /// Triangles squeezed to a line or to a point still have a closest point.
+    #[test]
+    fn degenerate_triangles() {
+        let p = Vec3::new(0.5, 1.0, 0.0);
+        let lines = [
+            [Vec3::ZERO, Vec3::X, Vec3::X * 2.0],
+            [Vec3::ZERO, Vec3::ZERO, Vec3::X],
+            [Vec3::X, Vec3::ZERO, Vec3::ZERO],
+            [Vec3::X, Vec3::ZERO, Vec3::X],
+        ];
+        for corners in lines {
+            let (weights, _) = closest_point_on_triangle(p, corners);
+            assert_eq!(position(weights, corners), Vec3::new(0.5, 0.0, 0.0), "{corners:?}");
+        }
+        let (weights, feature) = closest_point_on_triangle(p, [Vec3::Z; 3]);
+        assert_eq!((weights, feature), ([1.0, 0.0, 0.0], Feature::Corner(0)));
     }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return ([0.0, 1.0 - t, t], Feature::Edge(1));
-    }
-    let scale = 1.0 / (va + vb + vc);
-    let (v, w) = (vb * scale, vc * scale);
-    ([1.0 - v - w, v, w], Feature::Face)
 }

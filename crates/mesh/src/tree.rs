@@ -47,8 +47,7 @@ impl AabbTree {
     }
 
     fn split(&mut self, centres: &[Vec3], items: &mut [u32], start: u32) {
-        let bounds =
-            items.iter().fold(Aabb::EMPTY, |bounds, item| bounds.union(self.boxes[*item as usize]));
+        let bounds = items.iter().fold(Aabb::EMPTY, |bounds, item| bounds.union(self.boxes[*item as usize]));
         let node = self.nodes.len();
         self.nodes.push(Node { bounds, start, count: items.len() as u32 });
         if items.len() <= LEAF {
@@ -185,5 +184,60 @@ pub(crate) fn longest_axis(size: Vec3) -> usize {
         1
     } else {
         2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Boxes scattered without a pattern, always the same.
+    fn boxes(count: usize, seed: f64) -> Vec<Aabb> {
+        let fraction = |i: usize, k: f64| ((i as f64 + 1.0) * k + seed).fract();
+        let at = |i| Vec3::new(fraction(i, 0.754_877), fraction(i, 0.569_840), fraction(i, 0.438_579));
+        (0..count).map(|i| Aabb { low: at(i), high: at(i) + Vec3::new(0.05, 0.02, 0.03) }).collect()
+    }
+
+    fn assert_answers(tree: &AabbTree, boxes: &[Aabb]) {
+        for query in self::boxes(50, 0.3) {
+            let mut found = Vec::new();
+            tree.overlapping(query, |item| found.push(item));
+            found.sort_unstable();
+            let expected: Vec<u32> =
+                (0..boxes.len() as u32).filter(|item| boxes[*item as usize].overlaps(query)).collect();
+            assert_eq!(found, expected);
+            let distance = |item: u32| boxes[item as usize].distance_sq(query.low);
+            let nearest = tree.nearest(query.low, f64::INFINITY, distance);
+            let expected = (0..boxes.len() as u32)
+                .map(|item| (item, distance(item)))
+                .min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+            assert_eq!(nearest, expected);
+        }
+    }
+
+    /// The tree finds what a look at every item finds, also after the items have moved.
+    #[test]
+    fn answers_are_those_of_brute_force() {
+        for count in [0, 1, 4, 5, 333] {
+            let before = boxes(count, 0.0);
+            let mut tree = AabbTree::build(&before);
+            assert_eq!(tree.len(), count);
+            assert_answers(&tree, &before);
+            let after = boxes(count, 0.5);
+            tree.refit(after.iter().copied());
+            assert_answers(&tree, &after);
+        }
+    }
+
+    /// Equal centres do not make the tree deeper than halving allows.
+    #[test]
+    fn equal_boxes() {
+        let same = vec![Aabb { low: Vec3::ZERO, high: Vec3::X }; 1000];
+        let tree = AabbTree::build(&same);
+        assert_eq!(
+            tree.nearest(Vec3::Y, 2.0, |item| same[item as usize].distance_sq(Vec3::Y)),
+            Some((0, 1.0))
+        );
+        assert_eq!(tree.nearest(Vec3::Y, 0.5, |item| same[item as usize].distance_sq(Vec3::Y)), None);
     }
 }

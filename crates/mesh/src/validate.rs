@@ -209,8 +209,8 @@ fn orientation(points: &[Vec3], cell: Cell<'_>) -> Orientation {
     let high = positions.iter().fold(positions[0], |high, p| high.max_components(*p));
     let size = (high - low).length();
     let negligible = FLAT * size * size * size;
-    // the negation also catches overflow to NaN
-    if !(volume.abs() > negligible) || !volume.is_finite() {
+    // coordinates so large that their cube overflows leave no volume that could be trusted either
+    if volume.abs() <= negligible || !volume.is_finite() {
         Orientation::Flat { volume, size }
     } else if lowest > 0.0 {
         Orientation::Good

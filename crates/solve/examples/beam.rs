@@ -9,7 +9,10 @@ use std::time::Instant;
 
 use souple_math::{Mat3, Vec3};
 use souple_solve::krylov::{ConjugateGradientWorkspace, Settings, conjugate_gradient};
-use souple_solve::precondition::{BlockJacobi, Geometry, IncompleteCholesky, RigidModes, RigidModesSettings, Smoother};
+use souple_solve::precondition::{
+    BlockJacobi, Geometry, IncompleteCholesky, LaggedFactor, RigidModes, RigidModesSettings, Smoother,
+};
+use souple_solve::solvers::direct_is_worth_it;
 use souple_solve::{BlockMatrix, DirectSolver, LinearOperator, Pattern, Preconditioner, reduce};
 
 struct Bar {
@@ -19,7 +22,8 @@ struct Bar {
 }
 
 /// Six tetrahedra around the diagonal of a unit cell, as corners `x + 2 y + 4 z` (Kuhn 1960).
-const KUHN: [[usize; 4]; 6] = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
+const KUHN: [[usize; 4]; 6] =
+    [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
 
 fn bar(n: usize) -> Bar {
     let (nx, ny, nz) = (10 * n, n, n);
@@ -33,10 +37,12 @@ fn bar(n: usize) -> Bar {
         let corner = |c: usize| node(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)) as u32;
         tets.extend(KUHN.map(|tet| tet.map(corner)));
     }
-    let pattern = Pattern::from_cliques(coordinates.len(), tets.iter().map(|tet| &tet[..])).expect("corners exist");
+    let pattern =
+        Pattern::from_cliques(coordinates.len(), tets.iter().map(|tet| &tet[..])).expect("corners exist");
 
     let (young, poisson, density, h) = (1e7, 0.3, 1000.0, 0.01);
-    let (lambda, mu) = (young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)));
+    let (lambda, mu) =
+        (young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)));
     let mut system = BlockMatrix::zeros(Arc::new(pattern));
     let mut masses = vec![0.0; coordinates.len()];
     for tet in &tets {
@@ -100,13 +106,13 @@ fn report(n: usize) {
     iterate(&bar, "incomplete_cholesky", &mut incomplete);
     println!("    shift {}", incomplete.shift());
     for smoother in [Smoother::BlockJacobi, Smoother::IncompleteCholesky] {
-        for patch_size in [16, 24, 36, 50, 75, 120] {
-            let settings = RigidModesSettings { smoother, patch_size: Some(patch_size) };
-            let geometry = Geometry::points(&bar.coordinates);
-            let mut modes = RigidModes::new(&bar.system, geometry, settings).expect("positive definite");
-            iterate(&bar, &format!("rigid_modes {smoother:?} {patch_size}"), &mut modes);
-        }
+        let settings = RigidModesSettings { smoother, patch_size: None };
+        let geometry = Geometry::points(&bar.coordinates);
+        let mut modes = RigidModes::new(&bar.system, geometry, settings).expect("positive definite");
+        iterate(&bar, &format!("rigid_modes, {smoother:?}"), &mut modes);
     }
+    let mut lagged = LaggedFactor::new(&bar.system, Some(&bar.coordinates), 1000).expect("positive definite");
+    iterate(&bar, "lagged_factor, same matrix", &mut lagged);
     direct(&bar);
 }
 
@@ -127,14 +133,15 @@ fn iterate(bar: &Bar, name: &str, preconditioner: &mut dyn Preconditioner) {
         iterations = report.iterations;
     });
     println!(
-        "  {name:40} update {update:8.2}  apply {apply:7.3}  solve {solve:8.2}  total {:8.2} ms, {iterations} iterations",
+        "  {name:34} update {update:8.2}  apply {apply:7.3}  solve {solve:8.2}  total {:8.2} ms, {iterations} iterations",
         update + solve
     );
 }
 
 fn direct(bar: &Bar) {
     let start = Instant::now();
-    let mut solver = DirectSolver::analyse(bar.system.pattern(), Some(&bar.coordinates)).expect("coordinates fit");
+    let mut solver =
+        DirectSolver::analyse(bar.system.pattern(), Some(&bar.coordinates)).expect("coordinates fit");
     let analysis = start.elapsed().as_secs_f64() * 1e3;
     let factor = milliseconds(3, || solver.factorize(&bar.system).expect("positive definite"));
     let mut x = bar.right_hand_side.clone();
@@ -143,10 +150,13 @@ fn direct(bar: &Bar) {
         solver.solve(&mut x).expect("factorised");
     });
     let mut r = vec![Vec3::ZERO; x.len()];
-    let residual = bar.system.residual(&bar.right_hand_side, &x, &mut r).sqrt() / reduce::norm(&bar.right_hand_side);
+    let residual =
+        bar.system.residual(&bar.right_hand_side, &x, &mut r).sqrt() / reduce::norm(&bar.right_hand_side);
     println!(
-        "  direct                   analyse {analysis:.1}  factor {factor:.2}  solve {solve:.2} ms, \
+        "  direct: analyse {analysis:.1}  factor {factor:.2}  solve {solve:.2} ms, \
          {} nonzeros, residual {residual:.1e}",
         solver.factor_nonzeros()
     );
+    let direct = direct_is_worth_it(bar.system.pattern(), Some(&bar.coordinates)).expect("coordinates fit");
+    println!("  auto takes {}", if direct { "direct" } else { "cg with rigid_modes" });
 }

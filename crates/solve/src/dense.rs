@@ -8,7 +8,8 @@ pub(crate) fn eigen(n: usize, a: &mut [f64], vectors: &mut [f64]) {
         vectors[n * i + i] = 1.0;
     }
     for _ in 0..40 {
-        let off: f64 = (0..n).flat_map(|i| (0..i).map(move |j| n * i + j)).map(|place| a[place] * a[place]).sum();
+        let off: f64 =
+            (0..n).flat_map(|i| (0..i).map(move |j| n * i + j)).map(|place| a[place] * a[place]).sum();
         let all: f64 = a.iter().map(|entry| entry * entry).sum();
         if off <= 1e-34 * all {
             break;

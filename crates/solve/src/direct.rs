@@ -101,7 +101,9 @@ impl DirectSolver {
 
         let out_of_memory = |_| SolveError::OutOfMemory { what: "a direct factor" };
         let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| SolveError::OutOfMemory { what: "a direct factor" })?;
+        values
+            .try_reserve_exact(symbolic.len_val())
+            .map_err(|_| SolveError::OutOfMemory { what: "a direct factor" })?;
         values.resize(symbolic.len_val(), 0.0);
         let numeric = match factor {
             Factor::Cholesky => symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()),
@@ -139,7 +141,8 @@ impl DirectSolver {
         let scratch = self.scratch.get_mut().unwrap_or_else(PoisonError::into_inner);
         let stack = MemStack::new(&mut scratch.memory);
         let size = 3 * self.order.len();
-        let structure = SymbolicSparseColMatRef::new_checked(size, size, &self.column_starts, None, &self.rows);
+        let structure =
+            SymbolicSparseColMatRef::new_checked(size, size, &self.column_starts, None, &self.rows);
         let lower = SparseColMatRef::new(structure, &self.lower[..]);
         let block_of = |pivot: usize| self.order.get(pivot / 3).map_or(0, |&block| block as usize);
         match self.factor {
@@ -200,10 +203,20 @@ impl DirectSolver {
         let stack = MemStack::new(memory);
         match self.factor {
             Factor::Cholesky => {
-                LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+                LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+                    Conj::No,
+                    x,
+                    Par::Seq,
+                    stack,
+                );
             }
             Factor::Ldlt => {
-                LdltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, x, Par::Seq, stack);
+                LdltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+                    Conj::No,
+                    x,
+                    Par::Seq,
+                    stack,
+                );
             }
         }
         for (x, &block) in permuted.iter().zip(&self.order) {
@@ -240,7 +253,8 @@ impl DirectSolver {
             for j in 0..3 {
                 for (place, &slot) in slots.iter().enumerate() {
                     // the diagonal block gives what lies on and below its diagonal
-                    let column = &blocks[slot as usize].columns[j].to_array()[if place == 0 { j } else { 0 }..];
+                    let column =
+                        &blocks[slot as usize].columns[j].to_array()[if place == 0 { j } else { 0 }..];
                     self.lower[next..next + column.len()].copy_from_slice(column);
                     next += column.len();
                 }
@@ -259,7 +273,8 @@ impl DirectSolver {
             for column in begin..end {
                 let entry = self.values[first + (column - begin) * (height + 1)];
                 let range = self.column_starts[column] as usize..self.column_starts[column + 1] as usize;
-                let largest = self.lower[range].iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+                let largest =
+                    self.lower[range].iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
                 let pivot = if self.factor == Factor::Cholesky { entry * entry } else { entry };
                 let block = self.order[column / 3] as usize;
                 if pivot.is_nan() || pivot.abs() <= LOST_IN_ROUNDING * largest {

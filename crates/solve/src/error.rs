@@ -24,11 +24,18 @@ pub enum SolveError {
     )]
     OtherPattern { given_rows: usize, given_blocks: usize, expected_rows: usize, expected_blocks: usize },
     /// A pivot is not positive: the matrix is not positive definite (or singular to rounding).
-    #[error("the matrix is not positive definite: {method} found a pivot that is not positive at block {block}")]
+    #[error(
+        "the matrix is not positive definite: {method} found a pivot that is not positive at block {block}"
+    )]
     NotPositiveDefinite { method: &'static str, block: usize },
     /// A pivot vanishes: the matrix is singular.
     #[error("the matrix is singular: {method} found no usable pivot at block {block}")]
     Singular { method: &'static str, block: usize },
+    /// An order of elimination that leaves out blocks or repeats them.
+    #[error(
+        "the order of elimination holds block {block} twice or out of range; it must hold each of 0..{block_count} once"
+    )]
+    NoPermutation { block: usize, block_count: usize },
     /// A number that is infinite or not a number.
     #[error("{what} is not finite at block {block}")]
     NotFinite { what: &'static str, block: usize },
@@ -37,7 +44,13 @@ pub enum SolveError {
         "{method} stopped after {iterations} iterations at a relative residual of {relative_residual:e}, \
          wanted {tolerance:e}: {stop}"
     )]
-    NotConverged { method: &'static str, iterations: usize, relative_residual: f64, tolerance: f64, stop: Stop },
+    NotConverged {
+        method: &'static str,
+        iterations: usize,
+        relative_residual: f64,
+        tolerance: f64,
+        stop: Stop,
+    },
     /// Eigenpairs asked for beyond what the matrix has.
     #[error("{wanted} eigenpairs were asked for, but the system has {available} unknowns")]
     TooManyModes { wanted: usize, available: usize },

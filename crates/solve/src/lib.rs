@@ -8,8 +8,8 @@
 mod dense;
 pub mod direct;
 mod error;
-pub mod krylov;
 mod kernel;
+pub mod krylov;
 mod lu;
 mod matrix;
 pub mod modes;

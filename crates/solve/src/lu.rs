@@ -97,18 +97,19 @@ impl LuSolver {
             }
         }
         let size = 3 * self.pattern.block_count();
-        let structure = SymbolicSparseColMatRef::new_checked(size, size, &self.column_starts, None, &self.rows);
+        let structure =
+            SymbolicSparseColMatRef::new_checked(size, size, &self.column_starts, None, &self.rows);
         let values = SparseColMatRef::new(structure, &self.values[..]);
         let memory = self.memory.get_mut().unwrap_or_else(PoisonError::into_inner);
         let stack = MemStack::new(memory);
-        self.symbolic.factorize_numeric_lu(&mut self.numeric, values, Par::Seq, stack, Default::default()).map_err(
-            |error| match error {
+        self.symbolic
+            .factorize_numeric_lu(&mut self.numeric, values, Par::Seq, stack, Default::default())
+            .map_err(|error| match error {
                 LuError::SymbolicSingular { index } => {
                     SolveError::Singular { method: "the LU factorisation", block: index / 3 }
                 }
                 LuError::Generic(_) => SolveError::OutOfMemory { what: "a direct factor" },
-            },
-        )?;
+            })?;
         self.factorised = true;
         // a vanishing pivot shows as a solution that is not finite
         let mut probe = vec![Vec3::new(1.0, 1.0, 1.0); self.pattern.block_count()];
@@ -130,9 +131,12 @@ impl LuSolver {
             return Err(SolveError::NoFactor { method: "the LU solver" });
         }
         let mut memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
-        let x = MatMut::from_column_major_slice_mut(bytemuck::cast_slice_mut(b), 3 * self.pattern.block_count(), 1);
-        // SAFETY: `numeric` was made by `symbolic`, whose flag `factorised` says that it succeeded
-        let factor = unsafe { LuRef::new_unchecked(&self.symbolic, &self.numeric) };
+        let x = MatMut::from_column_major_slice_mut(
+            bytemuck::cast_slice_mut(b),
+            3 * self.pattern.block_count(),
+            1,
+        );
+        let factor = LuRef::new_unchecked(&self.symbolic, &self.numeric);
         factor.solve_in_place_with_conj(Conj::No, x, Par::Seq, MemStack::new(&mut memory));
         Ok(())
     }

@@ -153,7 +153,8 @@ impl BlockMatrix {
     /// Names the first row with an entry that is infinite or not a number.
     pub fn check_finite(&self) -> Result<(), SolveError> {
         // a sum is finite only if all its terms are: one quick pass before looking for the place
-        let probe: f64 = bytemuck::cast_slice::<Mat3, f64>(&self.values).iter().map(|entry| entry * 0.0).sum();
+        let probe: f64 =
+            bytemuck::cast_slice::<Mat3, f64>(&self.values).iter().map(|entry| entry * 0.0).sum();
         if probe == 0.0 {
             return Ok(());
         }

@@ -252,7 +252,8 @@ impl<'a> Subspace<'a> {
 
 /// A fixed vector without symmetry, different for each seed: the fractional parts of multiples of irrationals.
 fn start_vector(count: usize, seed: usize) -> Vec<Vec3> {
-    let entry = |k: usize| ((k + 1) as f64 * (2.0 + seed as f64 + 0.1).sqrt() * 0.618_033_988_749_895).fract() - 0.5;
+    let entry =
+        |k: usize| ((k + 1) as f64 * (2.0 + seed as f64 + 0.1).sqrt() * 0.618_033_988_749_895).fract() - 0.5;
     (0..count).map(|i| Vec3::new(entry(3 * i), entry(3 * i + 1), entry(3 * i + 2))).collect()
 }
 

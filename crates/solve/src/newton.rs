@@ -30,7 +30,11 @@ pub trait NewtonProblem {
 
     /// `d` with `−(∂r/∂q) d = r` at the accepted configuration, to the accuracy the problem sees fit;
     /// overwrites `out`, and reports the linear solve if it was iterative.
-    fn direction(&mut self, residual: &[Vec3], out: &mut [Vec3]) -> Result<Option<krylov::Report>, Self::Error>;
+    fn direction(
+        &mut self,
+        residual: &[Vec3],
+        out: &mut [Vec3],
+    ) -> Result<Option<krylov::Report>, Self::Error>;
 
     /// Makes `retract(accepted, fraction · direction)` the current configuration; fraction 0 returns to the
     /// accepted one.
@@ -153,7 +157,12 @@ pub fn newton<P: NewtonProblem + ?Sized>(
     let mut norm = reduce::norm(r);
     let mut merit = problem.merit()?;
     residuals.push(norm);
-    let report = |iterations, linear_iterations, residual, stop| Report { iterations, linear_iterations, residual, stop };
+    let report = |iterations, linear_iterations, residual, stop| Report {
+        iterations,
+        linear_iterations,
+        residual,
+        stop,
+    };
     if start == Trial::TooLong || !norm.is_finite() || merit.is_some_and(|merit| !merit.is_finite()) {
         return Ok(report(0, 0, norm, Stop::BadStart));
     }
@@ -170,7 +179,8 @@ pub fn newton<P: NewtonProblem + ?Sized>(
         linear_iterations += problem.direction(r, d)?.map_or(0, |report| report.iterations);
         // ∂Φ/∂q · d = −r · d
         let slope = -reduce::dot(r, d);
-        let stop = if slope.is_finite() && (merit.is_none() || slope < 0.0) { None } else { Some(Stop::NotDescent) };
+        let stop =
+            if slope.is_finite() && (merit.is_none() || slope < 0.0) { None } else { Some(Stop::NotDescent) };
         if let Some(stop) = stop {
             return Ok(report(iteration, linear_iterations, norm, stop));
         }
@@ -216,7 +226,9 @@ fn evaluate<P: NewtonProblem + ?Sized>(
     fraction: f64,
     residual: &mut [Vec3],
 ) -> Result<Option<(f64, Option<f64>)>, P::Error> {
-    if problem.try_step(direction, fraction)? == Trial::TooLong || problem.residual(residual)? == Trial::TooLong {
+    if problem.try_step(direction, fraction)? == Trial::TooLong
+        || problem.residual(residual)? == Trial::TooLong
+    {
         return Ok(None);
     }
     let norm = reduce::norm(residual);

@@ -7,7 +7,8 @@ use faer::Side;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use souple_math::Vec3;
 
@@ -35,9 +36,10 @@ pub(crate) fn best(pattern: &Pattern, coordinates: Option<&[Vec3]>) -> Result<Or
         }
     }
     let candidates = match coordinates {
-        Some(coordinates) => {
-            [nested_dissection(pattern, &mut Geometric { coordinates }), sweep_along_longest_axis(coordinates)]
-        }
+        Some(coordinates) => [
+            nested_dissection(pattern, &mut Geometric { coordinates }),
+            sweep_along_longest_axis(coordinates),
+        ],
         None => {
             let mut blocks = natural(pattern);
             ByCoupling::new(pattern).sweep(&mut blocks);
@@ -122,7 +124,9 @@ fn elimination_work(pattern: &Pattern, order: &[u32]) -> Result<f64, SolveError>
     let mut rows: Vec<u32> = Vec::with_capacity(pattern.slot_count() / 2 + order.len());
     for (step, &block) in order.iter().enumerate() {
         let first = rows.len();
-        rows.extend(pattern.row(block as usize).iter().map(|&c| place[c as usize]).filter(|&c| c >= step as u32));
+        rows.extend(
+            pattern.row(block as usize).iter().map(|&c| place[c as usize]).filter(|&c| c >= step as u32),
+        );
         rows[first..].sort_unstable();
         starts.push(rows.len() as u32);
     }
@@ -130,7 +134,10 @@ fn elimination_work(pattern: &Pattern, order: &[u32]) -> Result<f64, SolveError>
 }
 
 /// Symbolic factor of the symmetric structure whose lower triangle is given by columns, in the order given.
-pub(crate) fn analyse_lower(column_starts: &[u32], rows: &[u32]) -> Result<SymbolicCholesky<u32>, SolveError> {
+pub(crate) fn analyse_lower(
+    column_starts: &[u32],
+    rows: &[u32],
+) -> Result<SymbolicCholesky<u32>, SolveError> {
     // without a permutation of its own faer reads the structure from the upper triangle, the values from the lower
     let size = column_starts.len() - 1;
     let mut upper_starts = vec![0_u32; size + 1];

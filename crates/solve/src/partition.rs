@@ -26,7 +26,8 @@ impl Bisection for Geometric<'_> {
         axes.sort_by(|&a, &b| extent[b].total_cmp(&extent[a]));
         let key = |block: u32| axes.map(|axis| self.coordinates[block as usize][axis]);
         blocks.sort_unstable_by(|&a, &b| {
-            let by_place = key(a).iter().zip(&key(b)).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
+            let by_place =
+                key(a).iter().zip(&key(b)).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
             by_place.unwrap_or(a.cmp(&b))
         });
         // blocks of one plane stay together, so that separators of regular meshes are planes too
@@ -54,7 +55,14 @@ pub(crate) struct ByCoupling<'a> {
 impl<'a> ByCoupling<'a> {
     pub fn new(pattern: &'a Pattern) -> Self {
         let count = pattern.block_count();
-        Self { pattern, set: vec![0; count], next_set: 1, visited: vec![0; count], next_visit: 1, order: Vec::new() }
+        Self {
+            pattern,
+            set: vec![0; count],
+            next_set: 1,
+            visited: vec![0; count],
+            next_visit: 1,
+            order: Vec::new(),
+        }
     }
 
     /// Breadth-first order of the part of `set` that hangs together with `start`, appended to `order`;
@@ -124,12 +132,18 @@ pub(crate) fn bounds(coordinates: &[Vec3], blocks: &[u32]) -> (Vec3, Vec3) {
 }
 
 /// Parts of at most `largest` blocks each; returns the part of every block and their number.
-pub(crate) fn aggregates(bisection: &mut impl Bisection, block_count: usize, largest: usize) -> (Vec<u32>, usize) {
+pub(crate) fn aggregates(
+    bisection: &mut impl Bisection,
+    block_count: usize,
+    largest: usize,
+) -> (Vec<u32>, usize) {
     let mut blocks: Vec<u32> = (0..block_count as u32).collect();
     let mut part_of = vec![0; block_count];
     let mut count = 0;
-    let mut pending = vec![0..block_count];
-    while let Some(range) = pending.pop() {
+    // sets still to be cut, as (first, last + 1)
+    let mut pending = vec![(0, block_count)];
+    while let Some((first, end)) = pending.pop() {
+        let range = first..end;
         if range.is_empty() {
             continue;
         }
@@ -140,9 +154,9 @@ pub(crate) fn aggregates(bisection: &mut impl Bisection, block_count: usize, lar
             count += 1;
             continue;
         }
-        let middle = range.start + bisection.split(&mut blocks[range.clone()]);
-        pending.push(middle..range.end);
-        pending.push(range.start..middle);
+        let middle = first + bisection.split(&mut blocks[range]);
+        pending.push((middle, end));
+        pending.push((first, middle));
     }
     (part_of, count as usize)
 }
@@ -157,7 +171,9 @@ mod tests {
         let mut pairs = Vec::new();
         for i in 0..coordinates.len() {
             let steps = [1, n, n * n].into_iter().zip(coordinates[i].to_array());
-            pairs.extend(steps.filter(|(_, at)| *at < (n - 1) as f64).map(|(step, _)| [i as u32, (i + step) as u32]));
+            pairs.extend(
+                steps.filter(|(_, at)| *at < (n - 1) as f64).map(|(step, _)| [i as u32, (i + step) as u32]),
+            );
         }
         (coordinates, Pattern::from_cliques(n * n * n, pairs.iter().map(|pair| &pair[..])).unwrap())
     }

@@ -42,7 +42,8 @@ impl PatternBuilder {
     /// # Errors
     /// More blocks than 32 bits can number.
     pub fn build(&self) -> Result<Pattern, SolveError> {
-        let clique = |index: usize| &self.clique_blocks[self.clique_starts[index]..self.clique_starts[index + 1]];
+        let clique =
+            |index: usize| &self.clique_blocks[self.clique_starts[index]..self.clique_starts[index + 1]];
         let incidence = self.incidence();
         let mut row_starts = Vec::with_capacity(self.block_count + 1);
         let mut columns = Vec::new();
@@ -60,7 +61,8 @@ impl PatternBuilder {
                 }
             }
             columns[start..].sort_unstable();
-            let end = u32::try_from(columns.len()).map_err(|_| SolveError::TooLarge { blocks: columns.len() })?;
+            let end =
+                u32::try_from(columns.len()).map_err(|_| SolveError::TooLarge { blocks: columns.len() })?;
             row_starts.push(end);
         }
         columns.shrink_to_fit();

@@ -18,7 +18,11 @@ fn middle(length: usize) -> Option<usize> {
     (length > CHUNK).then(|| length.div_ceil(CHUNK).div_ceil(2) * CHUNK)
 }
 
-fn both<A: Send, B: Send>(length: usize, a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+fn both<A: Send, B: Send>(
+    length: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
     if length >= PARALLEL_FROM && rayon::current_num_threads() > 1 { rayon::join(a, b) } else { (a(), b()) }
 }
 

@@ -14,7 +14,9 @@ use crate::krylov::{
     conjugate_gradient, gmres,
 };
 use crate::precondition::{self, Geometry};
-use crate::{BlockMatrix, DirectSolver, LinearOperator, Pattern, Preconditioner, SolveError, ordering, reduce};
+use crate::{
+    BlockMatrix, DirectSolver, LinearOperator, Pattern, Preconditioner, SolveError, ordering, reduce,
+};
 
 /// What a solver asks of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +48,12 @@ pub trait LinearSolver: Send + Sync {
     ///
     /// # Errors
     /// The arrays do not fit, or the tolerance was missed ([`SolveError::NotConverged`] says why).
-    fn solve(&mut self, operator: &dyn LinearOperator, b: &[Vec3], x: &mut [Vec3]) -> Result<Report, SolveError>;
+    fn solve(
+        &mut self,
+        operator: &dyn LinearOperator,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Report, SolveError>;
 
     /// The name in the table, `auto` resolved.
     fn name(&self) -> &'static str;
@@ -59,9 +66,11 @@ pub trait LinearSolver: Send + Sync {
 #[derive(Clone, Copy, Debug)]
 pub struct Build {
     pub needs: Needs,
-    /// From completed values, for a matrix and the places of its blocks.
-    pub build: fn(&Values, &BlockMatrix, Geometry<'_>) -> Result<Box<dyn LinearSolver>, SolveError>,
+    pub build: BuildSolver,
 }
+
+/// From completed values, for a matrix and the places of its blocks.
+pub type BuildSolver = fn(&Values, &BlockMatrix, Geometry<'_>) -> Result<Box<dyn LinearSolver>, SolveError>;
 
 /// All linear solvers.
 pub static TABLE: Table<Build> =
@@ -71,10 +80,13 @@ const TOLERANCE: Parameter =
     Parameter::number("tolerance", "", Range::open(0.0, 1.0), "wanted true residual |b - A x| / |b|")
         .or(Value::Number(1e-8));
 const MAX_ITERATIONS: Parameter =
-    Parameter::integer("max_iterations", Range::at_least(1.0), "iterations before giving up").or(Value::Integer(10_000));
-const PRECONDITIONERS: &[&str] = &["rigid_modes", "incomplete_cholesky", "block_jacobi", "lagged_factor", "none"];
+    Parameter::integer("max_iterations", Range::at_least(1.0), "iterations before giving up")
+        .or(Value::Integer(10_000));
+const PRECONDITIONERS: &[&str] =
+    &["rigid_modes", "incomplete_cholesky", "block_jacobi", "lagged_factor", "none"];
 const PRECONDITIONER: Parameter =
-    Parameter::choice("preconditioner", PRECONDITIONERS, "what makes iterations few").or(Value::Text("rigid_modes"));
+    Parameter::choice("preconditioner", PRECONDITIONERS, "what makes iterations few")
+        .or(Value::Text("rigid_modes"));
 const GENERAL_PRECONDITIONER: Parameter =
     Parameter::choice("preconditioner", PRECONDITIONERS, "what makes iterations few; symmetric part only")
         .or(Value::Text("block_jacobi"));
@@ -233,7 +245,12 @@ impl LinearSolver for Iterative {
         self.preconditioner.follow(coordinates);
     }
 
-    fn solve(&mut self, operator: &dyn LinearOperator, b: &[Vec3], x: &mut [Vec3]) -> Result<Report, SolveError> {
+    fn solve(
+        &mut self,
+        operator: &dyn LinearOperator,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Report, SolveError> {
         check_system(self.block_count, operator, b, x)?;
         let (preconditioner, settings) = (&*self.preconditioner, &self.settings);
         let report = match &mut self.method {
@@ -278,7 +295,12 @@ impl LinearSolver for Direct {
         self.update(matrix)
     }
 
-    fn solve(&mut self, operator: &dyn LinearOperator, b: &[Vec3], x: &mut [Vec3]) -> Result<Report, SolveError> {
+    fn solve(
+        &mut self,
+        operator: &dyn LinearOperator,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Report, SolveError> {
         check_system(self.residual.len(), operator, b, x)?;
         let b_norm = reduce::norm(b);
         x.copy_from_slice(b);

@@ -150,12 +150,12 @@ impl ElementKind {
     }
 
     /// Values of the shape functions at `ξ`, one for each node.
-    pub fn shape(self, xi: Vec3) -> Shape<f64> {
+    pub fn shape(self, xi: Vec3) -> NodeValues<f64> {
         self.element().shape(xi)
     }
 
     /// Gradients `∂N_a/∂ξ` at `ξ`, one for each node.
-    pub fn shape_gradients(self, xi: Vec3) -> Shape<Vec3> {
+    pub fn shape_gradients(self, xi: Vec3) -> NodeValues<Vec3> {
         self.element().shape_gradients(xi)
     }
 
@@ -229,12 +229,12 @@ impl fmt::Display for ElementKind {
 
 /// One value for each node of an element, without allocation; reads as a slice.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape<T> {
+pub struct NodeValues<T> {
     values: [T; MAX_NODES],
     len: usize,
 }
 
-impl<T> std::ops::Deref for Shape<T> {
+impl<T> std::ops::Deref for NodeValues<T> {
     type Target = [T];
     fn deref(&self) -> &[T] {
         &self.values[..self.len]
@@ -243,8 +243,8 @@ impl<T> std::ops::Deref for Shape<T> {
 
 impl Element {
     // N_a = Σ_m C_am m(ξ)
-    fn shape(&self, xi: Vec3) -> Shape<f64> {
-        let mut shape = Shape { values: [0.0; MAX_NODES], len: self.nodes.len() };
+    fn shape(&self, xi: Vec3) -> NodeValues<f64> {
+        let mut shape = NodeValues { values: [0.0; MAX_NODES], len: self.nodes.len() };
         for (m, monomial) in self.basis.iter().enumerate() {
             let value = monomial.value(xi);
             for a in 0..shape.len {
@@ -254,8 +254,8 @@ impl Element {
         shape
     }
 
-    fn shape_gradients(&self, xi: Vec3) -> Shape<Vec3> {
-        let mut shape = Shape { values: [Vec3::ZERO; MAX_NODES], len: self.nodes.len() };
+    fn shape_gradients(&self, xi: Vec3) -> NodeValues<Vec3> {
+        let mut shape = NodeValues { values: [Vec3::ZERO; MAX_NODES], len: self.nodes.len() };
         for (m, monomial) in self.basis.iter().enumerate() {
             let gradient = monomial.gradient(xi);
             for a in 0..shape.len {

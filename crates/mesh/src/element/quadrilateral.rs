@@ -12,12 +12,7 @@ static DATA: Element = Element {
     dimension: 2,
     nodes: &[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
     regular: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
-    basis: &[
-        Monomial([0, 0, 0, 0]),
-        Monomial([1, 0, 0, 0]),
-        Monomial([0, 1, 0, 0]),
-        Monomial([1, 1, 0, 0]),
-    ],
+    basis: &[Monomial([0, 0, 0, 0]), Monomial([1, 0, 0, 0]), Monomial([0, 1, 0, 0]), Monomial([1, 1, 0, 0])],
     faces: &[],
     edges: &[[0, 1], [1, 2], [2, 3], [3, 0]],
     mirrored: &[0, 3, 2, 1],

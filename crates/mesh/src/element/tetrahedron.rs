@@ -12,12 +12,7 @@ static DATA: Element = Element {
     dimension: 3,
     nodes: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     regular: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, SQRT_3_2, 0.0], [0.5, SQRT_3_2 / 3.0, SQRT_2_3]],
-    basis: &[
-        Monomial([0, 0, 0, 0]),
-        Monomial([1, 0, 0, 0]),
-        Monomial([0, 1, 0, 0]),
-        Monomial([0, 0, 1, 0]),
-    ],
+    basis: &[Monomial([0, 0, 0, 0]), Monomial([1, 0, 0, 0]), Monomial([0, 1, 0, 0]), Monomial([0, 0, 1, 0])],
     faces: &[
         Face { kind: ElementKind::Tri3, nodes: &[0, 2, 1] },
         Face { kind: ElementKind::Tri3, nodes: &[0, 1, 3] },

@@ -1,42 +1,203 @@
-//! Solid balls: a grid of cubes on `[-1, 1]³`, mapped smoothly.
+//! Solid balls: a core of n³ cubes and a shell of layers around it, six blocks of n² columns each.
+//!
+//! A cube mapped to a ball would flatten the cells at its edges and corners on the sphere; here three blocks meet
+//! along the edges of the core, and no cell has a corner flatter than those between three blocks.
+//!
+//! Points: the core's `i + (n+1)(j + (n+1)k)`, then layer after layer the points on its outside in that order,
+//! then centres of cubes where a cut needs them.
+
+use std::f64::consts::FRAC_PI_4;
 
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
-use super::grid::{Cut, Grid};
+use super::cut::{BASE_X_MAX, BASE_X_MIN, BASE_Z_MAX, Blocks, CORNERS, Cut};
 use super::{Build, GeneratorEntry};
-use crate::{Group, Mesh, MeshError};
+use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError};
 
 pub(super) static SPHERE: GeneratorEntry = GeneratorEntry {
     name: "sphere",
     summary: "solid ball; group `surface` holds the points on the sphere",
-    source: "Nowell 2005 (mapping of a cube to a ball)",
+    source: "Ronchi, Iacono & Paolucci 1996 (equiangular cubed sphere)",
     parameters: &[
         Parameter::number("radius", "m", Range::POSITIVE, "radius of the ball"),
-        Parameter::integer("cells", Range::at_least(1.0), "number of cubes along the diameter"),
+        Parameter::integer(
+            "cells",
+            Range::at_least(3.0),
+            "number of cubes along the diameter; `mixed` takes 8 or more",
+        ),
         Cut::PARAMETER,
         Parameter::vector("centre", "m", "centre of the ball").or(Value::Vector([0.0; 3])),
     ],
     build: ball as Build,
 };
 
+/// Half the edge of the core, relative to the radius: cells of core and shell are then of like size.
+const CORE: f64 = 0.5;
+/// How far the core bulges from a cube towards a ball.
+const BULGE: f64 = 0.5;
+
+/// Layers that a mixed ball needs: pyramids, tetrahedra, prisms.
+const MIXED_LAYERS: usize = 3;
+
 fn ball(values: &Values) -> Result<Mesh, MeshError> {
     let (radius, centre) = (values.number("radius"), Vec3::from_array(values.vector("centre")));
-    let grid = Grid::new("cells", [values.integer("cells") as f64; 3], Cut::from_values(values))?;
-    let mut mesh = grid.mesh(|unit| centre + ball_from_cube(unit * 2.0 - Vec3::new(1.0, 1.0, 1.0)) * radius);
-    mesh.groups.clear();
-    mesh.groups.insert("surface".to_owned(), Group { points: grid.outside(), ..Group::default() });
+    let (cells, cut) = (values.integer("cells"), Cut::from_values(values));
+    let requested = (cells as f64).powi(3) * cut.cells_per_cube() as f64;
+    if requested > MAX_CELLS as f64 {
+        return Err(MeshError::TooManyCells { requested, limit: MAX_CELLS });
+    }
+    let cells = cells as usize;
+    // a quarter of the diameter on either side is shell
+    let mut layers = (cells / 4).max(1);
+    if cut == Cut::Mixed {
+        layers = layers.max(MIXED_LAYERS);
+        if cells < 2 * MIXED_LAYERS + 2 {
+            let expected = format!("at least {} cubes along the diameter for `mixed`", 2 * MIXED_LAYERS + 2);
+            return Err(MeshError::Parameter { name: "cells", value: cells.to_string(), expected });
+        }
+    }
+    let mut mesh = Shells::new(cells - 2 * layers, layers).mesh(cut);
+    for point in &mut mesh.points {
+        *point = centre + *point * radius;
+    }
     Ok(mesh)
 }
 
-/// Maps `[-1, 1]³` to the unit ball: `x' = x √(1 - y²/2 - z²/2 + y²z²/3)` and likewise for the others.
-/// `1 - |x'|² = (1-x²)(1-y²)(1-z²)`: the outside of the cube lands exactly on the sphere.
-fn ball_from_cube(p: Vec3) -> Vec3 {
-    let squares = Vec3::new(p.x * p.x, p.y * p.y, p.z * p.z);
-    let factor = |a: f64, b: f64| (1.0 - 0.5 * a - 0.5 * b + a * b / 3.0).sqrt();
-    Vec3::new(
-        p.x * factor(squares.y, squares.z),
-        p.y * factor(squares.z, squares.x),
-        p.z * factor(squares.x, squares.y),
-    )
+struct Shells {
+    /// Cubes along the edge of the core.
+    n: usize,
+    layers: usize,
+    /// Points on the outside of the core.
+    outside: Vec<[usize; 3]>,
+    /// Place in `outside` of each point of the core.
+    rank: Vec<u32>,
+}
+
+/// The corners of a cube and, in the shell, its layer and the face turned outward.
+struct Cube {
+    corners: [u32; 8],
+    shell: Option<(usize, usize)>,
+}
+
+impl Shells {
+    fn new(n: usize, layers: usize) -> Self {
+        let mut outside = Vec::new();
+        let mut rank = Vec::with_capacity((n + 1).pow(3));
+        for k in 0..=n {
+            for j in 0..=n {
+                for i in 0..=n {
+                    rank.push(outside.len() as u32);
+                    if [i, j, k].iter().any(|index| *index == 0 || *index == n) {
+                        outside.push([i, j, k]);
+                    }
+                }
+            }
+        }
+        Self { n, layers, outside, rank }
+    }
+
+    /// Point of the core (layer 0) or above its outside.
+    fn point(&self, [i, j, k]: [usize; 3], layer: usize) -> u32 {
+        let core = i + (self.n + 1) * (j + (self.n + 1) * k);
+        match layer {
+            0 => core as u32,
+            _ => (self.rank.len() + (layer - 1) * self.outside.len()) as u32 + self.rank[core],
+        }
+    }
+
+    /// Positions in the unit ball, in the order of `point`.
+    fn points(&self) -> Vec<Vec3> {
+        let n = self.n as f64;
+        let unit = |index: [usize; 3]| {
+            let [x, y, z] = index.map(|i| 2.0 * i as f64 / n - 1.0);
+            Vec3::new(x, y, z)
+        };
+        let mut points = Vec::with_capacity(self.rank.len() + self.layers * self.outside.len());
+        for k in 0..=self.n {
+            for j in 0..=self.n {
+                points.extend((0..=self.n).map(|i| core_position(unit([i, j, k]))));
+            }
+        }
+        for layer in 1..=self.layers {
+            let share = layer as f64 / self.layers as f64;
+            for index in &self.outside {
+                let cube = unit(*index);
+                // equal angles between the columns
+                let tangent = |c: f64| libm::tan(FRAC_PI_4 * c);
+                let ray = Vec3::new(tangent(cube.x), tangent(cube.y), tangent(cube.z));
+                let sphere = ray / ray.length();
+                points.push(core_position(cube) * (1.0 - share) + sphere * share);
+            }
+        }
+        points
+    }
+
+    /// All cubes. The first axis of each is the axis of its prisms: x through the core and the blocks beyond its
+    /// ends, around x in the four blocks between; prisms then meet prisms by triangles and quadrilaterals alike.
+    fn cubes(&self) -> Vec<Cube> {
+        let n = self.n;
+        let mut cubes = Vec::new();
+        for k in 0..n {
+            for j in 0..n {
+                for i in 0..n {
+                    let corners = CORNERS.map(|[a, b, c]| self.point([i + a, j + b, k + c], 0));
+                    cubes.push(Cube { corners, shell: None });
+                }
+            }
+        }
+        for layer in 0..self.layers {
+            for v in 0..n {
+                for u in 0..n {
+                    let mut push = |outward: usize, at: &dyn Fn([usize; 3]) -> u32| {
+                        cubes.push(Cube { corners: CORNERS.map(at), shell: Some((layer, outward)) });
+                    };
+                    // beyond the ends: axes x, y, z
+                    push(BASE_X_MIN, &|[a, b, c]| self.point([0, u + b, v + c], layer + 1 - a));
+                    push(BASE_X_MAX, &|[a, b, c]| self.point([n, u + b, v + c], layer + a));
+                    // between: axes around x, along x, outward
+                    push(BASE_Z_MAX, &|[a, b, c]| self.point([u + b, n, v + a], layer + c));
+                    push(BASE_Z_MAX, &|[a, b, c]| self.point([u + b, n - v - a, n], layer + c));
+                    push(BASE_Z_MAX, &|[a, b, c]| self.point([u + b, 0, n - v - a], layer + c));
+                    push(BASE_Z_MAX, &|[a, b, c]| self.point([u + b, v + a, 0], layer + c));
+                }
+            }
+        }
+        cubes
+    }
+
+    fn mesh(&self, cut: Cut) -> Mesh {
+        let mut points = self.points();
+        let first_outer = points.len() as u32 - self.outside.len() as u32;
+        let surface = (first_outer..points.len() as u32).collect();
+        let mut blocks = Blocks::default();
+        for Cube { corners, shell } in self.cubes() {
+            let mut centre = || {
+                let mean = corners.iter().map(|node| points[*node as usize]).sum::<Vec3>() / 8.0;
+                points.push(mean);
+                points.len() as u32 - 1
+            };
+            match (cut, shell) {
+                (Cut::Hexahedra, _) | (Cut::Mixed, None) => blocks.push(ElementKind::Hex8, &corners),
+                (Cut::Prisms, _) => blocks.prisms(corners),
+                (Cut::Pyramids, _) => blocks.pyramids(corners, centre(), None),
+                (Cut::Tetrahedra, _) => blocks.numbered_tetrahedra(corners),
+                // from inside: hexahedra, pyramids that meet tetrahedra outward, tetrahedra, prisms
+                (Cut::Mixed, Some((0, outward))) => blocks.pyramids(corners, centre(), Some(outward)),
+                (Cut::Mixed, Some((layer, outward))) if layer + 1 == self.layers => {
+                    blocks.prisms_towards(corners, outward);
+                }
+                (Cut::Mixed, Some(_)) => blocks.numbered_tetrahedra(corners),
+            }
+        }
+        let groups = [("surface".to_owned(), Group { points: surface, ..Group::default() })];
+        Mesh { points, blocks: blocks.list(), facet_blocks: Vec::new(), groups: groups.into() }
+    }
+}
+
+/// Maps `[-1, 1]³` to the core: between the cube and `x' = x √(1 - y²/2 - z²/2 + y²z²/3)`, which makes it a ball.
+fn core_position(p: Vec3) -> Vec3 {
+    let factor = |a: f64, b: f64| (1.0 - 0.5 * a * a - 0.5 * b * b + a * a * b * b / 3.0).sqrt();
+    let ball = Vec3::new(p.x * factor(p.y, p.z), p.y * factor(p.z, p.x), p.z * factor(p.x, p.y));
+    (p * (1.0 - BULGE) + ball * BULGE) * CORE
 }

@@ -3,7 +3,8 @@
 use souple_math::Vec3;
 use souple_table::{Parameter, Value, Values};
 
-use super::grid::{Cut, Grid};
+use super::cut::Cut;
+use super::grid::Grid;
 use super::{Build, GeneratorEntry};
 use crate::{Mesh, MeshError};
 
@@ -32,7 +33,11 @@ fn cuboid(values: &Values) -> Result<Mesh, MeshError> {
     let size = values.vector("size");
     if !size.iter().all(|length| *length > 0.0) {
         let value = Value::Vector(size).to_string();
-        return Err(MeshError::Parameter { name: "size", value, expected: "three lengths above 0 [m]".to_owned() });
+        return Err(MeshError::Parameter {
+            name: "size",
+            value,
+            expected: "three lengths above 0 [m]".to_owned(),
+        });
     }
     let (origin, size) = (Vec3::from_array(values.vector("origin")), Vec3::from_array(size));
     let grid = Grid::new("cells", values.vector("cells"), Cut::from_values(values))?;

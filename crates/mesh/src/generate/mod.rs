@@ -1,9 +1,10 @@
 //! Meshes made from a few numbers: bar, box, sphere, in every kind of cell and in mixes.
 //!
-//! All are grids of cubes (`grid`), each cube cut into cells, mapped to their place.
+//! Boxes are grids of cubes (`grid`), balls a grid in a shell of six (`ball`); each cube is `cut` into cells.
 
 mod ball;
 mod cuboid;
+mod cut;
 mod grid;
 
 use souple_table::{Entry, Table, Values};

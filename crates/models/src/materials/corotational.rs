@@ -16,15 +16,15 @@ pub struct Corotational;
 pub(super) const ENTRY: Entry<Build> = Entry {
     name: "corotational",
     summary: "linear stress in axes that turn with the material: large rotations, small strain; a flat or inverted \
-              element is pushed back through its shortest axis by a bounded force",
+              element is pushed back along its shortest axis, where two are equally short along either",
     source: "Sifakis & Barbič 2012, FEM Simulation of 3D Deformable Solids, §3.4",
     parameters: ISOTROPIC,
     build: |values| Material::isotropic(AnyLaw::Corotational, values),
 };
 
 /// The least `(s₁ + s₂)(s₂ + s₃)(s₃ + s₁)` of the singular values for which the tangent is exact; it is 8 at
-/// rest. Where it vanishes the rotation jumps and the exact tangent has no bound: below, the energy and stress stay
-/// exact and the tangent keeps to about a thousand times its size at rest.
+/// rest. Where it vanishes the rotation jumps and the exact tangent has no bound. Below, energy and stress stay
+/// exact, and the tangent of an element whose longest stretch is one keeps to a thousand times its size at rest.
 const LEAST_TURNING_DETERMINANT: f64 = 1e-3;
 
 /// The rotation and how its differential enters the stress.

@@ -10,12 +10,13 @@ use souple_math::{Mat3, Real, Vec3};
 /// `F` is the deformation gradient (no unit, entry `(i, j) = ∂xᵢ/∂Xⱼ`); every function is finite for every
 /// finite `F`, inverted and singular ones included.
 pub trait Law: Copy + Send + Sync + 'static {
-    /// Whether a rotated body feels no stress, `Ψ(Q F) = Ψ(F)`.
-    const OBJECTIVE: bool = true;
     /// The numbers of the law, one set per element.
     type Parameters<R: Real>: Parameters<R>;
     /// What the differentials and blocks at one `F` share.
     type Point<R: Real>: Copy;
+
+    /// Whether a rotation of the body leaves its energy as it is: `Ψ(QF) = Ψ(F)`.
+    const OBJECTIVE: bool = true;
 
     fn at<R: Real>(parameters: &Self::Parameters<R>, F: &Mat3<R>) -> Self::Point<R>;
 
@@ -41,8 +42,13 @@ pub trait Law: Copy + Send + Sync + 'static {
         g_a: Vec3<R>,
         g_b: Vec3<R>,
     ) -> Mat3<R> {
-        let axes = Mat3::identity(g_a.x).columns;
-        Mat3 { columns: axes.map(|u| Self::stress_differential(parameters, point, &u.outer(g_b)) * g_a) }
+        // written out: a closure would not be compiled with the processor's instructions
+        let [x, y, z] = Mat3::identity(g_a.x).columns;
+        Mat3::from_columns(
+            Self::stress_differential(parameters, point, &x.outer(g_b)) * g_a,
+            Self::stress_differential(parameters, point, &y.outer(g_b)) * g_a,
+            Self::stress_differential(parameters, point, &z.outer(g_b)) * g_a,
+        )
     }
 }
 

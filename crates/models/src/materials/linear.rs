@@ -34,9 +34,10 @@ fn displacement_gradient<R: Real>(F: &Mat3<R>) -> Mat3<R> {
 }
 
 impl Law for Linear {
-    const OBJECTIVE: bool = false;
     type Parameters<R: Real> = Lame<R>;
     type Point<R: Real> = ();
+
+    const OBJECTIVE: bool = false;
 
     #[inline(always)]
     fn at<R: Real>(_: &Lame<R>, _: &Mat3<R>) {}

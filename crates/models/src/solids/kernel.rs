@@ -69,7 +69,15 @@ impl<L: Law, G: Geometry> Kernel for LawKernel<L, G> {
         forces: &mut [Vec3],
     ) {
         let kernel = PhantomData;
-        Arch::new().dispatch(Differential::<L, G> { chunk, reference, positions, delta, scale, forces, kernel });
+        Arch::new().dispatch(Differential::<L, G> {
+            chunk,
+            reference,
+            positions,
+            delta,
+            scale,
+            forces,
+            kernel,
+        });
     }
 
     fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3]) -> f64 {
@@ -103,12 +111,7 @@ pub(super) struct Group<'a, S: Simd> {
 impl<'a, S: Simd> Group<'a, S> {
     /// All groups of a chunk, in element order.
     #[inline(always)]
-    pub fn all(
-        simd: S,
-        chunk: &'a Chunk,
-        nodes: usize,
-        samples: usize,
-    ) -> impl Iterator<Item = Self> {
+    pub fn all(simd: S, chunk: &'a Chunk, nodes: usize, samples: usize) -> impl Iterator<Item = Self> {
         (0..chunk.block_count()).flat_map(move |block| Self::of_block(simd, chunk, nodes, samples, block))
     }
 

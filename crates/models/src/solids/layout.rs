@@ -50,7 +50,9 @@ impl Chunk {
 
 /// A cell that has no volume to compute with.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{kind} cell {cell} is flat or inverted at rest: det ∂X/∂ξ = {determinant:e} at sample {sample}; it must be positive")]
+#[error(
+    "{kind} cell {cell} is flat or inverted at rest: det ∂X/∂ξ = {determinant:e} at sample {sample}; it must be positive"
+)]
 pub struct FlatCell {
     pub kind: ElementKind,
     pub cell: u32,

@@ -17,7 +17,12 @@ pub fn lumped_mass(mesh: &Mesh, first_row: usize, density_of_cell: &dyn Fn(usize
 }
 
 /// Adds `∫ρ N_a N_b dV` of every cell. Call [`Mass::seal`] when all bodies are in.
-pub fn consistent_mass(mesh: &Mesh, first_row: usize, density_of_cell: &dyn Fn(usize) -> f64, mass: &mut Mass) {
+pub fn consistent_mass(
+    mesh: &Mesh,
+    first_row: usize,
+    density_of_cell: &dyn Fn(usize) -> f64,
+    mass: &mut Mass,
+) {
     over_samples(mesh, 4, |cell, nodes, shape, volume| {
         let sample_mass = density_of_cell(cell) * volume;
         for (a, weight_a) in nodes.iter().zip(shape) {

@@ -109,8 +109,10 @@ impl SolidForce {
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
         let SolidDescription { name, mesh, first_row, materials, material_of_cell } = description;
         let rows = *first_row..*first_row + mesh.points.len();
-        let nodes_of_cell: Vec<Vec<u32>> =
-            mesh.cells().map(|cell| cell.nodes.iter().map(|node| node + *first_row as u32).collect()).collect();
+        let nodes_of_cell: Vec<Vec<u32>> = mesh
+            .cells()
+            .map(|cell| cell.nodes.iter().map(|node| node + *first_row as u32).collect())
+            .collect();
         let mut rest_positions = vec![Vec3::ZERO; rows.end];
         rest_positions[rows.clone()].copy_from_slice(&mesh.points);
         let mut batches: Vec<Batch> = Vec::new();
@@ -178,7 +180,8 @@ impl SolidForce {
         let partials = &scratch.partials;
         let gather_rows = |(task, rows): (usize, &mut [Vec3])| {
             for (offset, row) in rows.iter_mut().enumerate() {
-                let sum = self.gather.of(task * ROWS_PER_TASK + offset).iter().map(|slot| partials[*slot as usize]);
+                let sum =
+                    self.gather.of(task * ROWS_PER_TASK + offset).iter().map(|slot| partials[*slot as usize]);
                 *row += sum.sum();
             }
         };
@@ -235,7 +238,11 @@ impl LawVisitor for IsObjective {
 }
 
 /// The pairs of element and law that occur, in order of first occurrence.
-fn kinds_and_laws(mesh: &Mesh, materials: &[Material], material_of_cell: &[u16]) -> Vec<(ElementKind, AnyLaw)> {
+fn kinds_and_laws(
+    mesh: &Mesh,
+    materials: &[Material],
+    material_of_cell: &[u16],
+) -> Vec<(ElementKind, AnyLaw)> {
     let mut found = Vec::new();
     for (cell, material) in mesh.cells().zip(material_of_cell) {
         let pair = (cell.kind, materials[*material as usize].law);
@@ -247,7 +254,10 @@ fn kinds_and_laws(mesh: &Mesh, materials: &[Material], material_of_cell: &[u16])
 }
 
 fn reference_gradients(kind: ElementKind, rule: &QuadratureRule) -> Vec<Vec3> {
-    rule.points.iter().flat_map(|point| kind.shape_gradients(point.position).iter().copied().collect::<Vec<_>>()).collect()
+    rule.points
+        .iter()
+        .flat_map(|point| kind.shape_gradients(point.position).iter().copied().collect::<Vec<_>>())
+        .collect()
 }
 
 impl Gather {
@@ -383,7 +393,8 @@ impl Force for SolidForce {
                 for lane in 0..chunk.lanes_in(block) {
                     for pair in 0..pairs {
                         let number = |i: usize| out[(pair * 9 + i) * LANES + lane];
-                        let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+                        let column =
+                            |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
                         let K = Mat3::from_columns(column(0), column(1), column(2));
                         let Some([upper, lower]) = slots.next() else { unreachable!("two slots per pair") };
                         if *upper != u32::MAX {
@@ -401,7 +412,10 @@ impl Force for SolidForce {
     fn bytes(&self) -> usize {
         let chunks: usize = self.chunks().map(|(_, chunk)| chunk.bytes()).sum();
         let cells: usize = self.mesh.blocks.iter().map(|block| 4 * block.nodes.len()).sum();
-        chunks + cells + 4 * (self.gather.starts.len() + self.gather.slots.len()) + 24 * self.mesh.points.len()
+        chunks
+            + cells
+            + 4 * (self.gather.starts.len() + self.gather.slots.len())
+            + 24 * self.mesh.points.len()
     }
 
     fn as_any(&self) -> &dyn Any {

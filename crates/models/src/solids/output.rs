@@ -27,7 +27,9 @@ impl SolidForce {
     pub fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
         let view = self.mesh().cell(cell as u32)?;
         let material = self.material(cell);
-        let at = |place: &dyn Fn(usize) -> Vec3| -> Vec<Vec3> { view.nodes.iter().map(|node| place(*node as usize)).collect() };
+        let at = |place: &dyn Fn(usize) -> Vec3| -> Vec<Vec3> {
+            view.nodes.iter().map(|node| place(*node as usize)).collect()
+        };
         let rest = at(&|node| self.mesh().points[node]);
         let now = at(&|node| positions[self.rows().start + node]);
         let mut sum = CellField {

@@ -99,7 +99,8 @@ fn cycle(
     workspace: &mut GmresWorkspace,
     iterations: &mut usize,
 ) {
-    let GmresWorkspace { restart, basis, preconditioned, triangle, rotations, right_hand_side: g } = workspace;
+    let GmresWorkspace { restart, basis, preconditioned, triangle, rotations, right_hand_side: g } =
+        workspace;
     scale(&mut basis[0], 1.0 / residual_norm);
     g.fill(0.0);
     g[0] = residual_norm;

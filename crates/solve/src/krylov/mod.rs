@@ -95,6 +95,12 @@ impl Report {
             return Ok(self);
         }
         let Self { iterations, relative_residual, stop } = self;
-        Err(SolveError::NotConverged { method, iterations, relative_residual, tolerance: settings.tolerance, stop })
+        Err(SolveError::NotConverged {
+            method,
+            iterations,
+            relative_residual,
+            tolerance: settings.tolerance,
+            stop,
+        })
     }
 }

@@ -5,22 +5,30 @@
 //! (Manteuffel 1980). `L` is kept in single precision, rounded once: a preconditioner need not be exact, but
 //! it must be one fixed symmetric map, and half the memory is half the time.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use souple_math::{Mat3, Vec3};
 
 use super::{Preconditioner, invert_positive};
+use crate::error::check_length;
 use crate::kernel::{self, Kernel, RowLoop};
 use crate::matrix::check_pattern;
-use crate::{BlockMatrix, Pattern, SolveError, reduce};
+use crate::{BlockMatrix, Pattern, SolveError, ordering};
 
 /// Shifts tried after a breakdown, relative to the diagonal.
 const SHIFTS: [f64; 9] = [0.0, 1e-3, 4e-3, 1.6e-2, 6.4e-2, 0.25, 1.0, 4.0, 16.0];
 
-/// Triangular factors of one pattern, in the order in which its blocks are numbered.
-#[derive(Clone, Debug)]
+/// How many times farther than in a sweep the numbering may reach, on average, before it is abandoned.
+const JUMPY: u64 = 3;
+
+/// Triangular factors of one pattern.
+#[derive(Debug)]
 pub struct IncompleteCholesky {
     pattern: Arc<Pattern>,
+    /// Block eliminated at each step; `None`: as numbered. All rows and columns below count steps.
+    order: Option<Vec<u32>>,
+    /// Residual and solution in the order of elimination.
+    gathered: Mutex<Vec<Vec3>>,
     /// Strictly lower triangle by rows; `slots` are those of the pattern.
     starts: Vec<u32>,
     columns: Vec<u32>,
@@ -40,25 +48,78 @@ pub struct IncompleteCholesky {
 }
 
 impl IncompleteCholesky {
+    /// Factors in the order in which the blocks are numbered.
+    ///
     /// # Errors
     /// A diagonal block is not positive definite.
     pub fn new(matrix: &BlockMatrix) -> Result<Self, SolveError> {
+        Self::in_order(matrix, None)
+    }
+
+    /// Factors along the longest axis of the body where the numbering jumps about in it, and in the order of
+    /// the numbering where that is local already.
+    ///
+    /// # Errors
+    /// The coordinates do not fit, or a diagonal block is not positive definite.
+    pub fn with_coordinates(matrix: &BlockMatrix, coordinates: &[Vec3]) -> Result<Self, SolveError> {
+        let pattern = matrix.pattern();
+        check_length("coordinates", coordinates.len(), pattern.block_count())?;
+        let order = ordering::sweep_along_longest_axis(coordinates);
+        let place = ordering::inverse(&order);
+        let reach = |place: &dyn Fn(usize) -> u32| -> u64 {
+            let row = |row: usize| {
+                pattern
+                    .row(row)
+                    .iter()
+                    .map(|&c| u64::from(place(row).abs_diff(place(c as usize))))
+                    .sum::<u64>()
+            };
+            (0..pattern.block_count()).map(row).sum()
+        };
+        let is_local = reach(&|row| row as u32) <= JUMPY * reach(&|row| place[row]);
+        Self::in_order(matrix, if is_local { None } else { Some(order) })
+    }
+
+    /// Factors in a given order: `order[i]` is the `i`-th block eliminated, each occurring once.
+    ///
+    /// # Errors
+    /// The order is no permutation of the blocks, or a diagonal block is not positive definite.
+    pub fn with_order(matrix: &BlockMatrix, order: Vec<u32>) -> Result<Self, SolveError> {
+        let count = matrix.pattern().block_count();
+        check_length("the order", order.len(), count)?;
+        let mut seen = vec![false; count];
+        for &block in &order {
+            if seen.get(block as usize) != Some(&false) {
+                return Err(SolveError::NoPermutation { block: block as usize, block_count: count });
+            }
+            seen[block as usize] = true;
+        }
+        Self::in_order(matrix, Some(order))
+    }
+
+    fn in_order(matrix: &BlockMatrix, order: Option<Vec<u32>>) -> Result<Self, SolveError> {
         let pattern = Arc::clone(matrix.pattern());
         let count = pattern.block_count();
+        let place = order.as_deref().map(ordering::inverse);
         let (mut starts, mut columns, mut slots) = (vec![0], Vec::new(), Vec::new());
         let mut diagonal_slots = Vec::with_capacity(count);
         let mut upper_starts = vec![0_u32; count + 1];
+        let mut lower: Vec<(u32, u32)> = Vec::new();
         for row in 0..count {
-            for slot in pattern.slots(row) {
+            lower.clear();
+            for slot in pattern.slots(order.as_ref().map_or(row, |order| order[row] as usize)) {
                 let column = pattern.columns()[slot];
+                let column = place.as_ref().map_or(column, |place| place[column as usize]);
                 if (column as usize) < row {
-                    columns.push(column);
-                    slots.push(slot as u32);
+                    lower.push((column, slot as u32));
                     upper_starts[column as usize + 1] += 1;
                 } else if column as usize == row {
                     diagonal_slots.push(slot as u32);
                 }
             }
+            lower.sort_unstable();
+            columns.extend(lower.iter().map(|entry| entry.0));
+            slots.extend(lower.iter().map(|entry| entry.1));
             starts.push(columns.len() as u32);
         }
         for row in 0..count {
@@ -77,6 +138,8 @@ impl IncompleteCholesky {
         let entries = columns.len();
         let mut factor = Self {
             pattern,
+            gathered: Mutex::new(vec![Vec3::ZERO; if order.is_some() { count } else { 0 }]),
+            order,
             starts,
             columns,
             slots,
@@ -154,8 +217,10 @@ impl Preconditioner for IncompleteCholesky {
                 false
             }
         });
-        self.shift = shift
-            .ok_or(SolveError::NotPositiveDefinite { method: "the incomplete Cholesky factorisation", block: failure })?;
+        self.shift = shift.ok_or(SolveError::NotPositiveDefinite {
+            method: "the incomplete Cholesky factorisation",
+            block: failure,
+        })?;
         let single = |block: &Mat3| bytemuck::cast_ref::<Mat3, [f64; 9]>(block).map(|entry| entry as f32);
         for (lower, work) in self.lower.iter_mut().zip(&self.work) {
             *lower = single(work);
@@ -167,12 +232,18 @@ impl Preconditioner for IncompleteCholesky {
     }
 
     fn apply(&self, r: &[Vec3], z: &mut [Vec3]) {
-        kernel::run(Solve { factor: self, r, z });
-    }
-
-    fn apply_dot(&self, r: &[Vec3], z: &mut [Vec3]) -> f64 {
-        self.apply(r, z);
-        reduce::dot(r, z)
+        let Some(order) = &self.order else {
+            z.copy_from_slice(r);
+            return kernel::run(Solve { factor: self, z });
+        };
+        let mut gathered = self.gathered.lock().unwrap_or_else(PoisonError::into_inner);
+        for (gathered, &block) in gathered.iter_mut().zip(order) {
+            *gathered = r[block as usize];
+        }
+        kernel::run(Solve { factor: self, z: &mut gathered });
+        for (gathered, &block) in gathered.iter().zip(order) {
+            z[block as usize] = *gathered;
+        }
     }
 
     fn bytes(&self) -> usize {
@@ -182,7 +253,7 @@ impl Preconditioner for IncompleteCholesky {
 
 struct Solve<'a> {
     factor: &'a IncompleteCholesky,
-    r: &'a [Vec3],
+    /// Right-hand side, overwritten by the solution.
     z: &'a mut [Vec3],
 }
 
@@ -191,12 +262,12 @@ impl RowLoop for Solve<'_> {
 
     #[inline(always)]
     fn run<K: Kernel>(self, kernel: K) {
-        let Self { factor, r, z } = self;
+        let Self { factor, z } = self;
         // L y = r
         for row in 0..z.len() {
             let entries = factor.starts[row] as usize..factor.starts[row + 1] as usize;
             let known = kernel.row_single(&factor.lower[entries.clone()], &factor.columns[entries], z);
-            z[row] = r[row] - known;
+            z[row] -= known;
         }
         // Lᵀ z = D⁻¹ y
         for row in (0..z.len()).rev() {

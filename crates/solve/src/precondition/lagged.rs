@@ -21,7 +21,11 @@ impl LaggedFactor {
     ///
     /// # Errors
     /// The coordinates do not fit, or the matrix is not positive definite.
-    pub fn new(matrix: &BlockMatrix, coordinates: Option<&[Vec3]>, period: usize) -> Result<Self, SolveError> {
+    pub fn new(
+        matrix: &BlockMatrix,
+        coordinates: Option<&[Vec3]>,
+        period: usize,
+    ) -> Result<Self, SolveError> {
         let mut solver = DirectSolver::analyse(matrix.pattern(), coordinates)?;
         solver.factorize(matrix)?;
         Ok(Self { solver, period: period.max(1), age: 0 })

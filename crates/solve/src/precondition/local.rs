@@ -5,8 +5,8 @@ use souple_math::{Mat3, Vec3};
 
 use crate::{BlockMatrix, dense};
 
-/// Squared couplings below this fraction of the largest are taken for rounding.
-const COUPLING: f64 = 1e-20;
+/// Squared couplings below this fraction of the largest are taken for none: they are known to `ε` of the largest.
+const COUPLING: f64 = 1e-14;
 /// Squared lengths of motions below this fraction of the largest are taken for coincidence.
 const COINCIDENCE: f64 = 1e-10;
 

@@ -21,7 +21,6 @@ use crate::matrix::check_pattern;
 use crate::partition::{ByCoupling, Geometric, aggregates};
 use crate::{BlockMatrix, DirectSolver, Pattern, SolveError, reduce};
 
-
 /// What smooths between coarse corrections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smoother {
@@ -158,7 +157,10 @@ impl RigidModes {
         let coarse_solver = DirectSolver::analyse(&coarse_pattern, coarse_places.as_deref())?;
         let smoother: Box<dyn Preconditioner> = match settings.smoother {
             Smoother::BlockJacobi => Box::new(BlockJacobi::new(matrix)?),
-            Smoother::IncompleteCholesky => Box::new(IncompleteCholesky::new(matrix)?),
+            Smoother::IncompleteCholesky => Box::new(match geometry.coordinates {
+                Some(coordinates) => IncompleteCholesky::with_coordinates(matrix, coordinates)?,
+                None => IncompleteCholesky::new(matrix)?,
+            }),
         };
         let scratch = Scratch {
             coarse: vec![Vec3::ZERO; 2 * patch_count],
@@ -285,9 +287,12 @@ impl RigidModes {
     fn fill_coarse(&mut self) -> Result<(), SolveError> {
         self.coarse.set_zero();
         for patch in 0..self.patch_count {
-            for &row in &self.members[self.member_starts[patch] as usize..self.member_starts[patch + 1] as usize] {
+            for &row in
+                &self.members[self.member_starts[patch] as usize..self.member_starts[patch + 1] as usize]
+            {
                 let (T, R) = self.motions[row as usize].matrices();
-                let entries = self.row_starts[row as usize] as usize..self.row_starts[row as usize + 1] as usize;
+                let entries =
+                    self.row_starts[row as usize] as usize..self.row_starts[row as usize + 1] as usize;
                 for entry in entries {
                     let column = self.row_columns[entry] as usize;
                     let AZ = &self.row_blocks[entry];
@@ -380,7 +385,8 @@ impl RigidModes {
     /// `z += Z c`.
     fn prolong(&self, c: &[Vec3], z: &mut [Vec3]) {
         reduce::for_each_chunk(z, &|first, z: &mut [Vec3]| {
-            for ((z, motion), &patch) in z.iter_mut().zip(&self.motions[first..]).zip(&self.patch_of[first..]) {
+            for ((z, motion), &patch) in z.iter_mut().zip(&self.motions[first..]).zip(&self.patch_of[first..])
+            {
                 let (shift, turn) = (c[2 * patch as usize], c[2 * patch as usize + 1]);
                 *z += match motion {
                     Motion::Free { arm } => shift + turn.cross(*arm),
@@ -441,7 +447,11 @@ impl Preconditioner for RigidModes {
     fn bytes(&self) -> usize {
         let blocks = self.row_blocks.len() + self.column_blocks.len() + self.coarse.values().len();
         let motions = self.motions.len() * (size_of::<Motion>() + 2 * size_of::<Vec3>() + 8);
-        self.smoother.bytes() + 72 * blocks + 12 * self.row_columns.len() + motions + self.coarse_solver.bytes()
+        self.smoother.bytes()
+            + 72 * blocks
+            + 12 * self.row_columns.len()
+            + motions
+            + self.coarse_solver.bytes()
     }
 }
 

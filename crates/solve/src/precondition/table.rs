@@ -38,7 +38,12 @@ static INCOMPLETE_CHOLESKY: Entry<Build> = Entry {
     summary: "triangular factors without fill, by 3x3 blocks; three times fewer iterations than block_jacobi",
     source: "Meijerink & van der Vorst 1977; shift: Manteuffel 1980",
     parameters: &[],
-    build: |_, matrix, _| Ok(Box::new(IncompleteCholesky::new(matrix)?)),
+    build: |_, matrix, geometry| {
+        Ok(Box::new(match geometry.coordinates {
+            Some(coordinates) => IncompleteCholesky::with_coordinates(matrix, coordinates)?,
+            None => IncompleteCholesky::new(matrix)?,
+        }))
+    },
 };
 
 static RIGID_MODES: Entry<Build> = Entry {
@@ -48,8 +53,12 @@ static RIGID_MODES: Entry<Build> = Entry {
     parameters: &[
         Parameter::choice("smoother", &["incomplete_cholesky", "block_jacobi"], "what acts within patches")
             .or(Value::Text("incomplete_cholesky")),
-        Parameter::integer("patch_size", Range::NOT_NEGATIVE, "blocks per patch at most; 0: by the size of the system")
-            .or(Value::Integer(0)),
+        Parameter::integer(
+            "patch_size",
+            Range::NOT_NEGATIVE,
+            "blocks per patch at most; 0: by the size of the system",
+        )
+        .or(Value::Integer(0)),
     ],
     build: |values, matrix, geometry| {
         let smoother = match values.text("smoother") {

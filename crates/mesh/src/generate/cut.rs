@@ -1,0 +1,174 @@
+//! How a cube is cut into cells of each kind, faces matching those of its neighbours.
+
+use std::collections::BTreeMap;
+
+use souple_table::{Kind, Parameter, Value, Values};
+
+use crate::{CellBlock, ElementKind};
+
+/// How a cube is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cut {
+    /// Six tetrahedra around the diagonal (Kuhn).
+    Tetrahedra,
+    Hexahedra,
+    /// Two prisms with their axes along x, triangles in the plane of y and z.
+    Prisms,
+    /// Six pyramids with their apices at the centre of the cube.
+    Pyramids,
+    /// Zones of hexahedra, one layer of pyramids, tetrahedra, prisms; conforming.
+    Mixed,
+}
+
+impl Cut {
+    pub(super) const PARAMETER: Parameter = Parameter {
+        name: "element",
+        summary: "kind of cells; `mixed` has all four kinds, conforming",
+        kind: Kind::Choice(&["tet4", "hex8", "prism6", "pyramid5", "mixed"]),
+        unit: "",
+        range: souple_table::Range::ANY,
+        default: Some(Value::Text("tet4")),
+    };
+
+    pub(super) fn from_values(values: &Values) -> Self {
+        match values.text("element") {
+            "tet4" => Self::Tetrahedra,
+            "hex8" => Self::Hexahedra,
+            "prism6" => Self::Prisms,
+            "pyramid5" => Self::Pyramids,
+            "mixed" => Self::Mixed,
+            other => unreachable!("`{other}` is not among the declared choices"),
+        }
+    }
+
+    pub(super) fn cells_per_cube(self) -> u64 {
+        match self {
+            Self::Hexahedra => 1,
+            Self::Prisms => 2,
+            Self::Tetrahedra | Self::Pyramids => 6,
+            // five pyramids and two tetrahedra in the layer between
+            Self::Mixed => 7,
+        }
+    }
+}
+
+/// Axis permutations in the order that numbers the tetrahedra of a cube; odd ones are mirrored.
+const KUHN: [([usize; 3], Parity); 6] = [
+    ([0, 1, 2], Parity::Even),
+    ([0, 2, 1], Parity::Odd),
+    ([1, 0, 2], Parity::Odd),
+    ([1, 2, 0], Parity::Even),
+    ([2, 0, 1], Parity::Even),
+    ([2, 1, 0], Parity::Odd),
+];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Parity {
+    Even,
+    Odd,
+}
+
+/// Corners of a cube in the node order of the hexahedron.
+pub(super) const CORNERS: [[usize; 3]; 8] =
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+
+/// Faces of the cube as bases of pyramids, normal inward: seen from the centre, counterclockwise.
+const BASES: [[usize; 4]; 6] =
+    [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [1, 5, 6, 2], [2, 6, 7, 3], [3, 7, 4, 0]];
+/// Faces of `BASES` by the axis of the cube that they end.
+pub(super) const BASE_X_MAX: usize = 3;
+pub(super) const BASE_X_MIN: usize = 5;
+pub(super) const BASE_Z_MAX: usize = 1;
+
+/// One block for each kind, so that a mesh has few.
+#[derive(Default)]
+pub(super) struct Blocks(BTreeMap<ElementKind, Vec<u32>>);
+
+impl Blocks {
+    pub(super) fn push(&mut self, kind: ElementKind, nodes: &[u32]) {
+        self.0.entry(kind).or_default().extend_from_slice(nodes);
+    }
+
+    /// For each permutation of the axes: from the corner (0,0,0) along the axes in that order to (1,1,1).
+    pub(super) fn kuhn_tetrahedra(&mut self, corners: [u32; 8]) {
+        for (axes, parity) in KUHN {
+            let mut at = [0; 3];
+            let mut nodes = [corners[0]; 4];
+            for (step, axis) in axes.into_iter().enumerate() {
+                at[axis] = 1;
+                nodes[step + 1] = corners[CORNERS.iter().position(|corner| *corner == at).unwrap_or(0)];
+            }
+            if parity == Parity::Odd {
+                nodes.swap(2, 3);
+            }
+            self.push(ElementKind::Tet4, &nodes);
+        }
+    }
+
+    /// Six tetrahedra from the corner of lowest number to the halves of the three faces that do not hold it. Each
+    /// face of the cube is cut at its corner of lowest number, so that cubes in any position conform.
+    pub(super) fn numbered_tetrahedra(&mut self, c: [u32; 8]) {
+        let lowest = c.into_iter().min().unwrap_or(c[0]);
+        for base in BASES {
+            let corners = base.map(|corner| c[corner]);
+            if !corners.contains(&lowest) {
+                let [p, q, r, s] = from_lowest(corners);
+                self.push(ElementKind::Tet4, &[p, q, r, lowest]);
+                self.push(ElementKind::Tet4, &[p, r, s, lowest]);
+            }
+        }
+    }
+
+    /// Two prisms from one face to the opposite, cut at the corner of lowest number of the first.
+    pub(super) fn prisms_towards(&mut self, c: [u32; 8], end: usize) {
+        let far = BASES[end];
+        // the bases of opposite faces hold opposite corners in other places: found by the edges between them
+        let near = far.map(|corner| across(corner, end));
+        let first = (0..4).min_by_key(|place| c[near[*place]]).unwrap_or(0);
+        // far is clockwise seen along the axis of the prism: read backwards
+        let at = |nodes: [usize; 4], step: usize| c[nodes[(first + 4 - step) % 4]];
+        for [p, q, r] in [[0, 1, 2], [0, 2, 3]] {
+            let nodes = [at(near, p), at(near, q), at(near, r), at(far, p), at(far, q), at(far, r)];
+            self.push(ElementKind::Prism6, &nodes);
+        }
+    }
+
+    /// The faces across x are cut along the diagonal from (y, z) = (0, 0) to (1, 1), as `kuhn_tetrahedra` cuts them.
+    pub(super) fn prisms(&mut self, c: [u32; 8]) {
+        self.push(ElementKind::Prism6, &[c[0], c[3], c[7], c[1], c[2], c[6]]);
+        self.push(ElementKind::Prism6, &[c[0], c[7], c[4], c[1], c[6], c[5]]);
+    }
+
+    /// A pyramid on each face; on the face `split`, two tetrahedra cut at its corner of lowest number.
+    pub(super) fn pyramids(&mut self, c: [u32; 8], centre: u32, split: Option<usize>) {
+        for (face, base) in BASES.into_iter().enumerate() {
+            let [p, q, r, s] = base.map(|corner| c[corner]);
+            if split == Some(face) {
+                let [p, q, r, s] = from_lowest([p, q, r, s]);
+                self.push(ElementKind::Tet4, &[p, q, r, centre]);
+                self.push(ElementKind::Tet4, &[p, r, s, centre]);
+            } else {
+                self.push(ElementKind::Pyramid5, &[p, q, r, s, centre]);
+            }
+        }
+    }
+
+    pub(super) fn list(self) -> Vec<CellBlock> {
+        self.0.into_iter().map(|(kind, nodes)| CellBlock { kind, nodes }).collect()
+    }
+}
+
+/// The corners of a face in the same sense, starting at the one of lowest number.
+fn from_lowest(corners: [u32; 4]) -> [u32; 4] {
+    let first = (0..4).min_by_key(|place| corners[*place]).unwrap_or(0);
+    [0, 1, 2, 3].map(|step| corners[(first + step) % 4])
+}
+
+/// The corner at the other end of the edge that leaves face `base` at `corner`.
+fn across(corner: usize, base: usize) -> usize {
+    let face = BASES[base].map(|node| CORNERS[node]);
+    let axis = (0..3).find(|axis| face.iter().all(|node| node[*axis] == face[0][*axis])).unwrap_or(0);
+    let mut at = CORNERS[corner];
+    at[axis] = 1 - at[axis];
+    CORNERS.iter().position(|node| *node == at).unwrap_or(corner)
+}

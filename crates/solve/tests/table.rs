@@ -1,0 +1,59 @@
+//! The solvers of the scene format, each by its name.
+
+mod common;
+
+use common::{chain, dense_solve, distance, noise, norm, truss};
+use souple_math::Vec3;
+use souple_solve::precondition::Geometry;
+use souple_solve::solvers::{self, LinearSolver};
+use souple_solve::{BlockMatrix, SolveError};
+use souple_table::{Value, Values};
+
+fn build(name: &str, values: Values, matrix: &BlockMatrix, places: &[Vec3]) -> Box<dyn LinearSolver> {
+    let entry = solvers::TABLE.find(name).unwrap();
+    (entry.build.build)(&entry.values(values).unwrap(), matrix, Geometry::points(places)).unwrap()
+}
+
+/// Each solver meets its tolerance on the first matrix and on the next: `‖x − x*‖ ≤ ‖r‖` as `λ_min = 1`.
+#[test]
+fn every_solver_solves() {
+    let (first, second) = (truss([6, 4, 3], 40.0), truss([6, 4, 3], 90.0));
+    let b = noise(72, 4);
+    for entry in solvers::TABLE.entries {
+        let mut solver = build(entry.name, Values::new(), &first.matrix, &first.places);
+        for matrix in [&first.matrix, &second.matrix] {
+            solver.update(matrix).unwrap();
+            let mut x = vec![Vec3::ZERO; 72];
+            let report = solver.solve(matrix, &b, &mut x).unwrap();
+            assert!(report.relative_residual <= 1e-8);
+            assert!(distance(&x, &dense_solve(matrix, &b)) < 1.01e-8 * norm(&b), "{}", entry.name);
+        }
+        assert!(solver.bytes() > 0);
+    }
+}
+
+/// `auto` factors what is thin and iterates on what is thick.
+#[test]
+fn auto_chooses_by_work() {
+    let places: Vec<Vec3> = (0..3000).map(|i| Vec3::X * f64::from(i)).collect();
+    assert_eq!(build("auto", Values::new(), &chain(3000, 1.0, 0.1), &places).name(), "direct");
+    let thick = truss([18, 18, 18], 1.0);
+    assert_eq!(build("auto", Values::new(), &thick.matrix, &thick.places).name(), "cg");
+}
+
+#[test]
+fn failures_are_typed() {
+    let matrix = chain(40, 1.0, 0.0);
+    let places = vec![Vec3::ZERO; 40];
+    let values =
+        Values::new().with("max_iterations", Value::Integer(2)).with("preconditioner", Value::Text("none"));
+    let mut solver = build("cg", values, &matrix, &places);
+    let mut x = vec![Vec3::ZERO; 40];
+    let error = solver.solve(&matrix, &noise(40, 1), &mut x).unwrap_err();
+    assert!(matches!(error, SolveError::NotConverged { method: "cg", iterations: 2, .. }));
+    let error = solver.solve(&matrix, &noise(39, 1), &mut x).unwrap_err();
+    assert_eq!(error, SolveError::Length { what: "the right-hand side", given: 39, expected: 40 });
+    let error = solver.solve(&matrix, &[Vec3::X * f64::NAN; 40], &mut x).unwrap_err();
+    assert_eq!(error, SolveError::NotFinite { what: "the right-hand side", block: 0 });
+    assert_eq!(solvers::TABLE.find("cgg").unwrap_err().nearest.as_deref(), Some("cg"));
+}
