@@ -116,6 +116,16 @@ impl ImplicitStep<'_> {
         inertia + stored
     }
 
+    /// The residual that rounding alone makes: positions known to `ε |x|` give inertia known to `m ε |x| / h²`,
+    /// and forces are sums of terms that cancel.
+    fn rounding_floor(&self, ws: &SystemWorkspace) -> f64 {
+        let inertia = self.timestep.map_or(0.0, |h| {
+            let weighted = |(x, mass): (&Vec3, &f64)| (mass * x.length()).powi(2);
+            ws.rows.positions.iter().zip(&self.system.mass.diagonal).map(weighted).sum::<f64>().sqrt() / (h * h)
+        });
+        4.0 * f64::EPSILON * inertia + 64.0 * f64::EPSILON * norm(&ws.row_force)
+    }
+
     /// What is left of prescribed motion: how far constrained components are from where they are led.
     fn prescribed_into(&self, q: &[Vec3], prescribed: &mut [Vec3]) -> f64 {
         prescribed.fill(Vec3::ZERO);
@@ -260,8 +270,9 @@ impl ImplicitStep<'_> {
         let mut to_go = self.prescribed_into(&next.q, &mut buffers.prescribed);
         // the scale of forces at work: what is unbalanced at first, or what balances where nothing is
         let mut scale = residual.max(norm(&ws.row_force) * 1e-6);
+        let floor = self.rounding_floor(ws);
         for iteration in 0..=settings.max_iterations {
-            if to_go == 0.0 && residual <= settings.tolerance * scale {
+            if to_go == 0.0 && residual <= (settings.tolerance * scale).max(floor) {
                 report.newton_residual = if scale > 0.0 { residual / scale } else { 0.0 };
                 next.v.copy_from_slice(&v);
                 return Ok(report);
@@ -322,12 +333,6 @@ impl ImplicitStep<'_> {
             }
         }
         report.newton_residual = residual / scale;
-        // rounding of forces summed at every point bounds what can be reached
-        let rounding = 1e-13 * norm(&ws.row_force);
-        if to_go == 0.0 && residual <= (100.0 * settings.tolerance * scale).max(rounding) {
-            next.v.copy_from_slice(&v);
-            return Ok(report);
-        }
         Err(StepError::NewtonStalled {
             iterations: report.newton_iterations,
             residual: report.newton_residual,

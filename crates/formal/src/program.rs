@@ -39,8 +39,8 @@ pub(crate) struct Program {
 impl Program {
     /// The subtree under `root`, which must yield `wanted`.
     pub fn compile(syntax: &Syntax, root: NodeId, wanted: Kind) -> Result<Self, ParseError> {
+        syntax.require_kind(root, wanted)?;
         let nodes = syntax.subtree(root);
-        check_kinds(syntax, nodes.clone(), root, wanted)?;
         let mut compiler = Compiler { instructions: Vec::new(), held: 0, depth: 0 };
         let folds = folds(syntax, nodes.clone());
         for at in nodes.clone() {
@@ -182,7 +182,8 @@ impl Compiler {
     fn join(&mut self, instruction: Instruction, count: usize) {
         self.instructions.push(instruction);
         self.held -= count - 1;
-        let first = self.instructions.len() - 1 - count.min(self.instructions.len() - 1);
+        // as many values come from as many instructions or more
+        let first = self.instructions.len() - 1 - count;
         let (tail, operands) = (&self.instructions[first..], first..first + count);
         if self.instructions[operands].iter().all(|operand| matches!(operand, Instruction::Constant(_))) {
             let value = run::<f64, 4>(tail, &[]);
@@ -218,61 +219,4 @@ fn folds(syntax: &Syntax, nodes: Range<usize>) -> Vec<Option<Function>> {
         }
     }
     folds
-}
-
-/// Every operand is of the kind its operation takes, and the whole of the kind `wanted`.
-fn check_kinds(syntax: &Syntax, nodes: Range<usize>, root: NodeId, wanted: Kind) -> Result<(), ParseError> {
-    let mut kinds: Vec<Kind> = Vec::with_capacity(nodes.len());
-    let require = |kinds: &[Kind], id: NodeId, wanted: Kind| {
-        let found = kinds[id.index() - nodes.start];
-        if found == wanted { Ok(()) } else { Err(wrong_kind(syntax, id, found, wanted)) }
-    };
-    for node in &syntax.nodes()[nodes.clone()] {
-        let kind = match *node {
-            Node::Number(_) | Node::Constant(_) | Node::Variable(_) => Kind::Number,
-            Node::Negate(operand) => {
-                require(&kinds, operand, Kind::Number)?;
-                Kind::Number
-            }
-            Node::Not(operand) => {
-                require(&kinds, operand, Kind::Condition)?;
-                Kind::Condition
-            }
-            Node::Binary { operator, left, right } => {
-                let (operands, result) = operator.kinds();
-                require(&kinds, left, operands)?;
-                require(&kinds, right, operands)?;
-                result
-            }
-            Node::Select { condition, if_true, if_false } => {
-                require(&kinds, condition, Kind::Condition)?;
-                let kind = match kinds[if_true.index() - nodes.start] {
-                    Kind::Condition => Kind::Condition,
-                    _ => Kind::Number,
-                };
-                require(&kinds, if_true, kind)?;
-                require(&kinds, if_false, kind)?;
-                kind
-            }
-            Node::Call { arguments, .. } => {
-                for argument in syntax.arguments(arguments) {
-                    require(&kinds, *argument, Kind::Number)?;
-                }
-                Kind::Number
-            }
-            Node::Vector(components) => {
-                for component in syntax.arguments(components) {
-                    require(&kinds, *component, Kind::Number)?;
-                }
-                Kind::Vector(syntax.arguments(components).len())
-            }
-        };
-        kinds.push(kind);
-    }
-    require(&kinds, root, wanted)
-}
-
-pub(crate) fn wrong_kind(syntax: &Syntax, id: NodeId, found: Kind, wanted: Kind) -> ParseError {
-    let read = crate::span::shortened(&syntax.display(id).to_string());
-    ParseError { span: syntax.span(id), fault: ParseFault::WrongKind { read, found, wanted } }
 }

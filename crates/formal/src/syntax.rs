@@ -6,6 +6,7 @@
 
 mod error;
 mod function;
+mod kinds;
 mod lexer;
 mod parser;
 mod printer;

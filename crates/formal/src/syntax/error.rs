@@ -40,7 +40,7 @@ pub enum ParseFault {
     NotAFunction { name: String },
     #[error("`{name}` is a function: write `{signature}`")]
     FunctionWithoutArguments { name: &'static str, signature: &'static str },
-    #[error("`{signature}` takes {takes}, but {given} are given")]
+    #[error("`{signature}` takes {takes}, not {given}")]
     WrongArgumentCount { signature: &'static str, takes: &'static str, given: usize },
     #[error("comparisons do not chain: write `a < b and b < c` for `a < b < c`")]
     ChainedComparison,

@@ -66,7 +66,6 @@ fn read(text: &str, example: &str) -> Result<Reading, UnitError> {
     reader.skip_blanks();
     let start = reader.at;
     if !skip_number(&mut reader) {
-        reader.at = start;
         let word = text[start..].split_whitespace().next().unwrap_or("");
         let read =
             if word.is_empty() { "the end of the text".to_owned() } else { format!("`{}`", shortened(word)) };

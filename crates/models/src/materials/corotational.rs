@@ -83,9 +83,11 @@ impl Law for Corotational {
     #[inline(always)]
     fn tangent_block<R: Real>(p: &Lame<R>, point: &Point<R>, g_a: Vec3<R>, g_b: Vec3<R>) -> Mat3<R> {
         let (a, b) = (point.rotation * g_a, point.rotation * g_b);
-        // rows of X [b]× are xᵢ × b
-        let rows = Mat3 { columns: point.turning.columns.map(|column| column.cross(a)) }.transpose().columns;
-        let turned = Mat3 { columns: rows.map(|row| row.cross(b)) }.transpose();
+        // explicit columns: a closure over lanes would not be compiled for the processor's instructions
+        let [t, u, v] = point.turning.columns;
+        // rows of -[a]× T, then of -[a]× T [b]×: a row x becomes x × b
+        let [x, y, z] = Mat3::from_columns(t.cross(a), u.cross(a), v.cross(a)).transpose().columns;
+        let turned = Mat3::from_columns(x.cross(b), y.cross(b), z.cross(b)).transpose();
         ((a * p.lambda).outer(b) + turned).plus_diagonal(p.mu * g_a.dot(g_b) * 2.0)
     }
 }
