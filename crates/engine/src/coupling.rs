@@ -22,7 +22,7 @@ const SLOW_VELOCITY: usize = 3;
 const PERIOD_START: usize = 6;
 /// The force on the slow point in this period: the mean reaction of the last.
 const SLOW_FORCE: usize = 7;
-/// Work done on both ends so far, with what damping took [J].
+/// Work done on both ends so far, with what damping took, less what the spring held at first [J].
 const WORK: usize = 10;
 
 /// What the fast end remembers within a period: impulse on the fast point, work on it, energy dissipated.
@@ -86,9 +86,14 @@ impl CouplingSpring {
         0.5 * self.stiffness * (self.slow_position(time, driven) - fast_position).length_sq()
     }
 
-    /// Publishes where the slow point stands as a period starts.
-    pub(crate) fn start_period(&self, state: &mut State, time: f64, position: Vec3, velocity: Vec3) {
+    /// Publishes where the slow point stands as a period starts; the account of energy opens with what the
+    /// spring holds as the world starts.
+    pub(crate) fn start_period(&self, state: &mut State, time: f64, fast: Vec3, position: Vec3, velocity: Vec3) {
+        let opens = state.period == 0;
         let driven = &mut state.driven[self.driven..self.driven + DRIVEN_LEN];
+        if opens {
+            driven[WORK] = -0.5 * self.stiffness * (position - fast).length_sq();
+        }
         driven[SLOW_POSITION..SLOW_POSITION + 3].copy_from_slice(&position.to_array());
         driven[SLOW_VELOCITY..SLOW_VELOCITY + 3].copy_from_slice(&velocity.to_array());
         driven[PERIOD_START] = time;

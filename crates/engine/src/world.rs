@@ -232,7 +232,8 @@ impl World {
         for coupling in &self.model.couplings {
             let rows = &self.workspace.systems[coupling.slow_system].rows;
             let row = coupling.slow_row as usize;
-            coupling.start_period(next, start, rows.positions[row], rows.velocities[row]);
+            let fast = self.workspace.systems[coupling.fast_system].rows.positions[coupling.fast_row as usize];
+            coupling.start_period(next, start, fast, rows.positions[row], rows.velocities[row]);
         }
     }
 

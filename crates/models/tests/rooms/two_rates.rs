@@ -45,5 +45,6 @@ fn impulses_are_exchanged_exactly() {
     assert!(largest_energy < 1.01 * start && end < 0.05 * start, "{start} J, at most {largest_energy} J, {end} J left");
     let fast = world.rows(0).positions[0];
     let made = world.model().couplings[0].energy_made(world.state(), fast, world.time());
-    assert!(made.is_finite() && made < 0.05 * start, "energy made by the delay: {made} J of {start} J");
+    // the delay feeds k H / 2 = 0.34 N s/m against a damping of 2: a sixth of what is dissipated at most
+    assert!(made > 0.0 && made < start * 0.34 / 2.0, "energy made by the delay: {made} J of {start} J");
 }
