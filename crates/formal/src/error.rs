@@ -43,7 +43,7 @@ pub enum ParseError {
     WithoutArguments { name: String, usage: &'static str, span: Span },
     #[error("`{name}` at {span} is no function; write `{name} * (…)` for a product")]
     NotAFunction { name: String, span: Span },
-    #[error("`{name}` at {span} has {found} arguments; write `{usage}`")]
+    #[error("`{name}` at {span} was given {found} argument(s); write `{usage}`")]
     WrongArgumentCount { name: String, found: usize, usage: &'static str, span: Span },
     #[error("{found} stands at {span}, where {wanted} is wanted")]
     WrongKind { found: Kind, wanted: Kind, span: Span },

@@ -1,18 +1,11 @@
-//! Formulas of variables, compiled to a flat list of instructions for a stack machine.
-//!
-//! Evaluating takes no memory from the allocator and gives the same bits everywhere. Both branches of `if`
-//! are evaluated and one is taken.
+//! Formulas of variables and conditions on them, read once and evaluated often.
 
 use std::fmt;
 
 use souple_math::Dual;
 
-use crate::arithmetic::{self, Number};
-use crate::function::{CONSTANTS, FUNCTIONS, FunctionEntry};
-use crate::parser::DEEPEST;
-use crate::{
-    BinaryOperator, Expression, Function, Kind, Node, NodeId, NodeKind, ParseError, Span, UnaryOperator,
-};
+use crate::program::{Program, kind_of};
+use crate::{Expression, Kind, Node, NodeId, NodeKind, ParseError};
 
 /// A number computed from variables.
 #[derive(Clone, Debug)]
@@ -60,8 +53,7 @@ impl Formula {
 
     /// The formula that is always `value`.
     pub fn constant(value: f64) -> Self {
-        let program = Program { instructions: vec![Instruction::Constant(value)], stack: 1 };
-        Self::of(&value.to_string(), &[], program)
+        Self::of(&value.to_string(), &[], Program::constant(value))
     }
 
     fn of(text: &str, variables: &[&str], program: Program) -> Self {
@@ -81,7 +73,7 @@ impl Formula {
 
     /// Whether the variable at `position` can change the result.
     pub fn depends_on(&self, position: usize) -> bool {
-        self.program.instructions.contains(&Instruction::Variable(position))
+        self.program.reads(position)
     }
 
     /// The result for the values of the variables; not finite where the formula is not defined.
@@ -136,262 +128,87 @@ impl Condition {
 
     /// Whether the condition holds for the values of the variables; panics like [`Formula::evaluate`].
     pub fn holds(&self, values: &[f64]) -> bool {
-        arithmetic::holds(self.program.run(|position| values[position]))
+        self.program.run::<f64>(|position| values[position]) != 0.0
     }
 }
 
-/// One step of the stack machine: takes operands from the top, leaves its result there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Instruction {
-    Constant(f64),
-    Variable(usize),
-    Unary(UnaryOperator),
-    Binary(BinaryOperator),
-    WholePower(i32),
-    OfOne(Function),
-    OfTwo(Function),
-    OfThree(Function),
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Span;
 
-impl Instruction {
-    fn operand_count(self) -> usize {
-        match self {
-            Self::Constant(_) | Self::Variable(_) => 0,
-            Self::Unary(_) | Self::WholePower(_) | Self::OfOne(_) => 1,
-            Self::Binary(_) | Self::OfTwo(_) => 2,
-            Self::OfThree(_) => 3,
+    const VARIABLES: &[&str] = &["x", "y", "t"];
+
+    /// Every mistake is named, placed, and answered with what would be right.
+    #[test]
+    fn errors() {
+        let truth = "a truth value such as `x > 0`";
+        let cases = [
+            ("1 + foo", 4..7, "there is no `foo` (at byte 4); there are: x, y, t, pi, e".to_owned()),
+            ("sine(x)", 0..4, "there is no function `sine` (at byte 0) (did you mean `sin`?)".to_owned()),
+            ("2 * sin", 4..7, "`sin` at byte 4 is a function; write `sin(x)`".to_owned()),
+            ("x (y)", 0..1, "`x` at byte 0 is no function; write `x * (…)` for a product".to_owned()),
+            ("atan2(y)", 0..5, "`atan2` at byte 0 was given 1 argument(s); write".to_owned()),
+            ("max()", 0..3, "`max` at byte 0 was given 0 argument(s); write".to_owned()),
+            ("x > 0", 0..5, format!("{truth} stands at byte 0, where a number is wanted")),
+            ("if(x, 1, 2)", 3..4, format!("a number stands at byte 3, where {truth} is wanted")),
+            ("if(x < 0, y > 0, 2)", 10..15, format!("{truth} stands at byte 10, where a number is wanted")),
+            ("1 + (x < y)", 5..10, format!("{truth} stands at byte 5, where a number is wanted")),
+            ("2 * [1, 2]", 4..10, "a vector of 2 stands at byte 4, where a number is wanted".to_owned()),
+            ("[1, 2]", 0..6, "a vector of 2 stands at byte 0, where a number is wanted".to_owned()),
+        ];
+        for (text, place, message) in cases {
+            let error = Formula::compile(text, VARIABLES).unwrap_err();
+            assert_eq!(error.span().start..error.span().end, place, "{text}");
+            assert!(error.to_string().starts_with(&message), "{text}: {error}");
         }
-    }
-}
-
-#[derive(Clone, Debug)]
-struct Program {
-    instructions: Vec<Instruction>,
-    /// How many intermediate results are alive at once, at most.
-    stack: usize,
-}
-
-/// Enough for all but monstrous formulas, and quickly cleared.
-const USUAL_STACK: usize = 16;
-/// A level of nesting keeps at most two results waiting (of a function of three), and the last is evaluated.
-const LARGEST_STACK: usize = 2 * DEEPEST + 1;
-/// Whole powers up to this are products.
-const LARGEST_WHOLE_POWER: f64 = 8.0;
-
-impl Program {
-    /// The instructions of the subtree `root`, which must be of the wanted kind.
-    fn compile(
-        expression: &Expression,
-        root: NodeId,
-        wanted: Kind,
-        variables: &[&str],
-    ) -> Result<Self, ParseError> {
-        let range = expression.subtree(root);
-        let nodes = &expression.nodes()[range.clone()];
-        check_kind(expression.node(root), wanted)?;
-        let folds = folds(expression, *range.start(), nodes);
-        let mut program = Self { instructions: Vec::new(), stack: 0 };
-        for (node, fold) in nodes.iter().zip(folds) {
-            for (position, operand) in node.kind.operands().enumerate() {
-                check_kind(expression.node(operand), wanted_operand(&node.kind, position))?;
-            }
-            if let Some(instruction) = instruction_of(node, variables)? {
-                program.push(instruction);
-            }
-            if let Some(function) = fold {
-                program.push(Instruction::OfTwo(function));
-            }
-        }
-        program.stack = program.measure_stack();
-        Ok(program)
+        let Err(ParseError::UnknownName { nearest, .. }) = Formula::compile("tyme", &["time"]) else {
+            panic!()
+        };
+        assert_eq!(nearest.as_deref(), Some("time"));
+        let error = Condition::compile("x + 1", VARIABLES).unwrap_err();
+        assert!(matches!(error, ParseError::WrongKind { found: Kind::Number, wanted: Kind::Truth, .. }));
     }
 
-    /// Appends an instruction, or its result where all operands are known.
-    fn push(&mut self, instruction: Instruction) {
-        let start = self.instructions.len() - instruction.operand_count();
-        let operands = &self.instructions[start..];
-        let known = operands.iter().all(|operand| matches!(operand, Instruction::Constant(_)));
-        if let (Instruction::Binary(BinaryOperator::Power) | Instruction::OfTwo(Function::Pow), false) =
-            (instruction, known)
-            && let Some(&Instruction::Constant(exponent)) = operands.last()
-            && exponent.fract() == 0.0
-            && exponent.abs() <= LARGEST_WHOLE_POWER
+    /// The velocity of `a sin(ω t)` is `a ω cos(ω t)`.
+    #[test]
+    fn velocity_of_a_prescribed_motion() {
+        let formula = Formula::compile("0.1 * sin(2*pi*t)", &["t"]).unwrap();
+        let (time, omega) = (0.3, 2.0 * std::f64::consts::PI);
+        let motion = formula.differentiate(&[time], 0);
+        assert_eq!(motion.value, formula.evaluate(&[time]));
+        // three roundings of numbers below one
+        assert!((motion.derivative - 0.1 * omega * libm::cos(omega * time)).abs() < 3.0 * f64::EPSILON);
+        assert_eq!(formula.evaluate_dual(&[Dual::new(time, 1.0)]), motion);
+    }
+
+    #[test]
+    fn vectors_are_lists_of_formulas() {
+        let [x, y, z] = Formula::compile_vector("[t^2, (1 + t), 0]", &["t"]).unwrap();
+        assert_eq!([x.evaluate(&[3.0]), y.evaluate(&[3.0]), z.evaluate(&[3.0])], [9.0, 4.0, 0.0]);
+        assert_eq!((x.text(), y.text(), z.to_string().as_str()), ("t^2", "1 + t", "0"));
+        assert!(x.depends_on(0) && !z.depends_on(0));
+        let wrong = |text: &str| Formula::compile_vector::<3>(text, &["t"]).unwrap_err();
+        assert_eq!(
+            wrong("[1, 2]").to_string(),
+            "a vector of 2 stands at byte 0, where a vector of 3 is wanted"
+        );
+        assert_eq!(wrong("t").to_string(), "a number stands at byte 0, where a vector of 3 is wanted");
+        assert_eq!(wrong("[t, t, u]").span(), Span::new(7, 8));
+    }
+
+    /// Comparisons with what is not a number do not hold, and such numbers are not hidden by `min` or `max`.
+    #[test]
+    fn conditions() {
+        let holds = |text: &str, x: f64| Condition::compile(text, &["x"]).unwrap().holds(&[x]);
+        assert!(holds("x > 0.5 and not x == 2 or x <= -1", 1.0));
+        assert!(!holds("x > 0.5 and not x == 2 or x <= -1", 2.0));
+        assert!(holds("x >= 1 and x != 3", 2.0) && holds("x < 1 or x > 2", -1.0));
+        assert!(!holds("x < 0 or x >= 0", f64::NAN));
+        for text in
+            ["min(x, 1)", "min(1, x)", "max(x, 1)", "clamp(x, 0, 1)", "step(x, 0)", "sign(x)", "x + 1"]
         {
-            self.instructions.pop();
-            self.instructions.push(Instruction::WholePower(exponent as i32));
-            return;
-        }
-        self.instructions.push(instruction);
-        if known && instruction.operand_count() > 0 {
-            let instructions = self.instructions.split_off(start);
-            let value = Self { instructions, stack: USUAL_STACK }.run(|_| f64::NAN);
-            self.instructions.push(Instruction::Constant(value));
+            assert!(Formula::compile(text, &["x"]).unwrap().evaluate(&[f64::NAN]).is_nan(), "{text}");
         }
     }
-
-    fn measure_stack(&self) -> usize {
-        let mut alive: usize = 0;
-        let heights = self.instructions.iter().map(|instruction| {
-            alive = alive + 1 - instruction.operand_count();
-            alive
-        });
-        heights.max().unwrap_or(0)
-    }
-
-    fn run<T: Number>(&self, variable: impl Fn(usize) -> T) -> T {
-        if self.stack <= USUAL_STACK {
-            self.run_on(&mut [T::constant(0.0); USUAL_STACK], variable)
-        } else {
-            self.run_on(&mut [T::constant(0.0); LARGEST_STACK], variable)
-        }
-    }
-
-    #[inline(always)]
-    fn run_on<T: Number>(&self, stack: &mut [T], variable: impl Fn(usize) -> T) -> T {
-        // the number of results alive; `compile` has seen to it that they suffice and fit
-        let mut alive = 0;
-        for instruction in &self.instructions {
-            let bottom = alive - instruction.operand_count();
-            stack[bottom] = match *instruction {
-                Instruction::Constant(value) => T::constant(value),
-                Instruction::Variable(position) => variable(position),
-                Instruction::Unary(UnaryOperator::Negate) => -stack[bottom],
-                Instruction::Unary(UnaryOperator::Not) => arithmetic::negation(stack[bottom]),
-                Instruction::Binary(operator) => {
-                    arithmetic::binary(operator, stack[bottom], stack[bottom + 1])
-                }
-                Instruction::WholePower(exponent) => arithmetic::whole_power(stack[bottom], exponent),
-                Instruction::OfOne(function) => arithmetic::of_one(function, stack[bottom]),
-                Instruction::OfTwo(function) => {
-                    arithmetic::of_two(function, stack[bottom], stack[bottom + 1])
-                }
-                Instruction::OfThree(function) => {
-                    arithmetic::of_three(function, stack[bottom], stack[bottom + 1], stack[bottom + 2])
-                }
-            };
-            alive = bottom + 1;
-        }
-        stack[0]
-    }
-}
-
-/// For each node, the function that joins it with the arguments before it: `min(a, b, c)` runs as
-/// `min(min(a, b), c)` while it is read, so that long lists need no deep stack.
-fn folds(expression: &Expression, first: usize, nodes: &[Node]) -> Vec<Option<Function>> {
-    let mut folds = vec![None; nodes.len()];
-    for node in nodes {
-        if let NodeKind::Call { name, arguments } = &node.kind
-            && let Some(entry) = FunctionEntry::find(name)
-            && matches!(entry.function, Function::Min | Function::Max)
-        {
-            for argument in arguments.iter().skip(1) {
-                debug_assert!(argument.index() < expression.nodes().len());
-                folds[argument.index() - first] = Some(entry.function);
-            }
-        }
-    }
-    folds
-}
-
-/// The instruction that stands for a node once its operands are on the stack.
-fn instruction_of(node: &Node, variables: &[&str]) -> Result<Option<Instruction>, ParseError> {
-    Ok(match &node.kind {
-        NodeKind::Number(number) => Some(Instruction::Constant(*number)),
-        NodeKind::Name(name) => Some(named(name, node.span, variables)?),
-        NodeKind::Unary { operator, .. } => Some(Instruction::Unary(*operator)),
-        NodeKind::Binary { operator, .. } => Some(Instruction::Binary(*operator)),
-        NodeKind::Call { name, arguments } => {
-            let span = Span::new(node.span.start, node.span.start + name.len());
-            called(name, arguments.len(), span, variables)?
-        }
-        NodeKind::Vector(components) => {
-            let found = Kind::Vector(components.len());
-            return Err(ParseError::WrongKind { found, wanted: Kind::Number, span: node.span });
-        }
-    })
-}
-
-fn named(name: &str, span: Span, variables: &[&str]) -> Result<Instruction, ParseError> {
-    if let Some(position) = variables.iter().position(|&variable| variable == name) {
-        return Ok(Instruction::Variable(position));
-    }
-    if let Some(&(_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
-        return Ok(Instruction::Constant(value));
-    }
-    if let Some(entry) = FunctionEntry::find(name) {
-        return Err(ParseError::WithoutArguments { name: name.to_owned(), usage: entry.usage, span });
-    }
-    let known = || variables.iter().copied().chain(CONSTANTS.iter().map(|(constant, _)| *constant));
-    Err(ParseError::UnknownName {
-        name: shortened(name),
-        nearest: souple_table::nearest(name, known()).map(str::to_owned),
-        known: known().map(str::to_owned).collect(),
-        span,
-    })
-}
-
-/// `None` for functions whose work is done argument by argument, see [`folds`].
-fn called(
-    name: &str,
-    argument_count: usize,
-    span: Span,
-    variables: &[&str],
-) -> Result<Option<Instruction>, ParseError> {
-    let Some(entry) = FunctionEntry::find(name) else {
-        if variables.contains(&name) || CONSTANTS.iter().any(|(constant, _)| *constant == name) {
-            return Err(ParseError::NotAFunction { name: name.to_owned(), span });
-        }
-        let known = || FUNCTIONS.iter().map(|entry| entry.name);
-        return Err(ParseError::UnknownFunction {
-            name: shortened(name),
-            nearest: souple_table::nearest(name, known()).map(str::to_owned),
-            known: known().map(str::to_owned).collect(),
-            span,
-        });
-    };
-    if !entry.arguments.accepts(argument_count) {
-        let (name, found) = (name.to_owned(), argument_count);
-        return Err(ParseError::WrongArgumentCount { name, found, usage: entry.usage, span });
-    }
-    Ok(match (entry.function, argument_count) {
-        (Function::Min | Function::Max, _) => None,
-        (function, 1) => Some(Instruction::OfOne(function)),
-        (function, 2) => Some(Instruction::OfTwo(function)),
-        (function, _) => Some(Instruction::OfThree(function)),
-    })
-}
-
-/// The beginning of a name, so that a message about a long one stays readable.
-fn shortened(name: &str) -> String {
-    name.chars().take(40).collect()
-}
-
-fn kind_of(kind: &NodeKind) -> Kind {
-    match kind {
-        NodeKind::Unary { operator: UnaryOperator::Not, .. } => Kind::Truth,
-        NodeKind::Binary { operator, .. } if is_logical(*operator) || operator.is_comparison() => Kind::Truth,
-        NodeKind::Vector(components) => Kind::Vector(components.len()),
-        _ => Kind::Number,
-    }
-}
-
-fn is_logical(operator: BinaryOperator) -> bool {
-    matches!(operator, BinaryOperator::And | BinaryOperator::Or)
-}
-
-/// What the operand at `position` must be.
-fn wanted_operand(kind: &NodeKind, position: usize) -> Kind {
-    match kind {
-        NodeKind::Unary { operator: UnaryOperator::Not, .. } => Kind::Truth,
-        NodeKind::Binary { operator, .. } if is_logical(*operator) => Kind::Truth,
-        NodeKind::Call { name, .. } => {
-            FunctionEntry::find(name).map_or(Kind::Number, |entry| entry.argument_kind(position))
-        }
-        _ => Kind::Number,
-    }
-}
-
-fn check_kind(node: &Node, wanted: Kind) -> Result<(), ParseError> {
-    let found = kind_of(&node.kind);
-    if found == wanted { Ok(()) } else { Err(ParseError::WrongKind { found, wanted, span: node.span }) }
 }

@@ -12,6 +12,7 @@ mod formula;
 mod function;
 mod lexer;
 mod parser;
+mod program;
 mod quantity;
 mod span;
 mod unit;

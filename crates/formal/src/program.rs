@@ -1,222 +1,320 @@
-//! A tree compiled to a flat program for a stack machine.
+//! Instructions for a stack machine: what a formula becomes once its names are known.
 //!
-//! Post-order is the order of evaluation, so compiling is one pass over the nodes: kinds checked, constant parts
-//! computed once, whole powers turned into products. Both sides of a choice are evaluated; there are no jumps.
+//! Running takes no memory from the allocator and gives the same bits everywhere. Both branches of `if`
+//! are evaluated and one is taken. Truth is kept as 1 and 0.
 
-use std::ops::Range;
+use crate::arithmetic::{self, Number};
+use crate::function::{CONSTANTS, FUNCTIONS, FunctionEntry};
+use crate::parser::DEEPEST;
+use crate::{
+    BinaryOperator, Expression, Function, Kind, Node, NodeId, NodeKind, ParseError, Span, UnaryOperator,
+};
 
-use crate::scalar::{Scalar, apply_one, apply_three, apply_two, integer_power, power};
-use crate::syntax::{BinaryOperator, Function, Kind, Node, NodeId, ParseError, ParseFault, Syntax};
-
-/// Largest whole exponent computed by products; beyond it `pow` is as fast.
-const LARGEST_PRODUCT_POWER: f64 = 16.0;
-
-/// Each nesting level holds back at most two values while its last operand is evaluated.
-const DEEPEST_STACK: usize = 2 * crate::NESTING_LIMIT + 2;
-
+/// One step of the stack machine: takes operands from the top, leaves its result there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Instruction {
     Constant(f64),
-    Variable(u32),
-    Negate,
-    Not,
+    Variable(usize),
+    Unary(UnaryOperator),
     Binary(BinaryOperator),
-    /// By a whole constant.
-    Power(i32),
-    Select,
-    One(Function),
-    Two(Function),
-    Three(Function),
+    WholePower(i32),
+    OfOne(Function),
+    OfTwo(Function),
+    OfThree(Function),
 }
 
-#[derive(Clone, Debug, PartialEq)]
+impl Instruction {
+    fn operand_count(self) -> usize {
+        match self {
+            Self::Constant(_) | Self::Variable(_) => 0,
+            Self::Unary(_) | Self::WholePower(_) | Self::OfOne(_) => 1,
+            Self::Binary(_) | Self::OfTwo(_) => 2,
+            Self::OfThree(_) => 3,
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
 pub(crate) struct Program {
     instructions: Vec<Instruction>,
-    /// Most values on the stack at a time.
-    depth: usize,
+    /// How many intermediate results are alive at once, at most.
+    stack: usize,
 }
+
+/// Enough for all but monstrous formulas, and quickly cleared.
+const USUAL_STACK: usize = 16;
+/// A level of nesting keeps at most two results waiting (of a function of three), and the last is evaluated.
+const LARGEST_STACK: usize = 2 * DEEPEST + 1;
+/// Whole powers up to this are products.
+const LARGEST_WHOLE_POWER: f64 = 8.0;
 
 impl Program {
-    /// The subtree under `root`, which must yield `wanted`.
-    pub fn compile(syntax: &Syntax, root: NodeId, wanted: Kind) -> Result<Self, ParseError> {
-        syntax.require_kind(root, wanted)?;
-        let nodes = syntax.subtree(root);
-        let mut compiler = Compiler { instructions: Vec::new(), held: 0, depth: 0 };
-        let folds = folds(syntax, nodes.clone());
-        for at in nodes.clone() {
-            compiler.node(syntax, syntax.nodes()[at]);
-            if let Some(function) = folds[at - nodes.start] {
-                compiler.join(Instruction::Two(function), 2);
+    /// The instructions of the subtree `root`, which must be of the wanted kind.
+    pub(crate) fn compile(
+        expression: &Expression,
+        root: NodeId,
+        wanted: Kind,
+        variables: &[&str],
+    ) -> Result<Self, ParseError> {
+        let range = expression.subtree(root);
+        let nodes = &expression.nodes()[range.clone()];
+        check_kind(expression.node(root), wanted)?;
+        let folds = folds(*range.start(), nodes);
+        let mut program = Self { instructions: Vec::new(), stack: 0 };
+        for (node, fold) in nodes.iter().zip(folds) {
+            for (position, operand) in node.kind.operands().enumerate() {
+                check_kind(expression.node(operand), wanted_operand(&node.kind, position))?;
             }
-            if compiler.depth > DEEPEST_STACK {
-                return Err(ParseError { span: syntax.span(root), fault: ParseFault::TooDeep });
+            if let Some(instruction) = instruction_of(node, variables)? {
+                program.push(instruction);
             }
-        }
-        Ok(Self { instructions: compiler.instructions, depth: compiler.depth })
-    }
-
-    /// The value, if it depends on no variable.
-    pub fn constant(&self) -> Option<f64> {
-        match self.instructions[..] {
-            [Instruction::Constant(value)] => Some(value),
-            _ => None,
-        }
-    }
-
-    pub fn depends_on(&self, variable: usize) -> bool {
-        self.instructions
-            .iter()
-            .any(|i| matches!(i, Instruction::Variable(index) if *index as usize == variable))
-    }
-
-    pub fn evaluate<S: Scalar>(&self, values: &[S]) -> S {
-        // a small stack is cheaper to clear, and most formulas fit the smallest
-        match self.depth {
-            0..=8 => run::<S, 8>(&self.instructions, values),
-            9..=32 => run::<S, 32>(&self.instructions, values),
-            _ => run::<S, DEEPEST_STACK>(&self.instructions, values),
-        }
-    }
-}
-
-fn run<S: Scalar, const DEPTH: usize>(instructions: &[Instruction], values: &[S]) -> S {
-    let mut stack = [S::constant(0.0); DEPTH];
-    // the topmost value is at `top - 1`
-    let mut top = 0;
-    for instruction in instructions {
-        match *instruction {
-            Instruction::Constant(value) => {
-                stack[top] = S::constant(value);
-                top += 1;
-            }
-            Instruction::Variable(index) => {
-                stack[top] = values[index as usize];
-                top += 1;
-            }
-            Instruction::Negate => stack[top - 1] = -stack[top - 1],
-            Instruction::Not => stack[top - 1] = truth(stack[top - 1].value() == 0.0),
-            Instruction::Power(exponent) => stack[top - 1] = integer_power(stack[top - 1], exponent),
-            Instruction::One(function) => stack[top - 1] = apply_one(function, stack[top - 1]),
-            Instruction::Binary(operator) => {
-                top -= 1;
-                stack[top - 1] = join(operator, stack[top - 1], stack[top]);
-            }
-            Instruction::Two(function) => {
-                top -= 1;
-                stack[top - 1] = apply_two(function, stack[top - 1], stack[top]);
-            }
-            Instruction::Three(function) => {
-                top -= 2;
-                stack[top - 1] = apply_three(function, stack[top - 1], stack[top], stack[top + 1]);
-            }
-            Instruction::Select => {
-                top -= 2;
-                let chosen = if stack[top - 1].value() != 0.0 { top } else { top + 1 };
-                stack[top - 1] = stack[chosen];
+            if let Some(function) = fold {
+                program.push(Instruction::OfTwo(function));
             }
         }
-    }
-    stack[0]
-}
-
-fn join<S: Scalar>(operator: BinaryOperator, a: S, b: S) -> S {
-    let (x, y) = (a.value(), b.value());
-    match operator {
-        BinaryOperator::Add => a + b,
-        BinaryOperator::Subtract => a - b,
-        BinaryOperator::Multiply => a * b,
-        BinaryOperator::Divide => a / b,
-        BinaryOperator::Power => power(a, b),
-        BinaryOperator::Or => truth(x != 0.0 || y != 0.0),
-        BinaryOperator::And => truth(x != 0.0 && y != 0.0),
-        BinaryOperator::Less => truth(x < y),
-        BinaryOperator::LessOrEqual => truth(x <= y),
-        BinaryOperator::Greater => truth(x > y),
-        BinaryOperator::GreaterOrEqual => truth(x >= y),
-        BinaryOperator::Equal => truth(x == y),
-        BinaryOperator::NotEqual => truth(x != y),
-    }
-}
-
-fn truth<S: Scalar>(holds: bool) -> S {
-    S::constant(if holds { 1.0 } else { 0.0 })
-}
-
-struct Compiler {
-    instructions: Vec<Instruction>,
-    /// Values on the stack after the instructions so far.
-    held: usize,
-    depth: usize,
-}
-
-impl Compiler {
-    fn node(&mut self, syntax: &Syntax, node: Node) {
-        match node {
-            Node::Number(value) => self.push(Instruction::Constant(value)),
-            Node::Constant(constant) => self.push(Instruction::Constant(constant.value())),
-            Node::Variable(index) => self.push(Instruction::Variable(index)),
-            Node::Negate(_) => self.join(Instruction::Negate, 1),
-            Node::Not(_) => self.join(Instruction::Not, 1),
-            Node::Binary { operator: BinaryOperator::Power, .. } => self.power(),
-            Node::Binary { operator, .. } => self.join(Instruction::Binary(operator), 2),
-            Node::Select { .. } => self.join(Instruction::Select, 3),
-            Node::Call { function: Function::Pow, .. } => self.power(),
-            // joined pair by pair behind its arguments
-            Node::Call { function: Function::Min | Function::Max, .. } => {}
-            Node::Call { function, arguments } => match syntax.arguments(arguments).len() {
-                1 => self.join(Instruction::One(function), 1),
-                2 => self.join(Instruction::Two(function), 2),
-                _ => self.join(Instruction::Three(function), 3),
-            },
-            Node::Vector(_) => unreachable!("kinds are checked: no vector stands inside a number"),
-        }
+        program.stack = program.measure_stack();
+        Ok(program)
     }
 
+    pub(crate) fn constant(value: f64) -> Self {
+        Self { instructions: vec![Instruction::Constant(value)], stack: 1 }
+    }
+
+    /// Whether the variable at `position` is used.
+    pub(crate) fn reads(&self, position: usize) -> bool {
+        self.instructions.contains(&Instruction::Variable(position))
+    }
+
+    /// Appends an instruction, or its result where all operands are known.
     fn push(&mut self, instruction: Instruction) {
+        let start = self.instructions.len() - instruction.operand_count();
+        let operands = &self.instructions[start..];
+        let known = operands.iter().all(|operand| matches!(operand, Instruction::Constant(_)));
+        if let (Instruction::Binary(BinaryOperator::Power) | Instruction::OfTwo(Function::Pow), false) =
+            (instruction, known)
+            && let Some(&Instruction::Constant(exponent)) = operands.last()
+            && exponent.fract() == 0.0
+            && exponent.abs() <= LARGEST_WHOLE_POWER
+        {
+            self.instructions.pop();
+            self.instructions.push(Instruction::WholePower(exponent as i32));
+            return;
+        }
         self.instructions.push(instruction);
-        self.held += 1;
-        self.depth = self.depth.max(self.held);
-    }
-
-    /// An operation on the `count` topmost values; done at once where they are constants.
-    fn join(&mut self, instruction: Instruction, count: usize) {
-        self.instructions.push(instruction);
-        self.held -= count - 1;
-        // as many values come from as many instructions or more
-        let first = self.instructions.len() - 1 - count;
-        let (tail, operands) = (&self.instructions[first..], first..first + count);
-        if self.instructions[operands].iter().all(|operand| matches!(operand, Instruction::Constant(_))) {
-            let value = run::<f64, 4>(tail, &[]);
-            self.instructions.truncate(first);
+        if known && instruction.operand_count() > 0 {
+            let instructions = self.instructions.split_off(start);
+            let value = Self { instructions, stack: USUAL_STACK }.run(|_| f64::NAN);
             self.instructions.push(Instruction::Constant(value));
         }
     }
 
-    fn power(&mut self) {
-        match self.instructions.last() {
-            Some(Instruction::Constant(exponent))
-                if exponent.abs() <= LARGEST_PRODUCT_POWER && exponent.fract() == 0.0 =>
-            {
-                let exponent = *exponent as i32;
-                self.instructions.pop();
-                self.held -= 1;
-                self.join(Instruction::Power(exponent), 1);
-            }
-            _ => self.join(Instruction::Binary(BinaryOperator::Power), 2),
+    fn measure_stack(&self) -> usize {
+        let mut alive: usize = 0;
+        let heights = self.instructions.iter().map(|instruction| {
+            alive = alive + 1 - instruction.operand_count();
+            alive
+        });
+        heights.max().unwrap_or(0)
+    }
+
+    /// The result, with the variables as given; truth is 1 or 0.
+    pub(crate) fn run<T: Number>(&self, variable: impl Fn(usize) -> T) -> T {
+        if self.stack <= USUAL_STACK {
+            self.run_on(&mut [T::constant(0.0); USUAL_STACK], variable)
+        } else {
+            self.run_on(&mut [T::constant(0.0); LARGEST_STACK], variable)
         }
+    }
+
+    #[inline(always)]
+    fn run_on<T: Number>(&self, stack: &mut [T], variable: impl Fn(usize) -> T) -> T {
+        // the number of results alive; `compile` has seen to it that they suffice and fit
+        let mut alive = 0;
+        for instruction in &self.instructions {
+            let bottom = alive - instruction.operand_count();
+            stack[bottom] = match *instruction {
+                Instruction::Constant(value) => T::constant(value),
+                Instruction::Variable(position) => variable(position),
+                Instruction::Unary(UnaryOperator::Negate) => -stack[bottom],
+                Instruction::Unary(UnaryOperator::Not) => arithmetic::negation(stack[bottom]),
+                Instruction::Binary(operator) => {
+                    arithmetic::binary(operator, stack[bottom], stack[bottom + 1])
+                }
+                Instruction::WholePower(exponent) => arithmetic::whole_power(stack[bottom], exponent),
+                Instruction::OfOne(function) => arithmetic::of_one(function, stack[bottom]),
+                Instruction::OfTwo(function) => {
+                    arithmetic::of_two(function, stack[bottom], stack[bottom + 1])
+                }
+                Instruction::OfThree(function) => {
+                    arithmetic::of_three(function, stack[bottom], stack[bottom + 1], stack[bottom + 2])
+                }
+            };
+            alive = bottom + 1;
+        }
+        stack[0]
     }
 }
 
-/// For each node the function that joins it to its elder sibling: `min(a, b, c)` runs as `a b min c min`, so that
-/// a list of any length needs two places on the stack.
-fn folds(syntax: &Syntax, nodes: Range<usize>) -> Vec<Option<Function>> {
+/// For each node, the function that joins it with the arguments before it: `min(a, b, c)` runs as
+/// `min(min(a, b), c)` while it is read, so that long lists need no deep stack.
+fn folds(first: usize, nodes: &[Node]) -> Vec<Option<Function>> {
     let mut folds = vec![None; nodes.len()];
-    for node in &syntax.nodes()[nodes.clone()] {
-        if let Node::Call { function: function @ (Function::Min | Function::Max), arguments } = *node {
-            for argument in &syntax.arguments(arguments)[1..] {
-                folds[argument.index() - nodes.start] = Some(function);
+    for node in nodes {
+        if let NodeKind::Call { name, arguments } = &node.kind
+            && let Some(entry) = FunctionEntry::find(name)
+            && matches!(entry.function, Function::Min | Function::Max)
+        {
+            for argument in arguments.iter().skip(1) {
+                folds[argument.index() - first] = Some(entry.function);
             }
         }
     }
     folds
+}
+
+/// The instruction that stands for a node once its operands are on the stack.
+fn instruction_of(node: &Node, variables: &[&str]) -> Result<Option<Instruction>, ParseError> {
+    Ok(match &node.kind {
+        NodeKind::Number(number) => Some(Instruction::Constant(*number)),
+        NodeKind::Name(name) => Some(named(name, node.span, variables)?),
+        NodeKind::Unary { operator, .. } => Some(Instruction::Unary(*operator)),
+        NodeKind::Binary { operator, .. } => Some(Instruction::Binary(*operator)),
+        NodeKind::Call { name, arguments } => {
+            let span = Span::new(node.span.start, node.span.start + name.len());
+            called(name, arguments.len(), span, variables)?
+        }
+        NodeKind::Vector(components) => {
+            let found = Kind::Vector(components.len());
+            return Err(ParseError::WrongKind { found, wanted: Kind::Number, span: node.span });
+        }
+    })
+}
+
+fn named(name: &str, span: Span, variables: &[&str]) -> Result<Instruction, ParseError> {
+    if let Some(position) = variables.iter().position(|&variable| variable == name) {
+        return Ok(Instruction::Variable(position));
+    }
+    if let Some(&(_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
+        return Ok(Instruction::Constant(value));
+    }
+    if let Some(entry) = FunctionEntry::find(name) {
+        return Err(ParseError::WithoutArguments { name: name.to_owned(), usage: entry.usage, span });
+    }
+    let known = || variables.iter().copied().chain(CONSTANTS.iter().map(|(constant, _)| *constant));
+    Err(ParseError::UnknownName {
+        name: shortened(name),
+        nearest: souple_table::nearest(name, known()).map(str::to_owned),
+        known: known().map(str::to_owned).collect(),
+        span,
+    })
+}
+
+/// `None` for functions whose work is done argument by argument, see [`folds`].
+fn called(
+    name: &str,
+    argument_count: usize,
+    span: Span,
+    variables: &[&str],
+) -> Result<Option<Instruction>, ParseError> {
+    let Some(entry) = FunctionEntry::find(name) else {
+        if variables.contains(&name) || CONSTANTS.iter().any(|(constant, _)| *constant == name) {
+            return Err(ParseError::NotAFunction { name: name.to_owned(), span });
+        }
+        let known = || FUNCTIONS.iter().map(|entry| entry.name);
+        return Err(ParseError::UnknownFunction {
+            name: shortened(name),
+            nearest: souple_table::nearest(name, known()).map(str::to_owned),
+            known: known().map(str::to_owned).collect(),
+            span,
+        });
+    };
+    if !entry.arguments.accepts(argument_count) {
+        let (name, found) = (name.to_owned(), argument_count);
+        return Err(ParseError::WrongArgumentCount { name, found, usage: entry.usage, span });
+    }
+    Ok(match (entry.function, argument_count) {
+        (Function::Min | Function::Max, _) => None,
+        (function, 1) => Some(Instruction::OfOne(function)),
+        (function, 2) => Some(Instruction::OfTwo(function)),
+        (function, _) => Some(Instruction::OfThree(function)),
+    })
+}
+
+/// The beginning of a name, so that a message about a long one stays readable.
+fn shortened(name: &str) -> String {
+    name.chars().take(40).collect()
+}
+
+pub(crate) fn kind_of(kind: &NodeKind) -> Kind {
+    match kind {
+        NodeKind::Unary { operator: UnaryOperator::Not, .. } => Kind::Truth,
+        NodeKind::Binary { operator, .. } if is_logical(*operator) || operator.is_comparison() => Kind::Truth,
+        NodeKind::Vector(components) => Kind::Vector(components.len()),
+        _ => Kind::Number,
+    }
+}
+
+fn is_logical(operator: BinaryOperator) -> bool {
+    matches!(operator, BinaryOperator::And | BinaryOperator::Or)
+}
+
+/// What the operand at `position` must be.
+fn wanted_operand(kind: &NodeKind, position: usize) -> Kind {
+    match kind {
+        NodeKind::Unary { operator: UnaryOperator::Not, .. } => Kind::Truth,
+        NodeKind::Binary { operator, .. } if is_logical(*operator) => Kind::Truth,
+        NodeKind::Call { name, .. } => {
+            FunctionEntry::find(name).map_or(Kind::Number, |entry| entry.argument_kind(position))
+        }
+        _ => Kind::Number,
+    }
+}
+
+fn check_kind(node: &Node, wanted: Kind) -> Result<(), ParseError> {
+    let found = kind_of(&node.kind);
+    if found == wanted { Ok(()) } else { Err(ParseError::WrongKind { found, wanted, span: node.span }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const VARIABLES: &[&str] = &["x", "y", "t"];
+
+    fn compiled(text: &str, variables: &[&str]) -> Program {
+        let expression = Expression::parse(text).unwrap();
+        Program::compile(&expression, expression.root(), Kind::Number, variables).unwrap()
+    }
+
+    fn run(program: &Program, values: &[f64]) -> f64 {
+        program.run(|position| values[position])
+    }
+
+    /// What is known while compiling is computed there; a variable goes before a constant of its name.
+    #[test]
+    fn constants_fold() {
+        let shadowed = compiled("e + 1", &["e"]);
+        assert_eq!(run(&shadowed, &[4.0]), 5.0);
+        assert_eq!(run(&Program::constant(-2.5), &[]), -2.5);
+        let folded = compiled("max(1, 2, min(5, 3)) - 2^10", &[]);
+        assert_eq!(folded.instructions, [Instruction::Constant(-1021.0)]);
+        let power = compiled("x^(4 - 1)", VARIABLES);
+        assert_eq!(power.instructions, [Instruction::Variable(0), Instruction::WholePower(3)]);
+    }
+
+    /// The stack holds the deepest formula that parses, and long lists need no more than short ones.
+    #[test]
+    fn deep_and_long_formulas() {
+        let depth = DEEPEST - 1;
+        let nested = format!("{}x{}", "clamp(y, x, ".repeat(depth), ")".repeat(depth));
+        let formula = compiled(&nested, VARIABLES);
+        assert_eq!(formula.stack, 2 * depth + 1);
+        assert!(formula.stack <= LARGEST_STACK);
+        assert_eq!(run(&formula, &[3.0, 2.0, 0.0]), 3.0);
+        let list = format!("max(x{})", ", y".repeat(10_000));
+        let formula = compiled(&list, VARIABLES);
+        assert_eq!((formula.stack, run(&formula, &[3.0, 2.0, 0.0])), (2, 3.0));
+        let sum = compiled(&format!("x{}", "+x".repeat(10_000)), VARIABLES);
+        assert_eq!(run(&sum, &[1.0, 0.0, 0.0]), 10_001.0);
+    }
 }

@@ -1,56 +1,49 @@
-//! Places in a text, and how they are shown to the one who wrote it.
+//! Places in a text, so that an error can point at what it is about.
 
-/// Bytes `start..end` of a text.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+use std::fmt;
+
+/// A half-open range of bytes in the text that was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
+    /// The first byte.
     pub start: usize,
+    /// The byte after the last one.
     pub end: usize,
 }
 
-/// Characters shown on either side of a place in a long line.
-const WINDOW: usize = 60;
+/// Characters shown on either side of an underlined place: a line of a terminal in all.
+const CONTEXT: usize = 36;
 
 impl Span {
-    pub const fn new(start: usize, end: usize) -> Self {
+    pub fn new(start: usize, end: usize) -> Self {
         Self { start, end }
     }
 
-    /// The part of `text` this span covers; empty where it does not fit the text.
-    pub fn of(self, text: &str) -> &str {
-        text.get(self.start..self.end).unwrap_or("")
+    /// From the first byte of `self` to the last of `other`.
+    pub fn to(self, other: Self) -> Self {
+        Self::new(self.start, other.end)
     }
 
-    /// The line of `text` the span starts on, long lines cut, with `^^^` below the span.
-    pub fn underlined(self, text: &str) -> String {
-        let start = text.floor_char_boundary(self.start);
-        let end = text.ceil_char_boundary(self.end.max(start));
-        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
-        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
-        let end = end.min(line_end);
+    /// The characters covered, or nothing where the span does not belong to `text`.
+    pub fn of(self, text: &str) -> &str {
+        text.get(self.start..self.end).unwrap_or_default()
+    }
 
-        let before = &text[line_start..start];
-        let shown_from =
-            before.char_indices().rev().nth(WINDOW - 1).map_or(line_start, |(at, _)| line_start + at);
-        let shown_to =
-            text[start..line_end].char_indices().nth(WINDOW).map_or(line_end, |(at, _)| start + at);
-        let cut_before = if shown_from > line_start { "…" } else { "" };
-        let cut_after = if shown_to < line_end { "…" } else { "" };
-
-        // tabs and control characters would shift the marks
-        let shown: String =
-            text[shown_from..shown_to].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let indent = cut_before.chars().count() + text[shown_from..start].chars().count();
-        let marks = text[start..end.min(shown_to)].chars().count().max(1);
-        format!("{cut_before}{shown}{cut_after}\n{}{}", " ".repeat(indent), "^".repeat(marks))
+    /// Two lines: the surroundings of the place in `text`, and carets under it.
+    pub fn underline(self, text: &str) -> String {
+        let line_start = text.get(..self.start).and_then(|before| before.rfind('\n')).map_or(0, |at| at + 1);
+        let line = text.get(line_start..).unwrap_or_default().lines().next().unwrap_or_default();
+        let column = text.get(line_start..self.start).map_or(0, |before| before.chars().count());
+        let width = self.of(text).lines().next().unwrap_or_default().chars().count().clamp(1, CONTEXT);
+        let skipped = column.saturating_sub(CONTEXT);
+        let shown: String = line.chars().skip(skipped).take(column - skipped + width + CONTEXT).collect();
+        format!("{shown}\n{}{}", " ".repeat(column - skipped), "^".repeat(width))
     }
 }
 
-/// At most 32 characters of `text`, for quoting what was read.
-pub(crate) fn shortened(text: &str) -> String {
-    const LONGEST: usize = 32;
-    match text.char_indices().nth(LONGEST) {
-        None => text.to_owned(),
-        Some((cut, _)) => format!("{}…", &text[..cut]),
+impl fmt::Display for Span {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "byte {}", self.start)
     }
 }
 
@@ -58,15 +51,16 @@ pub(crate) fn shortened(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// The marks stand below the characters meant, whatever their width in bytes and the line's length.
+    /// The carets stand under the place, counted in characters, also in a long text and at its end.
     #[test]
-    fn marks_stand_below_the_span() {
-        assert_eq!(Span::new(4, 7).underlined("1 + sim(x)"), "1 + sim(x)\n    ^^^");
-        assert_eq!(Span::new(3, 4).underlined("µ\n+?"), "+?\n^");
-        assert_eq!(Span::new(2, 3).underlined("µ?"), "µ?\n ^");
-        assert_eq!(Span::new(9, 12).underlined("a"), "a\n ^");
-        let long = "x".repeat(1000);
-        let picture = Span::new(500, 501).underlined(&long);
-        assert_eq!(picture, format!("…{}…\n{}^", "x".repeat(120), " ".repeat(61)));
+    fn underline_points_at_the_place() {
+        assert_eq!(Span::new(4, 7).underline("1 + foo * 2"), "1 + foo * 2\n    ^^^");
+        assert_eq!(Span::new(4, 5).underline("µµ x"), "µµ x\n  ^");
+        assert_eq!(Span::new(3, 3).underline("1 +"), "1 +\n   ^");
+        assert_eq!(Span::new(2, 3).underline("a\nb\nc"), "b\n^");
+        let long = format!("{}!{}", "a".repeat(500), "b".repeat(500));
+        let expected = format!("{}!{}\n{}^", "a".repeat(36), "b".repeat(36), " ".repeat(36));
+        assert_eq!(Span::new(500, 501).underline(&long), expected);
+        assert_eq!(Span::new(50, 90).underline("short"), "short\n^");
     }
 }

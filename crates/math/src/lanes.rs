@@ -43,6 +43,17 @@ impl<S: Simd> Lanes<S> {
         self.values
     }
 
+    /// The numbers side by side.
+    #[inline(always)]
+    pub fn as_slice(&self) -> &[f64] {
+        bytemuck::cast_slice(std::slice::from_ref(&self.values))
+    }
+
+    #[inline(always)]
+    pub fn as_mut_slice(&mut self) -> &mut [f64] {
+        bytemuck::cast_slice_mut(std::slice::from_mut(&mut self.values))
+    }
+
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
         let mut values = self.values;

@@ -140,6 +140,12 @@ impl<R: Real> Mat3<R> {
         Self { columns: [column(other.columns[0]), column(other.columns[1]), column(other.columns[2])] }
     }
 
+    /// `Aᵀ u` without forming the transpose.
+    #[inline(always)]
+    pub fn transpose_apply(&self, u: Vec3<R>) -> Vec3<R> {
+        Vec3::new(self.columns[0].dot(u), self.columns[1].dot(u), self.columns[2].dot(u))
+    }
+
     /// `A Bᵀ` without forming the transpose.
     #[inline(always)]
     pub fn mul_transpose(&self, other: &Self) -> Self {

@@ -121,6 +121,11 @@ impl LuSolver {
         Ok(())
     }
 
+    /// Bytes of the structure and the values that are factorised; the factor itself is not accessible.
+    pub fn bytes(&self) -> usize {
+        12 * self.values.len() + 4 * self.column_starts.len()
+    }
+
     /// `b ← A⁻¹ b`.
     ///
     /// # Errors

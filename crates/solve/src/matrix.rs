@@ -64,7 +64,7 @@ impl BlockMatrix {
 
     /// Block `(row, row)`.
     pub fn diagonal_block(&self, row: usize) -> Mat3 {
-        self.block(row, row)
+        self.values[self.diagonal_slot(row)]
     }
 
     /// `A += s B`.
@@ -127,6 +127,36 @@ impl BlockMatrix {
         Ok(())
     }
 
+    /// [`BlockMatrix::constrain`] for the blocks named alone, each with its projector: the way for few among
+    /// many. A block may be named more than once; its projectors then act one after the other.
+    ///
+    /// # Errors
+    /// A block is not one of the matrix; those named before it are constrained.
+    pub fn constrain_blocks(
+        &mut self,
+        constrained: impl IntoIterator<Item = (usize, Mat3)>,
+        scale: f64,
+    ) -> Result<(), SolveError> {
+        for (row, S) in constrained {
+            let expected = self.pattern.block_count();
+            if row >= expected {
+                return Err(SolveError::Length { what: "the constraints", given: row + 1, expected });
+            }
+            for slot in self.pattern.slots(row) {
+                let column = self.pattern.columns()[slot] as usize;
+                if column == row {
+                    self.values[slot] = S * self.values[slot] * S + (Mat3::IDENTITY - S) * scale;
+                } else {
+                    // A_rc ← S A_rc,  A_cr ← A_cr S
+                    self.values[slot] = S * self.values[slot];
+                    let mirror = self.pattern.slot(column, row).expect("patterns are symmetric");
+                    self.values[mirror] = self.values[mirror] * S;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Mean of the diagonal entries; 0 for a matrix without rows.
     pub fn mean_diagonal(&self) -> f64 {
         let rows = self.pattern.block_count();
@@ -153,9 +183,16 @@ impl BlockMatrix {
     /// Names the first row with an entry that is infinite or not a number.
     pub fn check_finite(&self) -> Result<(), SolveError> {
         // a sum is finite only if all its terms are: one quick pass before looking for the place
-        let probe: f64 =
-            bytemuck::cast_slice::<Mat3, f64>(&self.values).iter().map(|entry| entry * 0.0).sum();
-        if probe == 0.0 {
+        let mut probes = [0.0; 16];
+        let sixteens = bytemuck::cast_slice::<Mat3, f64>(&self.values).chunks_exact(16);
+        let rest: f64 = sixteens.remainder().iter().map(|entry| entry * 0.0).sum();
+        for sixteen in sixteens {
+            // sixteen sums, so that the additions need not wait for each other
+            for (probe, entry) in probes.iter_mut().zip(sixteen) {
+                *probe += entry * 0.0;
+            }
+        }
+        if probes.iter().sum::<f64>() + rest == 0.0 {
             return Ok(());
         }
         let bad_row = |row: &usize| self.pattern.slots(*row).any(|slot| !self.values[slot].is_finite());
@@ -189,7 +226,7 @@ impl BlockMatrix {
     }
 
     fn diagonal_slot(&self, row: usize) -> usize {
-        self.pattern.slot(row, row).expect("the diagonal is part of every pattern")
+        self.pattern.diagonal_slot(row)
     }
 
     /// Rows `first ..` of `A x` into `y`.

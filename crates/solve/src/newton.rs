@@ -89,7 +89,8 @@ pub enum Stop {
     /// No fraction of the step was an improvement: usually the tangent is wrong or the tolerance is below
     /// rounding.
     NoDecrease,
-    /// The direction climbs: the tangent is not positive definite.
+    /// The direction climbs: the tangent is not positive definite. Without a merit function: the direction
+    /// is not finite.
     NotDescent,
     /// The residual of the first configuration is not finite or not admissible.
     BadStart,
@@ -179,10 +180,8 @@ pub fn newton<P: NewtonProblem + ?Sized>(
         linear_iterations += problem.direction(r, d)?.map_or(0, |report| report.iterations);
         // ∂Φ/∂q · d = −r · d
         let slope = -reduce::dot(r, d);
-        let stop =
-            if slope.is_finite() && (merit.is_none() || slope < 0.0) { None } else { Some(Stop::NotDescent) };
-        if let Some(stop) = stop {
-            return Ok(report(iteration, linear_iterations, norm, stop));
+        if !(slope.is_finite() && (merit.is_none() || slope < 0.0)) {
+            return Ok(report(iteration, linear_iterations, norm, Stop::NotDescent));
         }
 
         let mut fraction = 1.0;

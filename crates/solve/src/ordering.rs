@@ -1,7 +1,7 @@
 //! Orders of elimination that keep a factor sparse.
 //!
 //! Nested dissection: a separator is eliminated after the two sides it parts (George 1973). Thin bodies do as
-//! well with a plain sweep along their length; [`best`] counts the work of both and takes the lesser.
+//! well with a plain sweep along their length; [`best`] counts the work of all and takes the least.
 
 use faer::Side;
 use faer::sparse::SymbolicSparseColMatRef;
@@ -35,21 +35,26 @@ pub(crate) fn best(pattern: &Pattern, coordinates: Option<&[Vec3]>) -> Result<Or
             return Err(SolveError::NotFinite { what: "a coordinate", block });
         }
     }
-    let candidates = match coordinates {
-        Some(coordinates) => [
+    let by_coupling = nested_dissection(pattern, &mut ByCoupling::new(pattern));
+    let mut best = Order { work: elimination_work(pattern, &by_coupling)?, blocks: by_coupling };
+    let others = match coordinates {
+        Some(coordinates) => vec![
             nested_dissection(pattern, &mut Geometric { coordinates }),
             sweep_along_longest_axis(coordinates),
         ],
         None => {
             let mut blocks = natural(pattern);
             ByCoupling::new(pattern).sweep(&mut blocks);
-            [nested_dissection(pattern, &mut ByCoupling::new(pattern)), blocks]
+            vec![blocks]
         }
     };
-    let [dissection, sweep] = candidates;
-    let dissection = Order { work: elimination_work(pattern, &dissection)?, blocks: dissection };
-    let sweep = Order { work: elimination_work(pattern, &sweep)?, blocks: sweep };
-    Ok(if sweep.work < dissection.work { sweep } else { dissection })
+    for blocks in others {
+        let work = elimination_work(pattern, &blocks)?;
+        if work < best.work {
+            best = Order { blocks, work };
+        }
+    }
+    Ok(best)
 }
 
 fn natural(pattern: &Pattern) -> Vec<u32> {

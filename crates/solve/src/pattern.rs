@@ -10,6 +10,8 @@ pub struct Pattern {
     row_starts: Vec<u32>,
     /// Column of each slot.
     columns: Vec<u32>,
+    /// Slot of each diagonal block.
+    diagonal: Vec<u32>,
 }
 
 /// Collects groups of blocks that are coupled to each other: the nodes of an element, the ends of a link.
@@ -47,6 +49,7 @@ impl PatternBuilder {
         let incidence = self.incidence();
         let mut row_starts = Vec::with_capacity(self.block_count + 1);
         let mut columns = Vec::new();
+        let mut diagonal = Vec::with_capacity(self.block_count);
         row_starts.push(0);
         let mut row_of_last_visit = vec![u32::MAX; self.block_count];
         for row in 0..self.block_count {
@@ -64,9 +67,11 @@ impl PatternBuilder {
             let end =
                 u32::try_from(columns.len()).map_err(|_| SolveError::TooLarge { blocks: columns.len() })?;
             row_starts.push(end);
+            let place = columns[start..].partition_point(|&column| (column as usize) < row);
+            diagonal.push((start + place) as u32);
         }
         columns.shrink_to_fit();
-        Ok(Pattern { row_starts, columns })
+        Ok(Pattern { row_starts, columns, diagonal })
     }
 
     /// The cliques each block is in, in order of declaration.
@@ -162,9 +167,15 @@ impl Pattern {
         self.columns[slots.clone()].binary_search(&(column as u32)).ok().map(|place| slots.start + place)
     }
 
+    /// Where block `(row, row)` is stored.
+    #[inline]
+    pub fn diagonal_slot(&self, row: usize) -> usize {
+        self.diagonal[row] as usize
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (self.row_starts.len() + self.columns.len())
+        4 * (self.row_starts.len() + self.columns.len() + self.diagonal.len())
     }
 }
 

@@ -1,8 +1,8 @@
 //! The linear solvers by name, for scene files.
 //!
 //! A [`LinearSolver`] is built for a pattern, updated with each new matrix, and asked to solve. `auto` takes
-//! the direct factor where that is cheaper than some hundred products with the matrix (small or thin bodies,
-//! chains) and conjugate gradients with `rigid_modes` otherwise.
+//! the direct factor where the matrix is stiff and a factor is cheaper than some hundred products with it
+//! (small or thin bodies, chains), and conjugate gradients otherwise.
 
 use std::sync::Arc;
 
@@ -13,9 +13,10 @@ use crate::krylov::{
     BicgstabWorkspace, ConjugateGradientWorkspace, GmresWorkspace, Report, Settings, Stop, bicgstab,
     conjugate_gradient, gmres,
 };
-use crate::precondition::{self, Geometry};
+use crate::precondition::{self, BlockRole, Choice, Geometry, weight_of_the_diagonal};
 use crate::{
-    BlockMatrix, DirectSolver, LinearOperator, Pattern, Preconditioner, SolveError, ordering, reduce,
+    BlockMatrix, DirectSolver, LinearOperator, LuSolver, Pattern, Preconditioner, SolveError, ordering,
+    reduce,
 };
 
 /// What a solver asks of the matrix.
@@ -42,7 +43,12 @@ pub trait LinearSolver: Send + Sync {
     fn rebuild(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError>;
 
     /// Takes note of new places of the blocks; counts from the next update.
-    fn follow(&mut self, _coordinates: &[Vec3]) {}
+    ///
+    /// # Errors
+    /// The places do not fit or are not finite; the old ones stay.
+    fn follow(&mut self, _coordinates: &[Vec3]) -> Result<(), SolveError> {
+        Ok(())
+    }
 
     /// Solves `A x = b` from the `x` given; `operator` is the matrix of the last update, stored or not.
     ///
@@ -74,7 +80,7 @@ pub type BuildSolver = fn(&Values, &BlockMatrix, Geometry<'_>) -> Result<Box<dyn
 
 /// All linear solvers.
 pub static TABLE: Table<Build> =
-    Table { kind: "solver", entries: &[&AUTO, &CONJUGATE_GRADIENT, &DIRECT, &GMRES, &BICGSTAB] };
+    Table { kind: "solver", entries: &[&AUTO, &CONJUGATE_GRADIENT, &DIRECT, &LU, &GMRES, &BICGSTAB] };
 
 const TOLERANCE: Parameter =
     Parameter::number("tolerance", "", Range::open(0.0, 1.0), "wanted true residual |b - A x| / |b|")
@@ -83,27 +89,49 @@ const MAX_ITERATIONS: Parameter =
     Parameter::integer("max_iterations", Range::at_least(1.0), "iterations before giving up")
         .or(Value::Integer(10_000));
 const PRECONDITIONERS: &[&str] =
-    &["rigid_modes", "incomplete_cholesky", "block_jacobi", "lagged_factor", "none"];
+    &["auto", "rigid_modes", "incomplete_cholesky", "block_jacobi", "lagged_factor", "none"];
 const PRECONDITIONER: Parameter =
-    Parameter::choice("preconditioner", PRECONDITIONERS, "what makes iterations few")
-        .or(Value::Text("rigid_modes"));
+    Parameter::choice("preconditioner", PRECONDITIONERS, "what makes iterations few").or(Value::Text("auto"));
 const GENERAL_PRECONDITIONER: Parameter =
     Parameter::choice("preconditioner", PRECONDITIONERS, "what makes iterations few; symmetric part only")
         .or(Value::Text("block_jacobi"));
 
 static AUTO: Entry<Build> = Entry {
     name: "auto",
-    summary: "direct where a factor is cheap (small or thin), cg with rigid_modes otherwise",
+    summary: "direct where the matrix is stiff and a factor cheap (small or thin bodies), cg otherwise",
     source: "measured on the reference bar (examples/beam.rs)",
-    parameters: &[TOLERANCE, MAX_ITERATIONS],
+    parameters: &[TOLERANCE, MAX_ITERATIONS, PRECONDITIONER],
     build: Build {
         needs: Needs::PositiveDefinite,
         build: |values, matrix, geometry| {
-            let order = ordering::best(matrix.pattern(), geometry.coordinates)?;
-            if order.work * WORK_PER_BLOCK <= WORTH_A_FACTOR * 9.0 * matrix.pattern().slot_count() as f64 {
-                return build_direct(values, matrix, order);
-            }
-            build_cg("rigid_modes", values, matrix, geometry)
+            let mut auto = Auto {
+                values: values.clone(),
+                pattern: Arc::clone(matrix.pattern()),
+                coordinates: geometry.coordinates.map(<[Vec3]>::to_vec),
+                roles: geometry.roles.map(<[BlockRole]>::to_vec),
+                worth: None,
+                direct: None,
+                iterative: None,
+                is_direct: false,
+                per_row: Vec::new(),
+            };
+            auto.update(matrix)?;
+            Ok(Box::new(auto))
+        },
+    },
+};
+
+static LU: Entry<Build> = Entry {
+    name: "lu",
+    summary: "sparse LU factor with partial pivoting, for tangents that are not symmetric; several times `direct`",
+    source: "kernels and order: faer",
+    parameters: &[TOLERANCE],
+    build: Build {
+        needs: Needs::Regular,
+        build: |values, matrix, _| {
+            let mut solver = LuSolver::analyse(matrix.pattern())?;
+            solver.factorize(matrix)?;
+            Ok(Box::new(Direct::new("lu", Factors::Lu(solver), values, matrix.block_count())))
         },
     },
 };
@@ -214,8 +242,97 @@ fn build_direct(
 ) -> Result<Box<dyn LinearSolver>, SolveError> {
     let mut solver = DirectSolver::with_order(crate::direct::Factor::Cholesky, matrix.pattern(), order)?;
     solver.factorize(matrix)?;
-    let residual = vec![Vec3::ZERO; matrix.block_count()];
-    Ok(Box::new(Direct { solver, residual, tolerance: values.number("tolerance") }))
+    Ok(Box::new(Direct::new("direct", Factors::Cholesky(solver), values, matrix.block_count())))
+}
+
+/// Chooses for each matrix anew, from its numbers alone.
+struct Auto {
+    values: Values,
+    pattern: Arc<Pattern>,
+    coordinates: Option<Vec<Vec3>>,
+    roles: Option<Vec<BlockRole>>,
+    /// Whether a factor is cheap on this pattern, once asked.
+    worth: Option<bool>,
+    direct: Option<Box<dyn LinearSolver>>,
+    iterative: Option<Box<dyn LinearSolver>>,
+    /// What serves the last matrix.
+    is_direct: bool,
+    per_row: Vec<f64>,
+}
+
+/// Systems of fewer blocks are factorised whatever the weight of their diagonal.
+const TINY: usize = 64;
+
+impl Auto {
+    fn current(&mut self) -> Option<&mut Box<dyn LinearSolver>> {
+        if self.is_direct { self.direct.as_mut() } else { self.iterative.as_mut() }
+    }
+
+    fn prefers_direct(&mut self, matrix: &BlockMatrix) -> Result<bool, SolveError> {
+        if self.pattern.block_count() < TINY {
+            return Ok(true);
+        }
+        let weight = weight_of_the_diagonal(matrix, &mut self.per_row);
+        if Choice::by_weight(weight) != Choice::RigidModes {
+            return Ok(false);
+        }
+        let worth = match self.worth {
+            Some(worth) => worth,
+            None => direct_is_worth_it(&self.pattern, self.coordinates.as_deref())?,
+        };
+        self.worth = Some(worth);
+        Ok(worth)
+    }
+}
+
+impl LinearSolver for Auto {
+    fn update(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
+        crate::matrix::check_pattern(&self.pattern, matrix.pattern())?;
+        self.is_direct = self.prefers_direct(matrix)?;
+        if let Some(solver) = self.current() {
+            return solver.update(matrix);
+        }
+        let geometry = Geometry { coordinates: self.coordinates.as_deref(), roles: self.roles.as_deref() };
+        if self.is_direct {
+            let order = ordering::best(&self.pattern, geometry.coordinates)?;
+            self.direct = Some(build_direct(&self.values, matrix, order)?);
+        } else {
+            let preconditioner = preconditioner_name(&self.values);
+            self.iterative = Some(build_cg(preconditioner, &self.values, matrix, geometry)?);
+        }
+        Ok(())
+    }
+
+    fn rebuild(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
+        self.update(matrix)?;
+        self.current().map_or(Ok(()), |solver| solver.rebuild(matrix))
+    }
+
+    fn follow(&mut self, coordinates: &[Vec3]) -> Result<(), SolveError> {
+        self.iterative.as_mut().map_or(Ok(()), |solver| solver.follow(coordinates))
+    }
+
+    fn solve(
+        &mut self,
+        operator: &dyn LinearOperator,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Report, SolveError> {
+        match self.current() {
+            Some(solver) => solver.solve(operator, b, x),
+            None => Err(SolveError::NoFactor { method: "auto" }),
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        if self.is_direct { "direct" } else { "cg" }
+    }
+
+    fn bytes(&self) -> usize {
+        let places = self.coordinates.as_ref().map_or(0, Vec::capacity) * size_of::<Vec3>();
+        let made = [&self.direct, &self.iterative].into_iter().flatten();
+        made.map(|solver| solver.bytes()).sum::<usize>() + places + 8 * self.per_row.capacity()
+    }
 }
 
 enum Method {
@@ -241,8 +358,8 @@ impl LinearSolver for Iterative {
         self.preconditioner.rebuild(matrix)
     }
 
-    fn follow(&mut self, coordinates: &[Vec3]) {
-        self.preconditioner.follow(coordinates);
+    fn follow(&mut self, coordinates: &[Vec3]) -> Result<(), SolveError> {
+        self.preconditioner.follow(coordinates)
     }
 
     fn solve(
@@ -278,9 +395,31 @@ impl LinearSolver for Iterative {
 }
 
 struct Direct {
-    solver: DirectSolver,
+    name: &'static str,
+    factors: Factors,
     residual: Vec<Vec3>,
     tolerance: f64,
+}
+
+enum Factors {
+    Cholesky(DirectSolver),
+    Lu(LuSolver),
+}
+
+impl Factors {
+    fn solve(&self, b: &mut [Vec3]) -> Result<(), SolveError> {
+        match self {
+            Self::Cholesky(solver) => solver.solve(b),
+            Self::Lu(solver) => solver.solve(b),
+        }
+    }
+}
+
+impl Direct {
+    fn new(name: &'static str, factors: Factors, values: &Values, block_count: usize) -> Self {
+        let residual = vec![Vec3::ZERO; block_count];
+        Self { name, factors, residual, tolerance: values.number("tolerance") }
+    }
 }
 
 /// Corrections of a direct solution by its residual before rounding is blamed.
@@ -288,7 +427,10 @@ const REFINEMENTS: usize = 3;
 
 impl LinearSolver for Direct {
     fn update(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
-        self.solver.factorize(matrix)
+        match &mut self.factors {
+            Factors::Cholesky(solver) => solver.factorize(matrix),
+            Factors::Lu(solver) => solver.factorize(matrix),
+        }
     }
 
     fn rebuild(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
@@ -304,7 +446,7 @@ impl LinearSolver for Direct {
         check_system(self.residual.len(), operator, b, x)?;
         let b_norm = reduce::norm(b);
         x.copy_from_slice(b);
-        self.solver.solve(x)?;
+        self.factors.solve(x)?;
         let settings = Settings { tolerance: self.tolerance, max_iterations: REFINEMENTS };
         let mut iterations = 1;
         loop {
@@ -318,21 +460,24 @@ impl LinearSolver for Direct {
                 Stop::Stagnated
             } else {
                 // x += A⁻¹ (b − A x)
-                self.solver.solve(&mut self.residual)?;
+                self.factors.solve(&mut self.residual)?;
                 reduce::add_scaled(x, 1.0, &self.residual);
                 iterations += 1;
                 continue;
             };
-            return Report { iterations, relative_residual, stop }.checked("direct", &settings);
+            return Report { iterations, relative_residual, stop }.checked(self.name, &settings);
         }
     }
 
     fn name(&self) -> &'static str {
-        "direct"
+        self.name
     }
 
     fn bytes(&self) -> usize {
-        self.solver.bytes()
+        match &self.factors {
+            Factors::Cholesky(solver) => solver.bytes(),
+            Factors::Lu(solver) => solver.bytes(),
+        }
     }
 }
 

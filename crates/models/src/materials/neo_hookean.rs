@@ -3,11 +3,14 @@
 //! Resists compression without bound down to a twentieth of the rest volume. Below that the logarithm goes on
 //! as a parabola, so that an inverted element has a finite force that turns it back; where elements invert as
 //! a matter of course, `stable_neo_hookean` gives a softer, better conditioned way home.
+//!
+//! For a negative Poisson ratio (`λ < 0`) the law itself gives way below the volume ratio `J = exp(μ/λ)`, 0.14 at
+//! `ν = -0.5`: what is compressed further, collapses. `stable_neo_hookean` still pushes back there.
 
 use souple_math::{Mat3, Real, Vec3};
 use souple_table::Entry;
 
-use super::invariants::{Derivatives, Point, length_invariant};
+use super::invariants::{Deformation, Derivatives, Point, length_invariant};
 use super::{AnyLaw, Build, ISOTROPIC, Lame, Law, Material};
 
 /// `Ψ = μ/2 (I - 3) - μ ln J + λ/2 (ln J)²` with `I = tr(FᵀF)`, `J = det F`.
@@ -17,8 +20,8 @@ pub struct NeoHookean;
 pub(super) const ENTRY: Entry<Build> = Entry {
     name: "neo_hookean",
     summary: "logarithmic form, for large strain; below 5 % of the rest volume ln J goes on as its Taylor polynomial \
-              of degree two: flat and inverted elements stay finite and are pushed back, stiffly; one shrunk to a \
-              line or point feels no push from its volume",
+              of degree two: flat and inverted elements stay finite and are pushed back, stiffly (not for a \
+              negative Poisson ratio); one shrunk to a line or point feels no push from its volume",
     source: "Bonet & Wood 2008, Nonlinear Continuum Mechanics for Finite Element Analysis, §6.4.3",
     parameters: ISOTROPIC,
     build: |values| Material::isotropic(AnyLaw::NeoHookean, values),
@@ -50,15 +53,14 @@ impl<R: Real> Logarithm<R> {
 // A = μ/2 (I - 3),  B = -μ L(J) + λ/2 L(J)²
 #[inline(always)]
 fn point<R: Real>(p: &Lame<R>, F: &Mat3<R>) -> Point<R> {
-    Point::new(F, |_, J| {
-        let L = Logarithm::at(J);
-        let slope = p.lambda * L.value - p.mu;
-        Derivatives {
-            length: p.mu * 0.5,
-            length_second: J.zero(),
-            volume: slope * L.first,
-            volume_second: p.lambda * L.first * L.first + slope * L.second,
-        }
+    let deformation = Deformation::of(F);
+    let L = Logarithm::at(deformation.volume);
+    let slope = p.lambda * L.value - p.mu;
+    deformation.with(Derivatives {
+        length: p.mu * 0.5,
+        length_second: p.mu.zero(),
+        volume: slope * L.first,
+        volume_second: p.lambda * L.first * L.first + slope * L.second,
     })
 }
 

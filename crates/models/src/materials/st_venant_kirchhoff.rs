@@ -42,13 +42,12 @@ fn right_cauchy_green<R: Real>(F: &Mat3<R>) -> Mat3<R> {
 fn second_piola<R: Real>(p: &Lame<R>, F: &Mat3<R>) -> Mat3<R> {
     let C = right_cauchy_green(F);
     let s = (p.lambda * 0.5).mul_add(C.trace() - 3.0, -p.mu);
-    let diagonal = |entry: R| p.mu.mul_add(entry, s);
     let [a, b, c] = C.columns;
     let (xy, yz, zx) = (p.mu * a.y, p.mu * b.z, p.mu * a.z);
     Mat3::from_columns(
-        Vec3::new(diagonal(a.x), xy, zx),
-        Vec3::new(xy, diagonal(b.y), yz),
-        Vec3::new(zx, yz, diagonal(c.z)),
+        Vec3::new(p.mu.mul_add(a.x, s), xy, zx),
+        Vec3::new(xy, p.mu.mul_add(b.y, s), yz),
+        Vec3::new(zx, yz, p.mu.mul_add(c.z, s)),
     )
 }
 

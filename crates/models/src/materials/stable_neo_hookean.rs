@@ -7,7 +7,7 @@
 use souple_math::{Mat3, Real, Vec3};
 use souple_table::Entry;
 
-use super::invariants::{Derivatives, Point, length_invariant};
+use super::invariants::{Deformation, Derivatives, Point, length_invariant};
 use super::{AnyLaw, Build, ISOTROPIC, Lame, Law, Material};
 
 /// `Ψ = μ/2 (I - 3) + λ/2 (J - α)² - μ/2 ln(I + 1) + constant`, zero at rest, with `I = tr(FᵀF)`, `J = det F`,
@@ -34,15 +34,14 @@ fn reparametrised<R: Real>(p: &Lame<R>) -> (R, R) {
 #[inline(always)]
 fn point<R: Real>(p: &Lame<R>, F: &Mat3<R>) -> Point<R> {
     let (mu, lambda) = reparametrised(p);
-    Point::new(F, |I, J| {
-        let inverse = I.one() / (I + 1.0);
-        let half_mu = mu * 0.5;
-        Derivatives {
-            length: half_mu - half_mu * inverse,
-            length_second: half_mu * inverse * inverse,
-            volume: lambda * (J - 1.0) - mu * 0.75,
-            volume_second: lambda,
-        }
+    let deformation = Deformation::of(F);
+    let inverse = mu.one() / (deformation.length + 1.0);
+    let half_mu = mu * 0.5;
+    deformation.with(Derivatives {
+        length: half_mu - half_mu * inverse,
+        length_second: half_mu * inverse * inverse,
+        volume: lambda * (deformation.volume - 1.0) - mu * 0.75,
+        volume_second: lambda,
     })
 }
 

@@ -4,8 +4,6 @@ use souple_math::{Mat3, Real, Vec3};
 
 /// An element's nodes as the kernels see them; `reference` holds `∂N_a/∂ξ` at the sample.
 pub trait Geometry: Copy + Send + Sync + 'static {
-    const NODES: usize;
-
     /// `∂x/∂ξ = Σ x_a ⊗ ∂N_a/∂ξ`.
     fn gradient<R: Real>(positions: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R>;
 
@@ -18,8 +16,6 @@ pub trait Geometry: Copy + Send + Sync + 'static {
 pub struct Tetrahedron;
 
 impl Geometry for Tetrahedron {
-    const NODES: usize = 4;
-
     #[inline(always)]
     fn gradient<R: Real>(x: &[Vec3<R>], _: &[Vec3]) -> Mat3<R> {
         Mat3::from_columns(x[1] - x[0], x[2] - x[0], x[3] - x[0])
@@ -40,23 +36,17 @@ impl Geometry for Tetrahedron {
 pub struct Nodes<const N: usize>;
 
 impl<const N: usize> Geometry for Nodes<N> {
-    const NODES: usize = N;
-
     #[inline(always)]
     fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
-        let row = |pick: fn(&Vec3) -> f64| {
-            let mut sum = x[0] * x[0].x.splat(pick(&reference[0]));
-            for a in 1..N {
-                let factor = x[0].x.splat(pick(&reference[a]));
-                sum = Vec3::new(
-                    x[a].x.mul_add(factor, sum.x),
-                    x[a].y.mul_add(factor, sum.y),
-                    x[a].z.mul_add(factor, sum.z),
-                );
-            }
-            sum
-        };
-        Mat3::from_columns(row(|g| g.x), row(|g| g.y), row(|g| g.z))
+        let like = x[0].x;
+        let mut sum = Mat3::zero(like);
+        for a in 0..N {
+            let g = reference[a];
+            accumulate(&mut sum.columns[0], x[a], like.splat(g.x));
+            accumulate(&mut sum.columns[1], x[a], like.splat(g.y));
+            accumulate(&mut sum.columns[2], x[a], like.splat(g.z));
+        }
+        sum
     }
 
     #[inline(always)]
@@ -68,4 +58,10 @@ impl<const N: usize> Geometry for Nodes<N> {
             forces[a] -= *stress * gradient;
         }
     }
+}
+
+/// `sum += factor x`.
+#[inline(always)]
+fn accumulate<R: Real>(sum: &mut Vec3<R>, x: Vec3<R>, factor: R) {
+    *sum = Vec3::new(x.x.mul_add(factor, sum.x), x.y.mul_add(factor, sum.y), x.z.mul_add(factor, sum.z));
 }

@@ -13,7 +13,7 @@ use super::layout::{Chunk, LANES, SAMPLE_LEN};
 use crate::materials::{Law, Parameters};
 
 /// Most nodes an element has here.
-pub const NODES_MAX: usize = 8;
+const NODES_MAX: usize = 8;
 /// Numbers of a symmetric set of 3×3 blocks of one element, `a ≤ b`, for a block of lanes.
 pub const BLOCK_LEN_MAX: usize = NODES_MAX * (NODES_MAX + 1) / 2 * 9 * LANES;
 
@@ -45,18 +45,20 @@ pub trait Kernel: Send + Sync {
     );
 }
 
-/// [`Kernel`] of law `L` on elements of geometry `G`.
-pub struct LawKernel<L, G>(PhantomData<(L, G)>);
+/// [`Kernel`] of law `L` on elements of geometry `G` with `N` nodes.
+///
+/// No closures over lanes here: what is not inlined is not compiled for the processor's instructions.
+pub struct LawKernel<L, G, const N: usize>(PhantomData<(L, G)>);
 
-impl<L, G> Default for LawKernel<L, G> {
+impl<L, G, const N: usize> Default for LawKernel<L, G, N> {
     fn default() -> Self {
         Self(PhantomData)
     }
 }
 
-impl<L: Law, G: Geometry> Kernel for LawKernel<L, G> {
+impl<L: Law, G: Geometry, const N: usize> Kernel for LawKernel<L, G, N> {
     fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], forces: &mut [Vec3]) {
-        Arch::new().dispatch(Forces::<L, G> { chunk, reference, positions, forces, kernel: PhantomData });
+        Arch::new().dispatch(Forces::<L, G, N> { chunk, reference, positions, forces, kernel: PhantomData });
     }
 
     fn differential(
@@ -69,7 +71,7 @@ impl<L: Law, G: Geometry> Kernel for LawKernel<L, G> {
         forces: &mut [Vec3],
     ) {
         let kernel = PhantomData;
-        Arch::new().dispatch(Differential::<L, G> {
+        Arch::new().dispatch(Differential::<L, G, N> {
             chunk,
             reference,
             positions,
@@ -81,7 +83,7 @@ impl<L: Law, G: Geometry> Kernel for LawKernel<L, G> {
     }
 
     fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3]) -> f64 {
-        Arch::new().dispatch(Energy::<L, G> { chunk, reference, positions, kernel: PhantomData })
+        Arch::new().dispatch(Energy::<L, G, N> { chunk, reference, positions, kernel: PhantomData })
     }
 
     fn blocks(
@@ -94,72 +96,82 @@ impl<L: Law, G: Geometry> Kernel for LawKernel<L, G> {
         out: &mut [f64],
     ) {
         let kernel = PhantomData;
-        Arch::new().dispatch(Blocks::<L, G> { chunk, block, reference, positions, scale, out, kernel });
+        Arch::new().dispatch(Blocks::<L, G, N> { chunk, block, reference, positions, scale, out, kernel });
     }
 }
 
-/// One register's worth of elements: lanes `lane .. lane + S::F64_LANES` of a block.
-pub(super) struct Group<'a, S: Simd> {
+/// One register's worth of elements of `N` nodes: lanes `lane .. lane + S::F64_LANES` of a block.
+pub(super) struct Group<'a, S: Simd, const N: usize> {
     pub simd: S,
     pub chunk: &'a Chunk,
-    pub nodes: usize,
     pub samples: usize,
     pub block: usize,
     pub lane: usize,
 }
 
-impl<'a, S: Simd> Group<'a, S> {
-    /// All groups of a chunk, in element order.
-    #[inline(always)]
-    pub fn all(simd: S, chunk: &'a Chunk, nodes: usize, samples: usize) -> impl Iterator<Item = Self> {
-        (0..chunk.block_count()).flat_map(move |block| Self::of_block(simd, chunk, nodes, samples, block))
-    }
-
-    #[inline(always)]
-    pub fn of_block(
-        simd: S,
-        chunk: &'a Chunk,
-        nodes: usize,
-        samples: usize,
-        block: usize,
-    ) -> impl Iterator<Item = Self> {
-        (0..LANES).step_by(S::F64_LANES).map(move |lane| Self { simd, chunk, nodes, samples, block, lane })
-    }
-
+impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     /// Chunk nodes of node `a` of the elements.
     #[inline(always)]
     fn locals(&self, a: usize) -> &'a [u16] {
-        let at = (self.block * self.nodes + a) * LANES + self.lane;
+        let at = (self.block * N + a) * LANES + self.lane;
         &self.chunk.connectivity[at..at + S::F64_LANES]
     }
 
     /// Vectors of the elements' nodes, side by side.
     #[inline(always)]
-    pub fn gather(&self, values: &[Vec3], out: &mut [Vec3<Lanes<S>>]) {
-        for (a, out) in out.iter_mut().enumerate().take(self.nodes) {
-            let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            for (lane, local) in self.locals(a).iter().enumerate() {
-                let value = values[*local as usize];
-                (x[lane], y[lane], z[lane]) = (value.x, value.y, value.z);
+    pub fn gather(&self, values: &[Vec3]) -> [Vec3<Lanes<S>>; N] {
+        assert!(values.len() >= self.chunk.rows.len(), "one value for each node of the chunk");
+        let mut out = self.zeros();
+        for a in 0..N {
+            let locals = self.locals(a);
+            // SAFETY: the connectivity of a chunk holds indices below `rows.len()` only (`lay_out`)
+            let value = |lane: usize| unsafe { *values.get_unchecked(locals[lane] as usize) };
+            // written out so that registers are filled by insertion: through memory, eight narrow stores
+            // followed by a wide load would stall
+            if S::F64_LANES == 8 {
+                let v: [Vec3; 8] =
+                    [value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)];
+                out[a] = Vec3::new(
+                    self.lanes_of([v[0].x, v[1].x, v[2].x, v[3].x, v[4].x, v[5].x, v[6].x, v[7].x]),
+                    self.lanes_of([v[0].y, v[1].y, v[2].y, v[3].y, v[4].y, v[5].y, v[6].y, v[7].y]),
+                    self.lanes_of([v[0].z, v[1].z, v[2].z, v[3].z, v[4].z, v[5].z, v[6].z, v[7].z]),
+                );
+            } else if S::F64_LANES == 4 {
+                let v: [Vec3; 4] = [value(0), value(1), value(2), value(3)];
+                out[a] = Vec3::new(
+                    self.lanes_of([v[0].x, v[1].x, v[2].x, v[3].x]),
+                    self.lanes_of([v[0].y, v[1].y, v[2].y, v[3].y]),
+                    self.lanes_of([v[0].z, v[1].z, v[2].z, v[3].z]),
+                );
+            } else {
+                for lane in 0..S::F64_LANES {
+                    let v = value(lane);
+                    out[a].x.as_mut_slice()[lane] = v.x;
+                    out[a].y.as_mut_slice()[lane] = v.y;
+                    out[a].z.as_mut_slice()[lane] = v.z;
+                }
             }
-            let load = |numbers: &[f64; LANES]| Lanes::load(self.simd, numbers);
-            *out = Vec3::new(load(&x), load(&y), load(&z));
         }
+        out
+    }
+
+    #[inline(always)]
+    fn lanes_of<const W: usize>(&self, numbers: [f64; W]) -> Lanes<S> {
+        Lanes::load(self.simd, &numbers)
     }
 
     /// `sums[n] += values` of the elements' nodes, element after element; lanes without an element add zero.
     #[inline(always)]
-    pub fn scatter(&self, values: &[Vec3<Lanes<S>>], sums: &mut [Vec3]) {
-        for (a, value) in values.iter().enumerate().take(self.nodes) {
-            let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-            value.x.store(&mut x);
-            value.y.store(&mut y);
-            value.z.store(&mut z);
-            for (lane, local) in self.locals(a).iter().enumerate() {
-                let sum = &mut sums[*local as usize];
-                sum.x += x[lane];
-                sum.y += y[lane];
-                sum.z += z[lane];
+    pub fn scatter(&self, values: &[Vec3<Lanes<S>>; N], sums: &mut [Vec3]) {
+        assert!(sums.len() >= self.chunk.rows.len(), "one sum for each node of the chunk");
+        for a in 0..N {
+            let locals = self.locals(a);
+            for lane in 0..S::F64_LANES {
+                // SAFETY: as in `gather`
+                let sum = unsafe { sums.get_unchecked_mut(locals[lane] as usize) };
+                sum.x += values[a].x.as_slice()[lane];
+                sum.y += values[a].y.as_slice()[lane];
+                sum.z += values[a].z.as_slice()[lane];
             }
         }
     }
@@ -169,26 +181,47 @@ impl<'a, S: Simd> Group<'a, S> {
     pub fn sample(&self, sample: usize) -> (Mat3<Lanes<S>>, Lanes<S>) {
         let start = (self.block * self.samples + sample) * SAMPLE_LEN * LANES;
         let numbers = &self.chunk.samples[start..start + SAMPLE_LEN * LANES];
-        let number = |i: usize| Lanes::load(self.simd, &numbers[i * LANES + self.lane..]);
-        let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
-        (Mat3::from_columns(column(0), column(1), column(2)), number(9))
+        let mut inverse = Mat3 { columns: [Vec3::new(Lanes::constant(self.simd, 0.0), Lanes::constant(self.simd, 0.0), Lanes::constant(self.simd, 0.0)); 3] };
+        for column in 0..3 {
+            let at = 3 * column * LANES + self.lane;
+            inverse.columns[column] = Vec3::new(
+                Lanes::load(self.simd, &numbers[at..]),
+                Lanes::load(self.simd, &numbers[at + LANES..]),
+                Lanes::load(self.simd, &numbers[at + 2 * LANES..]),
+            );
+        }
+        (inverse, Lanes::load(self.simd, &numbers[9 * LANES + self.lane..]))
     }
 
     #[inline(always)]
     pub fn parameters<P: Parameters<Lanes<S>>>(&self) -> P {
-        let count = P::NAMES.len();
-        let start = self.block * count * LANES;
-        P::unpack(|i| Lanes::load(self.simd, &self.chunk.parameters[start + i * LANES + self.lane..]))
+        let start = self.block * P::NAMES.len() * LANES + self.lane;
+        let (simd, numbers) = (self.simd, &self.chunk.parameters[start..]);
+        P::unpack(|i| Lanes::load(simd, &numbers[i * LANES..]))
     }
 
     #[inline(always)]
-    pub fn zeros(&self) -> [Vec3<Lanes<S>>; NODES_MAX] {
+    pub fn zeros(&self) -> [Vec3<Lanes<S>>; N] {
         let zero = Lanes::constant(self.simd, 0.0);
-        [Vec3::new(zero, zero, zero); NODES_MAX]
+        [Vec3::new(zero, zero, zero); N]
     }
 }
 
-struct Forces<'a, L, G> {
+/// Runs `$body` for every group of the blocks `$blocks` of a chunk, in element order.
+macro_rules! for_each_group {
+    ($simd:ident, $chunk:expr, $samples:expr, $blocks:expr, $N:ident, |$group:ident| $body:block) => {
+        for block in $blocks {
+            let mut lane = 0;
+            while lane < LANES {
+                let $group = Group::<_, $N> { simd: $simd, chunk: $chunk, samples: $samples, block, lane };
+                $body
+                lane += S::F64_LANES;
+            }
+        }
+    };
+}
+
+struct Forces<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     reference: &'a [Vec3],
     positions: &'a [Vec3],
@@ -196,19 +229,18 @@ struct Forces<'a, L, G> {
     kernel: PhantomData<(L, G)>,
 }
 
-impl<L: Law, G: Geometry> WithSimd for Forces<'_, L, G> {
+impl<L: Law, G: Geometry, const N: usize> WithSimd for Forces<'_, L, G, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let samples = self.reference.len() / G::NODES;
-        for group in Group::all(simd, self.chunk, G::NODES, samples) {
-            let mut x = group.zeros();
-            let mut f = x;
-            group.gather(self.positions, &mut x);
+        let samples = self.reference.len() / N;
+        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+            let x = group.gather(self.positions);
+            let mut f = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
-                let reference = &self.reference[sample * G::NODES..(sample + 1) * G::NODES];
+                let reference = &self.reference[sample * N..(sample + 1) * N];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let P = L::stress(&parameters, &F);
@@ -216,11 +248,11 @@ impl<L: Law, G: Geometry> WithSimd for Forces<'_, L, G> {
                 G::spread(&P.mul_transpose(&inverse).scaled(volume), reference, &mut f);
             }
             group.scatter(&f, self.forces);
-        }
+        });
     }
 }
 
-struct Differential<'a, L, G> {
+struct Differential<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     reference: &'a [Vec3],
     positions: &'a [Vec3],
@@ -230,20 +262,18 @@ struct Differential<'a, L, G> {
     kernel: PhantomData<(L, G)>,
 }
 
-impl<L: Law, G: Geometry> WithSimd for Differential<'_, L, G> {
+impl<L: Law, G: Geometry, const N: usize> WithSimd for Differential<'_, L, G, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let samples = self.reference.len() / G::NODES;
-        for group in Group::all(simd, self.chunk, G::NODES, samples) {
-            let mut x = group.zeros();
-            let (mut dx, mut df) = (x, x);
-            group.gather(self.positions, &mut x);
-            group.gather(self.delta, &mut dx);
+        let samples = self.reference.len() / N;
+        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+            let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
+            let mut df = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
-                let reference = &self.reference[sample * G::NODES..(sample + 1) * G::NODES];
+                let reference = &self.reference[sample * N..(sample + 1) * N];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let dF = G::gradient(&dx, reference) * inverse;
@@ -251,42 +281,41 @@ impl<L: Law, G: Geometry> WithSimd for Differential<'_, L, G> {
                 G::spread(&dP.mul_transpose(&inverse).scaled(volume * self.scale), reference, &mut df);
             }
             group.scatter(&df, self.forces);
-        }
+        });
     }
 }
 
-struct Energy<'a, L, G> {
+struct Energy<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     reference: &'a [Vec3],
     positions: &'a [Vec3],
     kernel: PhantomData<(L, G)>,
 }
 
-impl<L: Law, G: Geometry> WithSimd for Energy<'_, L, G> {
+impl<L: Law, G: Geometry, const N: usize> WithSimd for Energy<'_, L, G, N> {
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let samples = self.reference.len() / G::NODES;
+        let samples = self.reference.len() / N;
         let mut sum = 0.0;
-        for group in Group::all(simd, self.chunk, G::NODES, samples) {
-            let mut x = group.zeros();
-            group.gather(self.positions, &mut x);
+        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+            let x = group.gather(self.positions);
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
-                let reference = &self.reference[sample * G::NODES..(sample + 1) * G::NODES];
+                let reference = &self.reference[sample * N..(sample + 1) * N];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let mut energies = [0.0; LANES];
                 (L::energy_density(&parameters, &F) * volume).store(&mut energies);
                 sum += energies[..S::F64_LANES].iter().sum::<f64>();
             }
-        }
+        });
         sum
     }
 }
 
-struct Blocks<'a, L, G> {
+struct Blocks<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     block: usize,
     reference: &'a [Vec3],
@@ -296,36 +325,36 @@ struct Blocks<'a, L, G> {
     kernel: PhantomData<(L, G)>,
 }
 
-impl<L: Law, G: Geometry> WithSimd for Blocks<'_, L, G> {
+impl<L: Law, G: Geometry, const N: usize> WithSimd for Blocks<'_, L, G, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let samples = self.reference.len() / G::NODES;
-        for group in Group::of_block(simd, self.chunk, G::NODES, samples, self.block) {
-            let mut x = group.zeros();
-            group.gather(self.positions, &mut x);
+        let samples = self.reference.len() / N;
+        for_each_group!(simd, self.chunk, samples, self.block..self.block + 1, N, |group| {
+            let x = group.gather(self.positions);
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
-                let reference = &self.reference[sample * G::NODES..(sample + 1) * G::NODES];
+                let reference = &self.reference[sample * N..(sample + 1) * N];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let point = L::at(&parameters, &F);
                 let weight = volume * -self.scale;
                 let mut gradients = group.zeros();
-                for a in 0..G::NODES {
+                for a in 0..N {
                     // ∂N_a/∂X = X_ξ⁻ᵀ ∂N_a/∂ξ
-                    let constant = |number: f64| Lanes::constant(simd, number);
                     let g = reference[a];
-                    let g = Vec3::new(constant(g.x), constant(g.y), constant(g.z));
-                    gradients[a] = inverse.transpose() * g;
+                    let (x, y, z) =
+                        (Lanes::constant(simd, g.x), Lanes::constant(simd, g.y), Lanes::constant(simd, g.z));
+                    gradients[a] = inverse.transpose_apply(Vec3::new(x, y, z));
                 }
                 let mut pair = 0;
-                for a in 0..G::NODES {
+                for a in 0..N {
                     let weighted = gradients[a] * weight;
-                    for b in a..G::NODES {
+                    for b in a..N {
                         let K = L::tangent_block(&parameters, &point, weighted, gradients[b]);
-                        for (i, number) in K.columns.into_iter().flat_map(Vec3::to_array).enumerate() {
+                        for i in 0..9 {
+                            let number = K.columns[i / 3].to_array()[i % 3];
                             let at = (pair * 9 + i) * LANES + group.lane;
                             let slot = &mut self.out[at..at + S::F64_LANES];
                             let sum = if sample == 0 { number } else { Lanes::load(simd, slot) + number };
@@ -335,6 +364,6 @@ impl<L: Law, G: Geometry> WithSimd for Blocks<'_, L, G> {
                     }
                 }
             }
-        }
+        });
     }
 }

@@ -94,10 +94,10 @@ impl LawVisitor for MakeKernel {
 
     fn visit<L: Law>(self, _: L) -> Box<dyn Kernel> {
         match self.0.node_count() {
-            4 => Box::new(LawKernel::<L, Tetrahedron>::default()),
-            5 => Box::new(LawKernel::<L, Nodes<5>>::default()),
-            6 => Box::new(LawKernel::<L, Nodes<6>>::default()),
-            8 => Box::new(LawKernel::<L, Nodes<8>>::default()),
+            4 => Box::new(LawKernel::<L, Tetrahedron, 4>::default()),
+            5 => Box::new(LawKernel::<L, Nodes<5>, 5>::default()),
+            6 => Box::new(LawKernel::<L, Nodes<6>, 6>::default()),
+            8 => Box::new(LawKernel::<L, Nodes<8>, 8>::default()),
             other => unreachable!("no volume element has {other} nodes"),
         }
     }

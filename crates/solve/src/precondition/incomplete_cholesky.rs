@@ -40,6 +40,8 @@ pub struct IncompleteCholesky {
     mirror: Vec<u32>,
     /// `L D` while a row is worked on, then `L`.
     work: Vec<Mat3>,
+    /// Where in the row worked on a column has its entry; `u32::MAX` elsewhere.
+    place: Vec<u32>,
     lower: Vec<[f32; 9]>,
     upper: Vec<[f32; 9]>,
     /// `D⁻¹`.
@@ -148,6 +150,7 @@ impl IncompleteCholesky {
             upper_columns,
             mirror,
             work: vec![Mat3::ZERO; entries],
+            place: vec![u32::MAX; count],
             lower: vec![[0.0; 9]; entries],
             upper: vec![[0.0; 9]; entries],
             inverses: vec![Mat3::ZERO; count],
@@ -165,13 +168,13 @@ impl IncompleteCholesky {
     /// `L D Lᵀ ≈ A + σ diag(A)`; `Err(row)` where a pivot is not positive.
     fn factorise(&mut self, values: &[Mat3], shift: f64) -> Result<(), usize> {
         let count = self.pattern.block_count();
-        // where in row `r` a column has its entry
-        let mut place = vec![u32::MAX; count];
+        // a breakdown may have left entries of its row
+        self.place.fill(u32::MAX);
         for row in 0..count {
             let entries = self.starts[row] as usize..self.starts[row + 1] as usize;
             for entry in entries.clone() {
                 self.work[entry] = values[self.slots[entry] as usize];
-                place[self.columns[entry] as usize] = entry as u32;
+                self.place[self.columns[entry] as usize] = entry as u32;
             }
             let diagonal = values[self.diagonal_slots[row] as usize];
             let mut pivot = diagonal + Mat3::from_diagonal(diagonal.diagonal() * shift);
@@ -180,7 +183,7 @@ impl IncompleteCholesky {
                 let column = self.columns[entry] as usize;
                 let mut W = self.work[entry];
                 for other in self.starts[column] as usize..self.starts[column + 1] as usize {
-                    let shared = place[self.columns[other] as usize];
+                    let shared = self.place[self.columns[other] as usize];
                     if shared != u32::MAX {
                         W -= self.work[shared as usize].mul_transpose(&self.work[other]);
                     }
@@ -194,7 +197,7 @@ impl IncompleteCholesky {
                 let L = W * self.inverses[column];
                 pivot -= W.mul_transpose(&L);
                 self.work[entry] = L;
-                place[column] = u32::MAX;
+                self.place[column] = u32::MAX;
             }
             // a pivot that has lost nearly all of its block is as bad as a negative one
             let floor = Mat3::from_diagonal(diagonal.diagonal() * 1e-4);
@@ -247,7 +250,7 @@ impl Preconditioner for IncompleteCholesky {
     }
 
     fn bytes(&self) -> usize {
-        (72 + 36 + 36 + 16) * self.work.len() + 84 * self.inverses.len()
+        (72 + 36 + 36 + 16) * self.work.len() + 88 * self.inverses.len()
     }
 }
 

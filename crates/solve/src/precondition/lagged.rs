@@ -37,6 +37,8 @@ impl LaggedFactor {
     }
 }
 
+/// Age and factor decide the bits of later solves: who promises that a resumed run repeats a run keeps the date of
+/// the last renewal with the state, and calls [`Preconditioner::rebuild`] at dates computed from it.
 impl Preconditioner for LaggedFactor {
     fn update(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
         crate::matrix::check_pattern(self.solver.pattern(), matrix.pattern())?;

@@ -2,6 +2,7 @@
 //!
 //! A preconditioner is built for one structure and updated with new values, re-using all its buffers.
 
+mod automatic;
 mod incomplete_cholesky;
 mod jacobi;
 mod lagged;
@@ -14,6 +15,7 @@ use souple_math::{Mat3, Vec3};
 use crate::error::check_length;
 use crate::{BlockMatrix, SolveError, reduce};
 
+pub use automatic::{Automatic, Choice, weight_of_the_diagonal};
 pub use incomplete_cholesky::IncompleteCholesky;
 pub use jacobi::{BlockJacobi, Identity};
 pub use lagged::LaggedFactor;
@@ -77,7 +79,12 @@ pub trait Preconditioner: Send + Sync {
 
     /// Takes note of new places of the blocks; counts from the next update. Only preconditioners that know
     /// rigid motions care.
-    fn follow(&mut self, _coordinates: &[Vec3]) {}
+    ///
+    /// # Errors
+    /// The places do not fit or are not finite; the old ones stay.
+    fn follow(&mut self, _coordinates: &[Vec3]) -> Result<(), SolveError> {
+        Ok(())
+    }
 
     /// `z = M⁻¹ r`; overwrites `z`.
     fn apply(&self, r: &[Vec3], z: &mut [Vec3]);

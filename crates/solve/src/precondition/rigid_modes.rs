@@ -358,7 +358,10 @@ impl RigidModes {
             c[2 * patch] = Vec3::new(kept[0], kept[1], kept[2]);
             c[2 * patch + 1] = Vec3::new(kept[3], kept[4], kept[5]);
         }
-        self.coarse_solver.solve(c).expect("factorised on every update");
+        if self.coarse_solver.solve(c).is_err() {
+            // a failed update leaves no factor; the smoother alone is a poor preconditioner, but a valid one
+            c.fill(Vec3::ZERO);
+        }
     }
 
     /// `c = Zᵀ r`.
@@ -404,10 +407,10 @@ impl Preconditioner for RigidModes {
         self.update_coarse(matrix)
     }
 
-    fn follow(&mut self, coordinates: &[Vec3]) {
-        if coordinates.len() == self.places.len() && coordinates.iter().all(|place| place.is_finite()) {
-            self.places.copy_from_slice(coordinates);
-        }
+    fn follow(&mut self, coordinates: &[Vec3]) -> Result<(), SolveError> {
+        Geometry::points(coordinates).check(self.places.len())?;
+        self.places.copy_from_slice(coordinates);
+        Ok(())
     }
 
     fn apply(&self, r: &[Vec3], z: &mut [Vec3]) {

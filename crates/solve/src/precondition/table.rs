@@ -3,7 +3,7 @@
 use souple_table::{Entry, Parameter, Range, Table, Value, Values};
 
 use super::{
-    BlockJacobi, Geometry, Identity, IncompleteCholesky, LaggedFactor, Preconditioner, RigidModes,
+    Automatic, BlockJacobi, Geometry, Identity, IncompleteCholesky, LaggedFactor, Preconditioner, RigidModes,
     RigidModesSettings, Smoother,
 };
 use crate::{BlockMatrix, SolveError};
@@ -14,7 +14,15 @@ pub type Build = fn(&Values, &BlockMatrix, Geometry<'_>) -> Result<Box<dyn Preco
 /// All preconditioners.
 pub static TABLE: Table<Build> = Table {
     kind: "preconditioner",
-    entries: &[&NONE, &BLOCK_JACOBI, &INCOMPLETE_CHOLESKY, &RIGID_MODES, &LAGGED_FACTOR],
+    entries: &[&AUTO, &NONE, &BLOCK_JACOBI, &INCOMPLETE_CHOLESKY, &RIGID_MODES, &LAGGED_FACTOR],
+};
+
+static AUTO: Entry<Build> = Entry {
+    name: "auto",
+    summary: "block_jacobi, incomplete_cholesky or rigid_modes, by how much inertia outweighs stiffness",
+    source: "measured on bars from soft to stiff (examples/beam.rs)",
+    parameters: &[],
+    build: |_, matrix, geometry| Ok(Box::new(Automatic::new(matrix, geometry)?)),
 };
 
 static NONE: Entry<Build> = Entry {

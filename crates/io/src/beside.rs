@@ -1,0 +1,89 @@
+//! Writing beside and renaming: a reader of the final name never sees half a file.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::IoError;
+
+/// Writes `path` by `content`, complete or not at all.
+///
+/// The content goes to a hidden file of the same folder, is forced to the disk and renamed. After a failure
+/// the hidden file is removed and an older file of that name stands as it was.
+///
+/// # Errors
+/// The disk is full, the folder is missing or not writable, or any other failure of the system.
+pub fn write_file(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<(), IoError> {
+    let temporary = name_beside(path)
+        .ok_or_else(|| IoError::request("the path", format!("`{}`", path.display()), "the name of a file"))?;
+    write_and_rename(path, &temporary, content).map_err(|source| {
+        // the first failure is the one to report; the hidden file may not even exist
+        let _ = fs::remove_file(&temporary);
+        IoError::write(path, source)
+    })
+}
+
+fn write_and_rename(
+    path: &Path,
+    temporary: &Path,
+    content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut writer = BufWriter::with_capacity(1 << 16, File::create_new(temporary)?);
+    content(&mut writer)?;
+    // a full disk may show only here, when the buffers go out
+    writer.into_inner().map_err(|error| error.into_error())?.sync_all()?;
+    fs::rename(temporary, path)
+}
+
+/// `.name.process-count.part`, different for each writer of each process.
+fn name_beside(path: &Path) -> Option<PathBuf> {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name()?);
+    name.push(format!(".{}-{count}.part", std::process::id()));
+    Some(path.with_file_name(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::TemporaryFolder;
+
+    /// A failed write leaves the old file and no other; a good one replaces it.
+    #[test]
+    fn all_or_nothing() {
+        let folder = TemporaryFolder::new("beside");
+        let path = folder.path("file.txt");
+        write_file(&path, |out| out.write_all(b"old")).unwrap();
+        let full = write_file(&path, |out| {
+            out.write_all(b"half of the n")?;
+            Err(std::io::ErrorKind::StorageFull.into())
+        });
+        assert!(matches!(full, Err(IoError::DiskFull { .. })));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+        write_file(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    fn missing_folder_is_named() {
+        let folder = TemporaryFolder::new("beside_missing");
+        let error = write_file(&folder.path("no/such/file"), |_| Ok(())).unwrap_err();
+        assert!(matches!(error, IoError::NotWritable { .. }), "{error}");
+        assert!(matches!(write_file(Path::new("/"), |_| Ok(())), Err(IoError::Request { .. })));
+    }
+
+    /// `/dev/full` refuses every byte as a full disk does.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn full_device_is_a_full_disk() {
+        let error = File::options().write(true).open("/dev/full").and_then(|mut f| f.write_all(b"x")).unwrap_err();
+        assert!(matches!(IoError::write(Path::new("out.vtu"), error), IoError::DiskFull { .. }));
+    }
+}

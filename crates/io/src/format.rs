@@ -1,0 +1,176 @@
+//! The table of file formats, and reading and writing by it.
+
+use std::io::Write;
+use std::path::Path;
+
+use souple_mesh::Mesh;
+use souple_table::{Entry, Table};
+
+use crate::dataset::Output;
+use crate::error::{Fault, Place, quoted};
+use crate::{Dataset, IoError, gmsh, obj, stl, vtk, write_file};
+
+/// A file format: how it is found, read, written.
+#[derive(Clone, Copy, Debug)]
+pub struct Format {
+    /// File name extensions that stand for it, in lower case, without the dot.
+    pub extensions: &'static [&'static str],
+    /// Whether content begins like this format.
+    pub recognises: fn(&[u8]) -> bool,
+    pub read: Option<fn(&[u8]) -> Result<Dataset, Fault>>,
+    pub write: Option<fn(&Output<'_>, &mut dyn Write) -> Result<(), WriteError>>,
+}
+
+/// Why a writer stopped: what it was given, or the system.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    #[error(transparent)]
+    System(#[from] std::io::Error),
+    #[error(transparent)]
+    Request(#[from] IoError),
+}
+
+/// All formats of meshes.
+pub static FORMATS: Table<Format> = Table {
+    kind: "mesh format",
+    entries: &[
+        &gmsh::GMSH,
+        &gmsh::GMSH_BINARY,
+        &gmsh::GMSH_2,
+        &vtk::VTU,
+        &vtk::VTK_LEGACY,
+        &obj::OBJ,
+        &stl::STL,
+    ],
+};
+
+/// The mesh of a file and what a user should know about how it was read.
+///
+/// # Errors
+/// The file cannot be opened, its extension is unknown, its content is faulty.
+pub fn read_mesh(path: &Path) -> Result<(Mesh, Vec<String>), IoError> {
+    let dataset = read_dataset(path)?;
+    Ok((dataset.mesh, dataset.notes))
+}
+
+/// The mesh and the fields of a file; the format goes by the extension, or by the content where that says more.
+///
+/// # Errors
+/// The file cannot be opened, its extension is unknown, its content is faulty.
+pub fn read_dataset(path: &Path) -> Result<Dataset, IoError> {
+    let bytes = std::fs::read(path).map_err(|source| IoError::Read { path: path.to_owned(), source })?;
+    let by_content = FORMATS.entries.iter().copied().find(|entry| (entry.build.recognises)(&bytes));
+    let entry = match (by_extension(path), by_content) {
+        // the extension rules while the content agrees or says nothing
+        (Ok(named), found) if (named.build.recognises)(&bytes) || found.is_none() => named,
+        (_, Some(found)) => found,
+        (Ok(named), None) => named,
+        (Err(error), None) => return Err(error),
+    };
+    let read = entry.build.read.ok_or(IoError::Unsupported {
+        format: entry.name,
+        action: "read",
+        expected: readable(),
+    })?;
+    let mut dataset = read(&bytes).map_err(|fault| IoError::Content { path: path.to_owned(), fault })?;
+    if by_extension(path).map_or(true, |named| named.build.read != entry.build.read) {
+        dataset.notes.insert(0, format!("the content was recognised as the format `{}`", entry.name));
+    }
+    Ok(dataset)
+}
+
+/// The content of a file, already in memory, in the format of that name.
+///
+/// # Errors
+/// The format is unknown or has no reader; the content is faulty (its path is then `<memory>`).
+pub fn read_mesh_bytes(format: &str, bytes: &[u8]) -> Result<(Mesh, Vec<String>), IoError> {
+    let dataset = read_dataset_bytes(format, bytes)?;
+    Ok((dataset.mesh, dataset.notes))
+}
+
+/// Like [`read_mesh_bytes`], with the fields.
+///
+/// # Errors
+/// The format is unknown or has no reader; the content is faulty (its path is then `<memory>`).
+pub fn read_dataset_bytes(format: &str, bytes: &[u8]) -> Result<Dataset, IoError> {
+    let entry = FORMATS.find(format)?;
+    let expected = readable();
+    let read = entry.build.read.ok_or(IoError::Unsupported { format: entry.name, action: "read", expected })?;
+    read(bytes).map_err(|fault| IoError::Content { path: "<memory>".into(), fault })
+}
+
+/// Writes a mesh, the format by the extension.
+///
+/// # Errors
+/// The extension is unknown, the mesh is faulty or has what the format cannot hold, the file cannot be written.
+pub fn write_mesh(path: &Path, mesh: &Mesh) -> Result<(), IoError> {
+    write_dataset(path, &Output::new(mesh))
+}
+
+/// Writes a mesh with fields, the format by the extension.
+///
+/// # Errors
+/// The extension is unknown, the mesh is faulty or has what the format cannot hold, the file cannot be written.
+pub fn write_dataset(path: &Path, output: &Output<'_>) -> Result<(), IoError> {
+    write_with(by_extension(path)?, path, output)
+}
+
+/// Writes a mesh with fields in the format of that name.
+///
+/// # Errors
+/// The format is unknown, the mesh is faulty or has what the format cannot hold, the file cannot be written.
+pub fn write_dataset_as(format: &str, path: &Path, output: &Output<'_>) -> Result<(), IoError> {
+    write_with(FORMATS.find(format)?, path, output)
+}
+
+fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -> Result<(), IoError> {
+    let write = entry.build.write.ok_or_else(|| IoError::Unsupported {
+        format: entry.name,
+        action: "written",
+        expected: format!("one of {}", names_where(|format| format.write.is_some())),
+    })?;
+    output.check()?;
+    let mut refusal = None;
+    let written = write_file(path, |out| match write(output, out) {
+        Ok(()) => Ok(()),
+        Err(WriteError::System(error)) => Err(error),
+        Err(WriteError::Request(error)) => {
+            refusal = Some(error);
+            Err(std::io::ErrorKind::InvalidInput.into())
+        }
+    });
+    match refusal {
+        Some(error) => Err(error),
+        None => written,
+    }
+}
+
+fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    FORMATS.entries.iter().copied().find(|entry| entry.build.extensions.contains(&extension.as_str())).ok_or_else(
+        || {
+            let known: Vec<_> = FORMATS.entries.iter().flat_map(|entry| entry.build.extensions).copied().collect();
+            let expected = format!("one of {}", known.join(", "));
+            IoError::Extension { path: path.to_owned(), found: extension.clone(), expected }
+        },
+    )
+}
+
+fn readable() -> String {
+    format!("one of {}", names_where(|format| format.read.is_some()))
+}
+
+fn names_where(fits: impl Fn(&Format) -> bool) -> String {
+    let names: Vec<_> =
+        FORMATS.entries.iter().filter(|entry| fits(&entry.build)).map(|entry| entry.name).collect();
+    names.join(", ")
+}
+
+/// The fault of content that does not begin like its format.
+pub(crate) fn wrong_start(bytes: &[u8], format: &str, expected: &str) -> Fault {
+    let start = &bytes[..bytes.len().min(24)];
+    Fault::new(Place::Byte(0), format!("the start of the {format} file"), quoted(start), expected)
+}
+
+#[cfg(test)]
+mod tests;

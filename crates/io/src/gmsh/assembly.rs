@@ -1,0 +1,128 @@
+//! What the sections of a Gmsh file add up to: nodes by tag, elements, physical groups.
+
+use std::collections::{BTreeMap, HashMap};
+
+use souple_math::Vec3;
+use souple_mesh::{Group, MAX_NODES};
+
+use super::element_type::{self, ElementType};
+use crate::cursor::Cursor;
+use crate::dataset::{Destination, Sorter, tidy_groups};
+use crate::error::Fault;
+use crate::Dataset;
+
+/// A physical group: dimension and number.
+type PhysicalTag = (u8, i64);
+
+#[derive(Debug, Default)]
+pub(super) struct Assembly {
+    dataset: Dataset,
+    sorter: Sorter,
+    /// Point of each node tag.
+    points: HashMap<u64, u32>,
+    groups: BTreeMap<PhysicalTag, Group>,
+    names: BTreeMap<PhysicalTag, String>,
+    /// Physical groups of each entity (version 4).
+    pub entities: HashMap<PhysicalTag, Vec<i64>>,
+    skipped: BTreeMap<i64, usize>,
+    pub has_nodes: bool,
+    pub has_elements: bool,
+}
+
+impl Assembly {
+    pub fn name_group(&mut self, dimension: u8, tag: i64, name: &str) {
+        self.names.insert((dimension, tag), name.to_owned());
+    }
+
+    pub fn node(&mut self, cursor: &Cursor<'_>, tag: u64, position: Vec3) -> Result<(), Fault> {
+        let point = self.dataset.mesh.points.len();
+        if point >= u32::MAX as usize {
+            return Err(cursor.fault("the number of nodes", point.to_string(), "fewer than 2^32"));
+        }
+        if self.points.insert(tag, point as u32).is_some() {
+            return Err(cursor.fault(format!("node {tag}"), "given twice", "a different number for each node"));
+        }
+        self.dataset.mesh.points.push(position);
+        Ok(())
+    }
+
+    /// The type of a number, refused if its elements cannot be used.
+    pub fn element_type(&self, cursor: &Cursor<'_>, number: i64) -> Result<ElementType, Fault> {
+        let Some(element) = element_type::find(number) else {
+            let expected = "4 (tetrahedron), 5 (hexahedron), 6 (prism), 7 (pyramid), 2 or 3 (facets)";
+            return Err(cursor.fault("the element type", number.to_string(), expected));
+        };
+        if element.dimension == 3 && element.kind.is_none() {
+            let expected = "elements of the first order (in Gmsh: SetOrder 1)";
+            return Err(cursor.fault("the element type", format!("{number}, a {}", element.name), expected));
+        }
+        Ok(element)
+    }
+
+    pub fn element(
+        &mut self,
+        cursor: &Cursor<'_>,
+        tag: u64,
+        element: ElementType,
+        node_tags: &[u64],
+        physical: &[i64],
+    ) -> Result<(), Fault> {
+        let mut nodes = [0; MAX_NODES];
+        for (slot, node_tag) in nodes.iter_mut().zip(node_tags) {
+            *slot = *self.points.get(node_tag).ok_or_else(|| {
+                let subject = format!("a node of element {tag}");
+                cursor.fault(subject, node_tag.to_string(), "the number of a node of $Nodes")
+            })?;
+        }
+        let nodes = &nodes[..node_tags.len()];
+        let destination = match element.kind {
+            Some(kind) => self.sorter.push(&mut self.dataset.mesh, kind, nodes),
+            None => Destination::Skipped,
+        };
+        if destination == Destination::Skipped && (element.dimension == 2 || physical.is_empty()) {
+            *self.skipped.entry(element.number).or_default() += 1;
+        }
+        for tag in physical {
+            // a negative number is the same group with its orientation reversed
+            let group = self.groups.entry((element.dimension, tag.saturating_abs())).or_default();
+            match destination {
+                Destination::Cell(cell) => group.cells.push(cell),
+                Destination::Facet(facet) => group.facets.push(facet),
+                Destination::Skipped => group.points.extend_from_slice(nodes),
+            }
+        }
+        Ok(())
+    }
+
+    pub fn finish(mut self, cursor: &Cursor<'_>) -> Result<Dataset, Fault> {
+        for (present, section) in [(self.has_nodes, "$Nodes"), (self.has_elements, "$Elements")] {
+            if !present {
+                return Err(Fault::cut_off(cursor.place(), format!("the section {section}"), "nodes and elements"));
+            }
+        }
+        for (tag, name) in &self.names {
+            self.groups.entry(*tag).or_default();
+            if name.is_empty() {
+                self.dataset.notes.push(format!("the physical group {} has an empty name", tag.1));
+            }
+        }
+        for ((dimension, tag), mut group) in std::mem::take(&mut self.groups) {
+            let kind = ["point", "curve", "surface", "volume"][usize::from(dimension)];
+            let name = match self.names.remove(&(dimension, tag)) {
+                Some(name) if !name.is_empty() => name,
+                _ => format!("{kind}_{tag}"),
+            };
+            // one name may stand for groups of several dimensions
+            let whole = self.dataset.mesh.groups.entry(name).or_default();
+            whole.points.append(&mut group.points);
+            whole.cells.append(&mut group.cells);
+            whole.facets.append(&mut group.facets);
+        }
+        tidy_groups(&mut self.dataset.mesh);
+        for (number, count) in self.skipped {
+            let name = element_type::find(number).map_or("element", |element| element.name);
+            self.dataset.notes.push(format!("{count} elements of type {number} ({name}) were left out"));
+        }
+        Ok(self.dataset)
+    }
+}

@@ -1,0 +1,68 @@
+//! The element types of Gmsh by number.
+
+use souple_mesh::ElementKind;
+
+/// What a type number stands for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ElementType {
+    pub number: i64,
+    pub name: &'static str,
+    /// Dimension of the entity it meshes, 0 to 3.
+    pub dimension: u8,
+    pub node_count: usize,
+    /// The element of ours, where there is one.
+    pub kind: Option<ElementKind>,
+}
+
+const fn ours(number: i64, name: &'static str, kind: ElementKind, dimension: u8) -> ElementType {
+    ElementType { number, name, dimension, node_count: kind.node_count(), kind: Some(kind) }
+}
+
+const fn other(number: i64, name: &'static str, dimension: u8, node_count: usize) -> ElementType {
+    ElementType { number, name, dimension, node_count, kind: None }
+}
+
+/// All types up to the fifth order in the plane and the third in space.
+const TYPES: &[ElementType] = &[
+    other(1, "line of 2 nodes", 1, 2),
+    ours(2, "triangle of 3 nodes", ElementKind::Tri3, 2),
+    ours(3, "quadrangle of 4 nodes", ElementKind::Quad4, 2),
+    ours(4, "tetrahedron of 4 nodes", ElementKind::Tet4, 3),
+    ours(5, "hexahedron of 8 nodes", ElementKind::Hex8, 3),
+    ours(6, "prism of 6 nodes", ElementKind::Prism6, 3),
+    ours(7, "pyramid of 5 nodes", ElementKind::Pyramid5, 3),
+    other(8, "line of 3 nodes", 1, 3),
+    other(9, "triangle of 6 nodes", 2, 6),
+    other(10, "quadrangle of 9 nodes", 2, 9),
+    other(11, "tetrahedron of 10 nodes", 3, 10),
+    other(12, "hexahedron of 27 nodes", 3, 27),
+    other(13, "prism of 18 nodes", 3, 18),
+    other(14, "pyramid of 14 nodes", 3, 14),
+    other(15, "point", 0, 1),
+    other(16, "quadrangle of 8 nodes", 2, 8),
+    other(17, "hexahedron of 20 nodes", 3, 20),
+    other(18, "prism of 15 nodes", 3, 15),
+    other(19, "pyramid of 13 nodes", 3, 13),
+    other(20, "triangle of 9 nodes", 2, 9),
+    other(21, "triangle of 10 nodes", 2, 10),
+    other(22, "triangle of 12 nodes", 2, 12),
+    other(23, "triangle of 15 nodes", 2, 15),
+    other(24, "triangle of 15 nodes", 2, 15),
+    other(25, "triangle of 21 nodes", 2, 21),
+    other(26, "line of 4 nodes", 1, 4),
+    other(27, "line of 5 nodes", 1, 5),
+    other(28, "line of 6 nodes", 1, 6),
+    other(29, "tetrahedron of 20 nodes", 3, 20),
+];
+
+/// The type of a point.
+pub(super) const POINT: i64 = 15;
+
+pub(super) fn find(number: i64) -> Option<ElementType> {
+    TYPES.iter().copied().find(|element| element.number == number)
+}
+
+/// The number of an element of ours; `None` for elements that Gmsh has no first-order type of.
+pub(super) fn number_of(kind: ElementKind) -> Option<i64> {
+    TYPES.iter().find(|element| element.kind == Some(kind)).map(|element| element.number)
+}

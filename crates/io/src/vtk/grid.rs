@@ -1,0 +1,185 @@
+//! An unstructured grid as VTK lists it, and the mesh with fields and groups that it becomes.
+
+use std::collections::BTreeMap;
+
+use souple_math::Vec3;
+use souple_mesh::{Group, MAX_NODES, Mesh};
+
+use super::{CELL_TYPES, GROUP_PREFIX, WITHOUT_VOLUME};
+use crate::dataset::{Destination, Field, Sorter};
+use crate::error::{Fault, Place};
+use crate::Dataset;
+
+/// Arrays of whole numbers that mark parts of a mesh, as other programs call them.
+const MARKS: &[&str] = &["gmsh:physical", "medit:ref", "MaterialID", "MaterialIds", "RegionId", "cell_tags"];
+
+/// Most parts that such an array makes groups of; more are no marks but numbers of something else.
+const MOST_PARTS: usize = 256;
+
+/// The arrays of a file, and where the cells stand in it.
+#[derive(Debug, Default)]
+pub(super) struct Grid {
+    /// Three for each point.
+    pub coordinates: Vec<f64>,
+    /// Point numbers of all cells in a row.
+    pub connectivity: Vec<i64>,
+    /// End of each cell in the connectivity.
+    pub offsets: Vec<i64>,
+    /// VTK type of each cell.
+    pub types: Vec<i64>,
+    pub point_fields: Vec<Field>,
+    pub cell_fields: Vec<Field>,
+}
+
+impl Grid {
+    /// Checks everything against everything else; faults are said to be at `place`.
+    pub fn into_dataset(self, place: Place) -> Result<Dataset, Fault> {
+        let mut dataset = Dataset::default();
+        dataset.mesh.points = self.points(place)?;
+        let destinations = self.sort_cells(place, &mut dataset)?;
+
+        for field in self.point_fields {
+            match field.name.strip_prefix(GROUP_PREFIX) {
+                Some(name) => {
+                    let members = members(&field).map(|point| point as u32).collect();
+                    group(&mut dataset.mesh, name).points = members;
+                }
+                None => dataset.point_fields.push(field),
+            }
+        }
+        for field in self.cell_fields {
+            if let Some(name) = field.name.strip_prefix(GROUP_PREFIX) {
+                assign(group(&mut dataset.mesh, name), &destinations, members(&field));
+                continue;
+            }
+            if MARKS.contains(&field.name.as_str()) {
+                groups_of_marks(&mut dataset, &field, &destinations);
+            }
+            dataset.cell_fields.push(sorted(field, &destinations));
+        }
+        Ok(dataset)
+    }
+
+    fn points(&self, place: Place) -> Result<Vec<Vec3>, Fault> {
+        if self.coordinates.len() >= 3 * (u32::MAX as usize) {
+            return Err(Fault::new(place, "the number of points", "2^32 or more", "fewer"));
+        }
+        if let Some(index) = self.coordinates.iter().position(|coordinate| !coordinate.is_finite()) {
+            let (subject, found) = (format!("points[{}]", index / 3), self.coordinates[index].to_string());
+            return Err(Fault::new(place, subject, found, "finite coordinates"));
+        }
+        Ok(self.coordinates.chunks_exact(3).map(|x| Vec3::new(x[0], x[1], x[2])).collect())
+    }
+
+    fn sort_cells(&self, place: Place, dataset: &mut Dataset) -> Result<Vec<Destination>, Fault> {
+        let mesh = &mut dataset.mesh;
+        if self.types.len() != self.offsets.len() {
+            let found = format!("{}, but there are {} offsets", self.types.len(), self.offsets.len());
+            return Err(Fault::new(place, "the number of cell types", found, "one for each cell"));
+        }
+        let mut sorter = Sorter::default();
+        let mut skipped: BTreeMap<i64, usize> = BTreeMap::new();
+        let mut destinations = Vec::with_capacity(self.types.len());
+        let mut start = 0;
+        for (cell, (number, end)) in self.types.iter().zip(&self.offsets).enumerate() {
+            let most = self.connectivity.len();
+            let end = usize::try_from(*end).ok().filter(|end| (start..=most).contains(end)).ok_or_else(|| {
+                Fault::new(place, format!("offsets[{cell}]"), end.to_string(), format!("{start} to {most}"))
+            })?;
+            let listed = &self.connectivity[start..end];
+            start = end;
+            let Some(cell_type) = cell_type(*number, listed.len()) else {
+                if !WITHOUT_VOLUME.contains(number) {
+                    let expected = "5, 8, 9 (facets), 10 (tet), 11, 12 (hex), 13 (wedge) or 14 (pyramid)";
+                    return Err(Fault::new(place, format!("types[{cell}]"), number.to_string(), expected));
+                }
+                *skipped.entry(*number).or_default() += 1;
+                destinations.push(Destination::Skipped);
+                continue;
+            };
+            if listed.len() != cell_type.order.len() {
+                let expected = format!("{} for a cell of type {number}", cell_type.order.len());
+                let subject = format!("the number of nodes of cell {cell}");
+                return Err(Fault::new(place, subject, listed.len().to_string(), expected));
+            }
+            let mut nodes = [0; MAX_NODES];
+            for (slot, source) in nodes.iter_mut().zip(cell_type.order) {
+                let node = listed[*source];
+                let count = mesh.points.len();
+                *slot = u32::try_from(node).ok().filter(|node| (*node as usize) < count).ok_or_else(|| {
+                    let expected = format!("a point, of which there are {count}");
+                    Fault::new(place, format!("a node of cell {cell}"), node.to_string(), expected)
+                })?;
+            }
+            destinations.push(sorter.push(mesh, cell_type.kind, &nodes[..cell_type.order.len()]));
+        }
+        if start != self.connectivity.len() {
+            let found = format!("{}, but the cells use {start}", self.connectivity.len());
+            return Err(Fault::new(place, "the length of the connectivity", found, "the last offset"));
+        }
+        for (number, count) in skipped {
+            dataset.notes.push(format!("{count} cells of VTK type {number} (no volume, no facet) were left out"));
+        }
+        Ok(destinations)
+    }
+}
+
+/// Polygons (type 7) of three and four corners are facets too.
+fn cell_type(number: i64, node_count: usize) -> Option<&'static super::CellType> {
+    let number = match (number, node_count) {
+        (7, 3) => 5,
+        (7, 4) => 9,
+        _ => number,
+    };
+    CELL_TYPES.iter().find(|cell| cell.number == number)
+}
+
+fn group<'a>(mesh: &'a mut Mesh, name: &str) -> &'a mut Group {
+    mesh.groups.entry(name.to_owned()).or_default()
+}
+
+/// Tuples that are not zero.
+fn members(field: &Field) -> impl Iterator<Item = usize> + '_ {
+    let tuples = field.values.chunks_exact(field.components.max(1)).enumerate();
+    tuples.filter(|(_, tuple)| tuple[0] != 0.0).map(|(index, _)| index)
+}
+
+/// Cells and facets of a list of cells of the file, which ascends.
+fn assign(group: &mut Group, destinations: &[Destination], cells: impl Iterator<Item = usize>) {
+    for cell in cells {
+        match destinations[cell] {
+            Destination::Cell(cell) => group.cells.push(cell),
+            Destination::Facet(facet) => group.facets.push(facet),
+            Destination::Skipped => {}
+        }
+    }
+}
+
+/// `name=value` for each value of an array of marks.
+fn groups_of_marks(dataset: &mut Dataset, field: &Field, destinations: &[Destination]) {
+    let whole = |value: &f64| value.fract() == 0.0 && value.abs() < 9e15;
+    if field.components != 1 || !field.values.iter().all(whole) {
+        return;
+    }
+    let mut parts: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
+    for (cell, value) in field.values.iter().enumerate() {
+        parts.entry(*value as i64).or_default().push(cell);
+        if parts.len() > MOST_PARTS {
+            let note = format!("`{}` has more than {MOST_PARTS} values: taken as numbers, not as groups", field.name);
+            dataset.notes.push(note);
+            return;
+        }
+    }
+    for (value, cells) in parts {
+        assign(group(&mut dataset.mesh, &format!("{}={value}", field.name)), destinations, cells.into_iter());
+    }
+}
+
+/// Tuples of volume cells first, then those of facets.
+fn sorted(field: Field, destinations: &[Destination]) -> Field {
+    let tuples = || field.values.chunks_exact(field.components).zip(destinations);
+    let cells = tuples().filter(|(_, to)| matches!(to, Destination::Cell(_)));
+    let facets = tuples().filter(|(_, to)| matches!(to, Destination::Facet(_)));
+    let values = cells.chain(facets).flat_map(|(tuple, _)| tuple).copied().collect();
+    Field { values, ..field }
+}

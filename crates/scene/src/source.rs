@@ -1,0 +1,85 @@
+//! Texts a scene is read from, and places in them.
+
+use std::path::PathBuf;
+
+/// One text: a file, or an override from the command line.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// As shown in messages: the path as given.
+    pub name: String,
+    /// Files named in this text are relative to this folder.
+    pub folder: PathBuf,
+    pub text: String,
+}
+
+/// All texts of a scene, in the order they were read.
+#[derive(Clone, Debug, Default)]
+pub struct Sources(Vec<Source>);
+
+/// Bytes `start..end` of a source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    pub source: usize,
+    pub start: usize,
+    pub end: usize,
+}
+
+impl Place {
+    /// The start of a source, for what is wrong with it as a whole.
+    pub fn start_of(source: usize) -> Self {
+        Self { source, start: 0, end: 0 }
+    }
+}
+
+impl Sources {
+    pub fn add(&mut self, source: Source) -> usize {
+        self.0.push(source);
+        self.0.len() - 1
+    }
+
+    pub fn get(&self, index: usize) -> &Source {
+        &self.0[index]
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &Source> {
+        self.0.iter()
+    }
+
+    /// Line and column of a place, both from 1; columns count characters.
+    pub fn line_column(&self, place: Place) -> (usize, usize) {
+        let text = &self.0[place.source].text;
+        let before = &text[..text.floor_char_boundary(place.start)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+
+    /// The text at a place, on one line and at most 80 characters of it.
+    pub fn excerpt(&self, place: Place) -> String {
+        let text = &self.0[place.source].text;
+        let start = text.floor_char_boundary(place.start);
+        let end = text.ceil_char_boundary(place.end.max(start));
+        let line: String = text[start..end].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        match line.char_indices().nth(80) {
+            Some((cut, _)) => format!("{}…", &line[..cut]),
+            None => line,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines and columns count from 1, columns in characters.
+    #[test]
+    fn places_are_counted_in_characters() {
+        let mut sources = Sources::default();
+        let text = "a = 1\nµ = \"zwei\"\n".to_owned();
+        let source = sources.add(Source { name: "x".to_owned(), folder: PathBuf::new(), text });
+        let start = "a = 1\nµ = ".len();
+        let place = Place { source, start, end: start + 6 };
+        assert_eq!(sources.line_column(place), (2, 5));
+        assert_eq!(sources.excerpt(place), "\"zwei\"");
+        assert_eq!(sources.line_column(Place { source, start: 999, end: 999 }), (3, 1));
+    }
+}

@@ -1,0 +1,234 @@
+//! Bodies: shape, material, damping, where they start, what holds and loads them.
+
+use souple_math::Vec3;
+use souple_mesh::GENERATORS;
+use souple_models::materials;
+use souple_table::{Range, Value};
+
+use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
+use super::region::{Region, direction};
+use super::world::DEFAULT_SYSTEM;
+use crate::diagnostic::{Code, Site};
+use crate::document::Content;
+use crate::keys::{EntryShape, Key, Keys, Need, Shape, outlines};
+use crate::reader::{Chosen, Reader, choose};
+
+pub static MESH_FILE: Keys = Keys::new(
+    "mesh_file",
+    "a mesh from a file",
+    &[
+        Key::new("file", Shape::Text, "relative to the scene file that names it").required(),
+        Key::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0)),
+    ],
+);
+
+const MESH: EntryShape = EntryShape {
+    tag: "generate",
+    kind: "mesh generator",
+    outlines: || outlines(&GENERATORS),
+    instead: Some(&MESH_FILE),
+};
+
+pub const MATERIAL: EntryShape =
+    EntryShape { tag: "name", kind: "material", outlines: || outlines(&materials::TABLE), instead: None };
+
+pub static DAMPING: Keys = Keys::new(
+    "damping",
+    "what takes energy from a body",
+    &[
+        Key::number("rayleigh_mass", "1/s", Range::NOT_NEGATIVE, "a of the damping force -(a M + b K) v")
+            .or(Value::Number(0.0)),
+        Key::number("rayleigh_stiffness", "s", Range::NOT_NEGATIVE, "b of the damping force -(a M + b K) v")
+            .or(Value::Number(0.0)),
+        Key::number("viscosity", "Pa s", Range::NOT_NEGATIVE, "Kelvin–Voigt: stress per rate of strain")
+            .or(Value::Number(0.0)),
+    ],
+);
+
+pub static ROTATION: Keys = Keys::new(
+    "rotation",
+    "a turn about an axis",
+    &[
+        Key::vector("axis", "", "the turn is counterclockwise seen against it").required(),
+        Key::number("angle", "rad", Range::ANY, "such as \"30 deg\"").required(),
+        Key::vector("centre", "m", "a point of the axis").or(Value::Vector([0.0; 3])),
+    ],
+);
+
+pub static BODY_REGION: Keys = Keys::new(
+    "body_region",
+    "a part of a body with a material of its own",
+    &[
+        Key::new("region", Shape::Region, "cells of which all nodes, or the centre, are inside").required(),
+        Key::new("material", Shape::Entry(MATERIAL), "the material there").required(),
+    ],
+);
+
+pub static BODY: Keys = Keys::new(
+    "body",
+    "a soft solid",
+    &[
+        Key { need: Need::Required, ..Key::new("mesh", Shape::Entry(MESH), "its shape at rest") },
+        Key { need: Need::Required, ..Key::new("material", Shape::Entry(MATERIAL), "its law") },
+        Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
+        Key::new("mass", Shape::Choice(&["lumped", "consistent"]), "how mass is spread over points")
+            .or(Value::Text("lumped")),
+        Key::new("damping", Shape::Table(&DAMPING), "what takes energy from it"),
+        Key::number("drag", "1/s", Range::NOT_NEGATIVE, "force against the velocity per mass, of an outer medium at rest")
+            .or(Value::Number(0.0)),
+        Key::new("rotate", Shape::Table(&ROTATION), "turns the rest shape, before it is translated"),
+        Key::vector("translate", "m", "moves the rest shape").or(Value::Vector([0.0; 3])),
+        Key::vector("velocity", "m/s", "at the start").or(Value::Vector([0.0; 3])),
+        Key::vector("angular_velocity", "rad/s", "at the start, about the centre of mass").or(Value::Vector([0.0; 3])),
+        Key::new("system", Shape::Text, "the system it steps in"),
+        Key::new("pins", Shape::Tables(&PIN), "points that are held or led"),
+        Key::new("loads", Shape::Tables(&LOAD), "forces on points"),
+        Key::new("springs", Shape::Tables(&SPRING), "springs from points to where they start"),
+    ],
+);
+
+/// A soft solid as specified.
+pub struct Body {
+    pub name: String,
+    pub mesh: Option<MeshSpec>,
+    pub material: Option<Chosen<materials::Build>>,
+    pub regions: Vec<BodyRegion>,
+    pub mass: MassKind,
+    pub damping: Damping,
+    /// Force against the velocity per mass [1/s].
+    pub drag: f64,
+    pub placement: Placement,
+    /// [m/s]
+    pub velocity: Vec3,
+    /// About the centre of mass [rad/s].
+    pub angular_velocity: Vec3,
+    pub system: String,
+    pub pins: Vec<Pin>,
+    pub loads: Vec<Load>,
+    pub springs: Vec<Spring>,
+    pub site: Site,
+}
+
+/// Where a body's rest shape comes from.
+pub enum MeshSpec {
+    Generated(Chosen<souple_mesh::Build>),
+    File { file: String, scale: f64, site: Site },
+}
+
+impl MeshSpec {
+    pub fn site(&self) -> &Site {
+        match self {
+            Self::Generated(chosen) => &chosen.site,
+            Self::File { site, .. } => site,
+        }
+    }
+}
+
+/// A part of another material.
+pub struct BodyRegion {
+    pub name: String,
+    pub region: Option<Region>,
+    pub material: Option<Chosen<materials::Build>>,
+}
+
+/// How mass is spread over points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MassKind {
+    Lumped,
+    Consistent,
+}
+
+/// What takes energy from a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// [1/s]
+    pub rayleigh_mass: f64,
+    /// [s]
+    pub rayleigh_stiffness: f64,
+    /// [Pa s]
+    pub viscosity: f64,
+}
+
+/// Where a rest shape stands: turned by `rotation` about `centre`, then moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Placement {
+    /// Axis times angle [rad].
+    pub rotation: Vec3,
+    /// [m]
+    pub centre: Vec3,
+    /// [m]
+    pub translation: Vec3,
+}
+
+impl Placement {
+    /// Where a point of the file or generator goes [m].
+    pub fn place(&self, point: Vec3) -> Vec3 {
+        if self.rotation == Vec3::ZERO {
+            // exact: no rounding about a centre that does nothing
+            return point + self.translation;
+        }
+        souple_math::exponential(self.rotation) * (point - self.centre) + self.centre + self.translation
+    }
+
+    fn read(reader: &Reader) -> Self {
+        let mut placement = Self { translation: reader.vector("translate"), ..Self::default() };
+        if let Some(rotation) = reader.table("rotate")
+            && let Some(axis) = direction(&rotation, "axis")
+        {
+            placement.rotation = axis * rotation.number("angle");
+            placement.centre = rotation.vector("centre");
+        }
+        placement
+    }
+}
+
+impl Body {
+    pub fn read(name: String, reader: &Reader) -> Self {
+        let damping = reader.table("damping").map_or(Damping::default(), |table| Damping {
+            rayleigh_mass: table.number("rayleigh_mass"),
+            rayleigh_stiffness: table.number("rayleigh_stiffness"),
+            viscosity: table.number("viscosity"),
+        });
+        let region = |(name, part): (String, Reader)| BodyRegion {
+            name,
+            region: Region::read(&part, "region"),
+            material: part.entry("material", &materials::TABLE),
+        };
+        Self {
+            name,
+            mesh: read_mesh(reader),
+            material: reader.entry("material", &materials::TABLE),
+            regions: reader.named("regions").into_iter().map(region).collect(),
+            mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
+            damping,
+            drag: reader.number("drag"),
+            placement: Placement::read(reader),
+            velocity: reader.vector("velocity"),
+            angular_velocity: reader.vector("angular_velocity"),
+            system: reader.maybe_text("system").unwrap_or_else(|| DEFAULT_SYSTEM.to_owned()),
+            pins: reader.tables("pins").iter().map(Pin::read).collect(),
+            loads: reader.tables("loads").iter().map(Load::read).collect(),
+            springs: reader.tables("springs").iter().map(Spring::read).collect(),
+            site: reader.site(),
+        }
+    }
+}
+
+/// `{ generate = "bar", … }`, `{ file = "bar.msh" }`, or the file alone.
+fn read_mesh(reader: &Reader) -> Option<MeshSpec> {
+    let reading = reader.reading("mesh")?;
+    let site = reading.site();
+    match &reading.node.content {
+        Content::Text(file) => Some(MeshSpec::File { file: file.clone(), scale: 1.0, site }),
+        Content::Table(table) if table.get("file").is_some() && table.get("generate").is_none() => {
+            let table = Reader::open(&reading, &MESH_FILE)?;
+            let site = table.site_of("file");
+            Some(MeshSpec::File { file: table.maybe_text("file")?, scale: table.number("scale"), site })
+        }
+        Content::Table(table) if table.get("generate").is_none() => {
+            let expected = "{ generate = \"bar\", … } or { file = \"…\" }";
+            reading.refuse(Code::MissingKey, "the mesh says neither `generate` nor `file`", expected)
+        }
+        _ => choose(&reading, &MESH, &GENERATORS, &[], &BODY).map(MeshSpec::Generated),
+    }
+}
