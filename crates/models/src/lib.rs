@@ -2,5 +2,6 @@
 
 #![allow(non_snake_case)] // symbols of the mathematics: F, P, K
 
+pub mod loads;
 pub mod materials;
 pub mod solids;

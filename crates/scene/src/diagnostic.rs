@@ -6,8 +6,6 @@
 use std::cell::RefCell;
 use std::fmt;
 
-use souple_formal::Span;
-
 use crate::source::{Place, Sources};
 
 /// The kind of a fault, for programs.
@@ -137,13 +135,12 @@ pub struct Diagnostics(pub Vec<Diagnostic>);
 impl Diagnostic {
     fn new(fault: Fault, sources: &Sources) -> Self {
         let Fault { code, site, value, expected, message } = fault;
-        let source = sources.get(site.place.source);
+        let file = sources.get(site.place.source).name.clone();
         let (line, column) = sources.line_column(site.place);
         let has_place = site.place.end > site.place.start;
         let value = value.unwrap_or_else(|| sources.excerpt(site.place));
-        let span = Span { start: site.place.start, end: site.place.end };
-        let picture = if has_place { span.underlined(&source.text) } else { String::new() };
-        Self { code, file: source.name.clone(), line, column, path: site.path, value, expected, message, picture }
+        let picture = if has_place { sources.underlined(site.place) } else { String::new() };
+        Self { code, file, line, column, path: site.path, value, expected, message, picture }
     }
 
     pub fn to_json(&self) -> serde_json::Value {

@@ -118,7 +118,7 @@ impl Substitution<'_> {
                 Formula::compile(text, &[]).map_or_else(|_| format!("({text})"), |f| format!("({:?})", f.evaluate(&[])))
             }
             Content::Text(text) => match parse_quantity(text) {
-                Ok(quantity) => format!("({:?})", quantity.value_si),
+                Ok(quantity) => format!("({:?})", quantity.value),
                 Err(_) => text.clone(),
             },
             other => {

@@ -16,6 +16,9 @@ pub struct Source {
 #[derive(Clone, Debug, Default)]
 pub struct Sources(Vec<Source>);
 
+/// Characters shown on either side of a place in a long line.
+const WINDOW: usize = 60;
+
 /// Bytes `start..end` of a source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Place {
@@ -53,6 +56,24 @@ impl Sources {
         (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
     }
 
+    /// The line of a place with `^^^` below it; long lines are cut.
+    pub fn underlined(&self, place: Place) -> String {
+        let text = &self.0[place.source].text;
+        let start = text.floor_char_boundary(place.start);
+        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+        let end = text.ceil_char_boundary(place.end.max(start)).min(line_end).max(start);
+        let before = text[line_start..start].chars().count();
+        // a place far right is shown with the characters just before it
+        let skipped = before.saturating_sub(WINDOW);
+        // tabs and control characters would shift the marks
+        let visible = |c: char| if c.is_control() { ' ' } else { c };
+        let line: String = text[line_start..line_end].chars().skip(skipped).take(2 * WINDOW).map(visible).collect();
+        let indent = before - skipped;
+        let marks = text[start..end].chars().count().clamp(1, 2 * WINDOW - indent);
+        format!("{}\n{}{}", line.trim_end(), " ".repeat(indent), "^".repeat(marks))
+    }
+
     /// The text at a place, on one line and at most 80 characters of it.
     pub fn excerpt(&self, place: Place) -> String {
         let text = &self.0[place.source].text;
@@ -80,6 +101,7 @@ mod tests {
         let place = Place { source, start, end: start + 6 };
         assert_eq!(sources.line_column(place), (2, 5));
         assert_eq!(sources.excerpt(place), "\"zwei\"");
+        assert_eq!(sources.underlined(place), "µ = \"zwei\"\n    ^^^^^^");
         assert_eq!(sources.line_column(Place { source, start: 999, end: 999 }), (3, 1));
     }
 }

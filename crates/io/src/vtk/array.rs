@@ -1,5 +1,6 @@
 //! `<DataArray>`: numbers as text, as base64 or appended, plain or compressed, of any type and byte order.
 
+use std::cell::Cell;
 use std::io::Read;
 
 use super::base64;
@@ -30,6 +31,8 @@ pub(super) struct Appended<'a> {
     pub base64: bool,
     /// In the file.
     pub position: usize,
+    /// Bytes that no array has claimed yet: arrays that all lie on the same bytes could fill any memory.
+    pub unclaimed: &'a Cell<usize>,
 }
 
 /// Type of the numbers of an array.
@@ -212,11 +215,19 @@ fn appended(
         document.fault(element.position, format!("the offset of the array `{name}`"), given, expected)
     })?;
     let bytes = &appended.bytes[offset..];
-    if !appended.base64 {
-        // only as far as the length before the data reaches: the rest belongs to other arrays
-        return Ok(bytes[..raw_extent(bytes, layout).min(bytes.len())].to_vec());
+    // only as far as the length before the data reaches: the rest belongs to other arrays
+    let extent = if appended.base64 { base64_extent(bytes, layout) } else { raw_extent(bytes, layout) };
+    let extent = extent.min(bytes.len());
+    let unclaimed = appended.unclaimed.get();
+    if extent > unclaimed {
+        let subject = format!("the data of the array `{name}`");
+        let found = format!("{extent} bytes, which other arrays have already");
+        return Err(document.fault(element.position, subject, found, format!("at most {unclaimed} bytes of its own")));
     }
-    let extent = base64_extent(bytes, layout).min(bytes.len());
+    appended.unclaimed.set(unclaimed - extent);
+    if !appended.base64 {
+        return Ok(bytes[..extent].to_vec());
+    }
     base64::decode(&bytes[..extent]).map(|decoded| decoded.0).map_err(|bad| {
         let position = appended.position + offset + bad.offset;
         let subject = format!("the base64 text of the array `{name}`");

@@ -18,6 +18,9 @@ pub(crate) use vtu::VTU;
 
 use souple_mesh::ElementKind;
 
+use crate::IoError;
+use crate::dataset::{Facets, Output};
+
 /// Prefix of the arrays that hold groups.
 const GROUP_PREFIX: &str = "group:";
 
@@ -48,4 +51,46 @@ const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 22, 23, 28, 30, 34, 35
 fn cell_type_of(kind: ElementKind) -> Option<u8> {
     let identity = |cell: &&CellType| cell.kind == kind && cell.order.iter().enumerate().all(|(i, n)| i == *n);
     CELL_TYPES.iter().find(identity).map(|cell| cell.number as u8)
+}
+
+/// A group as numbers 0 and 1.
+struct MarkedGroup<'a> {
+    name: &'a str,
+    /// Where the group has points, or nothing at all: it is kept by its name.
+    on_points: Option<Vec<u8>>,
+    /// Cells, then facets, where the group has any.
+    on_cells: Option<Vec<u8>>,
+}
+
+/// All groups with what is written of them.
+fn group_marks<'a>(output: &Output<'a>) -> Result<Vec<MarkedGroup<'a>>, IoError> {
+    let mesh = output.mesh;
+    let facets_written = output.facets == Facets::Written;
+    let facet_count = if facets_written { mesh.facet_count() } else { 0 };
+    let mut marked = Vec::with_capacity(mesh.groups.len());
+    for (name, group) in &mesh.groups {
+        let facets = if facets_written { group.facets.as_slice() } else { &[] };
+        let has_cells = !group.cells.is_empty() || !facets.is_empty();
+        let on_points = (!group.points.is_empty() || !has_cells)
+            .then(|| marks(name, &group.points, mesh.points.len()))
+            .transpose()?;
+        let on_cells = has_cells
+            .then(|| Ok::<_, IoError>([marks(name, &group.cells, mesh.cell_count())?, marks(name, facets, facet_count)?]))
+            .transpose()?
+            .map(|lists| lists.concat());
+        marked.push(MarkedGroup { name, on_points, on_cells });
+    }
+    Ok(marked)
+}
+
+/// One for each member, zero for the others.
+fn marks(name: &str, members: &[u32], count: usize) -> Result<Vec<u8>, IoError> {
+    let mut marks = vec![0; count];
+    for member in members {
+        let slot = marks.get_mut(*member as usize).ok_or_else(|| {
+            IoError::request(format!("a member of the group `{name}`"), member, format!("a number below {count}"))
+        })?;
+        *slot = 1;
+    }
+    Ok(marks)
 }

@@ -5,6 +5,8 @@ mod kernel;
 mod layout;
 mod mass;
 mod output;
+mod rayleigh;
+mod viscosity;
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -25,6 +27,8 @@ use layout::{Chunk, LANES};
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass};
 pub use output::CellField;
+pub use rayleigh::RayleighDamping;
+pub use viscosity::Viscosity;
 
 /// Elastic forces of a body.
 pub struct SolidForce {
@@ -38,6 +42,7 @@ pub struct SolidForce {
     materials: Vec<Material>,
     material_of_cell: Vec<u16>,
     mesh: Mesh,
+    quadrature: Quadrature,
 }
 
 /// The elements of one kind and law.
@@ -56,7 +61,27 @@ struct Gather {
     slots: Vec<u32>,
 }
 
+/// Which rule of quadrature integrates the energy of an element.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quadrature {
+    /// Exact for linear elasticity on straight-sided elements; the cheapest that keeps full rank.
+    #[default]
+    Default,
+    /// Exact for St. Venant–Kirchhoff energy too: more samples in hexahedra, prisms and pyramids.
+    Full,
+}
+
+impl Quadrature {
+    pub fn rule(self, kind: ElementKind) -> &'static QuadratureRule {
+        match self {
+            Self::Default => kind.default_rule(),
+            Self::Full => kind.full_rule(),
+        }
+    }
+}
+
 /// What a body is made of.
+#[derive(Clone)]
 pub struct SolidDescription<'a> {
     pub name: String,
     /// Rest shape; point `i` is row `first_row + i`.
@@ -65,6 +90,7 @@ pub struct SolidDescription<'a> {
     pub materials: &'a [Material],
     /// Index into `materials` for each cell.
     pub material_of_cell: &'a [u16],
+    pub quadrature: Quadrature,
 }
 
 /// Chunks below which threads cost more than they bring.
@@ -107,7 +133,7 @@ impl SolidForce {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        let SolidDescription { name, mesh, first_row, materials, material_of_cell } = description;
+        let SolidDescription { name, mesh, first_row, materials, material_of_cell, quadrature } = description;
         let rows = *first_row..*first_row + mesh.points.len();
         let nodes_of_cell: Vec<Vec<u32>> = mesh
             .cells()
@@ -126,7 +152,7 @@ impl SolidForce {
                 })
                 .map(|(index, _)| (index as u32, nodes_of_cell[index].as_slice()))
                 .collect();
-            let rule = kind.default_rule();
+            let rule = quadrature.rule(kind);
             let count = law.visit(ParameterCount);
             let parameters_of =
                 |cell: u32| materials[material_of_cell[cell as usize] as usize].parameters[..count].to_vec();
@@ -145,6 +171,7 @@ impl SolidForce {
             materials: materials.to_vec(),
             material_of_cell: material_of_cell.to_vec(),
             mesh: (*mesh).clone(),
+            quadrature: *quadrature,
         })
     }
 
@@ -215,6 +242,11 @@ impl SolidForce {
         }
         scratch.slots_for = Some(pattern.clone());
     }
+}
+
+/// Rows of a cell's nodes.
+fn nodes_of(cell: &souple_mesh::Cell, first_row: usize) -> Vec<u32> {
+    cell.nodes.iter().map(|node| node + first_row as u32).collect()
 }
 
 struct ParameterCount;
@@ -436,6 +468,10 @@ impl SolidForce {
 
     pub fn rows(&self) -> Range<usize> {
         self.rows.clone()
+    }
+
+    pub fn quadrature(&self) -> Quadrature {
+        self.quadrature
     }
 
     /// The material of a cell.

@@ -40,7 +40,7 @@ impl SolidForce {
             energy_density: 0.0,
             volume: 0.0,
         };
-        for point in &view.kind.default_rule().points {
+        for point in &self.quadrature().rule(view.kind).points {
             let jacobian = view.kind.jacobian(&rest, point.position);
             let volume = jacobian.determinant() * point.weight;
             let F = view.kind.jacobian(&now, point.position) * jacobian.try_inverse()?;

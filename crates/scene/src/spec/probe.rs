@@ -1,7 +1,7 @@
 //! Probes: what is measured along a run, and what is expected of it.
 
 use souple_math::Vec3;
-use souple_table::{Range, Value};
+use souple_table::Range;
 
 use super::region::Region;
 use crate::diagnostic::{Code, Site};

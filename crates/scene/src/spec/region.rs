@@ -89,7 +89,8 @@ impl Region {
         Self::from_reading(&reader.reading(key)?, 0)
     }
 
-    fn from_reading(reading: &Reading, depth: usize) -> Option<Self> {
+    /// `depth` regions lie around this one.
+    pub fn from_reading(reading: &Reading, depth: usize) -> Option<Self> {
         let site = reading.site();
         if let Content::Text(name) = &reading.node.content {
             return Some(Self { kind: RegionKind::Group(name.clone()), site });

@@ -1,0 +1,101 @@
+//! Gravity: the weight of everything that has mass.
+
+use std::any::Any;
+
+use souple_engine::{
+    Configuration, Declaration, Editable, Energy, Force, Kinematics, Mass, ParameterError, Scratch, TangentWeights,
+};
+use souple_math::Vec3;
+use souple_solve::BlockMatrix;
+
+use super::{Fit, LoadError, editable, finite, set_number};
+
+/// `f_a = m_a g` with `m_a = Σ_b M_ab`, the sum over rows that move with a translation.
+#[derive(Clone, Debug)]
+pub struct Gravity {
+    name: String,
+    /// [m/s²]
+    acceleration: Vec3,
+    /// Per row [kg].
+    row_masses: Vec<f64>,
+}
+
+impl Gravity {
+    /// The weight of a system's mass, lumped or consistent; axes of frames have none of their own but what the
+    /// mass couples them to.
+    ///
+    /// # Errors
+    /// The acceleration is not finite.
+    pub fn new(
+        name: impl Into<String>,
+        acceleration: Vec3,
+        mass: &Mass,
+        kinematics: &Kinematics,
+    ) -> Result<Self, LoadError> {
+        for axis in 0..3 {
+            finite(format!("gravity[{axis}]"), acceleration[axis])?;
+        }
+        // a fall moves row b by its translation weight: f = M (w g)
+        let share = |row| kinematics.translation_weight(row);
+        let mut row_masses: Vec<f64> = mass.diagonal.iter().enumerate().map(|(row, mass)| mass * share(row)).collect();
+        for &(a, b, coupling) in &mass.couplings {
+            row_masses[a as usize] += coupling * share(b as usize);
+            row_masses[b as usize] += coupling * share(a as usize);
+        }
+        Ok(Self { name: name.into(), acceleration, row_masses })
+    }
+
+    /// Total weight [N].
+    pub fn total(&self) -> Vec3 {
+        self.acceleration * self.row_masses.iter().sum::<f64>()
+    }
+}
+
+impl Force for Gravity {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn declaration(&self) -> Declaration {
+        Declaration::LOAD
+    }
+
+    // E = -Σ m g · x
+    fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
+        let weight = self.acceleration * at.load;
+        let stored = self.row_masses.iter().zip(at.positions).map(|(mass, x)| -mass * weight.dot(*x)).sum();
+        Energy { stored, dissipated: 0.0 }
+    }
+
+    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
+        let weight = self.acceleration * at.load;
+        for (out, mass) in out.iter_mut().zip(&self.row_masses) {
+            *out += weight * *mass;
+        }
+    }
+
+    fn add_differential(&self, _: &Configuration, _: TangentWeights, _: &[Vec3], _: &mut Scratch, _: &mut [Vec3]) {}
+
+    fn visit_cliques(&self, _pairs: &[souple_engine::Pair], _visit: &mut dyn FnMut(&[u32])) {}
+
+    fn add_blocks(&self, _: &Configuration, _: TangentWeights, _: &mut Scratch, _: &mut BlockMatrix) {}
+
+    fn editable(&self) -> Vec<Editable> {
+        let names = ["gravity_x", "gravity_y", "gravity_z"];
+        (0..3).map(|axis| editable(names[axis], "m/s²", self.acceleration[axis])).collect()
+    }
+
+    fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
+        let Vec3 { x, y, z } = &mut self.acceleration;
+        let numbers = &mut [("gravity_x", x, Fit::Finite), ("gravity_y", y, Fit::Finite), ("gravity_z", z, Fit::Finite)];
+        set_number(&self.name, numbers, name, value)
+    }
+
+    fn bytes(&self) -> usize {
+        self.row_masses.len() * size_of::<f64>()
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+}

@@ -1,0 +1,150 @@
+//! Bodies become ranges of rows, masses and elastic forces of their systems.
+
+use std::ops::Range;
+
+use sha2::Sha256;
+use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
+use souple_math::Vec3;
+use souple_mesh::Mesh;
+use souple_models::loads::{Drag, Gravity, MassDamping};
+use souple_models::materials::Material;
+use souple_models::solids::{SolidDescription, SolidForce, consistent_mass, lumped_mass};
+
+use super::{Draft, shape};
+use crate::diagnostic::{Code, Log};
+use crate::source::Sources;
+use crate::spec::Spec;
+use crate::spec::body::{Body, MassKind};
+use crate::spec::world::SystemSpec;
+
+/// A body with its mesh and its rows in a system.
+pub struct Placed<'a> {
+    pub spec: &'a Body,
+    pub system: usize,
+    pub rows: Range<usize>,
+    pub mesh: Mesh,
+    /// The number that each point had in its file, ascending.
+    pub point_numbers: Vec<u32>,
+}
+
+/// Name of the elastic force of a body.
+pub fn solid_name(body: &str) -> String {
+    format!("{body}.material")
+}
+
+/// Builds all meshes and gives out rows; `None` where one was refused.
+pub fn place<'a>(
+    spec: &'a Spec,
+    sources: &Sources,
+    hash: &mut Sha256,
+    warnings: &mut Vec<String>,
+    log: &Log,
+) -> Option<Vec<Placed<'a>>> {
+    let mut next_row = vec![0; spec.systems.len()];
+    let mut placed = Vec::with_capacity(spec.bodies.len());
+    // every mesh is looked at, so that each refused one is reported
+    for body in &spec.bodies {
+        let Some(shape) = shape::build(body, sources, hash, log) else { continue };
+        let Some(system) = spec.systems.iter().position(|system| system.name == body.system) else { continue };
+        warnings.extend(shape.warnings);
+        let first = next_row[system];
+        next_row[system] += shape.mesh.points.len();
+        let rows = first..next_row[system];
+        placed.push(Placed { spec: body, system, rows, mesh: shape.mesh, point_numbers: shape.point_numbers });
+    }
+    (placed.len() == spec.bodies.len() && log.is_empty()).then_some(placed)
+}
+
+/// A system with masses, elastic forces, gravity and damping of its bodies.
+pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> {
+    let bodies = || draft.bodies.iter().filter(|body| body.system == index);
+    let mut kinematics = Kinematics::default();
+    let row_count = bodies().map(|body| body.mesh.points.len()).sum();
+    kinematics.add_unknowns(UnknownKind::Point, row_count);
+    let mut mass = Mass::new(row_count);
+    let mut forces: Vec<Box<dyn Force>> = Vec::new();
+    for body in bodies() {
+        let Some((materials, material_of_cell)) = materials_of(draft, body) else { continue };
+        let density = |cell: usize| materials[usize::from(material_of_cell[cell])].density;
+        match body.spec.mass {
+            MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
+            MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
+        }
+        let solid = SolidForce::new(&SolidDescription {
+            name: solid_name(&body.spec.name),
+            mesh: &body.mesh,
+            first_row: body.rows.start,
+            materials: &materials,
+            material_of_cell: &material_of_cell,
+        });
+        match solid {
+            Ok(solid) => forces.push(Box::new(solid)),
+            Err(error) => {
+                let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
+                draft.log.add(Code::Mesh, site, error.to_string(), "cells with volume");
+            }
+        }
+    }
+    mass.seal();
+    add_outer_forces(draft, index, &mass, &kinematics, &mut forces);
+    let stepper = spec.stepper.as_ref().map(|chosen| (chosen.entry.build)(&chosen.values))?;
+    Some(System {
+        name: spec.name.clone(),
+        kinematics,
+        mass,
+        forces,
+        constraints: Vec::new(),
+        stepper,
+        steps_per_period: spec.steps_per_period,
+    })
+}
+
+/// Gravity of the whole system, drag and damping of its bodies.
+fn add_outer_forces(draft: &Draft, index: usize, mass: &Mass, kinematics: &Kinematics, forces: &mut Vec<Box<dyn Force>>) {
+    let world = &draft.spec.world;
+    if world.gravity != Vec3::ZERO {
+        match Gravity::new("gravity", world.gravity, mass, kinematics) {
+            Ok(gravity) => forces.push(Box::new(gravity)),
+            Err(error) => draft.log.add(Code::OutOfRange, &world.site, error.to_string(), "finite numbers"),
+        }
+    }
+}
+
+/// The materials of a body and the number of each cell's among them.
+fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>)> {
+    let main = body.spec.material.as_ref()?;
+    let mut materials = vec![(main.entry.build)(&main.values)];
+    let mut material_of_cell = vec![0_u16; body.mesh.cell_count()];
+    for part in &body.spec.regions {
+        let (Some(region), Some(chosen)) = (&part.region, &part.material) else { continue };
+        let number = match u16::try_from(materials.len()) {
+            Ok(number) => number,
+            Err(_) => {
+                let message = format!("body `{}` has more than {} materials", body.spec.name, u16::MAX);
+                draft.log.add(Code::TooLarge, &region.site, message, "fewer regions");
+                return None;
+            }
+        };
+        materials.push((chosen.entry.build)(&chosen.values));
+        for cell in draft.selector(body).cells(region) {
+            material_of_cell[cell as usize] = number;
+        }
+    }
+    Some((materials, material_of_cell))
+}
+
+/// Rest positions and initial velocities; pinned points stand where their pins want them.
+pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemState {
+    let bodies = || draft.bodies.iter().filter(|body| body.system == index);
+    let q: Vec<Vec3> = bodies().flat_map(|body| body.mesh.points.iter().copied()).collect();
+    let mut state = system.initial_state(q);
+    for body in bodies() {
+        // v + ω × (x - c)
+        let centre = body.mesh.centroid();
+        for (row, x) in body.rows.clone().zip(&body.mesh.points) {
+            state.v[row] = body.spec.velocity + body.spec.angular_velocity.cross(*x - centre);
+        }
+    }
+    system.impose_constraints(&mut state.q, &mut state.v, 0.0, 1.0);
+    state
+}

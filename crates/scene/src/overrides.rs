@@ -1,0 +1,199 @@
+//! Values set from the command line: `--set bodies.bar.material.youngs_modulus="2 MPa"`.
+//!
+//! A path names keys by `.` and items of lists by `[index]`. A value is read as TOML, or as text where it is none
+//! (`5ms`, `linear`). Keys that may be written can be set even where the scene leaves them out; bodies, systems
+//! and the like must be there.
+
+use std::path::PathBuf;
+
+use crate::diagnostic::{Code, Fault, Log, Site};
+use crate::document::{Content, Entry, Node, Table, parse_value};
+use crate::keys::{Keys, Shape, did_you_mean};
+use crate::source::{Place, Source, Sources};
+use crate::spec::SCENE;
+
+/// A step of a path.
+enum Step<'a> {
+    Key(&'a str),
+    Index(usize),
+}
+
+/// Sets what `overrides` (`path=value`) say in a document.
+pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, log: &Log) {
+    for text in overrides {
+        let source = Source { name: "--set".to_owned(), folder: PathBuf::new(), text: text.clone() };
+        let source = sources.add(source);
+        let whole = Place { source, start: 0, end: text.len() };
+        let Some((path, value)) = text.split_once('=') else {
+            let site = Site { place: whole, path: String::new() };
+            log.add(Code::BadOverride, &site, "this sets nothing", "path=value, such as world.period=5ms");
+            continue;
+        };
+        let node = parse_value(value, source, path.len() + 1);
+        let place = Place { source, start: 0, end: path.len() };
+        let path = path.trim();
+        let Some(steps) = split(path) else {
+            let site = Site { place, path: path.to_owned() };
+            log.add(Code::BadOverride, &site, "this is no path", "keys with dots, such as bodies.bar.pins[0].axes");
+            continue;
+        };
+        let setting = Setting { path, place, log };
+        setting.set(document, Some(&SCENE), &steps, node);
+    }
+}
+
+/// The steps of a path; `None` where it is malformed.
+fn split(path: &str) -> Option<Vec<Step<'_>>> {
+    let mut steps = Vec::new();
+    for part in path.split('.') {
+        let (key, indices) = part.split_at(part.find('[').unwrap_or(part.len()));
+        if key.is_empty() {
+            return None;
+        }
+        steps.push(Step::Key(key));
+        let mut rest = indices;
+        while !rest.is_empty() {
+            let (index, after) = rest.strip_prefix('[')?.split_once(']')?;
+            steps.push(Step::Index(index.parse().ok()?));
+            rest = after;
+        }
+    }
+    Some(steps)
+}
+
+struct Setting<'a> {
+    path: &'a str,
+    place: Place,
+    log: &'a Log,
+}
+
+impl Setting<'_> {
+    fn refuse(&self, message: String, expected: String) {
+        let site = Site { place: self.place, path: self.path.to_owned() };
+        self.log.push(Fault { code: Code::UnknownPath, site, value: Some(self.path.to_owned()), expected, message });
+    }
+
+    /// Sets what `steps` lead to from `table`, whose keys are `keys` as far as they are known.
+    fn set(&self, table: &mut Table, keys: Option<&'static Keys>, steps: &[Step], value: Node) {
+        let [Step::Key(name), rest @ ..] = steps else {
+            return self.refuse("a table has keys, not items".to_owned(), "a key".to_owned());
+        };
+        let shape = keys.and_then(|keys| keys.find(name)).map(|key| key.shape);
+        if table.get(name).is_none() {
+            let known = || table.keys().chain(keys.iter().flat_map(|keys| keys.known()));
+            // the parameters of entries are checked where the entry is read
+            let may_be_written = match keys {
+                Some(keys) => shape.is_some() || !matches!(keys.others, crate::keys::Others::Refused),
+                None => true,
+            };
+            let names_a_table = matches!(shape, Some(Shape::Tables(_) | Shape::Named(_))) && !rest.is_empty();
+            if !may_be_written || names_a_table {
+                let mut names: Vec<&str> = known().collect();
+                names.sort_unstable();
+                names.dedup();
+                let hint = did_you_mean(name, names.iter().copied());
+                let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
+                return self.refuse(message, format!("one of {}", names.join(", ")));
+            }
+            let content = if rest.is_empty() { value.content.clone() } else { Content::Table(Table::default()) };
+            let node = Node::new(value.place, content);
+            table.entries.push(Entry { key: (*name).to_owned(), key_place: self.place, node });
+        }
+        let Some(node) = table.get_mut(name) else { return };
+        self.set_within(node, shape, rest, value);
+    }
+
+    fn set_within(&self, node: &mut Node, shape: Option<Shape>, steps: &[Step], value: Node) {
+        match (&mut node.content, steps) {
+            (_, []) => *node = value,
+            (Content::List(items), [Step::Index(index), rest @ ..]) => {
+                let count = items.len();
+                match items.get_mut(*index) {
+                    Some(item) => {
+                        let shape = match shape {
+                            Some(Shape::Tables(keys)) => Some(Shape::Table(keys)),
+                            _ => None,
+                        };
+                        self.set_within(item, shape, rest, value);
+                    }
+                    None => self.refuse(
+                        format!("the list in `{}` has {count} items, none of number {index}", self.path),
+                        format!("an index below {count}"),
+                    ),
+                }
+            }
+            (Content::Table(table), [Step::Key(name), rest @ ..]) => match shape {
+                Some(Shape::Table(keys)) => self.set(table, Some(keys), steps, value),
+                Some(Shape::Named(keys)) => match table.get_mut(name) {
+                    Some(item) => self.set_within(item, Some(Shape::Table(keys)), rest, value),
+                    None => {
+                        let names: Vec<&str> = table.keys().collect();
+                        let hint = did_you_mean(name, names.iter().copied());
+                        let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
+                        self.refuse(message, format!("one of {}", names.join(", ")));
+                    }
+                },
+                Some(Shape::Values) if table.get(name).is_none() => {
+                    let names: Vec<&str> = table.keys().collect();
+                    let hint = did_you_mean(name, names.iter().copied());
+                    self.refuse(format!("the scene has no parameter `{name}`{hint}"), format!("one of {}", names.join(", ")));
+                }
+                _ => self.set(table, None, steps, value),
+            },
+            // "backward_euler" becomes { name = "backward_euler" } to take a parameter
+            (Content::Text(text), [Step::Key(_), ..]) if matches!(shape, Some(Shape::Entry(_))) => {
+                let Some(Shape::Entry(entry)) = shape else { return };
+                let name = Node::new(node.place, Content::Text(std::mem::take(text)));
+                let tag = Entry { key: entry.tag.to_owned(), key_place: node.place, node: name };
+                let mut table = Table { entries: vec![tag] };
+                self.set(&mut table, None, steps, value);
+                node.content = Content::Table(table);
+            }
+            (content, [step, ..]) => {
+                let wanted = match step {
+                    Step::Key(name) => format!("the key `{name}`"),
+                    Step::Index(index) => format!("item {index}"),
+                };
+                self.refuse(format!("`{}` asks {} for {wanted}", self.path, content.kind()), "an existing path".to_owned());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(text: &str, overrides: &[&str]) -> (Table, usize) {
+        let (mut sources, log) = (Sources::default(), Log::default());
+        let source = sources.add(Source { name: "x".to_owned(), folder: PathBuf::new(), text: text.to_owned() });
+        let mut table = crate::document::parse(&sources, source, &log);
+        let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
+        apply(&mut table, &overrides, &mut sources, &log);
+        (table, log.into_diagnostics(&sources).0.len())
+    }
+
+    /// Numbers, texts without quotes, items of lists and keys that were left out can be set.
+    #[test]
+    fn values_are_set() {
+        let text = "[world]\nperiod = 1\n[bodies.a]\nmaterial = \"x\"\n[[bodies.a.pins]]\nregion = \"y\"\n";
+        let overrides = ["world.period=5ms", "world.gravity=[0,0,1]", "bodies.a.pins[0].axes=xy", "bodies.a.material.density=1"];
+        let (table, faults) = set(text, &overrides);
+        assert_eq!(faults, 0);
+        let world = table.get("world").and_then(Node::as_table).expect("a table");
+        assert_eq!(world.get("period").map(|node| &node.content), Some(&Content::Text("5ms".to_owned())));
+        assert!(matches!(world.get("gravity").map(|node| &node.content), Some(Content::List(_))));
+        let body = table.get("bodies").and_then(Node::as_table).and_then(|t| t.get("a")).and_then(Node::as_table);
+        let material = body.and_then(|body| body.get("material")).and_then(Node::as_table).expect("a table");
+        assert_eq!(material.keys().collect::<Vec<_>>(), ["name", "density"]);
+    }
+
+    /// A path that leads nowhere is refused.
+    #[test]
+    fn unknown_paths_are_refused() {
+        let text = "[world]\nperiod = 1\n[bodies.a]\npins = []\n";
+        for bad in ["world.peroid=1", "wolrd.period=1", "bodies.b.drag=1", "bodies.a.pins[0].axes=x", "world.period.x=1", "period", "a..b=1", "a[=1"] {
+            assert_eq!(set(text, &[bad]).1, 1, "{bad}");
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! The specification of a scene: what its text says, checked key by key, before anything is built.
+
+pub mod body;
+pub mod boundary;
+pub mod interaction;
+pub mod probe;
+pub mod region;
+pub mod world;
+
+use souple_math::Vec3;
+use souple_table::Range;
+
+use crate::diagnostic::{Code, Log, Site};
+use crate::document::{Content, Node, Table};
+use crate::keys::{Key, Keys, Shape};
+use crate::reader::Reader;
+use crate::source::Place;
+use crate::values::Reading;
+
+use body::{BODY, Body};
+use interaction::{ATTACHMENT, COUPLING, Link};
+use probe::{EXPECT, Expect, PROBE, Probe};
+use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD, WorldSpec};
+
+/// The version of the format that this crate reads.
+pub const FORMAT: i64 = 1;
+
+/// The keys of a scene.
+pub static SCENE: Keys = Keys::new(
+    "scene",
+    "a world of soft things; numbers are in SI units or texts with a unit, such as \"10 kPa\"",
+    &[
+        Key::integer("format", Range::closed(1.0, 1.0), "version of the scene format").required(),
+        Key::new("title", Shape::Text, "one line"),
+        Key::new("description", Shape::Text, "what there is to see and to learn"),
+        Key::new("shows", Shape::Texts, "ids of the capabilities it shows"),
+        Key::new("include", Shape::Texts, "scene files taken in; what is written here wins"),
+        Key::new("parameters", Shape::Values, "values used as \"$name\" below"),
+        Key::new("world", Shape::Table(&WORLD), "what all systems share").required(),
+        Key::new("systems", Shape::Named(&SYSTEM), "how bodies step; `main` where left out"),
+        Key::new("bodies", Shape::Named(&BODY), "soft solids"),
+        Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
+        Key::new("couplings", Shape::Tables(&COUPLING), "what joins systems"),
+        Key::new("probes", Shape::Named(&PROBE), "what is measured"),
+        Key::new("expect", Shape::Tables(&EXPECT), "what the probes must read"),
+        Key::new("run", Shape::Table(&RUN), "what a run does unless told otherwise"),
+    ],
+);
+
+/// A scene as its text says it.
+pub struct Spec {
+    pub title: String,
+    pub description: String,
+    /// Ids of capabilities.
+    pub shows: Vec<String>,
+    pub world: WorldSpec,
+    pub systems: Vec<SystemSpec>,
+    pub bodies: Vec<Body>,
+    pub attachments: Vec<Link>,
+    pub couplings: Vec<Link>,
+    pub probes: Vec<Probe>,
+    pub expects: Vec<Expect>,
+    pub run: RunSpec,
+}
+
+impl Spec {
+    /// Reads a document without includes and parameters; what is wrong goes to the log.
+    pub fn read(document: Table, source: usize, log: &Log) -> Self {
+        let root = Node::new(Place::start_of(source), Content::Table(document));
+        if is_other_format(&root, log) {
+            // keys of another version would only give a hail of faults
+            return Self::empty(source);
+        }
+        let Some(reader) = Reader::open(&Reading { node: &root, path: String::new(), log }, &SCENE) else {
+            return Self::empty(source);
+        };
+        reader.maybe_integer("format");
+        let empty = Self::empty(source);
+        let probes: Vec<Probe> =
+            reader.named("probes").into_iter().map(|(name, probe)| Probe::read(name, &probe)).collect();
+        let expects = reader.tables("expect").iter().filter_map(|expect| Expect::read(expect, &probes)).collect();
+        let mut systems: Vec<SystemSpec> =
+            reader.named("systems").into_iter().map(|(name, system)| SystemSpec::read(name, &system)).collect();
+        if !reader.has("systems") {
+            systems.push(SystemSpec::default_system(Site { path: "systems".to_owned(), ..reader.site() }));
+        }
+        let links = |key: &str, can_reach: bool| -> Vec<Link> {
+            reader.tables(key).iter().map(|link| Link::read(link, can_reach)).collect()
+        };
+        let mut spec = Self {
+            title: reader.text("title"),
+            description: reader.text("description"),
+            shows: reader.texts("shows"),
+            world: reader.table("world").map_or(empty.world, |world| WorldSpec::read(&world)),
+            bodies: reader.named("bodies").into_iter().map(|(name, body)| Body::read(name, &body)).collect(),
+            attachments: links("attachments", true),
+            couplings: links("couplings", false),
+            run: reader.table("run").map_or(empty.run, |run| RunSpec::read(&run)),
+            systems,
+            probes,
+            expects,
+        };
+        spec.choose_systems();
+        spec.check_names(log);
+        spec.check_times(log);
+        spec
+    }
+
+    fn empty(source: usize) -> Self {
+        let site = Site { place: Place::start_of(source), path: "world".to_owned() };
+        Self {
+            title: String::new(),
+            description: String::new(),
+            shows: Vec::new(),
+            world: WorldSpec { period: f64::NAN, gravity: Vec3::ZERO, site },
+            systems: Vec::new(),
+            bodies: Vec::new(),
+            attachments: Vec::new(),
+            couplings: Vec::new(),
+            probes: Vec::new(),
+            expects: Vec::new(),
+            run: RunSpec::default(),
+        }
+    }
+
+    /// Bodies that name no system belong to the only one there is.
+    fn choose_systems(&mut self) {
+        if let [only] = &self.systems[..] {
+            for body in self.bodies.iter_mut().filter(|body| body.system == DEFAULT_SYSTEM) {
+                body.system.clone_from(&only.name);
+            }
+        }
+    }
+
+    /// Every name that refers to something finds it.
+    fn check_names(&self, log: &Log) {
+        let bodies: Vec<&str> = self.bodies.iter().map(|body| body.name.as_str()).collect();
+        let systems: Vec<&str> = self.systems.iter().map(|system| system.name.as_str()).collect();
+        let check = |kind: &str, name: &str, known: &[&str], site: &Site| {
+            if !known.contains(&name) && !name.is_empty() {
+                let hint = crate::keys::did_you_mean(name, known.iter().copied());
+                let message = format!("there is no {kind} `{name}`{hint}");
+                log.add(Code::UnknownName, site, message, format!("one of {}", known.join(", ")));
+            }
+        };
+        for body in &self.bodies {
+            check("system", &body.system, &systems, &body.site);
+        }
+        for probe in &self.probes {
+            if let Some(body) = &probe.body {
+                check("body", body, &bodies, &probe.site);
+            }
+        }
+        for link in self.attachments.iter().chain(&self.couplings) {
+            check("body", &link.from, &bodies, &link.from_site);
+            check("body", &link.to, &bodies, &link.to_site);
+        }
+    }
+
+    fn check_times(&self, log: &Log) {
+        let periods = self.run.duration / self.world.period;
+        if periods > PERIODS_MAX {
+            let message = format!("the run has {periods:.1e} periods of {} s", self.world.period);
+            let expected = format!("at most {PERIODS_MAX:.0e} periods in the duration of a run");
+            log.add(Code::TooLarge, &self.world.site, message, expected);
+        }
+    }
+
+    pub fn body(&self, name: &str) -> Option<&Body> {
+        self.bodies.iter().find(|body| body.name == name)
+    }
+}
+
+/// Whether the scene says that it is of another version, which is then reported.
+fn is_other_format(root: &Node, log: &Log) -> bool {
+    let Some(node) = root.as_table().and_then(|table| table.get("format")) else { return false };
+    match node.content {
+        Content::Integer(version) if version != FORMAT => {
+            let site = Site { place: node.place, path: "format".to_owned() };
+            log.add(Code::Format, &site, format!("this is a scene of format {version}"), format!("format = {FORMAT}"));
+            true
+        }
+        _ => false,
+    }
+}
