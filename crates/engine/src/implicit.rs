@@ -1,15 +1,23 @@
 //! One implicit step as a nonlinear problem: backward Euler, and statics as its limit without inertia.
+//!
+//! The iteration is `souple_solve::newton`; what is particular to a step stays here, before and around it. Prescribed
+//! motion is a predictor: one linearised solve carries the constrained components to where they are led, and Newton
+//! then works on the free ones alone, so that its merit function is one potential throughout. The merit is the
+//! incremental potential where there is one, and rounding bounds what residual can be asked for.
 
 use std::time::Instant;
 
 use souple_math::Vec3;
+use souple_solve::krylov;
+use souple_solve::newton::{self, NewtonProblem, Trial, newton};
+use souple_solve::reduce::norm;
 
 use crate::force::TangentWeights;
-use crate::linear::LinearError;
+use crate::linear::{Indefinite, LinearError, LinearSystem, Solved};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Surroundings, System, SystemWorkspace};
-use crate::tangent::{Linearisation, TangentOperator};
+use crate::tangent::{Linearisation, OperatorBuffers, TangentOperator};
 
 /// The step from `(q_start, v_start)` to the end of `timestep`.
 pub struct ImplicitStep<'a> {
@@ -19,10 +27,6 @@ pub struct ImplicitStep<'a> {
     pub end: f64,
     /// `None`: statics.
     pub timestep: Option<f64>,
-    pub q_start: &'a [Vec3],
-    pub v_start: &'a [Vec3],
-    /// `p`: row velocities at the start.
-    pub start_row_velocities: &'a [Vec3],
     /// Whether all forces are minus the gradient of an energy, so that the step minimises a potential.
     pub has_potential: bool,
 }
@@ -35,62 +39,115 @@ pub struct NewtonSettings {
     pub max_iterations: u32,
 }
 
-/// Halvings of a step before it is given up.
+/// Halvings of a predictor before it is given up.
 const MAX_HALVINGS: u32 = 30;
-/// A step is accepted if the merit falls by this fraction of what the slope promises (Armijo).
-const SUFFICIENT_DECREASE: f64 = 1e-4;
+/// Loosest linear solve of a Newton iteration, and how much tighter it gets as the residual falls: proportional to
+/// it, which keeps the convergence quadratic (Dembo, Eisenstat & Steihaug 1982).
+const LOOSEST: f64 = 1e-2;
+const FORCING: f64 = 0.1;
+/// What of the forces at the rows stands for the loads where all is balanced from the beginning.
+const SHARE_OF_LOADS: f64 = 1e-2;
 
 /// Buffers of [`ImplicitStep`] in the size of blocks and rows.
 pub struct ImplicitBuffers {
-    /// `r = Tᵀ g` over blocks, constrained components zero.
-    pub residual: Vec<Vec3>,
+    /// Configuration and velocity at the start of the step.
+    pub q_start: Vec<Vec3>,
+    pub v_start: Vec<Vec3>,
+    /// `p`: row velocities at the start.
+    pub start_row_velocities: Vec<Vec3>,
+    /// `-r = -Tᵀ g` over blocks, constrained components zero: the force that is not balanced.
+    residual: Vec<Vec3>,
     /// `g` over rows.
-    pub unbalanced: Vec<Vec3>,
+    unbalanced: Vec<Vec3>,
     direction: Vec<Vec3>,
     prescribed: Vec<Vec3>,
     rhs: Vec<Vec3>,
+    /// Accepted by Newton's method.
+    q: Vec<Vec3>,
     q_trial: Vec<Vec3>,
     v_trial: Vec<Vec3>,
+    at_rest: Vec<Vec3>,
+    damping: Vec<Vec3>,
+    operator: OperatorBuffers,
+    newton: newton::Workspace,
 }
 
 impl ImplicitBuffers {
     pub fn new(system: &System) -> Self {
         let blocks = || vec![Vec3::ZERO; system.kinematics.block_count()];
+        let rows = || vec![Vec3::ZERO; system.kinematics.row_count()];
+        let free_rows = || vec![Vec3::ZERO; system.kinematics.free_row_count()];
         Self {
+            q_start: free_rows(),
+            v_start: blocks(),
+            start_row_velocities: rows(),
             residual: blocks(),
-            unbalanced: vec![Vec3::ZERO; system.kinematics.row_count()],
+            unbalanced: rows(),
             direction: blocks(),
             prescribed: blocks(),
             rhs: blocks(),
-            q_trial: vec![Vec3::ZERO; system.kinematics.free_row_count()],
+            q: free_rows(),
+            q_trial: free_rows(),
             v_trial: blocks(),
+            at_rest: rows(),
+            damping: rows(),
+            operator: OperatorBuffers::new(system),
+            newton: newton::Workspace::default(),
         }
+    }
+}
+
+/// What forces may read of the state while its configuration is sought: the rest of `next` is lent to it, without
+/// a copy, until [`Lent::give_back`].
+pub struct Lent(SystemState);
+
+impl Lent {
+    /// Also writes down the configuration that the solver's orders and patches refer to, if there is none.
+    pub fn from(next: &mut SystemState) -> Self {
+        if next.history.len() != 3 * next.q.len() {
+            next.history.clear();
+            next.history.extend(next.q.iter().flat_map(|row| row.to_array()));
+        }
+        Self(SystemState {
+            memory: std::mem::take(&mut next.memory),
+            pairs: std::mem::take(&mut next.pairs),
+            history: std::mem::take(&mut next.history),
+            ..SystemState::default()
+        })
+    }
+
+    pub fn give_back(self, next: &mut SystemState) {
+        next.memory = self.0.memory;
+        next.pairs = self.0.pairs;
+        next.history = self.0.history;
     }
 }
 
 impl ImplicitStep<'_> {
     /// Velocity that a configuration implies, `difference(q, q_start) / h`; zero in statics.
-    fn velocity_into(&self, q: &[Vec3], v: &mut [Vec3]) {
+    pub fn velocity_into(&self, q: &[Vec3], q_start: &[Vec3], v: &mut [Vec3]) {
         match self.timestep {
             Some(h) => {
-                self.system.kinematics.difference(q, self.q_start, v);
+                self.system.kinematics.difference(q, q_start, v);
                 v.iter_mut().for_each(|block| *block = *block * (1.0 / h));
             }
             None => v.fill(Vec3::ZERO),
         }
     }
 
-    /// `g = M (ẋ - p)/h - f` over rows and `r = Tᵀ g` without constrained components; returns `|r|`.
-    fn evaluate(&self, q: &[Vec3], v: &[Vec3], state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) -> f64 {
+    /// `g = M (ẋ - p)/h - f` over rows and `-Tᵀ g` without constrained components at `(q_trial, v_trial)`;
+    /// returns the norm of the latter.
+    fn evaluate(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) -> f64 {
         let system = self.system;
-        system.place_rows(q, v, self.end, &mut ws.rows);
+        system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
         let clock = Instant::now();
         system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
         ws.stages.forces += clock.elapsed().as_secs_f64();
         let g = &mut buffers.unbalanced;
         g.fill(Vec3::ZERO);
         if let Some(h) = self.timestep {
-            for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(self.start_row_velocities) {
+            let start = &buffers.start_row_velocities;
+            for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(start) {
                 *change = (*now - *before) * (1.0 / h);
             }
             system.mass.add_product(&ws.row_scratch, g);
@@ -98,32 +155,37 @@ impl ImplicitStep<'_> {
         for (g, f) in g.iter_mut().zip(&ws.row_force) {
             *g -= *f;
         }
-        ws.row_scratch.copy_from_slice(g);
-        system.kinematics.forces_into(q, &mut ws.row_scratch, &mut buffers.residual);
-        system.project_free(&mut buffers.residual);
+        self.contract(ws, buffers);
         norm(&buffers.residual)
     }
 
-    /// The incremental potential `Σ m |x - x̂|²/(2 h²) + E(x)` at the placed rows, `x̂` where inertia alone
-    /// would lead: its gradient is the residual where the mass is lumped on points.
-    fn merit(&self, ws: &mut SystemWorkspace, state: &SystemState) -> f64 {
-        let stored: f64 = self.system.energies(ws, state, &self.around).iter().map(|energy| energy.stored).sum();
-        // |x - x_start - h p|²/h² = |ẋ - p|²
-        for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(self.start_row_velocities) {
-            *change = *now - *before;
+    /// `-Tᵀ g` without constrained components.
+    fn contract(&self, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
+        for (minus, g) in ws.row_scratch.iter_mut().zip(&buffers.unbalanced) {
+            *minus = -*g;
         }
-        let inertia = if self.timestep.is_some() { self.system.mass.kinetic_energy(&ws.row_scratch) } else { 0.0 };
-        inertia + stored
+        self.system.kinematics.forces_into(&buffers.q_trial, &mut ws.row_scratch, &mut buffers.residual);
+        self.system.project_free(&mut buffers.residual);
     }
 
-    /// The residual that rounding alone makes: positions known to `ε |x|` give inertia known to `m ε |x| / h²`,
-    /// and forces are sums of terms that cancel.
-    fn rounding_floor(&self, ws: &SystemWorkspace) -> f64 {
-        let inertia = self.timestep.map_or(0.0, |h| {
-            let weighted = |(x, mass): (&Vec3, &f64)| (mass * x.length()).powi(2);
-            ws.rows.positions.iter().zip(&self.system.mass.diagonal).map(weighted).sum::<f64>().sqrt() / (h * h)
-        });
-        4.0 * f64::EPSILON * inertia + 64.0 * f64::EPSILON * norm(&ws.row_force)
+    /// The incremental potential `Σ m |x - x̂|²/(2 h²) + E(x)` at the placed rows, `x̂` where inertia alone
+    /// would lead: minus its gradient is the residual.
+    fn merit(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &ImplicitBuffers) -> f64 {
+        let system = self.system;
+        let mut stored = 0.0;
+        for (index, force) in system.forces.iter().enumerate() {
+            let at = system.view(index, &ws.rows, state, &self.around);
+            stored += force.energy(&at, &mut ws.scratches[index]).stored;
+        }
+        if self.timestep.is_none() {
+            return stored;
+        }
+        // |x - x_start - h p|²/h² = |ẋ - p|²
+        let start = &buffers.start_row_velocities;
+        for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(start) {
+            *change = *now - *before;
+        }
+        system.mass.kinetic_energy(&ws.row_scratch) + stored
     }
 
     /// What is left of prescribed motion: how far constrained components are from where they are led.
@@ -135,73 +197,85 @@ impl ImplicitStep<'_> {
                 prescribed[constraint.block as usize] += constraint.constrained() * to_go;
             }
         }
-        norm(prescribed)
+        let to_go = norm(prescribed);
+        if to_go <= 1e-14 * norm(q) { 0.0 } else { to_go }
     }
 
-    /// `direction = -A⁻¹ r` with constrained components prescribed; returns iterations and residual.
+    /// `direction = A⁻¹ residual` at `(q_trial, v_trial)`, with constrained components prescribed if `lift`.
+    /// Returns also the residual that rounding of positions makes, `ε |diag(A) x|`.
     fn solve(
         &self,
-        q: &[Vec3],
-        v: &[Vec3],
         state: &SystemState,
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
-        prescribed: bool,
-    ) -> Result<(u32, f64), LinearError> {
+        lift: bool,
+        (indefinite, tolerance): (Indefinite, f64),
+    ) -> Result<(Solved, f64), LinearError> {
         let system = self.system;
         let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
+        let ImplicitBuffers { unbalanced, residual, direction, prescribed, rhs, q_trial, v_trial, operator, .. } = buffers;
         let at = Linearisation {
             system,
             state,
             around: self.around,
             rows,
-            q,
-            v,
+            q: q_trial,
+            v: v_trial,
             timestep: self.timestep,
-            unbalanced: &buffers.unbalanced,
+            unbalanced,
         };
-        for (rhs, residual) in buffers.rhs.iter_mut().zip(&buffers.residual) {
-            *rhs = -*residual;
-        }
+        rhs.copy_from_slice(residual);
         let clock = Instant::now();
-        if prescribed {
-            // r + A (δ_free + δ_prescribed) = 0
-            let operator = TangentOperator::new(&at, scratches);
-            operator.apply_unconstrained(&buffers.prescribed, &mut buffers.direction);
-            for (rhs, lift) in buffers.rhs.iter_mut().zip(&buffers.direction) {
+        if lift {
+            // A (δ_free + δ_prescribed) = -r
+            TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
+            for (rhs, lift) in rhs.iter_mut().zip(direction.iter()) {
                 *rhs -= *lift;
             }
-            system.project_free(&mut buffers.rhs);
+            system.project_free(rhs);
         }
         // rigid frames turn on the way, and one-way rows take what they do not give
         let symmetric = !system.kinematics.has_rigid_frames()
             && system.kinematics.is_conservative()
             && system.forces.iter().all(|force| force.declaration().symmetric_tangent);
-        buffers.direction.fill(Vec3::ZERO);
-        let report = if linear.is_matrix_free() {
-            let diagonal = tangent.assemble_diagonal(&at, scratches);
-            stages.assembly += clock.elapsed().as_secs_f64();
-            let clock = Instant::now();
-            let operator = TangentOperator::new(&at, scratches);
-            let report = linear.solve_matrix_free(&operator, diagonal, symmetric, &buffers.rhs, &mut buffers.direction);
-            stages.solve += clock.elapsed().as_secs_f64();
-            report?
+        let moved;
+        let positions = if system.kinematics.is_trivial() {
+            &rows.positions
         } else {
-            let matrix = tangent.assemble(&at, scratches);
-            stages.assembly += clock.elapsed().as_secs_f64();
-            let clock = Instant::now();
-            let positions = system.block_positions(&rows.positions);
-            let report = linear.solve(matrix, &positions, symmetric, &buffers.rhs, &mut buffers.direction);
-            stages.solve += clock.elapsed().as_secs_f64();
-            report?
+            moved = system.block_positions(&rows.positions);
+            &moved
         };
-        system.project_free(&mut buffers.direction);
-        if prescribed {
-            for (direction, prescribed) in buffers.direction.iter_mut().zip(&buffers.prescribed) {
+        let is_matrix_free = linear.is_matrix_free();
+        let matrix = if is_matrix_free {
+            tangent.assemble_diagonal(&at, scratches)
+        } else {
+            tangent.assemble(&at, scratches)
+        };
+        stages.assembly += clock.elapsed().as_secs_f64();
+        let weighted = (0..positions.len())
+            .map(|block| (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2));
+        let rounding = f64::EPSILON * weighted.sum::<f64>().sqrt();
+        let clock = Instant::now();
+        let products = is_matrix_free.then(|| TangentOperator::new(&at, scratches, operator));
+        let linear_system = LinearSystem {
+            matrix,
+            operator: products.as_ref().map(|operator| operator as _),
+            symmetric,
+            kinematics: &system.kinematics,
+            reference: &state.history,
+            positions,
+            indefinite,
+            tolerance,
+        };
+        let solved = linear.solve(linear_system, rhs, direction);
+        stages.solve += clock.elapsed().as_secs_f64();
+        system.project_free(direction);
+        if lift {
+            for (direction, prescribed) in direction.iter_mut().zip(prescribed.iter()) {
                 *direction += *prescribed;
             }
         }
-        Ok(report)
+        Ok((solved?, rounding))
     }
 
     /// One linearisation about the start: `(M - h B - h² K) Δv = h (f + h K v)`, the forces' velocity terms
@@ -211,137 +285,223 @@ impl ImplicitStep<'_> {
     /// The linear solve failed.
     pub fn solve_once(
         &self,
-        next: &mut SystemState,
+        lent: &Lent,
+        q: &mut [Vec3],
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        let state = next.clone_without_motion();
+        let state = &lent.0;
+        buffers.q_trial.copy_from_slice(q);
         buffers.v_trial.fill(Vec3::ZERO);
-        let v_zero = std::mem::take(&mut buffers.v_trial);
-        let q = self.q_start;
-        self.evaluate(q, &v_zero, &state, ws, buffers);
+        self.evaluate(state, ws, buffers);
         if self.system.forces.iter().any(|force| force.declaration().velocity_terms) {
-            self.shift_to_start_velocity(&state, ws, buffers);
+            self.shift_to_start_velocity(state, ws, buffers);
         }
-        let prescribed = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
-        let solved = self.solve(q, &v_zero, &state, ws, buffers, prescribed);
-        buffers.v_trial = v_zero;
-        let (linear_iterations, linear_residual) = solved?;
-        self.system.kinematics.retract(&mut next.q, &buffers.direction);
-        Ok(StepReport { newton_iterations: 1, linear_iterations, linear_residual, newton_residual: 0.0 })
+        let lift = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
+        let (solved, _) = self.solve(state, ws, buffers, lift, (Indefinite::Solve, 0.0))?;
+        self.system.kinematics.retract(q, &buffers.direction);
+        Ok(StepReport {
+            newton_iterations: 1,
+            linear_iterations: solved.iterations,
+            linear_residual: solved.residual,
+            newton_residual: 0.0,
+        })
     }
 
     /// Replaces `f(q, 0)` in the residual by `f(q, v₀) - B v₀`: exact for forces linear in velocity, and
     /// linearised about where the body is going for others.
     fn shift_to_start_velocity(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
         let system = self.system;
-        let at_rest = ws.row_force.clone();
-        system.place_rows(self.q_start, self.v_start, self.end, &mut ws.rows);
+        let mut damping = std::mem::take(&mut buffers.damping);
+        buffers.at_rest.copy_from_slice(&ws.row_force);
+        system.place_rows(&buffers.q_start, &buffers.v_start, self.end, &mut ws.rows);
         system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
-        let mut damping = vec![Vec3::ZERO; at_rest.len()];
         let weights = TangentWeights { position: 0.0, velocity: 1.0 };
-        let velocities = self.start_row_velocities;
+        let velocities = &buffers.start_row_velocities;
         system.sum_row_differentials(ws, state, &self.around, weights, velocities, &mut damping);
         for (row, g) in buffers.unbalanced.iter_mut().enumerate() {
-            *g += at_rest[row] - (ws.row_force[row] - damping[row]);
+            *g += buffers.at_rest[row] - (ws.row_force[row] - damping[row]);
         }
-        ws.row_scratch.copy_from_slice(&buffers.unbalanced);
-        system.kinematics.forces_into(self.q_start, &mut ws.row_scratch, &mut buffers.residual);
-        system.project_free(&mut buffers.residual);
+        buffers.damping = damping;
+        self.contract(ws, buffers);
     }
 
-    /// Newton's method with line search from the configuration in `next`.
+    /// Newton's method with line search from the configuration `q`, which it leaves at the solution.
     ///
     /// # Errors
     /// A linear solve failed, or the iteration stalled above its tolerance.
     pub fn solve_newton(
         &self,
         settings: NewtonSettings,
-        next: &mut SystemState,
+        lent: &Lent,
+        q: &mut [Vec3],
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        let system = self.system;
-        let state = next.clone_without_motion();
-        let mut report = StepReport::default();
-        let mut v = vec![Vec3::ZERO; next.v.len()];
-        self.velocity_into(&next.q, &mut v);
-        let mut residual = self.evaluate(&next.q, &v, &state, ws, buffers);
-        let mut to_go = self.prescribed_into(&next.q, &mut buffers.prescribed);
-        // the scale of forces at work: what is unbalanced at first, or what balances where nothing is
-        let mut scale = residual.max(norm(&ws.row_force) * 1e-6);
-        let floor = self.rounding_floor(ws);
-        for iteration in 0..=settings.max_iterations {
-            if to_go == 0.0 && residual <= (settings.tolerance * scale).max(floor) {
-                report.newton_residual = if scale > 0.0 { residual / scale } else { 0.0 };
-                next.v.copy_from_slice(&v);
-                return Ok(report);
-            }
-            if iteration == settings.max_iterations {
-                break;
-            }
-            let merit = (self.has_potential && to_go == 0.0).then(|| self.merit(ws, &state));
-            let (iterations, linear_residual) = self.solve(&next.q, &v, &state, ws, buffers, to_go > 0.0)?;
-            report.linear_iterations += iterations;
-            report.linear_residual = report.linear_residual.max(linear_residual);
-            report.newton_iterations += 1;
-            let slope: f64 = buffers.residual.iter().zip(&buffers.direction).map(|(r, d)| r.dot(*d)).sum();
-            let direction = std::mem::take(&mut buffers.direction);
-            let mut fraction = 1.0;
-            let mut accepted = false;
-            for _ in 0..=MAX_HALVINGS {
-                let (mut q_trial, mut v_trial) =
-                    (std::mem::take(&mut buffers.q_trial), std::mem::take(&mut buffers.v_trial));
-                q_trial.copy_from_slice(&next.q);
-                system.kinematics.retract_scaled(&mut q_trial, &direction, fraction);
-                self.velocity_into(&q_trial, &mut v_trial);
-                let trial = self.evaluate(&q_trial, &v_trial, &state, ws, buffers);
-                let better = trial.is_finite()
-                    && match merit {
-                        // rounding of the potential hides its decrease near the minimum: there the
-                        // residual decides
-                        Some(merit) if slope < 0.0 => {
-                            let wanted = merit + SUFFICIENT_DECREASE * fraction * slope;
-                            trial < residual || self.merit(ws, &state) <= wanted
-                        }
-                        _ => to_go > 0.0 || trial < residual * (1.0 - SUFFICIENT_DECREASE * fraction),
-                    };
-                if better {
-                    next.q.copy_from_slice(&q_trial);
-                    v.copy_from_slice(&v_trial);
-                    residual = trial;
-                    accepted = true;
-                }
-                (buffers.q_trial, buffers.v_trial) = (q_trial, v_trial);
-                if better {
-                    break;
-                }
-                fraction *= 0.5;
-            }
-            buffers.direction = direction;
-            if !accepted {
-                // no step along the direction helps: rounding, if the residual is already small
-                self.evaluate(&next.q, &v, &state, ws, buffers);
-                break;
-            }
-            to_go = self.prescribed_into(&next.q, &mut buffers.prescribed);
-            if to_go <= 1e-14 * norm(&next.q) {
-                to_go = 0.0;
-            }
-            if report.newton_iterations == 1 {
-                scale = scale.max(residual);
-            }
+        buffers.q.copy_from_slice(q);
+        let mut workspace = std::mem::take(&mut buffers.newton);
+        let mut problem = ImplicitProblem {
+            step: self,
+            state: &lent.0,
+            settings,
+            ws,
+            buffers,
+            scale: 0.0,
+            rounding: 0.0,
+            is_current: false,
+            report: StepReport::default(),
+        };
+        let solved = problem.predict().and_then(|()| {
+            let limits = newton::Settings {
+                relative_tolerance: settings.tolerance,
+                max_iterations: settings.max_iterations as usize,
+                ..newton::Settings::default()
+            };
+            newton(&mut problem, &limits, &mut workspace)
+        });
+        let (scale, mut report) = (problem.scale, problem.report);
+        buffers.newton = workspace;
+        let solved = solved?;
+        report.newton_residual = if scale > 0.0 { solved.residual / scale } else { 0.0 };
+        if !solved.converged() {
+            return Err(StepError::NewtonStalled {
+                iterations: report.newton_iterations,
+                residual: report.newton_residual,
+                wanted: settings.tolerance,
+            });
         }
-        report.newton_residual = residual / scale;
-        Err(StepError::NewtonStalled {
-            iterations: report.newton_iterations,
-            residual: report.newton_residual,
-            wanted: settings.tolerance,
-        })
+        q.copy_from_slice(&buffers.q);
+        Ok(report)
     }
 }
 
-/// Euclidean norm over all components.
-pub fn norm(blocks: &[Vec3]) -> f64 {
-    souple_solve::reduce::dot(blocks, blocks).sqrt()
+/// A step as Newton's method sees it: `buffers.q` is accepted, `(q_trial, v_trial)` current.
+struct ImplicitProblem<'p, 'a> {
+    step: &'p ImplicitStep<'a>,
+    state: &'p SystemState,
+    settings: NewtonSettings,
+    ws: &'p mut SystemWorkspace,
+    buffers: &'p mut ImplicitBuffers,
+    /// The largest unbalanced force so far.
+    scale: f64,
+    rounding: f64,
+    /// Whether `buffers.residual` is that of the current configuration.
+    is_current: bool,
+    report: StepReport,
+}
+
+impl ImplicitProblem<'_, '_> {
+    /// Makes `retract(q, fraction · direction)` current.
+    fn place(&mut self, direction: Option<(&[Vec3], f64)>) {
+        let ImplicitBuffers { q, q_trial, v_trial, q_start, .. } = &mut *self.buffers;
+        q_trial.copy_from_slice(q);
+        if let Some((direction, fraction)) = direction {
+            self.step.system.kinematics.retract_scaled(q_trial, direction, fraction);
+        }
+        self.step.velocity_into(q_trial, q_start, v_trial);
+        self.is_current = false;
+    }
+
+    /// The norm of the unbalanced force at the current configuration.
+    fn evaluate(&mut self) -> f64 {
+        self.is_current = true;
+        self.step.evaluate(self.state, self.ws, self.buffers)
+    }
+
+    fn solve(&mut self, lift: bool, tolerance: f64) -> Result<Solved, StepError> {
+        let indefinite = if self.step.has_potential { Indefinite::Descend } else { Indefinite::Solve };
+        let (solved, rounding) = self.step.solve(self.state, self.ws, self.buffers, lift, (indefinite, tolerance))?;
+        // forces are sums of terms that cancel
+        self.rounding = rounding.max(64.0 * f64::EPSILON * norm(&self.ws.row_force));
+        self.report.newton_iterations += 1;
+        self.report.linear_iterations += solved.iterations;
+        self.report.linear_residual = self.report.linear_residual.max(solved.residual);
+        Ok(solved)
+    }
+
+    /// Brings constrained components to where they are led, and the free ones along.
+    fn predict(&mut self) -> Result<(), StepError> {
+        self.place(None);
+        let unbalanced = self.evaluate();
+        self.scale = unbalanced.max(SHARE_OF_LOADS * norm(&self.ws.row_force));
+        for _ in 0..MAX_HALVINGS {
+            if self.step.prescribed_into(&self.buffers.q, &mut self.buffers.prescribed) == 0.0 {
+                return Ok(());
+            }
+            if !self.is_current {
+                self.place(None);
+                self.evaluate();
+            }
+            self.solve(true, LOOSEST)?;
+            let direction = std::mem::take(&mut self.buffers.direction);
+            let mut fraction = 1.0;
+            let mut halvings = 0;
+            let after = loop {
+                self.place(Some((&direction, fraction)));
+                let after = self.evaluate();
+                let is_usable = after.is_finite()
+                    && (!self.step.has_potential
+                        || self.step.merit(self.state, self.ws, self.buffers).is_finite());
+                if is_usable || halvings == MAX_HALVINGS {
+                    break after;
+                }
+                fraction *= 0.5;
+                halvings += 1;
+            };
+            self.buffers.direction = direction;
+            let ImplicitBuffers { q, q_trial, .. } = &mut *self.buffers;
+            q.copy_from_slice(q_trial);
+            self.scale = self.scale.max(after);
+        }
+        Ok(())
+    }
+}
+
+impl NewtonProblem for ImplicitProblem<'_, '_> {
+    type Error = StepError;
+
+    fn block_count(&self) -> usize {
+        self.buffers.residual.len()
+    }
+
+    fn residual(&mut self, out: &mut [Vec3]) -> Result<Trial, StepError> {
+        if !self.is_current {
+            self.evaluate();
+        }
+        out.copy_from_slice(&self.buffers.residual);
+        Ok(Trial::Admissible)
+    }
+
+    fn direction(&mut self, residual: &[Vec3], out: &mut [Vec3]) -> Result<Option<krylov::Report>, StepError> {
+        let relative = norm(residual) / self.scale;
+        // no tighter than what the wanted residual needs
+        let tolerance = (FORCING * self.settings.tolerance / relative).max((FORCING * relative).min(LOOSEST));
+        self.solve(false, tolerance.min(LOOSEST))?;
+        out.copy_from_slice(&self.buffers.direction);
+        Ok(None)
+    }
+
+    fn try_step(&mut self, direction: &[Vec3], fraction: f64) -> Result<Trial, StepError> {
+        self.place(Some((direction, fraction)));
+        Ok(Trial::Admissible)
+    }
+
+    fn accept(&mut self) -> Result<(), StepError> {
+        let ImplicitBuffers { q, q_trial, .. } = &mut *self.buffers;
+        q.copy_from_slice(q_trial);
+        Ok(())
+    }
+
+    fn merit(&mut self) -> Result<Option<f64>, StepError> {
+        let has_potential = self.step.has_potential;
+        Ok(has_potential.then(|| self.step.merit(self.state, self.ws, self.buffers)))
+    }
+
+    fn residual_scale(&mut self) -> Option<f64> {
+        Some(self.scale)
+    }
+
+    fn rounding(&mut self) -> f64 {
+        self.rounding
+    }
 }

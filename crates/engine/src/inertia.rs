@@ -4,7 +4,6 @@ use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 
 use crate::kinematics::UnknownKind;
-use crate::linear::LinearSolver;
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Rows, Surroundings, System, SystemWorkspace};
@@ -42,12 +41,15 @@ pub fn accelerations_at(
     system.project_free(&mut rhs);
     let mut matrix = ws.tangent.take_mass_matrix(system);
     assemble_generalised_mass(system, &state.q, &mut matrix);
-    out.fill(Vec3::ZERO);
-    let solved = LinearSolver::solve_mass(&matrix, &rhs, out);
+    let solved = ws.linear.solve_mass(&matrix, &rhs, out);
     ws.tangent.put_mass_matrix(matrix);
     ws.blocks[7] = rhs;
-    let (iterations, residual) = solved.map_err(|error| StepError::Linear(error.to_string()))?;
-    Ok(StepReport { linear_iterations: iterations, linear_residual: residual, ..StepReport::default() })
+    let solved = solved?;
+    Ok(StepReport {
+        linear_iterations: solved.iterations,
+        linear_residual: solved.residual,
+        ..StepReport::default()
+    })
 }
 
 /// `matrix = TᵀMT` with constrained directions set to the identity.

@@ -1,16 +1,18 @@
-//! Which linear solver serves the implicit steppers, with structures and buffers kept between solves.
+//! The linear solver of the implicit steppers: chosen from `souple_solve::solvers::TABLE`, kept between solves, and
+//! what is done where the tangent is not positive definite.
+//!
+//! Nothing of earlier solves enters later bits: orders and patches refer to a reference configuration that lives in
+//! State, values to the matrix at hand, and every solve starts from zero.
+
+use std::sync::Arc;
 
 use souple_math::Vec3;
-use souple_solve::krylov::{
-    BicgstabWorkspace, ConjugateGradientWorkspace, GmresWorkspace, Report, Settings, Stop, bicgstab,
-    conjugate_gradient, gmres,
-};
-use souple_solve::precondition::{
-    BlockJacobi, Geometry, IncompleteCholesky, Preconditioner, RigidModes, RigidModesSettings,
-};
-use souple_solve::{BlockMatrix, DirectSolver, LinearOperator, SolveError};
+use souple_solve::krylov::Stop;
+use souple_solve::precondition::{BlockRole, Geometry};
+use souple_solve::{BlockMatrix, LinearOperator, Pattern, SolveError, reduce, solvers};
 use souple_table::{Parameter, Range, Value, Values};
 
+use crate::kinematics::{Kinematics, UnknownKind};
 use crate::steppers::StepError;
 
 /// A linear system that could not be solved.
@@ -27,7 +29,7 @@ impl From<LinearError> for StepError {
 /// How linear systems are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Direct for few unknowns, conjugate gradients with rigid modes for many, GMRES where the matrix is not
+    /// Direct where a factor is cheap, conjugate gradients otherwise; LU or GMRES where the matrix is not
     /// symmetric.
     Auto,
     Cg,
@@ -36,20 +38,12 @@ pub enum Method {
     Bicgstab,
 }
 
-/// What makes iterations few.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PreconditionerKind {
-    BlockJacobi,
-    IncompleteCholesky,
-    /// A coarse space of rigid modes per aggregate.
-    RigidModes,
-}
-
 /// Choice of solver and its limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverSettings {
     pub method: Method,
-    pub preconditioner: PreconditionerKind,
+    /// Name of a preconditioner of `souple_solve::precondition::TABLE`.
+    pub preconditioner: &'static str,
     /// Wanted true relative residual.
     pub tolerance: f64,
     pub max_iterations: usize,
@@ -61,7 +55,7 @@ impl Default for SolverSettings {
     fn default() -> Self {
         Self {
             method: Method::Auto,
-            preconditioner: PreconditionerKind::RigidModes,
+            preconditioner: AUTOMATIC,
             tolerance: 1e-8,
             max_iterations: 10_000,
             matrix_free: false,
@@ -76,25 +70,23 @@ const METHODS: [(&str, Method); 5] = [
     ("gmres", Method::Gmres),
     ("bicgstab", Method::Bicgstab),
 ];
-const PRECONDITIONERS: [(&str, PreconditionerKind); 3] = [
-    ("block_jacobi", PreconditionerKind::BlockJacobi),
-    ("incomplete_cholesky", PreconditionerKind::IncompleteCholesky),
-    ("rigid_modes", PreconditionerKind::RigidModes),
-];
+const AUTOMATIC: &str = "auto";
+/// `lagged_factor` is not among them: it would carry factors of earlier steps into later bits.
+const PRECONDITIONERS: &[&str] = &[AUTOMATIC, "rigid_modes", "incomplete_cholesky", "block_jacobi"];
 
 pub const SOLVER: Parameter = Parameter::choice(
     "solver",
     &["auto", "cg", "direct", "gmres", "bicgstab"],
-    "linear solver; `auto`: direct for few unknowns, `cg` for many, `gmres` where the tangent is not symmetric",
+    "linear solver; `auto`: direct where a factor is cheap, else `cg`; where the tangent is not symmetric LU or `gmres`",
 )
 .or(Value::Text("auto"));
 
 pub const PRECONDITIONER: Parameter = Parameter::choice(
     "preconditioner",
-    &["rigid_modes", "incomplete_cholesky", "block_jacobi"],
-    "what makes the iterations few",
+    PRECONDITIONERS,
+    "what makes the iterations few; `auto`: the cheaper the more inertia outweighs stiffness",
 )
-.or(Value::Text("rigid_modes"));
+.or(Value::Text(AUTOMATIC));
 
 pub const TOLERANCE: Parameter = Parameter::number(
     "solver_tolerance",
@@ -104,9 +96,12 @@ pub const TOLERANCE: Parameter = Parameter::number(
 )
 .or(Value::Number(1e-8));
 
-pub const MAX_ITERATIONS: Parameter =
-    Parameter::integer("solver_iterations", Range::closed(1.0, 1e9), "iterations before a linear solve is given up")
-        .or(Value::Integer(10_000));
+pub const MAX_ITERATIONS: Parameter = Parameter::integer(
+    "solver_iterations",
+    Range::closed(1.0, 1e9),
+    "iterations before a linear solve is given up",
+)
+.or(Value::Integer(10_000));
 
 pub const MATRIX_FREE: Parameter = Parameter::boolean(
     "matrix_free",
@@ -119,51 +114,81 @@ impl SolverSettings {
     pub fn from_values(values: &Values) -> Self {
         let of = |name: &str| values.text(name);
         let method = METHODS.iter().find(|(name, _)| *name == of("solver")).map_or(Method::Auto, |entry| entry.1);
-        let preconditioner = PRECONDITIONERS
-            .iter()
-            .find(|(name, _)| *name == of("preconditioner"))
-            .map_or(PreconditionerKind::RigidModes, |entry| entry.1);
+        let given = PRECONDITIONERS.iter().find(|name| **name == of("preconditioner"));
         Self {
             method,
-            preconditioner,
+            preconditioner: given.copied().unwrap_or(AUTOMATIC),
             tolerance: values.number("solver_tolerance"),
             max_iterations: values.integer("solver_iterations") as usize,
             matrix_free: values.boolean("matrix_free"),
         }
     }
-
-    fn krylov(&self) -> Settings {
-        Settings { tolerance: self.tolerance, max_iterations: self.max_iterations }
-    }
 }
 
-/// Below this many blocks `auto` factorises: the factor then costs less than the set-up of an iteration.
-const DIRECT_BELOW: usize = 800;
-/// Vectors kept by GMRES between restarts.
-const GMRES_RESTART: usize = 60;
+/// Below this many blocks a matrix without symmetry is factorised; an LU factor is dear.
+const LU_BELOW: usize = 800;
+/// Multiples of the diagonal tried where a matrix is not positive definite.
+const SHIFTS: [f64; 7] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
+/// Residual at which a solve that rounding ended still counts; Newton's method judges what it is worth.
+const STAGNATED_AT_MOST: f64 = 0.1;
+
+/// What is wanted where the matrix turns out not to be positive definite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Indefinite {
+    /// Any direction in which the potential falls: a truncated one, or that of a shifted matrix.
+    Descend,
+    /// The solution all the same.
+    Solve,
+}
+
+/// A linear system and what is known of it.
+pub struct LinearSystem<'a> {
+    /// The matrix, or its diagonal blocks where `operator` is given. Where it is not positive definite its
+    /// diagonal may be raised.
+    pub matrix: &'a mut BlockMatrix,
+    /// The matrix by its products.
+    pub operator: Option<&'a dyn LinearOperator>,
+    pub symmetric: bool,
+    pub kinematics: &'a Kinematics,
+    /// The configuration that orders and patches refer to: free rows, by components.
+    pub reference: &'a [f64],
+    /// Places of the blocks now.
+    pub positions: &'a [Vec3],
+    pub indefinite: Indefinite,
+    /// Wanted true relative residual where it may be looser than that of the settings.
+    pub tolerance: f64,
+}
+
+/// What a solve did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Solved {
+    pub iterations: u32,
+    /// True relative residual; of the direction's own equation where that had to be shifted.
+    pub residual: f64,
+}
+
+/// A solver of the table, and what it was made for.
+struct Made {
+    name: &'static str,
+    preconditioner: &'static str,
+    pattern: Arc<Pattern>,
+    reference: Vec<f64>,
+    solver: Box<dyn solvers::LinearSolver>,
+}
 
 /// A solver with its structures and buffers.
 pub struct LinearSolver {
     settings: SolverSettings,
-    preconditioner: Option<Box<dyn Preconditioner>>,
-    diagonal: Option<BlockJacobi>,
-    direct: Option<DirectSolver>,
-    cg: ConjugateGradientWorkspace,
-    gmres: Option<GmresWorkspace>,
-    bicgstab: Option<BicgstabWorkspace>,
+    symmetric: Option<Made>,
+    general: Option<Made>,
+    mass: Option<Made>,
+    /// Diagonal that shifts are multiples of.
+    diagonal: Vec<f64>,
 }
 
 impl LinearSolver {
     pub fn new(settings: SolverSettings) -> Self {
-        Self {
-            settings,
-            preconditioner: None,
-            diagonal: None,
-            direct: None,
-            cg: ConjugateGradientWorkspace::new(0),
-            gmres: None,
-            bicgstab: None,
-        }
+        Self { settings, symmetric: None, general: None, mass: None, diagonal: Vec::new() }
     }
 
     pub fn is_matrix_free(&self) -> bool {
@@ -172,163 +197,227 @@ impl LinearSolver {
 
     /// Bytes of factors and preconditioners.
     pub fn bytes(&self) -> usize {
-        let preconditioner = self.preconditioner.as_ref().map_or(0, |preconditioner| preconditioner.bytes());
-        let diagonal = self.diagonal.as_ref().map_or(0, Preconditioner::bytes);
-        preconditioner + diagonal + self.direct.as_ref().map_or(0, DirectSolver::bytes)
+        let made = [&self.symmetric, &self.general, &self.mass].into_iter().flatten();
+        made.map(|made| made.solver.bytes() + 8 * made.reference.len()).sum::<usize>() + 8 * self.diagonal.len()
     }
 
-    /// Solves `A x = b` from `x`; returns iterations and the true relative residual.
+    /// Solves `A x = b`; overwrites `x`.
     ///
     /// # Errors
     /// The method broke down or missed its tolerance.
-    pub fn solve(
-        &mut self,
-        matrix: &BlockMatrix,
-        positions: &[Vec3],
-        symmetric: bool,
-        b: &[Vec3],
-        x: &mut [Vec3],
-    ) -> Result<(u32, f64), LinearError> {
-        let method = match self.settings.method {
-            Method::Auto if !symmetric => Method::Gmres,
-            Method::Auto if matrix.pattern().block_count() < DIRECT_BELOW => Method::Direct,
-            Method::Auto => Method::Cg,
-            chosen => chosen,
+    pub fn solve(&mut self, system: LinearSystem, b: &[Vec3], x: &mut [Vec3]) -> Result<Solved, LinearError> {
+        let mut system = system;
+        let (method, symmetric) = (self.settings.method, system.symmetric);
+        if !symmetric || matches!(method, Method::Gmres | Method::Bicgstab) {
+            return Ok(self.solve_general(&mut system, b, x)?);
+        }
+        let failed = match self.solve_symmetric(&mut system, b, x) {
+            Err(error @ (SolveError::NotPositiveDefinite { .. } | SolveError::NotConverged { .. })) => error,
+            solved => return Ok(solved?),
         };
-        match method {
-            Method::Direct if symmetric => match self.solve_direct(matrix, positions, b, x) {
-                // not positive definite: the direction of least residual is still worth having
-                Err(LinearError(SolveError::NotPositiveDefinite { .. })) => self.iterate_general(matrix, b, x),
-                solved => solved,
-            },
-            Method::Auto | Method::Cg => self.solve_cg(matrix, positions, b, x),
-            Method::Bicgstab => {
-                self.update_diagonal(matrix)?;
-                let preconditioner = self.diagonal.as_ref().unwrap_or_else(|| unreachable!("just updated"));
-                let workspace = self.bicgstab.get_or_insert_with(|| BicgstabWorkspace::new(b.len()));
-                let settings = self.settings.krylov();
-                finish("bicgstab", bicgstab(matrix, preconditioner, b, x, &settings, workspace), &settings)
+        let found_indefinite = match &failed {
+            SolveError::NotConverged { stop, .. } => {
+                matches!(stop, Stop::Indefinite { .. } | Stop::PreconditionerIndefinite)
             }
-            Method::Direct | Method::Gmres => self.iterate_general(matrix, b, x),
+            _ => true,
+        };
+        match system.indefinite {
+            _ if !found_indefinite => Err(failed.into()),
+            Indefinite::Solve => Ok(self.solve_general(&mut system, b, x)?),
+            Indefinite::Descend => Ok(self.descend(&mut system, failed, b, x)?),
         }
-    }
-
-    /// Solves with products alone; `diagonal` holds the diagonal blocks.
-    ///
-    /// # Errors
-    /// The iteration broke down or missed its tolerance.
-    pub fn solve_matrix_free(
-        &mut self,
-        operator: &dyn LinearOperator,
-        diagonal: &BlockMatrix,
-        symmetric: bool,
-        b: &[Vec3],
-        x: &mut [Vec3],
-    ) -> Result<(u32, f64), LinearError> {
-        self.update_diagonal(diagonal)?;
-        let preconditioner = self.diagonal.as_ref().unwrap_or_else(|| unreachable!("just updated"));
-        let settings = self.settings.krylov();
-        if symmetric {
-            let report = conjugate_gradient(operator, preconditioner, b, x, &settings, &mut self.cg);
-            return finish("cg", truncated(report, x), &settings);
-        }
-        let workspace = self.gmres.get_or_insert_with(|| GmresWorkspace::new(b.len(), GMRES_RESTART));
-        finish("gmres", gmres(operator, preconditioner, b, x, &settings, workspace), &settings)
     }
 
     /// Solves with a mass matrix, to rounding.
     ///
     /// # Errors
     /// A mass is zero or negative.
-    pub fn solve_mass(matrix: &BlockMatrix, b: &[Vec3], x: &mut [Vec3]) -> Result<(u32, f64), LinearError> {
-        let preconditioner = BlockJacobi::new(matrix)?;
-        let mut workspace = ConjugateGradientWorkspace::new(b.len());
-        let settings = Settings { tolerance: 1e-13, max_iterations: 1000 };
-        let report = conjugate_gradient(matrix, &preconditioner, b, x, &settings, &mut workspace);
-        finish("cg", report, &settings)
+    pub fn solve_mass(&mut self, matrix: &BlockMatrix, b: &[Vec3], x: &mut [Vec3]) -> Result<Solved, LinearError> {
+        let settings = SolverSettings { tolerance: 1e-13, max_iterations: 1000, ..SolverSettings::default() };
+        let made = prepare(&mut self.mass, ("cg", "block_jacobi"), &settings, matrix, &[], None)?;
+        x.fill(Vec3::ZERO);
+        Ok(judged(made.solver.solve(matrix, b, x))?)
     }
 
-    fn solve_direct(
-        &mut self,
-        matrix: &BlockMatrix,
-        positions: &[Vec3],
-        b: &[Vec3],
-        x: &mut [Vec3],
-    ) -> Result<(u32, f64), LinearError> {
-        let fits = self.direct.as_ref().is_some_and(|direct| **direct.pattern() == **matrix.pattern());
-        if !fits {
-            self.direct = Some(DirectSolver::analyse(matrix.pattern(), Some(positions))?);
-        }
-        let direct = self.direct.as_mut().unwrap_or_else(|| unreachable!("just analysed"));
-        direct.factorize(matrix)?;
-        x.copy_from_slice(b);
-        direct.solve(x)?;
-        let mut residual = vec![Vec3::ZERO; b.len()];
-        let norm = matrix.residual(b, x, &mut residual).sqrt();
-        let scale = souple_solve::reduce::norm(b);
-        Ok((1, if scale > 0.0 { norm / scale } else { 0.0 }))
-    }
-
-    fn solve_cg(
-        &mut self,
-        matrix: &BlockMatrix,
-        positions: &[Vec3],
-        b: &[Vec3],
-        x: &mut [Vec3],
-    ) -> Result<(u32, f64), LinearError> {
-        let updated = match self.preconditioner.as_mut() {
-            Some(preconditioner) => preconditioner.update(matrix).is_ok(),
-            None => false,
+    fn solve_symmetric(&mut self, system: &mut LinearSystem, b: &[Vec3], x: &mut [Vec3]) -> Result<Solved, SolveError> {
+        let choice = match (system.operator, self.settings.method) {
+            (Some(_), _) => ("cg", "block_jacobi"),
+            (None, Method::Cg) => ("cg", self.settings.preconditioner),
+            (None, Method::Direct) => ("direct", AUTOMATIC),
+            (None, _) => ("auto", self.settings.preconditioner),
         };
-        if !updated {
-            self.preconditioner = Some(self.settings.preconditioner.build(matrix, positions)?);
+        let made = prepare(
+            &mut self.symmetric,
+            choice,
+            &self.settings,
+            system.matrix,
+            system.reference,
+            Some((system.kinematics, system.positions)),
+        )?;
+        x.fill(Vec3::ZERO);
+        made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
+        judged(made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x))
+    }
+
+    fn solve_general(&mut self, system: &mut LinearSystem, b: &[Vec3], x: &mut [Vec3]) -> Result<Solved, SolveError> {
+        let automatic = self.settings.preconditioner == AUTOMATIC || system.operator.is_some();
+        let preconditioner = if automatic { "block_jacobi" } else { self.settings.preconditioner };
+        let is_small = system.matrix.pattern().block_count() < LU_BELOW;
+        let name = match self.settings.method {
+            Method::Bicgstab => "bicgstab",
+            Method::Direct if system.operator.is_none() => "lu",
+            Method::Auto if system.operator.is_none() && is_small => "lu",
+            _ => "gmres",
+        };
+        let mut attempt = |preconditioner: &'static str| {
+            let made = prepare(
+                &mut self.general,
+                (name, preconditioner),
+                &self.settings,
+                system.matrix,
+                system.reference,
+                Some((system.kinematics, system.positions)),
+            )?;
+            x.fill(Vec3::ZERO);
+            made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
+            judged(made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x))
+        };
+        match attempt(preconditioner) {
+            Err(SolveError::NotPositiveDefinite { .. }) => attempt("none"),
+            attempted => attempted,
         }
-        let preconditioner = self.preconditioner.as_ref().unwrap_or_else(|| unreachable!("just built"));
-        let settings = self.settings.krylov();
-        let report = conjugate_gradient(matrix, preconditioner.as_ref(), b, x, &settings, &mut self.cg);
-        finish("cg", truncated(report, x), &settings)
     }
 
-    fn iterate_general(&mut self, matrix: &BlockMatrix, b: &[Vec3], x: &mut [Vec3]) -> Result<(u32, f64), LinearError> {
-        self.update_diagonal(matrix)?;
-        let preconditioner = self.diagonal.as_ref().unwrap_or_else(|| unreachable!("just updated"));
-        let workspace = self.gmres.get_or_insert_with(|| GmresWorkspace::new(b.len(), GMRES_RESTART));
-        let settings = self.settings.krylov();
-        finish("gmres", gmres(matrix, preconditioner, b, x, &settings, workspace), &settings)
-    }
-
-    fn update_diagonal(&mut self, matrix: &BlockMatrix) -> Result<(), LinearError> {
-        let updated = self.diagonal.as_mut().is_some_and(|diagonal| diagonal.update(matrix).is_ok());
-        if !updated {
-            self.diagonal = Some(BlockJacobi::new(matrix)?);
+    /// A direction of descent where the matrix is not positive definite: where conjugate gradients were stopped
+    /// by negative curvature (Nocedal & Wright 2006, §7.1), and if they had not begun, that of a shifted
+    /// matrix (§3.4).
+    fn descend(
+        &mut self,
+        system: &mut LinearSystem,
+        failed: SolveError,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Solved, SolveError> {
+        if let SolveError::NotConverged { iterations, relative_residual, stop: Stop::Indefinite { .. }, .. } = failed
+            && reduce::dot(x, b) > 0.0
+        {
+            return Ok(Solved { iterations: iterations as u32, residual: relative_residual });
         }
-        Ok(())
-    }
-}
-
-impl PreconditionerKind {
-    fn build(self, matrix: &BlockMatrix, positions: &[Vec3]) -> Result<Box<dyn Preconditioner>, SolveError> {
-        Ok(match self {
-            Self::BlockJacobi => Box::new(BlockJacobi::new(matrix)?),
-            Self::IncompleteCholesky => Box::new(IncompleteCholesky::new(matrix)?),
-            Self::RigidModes => {
-                Box::new(RigidModes::new(matrix, Geometry::points(positions), RigidModesSettings::default())?)
+        let mean = system.matrix.mean_diagonal().abs();
+        if system.operator.is_some() {
+            // products cannot be shifted here: the steepest direction, in the scale of the diagonal
+            x.iter_mut().zip(b).for_each(|(x, b)| *x = *b * (1.0 / mean));
+            return Ok(Solved { iterations: 0, residual: 1.0 });
+        }
+        let pattern = Arc::clone(system.matrix.pattern());
+        self.diagonal.clear();
+        self.diagonal.extend(
+            (0..pattern.block_count()).map(|row| (system.matrix.diagonal_block(row).trace() / 3.0).max(mean)),
+        );
+        let mut last = failed;
+        let mut before = 0.0;
+        for shift in SHIFTS {
+            // A + σ diag(A)
+            for (row, diagonal) in self.diagonal.iter().enumerate() {
+                let block = &mut system.matrix.values_mut()[pattern.diagonal_slot(row)];
+                *block = block.plus_diagonal((shift - before) * diagonal);
             }
-        })
+            before = shift;
+            match self.solve_symmetric(system, b, x) {
+                Err(SolveError::NotConverged { iterations, relative_residual, stop: Stop::Indefinite { .. }, .. })
+                    if reduce::dot(x, b) > 0.0 =>
+                {
+                    return Ok(Solved { iterations: iterations as u32, residual: relative_residual });
+                }
+                Err(error) => last = error,
+                solved => return solved,
+            }
+        }
+        Err(last)
     }
 }
 
-/// A direction of negative curvature ends conjugate gradients early; what was reached is still a direction
-/// of descent for Newton's method (truncated Newton, Nocedal & Wright 2006, §7.1), unless nothing was.
-fn truncated(mut report: Report, x: &[Vec3]) -> Report {
-    let moved = x.iter().any(|block| *block != Vec3::ZERO);
-    if matches!(report.stop, Stop::Indefinite { .. } | Stop::Stagnated) && moved {
-        report.stop = Stop::Converged;
+/// The solver in `slot`, made anew if it was made for something else, following `matrix`.
+fn prepare<'a>(
+    slot: &'a mut Option<Made>,
+    (name, preconditioner): (&'static str, &'static str),
+    settings: &SolverSettings,
+    matrix: &BlockMatrix,
+    reference: &[f64],
+    places: Option<(&Kinematics, &[Vec3])>,
+) -> Result<&'a mut Made, SolveError> {
+    let fits = |made: &Made| {
+        (made.name, made.preconditioner) == (name, preconditioner)
+            && (Arc::ptr_eq(&made.pattern, matrix.pattern()) || made.pattern == *matrix.pattern())
+            && made.reference == reference
+    };
+    if !slot.as_ref().is_some_and(fits) {
+        *slot = None;
+        let solver = build((name, preconditioner), settings, matrix, reference, places.map(|places| places.0))?;
+        let pattern = Arc::clone(matrix.pattern());
+        *slot = Some(Made { name, preconditioner, pattern, reference: reference.to_vec(), solver });
     }
-    report
+    let made = slot.as_mut().unwrap_or_else(|| unreachable!("just made"));
+    if let Some((_, positions)) = places {
+        made.solver.follow(positions)?;
+    }
+    made.solver.update(matrix)?;
+    Ok(made)
 }
 
-fn finish(method: &'static str, report: Report, settings: &Settings) -> Result<(u32, f64), LinearError> {
-    let report = report.checked(method, settings)?;
-    Ok((report.iterations as u32, report.relative_residual))
+fn build(
+    (name, preconditioner): (&'static str, &'static str),
+    settings: &SolverSettings,
+    matrix: &BlockMatrix,
+    reference: &[f64],
+    kinematics: Option<&Kinematics>,
+) -> Result<Box<dyn solvers::LinearSolver>, SolveError> {
+    let entry = solvers::TABLE.find(name).unwrap_or_else(|error| panic!("the table has this solver: {error}"));
+    let declares = |name: &str| entry.parameters.iter().any(|parameter| parameter.name == name);
+    let mut values = Values::new().with("tolerance", Value::Number(settings.tolerance));
+    if declares("max_iterations") {
+        values.set("max_iterations", Value::Integer(settings.max_iterations as i64));
+    }
+    if declares("preconditioner") {
+        values.set("preconditioner", Value::Text(preconditioner));
+    }
+    let values = entry.values(values).unwrap_or_else(|error| panic!("checked with the stepper's own: {error}"));
+    let places = kinematics.map(|kinematics| places(kinematics, reference));
+    let geometry = places.as_ref().map_or_else(Geometry::default, |(coordinates, roles)| Geometry {
+        coordinates: Some(coordinates),
+        roles: roles.as_deref(),
+    });
+    (entry.build.build)(&values, matrix, geometry)
+}
+
+/// Places and roles of all velocity blocks in a configuration.
+fn places(kinematics: &Kinematics, reference: &[f64]) -> (Vec<Vec3>, Option<Vec<BlockRole>>) {
+    let row = |row: usize| Vec3::new(reference[3 * row], reference[3 * row + 1], reference[3 * row + 2]);
+    let mut places = Vec::with_capacity(kinematics.block_count());
+    let mut roles = Vec::with_capacity(kinematics.block_count());
+    let mut first = 0;
+    for (kind, blocks) in kinematics.unknowns() {
+        places.extend(blocks.clone().map(|_| row(first)));
+        roles.push(BlockRole::Point);
+        match kind {
+            UnknownKind::Point => {}
+            UnknownKind::RigidFrame => roles.push(BlockRole::Rotation),
+            UnknownKind::AffineFrame => roles.extend((1..4).map(|axis| BlockRole::Axis(row(first + axis)))),
+        }
+        first += kind.row_count();
+    }
+    (places, kinematics.has_frames().then_some(roles))
+}
+
+/// Counts a solve that only rounding ended.
+fn judged(solved: Result<souple_solve::krylov::Report, SolveError>) -> Result<Solved, SolveError> {
+    match solved {
+        Ok(report) => Ok(Solved { iterations: report.iterations as u32, residual: report.relative_residual }),
+        Err(SolveError::NotConverged { iterations, relative_residual, stop: Stop::Stagnated, .. })
+            if relative_residual <= STAGNATED_AT_MOST =>
+        {
+            Ok(Solved { iterations: iterations as u32, residual: relative_residual })
+        }
+        Err(error) => Err(error),
+    }
 }

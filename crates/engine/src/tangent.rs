@@ -55,7 +55,7 @@ impl Linearisation<'_> {
 
 impl Tangent {
     /// The matrix at a linearisation, constrained directions replaced by the identity scaled like the rest.
-    pub fn assemble(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &BlockMatrix {
+    pub fn assemble(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &mut BlockMatrix {
         let system = at.system;
         self.update_patterns(system, &at.state.pairs);
         let trivial = system.kinematics.is_trivial();
@@ -113,7 +113,7 @@ impl Tangent {
 
     /// The diagonal blocks alone, for preconditioning products without a matrix; for points only: rows of
     /// frames and derived rows have their diagonal taken from the full matrix.
-    pub fn assemble_diagonal(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &BlockMatrix {
+    pub fn assemble_diagonal(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &mut BlockMatrix {
         let system = at.system;
         if !system.kinematics.is_trivial() {
             return self.assemble(at, scratches);
@@ -231,13 +231,10 @@ pub fn constrain(system: &System, matrix: &mut BlockMatrix) {
     if system.constraints.is_empty() {
         return;
     }
-    let mut projectors = vec![Mat3::IDENTITY; matrix.pattern().block_count()];
-    for constraint in &system.constraints {
-        projectors[constraint.block as usize] = constraint.free;
-    }
     let mean = matrix.mean_diagonal().abs();
     let scale = if mean > 0.0 { mean } else { 1.0 };
-    matrix.constrain(&projectors, scale).unwrap_or_else(|error| panic!("one projector per block: {error}"));
+    let constrained = system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
+    matrix.constrain_blocks(constrained, scale).unwrap_or_else(|error| panic!("constraints name blocks: {error}"));
 }
 
 /// `matrix[a, b] += block`; blocks outside the pattern are dropped, so that a matrix of the diagonal alone
@@ -288,11 +285,11 @@ pub fn add_congruent(
 /// The matrix of [`Tangent::assemble`], known by its products alone.
 pub struct TangentOperator<'a> {
     at: &'a Linearisation<'a>,
-    buffers: Mutex<OperatorBuffers<'a>>,
+    buffers: Mutex<(&'a mut [Scratch], &'a mut OperatorBuffers)>,
 }
 
-struct OperatorBuffers<'a> {
-    scratches: &'a mut [Scratch],
+/// Vectors of [`TangentOperator`], kept between steps.
+pub struct OperatorBuffers {
     free: Vec<Vec3>,
     row_positions: Vec<Vec3>,
     row_velocities: Vec<Vec3>,
@@ -300,30 +297,35 @@ struct OperatorBuffers<'a> {
     row_inertia: Vec<Vec3>,
 }
 
-impl<'a> TangentOperator<'a> {
-    pub fn new(at: &'a Linearisation<'a>, scratches: &'a mut [Scratch]) -> Self {
-        let rows = || vec![Vec3::ZERO; at.system.kinematics.row_count()];
-        let buffers = OperatorBuffers {
-            scratches,
-            free: vec![Vec3::ZERO; at.system.kinematics.block_count()],
+impl OperatorBuffers {
+    pub fn new(system: &System) -> Self {
+        let rows = || vec![Vec3::ZERO; system.kinematics.row_count()];
+        Self {
+            free: vec![Vec3::ZERO; system.kinematics.block_count()],
             row_positions: rows(),
             row_velocities: rows(),
             row_force: rows(),
             row_inertia: rows(),
-        };
-        Self { at, buffers: Mutex::new(buffers) }
+        }
+    }
+}
+
+impl<'a> TangentOperator<'a> {
+    pub fn new(at: &'a Linearisation<'a>, scratches: &'a mut [Scratch], buffers: &'a mut OperatorBuffers) -> Self {
+        Self { at, buffers: Mutex::new((scratches, buffers)) }
     }
 
     /// `out = A δ` before constraints are imposed.
     pub fn apply_unconstrained(&self, delta: &[Vec3], out: &mut [Vec3]) {
         let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
-        self.product(delta, out, &mut buffers);
+        let (scratches, buffers) = &mut *buffers;
+        self.product(delta, out, scratches, buffers);
     }
 
-    fn product(&self, delta: &[Vec3], out: &mut [Vec3], buffers: &mut OperatorBuffers) {
+    fn product(&self, delta: &[Vec3], out: &mut [Vec3], scratches: &mut [Scratch], buffers: &mut OperatorBuffers) {
         let (at, system) = (self.at, self.at.system);
         let kinematics = &system.kinematics;
-        let OperatorBuffers { scratches, row_positions, row_velocities, row_force, row_inertia, .. } = buffers;
+        let OperatorBuffers { row_positions, row_velocities, row_force, row_inertia, .. } = buffers;
         // δx = T δ,  δẋ = D δ
         kinematics.velocities_into(at.q, delta, row_positions);
         row_velocities.fill(Vec3::ZERO);
@@ -369,10 +371,11 @@ impl LinearOperator for TangentOperator<'_> {
 
     fn apply(&self, x: &[Vec3], y: &mut [Vec3]) {
         let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        let (scratches, buffers) = &mut *buffers;
         let mut free = std::mem::take(&mut buffers.free);
         free.copy_from_slice(x);
         self.at.system.project_free(&mut free);
-        self.product(&free, y, &mut buffers);
+        self.product(&free, y, scratches, buffers);
         buffers.free = free;
         // S A S + (I - S)
         for constraint in &self.at.system.constraints {

@@ -73,7 +73,7 @@ pub fn read_dataset(path: &Path) -> Result<Dataset, IoError> {
         expected: readable(),
     })?;
     let mut dataset = read(&bytes).map_err(|fault| IoError::Content { path: path.to_owned(), fault })?;
-    if by_extension(path).map_or(true, |named| named.build.read != entry.build.read) {
+    if by_extension(path).map_or(true, |named| !std::ptr::eq(named, entry)) {
         dataset.notes.insert(0, format!("the content was recognised as the format `{}`", entry.name));
     }
     Ok(dataset)

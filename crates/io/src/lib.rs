@@ -1,1 +1,25 @@
-//! Files: meshes, VTK, CSV, pictures, plots.
+//! Files in and out: meshes with fields, series for ParaView, tables, pictures, plots.
+//!
+//! [`read_mesh`] and [`write_mesh`] go by the table [`FORMATS`]. Readers answer a faulty file with a [`Fault`]
+//! that names the place, what was read and what would be accepted; writers write beside and rename.
+
+mod beside;
+mod cursor;
+mod dataset;
+mod error;
+mod format;
+mod gmsh;
+mod obj;
+mod stl;
+#[cfg(test)]
+mod testing;
+mod vtk;
+
+pub use beside::write_file;
+pub use dataset::{Dataset, Facets, Field, Output, Precision};
+pub use error::{Fault, IoError, Place};
+pub use format::{
+    FORMATS, Format, WriteError, read_dataset, read_dataset_bytes, read_mesh, read_mesh_bytes, write_dataset,
+    write_dataset_as, write_mesh,
+};
+pub use vtk::Series;

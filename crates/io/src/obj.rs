@@ -3,7 +3,6 @@
 //! Normals, textures and materials are not read. Polygons of more corners are cut into triangles from their
 //! first corner, which is right for convex ones; a note says so.
 
-use std::collections::BTreeMap;
 use std::io::Write;
 
 use souple_math::Vec3;
@@ -11,7 +10,7 @@ use souple_mesh::{CellBlock, ElementKind, Mesh};
 use souple_table::Entry;
 
 use crate::cursor::parse;
-use crate::dataset::{Facets, Output, tidy_groups};
+use crate::dataset::{Output, tidy_groups};
 use crate::error::{Fault, Place, quoted};
 use crate::format::{Format, WriteError};
 use crate::{Dataset, IoError};
@@ -25,85 +24,289 @@ pub(crate) static OBJ: Entry<Format> = Entry {
 };
 
 /// Statements that change nothing of the geometry.
-const WITHOUT_GEOMETRY: &[&str] = &[
-    "vn", "vt", "vp", "s", "mg", "usemtl", "mtllib", "usemap", "maplib", "l", "p", "bevel", "c_interp", "d_interp",
-    "lod", "shadow_obj", "trace_obj",
+const WITHOUT_GEOMETRY: &[&[u8]] = &[
+    b"vn", b"vt", b"vp", b"s", b"mg", b"usemtl", b"mtllib", b"usemap", b"maplib", b"l", b"p", b"bevel", b"c_interp",
+    b"d_interp", b"lod", b"shadow_obj", b"trace_obj",
 ];
 
-/// Facets and corners of one statement `f`.
-fn read_corners<'a>(
-    words: impl Iterator<Item = &'a [u8]>,
-    line: usize,
-    point_count: usize,
-) -> Result<Vec<u32>, Fault> {
-    let mut corners = Vec::new();
-    for word in words {
-        // "point/texture/normal": numbers from 1, or from the end if negative
-        let number = word.split(|byte| *byte == b'/').next().unwrap_or_default();
-        let index = match parse::<i64>(number) {
-            Some(number) if number > 0 => Some(number - 1),
-            Some(number) if number < 0 => number.checked_add(point_count as i64),
-            _ => None,
-        };
-        let corner = index.and_then(|index| u32::try_from(index).ok()).filter(|corner| (*corner as usize) < point_count);
-        let corner = corner.ok_or_else(|| {
-            let expected = format!("1 to {point_count}, or -{point_count} to -1, the points so far");
-            Fault::new(Place::Line(line), "a corner of the facet", quoted(word), expected)
-        })?;
-        if !corners.contains(&corner) {
-            corners.push(corner);
-        }
-    }
-    Ok(corners)
+/// Most groups that one facet is in.
+const MOST_GROUPS: usize = 16;
+
+#[derive(Default)]
+struct Reader {
+    mesh: Mesh,
+    facet_count: u32,
+    /// Groups of the facets that follow.
+    groups: Vec<String>,
+    cut_polygons: usize,
+    degenerate: usize,
 }
 
 pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
-    let mut dataset = Dataset::default();
-    let mesh = &mut dataset.mesh;
-    let mut groups: Vec<String> = Vec::new();
-    let (mut cut, mut degenerate) = (0usize, 0usize);
-    let mut skipped: BTreeMap<String, usize> = BTreeMap::new();
-    let mut lines = LogicalLines { rest: bytes, line: 0 };
-    while let Some((line, content)) = lines.next() {
-        let content = content.split(|byte| *byte == b'#').next().unwrap_or_default();
+    let mut reader = Reader::default();
+    // a backslash joins a line with the next
+    let mut joined: Vec<u8> = Vec::new();
+    for (index, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
+        let line = line.strip_suffix(b"\r").unwrap_or(line);
+        if let Some(start) = line.strip_suffix(b"\\") {
+            joined.extend_from_slice(start);
+            joined.push(b' ');
+            continue;
+        }
+        joined.extend_from_slice(line);
+        reader.statement(&joined, index + 1)?;
+        joined.clear();
+    }
+    if !joined.is_empty() {
+        let place = Place::Line(crate::cursor::line_of(bytes, bytes.len()));
+        return Err(Fault::cut_off(place, "the line that a backslash continues", "another line"));
+    }
+    let mut dataset = reader.finish(bytes)?;
+    if !bytes.ends_with(b"\n") {
+        dataset.notes.push("the last line has no end: the file may be cut off".to_owned());
+    }
+    Ok(dataset)
+}
+
+impl Reader {
+    fn statement(&mut self, line: &[u8], number: usize) -> Result<(), Fault> {
+        let place = Place::Line(number);
+        let content = line.split(|byte| *byte == b'#').next().unwrap_or_default();
         let mut words = content.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-        let Some(keyword) = words.next() else { continue };
+        let Some(keyword) = words.next() else { return Ok(()) };
         match keyword {
-            b"v" => mesh.points.push(read_point(words, line)?),
+            b"v" => {
+                let point = read_point(words, place)?;
+                if self.mesh.points.len() >= u32::MAX as usize {
+                    return Err(Fault::new(place, "the number of points", "2^32", "fewer"));
+                }
+                self.mesh.points.push(point);
+            }
+            b"f" => self.facet(words, place)?,
             b"g" | b"o" => {
-                groups = words.map(|word| String::from_utf8_lossy(word).into_owned()).take(MOST_GROUPS).collect();
-                groups.retain(|name| name != "default");
+                let names = words.take(MOST_GROUPS).map(|word| String::from_utf8_lossy(word).into_owned());
+                self.groups = names.filter(|name| name != "default").collect();
             }
-            b"f" => {
-                let given = words.clone().count();
-                let corners = read_corners(words, line, mesh.points.len())?;
-                if given < 3 {
-                    return Err(Fault::new(Place::Line(line), "the number of corners", given.to_string(), "3 or more"));
-                }
-                let first = mesh.facet_count_of_last();
-                match corners.as_slice() {
-                    [_, _, _] => mesh.push_facet(ElementKind::Tri3, &corners),
-                    [_, _, _, _] => mesh.push_facet(ElementKind::Quad4, &corners),
-                    [start, others @ ..] if others.len() > 3 => {
-                        cut += 1;
-                        for pair in others.windows(2) {
-                            mesh.push_facet(ElementKind::Tri3, &[*start, pair[0], pair[1]]);
-                        }
-                    }
-                    _ => degenerate += 1,
-                }
-                let _ = first;
-            }
+            other if WITHOUT_GEOMETRY.contains(&other) => {}
             other => {
-                let keyword = String::from_utf8_lossy(other).into_owned();
-                if !WITHOUT_GEOMETRY.contains(&keyword.as_str()) {
-                    let expected = "v, f, g, o, vn, vt, s, usemtl, mtllib, l, p or a comment";
-                    return Err(Fault::new(Place::Line(line), "the statement", quoted(other), expected));
-                }
-                *skipped.entry(keyword).or_default() += 1;
+                let expected = "v, f, g, o, vn, vt, s, usemtl, mtllib, l, p or a comment";
+                return Err(Fault::new(place, "the statement", quoted(other), expected));
             }
         }
+        Ok(())
     }
-    let _ = (groups, cut, degenerate, skipped);
-    Ok(dataset)
+
+    /// `f point/texture/normal …`, numbers from 1, or from the latest back if negative.
+    fn facet<'a>(&mut self, words: impl Iterator<Item = &'a [u8]>, place: Place) -> Result<(), Fault> {
+        let count = self.mesh.points.len();
+        let mut corners: Vec<u32> = Vec::with_capacity(4);
+        let mut given = 0;
+        for word in words {
+            given += 1;
+            let number = word.split(|byte| *byte == b'/').next().unwrap_or_default();
+            let index = match parse::<i64>(number) {
+                Some(number) if number > 0 => Some(number - 1),
+                Some(number) if number < 0 => number.checked_add(count as i64),
+                _ => None,
+            };
+            let corner = index.and_then(|index| u32::try_from(index).ok()).filter(|corner| (*corner as usize) < count);
+            let corner = corner.ok_or_else(|| {
+                let expected = format!("1 to {count}, or -{count} to -1: a point given before");
+                Fault::new(place, "a corner of the facet", quoted(word), expected)
+            })?;
+            // corners that coincide with their neighbour make no side
+            if corners.last() != Some(&corner) && (corners.len() < 2 || corners[0] != corner) {
+                corners.push(corner);
+            }
+        }
+        if given < 3 {
+            return Err(Fault::new(place, "the number of corners", given.to_string(), "3 or more"));
+        }
+        match corners.as_slice() {
+            [a, b, c] => self.push(ElementKind::Tri3, &[*a, *b, *c]),
+            [a, b, c, d] if a != c && b != d => self.push(ElementKind::Quad4, &[*a, *b, *c, *d]),
+            [start, others @ ..] if others.len() > 2 => {
+                self.cut_polygons += 1;
+                for pair in others.windows(2).filter(|pair| !pair.contains(start)) {
+                    self.push(ElementKind::Tri3, &[*start, pair[0], pair[1]]);
+                }
+            }
+            _ => self.degenerate += 1,
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, kind: ElementKind, corners: &[u32]) {
+        self.mesh.push_facet(kind, corners);
+        for name in &self.groups {
+            // the name is there already, but for the first facet of each group
+            if !self.mesh.groups.contains_key(name) {
+                self.mesh.groups.insert(name.clone(), Default::default());
+            }
+            if let Some(group) = self.mesh.groups.get_mut(name) {
+                group.facets.push(self.facet_count);
+            }
+        }
+        self.facet_count += 1;
+    }
+
+    fn finish(mut self, bytes: &[u8]) -> Result<Dataset, Fault> {
+        if self.facet_count == 0 {
+            let place = Place::Line(crate::cursor::line_of(bytes, bytes.len()));
+            let found = format!("none ({} points)", self.mesh.points.len());
+            return Err(Fault::new(place, "the number of facets", found, "points (v) and facets (f)"));
+        }
+        tidy_groups(&mut self.mesh);
+        let mut notes = Vec::new();
+        if self.cut_polygons > 0 {
+            notes.push(format!("{} polygons of more than four corners were cut into triangles", self.cut_polygons));
+        }
+        if self.degenerate > 0 {
+            notes.push(format!("{} facets with repeated corners were left out", self.degenerate));
+        }
+        Ok(Dataset { mesh: self.mesh, notes, ..Dataset::default() })
+    }
+}
+
+/// `v x y z [w or colours]`
+fn read_point<'a>(mut words: impl Iterator<Item = &'a [u8]>, place: Place) -> Result<Vec3, Fault> {
+    let mut position = [0.0; 3];
+    for (axis, coordinate) in ["x", "y", "z"].iter().zip(&mut position) {
+        let subject = || format!("{axis} of the point");
+        let word = words.next().ok_or_else(|| Fault::new(place, subject(), "missing", "a finite number"))?;
+        *coordinate = parse(word)
+            .filter(|number: &f64| number.is_finite())
+            .ok_or_else(|| Fault::new(place, subject(), quoted(word), "a finite number"))?;
+    }
+    Ok(Vec3::from_array(position))
+}
+
+/// Writes the facets; a mesh with cells and without facets gives its boundary.
+fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let mesh = output.mesh;
+    if mesh.facet_count() == 0 {
+        return write_boundary(output, out);
+    }
+    writeln!(out, "# souple surface")?;
+    write_points(output, out)?;
+    let mut memberships = vec![Vec::new(); mesh.facet_count()];
+    for (name, group) in &mesh.groups {
+        if !group.facets.is_empty() && (name.is_empty() || name.contains(char::is_whitespace) || name.contains('#')) {
+            let expected = "a word without spaces in an OBJ file";
+            return Err(IoError::request("the name of a group", format!("`{name}`"), expected).into());
+        }
+        for facet in &group.facets {
+            let count = memberships.len();
+            let list = memberships.get_mut(*facet as usize).ok_or_else(|| {
+                IoError::request(format!("a facet of the group `{name}`"), facet, format!("a number below {count}"))
+            })?;
+            list.push(name.as_str());
+        }
+    }
+    let mut current: &[&str] = &[];
+    for (nodes, groups) in mesh.facet_blocks.iter().flat_map(CellBlock::cells).zip(&memberships) {
+        if groups != current {
+            // a group line without names means the default group
+            writeln!(out, "g {}", if groups.is_empty() { "default".to_owned() } else { groups.join(" ") })?;
+            current = groups;
+        }
+        write_facet(nodes, out)?;
+    }
+    Ok(())
+}
+
+fn write_boundary(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    writeln!(out, "# souple surface: the boundary of the cells")?;
+    let surface = output.mesh.boundary_surface();
+    for point in &surface.mesh_points {
+        write_point(output.positions()[*point as usize], out)?;
+    }
+    for triangle in &surface.triangles {
+        write_facet(triangle, out)?;
+    }
+    Ok(())
+}
+
+fn write_points(output: &Output<'_>, out: &mut dyn Write) -> std::io::Result<()> {
+    output.positions().iter().try_for_each(|position| write_point(*position, out))
+}
+
+fn write_point(position: Vec3, out: &mut dyn Write) -> std::io::Result<()> {
+    let [x, y, z] = position.to_array();
+    writeln!(out, "v {x:?} {y:?} {z:?}")
+}
+
+fn write_facet(nodes: &[u32], out: &mut dyn Write) -> std::io::Result<()> {
+    write!(out, "f")?;
+    nodes.iter().try_for_each(|node| write!(out, " {}", node + 1))?;
+    writeln!(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{real_input, survives_faults};
+
+    const SURFACE: &str = "# a lid\nmtllib x.mtl\nv 0 0 0\nv 1 0 0 # c\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1e0\nvn 0 0 1\n\
+                           g lid top\nf 1//1 2/1/1 3 4\ng side\nf -5 -4 \\\n -1\ns off\n";
+
+    #[test]
+    fn facets_and_groups() {
+        let dataset = read(SURFACE.as_bytes()).unwrap();
+        let facets: Vec<_> = dataset.mesh.facets().map(|facet| facet.nodes.to_vec()).collect();
+        assert_eq!(facets, [vec![0, 1, 2, 3], vec![0, 1, 4]]);
+        assert_eq!(dataset.mesh.groups["top"].facets, [0]);
+        assert_eq!(dataset.mesh.groups["side"].facets, [1]);
+        assert!(dataset.notes.is_empty(), "{:?}", dataset.notes);
+    }
+
+    #[test]
+    fn round_trip() {
+        let mesh = read(SURFACE.as_bytes()).unwrap().mesh;
+        let mut bytes = Vec::new();
+        write(&Output::new(&mesh), &mut bytes).unwrap();
+        assert_eq!(read(&bytes).unwrap().mesh, mesh);
+    }
+
+    #[test]
+    fn polygons_are_cut_and_degenerate_facets_left_out() {
+        let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 1 0\nf 1 2 3 4 5\nf 1 1 2\nf 1 2 2 1\n";
+        let dataset = read(text.as_bytes()).unwrap();
+        assert_eq!(dataset.mesh.count_of(ElementKind::Tet4), 0);
+        assert_eq!(dataset.mesh.facet_count(), 3);
+        assert_eq!(dataset.notes.len(), 2);
+    }
+
+    #[test]
+    fn faults_name_line_value_and_range() {
+        for (text, line, found) in [
+            ("v 0 0\n", 1, "missing"),
+            ("v 0 nan 0\n", 1, "\"nan\""),
+            ("v 0 0 0\nf 1 2 3\n", 2, "\"2\""),
+            ("v 0 0 0\nf 1 1\n", 2, "2"),
+            ("v 0 0 0\nf 0 0 0\n", 2, "\"0\""),
+            ("v 0 0 0\n\n\u{1}rubbish\n", 3, "\"\\u{1}rubbish\""),
+            ("v 0 0 0\n", 2, "none (1 points)"),
+        ] {
+            let fault = read(text.as_bytes()).unwrap_err();
+            assert_eq!((fault.place, fault.found.as_str()), (Place::Line(line), found), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn no_fault_panics() {
+        survives_faults("obj", SURFACE.as_bytes(), read);
+    }
+
+    /// Counts of statements `v` and `f` of the files as found.
+    #[test]
+    fn real_surfaces() {
+        for (name, points, facets) in
+            [("liver-smooth.obj", 2194, 4384), ("frog.obj", 2397, 4790), ("malleus.obj", 1876, 3748)]
+        {
+            let Some(bytes) = real_input(name) else { return };
+            let mesh = read(&bytes).unwrap().mesh;
+            assert_eq!((mesh.points.len(), mesh.facet_count()), (points, facets), "{name}");
+        }
+    }
 }

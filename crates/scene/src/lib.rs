@@ -1,19 +1,26 @@
 //! Scene files: text to specification to model and state.
 //!
-//! [`read_file`] gives a [`Document`]: texts, includes, overrides and parameters put together. Its [`Spec`] says what
-//! the text says; the scene compiled from it is ready to run. Whatever is wrong is collected in [`Diagnostics`],
-//! each with its place, what was read and what would be accepted.
+//! [`read_file`] puts texts, includes, overrides and parameters together, reads what they say as a [`Spec`] and
+//! compiles it to a [`Scene`] ready to run. Whatever is wrong is collected in [`Diagnostics`], each with its place,
+//! what was read and what would be accepted.
 
+mod compile;
 pub mod diagnostic;
 mod document;
 mod include;
 mod keys;
+mod measure;
 mod overrides;
 mod parameters;
 mod reader;
+mod scene;
+mod schema;
 pub mod source;
 pub mod spec;
 mod values;
 
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
+pub use measure::{Measurement, ProbeInfo};
+pub use scene::{BodyInfo, Scene, read_file, read_text};
+pub use schema::schema;
 pub use spec::Spec;

@@ -53,6 +53,11 @@ pub trait NewtonProblem {
     fn residual_scale(&mut self) -> Option<f64> {
         None
     }
+
+    /// `‖r‖` that rounding alone makes near the accepted configuration: nothing below it can be asked for.
+    fn rounding(&mut self) -> f64 {
+        0.0
+    }
 }
 
 /// When Newton may stop, and how it searches.
@@ -171,7 +176,7 @@ pub fn newton<P: NewtonProblem + ?Sized>(
     let target = settings.absolute_tolerance.max(settings.relative_tolerance * scale);
 
     for iteration in 0..=settings.max_iterations {
-        if norm <= target {
+        if norm <= target.max(problem.rounding()) {
             return Ok(report(iteration, linear_iterations, norm, Stop::Converged));
         }
         if iteration == settings.max_iterations {

@@ -50,6 +50,9 @@ pub trait LinearSolver: Send + Sync {
         Ok(())
     }
 
+    /// Changes the wanted true relative residual of the next solves.
+    fn set_tolerance(&mut self, tolerance: f64);
+
     /// Solves `A x = b` from the `x` given; `operator` is the matrix of the last update, stored or not.
     ///
     /// # Errors
@@ -312,6 +315,12 @@ impl LinearSolver for Auto {
         self.iterative.as_mut().map_or(Ok(()), |solver| solver.follow(coordinates))
     }
 
+    fn set_tolerance(&mut self, tolerance: f64) {
+        for solver in [&mut self.direct, &mut self.iterative].into_iter().flatten() {
+            solver.set_tolerance(tolerance);
+        }
+    }
+
     fn solve(
         &mut self,
         operator: &dyn LinearOperator,
@@ -360,6 +369,10 @@ impl LinearSolver for Iterative {
 
     fn follow(&mut self, coordinates: &[Vec3]) -> Result<(), SolveError> {
         self.preconditioner.follow(coordinates)
+    }
+
+    fn set_tolerance(&mut self, tolerance: f64) {
+        self.settings.tolerance = tolerance;
     }
 
     fn solve(
@@ -435,6 +448,10 @@ impl LinearSolver for Direct {
 
     fn rebuild(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
         self.update(matrix)
+    }
+
+    fn set_tolerance(&mut self, tolerance: f64) {
+        self.tolerance = tolerance;
     }
 
     fn solve(

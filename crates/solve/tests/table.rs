@@ -32,11 +32,21 @@ fn every_solver_solves() {
     }
 }
 
-/// `auto` factors what is thin and iterates on what is thick.
+/// `auto` factors what is stiff and thin, and iterates on what is thick or held by its inertia; it changes its
+/// mind with the matrix.
 #[test]
-fn auto_chooses_by_work() {
+fn auto_chooses_by_weight_and_work() {
     let places: Vec<Vec3> = (0..3000).map(|i| Vec3::X * f64::from(i)).collect();
-    assert_eq!(build("auto", Values::new(), &chain(3000, 1.0, 0.1), &places).name(), "direct");
+    let (stiff, light) = (chain(3000, 1.0, 1e-3), chain(3000, 1.0, 1.0));
+    let mut solver = build("auto", Values::new(), &stiff, &places);
+    assert_eq!(solver.name(), "direct");
+    // inertia 1 on a diagonal of 2 + 1
+    solver.update(&light).unwrap();
+    assert_eq!(solver.name(), "cg");
+    let mut x = vec![Vec3::ZERO; 3000];
+    assert!(solver.solve(&light, &noise(3000, 1), &mut x).unwrap().relative_residual <= 1e-8);
+    solver.update(&stiff).unwrap();
+    assert_eq!(solver.name(), "direct");
     let thick = truss([18, 18, 18], 1.0);
     assert_eq!(build("auto", Values::new(), &thick.matrix, &thick.places).name(), "cg");
 }

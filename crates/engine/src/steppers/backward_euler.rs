@@ -2,7 +2,7 @@
 
 use souple_table::{Parameter, Range, Value};
 
-use crate::implicit::{ImplicitBuffers, ImplicitStep, NewtonSettings};
+use crate::implicit::{ImplicitBuffers, ImplicitStep, Lent, NewtonSettings};
 use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -95,32 +95,29 @@ impl Stepper for BackwardEuler {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
-        let (q_start, v_start) = (next.q.clone(), next.v.clone());
-        system.place_rows(&q_start, &v_start, start, &mut ws.rows);
-        let start_row_velocities = ws.rows.velocities.clone();
+        let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
+        buffers.q_start.copy_from_slice(&next.q);
+        buffers.v_start.copy_from_slice(&next.v);
+        system.place_rows(&next.q, &next.v, start, &mut ws.rows);
+        buffers.start_row_velocities.copy_from_slice(&ws.rows.velocities);
         let implicit = ImplicitStep {
             system,
             around: *around,
             end: start + timestep,
             timestep: Some(timestep),
-            q_start: &q_start,
-            v_start: &v_start,
-            start_row_velocities: &start_row_velocities,
             has_potential: system.kinematics.is_trivial()
                 && system.forces.iter().all(|force| force.declaration().conservative),
         };
-        let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
-        let report = match self.newton {
-            NewtonMode::One => implicit.solve_once(next, ws, &mut buffers),
-            NewtonMode::Full(settings) => implicit.solve_newton(settings, next, ws, &mut buffers),
+        let lent = Lent::from(next);
+        let solved = match self.newton {
+            NewtonMode::One => implicit.solve_once(&lent, &mut next.q, ws, &mut buffers),
+            NewtonMode::Full(settings) => implicit.solve_newton(settings, &lent, &mut next.q, ws, &mut buffers),
         };
-        ws.implicit = Some(buffers);
-        let report = report?;
+        lent.give_back(next);
         // v' = difference(q', q)/h, the very velocity the equation was solved with
-        let mut v = std::mem::take(&mut next.v);
-        system.kinematics.difference(&next.q, &q_start, &mut v);
-        v.iter_mut().for_each(|block| *block = *block * (1.0 / timestep));
-        next.v = v;
+        implicit.velocity_into(&next.q, &buffers.q_start, &mut next.v);
+        ws.implicit = Some(buffers);
+        let report = solved?;
         system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
         system.place_rows(&next.q, &next.v, start + timestep, &mut ws.rows);
         system.advance_memory(&ws.rows, next, around, timestep);

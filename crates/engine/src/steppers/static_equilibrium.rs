@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
 
-use crate::implicit::{ImplicitBuffers, ImplicitStep, NewtonSettings};
+use crate::implicit::{ImplicitBuffers, ImplicitStep, Lent, NewtonSettings};
 use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -64,19 +64,17 @@ impl StaticEquilibrium {
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        let q_start = next.q.clone();
-        let at_rest = vec![Vec3::ZERO; system.kinematics.row_count()];
         let implicit = ImplicitStep {
             system,
             around,
             end,
             timestep: None,
-            q_start: &q_start,
-            v_start: &[],
-            start_row_velocities: &at_rest,
             has_potential: system.forces.iter().all(|force| force.declaration().conservative),
         };
-        implicit.solve_newton(self.newton, next, ws, buffers)
+        let lent = Lent::from(next);
+        let solved = implicit.solve_newton(self.newton, &lent, &mut next.q, ws, buffers);
+        lent.give_back(next);
+        solved
     }
 }
 
@@ -111,7 +109,6 @@ impl Stepper for StaticEquilibrium {
         let mut halvings = 0;
         let outcome = loop {
             let load = f64::min(1.0, reached + stride);
-            let fallback = next.q.clone();
             let around = Surroundings { load: if first { load } else { 1.0 }, ..*around };
             match self.equilibrate(system, around, start + timestep, next, ws, &mut buffers) {
                 Ok(part) => {
@@ -121,8 +118,8 @@ impl Stepper for StaticEquilibrium {
                         break Ok(report);
                     }
                 }
+                // `next.q` is still where the last load step led
                 Err(error) => {
-                    next.q = fallback;
                     halvings += 1;
                     stride *= 0.5;
                     if halvings > MAX_HALVINGS || !first {

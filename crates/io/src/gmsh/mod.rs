@@ -59,7 +59,8 @@ pub(crate) static GMSH_2: Entry<Format> = Entry {
 };
 
 fn recognises(bytes: &[u8]) -> bool {
-    [b"$MeshFormat", b"$NOD", b"$Comments"].iter().any(|start: &&[u8]| bytes.trim_ascii_start().starts_with(start))
+    let starts: [&[u8]; 3] = [b"$MeshFormat", b"$NOD", b"$Comments"];
+    starts.iter().any(|start| bytes.trim_ascii_start().starts_with(start))
 }
 
 /// Reads any version.

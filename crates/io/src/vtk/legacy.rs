@@ -429,3 +429,6 @@ fn group_fields(output: &Output<'_>) -> Result<(Vec<Field>, Vec<Field>), IoError
     }
     Ok((on_points, on_cells))
 }
+
+#[cfg(test)]
+mod tests;

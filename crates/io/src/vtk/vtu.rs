@@ -158,7 +158,7 @@ fn read_field(
     let name = element.attribute("Name").unwrap_or_default();
     let given = element.attribute("NumberOfComponents").unwrap_or("1");
     // VTK writes 0 for arrays of single numbers at times
-    let components = given.parse().ok().filter(|count| *count <= MOST_COMPONENTS).ok_or_else(|| {
+    let components: usize = given.parse().ok().filter(|count| *count <= MOST_COMPONENTS).ok_or_else(|| {
         let subject = format!("the number of components of the array `{name}`");
         document.fault(element.position, subject, given, format!("1 to {MOST_COMPONENTS}"))
     })?;
@@ -183,3 +183,6 @@ fn check_length(
     let subject = format!("the number of values of the array `{name}`");
     Err(document.fault(element.position, subject, found.to_string(), expected))
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,6 +4,8 @@
 //! springs and drag are not loads in that sense and always act in full.
 
 mod attachment;
+#[cfg(test)]
+pub(crate) mod battery;
 mod combination;
 mod drag;
 mod field;
@@ -13,6 +15,8 @@ mod gravity;
 mod ground_springs;
 mod motion;
 mod point_load;
+#[cfg(test)]
+mod tests;
 
 use souple_engine::{Editable, ParameterError};
 

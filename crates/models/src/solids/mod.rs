@@ -1,5 +1,6 @@
 //! Solids: finite elements of any kind and law, mixed in one body.
 
+mod assembly;
 mod geometry;
 mod kernel;
 mod layout;
@@ -20,8 +21,9 @@ use souple_mesh::{ElementKind, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
 use crate::materials::{AnyLaw, Law, LawVisitor, Material, Parameters};
+use assembly::Assembly;
 use geometry::{Nodes, Tetrahedron};
-use kernel::{BLOCK_LEN_MAX, Kernel, LawKernel};
+use kernel::{Kernel, LawKernel};
 use layout::{Chunk, LANES};
 
 pub use layout::FlatCell;
@@ -98,14 +100,12 @@ const PARALLEL_CHUNKS: usize = 16;
 /// Rows gathered by one task.
 const ROWS_PER_TASK: usize = 2048;
 
-/// Partial sums and matrix slots, kept between calls.
+/// Partial sums, kept between calls.
 #[derive(Default)]
 struct SolidScratch {
     partials: Vec<Vec3>,
     energies: Vec<f64>,
-    /// Slots of `(a, b)` with `a ≤ b` and of `(b, a)`, cell after cell, for the pattern of that address.
-    slots: Vec<u32>,
-    slots_for: Option<std::sync::Arc<souple_solve::Pattern>>,
+    assembly: Assembly,
 }
 
 thread_local! {
@@ -218,29 +218,6 @@ impl SolidForce {
         } else {
             rows.chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
         }
-    }
-
-    /// Slots of every cell's blocks in `matrix`, kept while its pattern stays.
-    fn update_slots(&self, scratch: &mut SolidScratch, matrix: &BlockMatrix) {
-        let pattern = matrix.pattern();
-        if scratch.slots_for.as_ref().is_some_and(|known| std::sync::Arc::ptr_eq(known, pattern)) {
-            return;
-        }
-        scratch.slots.clear();
-        for (batch, chunk) in self.chunks() {
-            let nodes = batch.kind.node_count();
-            for element in 0..chunk.cells.len() {
-                let row = |a: usize| chunk.row_of(nodes, element, a) as usize;
-                for a in 0..nodes {
-                    for b in a..nodes {
-                        for (i, j) in [(row(a), row(b)), (row(b), row(a))] {
-                            scratch.slots.push(pattern.slot(i, j).map_or(u32::MAX, |slot| slot as u32));
-                        }
-                    }
-                }
-            }
-        }
-        scratch.slots_for = Some(pattern.clone());
     }
 }
 
@@ -411,34 +388,8 @@ impl Force for SolidForce {
         if weights.position == 0.0 {
             return;
         }
-        let scratch = solid_scratch(scratch);
-        self.update_slots(scratch, matrix);
-        let mut out = vec![0.0; BLOCK_LEN_MAX];
-        let mut slots = scratch.slots.chunks_exact(2);
-        let mut positions = Vec::new();
-        for (batch, chunk) in self.chunks() {
-            let nodes = batch.kind.node_count();
-            let pairs = nodes * (nodes + 1) / 2;
-            chunk.localise(at.positions, &mut positions);
-            for block in 0..chunk.block_count() {
-                batch.kernel.blocks(chunk, block, &batch.reference, &positions, weights.position, &mut out);
-                for lane in 0..chunk.lanes_in(block) {
-                    for pair in 0..pairs {
-                        let number = |i: usize| out[(pair * 9 + i) * LANES + lane];
-                        let column =
-                            |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
-                        let K = Mat3::from_columns(column(0), column(1), column(2));
-                        let Some([upper, lower]) = slots.next() else { unreachable!("two slots per pair") };
-                        if *upper != u32::MAX {
-                            matrix.add_at(*upper as usize, &K);
-                            if upper != lower {
-                                matrix.add_at(*lower as usize, &K.transpose());
-                            }
-                        }
-                    }
-                }
-            }
-        }
+        let assembly = &mut solid_scratch(scratch).assembly;
+        assembly.add_blocks(&self.batches, &self.rows, at.positions, weights.position, matrix);
     }
 
     fn bytes(&self) -> usize {

@@ -6,15 +6,17 @@ use sha2::Sha256;
 use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
 use souple_math::Vec3;
 use souple_mesh::Mesh;
-use souple_models::loads::{Drag, Gravity, MassDamping};
+use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
-use souple_models::solids::{SolidDescription, SolidForce, consistent_mass, lumped_mass};
+use souple_models::solids::{
+    FlatCell, RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
+};
 
 use super::{Draft, shape};
 use crate::diagnostic::{Code, Log};
 use crate::source::Sources;
 use crate::spec::Spec;
-use crate::spec::body::{Body, MassKind};
+use crate::spec::body::{Body, Damping, MassKind};
 use crate::spec::world::SystemSpec;
 
 /// A body with its mesh and its rows in a system.
@@ -70,19 +72,17 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
         }
-        let solid = SolidForce::new(&SolidDescription {
+        let description = SolidDescription {
             name: solid_name(&body.spec.name),
             mesh: &body.mesh,
             first_row: body.rows.start,
             materials: &materials,
             material_of_cell: &material_of_cell,
-        });
-        match solid {
-            Ok(solid) => forces.push(Box::new(solid)),
-            Err(error) => {
-                let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
-                draft.log.add(Code::Mesh, site, error.to_string(), "cells with volume");
-            }
+            quadrature: body.spec.quadrature,
+        };
+        if let Err(error) = add_solid(body.spec, description, &mut forces) {
+            let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
+            draft.log.add(Code::Mesh, site, error.to_string(), "cells with volume");
         }
     }
     mass.seal();
@@ -99,6 +99,22 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
     })
 }
 
+/// The elastic force of a body and what damps its strain.
+fn add_solid(body: &Body, description: SolidDescription, forces: &mut Vec<Box<dyn Force>>) -> Result<(), FlatCell> {
+    forces.push(Box::new(SolidForce::new(&description)?));
+    let Damping { rayleigh_stiffness, viscosity, .. } = body.damping;
+    if rayleigh_stiffness > 0.0 {
+        let name = format!("{}.rayleigh_stiffness", body.name);
+        let description = SolidDescription { name, ..description.clone() };
+        forces.push(Box::new(RayleighDamping::new(&description, rayleigh_stiffness)?));
+    }
+    if viscosity > 0.0 {
+        let description = SolidDescription { name: format!("{}.viscosity", body.name), ..description };
+        forces.push(Box::new(Viscosity::new(&description, viscosity)?));
+    }
+    Ok(())
+}
+
 /// Gravity of the whole system, drag and damping of its bodies.
 fn add_outer_forces(draft: &Draft, index: usize, mass: &Mass, kinematics: &Kinematics, forces: &mut Vec<Box<dyn Force>>) {
     let world = &draft.spec.world;
@@ -108,6 +124,46 @@ fn add_outer_forces(draft: &Draft, index: usize, mass: &Mass, kinematics: &Kinem
             Err(error) => draft.log.add(Code::OutOfRange, &world.site, error.to_string(), "finite numbers"),
         }
     }
+    for body in draft.bodies.iter().filter(|body| body.system == index) {
+        let (name, damping) = (&body.spec.name, body.spec.damping);
+        let mut added: Vec<Result<Box<dyn Force>, LoadError>> = Vec::new();
+        if damping.rayleigh_mass > 0.0 {
+            let part = part_of_mass(mass, &body.rows);
+            let force = MassDamping::new(format!("{name}.rayleigh_mass"), part, damping.rayleigh_mass);
+            added.push(force.map(|force| Box::new(force) as _));
+        }
+        if body.spec.drag > 0.0 {
+            let force = Drag::new(format!("{name}.drag"), surface_shares(body), body.spec.drag);
+            added.push(force.map(|force| Box::new(force) as _));
+        }
+        for force in added {
+            match force {
+                Ok(force) => forces.push(force),
+                Err(error) => draft.log.add(Code::OutOfRange, &body.spec.site, error.to_string(), "finite numbers"),
+            }
+        }
+    }
+}
+
+/// The mass of some rows.
+fn part_of_mass(mass: &Mass, rows: &Range<usize>) -> Mass {
+    let mut part = Mass::new(mass.diagonal.len());
+    part.diagonal[rows.clone()].copy_from_slice(&mass.diagonal[rows.clone()]);
+    part.couplings = mass.couplings.iter().copied().filter(|(a, _, _)| rows.contains(&(*a as usize))).collect();
+    part
+}
+
+/// Rows of a body's surface with their shares of its area.
+fn surface_shares(body: &Placed) -> Vec<(u32, f64)> {
+    let surface = body.mesh.boundary_surface();
+    let mut areas = vec![0.0; surface.points.len()];
+    for (triangle, corners) in surface.triangles.iter().enumerate() {
+        let third = surface.area_vector(triangle as u32).length() / 3.0;
+        corners.iter().for_each(|corner| areas[*corner as usize] += third);
+    }
+    let total: f64 = areas.iter().sum();
+    let first = body.rows.start as u32;
+    surface.mesh_points.iter().zip(&areas).map(|(point, area)| (first + point, area / total)).collect()
 }
 
 /// The materials of a body and the number of each cell's among them.

@@ -7,6 +7,8 @@ mod motion;
 mod selection;
 mod shape;
 
+pub(crate) use bodies::solid_name;
+
 use sha2::{Digest, Sha256};
 use souple_engine::{Model, State, System};
 

@@ -3,6 +3,7 @@
 use souple_math::Vec3;
 use souple_mesh::GENERATORS;
 use souple_models::materials;
+use souple_models::solids::Quadrature;
 use souple_table::{Range, Value};
 
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
@@ -73,8 +74,10 @@ pub static BODY: Keys = Keys::new(
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new("mass", Shape::Choice(&["lumped", "consistent"]), "how mass is spread over points")
             .or(Value::Text("lumped")),
+        Key::new("quadrature", Shape::Choice(&["default", "full"]), "samples in an element: the cheapest of full rank, or exact ones for quadratic stress")
+            .or(Value::Text("default")),
         Key::new("damping", Shape::Table(&DAMPING), "what takes energy from it"),
-        Key::number("drag", "1/s", Range::NOT_NEGATIVE, "force against the velocity per mass, of an outer medium at rest")
+        Key::number("drag", "N s/m", Range::NOT_NEGATIVE, "of the whole body against a medium at rest, shared by its surface")
             .or(Value::Number(0.0)),
         Key::new("rotate", Shape::Table(&ROTATION), "turns the rest shape, before it is translated"),
         Key::vector("translate", "m", "moves the rest shape").or(Value::Vector([0.0; 3])),
@@ -94,8 +97,9 @@ pub struct Body {
     pub material: Option<Chosen<materials::Build>>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
+    pub quadrature: Quadrature,
     pub damping: Damping,
-    /// Force against the velocity per mass [1/s].
+    /// Of the whole body against a medium at rest [N s/m].
     pub drag: f64,
     pub placement: Placement,
     /// [m/s]
@@ -200,6 +204,7 @@ impl Body {
             material: reader.entry("material", &materials::TABLE),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
+            quadrature: if reader.choice("quadrature") == "full" { Quadrature::Full } else { Quadrature::Default },
             damping,
             drag: reader.number("drag"),
             placement: Placement::read(reader),

@@ -2,6 +2,7 @@
 
 use souple_formal::Formula;
 use souple_math::Vec3;
+use souple_models::loads::VARIABLES;
 use souple_table::{Range, Value};
 
 use super::region::Region;
@@ -9,8 +10,8 @@ use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
 
-/// Variables of formulas of loads and motions: time, and where the point started.
-pub const LOAD_VARIABLES: &[&str] = &["t", "x", "y", "z"];
+/// Variables of formulas of loads (where the point is) and motions (where it started), and time.
+pub const LOAD_VARIABLES: &[&str] = &VARIABLES;
 
 pub static MOTION: Keys = Keys::new(
     "motion",

@@ -1,0 +1,122 @@
+//! What joins bodies: attachments within a system, coupling springs between systems.
+
+use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
+use souple_mesh::CellLocator;
+use souple_models::loads::{Attachments, Combination, Link as LoadLink};
+
+use super::Draft;
+use super::bodies::Placed;
+use crate::diagnostic::Code;
+use crate::spec::interaction::Link;
+
+/// Distance, relative to the body's size, under which a link counts as of no length: rounding of coordinates.
+const TOUCHING: f64 = 1e-12;
+
+/// The two bodies of a link; `None` where they do not fit, which is reported.
+fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, is_coupling: bool) -> Option<[&'d Placed<'a>; 2]> {
+    let find = |name: &str| draft.bodies.iter().find(|body| body.spec.name == name);
+    let (from, to) = (find(&link.from)?, find(&link.to)?);
+    let name = |body: &Placed| draft.spec.systems[body.system].name.clone();
+    if link.from == link.to {
+        let message = format!("body `{}` is joined to itself", link.from);
+        draft.log.add(Code::Conflict, &link.to_site, message, "another body");
+        return None;
+    }
+    if !is_coupling && from.system != to.system {
+        let (a, b) = (name(from), name(to));
+        let message = format!("`{}` steps in system `{a}` and `{}` in `{b}`: attached bodies step together", link.from, link.to);
+        draft.log.add(Code::Conflict, &link.site, message, "bodies of one system, or [[couplings]] between systems");
+        return None;
+    }
+    if is_coupling && from.system == to.system {
+        let message = format!("`{}` and `{}` are both in system `{}`", link.from, link.to, name(from));
+        draft.log.add(Code::Conflict, &link.site, message, "bodies of two systems, or [[attachments]] within one");
+        return None;
+    }
+    Some([from, to])
+}
+
+/// Springs from points of one body to the places of another that they touch or are nearest to.
+pub fn attach(draft: &mut Draft) {
+    let mut added = Vec::new();
+    for (index, link) in draft.spec.attachments.iter().enumerate() {
+        let Some([from, to]) = ends(draft, link, false) else { continue };
+        let Some(region) = &link.region else { continue };
+        let locator = CellLocator::new(&to.mesh);
+        let links: Vec<LoadLink> = draft
+            .selector(from)
+            .points(region)
+            .into_iter()
+            .filter_map(|point| attachment(&locator, link, point, from, to))
+            .collect();
+        if links.is_empty() {
+            let message = format!("no point of `{}` is within reach of `{}`", link.from, link.to);
+            draft.log.add(Code::EmptyRegion, &link.site, message, "a region near the other body, or a longer reach");
+            continue;
+        }
+        match Attachments::new(format!("attachments[{index}]"), links, link.stiffness, link.damping) {
+            Ok(force) => added.push((from.system, force)),
+            Err(error) => draft.log.add(Code::OutOfRange, &link.site, error.to_string(), "finite numbers"),
+        }
+    }
+    for (system, force) in added {
+        draft.systems[system].forces.push(Box::new(force));
+    }
+}
+
+fn attachment(locator: &CellLocator, link: &Link, point: u32, from: &Placed, to: &Placed) -> Option<LoadLink> {
+    let position = from.mesh.points[point as usize];
+    let location = locator.carrier(position).filter(|location| location.distance <= link.reach)?;
+    let cell = to.mesh.cell(location.cell)?;
+    let first = to.rows.start as u32;
+    let weights = location.weights();
+    let rows = cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| (first + node, *weight)).collect();
+    let carried = cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| to.mesh.points[*node as usize] * *weight);
+    let distance = (position - carried.sum()).length();
+    let is_touching = distance <= TOUCHING * to.mesh.bounds().diagonal();
+    let rest_length = if is_touching { 0.0 } else { distance };
+    let a = Combination::row(from.rows.start as u32 + point);
+    // weights of a cell's shape functions are finite and not empty
+    Some(LoadLink { a, b: Combination::new(rows).ok()?, rest_length })
+}
+
+/// Coupling springs from points of one body to the nearest points of a body in another system.
+pub fn couple(draft: &mut Draft) {
+    let mut springs = Vec::new();
+    for (index, link) in draft.spec.couplings.iter().enumerate() {
+        let Some([from, to]) = ends(draft, link, true) else { continue };
+        let Some(region) = &link.region else { continue };
+        for point in draft.selector(from).points(region) {
+            let position = from.mesh.points[point as usize];
+            let distance = |other: &u32| (to.mesh.points[*other as usize] - position).length_sq();
+            let nearest = (0..to.mesh.points.len() as u32).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let Some(nearest) = nearest else { continue };
+            let ends = [
+                (from.system, from.rows.start as u32 + point),
+                (to.system, to.rows.start as u32 + nearest),
+            ];
+            let steps = |end: (usize, u32)| draft.spec.systems[end.0].steps_per_period;
+            let [fast, slow] = if steps(ends[0]) >= steps(ends[1]) { ends } else { [ends[1], ends[0]] };
+            springs.push(CouplingSpring {
+                name: format!("couplings[{index}].{point}"),
+                fast_system: fast.0,
+                fast_row: fast.1,
+                slow_system: slow.0,
+                slow_row: slow.1,
+                stiffness: link.stiffness,
+                damping: link.damping,
+                driven: springs.len() * DRIVEN_LEN,
+            });
+        }
+    }
+    let period = draft.spec.world.period;
+    // one line for many springs of one coupling that say the same
+    let forecast = springs.iter().find_map(|spring| spring.forecast(period));
+    draft.warnings.extend(forecast);
+    draft.state.driven = vec![0.0; springs.len() * DRIVEN_LEN];
+    for spring in springs {
+        draft.systems[spring.fast_system].forces.push(spring.fast_end());
+        draft.systems[spring.slow_system].forces.push(spring.slow_end());
+        draft.model.couplings.push(spring);
+    }
+}
