@@ -3,7 +3,8 @@
 //! The iteration is `souple_solve::newton`; what is particular to a step stays here, before and around it. Prescribed
 //! motion is a predictor: one linearised solve carries the constrained components to where they are led, and Newton
 //! then works on the free ones alone, so that its merit function is one potential throughout. The merit is the
-//! incremental potential where there is one, and rounding bounds what residual can be asked for.
+//! incremental potential where there is one; with damping there still is one as long as tangents are symmetric, known
+//! by its slopes. Rounding bounds what residual can be asked for.
 
 use std::time::Instant;
 
@@ -213,7 +214,17 @@ impl ImplicitStep<'_> {
     ) -> Result<(Solved, f64), LinearError> {
         let system = self.system;
         let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
-        let ImplicitBuffers { unbalanced, residual, direction, prescribed, rhs, q_trial, v_trial, operator, .. } = buffers;
+        let ImplicitBuffers {
+            unbalanced,
+            residual,
+            direction,
+            prescribed,
+            rhs,
+            q_trial,
+            v_trial,
+            operator,
+            ..
+        } = buffers;
         let at = Linearisation {
             system,
             state,
@@ -234,10 +245,7 @@ impl ImplicitStep<'_> {
             }
             system.project_free(rhs);
         }
-        // rigid frames turn on the way, and one-way rows take what they do not give
-        let symmetric = !system.kinematics.has_rigid_frames()
-            && system.kinematics.is_conservative()
-            && system.forces.iter().all(|force| force.declaration().symmetric_tangent);
+        let symmetric = self.is_symmetric();
         let moved;
         let positions = if system.kinematics.is_trivial() {
             &rows.positions
@@ -278,6 +286,13 @@ impl ImplicitStep<'_> {
         Ok((solved?, rounding))
     }
 
+    /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
+    fn is_symmetric(&self) -> bool {
+        !self.system.kinematics.has_rigid_frames()
+            && self.system.kinematics.is_conservative()
+            && self.system.forces.iter().all(|force| force.declaration().symmetric_tangent)
+    }
+
     /// One linearisation about the start: `(M - h B - h² K) Δv = h (f + h K v)`, the forces' velocity terms
     /// taken about the velocity of the start.
     ///
@@ -310,7 +325,12 @@ impl ImplicitStep<'_> {
 
     /// Replaces `f(q, 0)` in the residual by `f(q, v₀) - B v₀`: exact for forces linear in velocity, and
     /// linearised about where the body is going for others.
-    fn shift_to_start_velocity(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
+    fn shift_to_start_velocity(
+        &self,
+        state: &SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+    ) {
         let system = self.system;
         let mut damping = std::mem::take(&mut buffers.damping);
         buffers.at_rest.copy_from_slice(&ws.row_force);
@@ -409,8 +429,9 @@ impl ImplicitProblem<'_, '_> {
     }
 
     fn solve(&mut self, lift: bool, tolerance: f64) -> Result<Solved, StepError> {
-        let indefinite = if self.step.has_potential { Indefinite::Descend } else { Indefinite::Solve };
-        let (solved, rounding) = self.step.solve(self.state, self.ws, self.buffers, lift, (indefinite, tolerance))?;
+        let indefinite = if self.step.is_symmetric() { Indefinite::Descend } else { Indefinite::Solve };
+        let (solved, rounding) =
+            self.step.solve(self.state, self.ws, self.buffers, lift, (indefinite, tolerance))?;
         // forces are sums of terms that cancel
         self.rounding = rounding.max(64.0 * f64::EPSILON * norm(&self.ws.row_force));
         self.report.newton_iterations += 1;
@@ -472,7 +493,11 @@ impl NewtonProblem for ImplicitProblem<'_, '_> {
         Ok(Trial::Admissible)
     }
 
-    fn direction(&mut self, residual: &[Vec3], out: &mut [Vec3]) -> Result<Option<krylov::Report>, StepError> {
+    fn direction(
+        &mut self,
+        residual: &[Vec3],
+        out: &mut [Vec3],
+    ) -> Result<Option<krylov::Report>, StepError> {
         let relative = norm(residual) / self.scale;
         // no tighter than what the wanted residual needs
         let tolerance = (FORCING * self.settings.tolerance / relative).max((FORCING * relative).min(LOOSEST));
@@ -495,6 +520,10 @@ impl NewtonProblem for ImplicitProblem<'_, '_> {
     fn merit(&mut self) -> Result<Option<f64>, StepError> {
         let has_potential = self.step.has_potential;
         Ok(has_potential.then(|| self.step.merit(self.state, self.ws, self.buffers)))
+    }
+
+    fn is_gradient(&self) -> bool {
+        self.step.is_symmetric()
     }
 
     fn residual_scale(&mut self) -> Option<f64> {

@@ -58,11 +58,15 @@ fn assemble_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatr
     let kinematics = &system.kinematics;
     let map = |row: u32| kinematics.position_map(row, q);
     for (row, mass) in system.mass.diagonal.iter().enumerate() {
-        add_congruent(kinematics, matrix, (row, row), &map, &map, |left, right| left.transpose_mul(right) * *mass);
+        add_congruent(kinematics, matrix, (row, row), &map, &map, |left, right| {
+            left.transpose_mul(right) * *mass
+        });
     }
     for &(a, b, mass) in &system.mass.couplings {
         for pair in [(a as usize, b as usize), (b as usize, a as usize)] {
-            add_congruent(kinematics, matrix, pair, &map, &map, |left, right| left.transpose_mul(right) * mass);
+            add_congruent(kinematics, matrix, pair, &map, &map, |left, right| {
+                left.transpose_mul(right) * mass
+            });
         }
     }
     constrain(system, matrix);

@@ -113,7 +113,8 @@ impl SolverSettings {
     /// From the completed values of an entry that declares the parameters above.
     pub fn from_values(values: &Values) -> Self {
         let of = |name: &str| values.text(name);
-        let method = METHODS.iter().find(|(name, _)| *name == of("solver")).map_or(Method::Auto, |entry| entry.1);
+        let method =
+            METHODS.iter().find(|(name, _)| *name == of("solver")).map_or(Method::Auto, |entry| entry.1);
         let given = PRECONDITIONERS.iter().find(|name| **name == of("preconditioner"));
         Self {
             method,
@@ -198,7 +199,8 @@ impl LinearSolver {
     /// Bytes of factors and preconditioners.
     pub fn bytes(&self) -> usize {
         let made = [&self.symmetric, &self.general, &self.mass].into_iter().flatten();
-        made.map(|made| made.solver.bytes() + 8 * made.reference.len()).sum::<usize>() + 8 * self.diagonal.len()
+        made.map(|made| made.solver.bytes() + 8 * made.reference.len()).sum::<usize>()
+            + 8 * self.diagonal.len()
     }
 
     /// Solves `A x = b`; overwrites `x`.
@@ -232,14 +234,24 @@ impl LinearSolver {
     ///
     /// # Errors
     /// A mass is zero or negative.
-    pub fn solve_mass(&mut self, matrix: &BlockMatrix, b: &[Vec3], x: &mut [Vec3]) -> Result<Solved, LinearError> {
+    pub fn solve_mass(
+        &mut self,
+        matrix: &BlockMatrix,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Solved, LinearError> {
         let settings = SolverSettings { tolerance: 1e-13, max_iterations: 1000, ..SolverSettings::default() };
         let made = prepare(&mut self.mass, ("cg", "block_jacobi"), &settings, matrix, &[], None)?;
         x.fill(Vec3::ZERO);
         Ok(judged(made.solver.solve(matrix, b, x))?)
     }
 
-    fn solve_symmetric(&mut self, system: &mut LinearSystem, b: &[Vec3], x: &mut [Vec3]) -> Result<Solved, SolveError> {
+    fn solve_symmetric(
+        &mut self,
+        system: &mut LinearSystem,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Solved, SolveError> {
         let choice = match (system.operator, self.settings.method) {
             (Some(_), _) => ("cg", "block_jacobi"),
             (None, Method::Cg) => ("cg", self.settings.preconditioner),
@@ -259,7 +271,12 @@ impl LinearSolver {
         judged(made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x))
     }
 
-    fn solve_general(&mut self, system: &mut LinearSystem, b: &[Vec3], x: &mut [Vec3]) -> Result<Solved, SolveError> {
+    fn solve_general(
+        &mut self,
+        system: &mut LinearSystem,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Result<Solved, SolveError> {
         let automatic = self.settings.preconditioner == AUTOMATIC || system.operator.is_some();
         let preconditioner = if automatic { "block_jacobi" } else { self.settings.preconditioner };
         let is_small = system.matrix.pattern().block_count() < LU_BELOW;
@@ -298,7 +315,9 @@ impl LinearSolver {
         b: &[Vec3],
         x: &mut [Vec3],
     ) -> Result<Solved, SolveError> {
-        if let SolveError::NotConverged { iterations, relative_residual, stop: Stop::Indefinite { .. }, .. } = failed
+        if let SolveError::NotConverged {
+            iterations, relative_residual, stop: Stop::Indefinite { .. }, ..
+        } = failed
             && reduce::dot(x, b) > 0.0
         {
             return Ok(Solved { iterations: iterations as u32, residual: relative_residual });
@@ -324,9 +343,12 @@ impl LinearSolver {
             }
             before = shift;
             match self.solve_symmetric(system, b, x) {
-                Err(SolveError::NotConverged { iterations, relative_residual, stop: Stop::Indefinite { .. }, .. })
-                    if reduce::dot(x, b) > 0.0 =>
-                {
+                Err(SolveError::NotConverged {
+                    iterations,
+                    relative_residual,
+                    stop: Stop::Indefinite { .. },
+                    ..
+                }) if reduce::dot(x, b) > 0.0 => {
                     return Ok(Solved { iterations: iterations as u32, residual: relative_residual });
                 }
                 Err(error) => last = error,
@@ -353,7 +375,8 @@ fn prepare<'a>(
     };
     if !slot.as_ref().is_some_and(fits) {
         *slot = None;
-        let solver = build((name, preconditioner), settings, matrix, reference, places.map(|places| places.0))?;
+        let solver =
+            build((name, preconditioner), settings, matrix, reference, places.map(|places| places.0))?;
         let pattern = Arc::clone(matrix.pattern());
         *slot = Some(Made { name, preconditioner, pattern, reference: reference.to_vec(), solver });
     }
@@ -372,7 +395,8 @@ fn build(
     reference: &[f64],
     kinematics: Option<&Kinematics>,
 ) -> Result<Box<dyn solvers::LinearSolver>, SolveError> {
-    let entry = solvers::TABLE.find(name).unwrap_or_else(|error| panic!("the table has this solver: {error}"));
+    let entry =
+        solvers::TABLE.find(name).unwrap_or_else(|error| panic!("the table has this solver: {error}"));
     let declares = |name: &str| entry.parameters.iter().any(|parameter| parameter.name == name);
     let mut values = Values::new().with("tolerance", Value::Number(settings.tolerance));
     if declares("max_iterations") {
@@ -381,7 +405,8 @@ fn build(
     if declares("preconditioner") {
         values.set("preconditioner", Value::Text(preconditioner));
     }
-    let values = entry.values(values).unwrap_or_else(|error| panic!("checked with the stepper's own: {error}"));
+    let values =
+        entry.values(values).unwrap_or_else(|error| panic!("checked with the stepper's own: {error}"));
     let places = kinematics.map(|kinematics| places(kinematics, reference));
     let geometry = places.as_ref().map_or_else(Geometry::default, |(coordinates, roles)| Geometry {
         coordinates: Some(coordinates),

@@ -79,7 +79,8 @@ impl Tangent {
         transform_rows(kinematics, &rows, &mut blocks, &position_map, &position_map);
         if at.timestep.is_some() && system.forces.iter().any(|force| force.declaration().velocity_terms) {
             // -Tᵀ ∂f/∂v D
-            let mut damping = self.row_velocities.take().unwrap_or_else(|| BlockMatrix::zeros(rows.pattern().clone()));
+            let mut damping =
+                self.row_velocities.take().unwrap_or_else(|| BlockMatrix::zeros(rows.pattern().clone()));
             damping.set_zero();
             add_row_blocks(at, TangentWeights { position: 0.0, velocity: -1.0 }, scratches, &mut damping);
             transform_rows(kinematics, &damping, &mut blocks, &position_map, &velocity_map);
@@ -144,16 +145,21 @@ impl Tangent {
         let mut over_blocks = PatternBuilder::new(kinematics.block_count());
         let mut clique_blocks = Vec::new();
         let mut add = |rows: &[u32]| {
-            over_rows.add_clique(rows).unwrap_or_else(|error| panic!("a force couples rows that are not there: {error}"));
+            over_rows
+                .add_clique(rows)
+                .unwrap_or_else(|error| panic!("a force couples rows that are not there: {error}"));
             if !kinematics.is_trivial() {
                 clique_blocks.clear();
                 clique_blocks.extend(rows.iter().flat_map(|&row| {
-                    let (forward, backward) = (kinematics.forward(row as usize), kinematics.backward(row as usize));
+                    let (forward, backward) =
+                        (kinematics.forward(row as usize), kinematics.backward(row as usize));
                     forward.iter().chain(backward).map(|&(free, _)| kinematics.block_of(free))
                 }));
                 clique_blocks.sort_unstable();
                 clique_blocks.dedup();
-                over_blocks.add_clique(&clique_blocks).unwrap_or_else(|error| panic!("rows move with no block: {error}"));
+                over_blocks
+                    .add_clique(&clique_blocks)
+                    .unwrap_or_else(|error| panic!("rows move with no block: {error}"));
             }
         };
         for (index, force) in system.forces.iter().enumerate() {
@@ -182,13 +188,18 @@ impl Tangent {
             let mut add = |rows: &[usize]| {
                 let blocks: Vec<u32> = rows
                     .iter()
-                    .flat_map(|&row| kinematics.forward(row).iter().map(|&(free, _)| kinematics.block_of(free)))
+                    .flat_map(|&row| {
+                        kinematics.forward(row).iter().map(|&(free, _)| kinematics.block_of(free))
+                    })
                     .collect();
-                builder.add_clique(&blocks).unwrap_or_else(|error| panic!("rows move with no block: {error}"));
+                builder
+                    .add_clique(&blocks)
+                    .unwrap_or_else(|error| panic!("rows move with no block: {error}"));
             };
             (0..kinematics.row_count()).for_each(|row| add(&[row]));
             system.mass.couplings.iter().for_each(|&(a, b, _)| add(&[a as usize, b as usize]));
-            let pattern = builder.build().unwrap_or_else(|error| panic!("the mass matrix is too large: {error}"));
+            let pattern =
+                builder.build().unwrap_or_else(|error| panic!("the mass matrix is too large: {error}"));
             BlockMatrix::zeros(Arc::new(pattern))
         })
     }
@@ -204,7 +215,12 @@ impl Tangent {
     }
 }
 
-fn add_row_blocks(at: &Linearisation, weights: TangentWeights, scratches: &mut [Scratch], matrix: &mut BlockMatrix) {
+fn add_row_blocks(
+    at: &Linearisation,
+    weights: TangentWeights,
+    scratches: &mut [Scratch],
+    matrix: &mut BlockMatrix,
+) {
     for (index, force) in at.system.forces.iter().enumerate() {
         let view = at.system.view(index, at.rows, at.state, &at.around);
         force.add_blocks(&view, weights, &mut scratches[index], matrix);
@@ -233,8 +249,11 @@ pub fn constrain(system: &System, matrix: &mut BlockMatrix) {
     }
     let mean = matrix.mean_diagonal().abs();
     let scale = if mean > 0.0 { mean } else { 1.0 };
-    let constrained = system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
-    matrix.constrain_blocks(constrained, scale).unwrap_or_else(|error| panic!("constraints name blocks: {error}"));
+    let constrained =
+        system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
+    matrix
+        .constrain_blocks(constrained, scale)
+        .unwrap_or_else(|error| panic!("constraints name blocks: {error}"));
 }
 
 /// `matrix[a, b] += block`; blocks outside the pattern are dropped, so that a matrix of the diagonal alone
@@ -311,7 +330,11 @@ impl OperatorBuffers {
 }
 
 impl<'a> TangentOperator<'a> {
-    pub fn new(at: &'a Linearisation<'a>, scratches: &'a mut [Scratch], buffers: &'a mut OperatorBuffers) -> Self {
+    pub fn new(
+        at: &'a Linearisation<'a>,
+        scratches: &'a mut [Scratch],
+        buffers: &'a mut OperatorBuffers,
+    ) -> Self {
         Self { at, buffers: Mutex::new((scratches, buffers)) }
     }
 
@@ -322,7 +345,13 @@ impl<'a> TangentOperator<'a> {
         self.product(delta, out, scratches, buffers);
     }
 
-    fn product(&self, delta: &[Vec3], out: &mut [Vec3], scratches: &mut [Scratch], buffers: &mut OperatorBuffers) {
+    fn product(
+        &self,
+        delta: &[Vec3],
+        out: &mut [Vec3],
+        scratches: &mut [Scratch],
+        buffers: &mut OperatorBuffers,
+    ) {
         let (at, system) = (self.at, self.at.system);
         let kinematics = &system.kinematics;
         let OperatorBuffers { row_positions, row_velocities, row_force, row_inertia, .. } = buffers;
@@ -355,7 +384,9 @@ impl<'a> TangentOperator<'a> {
         if kinematics.has_rigid_frames() {
             for row in 0..kinematics.row_count() {
                 for &(free, weight) in kinematics.backward(row) {
-                    if let Some((block, geometric)) = kinematics.geometric_block(free, at.q, at.unbalanced[row] * weight) {
+                    if let Some((block, geometric)) =
+                        kinematics.geometric_block(free, at.q, at.unbalanced[row] * weight)
+                    {
                         out[block as usize] += geometric * delta[block as usize];
                     }
                 }

@@ -83,7 +83,8 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn full_device_is_a_full_disk() {
-        let error = File::options().write(true).open("/dev/full").and_then(|mut f| f.write_all(b"x")).unwrap_err();
+        let error =
+            File::options().write(true).open("/dev/full").and_then(|mut f| f.write_all(b"x")).unwrap_err();
         assert!(matches!(IoError::write(Path::new("out.vtu"), error), IoError::DiskFull { .. }));
     }
 }

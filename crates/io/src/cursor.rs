@@ -103,7 +103,12 @@ impl<'a> Cursor<'a> {
         let rest = self.rest();
         if count > rest.len() {
             let (left, expected) = (rest.len(), format!("{count} bytes"));
-            return Err(Fault::new(self.place(), subject.to_string(), format!("cut off after {left} bytes"), expected));
+            return Err(Fault::new(
+                self.place(),
+                subject.to_string(),
+                format!("cut off after {left} bytes"),
+                expected,
+            ));
         }
         self.position += count;
         Ok(&rest[..count])

@@ -105,7 +105,11 @@ impl<'a> Output<'a> {
         if let Some(positions) = self.positions
             && positions.len() != point_count
         {
-            return Err(IoError::request("the number of positions", positions.len(), format!("{point_count}")));
+            return Err(IoError::request(
+                "the number of positions",
+                positions.len(),
+                format!("{point_count}"),
+            ));
         }
         for (list, blocks) in [("cells", &self.mesh.blocks), ("facets", &self.mesh.facet_blocks)] {
             for (cell, nodes) in blocks.iter().flat_map(CellBlock::cells).enumerate() {

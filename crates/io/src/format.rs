@@ -10,6 +10,12 @@ use crate::dataset::Output;
 use crate::error::{Fault, Place, quoted};
 use crate::{Dataset, IoError, gmsh, obj, stl, vtk, write_file};
 
+/// Reads a whole content.
+pub type Read = fn(&[u8]) -> Result<Dataset, Fault>;
+
+/// Writes a whole content.
+pub type WriteInto = fn(&Output<'_>, &mut dyn Write) -> Result<(), WriteError>;
+
 /// A file format: how it is found, read, written.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
@@ -17,8 +23,8 @@ pub struct Format {
     pub extensions: &'static [&'static str],
     /// Whether content begins like this format.
     pub recognises: fn(&[u8]) -> bool,
-    pub read: Option<fn(&[u8]) -> Result<Dataset, Fault>>,
-    pub write: Option<fn(&Output<'_>, &mut dyn Write) -> Result<(), WriteError>>,
+    pub read: Option<Read>,
+    pub write: Option<WriteInto>,
 }
 
 /// Why a writer stopped: what it was given, or the system.
@@ -95,7 +101,8 @@ pub fn read_mesh_bytes(format: &str, bytes: &[u8]) -> Result<(Mesh, Vec<String>)
 pub fn read_dataset_bytes(format: &str, bytes: &[u8]) -> Result<Dataset, IoError> {
     let entry = FORMATS.find(format)?;
     let expected = readable();
-    let read = entry.build.read.ok_or(IoError::Unsupported { format: entry.name, action: "read", expected })?;
+    let read =
+        entry.build.read.ok_or(IoError::Unsupported { format: entry.name, action: "read", expected })?;
     read(bytes).map_err(|fault| IoError::Content { path: "<memory>".into(), fault })
 }
 
@@ -147,13 +154,17 @@ fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -
 
 fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    FORMATS.entries.iter().copied().find(|entry| entry.build.extensions.contains(&extension.as_str())).ok_or_else(
-        || {
-            let known: Vec<_> = FORMATS.entries.iter().flat_map(|entry| entry.build.extensions).copied().collect();
+    FORMATS
+        .entries
+        .iter()
+        .copied()
+        .find(|entry| entry.build.extensions.contains(&extension.as_str()))
+        .ok_or_else(|| {
+            let known: Vec<_> =
+                FORMATS.entries.iter().flat_map(|entry| entry.build.extensions).copied().collect();
             let expected = format!("one of {}", known.join(", "));
             IoError::Extension { path: path.to_owned(), found: extension.clone(), expected }
-        },
-    )
+        })
 }
 
 fn readable() -> String {

@@ -4,22 +4,25 @@
 //! that names the place, what was read and what would be accepted; writers write beside and rename.
 
 mod beside;
+mod csv;
 mod cursor;
 mod dataset;
 mod error;
 mod format;
 mod gmsh;
 mod obj;
+pub mod picture;
 mod stl;
 #[cfg(test)]
 mod testing;
 mod vtk;
 
 pub use beside::write_file;
+pub use csv::{Column, write_csv};
 pub use dataset::{Dataset, Facets, Field, Output, Precision};
 pub use error::{Fault, IoError, Place};
 pub use format::{
-    FORMATS, Format, WriteError, read_dataset, read_dataset_bytes, read_mesh, read_mesh_bytes, write_dataset,
-    write_dataset_as, write_mesh,
+    FORMATS, Format, Read, WriteError, WriteInto, read_dataset, read_dataset_bytes, read_mesh,
+    read_mesh_bytes, write_dataset, write_dataset_as, write_mesh,
 };
 pub use vtk::Series;

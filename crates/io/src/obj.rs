@@ -25,8 +25,23 @@ pub(crate) static OBJ: Entry<Format> = Entry {
 
 /// Statements that change nothing of the geometry.
 const WITHOUT_GEOMETRY: &[&[u8]] = &[
-    b"vn", b"vt", b"vp", b"s", b"mg", b"usemtl", b"mtllib", b"usemap", b"maplib", b"l", b"p", b"bevel", b"c_interp",
-    b"d_interp", b"lod", b"shadow_obj", b"trace_obj",
+    b"vn",
+    b"vt",
+    b"vp",
+    b"s",
+    b"mg",
+    b"usemtl",
+    b"mtllib",
+    b"usemap",
+    b"maplib",
+    b"l",
+    b"p",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"lod",
+    b"shadow_obj",
+    b"trace_obj",
 ];
 
 /// Most groups that one facet is in.
@@ -109,7 +124,8 @@ impl Reader {
                 Some(number) if number < 0 => number.checked_add(count as i64),
                 _ => None,
             };
-            let corner = index.and_then(|index| u32::try_from(index).ok()).filter(|corner| (*corner as usize) < count);
+            let corner =
+                index.and_then(|index| u32::try_from(index).ok()).filter(|corner| (*corner as usize) < count);
             let corner = corner.ok_or_else(|| {
                 let expected = format!("1 to {count}, or -{count} to -1: a point given before");
                 Fault::new(place, "a corner of the facet", quoted(word), expected)
@@ -159,7 +175,10 @@ impl Reader {
         tidy_groups(&mut self.mesh);
         let mut notes = Vec::new();
         if self.cut_polygons > 0 {
-            notes.push(format!("{} polygons of more than four corners were cut into triangles", self.cut_polygons));
+            notes.push(format!(
+                "{} polygons of more than four corners were cut into triangles",
+                self.cut_polygons
+            ));
         }
         if self.degenerate > 0 {
             notes.push(format!("{} facets with repeated corners were left out", self.degenerate));
@@ -191,14 +210,20 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     write_points(output, out)?;
     let mut memberships = vec![Vec::new(); mesh.facet_count()];
     for (name, group) in &mesh.groups {
-        if !group.facets.is_empty() && (name.is_empty() || name.contains(char::is_whitespace) || name.contains('#')) {
+        if !group.facets.is_empty()
+            && (name.is_empty() || name.contains(char::is_whitespace) || name.contains('#'))
+        {
             let expected = "a word without spaces in an OBJ file";
             return Err(IoError::request("the name of a group", format!("`{name}`"), expected).into());
         }
         for facet in &group.facets {
             let count = memberships.len();
             let list = memberships.get_mut(*facet as usize).ok_or_else(|| {
-                IoError::request(format!("a facet of the group `{name}`"), facet, format!("a number below {count}"))
+                IoError::request(
+                    format!("a facet of the group `{name}`"),
+                    facet,
+                    format!("a number below {count}"),
+                )
             })?;
             list.push(name.as_str());
         }

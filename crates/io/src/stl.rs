@@ -65,15 +65,26 @@ impl Joiner {
 
 pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     // binary files may begin with "solid" too: their length tells them
-    let count = bytes.get(80..HEAD).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
+    let count = bytes
+        .get(80..HEAD)
+        .map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
     let binary = count.is_some_and(|count| bytes.len() == HEAD + count * TRIANGLE);
-    if binary || !bytes.trim_ascii_start().starts_with(b"solid") { read_binary(bytes) } else { read_text(bytes) }
+    if binary || !bytes.trim_ascii_start().starts_with(b"solid") {
+        read_binary(bytes)
+    } else {
+        read_text(bytes)
+    }
 }
 
 fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {
     let Some(count) = bytes.get(80..HEAD) else {
         let found = format!("{} bytes", bytes.len());
-        return Err(Fault::new(Place::Byte(bytes.len()), "the STL file", found, "\"solid\", or 84 bytes and triangles"));
+        return Err(Fault::new(
+            Place::Byte(bytes.len()),
+            "the STL file",
+            found,
+            "\"solid\", or 84 bytes and triangles",
+        ));
     };
     let count = u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize;
     let length = HEAD + count * TRIANGLE;
@@ -94,7 +105,12 @@ fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {
         if let Some(corner) = corners.iter().find(|corner| !corner.is_finite()) {
             let place = Place::Byte(HEAD + index * TRIANGLE);
             let found = format!("{:?}", corner.to_array());
-            return Err(Fault::new(place, format!("a corner of triangle {index}"), found, "finite coordinates"));
+            return Err(Fault::new(
+                place,
+                format!("a corner of triangle {index}"),
+                found,
+                "finite coordinates",
+            ));
         }
         joiner.triangle(corners);
     }
@@ -116,7 +132,11 @@ fn read_text(bytes: &[u8]) -> Result<Dataset, Fault> {
     cursor.line();
     loop {
         let word = cursor.expect_word(format_args!("the end of the solid"), "endsolid")?;
-        if word.eq_ignore_ascii_case(b"endsolid") {
+        let spaced = word.eq_ignore_ascii_case(b"end");
+        if spaced {
+            expect(&mut cursor, "solid")?;
+        }
+        if spaced || word.eq_ignore_ascii_case(b"endsolid") {
             cursor.line();
             cursor.skip_space();
             if cursor.rest().is_empty() {
@@ -127,7 +147,7 @@ fn read_text(bytes: &[u8]) -> Result<Dataset, Fault> {
             continue;
         }
         if !word.eq_ignore_ascii_case(b"facet") {
-            return Err(cursor.fault("the next word", quoted(word), "facet or endsolid"));
+            return Err(cursor.fault("the next word", quoted(word), "facet, endsolid or end solid"));
         }
         expect(&mut cursor, "normal")?;
         for _ in 0..3 {

@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use souple_engine::implicit::NewtonSettings;
-use souple_engine::linear::SolverSettings;
+use souple_engine::linear::{Method, SolverSettings};
 use souple_engine::steppers::{BackwardEuler, NewtonMode, StaticEquilibrium};
 use souple_engine::{Constraint, Force, Kinematics, Mass, Model, State, Stepper, System, UnknownKind, World};
 use souple_math::Vec3;
@@ -148,21 +148,33 @@ fn time_steps(name: &str, bar: Bar, threads: usize, period: f64, steps: usize, s
 
 /// Tips after the given steps of 10 ms, n = 3, by an independent code [m].
 const TRACES: [(&str, NewtonMode, [(usize, [f64; 3]); 3]); 3] = [
-    ("st_venant_kirchhoff", NewtonMode::One, [
-        (1, [-1.2297579937602695e-06, -0.0010452588188865027, -1.0259684048517978e-05]),
-        (20, [-0.01578131642940623, -0.16450240938013821, 0.011413633081487316]),
-        (100, [-0.002618133995235091, -0.06678504848952935, 0.013325133794871834]),
-    ]),
-    ("st_venant_kirchhoff", CONVERGED, [
-        (1, [-1.8385464463982046e-06, -0.0010452671121474627, -1.026338864998038e-05]),
-        (20, [-0.016038374326076996, -0.1656504618150783, 0.011538168152461808]),
-        (100, [-0.0025184738453492557, -0.06539372349475858, 0.013190456656043004]),
-    ]),
-    ("corotational", CONVERGED, [
-        (1, [-1.7842926049393363e-06, -0.0010452609380532823, -1.0262606365962423e-05]),
-        (20, [-0.015904494782426698, -0.16575024108957917, 0.011524612510030884]),
-        (100, [-0.0025036520331420974, -0.06549727082595913, 0.013273534140188174]),
-    ]),
+    (
+        "st_venant_kirchhoff",
+        NewtonMode::One,
+        [
+            (1, [-1.2297579937602695e-06, -0.0010452588188865027, -1.0259684048517978e-05]),
+            (20, [-0.01578131642940623, -0.16450240938013821, 0.011413633081487316]),
+            (100, [-0.002618133995235091, -0.06678504848952935, 0.013325133794871834]),
+        ],
+    ),
+    (
+        "st_venant_kirchhoff",
+        CONVERGED,
+        [
+            (1, [-1.8385464463982046e-06, -0.0010452671121474627, -1.026338864998038e-05]),
+            (20, [-0.016038374326076996, -0.1656504618150783, 0.011538168152461808]),
+            (100, [-0.0025184738453492557, -0.06539372349475858, 0.013190456656043004]),
+        ],
+    ),
+    (
+        "corotational",
+        CONVERGED,
+        [
+            (1, [-1.7842926049393363e-06, -0.0010452609380532823, -1.0262606365962423e-05]),
+            (20, [-0.015904494782426698, -0.16575024108957917, 0.011524612510030884]),
+            (100, [-0.0025036520331420974, -0.06549727082595913, 0.013273534140188174]),
+        ],
+    ),
 ];
 const CONVERGED: NewtonMode = NewtonMode::Full(NewtonSettings { tolerance: 1e-11, max_iterations: 50 });
 
@@ -231,6 +243,17 @@ fn main() {
         {
             if wants(name) {
                 time_steps(name, Bar::soft(cells, law), threads, 2e-3, 100, solver(1e-6));
+            }
+        }
+    }
+    // where the choice of a preconditioner turns
+    if wants("preconditioners") {
+        for preconditioner in ["block_jacobi", "incomplete_cholesky", "rigid_modes", "auto"] {
+            for (name, cells) in [("24k", [40, 10, 10]), ("5k", [20, 7, 7])] {
+                let method = Method::Cg;
+                let settings = SolverSettings { preconditioner, method, ..solver(1e-6) };
+                println!("{preconditioner}");
+                time_steps(name, Bar::soft(cells, "neo_hookean"), 2, 2e-3, 50, settings);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 #![allow(non_snake_case)] // symbols of the mathematics: F, P, K
 
+pub mod contact;
 pub mod loads;
 pub mod materials;
 pub mod solids;

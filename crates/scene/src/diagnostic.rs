@@ -85,8 +85,13 @@ pub struct Log(RefCell<Vec<Fault>>);
 
 impl Log {
     pub fn add(&self, code: Code, site: &Site, message: impl Into<String>, expected: impl Into<String>) {
-        let fault =
-            Fault { code, site: site.clone(), value: None, expected: expected.into(), message: message.into() };
+        let fault = Fault {
+            code,
+            site: site.clone(),
+            value: None,
+            expected: expected.into(),
+            message: message.into(),
+        };
         self.push(fault);
     }
 

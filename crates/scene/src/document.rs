@@ -109,7 +109,9 @@ pub fn parse(sources: &Sources, source: usize, log: &Log) -> Table {
 pub fn parse_value(text: &str, source: usize, offset: usize) -> Node {
     let log = Log::default();
     let place = Place { source, start: offset, end: offset + text.len() };
-    let node = DeValue::parse(text.trim()).ok().map(|value| TomlReader { source, log: &log }.value(0..0, value.get_ref()));
+    let node = DeValue::parse(text.trim())
+        .ok()
+        .map(|value| TomlReader { source, log: &log }.value(0..0, value.get_ref()));
     let mut node = match node {
         Some(node) if log.is_empty() => node,
         _ => Node::new(place, Content::Text(text.trim().to_owned())),
@@ -169,14 +171,22 @@ impl TomlReader<'_> {
             DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
                 Ok(number) => Content::Integer(number),
                 Err(_) => {
-                    report_syntax(self.log, place, "the whole number is too large, expected at most 9223372036854775807");
+                    report_syntax(
+                        self.log,
+                        place,
+                        "the whole number is too large, expected at most 9223372036854775807",
+                    );
                     Content::Integer(0)
                 }
             },
             DeValue::Float(float) => match float.as_str().parse::<f64>() {
                 Ok(number) => Content::Number(number),
                 Err(_) => {
-                    report_syntax(self.log, place, "this is no number, expected a number such as 0.5 or 1e-3");
+                    report_syntax(
+                        self.log,
+                        place,
+                        "this is no number, expected a number such as 0.5 or 1e-3",
+                    );
                     Content::Number(0.0)
                 }
             },

@@ -37,33 +37,52 @@ impl<'a> Includer<'a> {
             Site { place: Place::start_of(self.sources.add(empty)), path: String::new() }
         });
         let refuse = |code: Code, message: String, expected: &str| {
-            let fault =
-                Fault { code, site: site.clone(), value: Some(name.clone()), expected: expected.to_owned(), message };
+            let fault = Fault {
+                code,
+                site: site.clone(),
+                value: Some(name.clone()),
+                expected: expected.to_owned(),
+                message,
+            };
             self.log.push(fault);
             None
         };
         let canonical = match path.canonicalize() {
             Ok(canonical) => canonical,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return refuse(Code::NotFound, format!("there is no file `{name}`"), "an existing scene file");
+                return refuse(
+                    Code::NotFound,
+                    format!("there is no file `{name}`"),
+                    "an existing scene file",
+                );
             }
-            Err(error) => return refuse(Code::Unreadable, format!("`{name}`: {error}"), "a file that can be read"),
+            Err(error) => {
+                return refuse(Code::Unreadable, format!("`{name}`: {error}"), "a file that can be read");
+            }
         };
         if self.open.contains(&canonical) || self.open.len() == DEEPEST {
-            let chain: Vec<_> = self.open.iter().chain([&canonical]).map(|p| p.display().to_string()).collect();
+            let chain: Vec<_> =
+                self.open.iter().chain([&canonical]).map(|p| p.display().to_string()).collect();
             let message = format!("the include goes round in a circle: {}", chain.join(" -> "));
             return refuse(Code::CyclicInclude, message, "files that do not include each other");
         }
-        let size = std::fs::metadata(&canonical).map_or(0, |data| if data.is_file() { data.len() } else { u64::MAX });
+        let size = std::fs::metadata(&canonical)
+            .map_or(0, |data| if data.is_file() { data.len() } else { u64::MAX });
         if size == u64::MAX {
             return refuse(Code::Unreadable, format!("`{name}` is no file"), "a scene file");
         }
         if size > LARGEST {
-            return refuse(Code::TooLarge, format!("`{name}` has {size} bytes"), "a scene file of at most 64 MiB");
+            return refuse(
+                Code::TooLarge,
+                format!("`{name}` has {size} bytes"),
+                "a scene file of at most 64 MiB",
+            );
         }
         let bytes = match std::fs::read(&canonical) {
             Ok(bytes) => bytes,
-            Err(error) => return refuse(Code::Unreadable, format!("`{name}`: {error}"), "a file that can be read"),
+            Err(error) => {
+                return refuse(Code::Unreadable, format!("`{name}`: {error}"), "a file that can be read");
+            }
         };
         let text = match String::from_utf8(bytes) {
             Ok(text) => text,
@@ -108,7 +127,12 @@ impl<'a> Includer<'a> {
                 Content::Text(text) => files.push((text.clone(), site)),
                 other => {
                     let message = format!("this is {}", other.kind());
-                    self.log.add(Code::WrongType, &site, message, "a list of files, such as [\"other.toml\"]");
+                    self.log.add(
+                        Code::WrongType,
+                        &site,
+                        message,
+                        "a list of files, such as [\"other.toml\"]",
+                    );
                 }
             }
         }
@@ -130,7 +154,9 @@ fn merged(mut base: Table, over: Table) -> Table {
 fn merged_node(base: Node, over: Node) -> Node {
     let is_tagged = |table: &Table| TAGS.iter().any(|tag| table.get(tag).is_some());
     let content = match (base.content, over.content) {
-        (Content::Table(base), Content::Table(over)) if !is_tagged(&over) => Content::Table(merged(base, over)),
+        (Content::Table(base), Content::Table(over)) if !is_tagged(&over) => {
+            Content::Table(merged(base, over))
+        }
         (Content::List(mut base), Content::List(over)) if is_table_list(&base) && is_table_list(&over) => {
             base.extend(over);
             Content::List(base)

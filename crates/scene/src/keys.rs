@@ -58,9 +58,7 @@ pub enum Shape {
     Integers,
     Numbers,
     Vectors,
-    /// A number, or a formula of these variables.
-    Formula(&'static [&'static str]),
-    /// Three of them, or the formula of a vector.
+    /// Three numbers or formulas of these variables, or the formula of a vector.
     VectorFormula(&'static [&'static str]),
     /// A condition on these variables.
     Condition(&'static [&'static str]),
@@ -134,12 +132,6 @@ impl Key {
         self
     }
 
-    /// The same within `range`.
-    pub const fn within(mut self, range: Range) -> Self {
-        self.range = range;
-        self
-    }
-
     pub const fn required(mut self) -> Self {
         self.need = Need::Required;
         self
@@ -167,7 +159,6 @@ impl Key {
             Shape::Integers => "a list of whole numbers of at least 0".to_owned(),
             Shape::Numbers => format!("a list of numbers{unit}"),
             Shape::Vectors => format!("a list of vectors{unit}"),
-            Shape::Formula(variables) => format!("a number{unit} or a formula of {}", variables.join(", ")),
             Shape::VectorFormula(variables) => {
                 format!("three numbers{unit} or formulas of {}", variables.join(", "))
             }

@@ -2,6 +2,7 @@
 
 use souple_engine::{System, World};
 use souple_math::Vec3;
+use souple_models::contact::{ShapeContact, SurfaceContact};
 use souple_models::solids::SolidForce;
 
 use crate::compile::{Draft, solid_name};
@@ -18,6 +19,8 @@ pub struct ProbeInfo {
     what: Quantity,
     component: Option<Component>,
     reduction: Reduction,
+    /// Only the forces of this contact.
+    contact: Option<String>,
     target: Target,
 }
 
@@ -26,9 +29,17 @@ pub struct ProbeInfo {
 enum Target {
     World,
     /// Rows of a system, with where they started [m].
-    Rows { system: usize, rows: Vec<u32>, starts: Vec<Vec3> },
+    Rows {
+        system: usize,
+        rows: Vec<u32>,
+        starts: Vec<Vec3>,
+    },
     /// Cells of the solid of this name.
-    Cells { system: usize, solid: String, cells: Vec<u32> },
+    Cells {
+        system: usize,
+        solid: String,
+        cells: Vec<u32>,
+    },
 }
 
 /// What a probe reads.
@@ -79,6 +90,7 @@ impl ProbeInfo {
             what: probe.quantity.quantity,
             component: probe.component,
             reduction: probe.reduction,
+            contact: probe.contact.clone(),
             target,
         })
     }
@@ -103,7 +115,9 @@ impl ProbeInfo {
         match &self.target {
             Target::World => self.of_world(world),
             Target::Rows { system, rows, starts } => self.of_rows(world, *system, rows, starts),
-            Target::Cells { system, solid, cells } => Measurement::Number(self.of_cells(world, *system, solid, cells)),
+            Target::Cells { system, solid, cells } => {
+                Measurement::Number(self.of_cells(world, *system, solid, cells))
+            }
         }
     }
 
@@ -137,6 +151,7 @@ impl ProbeInfo {
                 return Measurement::Number(world.model().systems[system].mass.kinetic_energy(&only));
             }
             Quantity::Reaction => reactions(world, system, rows),
+            Quantity::ContactForce => contact_forces(world, system, rows, self.contact.as_deref()),
             _ => rows.iter().zip(starts).map(|(row, start)| position(row) - *start).collect(),
         };
         match self.component {
@@ -181,7 +196,10 @@ fn current_volume(solid: &SolidForce, cell: u32, positions: &[Vec3]) -> f64 {
     let first = solid.rows().start;
     let corners: Vec<Vec3> = view.nodes.iter().map(|node| positions[first + *node as usize]).collect();
     let rule = view.kind.default_rule();
-    rule.points.iter().map(|point| point.weight * view.kind.jacobian(&corners, point.position).determinant()).sum()
+    rule.points
+        .iter()
+        .map(|point| point.weight * view.kind.jacobian(&corners, point.position).determinant())
+        .sum()
 }
 
 /// What holds constrained points against all other forces: minus their sum, along the held directions [N].
@@ -193,10 +211,35 @@ fn reactions(world: &mut World, system: usize, rows: &[u32]) -> Vec<Vec3> {
             system.constraints.iter().find(|constraint| constraint.block == block)
         };
         let reaction = |row: &u32| {
-            held(*row).map_or(Vec3::ZERO, |constraint| constraint.constrained() * -ws.row_force[*row as usize])
+            held(*row)
+                .map_or(Vec3::ZERO, |constraint| constraint.constrained() * -ws.row_force[*row as usize])
         };
         rows.iter().map(reaction).collect()
     })
+}
+
+/// Normal force and friction on points, of one contact or of all [N].
+fn contact_forces(world: &mut World, system: usize, rows: &[u32], contact: Option<&str>) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; world.rows(system).positions.len()];
+    world.with_system(system, |system: &System, state, around, ws| {
+        let named = |name: &str| contact.is_none_or(|contact| contact == name);
+        for (index, force) in system.forces.iter().enumerate().filter(|(_, force)| named(force.name())) {
+            let at = system.view(index, &ws.rows, state, around);
+            if let Some(contact) = force.as_any().downcast_ref::<ShapeContact>() {
+                contact.touches(&at).iter().for_each(|touch| sums[touch.row as usize] += touch.force.total());
+            }
+            if let Some(contact) = force.as_any().downcast_ref::<SurfaceContact>() {
+                for touch in contact.touches(&at) {
+                    let force = touch.force.total();
+                    sums[touch.rows[0] as usize] += force;
+                    for (row, weight) in touch.rows[1..].iter().zip(touch.weights) {
+                        sums[*row as usize] -= force * weight;
+                    }
+                }
+            }
+        }
+    });
+    rows.iter().map(|row| sums[*row as usize]).collect()
 }
 
 fn reduced(numbers: &[f64], weights: &[f64], reduction: Reduction) -> f64 {

@@ -34,7 +34,12 @@ pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, 
         let path = path.trim();
         let Some(steps) = split(path) else {
             let site = Site { place, path: path.to_owned() };
-            log.add(Code::BadOverride, &site, "this is no path", "keys with dots, such as bodies.bar.pins[0].axes");
+            log.add(
+                Code::BadOverride,
+                &site,
+                "this is no path",
+                "keys with dots, such as bodies.bar.pins[0].axes",
+            );
             continue;
         };
         let setting = Setting { path, place, log };
@@ -70,7 +75,13 @@ struct Setting<'a> {
 impl Setting<'_> {
     fn refuse(&self, message: String, expected: String) {
         let site = Site { place: self.place, path: self.path.to_owned() };
-        self.log.push(Fault { code: Code::UnknownPath, site, value: Some(self.path.to_owned()), expected, message });
+        self.log.push(Fault {
+            code: Code::UnknownPath,
+            site,
+            value: Some(self.path.to_owned()),
+            expected,
+            message,
+        });
     }
 
     /// Sets what `steps` lead to from `table`, whose keys are `keys` as far as they are known.
@@ -95,7 +106,8 @@ impl Setting<'_> {
                 let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
                 return self.refuse(message, format!("one of {}", names.join(", ")));
             }
-            let content = if rest.is_empty() { value.content.clone() } else { Content::Table(Table::default()) };
+            let content =
+                if rest.is_empty() { value.content.clone() } else { Content::Table(Table::default()) };
             let node = Node::new(value.place, content);
             table.entries.push(Entry { key: (*name).to_owned(), key_place: self.place, node });
         }
@@ -136,7 +148,10 @@ impl Setting<'_> {
                 Some(Shape::Values) if table.get(name).is_none() => {
                     let names: Vec<&str> = table.keys().collect();
                     let hint = did_you_mean(name, names.iter().copied());
-                    self.refuse(format!("the scene has no parameter `{name}`{hint}"), format!("one of {}", names.join(", ")));
+                    self.refuse(
+                        format!("the scene has no parameter `{name}`{hint}"),
+                        format!("one of {}", names.join(", ")),
+                    );
                 }
                 _ => self.set(table, None, steps, value),
             },
@@ -154,7 +169,10 @@ impl Setting<'_> {
                     Step::Key(name) => format!("the key `{name}`"),
                     Step::Index(index) => format!("item {index}"),
                 };
-                self.refuse(format!("`{}` asks {} for {wanted}", self.path, content.kind()), "an existing path".to_owned());
+                self.refuse(
+                    format!("`{}` asks {} for {wanted}", self.path, content.kind()),
+                    "an existing path".to_owned(),
+                );
             }
         }
     }
@@ -166,7 +184,8 @@ mod tests {
 
     fn set(text: &str, overrides: &[&str]) -> (Table, usize) {
         let (mut sources, log) = (Sources::default(), Log::default());
-        let source = sources.add(Source { name: "x".to_owned(), folder: PathBuf::new(), text: text.to_owned() });
+        let source =
+            sources.add(Source { name: "x".to_owned(), folder: PathBuf::new(), text: text.to_owned() });
         let mut table = crate::document::parse(&sources, source, &log);
         let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
         apply(&mut table, &overrides, &mut sources, &log);
@@ -177,13 +196,19 @@ mod tests {
     #[test]
     fn values_are_set() {
         let text = "[world]\nperiod = 1\n[bodies.a]\nmaterial = \"x\"\n[[bodies.a.pins]]\nregion = \"y\"\n";
-        let overrides = ["world.period=5ms", "world.gravity=[0,0,1]", "bodies.a.pins[0].axes=xy", "bodies.a.material.density=1"];
+        let overrides = [
+            "world.period=5ms",
+            "world.gravity=[0,0,1]",
+            "bodies.a.pins[0].axes=xy",
+            "bodies.a.material.density=1",
+        ];
         let (table, faults) = set(text, &overrides);
         assert_eq!(faults, 0);
         let world = table.get("world").and_then(Node::as_table).expect("a table");
         assert_eq!(world.get("period").map(|node| &node.content), Some(&Content::Text("5ms".to_owned())));
         assert!(matches!(world.get("gravity").map(|node| &node.content), Some(Content::List(_))));
-        let body = table.get("bodies").and_then(Node::as_table).and_then(|t| t.get("a")).and_then(Node::as_table);
+        let body =
+            table.get("bodies").and_then(Node::as_table).and_then(|t| t.get("a")).and_then(Node::as_table);
         let material = body.and_then(|body| body.get("material")).and_then(Node::as_table).expect("a table");
         assert_eq!(material.keys().collect::<Vec<_>>(), ["name", "density"]);
     }
@@ -192,7 +217,16 @@ mod tests {
     #[test]
     fn unknown_paths_are_refused() {
         let text = "[world]\nperiod = 1\n[bodies.a]\npins = []\n";
-        for bad in ["world.peroid=1", "wolrd.period=1", "bodies.b.drag=1", "bodies.a.pins[0].axes=x", "world.period.x=1", "period", "a..b=1", "a[=1"] {
+        for bad in [
+            "world.peroid=1",
+            "wolrd.period=1",
+            "bodies.b.drag=1",
+            "bodies.a.pins[0].axes=x",
+            "world.period.x=1",
+            "period",
+            "a..b=1",
+            "a[=1",
+        ] {
             assert_eq!(set(text, &[bad]).1, 1, "{bad}");
         }
     }

@@ -21,7 +21,12 @@ pub fn substitute(document: &mut Table, log: &Log) {
     };
     let Content::Table(parameters) = entry.node.content else {
         let site = Site { place: entry.node.place, path: "parameters".to_owned() };
-        log.add(Code::WrongType, &site, format!("this is {}", entry.node.content.kind()), "a table of named values");
+        log.add(
+            Code::WrongType,
+            &site,
+            format!("this is {}", entry.node.content.kind()),
+            "a table of named values",
+        );
         return;
     };
     Substitution { parameters: &parameters, log }.table(document, "", 0);
@@ -77,7 +82,12 @@ impl Substitution<'_> {
             let length = name_length(after);
             let (name, behind) = after.split_at(length);
             if name.is_empty() {
-                self.log.add(Code::UnknownParameter, site, "`$` without a name", "`$` and the name of a parameter");
+                self.log.add(
+                    Code::UnknownParameter,
+                    site,
+                    "`$` without a name",
+                    "`$` and the name of a parameter",
+                );
             } else if let Some(node) = self.value(name, site, depth) {
                 result.push_str(&self.within(name, &node, site));
             }
@@ -93,14 +103,27 @@ impl Substitution<'_> {
             let near = nearest(name, self.parameters.keys());
             let hint = near.map(|near| format!(" (did you mean `${near}`?)")).unwrap_or_default();
             let known: Vec<&str> = self.parameters.keys().collect();
-            let expected =
-                if known.is_empty() { "a table [parameters] with it".to_owned() } else { format!("one of {}", known.join(", ")) };
-            self.log.add(Code::UnknownParameter, site, format!("there is no parameter `{name}`{hint}"), expected);
+            let expected = if known.is_empty() {
+                "a table [parameters] with it".to_owned()
+            } else {
+                format!("one of {}", known.join(", "))
+            };
+            self.log.add(
+                Code::UnknownParameter,
+                site,
+                format!("there is no parameter `{name}`{hint}"),
+                expected,
+            );
             return None;
         };
         if depth == DEEPEST {
             let message = format!("parameter `{name}` is made of itself");
-            self.log.add(Code::UnknownParameter, site, message, "parameters that do not refer to each other in a circle");
+            self.log.add(
+                Code::UnknownParameter,
+                site,
+                message,
+                "parameters that do not refer to each other in a circle",
+            );
             return None;
         }
         let mut node = node.clone();
@@ -114,15 +137,15 @@ impl Substitution<'_> {
             Content::Integer(number) => format!("({number})"),
             // the exact number again when read: the shortest decimal that rounds to it
             Content::Number(number) => format!("({number:?})"),
-            Content::Text(text) if node.computed => {
-                Formula::compile(text, &[]).map_or_else(|_| format!("({text})"), |f| format!("({:?})", f.evaluate(&[])))
-            }
+            Content::Text(text) if node.computed => Formula::compile(text, &[])
+                .map_or_else(|_| format!("({text})"), |f| format!("({:?})", f.evaluate(&[]))),
             Content::Text(text) => match parse_quantity(text) {
                 Ok(quantity) => format!("({:?})", quantity.value),
                 Err(_) => text.clone(),
             },
             other => {
-                let message = format!("parameter `{name}` is {} and cannot stand within a text", other.kind());
+                let message =
+                    format!("parameter `{name}` is {} and cannot stand within a text", other.kind());
                 self.log.add(Code::WrongType, site, message, "a number, a quantity or a text");
                 String::new()
             }

@@ -54,22 +54,19 @@ impl<'a> Reader<'a> {
             if matches!(key.need, Need::Required) && self.table.get(key.name).is_none() {
                 let message = format!("`{}` is missing", key.name);
                 let expected = format!("{} = {} ({})", key.name, key.expected(), key.summary);
-                let site = Site { place: self.head(), path: self.path_of(key.name) };
+                let site = Site { place: self.node.place, path: self.path_of(key.name) };
                 self.log.add(Code::MissingKey, &site, message, expected);
             }
         }
     }
 
     fn refuse_key(&self, name: &str, known: Vec<&str>) {
-        let place = self.table.entries.iter().find(|e| e.key == name).map_or(self.node.place, |e| e.key_place);
+        let place =
+            self.table.entries.iter().find(|e| e.key == name).map_or(self.node.place, |e| e.key_place);
         let site = Site { place, path: self.path_of(name) };
-        let message = format!("there is no key `{}`{}", quoted(name), did_you_mean(name, known.iter().copied()));
+        let message =
+            format!("there is no key `{}`{}", quoted(name), did_you_mean(name, known.iter().copied()));
         self.log.add(Code::UnknownKey, &site, message, format!("one of {}", known.join(", ")));
-    }
-
-    /// The beginning of the table: long tables are not shown whole.
-    fn head(&self) -> crate::source::Place {
-        self.node.place
     }
 
     pub fn log(&self) -> &'a Log {
@@ -77,11 +74,11 @@ impl<'a> Reader<'a> {
     }
 
     pub fn site(&self) -> Site {
-        Site { place: self.head(), path: self.path.clone() }
+        Site { place: self.node.place, path: self.path.clone() }
     }
 
     pub fn site_of(&self, key: &str) -> Site {
-        let place = self.table.get(key).map_or_else(|| self.head(), |node| node.place);
+        let place = self.table.get(key).map_or_else(|| self.node.place, |node| node.place);
         Site { place, path: self.path_of(key) }
     }
 
@@ -99,11 +96,6 @@ impl<'a> Reader<'a> {
         names.iter().copied().filter(|name| self.has(name)).collect()
     }
 
-    /// The source whose folder file names are relative to.
-    pub fn source_of(&self, key: &str) -> usize {
-        self.site_of(key).place.source
-    }
-
     pub fn reading(&self, key: &str) -> Option<Reading<'a>> {
         let node = self.table.get(key)?;
         Some(Reading { node, path: self.path_of(key), log: self.log })
@@ -115,7 +107,11 @@ impl<'a> Reader<'a> {
         self.keys.find(name).unwrap_or_else(|| panic!("`{}` describes no key `{name}`", self.keys.name))
     }
 
-    fn read<T>(&self, name: &str, read: impl FnOnce(Reading<'a>, &'static Key, &str) -> Option<T>) -> Option<T> {
+    fn read<T>(
+        &self,
+        name: &str,
+        read: impl FnOnce(Reading<'a>, &'static Key, &str) -> Option<T>,
+    ) -> Option<T> {
         let key = self.key(name);
         let reading = self.reading(name)?;
         read(reading, key, &key.expected())
@@ -149,7 +145,11 @@ impl<'a> Reader<'a> {
 
     pub fn boolean(&self, name: &str) -> bool {
         let default = matches!(self.default_of(name), Some(Value::Boolean(true)));
-        if self.has(name) { self.read(name, |value, _, _| value.boolean()).unwrap_or(default) } else { default }
+        if self.has(name) {
+            self.read(name, |value, _, _| value.boolean()).unwrap_or(default)
+        } else {
+            default
+        }
     }
 
     pub fn maybe_text(&self, name: &str) -> Option<String> {
@@ -183,14 +183,6 @@ impl<'a> Reader<'a> {
         self.maybe_vector(name).unwrap_or(Vec3::ZERO)
     }
 
-    /// Three numbers, or one for all three.
-    pub fn maybe_scales(&self, name: &str) -> Option<Vec3> {
-        self.read(name, |value, key, expected| match value.node.content {
-            Content::List(_) => value.vector(key.unit, key.range, expected),
-            _ => value.number(key.unit, key.range, expected).map(|number| Vec3::new(number, number, number)),
-        })
-    }
-
     pub fn corners(&self, name: &str) -> Option<[Vec3; 2]> {
         self.read(name, |value, key, expected| {
             let corners = value.list(expected, |item| item.vector(key.unit, key.range, expected))?;
@@ -201,14 +193,17 @@ impl<'a> Reader<'a> {
     }
 
     pub fn texts(&self, name: &str) -> Vec<String> {
-        let read = self.read(name, |value, _, expected| value.list(expected, |item| item.text().map(str::to_owned)));
+        let read =
+            self.read(name, |value, _, expected| value.list(expected, |item| item.text().map(str::to_owned)));
         read.unwrap_or_default()
     }
 
     pub fn maybe_indices(&self, name: &str) -> Option<Vec<u32>> {
         let range = souple_table::Range::closed(0.0, f64::from(u32::MAX - 1));
         let expected = "a whole number of at least 0";
-        self.read(name, |value, _, list| value.list(list, |item| item.integer(range, expected).map(|i| i as u32)))
+        self.read(name, |value, _, list| {
+            value.list(list, |item| item.integer(range, expected).map(|i| i as u32))
+        })
     }
 
     pub fn numbers(&self, name: &str) -> Vec<f64> {
@@ -225,18 +220,17 @@ impl<'a> Reader<'a> {
         read.unwrap_or_default()
     }
 
-    pub fn maybe_formula(&self, name: &str) -> Option<Formula> {
-        let Shape::Formula(variables) = self.key(name).shape else { unreachable!("`{name}` is no formula") };
-        self.read(name, |value, key, expected| value.formula(key.unit, variables, expected))
-    }
-
     pub fn maybe_vector_formula(&self, name: &str) -> Option<[Formula; 3]> {
-        let Shape::VectorFormula(variables) = self.key(name).shape else { unreachable!("`{name}` is no formula") };
+        let Shape::VectorFormula(variables) = self.key(name).shape else {
+            unreachable!("`{name}` is no formula")
+        };
         self.read(name, |value, key, expected| value.vector_formula(key.unit, variables, expected))
     }
 
     pub fn maybe_condition(&self, name: &str) -> Option<Condition> {
-        let Shape::Condition(variables) = self.key(name).shape else { unreachable!("`{name}` is no condition") };
+        let Shape::Condition(variables) = self.key(name).shape else {
+            unreachable!("`{name}` is no condition")
+        };
         self.read(name, |value, _, expected| value.condition(variables, expected))
     }
 
@@ -246,7 +240,11 @@ impl<'a> Reader<'a> {
             let text = value.text()?;
             let known = !text.is_empty() && text.chars().all(|c| "xyz".contains(c));
             if !known {
-                return value.refuse(Code::UnknownName, format!("`{}` names no axes", quoted(text)), expected);
+                return value.refuse(
+                    Code::UnknownName,
+                    format!("`{}` names no axes", quoted(text)),
+                    expected,
+                );
             }
             Some(['x', 'y', 'z'].map(|axis| text.contains(axis)))
         });
@@ -364,7 +362,8 @@ pub fn choose<B>(
         if !written && parameter.default.is_none() {
             let message = format!("{} `{}` needs `{}`", table.kind, entry.name, parameter.name);
             let expected = format!("{} = {} ({})", parameter.name, parameter.expected(), parameter.summary);
-            let site = Site { place: reading.node.place, path: format!("{}.{}", reading.path, parameter.name) };
+            let site =
+                Site { place: reading.node.place, path: format!("{}.{}", reading.path, parameter.name) };
             log.add(Code::MissingKey, &site, message, expected);
             is_good = false;
         }

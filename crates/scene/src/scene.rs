@@ -76,7 +76,10 @@ pub fn read_text(name: &str, text: &str, folder: &Path, overrides: &[String]) ->
     read(overrides, |includer| Some(includer.read_text(source)))
 }
 
-fn read(overrides: &[String], load: impl FnOnce(&mut Includer) -> Option<Table>) -> Result<Scene, Diagnostics> {
+fn read(
+    overrides: &[String],
+    load: impl FnOnce(&mut Includer) -> Option<Table>,
+) -> Result<Scene, Diagnostics> {
     let (mut sources, log) = (Sources::default(), Log::default());
     let document = load(&mut Includer::new(&mut sources, &log));
     let mut scene = None;

@@ -88,14 +88,15 @@ impl Definitions {
             Shape::Integer => integer(key.range),
             Shape::Boolean => json!({ "type": "boolean" }),
             Shape::Vector => vector(number()),
-            Shape::Corners => json!({ "type": "array", "items": vector(number()), "minItems": 2, "maxItems": 2 }),
+            Shape::Corners => {
+                json!({ "type": "array", "items": vector(number()), "minItems": 2, "maxItems": 2 })
+            }
             Shape::Text => text(),
             Shape::Choice(choices) => json!({ "enum": choices }),
             Shape::Texts => json!({ "anyOf": [text(), list(text())] }),
             Shape::Integers => list(integer(Range::NOT_NEGATIVE)),
             Shape::Numbers => list(number()),
             Shape::Vectors => list(vector(number())),
-            Shape::Formula(_) => json!({ "type": ["number", "string"] }),
             Shape::VectorFormula(_) => {
                 json!({ "anyOf": [text(), vector(json!({ "type": ["number", "string"] }))] })
             }
@@ -119,7 +120,8 @@ impl Definitions {
     fn entry(&mut self, shape: &EntryShape) -> Json {
         let outlines = (shape.outlines)();
         let names: Vec<&str> = outlines.iter().map(|outline| outline.name).collect();
-        let mut forms = vec![json!({ "enum": names, "description": format!("a {} by name alone", shape.kind) })];
+        let mut forms =
+            vec![json!({ "enum": names, "description": format!("a {} by name alone", shape.kind) })];
         forms.extend(outlines.iter().map(|outline| outlined(shape.tag, outline)));
         if let Some(keys) = shape.instead {
             forms.push(json!({ "type": "string" }));
@@ -220,7 +222,9 @@ mod tests {
             assert!(schema["$defs"][name]["properties"].is_object(), "{name}");
         }
         let materials = souple_models::materials::TABLE.names();
-        for name in materials.chain(souple_engine::steppers::TABLE.names()).chain(souple_mesh::GENERATORS.names()) {
+        for name in
+            materials.chain(souple_engine::steppers::TABLE.names()).chain(souple_mesh::GENERATORS.names())
+        {
             assert!(text.contains(&format!("\"{name}\"")), "{name}");
         }
         assert_eq!(schema["$defs"]["world"]["required"], json!(["period"]));

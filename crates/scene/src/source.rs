@@ -68,7 +68,8 @@ impl Sources {
         let skipped = before.saturating_sub(WINDOW);
         // tabs and control characters would shift the marks
         let visible = |c: char| if c.is_control() { ' ' } else { c };
-        let line: String = text[line_start..line_end].chars().skip(skipped).take(2 * WINDOW).map(visible).collect();
+        let line: String =
+            text[line_start..line_end].chars().skip(skipped).take(2 * WINDOW).map(visible).collect();
         let indent = before - skipped;
         let marks = text[start..end].chars().count().clamp(1, 2 * WINDOW - indent);
         format!("{}\n{}{}", line.trim_end(), " ".repeat(indent), "^".repeat(marks))

@@ -25,7 +25,12 @@ impl<'a> Reading<'a> {
         Site { place: self.node.place, path: self.path.clone() }
     }
 
-    pub fn refuse<T>(&self, code: Code, message: impl Into<String>, expected: impl Into<String>) -> Option<T> {
+    pub fn refuse<T>(
+        &self,
+        code: Code,
+        message: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Option<T> {
         self.log.add(code, &self.site(), message, expected);
         None
     }

@@ -274,18 +274,18 @@ impl LinearOperator for BlockMatrix {
     }
 
     fn apply(&self, x: &[Vec3], y: &mut [Vec3]) {
-        reduce::for_each_chunk(y, &|first, rows: &mut [Vec3]| self.multiply_rows(first, x, rows));
+        reduce::for_each_rows(y, &|first, rows: &mut [Vec3]| self.multiply_rows(first, x, rows));
     }
 
     fn apply_dot(&self, x: &[Vec3], y: &mut [Vec3]) -> f64 {
-        reduce::sum_mut(0, y, &|first, rows: &mut [Vec3]| {
+        reduce::sum_rows(y, &|first, rows: &mut [Vec3]| {
             self.multiply_rows(first, x, rows);
             reduce::dot_chunk(&x[first..first + rows.len()], rows)
         })
     }
 
     fn residual(&self, b: &[Vec3], x: &[Vec3], r: &mut [Vec3]) -> f64 {
-        reduce::sum_mut(0, r, &|first, rows: &mut [Vec3]| {
+        reduce::sum_rows(r, &|first, rows: &mut [Vec3]| {
             self.multiply_rows(first, x, rows);
             for (r, b) in rows.iter_mut().zip(&b[first..]) {
                 *r = *b - *r;

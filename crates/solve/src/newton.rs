@@ -49,6 +49,12 @@ pub trait NewtonProblem {
         Ok(None)
     }
 
+    /// Whether `r = −∂Φ/∂q` of a `Φ` that cannot be computed, as symmetric tangents tell. The search then goes by
+    /// the slopes of `Φ` along the step instead of the norm of the residual, which may have minima of its own.
+    fn is_gradient(&self) -> bool {
+        false
+    }
+
     /// Size of the forces that balance in `r`, which relative tolerances refer to; `None`: the first residual.
     fn residual_scale(&mut self) -> Option<f64> {
         None
@@ -185,7 +191,8 @@ pub fn newton<P: NewtonProblem + ?Sized>(
         linear_iterations += problem.direction(r, d)?.map_or(0, |report| report.iterations);
         // ∂Φ/∂q · d = −r · d
         let slope = -reduce::dot(r, d);
-        if !(slope.is_finite() && (merit.is_none() || slope < 0.0)) {
+        let is_gradient = merit.is_none() && problem.is_gradient();
+        if !(slope.is_finite() && (slope < 0.0 || merit.is_none() && !is_gradient)) {
             return Ok(report(iteration, linear_iterations, norm, Stop::NotDescent));
         }
 
@@ -200,6 +207,11 @@ pub fn newton<P: NewtonProblem + ?Sized>(
                         let rounding = 1e-13 * before.abs().max(after.abs());
                         after <= before + c * fraction * slope
                             || ((after - before).abs() <= rounding && trial_norm <= norm)
+                    }
+                    // ΔΦ ≈ (slope + slope after) fraction/2 ≤ c fraction slope
+                    _ if is_gradient => {
+                        let slope_after = -reduce::dot(trial_residual, d);
+                        slope_after <= (2.0 * c - 1.0) * slope
                     }
                     _ => trial_norm <= (1.0 - c * fraction) * norm,
                 };

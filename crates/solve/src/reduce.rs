@@ -13,24 +13,31 @@ pub const CHUNK: usize = 512;
 /// Vectors shorter than this are not worth waking a second thread for.
 const PARALLEL_FROM: usize = 16 * CHUNK;
 
+/// The same for rows of a matrix, which cost many times an entry of a vector.
+const PARALLEL_ROWS_FROM: usize = 4 * CHUNK;
+
 /// Where the tree splits `length` blocks: at a multiple of [`CHUNK`]; `None` for a leaf.
 fn middle(length: usize) -> Option<usize> {
     (length > CHUNK).then(|| length.div_ceil(CHUNK).div_ceil(2) * CHUNK)
 }
 
 fn both<A: Send, B: Send>(
-    length: usize,
+    is_long: bool,
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    if length >= PARALLEL_FROM && rayon::current_num_threads() > 1 { rayon::join(a, b) } else { (a(), b()) }
+    if is_long && rayon::current_num_threads() > 1 { rayon::join(a, b) } else { (a(), b()) }
 }
 
 /// Sum of `leaf` over the chunks of `range`.
 pub fn sum<S: Send + Add<Output = S>>(range: Range<usize>, leaf: &(impl Fn(Range<usize>) -> S + Sync)) -> S {
     let Some(middle) = middle(range.len()) else { return leaf(range) };
     let middle = range.start + middle;
-    let (a, b) = both(range.len(), || sum(range.start..middle, leaf), || sum(middle..range.end, leaf));
+    let (a, b) = both(
+        range.len() >= PARALLEL_FROM,
+        || sum(range.start..middle, leaf),
+        || sum(middle..range.end, leaf),
+    );
     a + b
 }
 
@@ -41,10 +48,31 @@ pub fn sum_mut<T: Send, S: Send + Add<Output = S>>(
     y: &mut [T],
     leaf: &(impl Fn(usize, &mut [T]) -> S + Sync),
 ) -> S {
+    sum_mut_from(PARALLEL_FROM, first, y, leaf)
+}
+
+/// [`sum_mut`] for a `leaf` that multiplies rows of a matrix: the same sums, shared among threads earlier.
+pub fn sum_rows<T: Send, S: Send + Add<Output = S>>(
+    y: &mut [T],
+    leaf: &(impl Fn(usize, &mut [T]) -> S + Sync),
+) -> S {
+    sum_mut_from(PARALLEL_ROWS_FROM, 0, y, leaf)
+}
+
+fn sum_mut_from<T: Send, S: Send + Add<Output = S>>(
+    parallel_from: usize,
+    first: usize,
+    y: &mut [T],
+    leaf: &(impl Fn(usize, &mut [T]) -> S + Sync),
+) -> S {
     let length = y.len();
     let Some(middle) = middle(length) else { return leaf(first, y) };
     let (head, tail) = y.split_at_mut(middle);
-    let (a, b) = both(length, || sum_mut(first, head, leaf), || sum_mut(first + middle, tail, leaf));
+    let (a, b) = both(
+        length >= parallel_from,
+        || sum_mut_from(parallel_from, first, head, leaf),
+        || sum_mut_from(parallel_from, first + middle, tail, leaf),
+    );
     a + b
 }
 
@@ -60,23 +88,34 @@ pub fn sum_mut_pair<S: Send + Add<Output = S>>(
     let (y_head, y_tail) = y.split_at_mut(middle);
     let (z_head, z_tail) = z.split_at_mut(middle);
     let (a, b) = both(
-        length,
+        length >= PARALLEL_FROM,
         || sum_mut_pair(first, y_head, z_head, leaf),
         || sum_mut_pair(first + middle, y_tail, z_tail, leaf),
     );
     a + b
 }
 
+/// The sum of a loop that sums nothing.
+struct Nothing;
+
+impl Add for Nothing {
+    type Output = Self;
+    fn add(self, _: Self) -> Self {
+        Self
+    }
+}
+
 /// Overwrites `y` chunk by chunk.
 pub fn for_each_chunk<T: Send>(y: &mut [T], leaf: &(impl Fn(usize, &mut [T]) + Sync)) {
-    struct Nothing;
-    impl Add for Nothing {
-        type Output = Self;
-        fn add(self, _: Self) -> Self {
-            Self
-        }
-    }
     sum_mut(0, y, &|first, chunk: &mut [T]| {
+        leaf(first, chunk);
+        Nothing
+    });
+}
+
+/// [`for_each_chunk`] for rows of a matrix, see [`sum_rows`].
+pub fn for_each_rows<T: Send>(y: &mut [T], leaf: &(impl Fn(usize, &mut [T]) + Sync)) {
+    sum_rows(y, &|first, chunk: &mut [T]| {
         leaf(first, chunk);
         Nothing
     });

@@ -18,6 +18,8 @@ struct Hardening {
     limit: f64,
     /// Whether Newton sees `Φ`, or must do with the residual.
     has_merit: bool,
+    /// Without `Φ`: whether Newton knows that there is one.
+    is_gradient: bool,
     /// Factor on the tangent: −1 makes directions climb.
     tangent: f64,
     accepted: Vec<Vec3>,
@@ -33,6 +35,7 @@ impl Hardening {
             cubic: 3.0,
             limit: f64::INFINITY,
             has_merit: true,
+            is_gradient: false,
             tangent: 1.0,
             accepted: vec![Vec3::ZERO; count],
             current: vec![Vec3::ZERO; count],
@@ -87,6 +90,10 @@ impl NewtonProblem for Hardening {
         Ok(())
     }
 
+    fn is_gradient(&self) -> bool {
+        self.is_gradient
+    }
+
     fn merit(&mut self) -> Result<Option<f64>, Infallible> {
         let mut Aq = self.current.clone();
         let quadratic = 0.5 * self.stiffness.apply_dot(&self.current, &mut Aq);
@@ -96,11 +103,11 @@ impl NewtonProblem for Hardening {
     }
 }
 
-/// Near the solution `‖r_{k+1}‖ ≤ C ‖r_k‖²` with one `C`, by merit and by residual alike.
+/// Near the solution `‖r_{k+1}‖ ≤ C ‖r_k‖²` with one `C`, by merit, by slopes and by residual alike.
 #[test]
 fn convergence_is_quadratic() {
-    for has_merit in [true, false] {
-        let mut problem = Hardening { has_merit, ..Hardening::new(2.0) };
+    for (has_merit, is_gradient) in [(true, false), (false, true), (false, false)] {
+        let mut problem = Hardening { has_merit, is_gradient, ..Hardening::new(2.0) };
         let mut workspace = Workspace::default();
         let settings = Settings { relative_tolerance: 1e-13, ..Settings::default() };
         let report = newton(&mut problem, &settings, &mut workspace).unwrap();
@@ -134,6 +141,8 @@ fn every_ending_is_told() {
         report
     };
     let climbing = Hardening { tangent: -1.0, ..Hardening::new(2.0) };
+    assert_eq!(solve(climbing, &Settings::default()).stop, Stop::NotDescent);
+    let climbing = Hardening { tangent: -1.0, has_merit: false, is_gradient: true, ..Hardening::new(2.0) };
     assert_eq!(solve(climbing, &Settings::default()).stop, Stop::NotDescent);
     let climbing = Hardening { tangent: -1.0, has_merit: false, ..Hardening::new(2.0) };
     assert_eq!(solve(climbing, &Settings::default()).stop, Stop::NoDecrease);

@@ -41,9 +41,12 @@ pub(super) const NEWTON_TOLERANCE: Parameter = Parameter::number(
 )
 .or(Value::Number(1e-8));
 
-pub(super) const NEWTON_ITERATIONS: Parameter =
-    Parameter::integer("newton_iterations", Range::closed(1.0, 1000.0), "iterations before a step is given up")
-        .or(Value::Integer(50));
+pub(super) const NEWTON_ITERATIONS: Parameter = Parameter::integer(
+    "newton_iterations",
+    Range::closed(1.0, 1000.0),
+    "iterations before a step is given up",
+)
+.or(Value::Integer(50));
 
 pub(super) const ENTRY: StepperEntry = StepperEntry {
     name: "backward_euler",
@@ -61,7 +64,8 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
     ],
     build: |values| {
         let settings = newton_settings(values);
-        let newton = if values.text("newton") == "one" { NewtonMode::One } else { NewtonMode::Full(settings) };
+        let newton =
+            if values.text("newton") == "one" { NewtonMode::One } else { NewtonMode::Full(settings) };
         Box::new(BackwardEuler { newton, solver: SolverSettings::from_values(values) })
     },
 };
@@ -111,7 +115,9 @@ impl Stepper for BackwardEuler {
         let lent = Lent::from(next);
         let solved = match self.newton {
             NewtonMode::One => implicit.solve_once(&lent, &mut next.q, ws, &mut buffers),
-            NewtonMode::Full(settings) => implicit.solve_newton(settings, &lent, &mut next.q, ws, &mut buffers),
+            NewtonMode::Full(settings) => {
+                implicit.solve_newton(settings, &lent, &mut next.q, ws, &mut buffers)
+            }
         };
         lent.give_back(next);
         // v' = difference(q', q)/h, the very velocity the equation was solved with

@@ -184,3 +184,18 @@ fn real_meshes() {
         mesh.validate().unwrap();
     }
 }
+
+/// A series lists its frames with their times, and each frame is a mesh.
+#[test]
+fn series_of_frames() {
+    let folder = TemporaryFolder::new("series");
+    let mesh = mixed_mesh();
+    let mut series = crate::Series::new(folder.path(""), "run & hide");
+    for time in [0.0, 0.1, 0.2] {
+        let frame = series.push(time, &Output::new(&mesh)).unwrap();
+        assert_eq!(read_mesh(&frame).unwrap().0, mesh);
+    }
+    let list = std::fs::read_to_string(series.path()).unwrap();
+    assert!(list.contains("timestep=\"0.1\" part=\"0\" file=\"run &amp; hide_0001.vtu\""), "{list}");
+    assert_eq!(list.matches("<DataSet").count(), series.len());
+}

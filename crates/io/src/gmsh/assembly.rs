@@ -6,10 +6,10 @@ use souple_math::Vec3;
 use souple_mesh::{Group, MAX_NODES};
 
 use super::element_type::{self, ElementType};
+use crate::Dataset;
 use crate::cursor::Cursor;
 use crate::dataset::{Destination, Sorter, tidy_groups};
 use crate::error::Fault;
-use crate::Dataset;
 
 /// A physical group: dimension and number.
 type PhysicalTag = (u8, i64);
@@ -40,7 +40,11 @@ impl Assembly {
             return Err(cursor.fault("the number of nodes", point.to_string(), "fewer than 2^32"));
         }
         if self.points.insert(tag, point as u32).is_some() {
-            return Err(cursor.fault(format!("node {tag}"), "given twice", "a different number for each node"));
+            return Err(cursor.fault(
+                format!("node {tag}"),
+                "given twice",
+                "a different number for each node",
+            ));
         }
         self.dataset.mesh.points.push(position);
         Ok(())
@@ -97,7 +101,11 @@ impl Assembly {
     pub fn finish(mut self, cursor: &Cursor<'_>) -> Result<Dataset, Fault> {
         for (present, section) in [(self.has_nodes, "$Nodes"), (self.has_elements, "$Elements")] {
             if !present {
-                return Err(Fault::cut_off(cursor.place(), format!("the section {section}"), "nodes and elements"));
+                return Err(Fault::cut_off(
+                    cursor.place(),
+                    format!("the section {section}"),
+                    "nodes and elements",
+                ));
             }
         }
         for (tag, name) in &self.names {

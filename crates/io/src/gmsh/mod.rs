@@ -12,10 +12,10 @@ mod write;
 
 use souple_table::Entry;
 
+use crate::Dataset;
 use crate::cursor::{Cursor, Encoding, Endian};
 use crate::error::{Fault, quoted};
 use crate::format::Format;
-use crate::Dataset;
 
 use assembly::Assembly;
 
@@ -83,7 +83,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
                 cursor.encoding = Encoding::Text;
             }
             (b"Nodes" | b"Elements" | b"Entities" | b"MeshFormat", _) => {
-                return Err(cursor.fault("the section", quoted(section), "one section $MeshFormat before all others"));
+                return Err(cursor.fault(
+                    "the section",
+                    quoted(section),
+                    "one section $MeshFormat before all others",
+                ));
             }
             _ => skip_section(&mut cursor, section)?,
         }
@@ -105,7 +109,7 @@ fn read_format(cursor: &mut Cursor<'_>) -> Result<MeshFormat, Fault> {
     let version: f64 = cursor.parse(format_args!("the version"), "a version: 2.2 or 4.1")?;
     let major = match version {
         version if (2.0..3.0).contains(&version) => 2,
-        version if version == 4.1 => 4,
+        4.1 => 4,
         _ => {
             let found = format!("{version}");
             return Err(cursor.fault("the version of the Gmsh format", found, "1, 2.0 to 2.2, or 4.1"));
@@ -126,7 +130,13 @@ fn read_format(cursor: &mut Cursor<'_>) -> Result<MeshFormat, Fault> {
             let endian = match mark {
                 [1, 0, 0, 0] => Endian::Little,
                 [0, 0, 0, 1] => Endian::Big,
-                _ => return Err(cursor.fault("the mark of the byte order", format!("{mark:?}"), "the number 1")),
+                _ => {
+                    return Err(cursor.fault(
+                        "the mark of the byte order",
+                        format!("{mark:?}"),
+                        "the number 1",
+                    ));
+                }
             };
             cursor.encoding = Encoding::Text;
             Encoding::Binary(endian)
@@ -144,7 +154,11 @@ fn read_names(cursor: &mut Cursor<'_>, assembly: &mut Assembly) -> Result<(), Fa
     for _ in 0..count {
         let dimension = cursor.int(format_args!("the dimension of a physical name"))?;
         if !(0..=3).contains(&dimension) {
-            return Err(cursor.fault("the dimension of a physical name", dimension.to_string(), "0, 1, 2 or 3"));
+            return Err(cursor.fault(
+                "the dimension of a physical name",
+                dimension.to_string(),
+                "0, 1, 2 or 3",
+            ));
         }
         let tag = cursor.int(format_args!("the number of a physical name"))?;
         let place = cursor.place();

@@ -36,7 +36,10 @@ fn versions_by_hand() {
         let dataset = read(text.as_bytes()).unwrap();
         let mesh = dataset.mesh;
         assert!(dataset.notes.is_empty(), "{:?}", dataset.notes);
-        assert_eq!((&mesh.points, &mesh.blocks, &mesh.facet_blocks), (&first.points, &first.blocks, &first.facet_blocks));
+        assert_eq!(
+            (&mesh.points, &mesh.blocks, &mesh.facet_blocks),
+            (&first.points, &first.blocks, &first.facet_blocks)
+        );
         assert_eq!(mesh.groups["core"].cells, [0, 1]);
         assert_eq!(mesh.groups["the lid"].facets, [0]);
         assert_eq!(mesh.groups["point_3"].points, [0]);
@@ -68,15 +71,27 @@ fn faults_name_line_value_and_range() {
         read(text.replace(from, to).as_bytes()).unwrap_err().to_string()
     };
     let two = VERSION_2;
-    assert_eq!(fault(two, "2.2 0 8", "4.0 0 8"), "line 2: the version of the Gmsh format is 4; expected 1, 2.0 to 2.2, or 4.1");
-    assert_eq!(fault(two, "30 0 1 0\n", "30 0 x 0\n"), "line 14: y of node 30 is \"x\"; expected a number");
-    assert_eq!(fault(two, "30 0 1 0\n", "30 0 inf 0\n"), "line 14: y of node 30 is inf; expected a finite number");
-    assert_eq!(fault(two, "30 0 1 0\n", "20 0 1 0\n"), "line 14: node 20 is given twice; expected a different number for each node");
+    assert_eq!(
+        fault(two, "2.2 0 8", "4.0 0 8"),
+        "line 2: the version of the Gmsh format is 4; expected 1, 2.0 to 2.2, or 4.1"
+    );
+    assert_eq!(fault(two, "30 0 1 0\n", "30 0 x 0\n"), "line 16: y of node 30 is \"x\"; expected a number");
+    assert_eq!(
+        fault(two, "30 0 1 0\n", "30 0 inf 0\n"),
+        "line 16: y of node 30 is inf; expected a finite number"
+    );
+    assert_eq!(
+        fault(two, "30 0 1 0\n", "20 0 1 0\n"),
+        "line 16: node 20 is given twice; expected a different number for each node"
+    );
     assert!(fault(two, "10 20 30 40\n", "10 20 30 41\n").contains("a node of element 3 is 41"));
     assert!(fault(two, "$Nodes\n5\n", "$Nodes\n99999999999\n").contains("the rest of the file has room for"));
     assert!(fault(two, "$EndNodes", "$EndNode").contains("expected $EndNodes"));
     assert!(fault(two, "2.2 0 8", "2.2 2 8").contains("0 (text) or 1 (binary)"));
-    assert!(fault(VERSION_1, "4 10 20 30 40", "5 10 20 30 40").contains("expected 4 for a tetrahedron of 4 nodes"));
+    assert!(
+        fault(VERSION_1, "4 10 20 30 40", "5 10 20 30 40")
+            .contains("expected 4 for a tetrahedron of 4 nodes")
+    );
     assert!(fault(VERSION_4, "2 5 10 50", "2 6 10 50").contains("but the blocks hold 5"));
     assert!(fault(VERSION_4, "$Elements\n3 4 1 5", "$Elements\n3 5 1 5").contains("but the blocks hold 4"));
     let start = VERSION_2.find("$Nodes").unwrap();
@@ -106,7 +121,9 @@ fn binary_runs_of_version_2() {
     let mut bytes = b"$MeshFormat\n2.2 1 8\n".to_vec();
     bytes.extend(1i32.to_le_bytes());
     bytes.extend(b"\n$EndMeshFormat\n$Nodes\n5\n");
-    for (tag, point) in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]].iter().enumerate() {
+    for (tag, point) in
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]].iter().enumerate()
+    {
         bytes.extend((tag as i32 + 1).to_le_bytes());
         bytes.extend(point.iter().flat_map(|coordinate: &f64| coordinate.to_le_bytes()));
     }

@@ -6,7 +6,11 @@ use super::assembly::Assembly;
 use crate::cursor::Cursor;
 use crate::error::Fault;
 
-pub(super) fn read_section(cursor: &mut Cursor<'_>, section: &[u8], assembly: &mut Assembly) -> Result<(), Fault> {
+pub(super) fn read_section(
+    cursor: &mut Cursor<'_>,
+    section: &[u8],
+    assembly: &mut Assembly,
+) -> Result<(), Fault> {
     if section == b"NOD" {
         let count = cursor.size(8, format_args!("the number of nodes"))?;
         cursor.check_count(count, 8, format_args!("the number of nodes"))?;
@@ -35,7 +39,11 @@ fn read_element(cursor: &mut Cursor<'_>, index: u64, assembly: &mut Assembly) ->
     let node_count = cursor.int(format_args!("the number of nodes of element {tag}"))?;
     if node_count != element.node_count as i64 {
         let expected = format!("{} for a {}", element.node_count, element.name);
-        return Err(cursor.fault(format!("the number of nodes of element {tag}"), node_count.to_string(), expected));
+        return Err(cursor.fault(
+            format!("the number of nodes of element {tag}"),
+            node_count.to_string(),
+            expected,
+        ));
     }
     let mut nodes = [0; super::version_2::MOST_NODES];
     let nodes = &mut nodes[..element.node_count];

@@ -11,7 +11,11 @@ pub(super) const MOST_NODES: usize = 27;
 /// Most tags of an element: partitions of a very large machine.
 const MOST_TAGS: i64 = 1 << 20;
 
-pub(super) fn read_section(cursor: &mut Cursor<'_>, section: &[u8], assembly: &mut Assembly) -> Result<(), Fault> {
+pub(super) fn read_section(
+    cursor: &mut Cursor<'_>,
+    section: &[u8],
+    assembly: &mut Assembly,
+) -> Result<(), Fault> {
     match section {
         b"Nodes" => {
             let count = read_count(cursor, 8, "nodes")?;
@@ -68,10 +72,11 @@ fn read_element_runs(cursor: &mut Cursor<'_>, count: u64, assembly: &mut Assembl
         let length = cursor.int(format_args!("the length of a run of elements"))?;
         let tag_count = cursor.int(format_args!("the number of tags of a run of elements"))?;
         let left = count - done;
-        let length = u64::try_from(length).ok().filter(|length| (1..=left).contains(length)).ok_or_else(|| {
-            let expected = format!("1 to {left}, the number of elements left");
-            cursor.fault("the length of a run of elements", length.to_string(), expected)
-        })?;
+        let length =
+            u64::try_from(length).ok().filter(|length| (1..=left).contains(length)).ok_or_else(|| {
+                let expected = format!("1 to {left}, the number of elements left");
+                cursor.fault("the length of a run of elements", length.to_string(), expected)
+            })?;
         for _ in 0..length {
             let tag = cursor.size(4, format_args!("the number of an element"))?;
             read_tail(cursor, tag, element, tag_count, assembly)?;

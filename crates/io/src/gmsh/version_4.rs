@@ -53,7 +53,11 @@ fn read_entities(cursor: &mut Cursor<'_>, width: usize, assembly: &mut Assembly)
             let physical = read_int_list(cursor, width, format_args!("the physical groups of entity {tag}"))?;
             if physical.len() > MOST_GROUPS {
                 let subject = format!("the number of physical groups of entity {tag}");
-                return Err(cursor.fault(subject, physical.len().to_string(), format!("at most {MOST_GROUPS}")));
+                return Err(cursor.fault(
+                    subject,
+                    physical.len().to_string(),
+                    format!("at most {MOST_GROUPS}"),
+                ));
             }
             if dimension > 0 {
                 read_int_list(cursor, width, format_args!("the boundary of entity {tag}"))?;
@@ -109,7 +113,11 @@ fn read_nodes(cursor: &mut Cursor<'_>, width: usize, assembly: &mut Assembly) ->
             (1, 0..=3) => dimension,
             _ => {
                 let found = format!("{parametric} in dimension {dimension}");
-                return Err(cursor.fault("the parametric flag of a block of nodes", found, "0 or 1 in dimension 0 to 3"));
+                return Err(cursor.fault(
+                    "the parametric flag of a block of nodes",
+                    found,
+                    "0 or 1 in dimension 0 to 3",
+                ));
             }
         };
         let count = cursor.size(width, format_args!("the number of nodes of a block"))?;
@@ -139,7 +147,11 @@ fn read_elements(cursor: &mut Cursor<'_>, width: usize, assembly: &mut Assembly)
         let number = cursor.int(format_args!("the type of a block of elements"))?;
         let element = assembly.element_type(cursor, number)?;
         let count = cursor.size(width, format_args!("the number of elements of a block"))?;
-        cursor.check_count(count, 2 * least_bytes(cursor), format_args!("the number of elements of a block"))?;
+        cursor.check_count(
+            count,
+            2 * least_bytes(cursor),
+            format_args!("the number of elements of a block"),
+        )?;
         let physical = assembly.entities.get(&(element.dimension, entity)).cloned().unwrap_or_default();
         let mut nodes = [0; MOST_NODES];
         let nodes = &mut nodes[..element.node_count];

@@ -9,10 +9,10 @@ use std::io::Write;
 use souple_mesh::{BoundingBox, CellBlock, Mesh};
 
 use super::element_type::{self, POINT};
+use crate::IoError;
 use crate::cursor::{Encoding, Endian};
 use crate::dataset::{Facets, Output};
 use crate::format::WriteError;
-use crate::IoError;
 
 /// One element with the groups it is in.
 struct Item<'a> {
@@ -32,7 +32,11 @@ struct Grouping<'a> {
 }
 
 /// Writes version 4.1.
-pub(super) fn version_4(output: &Output<'_>, encoding: Encoding, out: &mut dyn Write) -> Result<(), WriteError> {
+pub(super) fn version_4(
+    output: &Output<'_>,
+    encoding: Encoding,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
     let grouping = Grouping::of(output)?;
     let mut sink = Sink { out, encoding, column: 0 };
     sink.head("4.1")?;
@@ -76,11 +80,14 @@ pub(super) fn version_4(output: &Output<'_>, encoding: Encoding, out: &mut dyn W
 }
 
 /// An entity for each set of groups; its number is that of the set plus one.
-fn write_entities(sink: &mut Sink<'_>, grouping: &Grouping<'_>, output: &Output<'_>) -> Result<(), WriteError> {
+fn write_entities(
+    sink: &mut Sink<'_>,
+    grouping: &Grouping<'_>,
+    output: &Output<'_>,
+) -> Result<(), WriteError> {
     sink.line("$Entities")?;
-    let of_dimension = |dimension: u8| {
-        grouping.sets.iter().enumerate().filter(move |(_, set)| set.0 == dimension)
-    };
+    let of_dimension =
+        |dimension: u8| grouping.sets.iter().enumerate().filter(move |(_, set)| set.0 == dimension);
     sink.sizes(&[0, 1, 2, 3].map(|dimension| of_dimension(dimension).count()))?;
     let bounds = match output.positions() {
         [] => BoundingBox { low: souple_math::Vec3::default(), high: souple_math::Vec3::default() },
@@ -111,10 +118,17 @@ fn write_entities(sink: &mut Sink<'_>, grouping: &Grouping<'_>, output: &Output<
 }
 
 /// Writes version 2.2.
-pub(super) fn version_2(output: &Output<'_>, encoding: Encoding, out: &mut dyn Write) -> Result<(), WriteError> {
+pub(super) fn version_2(
+    output: &Output<'_>,
+    encoding: Encoding,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
     let grouping = Grouping::of(output)?;
-    if let Some((_, groups)) = grouping.sets.iter().find(|(dimension, groups)| *dimension > 0 && groups.len() > 1) {
-        let name = |group: usize| grouping.names.iter().find(|name| name.1 == group).map_or("", |name| name.2);
+    if let Some((_, groups)) =
+        grouping.sets.iter().find(|(dimension, groups)| *dimension > 0 && groups.len() > 1)
+    {
+        let name =
+            |group: usize| grouping.names.iter().find(|name| name.1 == group).map_or("", |name| name.2);
         let value = format!("in the groups `{}` and `{}`", name(groups[0]), name(groups[1]));
         let expected = "one group for each cell in Gmsh 2.2 (the format `gmsh` takes several)";
         return Err(IoError::request("a cell", value, expected).into());
@@ -230,11 +244,16 @@ fn names(mesh: &Mesh, facets: Facets) -> Result<Vec<(u8, usize, &str)>, IoError>
     let mut names = Vec::new();
     for (index, (name, group)) in mesh.groups.iter().enumerate() {
         if name.is_empty() || name.contains(['"', '\n', '\r']) {
-            return Err(IoError::request("the name of a group", format!("{name:?}"), "text without quotes, on one line"));
+            return Err(IoError::request(
+                "the name of a group",
+                format!("{name:?}"),
+                "text without quotes, on one line",
+            ));
         }
         let facet_members = if facets == Facets::Written { group.facets.as_slice() } else { &[] };
         let lists = [(2, facet_members), (3, group.cells.as_slice())];
-        let mut dimensions: Vec<u8> = lists.iter().filter(|list| !list.1.is_empty()).map(|list| list.0).collect();
+        let mut dimensions: Vec<u8> =
+            lists.iter().filter(|list| !list.1.is_empty()).map(|list| list.0).collect();
         // a group of nothing is kept by its name
         if !group.points.is_empty() || dimensions.is_empty() {
             dimensions.push(0);
@@ -288,7 +307,11 @@ impl Sink<'_> {
     }
 
     /// Text as `text` gives it, or `N` bytes in the order of the file, given in little order.
-    fn number<const N: usize>(&mut self, text: impl std::fmt::Display, mut bytes: [u8; N]) -> std::io::Result<()> {
+    fn number<const N: usize>(
+        &mut self,
+        text: impl std::fmt::Display,
+        mut bytes: [u8; N],
+    ) -> std::io::Result<()> {
         match self.encoding {
             Encoding::Text => {
                 self.column += 1;

@@ -161,26 +161,47 @@ pub(super) fn read<T: Number>(
         "binary" => {
             let (bytes, end) = base64::decode(element.text).map_err(|bad| {
                 let position = element.text_position + bad.offset;
-                document.fault(position, subject("the base64 text"), "a broken group", "groups of four letters")
+                document.fault(
+                    position,
+                    subject("the base64 text"),
+                    "a broken group",
+                    "groups of four letters",
+                )
             })?;
             if end != element.text.len() {
                 let stray = &element.text[end..(end + 1).min(element.text.len())];
                 let position = element.text_position + end;
-                return Err(document.fault(position, subject("the base64 text"), quoted(stray), "A-Z a-z 0-9 + / ="));
+                return Err(document.fault(
+                    position,
+                    subject("the base64 text"),
+                    quoted(stray),
+                    "A-Z a-z 0-9 + / =",
+                ));
             }
             bytes
         }
         "appended" => appended(document, element, layout, name)?,
         other => {
             let expected = "ascii, binary or appended";
-            return Err(document.fault(element.position, subject("the format"), format!("`{other}`"), expected));
+            return Err(document.fault(
+                element.position,
+                subject("the format"),
+                format!("`{other}`"),
+                expected,
+            ));
         }
     };
-    let bytes = content(&bytes, layout)
-        .map_err(|(found, expected)| document.fault(element.position, subject("the data"), found, expected))?;
+    let bytes = content(&bytes, layout).map_err(|(found, expected)| {
+        document.fault(element.position, subject("the data"), found, expected)
+    })?;
     if bytes.len() % number_type.width() != 0 {
         let expected = format!("a multiple of {}, the width of {type_name}", number_type.width());
-        return Err(document.fault(element.position, subject("the length in bytes"), bytes.len().to_string(), expected));
+        return Err(document.fault(
+            element.position,
+            subject("the length in bytes"),
+            bytes.len().to_string(),
+            expected,
+        ));
     }
     Ok(decode(&bytes, number_type, layout.endian))
 }
@@ -207,11 +228,17 @@ fn appended(
 ) -> Result<Vec<u8>, Fault> {
     let Some(appended) = layout.appended else {
         let subject = format!("the data of the array `{name}`");
-        return Err(document.fault(element.position, subject, "missing", "an element <AppendedData> with it"));
+        return Err(document.fault(
+            element.position,
+            subject,
+            "missing",
+            "an element <AppendedData> with it",
+        ));
     };
     let given = element.attribute("offset").unwrap_or("missing");
     let offset = given.parse().ok().filter(|offset| *offset <= appended.bytes.len()).ok_or_else(|| {
-        let expected = format!("a number of at most {}, the length of the appended data", appended.bytes.len());
+        let expected =
+            format!("a number of at most {}, the length of the appended data", appended.bytes.len());
         document.fault(element.position, format!("the offset of the array `{name}`"), given, expected)
     })?;
     let bytes = &appended.bytes[offset..];
@@ -222,7 +249,12 @@ fn appended(
     if extent > unclaimed {
         let subject = format!("the data of the array `{name}`");
         let found = format!("{extent} bytes, which other arrays have already");
-        return Err(document.fault(element.position, subject, found, format!("at most {unclaimed} bytes of its own")));
+        return Err(document.fault(
+            element.position,
+            subject,
+            found,
+            format!("at most {unclaimed} bytes of its own"),
+        ));
     }
     appended.unclaimed.set(unclaimed - extent);
     if !appended.base64 {
@@ -255,7 +287,8 @@ fn raw_extent(bytes: &[u8], layout: &Layout<'_>) -> usize {
 fn base64_extent(text: &[u8], layout: &Layout<'_>) -> usize {
     let letters = |bytes: usize| bytes.div_ceil(3).saturating_mul(4);
     let width = layout.header_width;
-    let decoded = |letters: usize| base64::decode(&text[..letters.min(text.len() / 4 * 4)]).unwrap_or_default().0;
+    let decoded =
+        |letters: usize| base64::decode(&text[..letters.min(text.len() / 4 * 4)]).unwrap_or_default().0;
     let number = |header: &[u8], index: usize| -> usize {
         header.get(index * width..(index + 1) * width).map_or(0, |bytes| header_number(bytes, layout))
     };
@@ -288,10 +321,12 @@ fn header_number(bytes: &[u8], layout: &Layout<'_>) -> usize {
 fn content(bytes: &[u8], layout: &Layout<'_>) -> Result<Vec<u8>, (String, String)> {
     let width = layout.header_width;
     let number = |index: usize| -> Result<usize, (String, String)> {
-        bytes.get(index * width..(index + 1) * width).map(|bytes| header_number(bytes, layout)).ok_or_else(|| {
-            let expected = format!("a header of {} bytes", (index + 1) * width);
-            (format!("cut off after {} bytes", bytes.len()), expected)
-        })
+        bytes.get(index * width..(index + 1) * width).map(|bytes| header_number(bytes, layout)).ok_or_else(
+            || {
+                let expected = format!("a header of {} bytes", (index + 1) * width);
+                (format!("cut off after {} bytes", bytes.len()), expected)
+            },
+        )
     };
     let piece = |start: usize, length: usize| {
         start.checked_add(length).and_then(|end| bytes.get(start..end)).ok_or_else(|| {
@@ -308,7 +343,8 @@ fn content(bytes: &[u8], layout: &Layout<'_>) -> Result<Vec<u8>, (String, String
     }
     let (blocks, block_size, last_size) = (number(0)?, number(1)?, number(2)?);
     let mut plain = Vec::new();
-    let mut start = blocks.checked_add(3).and_then(|numbers| numbers.checked_mul(width)).unwrap_or(usize::MAX);
+    let mut start =
+        blocks.checked_add(3).and_then(|numbers| numbers.checked_mul(width)).unwrap_or(usize::MAX);
     piece(0, start)?;
     for block in 0..blocks {
         let size = if block + 1 == blocks && last_size > 0 { last_size } else { block_size };

@@ -6,9 +6,9 @@ use souple_math::Vec3;
 use souple_mesh::{Group, MAX_NODES, Mesh};
 
 use super::{CELL_TYPES, GROUP_PREFIX, WITHOUT_VOLUME};
+use crate::Dataset;
 use crate::dataset::{Destination, Field, Sorter};
 use crate::error::{Fault, Place};
-use crate::Dataset;
 
 /// Arrays of whole numbers that mark parts of a mesh, as other programs call them.
 const MARKS: &[&str] = &["gmsh:physical", "medit:ref", "MaterialID", "MaterialIds", "RegionId", "cell_tags"];
@@ -83,9 +83,15 @@ impl Grid {
         let mut start = 0;
         for (cell, (number, end)) in self.types.iter().zip(&self.offsets).enumerate() {
             let most = self.connectivity.len();
-            let end = usize::try_from(*end).ok().filter(|end| (start..=most).contains(end)).ok_or_else(|| {
-                Fault::new(place, format!("offsets[{cell}]"), end.to_string(), format!("{start} to {most}"))
-            })?;
+            let end =
+                usize::try_from(*end).ok().filter(|end| (start..=most).contains(end)).ok_or_else(|| {
+                    Fault::new(
+                        place,
+                        format!("offsets[{cell}]"),
+                        end.to_string(),
+                        format!("{start} to {most}"),
+                    )
+                })?;
             let listed = &self.connectivity[start..end];
             start = end;
             let Some(cell_type) = cell_type(*number, listed.len()) else {
@@ -106,10 +112,11 @@ impl Grid {
             for (slot, source) in nodes.iter_mut().zip(cell_type.order) {
                 let node = listed[*source];
                 let count = mesh.points.len();
-                *slot = u32::try_from(node).ok().filter(|node| (*node as usize) < count).ok_or_else(|| {
-                    let expected = format!("a point, of which there are {count}");
-                    Fault::new(place, format!("a node of cell {cell}"), node.to_string(), expected)
-                })?;
+                *slot =
+                    u32::try_from(node).ok().filter(|node| (*node as usize) < count).ok_or_else(|| {
+                        let expected = format!("a point, of which there are {count}");
+                        Fault::new(place, format!("a node of cell {cell}"), node.to_string(), expected)
+                    })?;
             }
             destinations.push(sorter.push(mesh, cell_type.kind, &nodes[..cell_type.order.len()]));
         }
@@ -118,7 +125,9 @@ impl Grid {
             return Err(Fault::new(place, "the length of the connectivity", found, "the last offset"));
         }
         for (number, count) in skipped {
-            dataset.notes.push(format!("{count} cells of VTK type {number} (no volume, no facet) were left out"));
+            dataset
+                .notes
+                .push(format!("{count} cells of VTK type {number} (no volume, no facet) were left out"));
         }
         Ok(destinations)
     }
@@ -165,7 +174,10 @@ fn groups_of_marks(dataset: &mut Dataset, field: &Field, destinations: &[Destina
     for (cell, value) in field.values.iter().enumerate() {
         parts.entry(*value as i64).or_default().push(cell);
         if parts.len() > MOST_PARTS {
-            let note = format!("`{}` has more than {MOST_PARTS} values: taken as numbers, not as groups", field.name);
+            let note = format!(
+                "`{}` has more than {MOST_PARTS} values: taken as numbers, not as groups",
+                field.name
+            );
             dataset.notes.push(note);
             return;
         }

@@ -165,17 +165,24 @@ impl<'a> Reader<'a> {
         let mut rest = list;
         while let [node_count, tail @ ..] = rest {
             let cell = self.grid.offsets.len();
-            let length = usize::try_from(*node_count).ok().filter(|length| *length <= tail.len()).ok_or_else(|| {
-                let subject = format!("the number of nodes of cell {cell}");
-                self.cursor.fault(subject, node_count.to_string(), format!("0 to {}", tail.len()))
-            })?;
+            let length = usize::try_from(*node_count)
+                .ok()
+                .filter(|length| *length <= tail.len())
+                .ok_or_else(|| {
+                    let subject = format!("the number of nodes of cell {cell}");
+                    self.cursor.fault(subject, node_count.to_string(), format!("0 to {}", tail.len()))
+                })?;
             self.grid.connectivity.extend_from_slice(&tail[..length]);
             self.grid.offsets.push(self.grid.connectivity.len() as i64);
             rest = &tail[length..];
         }
         let found = self.grid.offsets.len();
         if found != count {
-            return Err(self.cursor.fault("the number of cells in the list", found.to_string(), count.to_string()));
+            return Err(self.cursor.fault(
+                "the number of cells in the list",
+                found.to_string(),
+                count.to_string(),
+            ));
         }
         Ok(())
     }
@@ -247,7 +254,12 @@ impl<'a> Reader<'a> {
                 Some(_) => self.read_field(name, components, number_type)?,
                 // a field of the whole data set, such as the time
                 None => {
-                    self.values::<f64>(tuples, components, number_type, format_args!("the values of `{name}`"))?;
+                    self.values::<f64>(
+                        tuples,
+                        components,
+                        number_type,
+                        format_args!("the values of `{name}`"),
+                    )?;
                 }
             }
         }
@@ -256,11 +268,19 @@ impl<'a> Reader<'a> {
 
     fn read_field(&mut self, name: String, components: usize, number_type: NumberType) -> Result<(), Fault> {
         let Some((owner, tuples)) = self.owner else {
-            return Err(self.cursor.fault(format!("the field `{name}`"), "of nothing", "POINT_DATA or CELL_DATA before"));
+            return Err(self.cursor.fault(
+                format!("the field `{name}`"),
+                "of nothing",
+                "POINT_DATA or CELL_DATA before",
+            ));
         };
         if !(1..=MOST_COMPONENTS).contains(&components) {
             let subject = format!("the number of components of `{name}`");
-            return Err(self.cursor.fault(subject, components.to_string(), format!("1 to {MOST_COMPONENTS}")));
+            return Err(self.cursor.fault(
+                subject,
+                components.to_string(),
+                format!("1 to {MOST_COMPONENTS}"),
+            ));
         }
         let values = self.values(tuples, components, number_type, format_args!("the values of `{name}`"))?;
         let fields = match owner {
@@ -279,7 +299,7 @@ impl<'a> Reader<'a> {
         subject: Arguments<'_>,
     ) -> Result<Vec<T>, Fault> {
         let cursor = &mut self.cursor;
-        let count = tuples.checked_mul(components).unwrap_or(usize::MAX);
+        let count = tuples.saturating_mul(components);
         match self.encoding {
             Encoding::Text => {
                 cursor.check_count(count as u64, 2, subject)?;
@@ -293,7 +313,7 @@ impl<'a> Reader<'a> {
                 // the data begin on the next line
                 cursor.line();
                 let position = cursor.position();
-                let length = count.checked_mul(number_type.width()).unwrap_or(usize::MAX);
+                let length = count.saturating_mul(number_type.width());
                 cursor.encoding = self.encoding;
                 let bytes = cursor.take(length, subject)?;
                 cursor.encoding = Encoding::Text;
@@ -343,7 +363,11 @@ impl<'a> Reader<'a> {
     fn finish(self) -> Result<Dataset, Fault> {
         let parts = [(self.has_points, "POINTS"), (self.has_cells, "CELLS"), (self.has_types, "CELL_TYPES")];
         if let Some((_, section)) = parts.iter().find(|part| !part.0) {
-            return Err(Fault::cut_off(self.cursor.place(), format!("the section {section}"), "points and cells"));
+            return Err(Fault::cut_off(
+                self.cursor.place(),
+                format!("the section {section}"),
+                "points and cells",
+            ));
         }
         self.grid.into_dataset(self.cursor.place())
     }
@@ -369,7 +393,9 @@ fn decoded_name(text: &str) -> String {
 
 fn encoded_name(text: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_graphic() && byte != b'%';
-    text.bytes().map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") }).collect()
+    text.bytes()
+        .map(|byte| if plain(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") })
+        .collect()
 }
 
 /// Writes version 3.0 as text; numbers read back as the same bits.

@@ -49,7 +49,8 @@ const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 22, 23, 28, 30, 34, 35
 
 /// The number of the VTK type of an element.
 fn cell_type_of(kind: ElementKind) -> Option<u8> {
-    let identity = |cell: &&CellType| cell.kind == kind && cell.order.iter().enumerate().all(|(i, n)| i == *n);
+    let identity =
+        |cell: &&CellType| cell.kind == kind && cell.order.iter().enumerate().all(|(i, n)| i == *n);
     CELL_TYPES.iter().find(identity).map(|cell| cell.number as u8)
 }
 
@@ -75,7 +76,12 @@ fn group_marks<'a>(output: &Output<'a>) -> Result<Vec<MarkedGroup<'a>>, IoError>
             .then(|| marks(name, &group.points, mesh.points.len()))
             .transpose()?;
         let on_cells = has_cells
-            .then(|| Ok::<_, IoError>([marks(name, &group.cells, mesh.cell_count())?, marks(name, facets, facet_count)?]))
+            .then(|| {
+                Ok::<_, IoError>([
+                    marks(name, &group.cells, mesh.cell_count())?,
+                    marks(name, facets, facet_count)?,
+                ])
+            })
             .transpose()?
             .map(|lists| lists.concat());
         marked.push(MarkedGroup { name, on_points, on_cells });
@@ -88,7 +94,11 @@ fn marks(name: &str, members: &[u32], count: usize) -> Result<Vec<u8>, IoError> 
     let mut marks = vec![0; count];
     for member in members {
         let slot = marks.get_mut(*member as usize).ok_or_else(|| {
-            IoError::request(format!("a member of the group `{name}`"), member, format!("a number below {count}"))
+            IoError::request(
+                format!("a member of the group `{name}`"),
+                member,
+                format!("a number below {count}"),
+            )
         })?;
         *slot = 1;
     }

@@ -6,13 +6,13 @@ use souple_table::Entry;
 
 use super::array::{self, Appended, Compression, Layout};
 use super::grid::Grid;
-use super::xml::{Document, Element};
 use super::vtu_write;
+use super::xml::{Document, Element};
+use crate::Dataset;
 use crate::cursor::Endian;
 use crate::dataset::Field;
 use crate::error::{Fault, Place};
 use crate::format::{Format, wrong_start};
-use crate::Dataset;
 
 pub(crate) static VTU: Entry<Format> = Entry {
     name: "vtu",
@@ -39,14 +39,17 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
         return Err(wrong_start(bytes, "VTU", "<VTKFile or <?xml"));
     }
     let document = Document::parse(bytes, "AppendedData")?;
-    let root = document.elements.iter().position(|element| element.name == "VTKFile" && element.parent.is_none());
-    let root = root.ok_or_else(|| document.fault(0, "the element <VTKFile>", "missing", "one of them around all"))?;
+    let root =
+        document.elements.iter().position(|element| element.name == "VTKFile" && element.parent.is_none());
+    let root =
+        root.ok_or_else(|| document.fault(0, "the element <VTKFile>", "missing", "one of them around all"))?;
     let file = &document.elements[root];
     expect(&document, file, "type", None, &["UnstructuredGrid"])?;
-    let endian = match expect(&document, file, "byte_order", Some("LittleEndian"), &["LittleEndian", "BigEndian"])? {
-        "BigEndian" => Endian::Big,
-        _ => Endian::Little,
-    };
+    let endian =
+        match expect(&document, file, "byte_order", Some("LittleEndian"), &["LittleEndian", "BigEndian"])? {
+            "BigEndian" => Endian::Big,
+            _ => Endian::Little,
+        };
     let header_width = match expect(&document, file, "header_type", Some("UInt32"), &["UInt32", "UInt64"])? {
         "UInt64" => 8,
         _ => 4,
@@ -95,13 +98,22 @@ fn appended<'a>(
     let Some((_, element)) = document.children(root, "AppendedData").next() else { return Ok(None) };
     let end = element.text_position + element.text.len();
     if !element.text.trim_ascii_end().ends_with(b"</VTKFile>") {
-        return Err(Fault::cut_off(Place::Byte(end), "the end of the appended data", "</AppendedData></VTKFile>"));
+        return Err(Fault::cut_off(
+            Place::Byte(end),
+            "the end of the appended data",
+            "</AppendedData></VTKFile>",
+        ));
     }
     let base64 = expect(document, element, "encoding", Some("base64"), &["raw", "base64"])? == "base64";
     let start = element.text.iter().position(|byte| *byte == b'_');
     let space = start.is_some_and(|start| element.text[..start].iter().all(u8::is_ascii_whitespace));
     let (Some(start), true) = (start, space) else {
-        return Err(document.fault(element.position, "the start of the appended data", "missing", "an underscore"));
+        return Err(document.fault(
+            element.position,
+            "the start of the appended data",
+            "missing",
+            "an underscore",
+        ));
     };
     let bytes = &element.text[start + 1..];
     unclaimed.set(bytes.len());
@@ -112,7 +124,9 @@ fn read_piece(document: &Document<'_>, piece: usize, layout: &Layout<'_>) -> Res
     let element = &document.elements[piece];
     let count = |key: &str| -> Result<usize, Fault> {
         let given = element.attribute(key).unwrap_or("missing");
-        given.parse().map_err(|_| document.fault(element.position, format!("`{key}`"), given, "a whole number"))
+        given
+            .parse()
+            .map_err(|_| document.fault(element.position, format!("`{key}`"), given, "a whole number"))
     };
     let (point_count, cell_count) = (count("NumberOfPoints")?, count("NumberOfCells")?);
 
@@ -158,10 +172,11 @@ fn read_field(
     let name = element.attribute("Name").unwrap_or_default();
     let given = element.attribute("NumberOfComponents").unwrap_or("1");
     // VTK writes 0 for arrays of single numbers at times
-    let components: usize = given.parse().ok().filter(|count| *count <= MOST_COMPONENTS).ok_or_else(|| {
-        let subject = format!("the number of components of the array `{name}`");
-        document.fault(element.position, subject, given, format!("1 to {MOST_COMPONENTS}"))
-    })?;
+    let components: usize =
+        given.parse().ok().filter(|count| *count <= MOST_COMPONENTS).ok_or_else(|| {
+            let subject = format!("the number of components of the array `{name}`");
+            document.fault(element.position, subject, given, format!("1 to {MOST_COMPONENTS}"))
+        })?;
     let components = components.max(1);
     let values = array::read::<f64>(document, element, layout)?;
     check_length(document, element, name, values.len(), tuples, components)?;

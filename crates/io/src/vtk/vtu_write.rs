@@ -5,9 +5,9 @@ use std::io::{self, Write};
 
 use super::xml::escape;
 use super::{GROUP_PREFIX, cell_type_of};
+use crate::IoError;
 use crate::dataset::{Field, Output, Precision};
 use crate::format::WriteError;
-use crate::IoError;
 
 /// An array to write: where it stands, its head, its content.
 struct Array<'a> {
@@ -86,7 +86,8 @@ fn arrays<'a>(output: &Output<'a>) -> Result<Vec<Array<'a>>, IoError> {
         .clone()
         .map(|block| {
             let number = cell_type_of(block.kind);
-            let number = number.ok_or_else(|| IoError::request("an element", block.kind, "one that VTK has"))?;
+            let number =
+                number.ok_or_else(|| IoError::request("an element", block.kind, "one that VTK has"))?;
             Ok((number, block.len()))
         })
         .collect::<Result<Vec<(u8, usize)>, IoError>>()?;
@@ -105,7 +106,10 @@ fn arrays<'a>(output: &Output<'a>) -> Result<Vec<Array<'a>>, IoError> {
         "UInt32",
         4 * blocks.clone().map(|block| block.nodes.len()).sum::<usize>(),
         Box::new(move |out| {
-            connectivity.clone().flat_map(|block| &block.nodes).try_for_each(|node| out.write_all(&node.to_le_bytes()))
+            connectivity
+                .clone()
+                .flat_map(|block| &block.nodes)
+                .try_for_each(|node| out.write_all(&node.to_le_bytes()))
         }),
     ));
     arrays.push(cells(

@@ -41,7 +41,12 @@ impl<'a> Document<'a> {
             } else if rest.starts_with(b"<?") {
                 position = document.after(start, b"?>", "?>")?;
             } else if rest.starts_with(b"<!") {
-                return Err(document.fault(start, "a declaration", quoted(&rest[..rest.len().min(20)]), "elements only"));
+                return Err(document.fault(
+                    start,
+                    "a declaration",
+                    quoted(&rest[..rest.len().min(20)]),
+                    "elements only",
+                ));
             } else if rest.starts_with(b"</") {
                 position = document.after(start, b">", ">")?;
                 let name = bytes[start + 2..position - 1].trim_ascii();
@@ -88,7 +93,11 @@ impl<'a> Document<'a> {
     }
 
     /// Elements of that name right within another.
-    pub fn children<'b>(&'b self, parent: usize, name: &'b str) -> impl Iterator<Item = (usize, &'b Element<'a>)> {
+    pub fn children<'b>(
+        &'b self,
+        parent: usize,
+        name: &'b str,
+    ) -> impl Iterator<Item = (usize, &'b Element<'a>)> {
         let elements = self.elements.iter().enumerate().skip(parent);
         elements.filter(move |(_, element)| element.parent == Some(parent) && element.name == name)
     }
@@ -133,9 +142,8 @@ impl<'a> Document<'a> {
             let stops = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, b'>' | b'/' | b'=');
             from + bytes[from..].iter().position(stops).unwrap_or(bytes.len() - from)
         };
-        let skip_space = |from: usize| {
-            from + bytes[from..].iter().take_while(|byte| byte.is_ascii_whitespace()).count()
-        };
+        let skip_space =
+            |from: usize| from + bytes[from..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
         let cut_off = || Fault::cut_off(self.place(bytes.len()), "the end of a tag", ">");
         let word = |from: usize, to: usize, what: &str| {
             let word = std::str::from_utf8(&bytes[from..to]).ok().filter(|word| !word.is_empty());
@@ -163,7 +171,12 @@ impl<'a> Document<'a> {
             let key = word(position, key_end, "the name of an attribute")?;
             position = skip_space(key_end);
             if bytes.get(position) != Some(&b'=') {
-                return Err(self.fault(position, format!("the attribute `{key}`"), "without a value", "key=\"value\""));
+                return Err(self.fault(
+                    position,
+                    format!("the attribute `{key}`"),
+                    "without a value",
+                    "key=\"value\"",
+                ));
             }
             position = skip_space(position + 1);
             let quote = match bytes.get(position) {
@@ -243,7 +256,8 @@ mod tests {
 
     #[test]
     fn elements_attributes_and_text() {
-        let text = b"<?xml version=\"1.0\"?><!-- < --><A x='1 &amp; &#65;'>\n<B y = \"\"/>text\n<C>inner</C></A>";
+        let text =
+            b"<?xml version=\"1.0\"?><!-- < --><A x='1 &amp; &#65;'>\n<B y = \"\"/>text\n<C>inner</C></A>";
         let document = Document::parse(text, "Last").unwrap();
         let names: Vec<_> = document.elements.iter().map(|element| (element.name, element.parent)).collect();
         assert_eq!(names, [("A", None), ("B", Some(0)), ("C", Some(0))]);
@@ -257,7 +271,19 @@ mod tests {
 
     #[test]
     fn faults_are_told() {
-        for bad in ["<A>", "<A></B>", "</A>", "<A x>", "<A x=1>", "<A x=\"1", "<A", "<>", "<!--", "<A x='&no;'/>", "< A/>"] {
+        for bad in [
+            "<A>",
+            "<A></B>",
+            "</A>",
+            "<A x>",
+            "<A x=1>",
+            "<A x=\"1",
+            "<A",
+            "<>",
+            "<!--",
+            "<A x='&no;'/>",
+            "< A/>",
+        ] {
             assert!(Document::parse(bad.as_bytes(), "Last").is_err(), "{bad}");
         }
     }

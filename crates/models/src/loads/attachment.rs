@@ -64,9 +64,7 @@ impl Attachments {
         let Stretch { d, rate, direction } = Stretch::of(link, at);
         match direction {
             _ if link.rest_length == 0.0 => -(d * self.stiffness + rate * self.damping),
-            Some(n) => {
-                -(n * (self.stiffness * (d.dot(n) - link.rest_length) + self.damping * n.dot(rate)))
-            }
+            Some(n) => -(n * (self.stiffness * (d.dot(n) - link.rest_length) + self.damping * n.dot(rate))),
             None => Vec3::ZERO,
         }
     }
@@ -84,7 +82,8 @@ impl Attachments {
         // -k [n nᵀ + (1 - L/l) P] - c n nᵀ,  P = I - n nᵀ
         let elastic = n.outer(n) * -(k + c) - across * (k * (1.0 - link.rest_length / length));
         // the line turns with the points: -c [n (Pḋ)ᵀ + (n·ḋ) P]/l
-        let turning = (n.outer(across * rate) + across * n.dot(rate)) * (self.damping * weights.position / length);
+        let turning =
+            (n.outer(across * rate) + across * n.dot(rate)) * (self.damping * weights.position / length);
         elastic - turning
     }
 
@@ -173,7 +172,13 @@ impl Force for Attachments {
         }
     }
 
-    fn add_blocks(&self, at: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         for link in &self.links {
             let block = self.tangent(link, at, weights);
             link.a.add_blocks(&link.a, &block, matrix);
@@ -187,7 +192,11 @@ impl Force for Attachments {
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
         let speed_sq = |link: &Link| {
             let Stretch { rate, direction, .. } = Stretch::of(link, at);
-            if link.rest_length == 0.0 { rate.length_sq() } else { direction.map_or(0.0, |n| n.dot(rate).powi(2)) }
+            if link.rest_length == 0.0 {
+                rate.length_sq()
+            } else {
+                direction.map_or(0.0, |n| n.dot(rate).powi(2))
+            }
         };
         memory[0] += timestep * self.damping * self.links.iter().map(speed_sq).sum::<f64>();
     }

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use souple_engine::{
-    Configuration, Force, Kinematics, Mass, Model, Pair, State, Stepper, System, TangentWeights, UnknownKind, World,
+    Configuration, Force, Kinematics, Mass, Model, Pair, State, Stepper, System, TangentWeights, UnknownKind,
+    World,
 };
 use souple_math::Vec3;
 use souple_solve::{BlockMatrix, PatternBuilder};
@@ -102,7 +103,12 @@ pub(crate) fn assert_force(force: &dyn Force, setting: &Setting) {
         let slope = (plus - minus) / (2.0 * STEP);
         let scale = norm(&value) * norm(&along) + plus.abs();
         let error = (slope + dot(&value, &along)).abs();
-        assert!(error <= 1e-8 * scale, "{}: force is not -dE/dx: {slope} {}", force.name(), dot(&value, &along));
+        assert!(
+            error <= 1e-8 * scale,
+            "{}: force is not -dE/dx: {slope} {}",
+            force.name(),
+            dot(&value, &along)
+        );
     }
     let mut builder = PatternBuilder::new(rows);
     force.visit_cliques(&setting.pairs, &mut |rows| builder.add_clique(rows).unwrap());
@@ -115,11 +121,7 @@ pub(crate) fn assert_force(force: &dyn Force, setting: &Setting) {
         let numeric: Vec<Vec3> = plus.iter().zip(&minus).map(|(p, m)| (*p - *m) * (0.5 / STEP)).collect();
         let difference: Vec<Vec3> = numeric.iter().zip(&exact).map(|(n, e)| *n - *e).collect();
         let tolerance = 1e-6 * norm(&exact) + 1e-8 * norm(&value);
-        assert!(
-            norm(&difference) <= tolerance,
-            "{} at {weights:?}: {numeric:?} {exact:?}",
-            force.name()
-        );
+        assert!(norm(&difference) <= tolerance, "{} at {weights:?}: {numeric:?} {exact:?}", force.name());
         let mut matrix = BlockMatrix::zeros(pattern.clone());
         force.add_blocks(&setting.at(), weights, &mut force.new_scratch(), &mut matrix);
         let product = multiply(&matrix, &along);
@@ -128,7 +130,11 @@ pub(crate) fn assert_force(force: &dyn Force, setting: &Setting) {
         if declaration.symmetric_tangent {
             let other = direction(rows, 0.9);
             let asymmetry = dot(&other, &product) - dot(&along, &multiply(&matrix, &other));
-            assert!(asymmetry.abs() <= 1e-12 * norm(&product) * norm(&other), "{}: not symmetric", force.name());
+            assert!(
+                asymmetry.abs() <= 1e-12 * norm(&product) * norm(&other),
+                "{}: not symmetric",
+                force.name()
+            );
         }
     }
     if declaration.internal {
@@ -139,13 +145,19 @@ pub(crate) fn assert_force(force: &dyn Force, setting: &Setting) {
         }
         let size = setting.positions.iter().map(|x| x.length()).fold(0.0, f64::max);
         assert!(net.length() <= 1e-14 * norm(&value) * rows as f64, "{}: net force {net:?}", force.name());
-        assert!(torque.length() <= 1e-13 * norm(&value) * size * rows as f64, "{}: torque {torque:?}", force.name());
+        assert!(
+            torque.length() <= 1e-13 * norm(&value) * size * rows as f64,
+            "{}: torque {torque:?}",
+            force.name()
+        );
     }
 }
 
 fn multiply(matrix: &BlockMatrix, x: &[Vec3]) -> Vec<Vec3> {
     let pattern = matrix.pattern();
-    let row = |a: usize| pattern.slots(a).map(|slot| matrix.values()[slot] * x[pattern.columns()[slot] as usize]).sum();
+    let row = |a: usize| {
+        pattern.slots(a).map(|slot| matrix.values()[slot] * x[pattern.columns()[slot] as usize]).sum()
+    };
     (0..x.len()).map(row).collect()
 }
 
@@ -180,4 +192,11 @@ pub(crate) fn world(
 pub(crate) fn stepper(name: &str) -> Box<dyn Stepper> {
     let entry = souple_engine::steppers::TABLE.find(name).unwrap();
     (entry.build)(&entry.values(souple_table::Values::new()).unwrap())
+}
+
+/// A stepper that solves `newton = "full"` or `"one"`.
+pub(crate) fn stepper_of(name: &str, newton: &str) -> Box<dyn Stepper> {
+    let entry = souple_engine::steppers::TABLE.find(name).unwrap();
+    let given = souple_table::Values::new().with("newton", souple_table::Value::Text(newton));
+    (entry.build)(&entry.values(given).unwrap())
 }

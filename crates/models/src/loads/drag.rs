@@ -12,7 +12,8 @@ use souple_solve::BlockMatrix;
 use super::{Fit, LoadError, editable, not_negative, set_number};
 
 /// Not a potential, linear in the velocity, symmetric, and braked against the world.
-const DECLARATION: Declaration = Declaration { conservative: false, velocity_terms: true, ..Declaration::LOAD };
+const DECLARATION: Declaration =
+    Declaration { conservative: false, velocity_terms: true, ..Declaration::LOAD };
 
 /// `f_i = -c share_i v_i`: viscous surroundings. What it takes is kept account of in memory.
 #[derive(Clone, Debug)]
@@ -79,7 +80,13 @@ impl Force for Drag {
         self.rows.iter().for_each(|&(row, _)| visit(&[row]));
     }
 
-    fn add_blocks(&self, _: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        _: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         for &(row, share) in &self.rows {
             let block = Mat3::IDENTITY * (-weights.velocity * self.coefficient * share);
             add_block(matrix, row as usize, row as usize, &block);
@@ -166,7 +173,13 @@ impl Force for MassDamping {
         self.mass.couplings.iter().for_each(|&(a, b, _)| visit(&[a, b]));
     }
 
-    fn add_blocks(&self, _: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        _: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         let scale = -self.rate * weights.velocity;
         for (row, mass) in self.mass.diagonal.iter().enumerate() {
             add_block(matrix, row, row, &(Mat3::IDENTITY * (mass * scale)));

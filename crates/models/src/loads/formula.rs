@@ -39,7 +39,9 @@ impl FormulaVector {
     /// The derivative by one of the variables.
     fn derivative(&self, position: Vec3, time: f64, by: usize) -> Vec3 {
         let values = arguments(position, time);
-        Vec3::from_array([0, 1, 2].map(|axis: usize| self.components[axis].differentiate(&values, by).derivative))
+        Vec3::from_array(
+            [0, 1, 2].map(|axis: usize| self.components[axis].differentiate(&values, by).derivative),
+        )
     }
 }
 

@@ -46,7 +46,8 @@ impl Grab {
 
     /// The pull on the body [N].
     pub fn pull(&self, at: &Configuration) -> Vec3 {
-        (self.target - self.point.of(at.positions)) * self.stiffness - self.point.of(at.velocities) * self.damping
+        (self.target - self.point.of(at.positions)) * self.stiffness
+            - self.point.of(at.velocities) * self.damping
     }
 
     fn factor(&self, weights: TangentWeights) -> f64 {
@@ -94,7 +95,13 @@ impl Force for Grab {
         visit(&rows);
     }
 
-    fn add_blocks(&self, _: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        _: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         self.point.add_blocks(&self.point, &(Mat3::IDENTITY * self.factor(weights)), matrix);
     }
 

@@ -3,7 +3,8 @@
 use std::any::Any;
 
 use souple_engine::{
-    Configuration, Declaration, Editable, Energy, Force, Kinematics, Mass, ParameterError, Scratch, TangentWeights,
+    Configuration, Declaration, Editable, Energy, Force, Kinematics, Mass, ParameterError, Scratch,
+    TangentWeights,
 };
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
@@ -37,7 +38,8 @@ impl Gravity {
         }
         // a fall moves row b by its translation weight: f = M (w g)
         let share = |row| kinematics.translation_weight(row);
-        let mut row_masses: Vec<f64> = mass.diagonal.iter().enumerate().map(|(row, mass)| mass * share(row)).collect();
+        let mut row_masses: Vec<f64> =
+            mass.diagonal.iter().enumerate().map(|(row, mass)| mass * share(row)).collect();
         for &(a, b, coupling) in &mass.couplings {
             row_masses[a as usize] += coupling * share(b as usize);
             row_masses[b as usize] += coupling * share(a as usize);
@@ -74,7 +76,15 @@ impl Force for Gravity {
         }
     }
 
-    fn add_differential(&self, _: &Configuration, _: TangentWeights, _: &[Vec3], _: &mut Scratch, _: &mut [Vec3]) {}
+    fn add_differential(
+        &self,
+        _: &Configuration,
+        _: TangentWeights,
+        _: &[Vec3],
+        _: &mut Scratch,
+        _: &mut [Vec3],
+    ) {
+    }
 
     fn visit_cliques(&self, _pairs: &[souple_engine::Pair], _visit: &mut dyn FnMut(&[u32])) {}
 
@@ -87,7 +97,11 @@ impl Force for Gravity {
 
     fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
         let Vec3 { x, y, z } = &mut self.acceleration;
-        let numbers = &mut [("gravity_x", x, Fit::Finite), ("gravity_y", y, Fit::Finite), ("gravity_z", z, Fit::Finite)];
+        let numbers = &mut [
+            ("gravity_x", x, Fit::Finite),
+            ("gravity_y", y, Fit::Finite),
+            ("gravity_z", z, Fit::Finite),
+        ];
         set_number(&self.name, numbers, name, value)
     }
 

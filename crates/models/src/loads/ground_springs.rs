@@ -84,7 +84,8 @@ impl Force for GroundSprings {
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
         for spring in &self.springs {
             let row = spring.row as usize;
-            let pull = (spring.anchor - at.positions[row]) * self.stiffness - at.velocities[row] * self.damping;
+            let pull =
+                (spring.anchor - at.positions[row]) * self.stiffness - at.velocities[row] * self.damping;
             out[row] += pull * spring.share;
         }
     }
@@ -107,7 +108,13 @@ impl Force for GroundSprings {
         self.springs.iter().for_each(|spring| visit(&[spring.row]));
     }
 
-    fn add_blocks(&self, _: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        _: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         for spring in &self.springs {
             let row = spring.row as usize;
             add_block(matrix, row, row, &(Mat3::IDENTITY * (spring.share * self.factor(weights))));

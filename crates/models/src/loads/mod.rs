@@ -46,7 +46,7 @@ const NOT_NEGATIVE: &str = "a finite number of at least 0";
 const FINITE: &str = "a finite number";
 
 /// Accepts finite numbers from zero.
-fn not_negative(field: impl Into<String>, value: f64) -> Result<f64, LoadError> {
+pub(crate) fn not_negative(field: impl Into<String>, value: f64) -> Result<f64, LoadError> {
     if value.is_finite() && value >= 0.0 {
         return Ok(value);
     }
@@ -54,8 +54,12 @@ fn not_negative(field: impl Into<String>, value: f64) -> Result<f64, LoadError> 
 }
 
 /// Accepts finite numbers.
-fn finite(field: impl Into<String>, value: f64) -> Result<f64, LoadError> {
-    if value.is_finite() { Ok(value) } else { Err(LoadError::Unfit { field: field.into(), value, expected: FINITE }) }
+pub(crate) fn finite(field: impl Into<String>, value: f64) -> Result<f64, LoadError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(LoadError::Unfit { field: field.into(), value, expected: FINITE })
+    }
 }
 
 /// What a parameter edited while running may be.

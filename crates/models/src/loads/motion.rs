@@ -44,7 +44,11 @@ impl KeyFrames {
             let field = format!("times[{index}]");
             let time = finite(field.clone(), times[index])?;
             if index > 0 && time <= times[index - 1] {
-                return Err(LoadError::Unfit { field, value: time, expected: "later than the time before it" });
+                return Err(LoadError::Unfit {
+                    field,
+                    value: time,
+                    expected: "later than the time before it",
+                });
             }
             for axis in 0..3 {
                 finite(format!("offsets[{index}][{axis}]"), offsets[index][axis])?;

@@ -90,7 +90,13 @@ impl Force for PointLoad {
         self.rows.iter().for_each(|&(row, _)| visit(&[row]));
     }
 
-    fn add_blocks(&self, at: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         if !self.field.depends_on_position() {
             return;
         }

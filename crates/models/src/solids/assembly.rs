@@ -125,7 +125,9 @@ impl Assembly {
         *self = Self { pairs: Some(pairs), ..Self::default() };
         let mut known: Vec<(u16, u16)> = Vec::new();
         let mut ordered: Vec<Option<((u16, u16), bool)>> = Vec::new();
-        for (batch, chunk) in batches.iter().flat_map(|batch| batch.chunks.iter().map(move |chunk| (batch, chunk))) {
+        for (batch, chunk) in
+            batches.iter().flat_map(|batch| batch.chunks.iter().map(move |chunk| (batch, chunk)))
+        {
             self.starts.push(Start { place: self.places.len(), sum: self.entries.len() });
             let nodes = batch.kind.node_count();
             ordered.clear();
@@ -234,7 +236,8 @@ impl BatchSums<'_> {
                             continue;
                         }
                         let number = |i: usize| numbers[i * LANES + lane];
-                        let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+                        let column =
+                            |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
                         let row = |i: usize| Vec3::new(number(i), number(i + 3), number(i + 6));
                         sums[(place >> 1) as usize] += if place & 1 == 0 {
                             Mat3::from_columns(column(0), column(1), column(2))

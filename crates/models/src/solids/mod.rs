@@ -16,7 +16,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use souple_engine::state::Pair;
 use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
-use souple_math::{Mat3, Vec3};
+use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
@@ -24,7 +24,7 @@ use crate::materials::{AnyLaw, Law, LawVisitor, Material, Parameters};
 use assembly::Assembly;
 use geometry::{Nodes, Tetrahedron};
 use kernel::{Kernel, LawKernel};
-use layout::{Chunk, LANES};
+use layout::Chunk;
 
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass};
@@ -291,12 +291,6 @@ impl Gather {
 }
 
 impl Chunk {
-    /// Row of node `a` of the chunk's `element`-th element.
-    fn row_of(&self, nodes: usize, element: usize, a: usize) -> u32 {
-        let local = self.connectivity[(element / LANES * nodes + a) * LANES + element % LANES];
-        self.rows[local as usize]
-    }
-
     /// The chunk's rows of `values`, in `local`.
     fn localise(&self, values: &[Vec3], local: &mut Vec<Vec3>) {
         local.clear();

@@ -5,7 +5,7 @@ use std::ops::Range;
 use sha2::Sha256;
 use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
 use souple_math::Vec3;
-use souple_mesh::Mesh;
+use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
@@ -47,12 +47,20 @@ pub fn place<'a>(
     // every mesh is looked at, so that each refused one is reported
     for body in &spec.bodies {
         let Some(shape) = shape::build(body, sources, hash, log) else { continue };
-        let Some(system) = spec.systems.iter().position(|system| system.name == body.system) else { continue };
+        let Some(system) = spec.systems.iter().position(|system| system.name == body.system) else {
+            continue;
+        };
         warnings.extend(shape.warnings);
         let first = next_row[system];
         next_row[system] += shape.mesh.points.len();
         let rows = first..next_row[system];
-        placed.push(Placed { spec: body, system, rows, mesh: shape.mesh, point_numbers: shape.point_numbers });
+        placed.push(Placed {
+            spec: body,
+            system,
+            rows,
+            mesh: shape.mesh,
+            point_numbers: shape.point_numbers,
+        });
     }
     (placed.len() == spec.bodies.len() && log.is_empty()).then_some(placed)
 }
@@ -100,7 +108,11 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
 }
 
 /// The elastic force of a body and what damps its strain.
-fn add_solid(body: &Body, description: SolidDescription, forces: &mut Vec<Box<dyn Force>>) -> Result<(), FlatCell> {
+fn add_solid(
+    body: &Body,
+    description: SolidDescription,
+    forces: &mut Vec<Box<dyn Force>>,
+) -> Result<(), FlatCell> {
     forces.push(Box::new(SolidForce::new(&description)?));
     let Damping { rayleigh_stiffness, viscosity, .. } = body.damping;
     if rayleigh_stiffness > 0.0 {
@@ -116,7 +128,13 @@ fn add_solid(body: &Body, description: SolidDescription, forces: &mut Vec<Box<dy
 }
 
 /// Gravity of the whole system, drag and damping of its bodies.
-fn add_outer_forces(draft: &Draft, index: usize, mass: &Mass, kinematics: &Kinematics, forces: &mut Vec<Box<dyn Force>>) {
+fn add_outer_forces(
+    draft: &Draft,
+    index: usize,
+    mass: &Mass,
+    kinematics: &Kinematics,
+    forces: &mut Vec<Box<dyn Force>>,
+) {
     let world = &draft.spec.world;
     if world.gravity != Vec3::ZERO {
         match Gravity::new("gravity", world.gravity, mass, kinematics) {
@@ -139,7 +157,9 @@ fn add_outer_forces(draft: &Draft, index: usize, mass: &Mass, kinematics: &Kinem
         for force in added {
             match force {
                 Ok(force) => forces.push(force),
-                Err(error) => draft.log.add(Code::OutOfRange, &body.spec.site, error.to_string(), "finite numbers"),
+                Err(error) => {
+                    draft.log.add(Code::OutOfRange, &body.spec.site, error.to_string(), "finite numbers")
+                }
             }
         }
     }
@@ -149,21 +169,28 @@ fn add_outer_forces(draft: &Draft, index: usize, mass: &Mass, kinematics: &Kinem
 fn part_of_mass(mass: &Mass, rows: &Range<usize>) -> Mass {
     let mut part = Mass::new(mass.diagonal.len());
     part.diagonal[rows.clone()].copy_from_slice(&mass.diagonal[rows.clone()]);
-    part.couplings = mass.couplings.iter().copied().filter(|(a, _, _)| rows.contains(&(*a as usize))).collect();
+    part.couplings =
+        mass.couplings.iter().copied().filter(|(a, _, _)| rows.contains(&(*a as usize))).collect();
     part
 }
 
 /// Rows of a body's surface with their shares of its area.
 fn surface_shares(body: &Placed) -> Vec<(u32, f64)> {
     let surface = body.mesh.boundary_surface();
+    let areas = point_areas(&surface);
+    let total: f64 = areas.iter().sum();
+    let first = body.rows.start as u32;
+    surface.mesh_points.iter().zip(&areas).map(|(point, area)| (first + point, area / total)).collect()
+}
+
+/// A third of the triangles around each point of a surface [m²].
+pub fn point_areas(surface: &TriangleSurface) -> Vec<f64> {
     let mut areas = vec![0.0; surface.points.len()];
     for (triangle, corners) in surface.triangles.iter().enumerate() {
         let third = surface.area_vector(triangle as u32).length() / 3.0;
         corners.iter().for_each(|corner| areas[*corner as usize] += third);
     }
-    let total: f64 = areas.iter().sum();
-    let first = body.rows.start as u32;
-    surface.mesh_points.iter().zip(&areas).map(|(point, area)| (first + point, area / total)).collect()
+    areas
 }
 
 /// The materials of a body and the number of each cell's among them.

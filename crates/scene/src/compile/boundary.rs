@@ -12,7 +12,7 @@ use souple_models::loads::{
 
 use super::Draft;
 use super::motion::AxisMotions;
-use crate::diagnostic::{Code, Site};
+use crate::diagnostic::{Code, Log, Site};
 use crate::spec::boundary::{Distribution, Load, MotionSpec, Pin, Spring};
 
 /// What holds one point, axis by axis.
@@ -58,7 +58,12 @@ pub fn add_pins(draft: &mut Draft) {
 
 /// `Some(None)` where the pin stays, `None` where its motion was refused.
 fn motion_of(draft: &Draft, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
-    let motion: Arc<dyn Motion> = match &pin.motion {
+    motion(draft.log, pin.motion.as_ref(), &pin.site)
+}
+
+/// `Some(None)` where no motion is written, `None` where it was refused.
+pub fn motion(log: &Log, spec: Option<&MotionSpec>, site: &Site) -> Option<Option<Arc<dyn Motion>>> {
+    let motion: Arc<dyn Motion> = match spec {
         None => return Some(None),
         Some(MotionSpec::Formula(formulas)) => Arc::new(FormulaVector::from_components(formulas.clone())),
         Some(MotionSpec::KeyFrames { times, offsets, is_smooth }) => {
@@ -66,7 +71,7 @@ fn motion_of(draft: &Draft, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
             match KeyFrames::new(times.clone(), offsets.clone(), interpolation) {
                 Ok(frames) => Arc::new(frames),
                 Err(error) => {
-                    draft.log.add(Code::OutOfRange, &pin.site, error.to_string(), "key frames in order");
+                    log.add(Code::OutOfRange, site, error.to_string(), "key frames in order");
                     return None;
                 }
             }
@@ -120,10 +125,13 @@ fn point_load(name: String, load: &Load, rows: Vec<(u32, f64)>) -> Built {
         return None;
     }
     let variables = crate::spec::boundary::LOAD_VARIABLES.len();
-    let is_constant = formulas.iter().all(|formula| !(0..variables).any(|variable| formula.depends_on(variable)));
+    let is_constant =
+        formulas.iter().all(|formula| !(0..variables).any(|variable| formula.depends_on(variable)));
     let field: Arc<dyn ForceField> = if is_constant {
         let nowhere = vec![0.0; variables];
-        Arc::new(UniformForce(Vec3::from_array([0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&nowhere)))))
+        Arc::new(UniformForce(Vec3::from_array(
+            [0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&nowhere)),
+        )))
     } else {
         Arc::new(FormulaVector::from_components(formulas.clone()))
     };
@@ -135,5 +143,7 @@ fn ground_springs(name: String, spring: &Spring, rows: &[(u32, f64)], anchor: im
         return None;
     }
     let springs = rows.iter().map(|&(row, share)| GroundSpring { row, share, anchor: anchor(row) }).collect();
-    Some(GroundSprings::new(name, springs, spring.stiffness, spring.damping).map(|force| Box::new(force) as _))
+    Some(
+        GroundSprings::new(name, springs, spring.stiffness, spring.damping).map(|force| Box::new(force) as _),
+    )
 }

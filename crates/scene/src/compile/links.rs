@@ -24,13 +24,26 @@ fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, is_coupling: bool) -> Option<
     }
     if !is_coupling && from.system != to.system {
         let (a, b) = (name(from), name(to));
-        let message = format!("`{}` steps in system `{a}` and `{}` in `{b}`: attached bodies step together", link.from, link.to);
-        draft.log.add(Code::Conflict, &link.site, message, "bodies of one system, or [[couplings]] between systems");
+        let message = format!(
+            "`{}` steps in system `{a}` and `{}` in `{b}`: attached bodies step together",
+            link.from, link.to
+        );
+        draft.log.add(
+            Code::Conflict,
+            &link.site,
+            message,
+            "bodies of one system, or [[couplings]] between systems",
+        );
         return None;
     }
     if is_coupling && from.system == to.system {
         let message = format!("`{}` and `{}` are both in system `{}`", link.from, link.to, name(from));
-        draft.log.add(Code::Conflict, &link.site, message, "bodies of two systems, or [[attachments]] within one");
+        draft.log.add(
+            Code::Conflict,
+            &link.site,
+            message,
+            "bodies of two systems, or [[attachments]] within one",
+        );
         return None;
     }
     Some([from, to])
@@ -51,7 +64,12 @@ pub fn attach(draft: &mut Draft) {
             .collect();
         if links.is_empty() {
             let message = format!("no point of `{}` is within reach of `{}`", link.from, link.to);
-            draft.log.add(Code::EmptyRegion, &link.site, message, "a region near the other body, or a longer reach");
+            draft.log.add(
+                Code::EmptyRegion,
+                &link.site,
+                message,
+                "a region near the other body, or a longer reach",
+            );
             continue;
         }
         match Attachments::new(format!("attachments[{index}]"), links, link.stiffness, link.damping) {
@@ -64,14 +82,21 @@ pub fn attach(draft: &mut Draft) {
     }
 }
 
-fn attachment(locator: &CellLocator, link: &Link, point: u32, from: &Placed, to: &Placed) -> Option<LoadLink> {
+fn attachment(
+    locator: &CellLocator,
+    link: &Link,
+    point: u32,
+    from: &Placed,
+    to: &Placed,
+) -> Option<LoadLink> {
     let position = from.mesh.points[point as usize];
     let location = locator.carrier(position).filter(|location| location.distance <= link.reach)?;
     let cell = to.mesh.cell(location.cell)?;
     let first = to.rows.start as u32;
     let weights = location.weights();
     let rows = cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| (first + node, *weight)).collect();
-    let carried = cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| to.mesh.points[*node as usize] * *weight);
+    let carried =
+        cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| to.mesh.points[*node as usize] * *weight);
     let distance = (position - carried.sum()).length();
     let is_touching = distance <= TOUCHING * to.mesh.bounds().diagonal();
     let rest_length = if is_touching { 0.0 } else { distance };
@@ -91,10 +116,8 @@ pub fn couple(draft: &mut Draft) {
             let distance = |other: &u32| (to.mesh.points[*other as usize] - position).length_sq();
             let nearest = (0..to.mesh.points.len() as u32).min_by(|a, b| distance(a).total_cmp(&distance(b)));
             let Some(nearest) = nearest else { continue };
-            let ends = [
-                (from.system, from.rows.start as u32 + point),
-                (to.system, to.rows.start as u32 + nearest),
-            ];
+            let ends =
+                [(from.system, from.rows.start as u32 + point), (to.system, to.rows.start as u32 + nearest)];
             let steps = |end: (usize, u32)| draft.spec.systems[end.0].steps_per_period;
             let [fast, slow] = if steps(ends[0]) >= steps(ends[1]) { ends } else { [ends[1], ends[0]] };
             springs.push(CouplingSpring {

@@ -2,12 +2,15 @@
 
 mod bodies;
 mod boundary;
+mod contact;
 mod links;
 mod motion;
 mod selection;
 mod shape;
 
 pub(crate) use bodies::solid_name;
+
+use std::collections::BTreeSet;
 
 use sha2::{Digest, Sha256};
 use souple_engine::{Model, State, System};
@@ -41,7 +44,12 @@ impl Draft<'_> {
 
     /// What selects the points and cells of a body.
     pub fn selector<'b>(&'b self, body: &'b Placed<'_>) -> Selector<'b> {
-        Selector { body: &body.spec.name, mesh: &body.mesh, point_numbers: &body.point_numbers, log: self.log }
+        Selector {
+            body: &body.spec.name,
+            mesh: &body.mesh,
+            point_numbers: &body.point_numbers,
+            log: self.log,
+        }
     }
 }
 
@@ -66,9 +74,12 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     }
     boundary::add_loads(&mut draft);
     boundary::add_pins(&mut draft);
+    contact::add(&mut draft, sources);
     links::attach(&mut draft);
     links::couple(&mut draft);
-    let probes: Vec<ProbeInfo> = spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
+    check_force_names(&draft);
+    let probes: Vec<ProbeInfo> =
+        spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
     if !log.is_empty() {
         return None;
     }
@@ -83,7 +94,8 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
     model.systems = systems;
     let scene_sha256 = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-    let bodies = bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
+    let bodies =
+        bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
     Some(Scene {
         title: spec.title.clone(),
         description: spec.description.clone(),
@@ -97,6 +109,22 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         scene_sha256,
         warnings,
     })
+}
+
+/// Forces are told apart by their names, which contacts may choose.
+fn check_force_names(draft: &Draft) {
+    for system in &draft.systems {
+        let mut names = BTreeSet::new();
+        for force in &system.forces {
+            let name = force.name();
+            if !names.insert(name) {
+                let contact = draft.spec.contacts.iter().rev().find(|contact| contact.name == name);
+                let site = contact.map_or(&draft.spec.world.site, |contact| &contact.site);
+                let message = format!("there are two forces `{name}` in system `{}`", system.name);
+                draft.log.add(Code::Conflict, site, message, "names that differ");
+            }
+        }
+    }
 }
 
 fn check_stepper(system: &System, spec: &SystemSpec, log: &Log) {

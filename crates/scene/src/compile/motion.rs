@@ -11,7 +11,9 @@ pub struct AxisMotions(pub [Option<Arc<dyn Motion>>; 3]);
 
 impl AxisMotions {
     fn by_axis(&self, of: impl Fn(&dyn Motion) -> Vec3) -> Vec3 {
-        Vec3::from_array([0, 1, 2].map(|axis: usize| self.0[axis].as_deref().map_or(0.0, |motion| of(motion)[axis])))
+        Vec3::from_array(
+            [0, 1, 2].map(|axis: usize| self.0[axis].as_deref().map_or(0.0, |motion| of(motion)[axis])),
+        )
     }
 }
 

@@ -48,7 +48,10 @@ impl Selector<'_> {
             .min_by(|a, b| a.1.total_cmp(&b.1));
         let hint = nearest.map_or_else(String::new, |(index, distance)| {
             let x = positions[index];
-            format!("; the nearest, {what} {index} at ({}, {}, {}), is {distance:.3e} m away from it", x.x, x.y, x.z)
+            format!(
+                "; the nearest, {what} {index} at ({}, {}, {}), is {distance:.3e} m away from it",
+                x.x, x.y, x.z
+            )
         });
         let message = format!("this region holds no {what} of body `{}`{hint}", self.body);
         let bounds = self.mesh.bounds();
@@ -87,7 +90,14 @@ impl Selector<'_> {
                 for number in listed {
                     match self.point_numbers.binary_search(number) {
                         Ok(point) => mask[point] = true,
-                        Err(_) => return self.refuse_number("point", *number, self.point_numbers.len(), &region.site),
+                        Err(_) => {
+                            return self.refuse_number(
+                                "point",
+                                *number,
+                                self.point_numbers.len(),
+                                &region.site,
+                            );
+                        }
                     }
                 }
             }
@@ -95,11 +105,15 @@ impl Selector<'_> {
                 self.check_cells(listed, &region.site)?;
                 of_cells(listed, &mut mask);
             }
-            RegionKind::Union(parts) => return self.combined(parts, |part| self.point_mask(part), points.len(), false),
+            RegionKind::Union(parts) => {
+                return self.combined(parts, |part| self.point_mask(part), points.len(), false);
+            }
             RegionKind::Intersection(parts) => {
                 return self.combined(parts, |part| self.point_mask(part), points.len(), true);
             }
-            RegionKind::Not(part) => return Some(self.point_mask(part)?.iter().map(|inside| !inside).collect()),
+            RegionKind::Not(part) => {
+                return Some(self.point_mask(part)?.iter().map(|inside| !inside).collect());
+            }
             kind => return Some(points.iter().map(|point| holds(kind, *point)).collect()),
         }
         Some(mask)
@@ -122,14 +136,18 @@ impl Selector<'_> {
                 self.check_cells(listed, &region.site)?;
                 listed.iter().for_each(|cell| mask[*cell as usize] = true);
             }
-            RegionKind::Nearest(target) => nearest(centres, *target).into_iter().for_each(|cell| mask[cell] = true),
+            RegionKind::Nearest(target) => {
+                nearest(centres, *target).into_iter().for_each(|cell| mask[cell] = true)
+            }
             RegionKind::Union(parts) => {
                 return self.combined(parts, |part| self.cell_mask(part, centres), centres.len(), false);
             }
             RegionKind::Intersection(parts) => {
                 return self.combined(parts, |part| self.cell_mask(part, centres), centres.len(), true);
             }
-            RegionKind::Not(part) => return Some(self.cell_mask(part, centres)?.iter().map(|inside| !inside).collect()),
+            RegionKind::Not(part) => {
+                return Some(self.cell_mask(part, centres)?.iter().map(|inside| !inside).collect());
+            }
             kind => return Some(centres.iter().map(|centre| holds(kind, *centre)).collect()),
         }
         Some(mask)
@@ -213,7 +231,9 @@ fn holds(kind: &RegionKind, x: Vec3) -> bool {
 /// How far a position is from a region that is a shape, zero or less inside [m].
 fn distance_to(kind: &RegionKind, x: Vec3) -> Option<f64> {
     match kind {
-        RegionKind::Box { low, high } => Some(souple_mesh::BoundingBox { low: *low, high: *high }.distance_sq(x).sqrt()),
+        RegionKind::Box { low, high } => {
+            Some(souple_mesh::BoundingBox { low: *low, high: *high }.distance_sq(x).sqrt())
+        }
         RegionKind::Sphere { centre, radius } => Some((x - *centre).length() - radius),
         RegionKind::HalfSpace { point, normal } => Some((x - *point).dot(*normal)),
         _ => None,
@@ -235,7 +255,8 @@ mod tests {
         let numbers: Vec<u32> = (0..mesh.points.len() as u32).collect();
         let log = Log::default();
         let mut sources = crate::source::Sources::default();
-        let source = crate::source::Source { name: String::new(), folder: Default::default(), text: text.to_owned() };
+        let source =
+            crate::source::Source { name: String::new(), folder: Default::default(), text: text.to_owned() };
         let source = sources.add(source);
         let document = crate::document::parse(&sources, source, &log);
         let node = document.get("r").expect("a region");
@@ -267,7 +288,13 @@ mod tests {
     /// What holds nothing, or asks for what is not there, is refused.
     #[test]
     fn empty_regions_are_refused() {
-        for text in ["{ box = [[5, 5, 5], [6, 6, 6]] }", "{ points = [12] }", "{ cells = [2] }", "\"x_mim\"", "{ points = [] }"] {
+        for text in [
+            "{ box = [[5, 5, 5], [6, 6, 6]] }",
+            "{ points = [12] }",
+            "{ cells = [2] }",
+            "\"x_mim\"",
+            "{ points = [] }",
+        ] {
             assert!(!select(&format!("r = {text}")).2, "{text}");
         }
     }

@@ -8,13 +8,12 @@ use souple_table::{Range, Value};
 
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::region::{Region, direction};
-use super::world::DEFAULT_SYSTEM;
 use crate::diagnostic::{Code, Site};
 use crate::document::Content;
 use crate::keys::{EntryShape, Key, Keys, Need, Shape, outlines};
 use crate::reader::{Chosen, Reader, choose};
 
-pub static MESH_FILE: Keys = Keys::new(
+pub(crate) static MESH_FILE: Keys = Keys::new(
     "mesh_file",
     "a mesh from a file",
     &[
@@ -30,10 +29,10 @@ const MESH: EntryShape = EntryShape {
     instead: Some(&MESH_FILE),
 };
 
-pub const MATERIAL: EntryShape =
+pub(crate) const MATERIAL: EntryShape =
     EntryShape { tag: "name", kind: "material", outlines: || outlines(&materials::TABLE), instead: None };
 
-pub static DAMPING: Keys = Keys::new(
+pub(crate) static DAMPING: Keys = Keys::new(
     "damping",
     "what takes energy from a body",
     &[
@@ -46,7 +45,7 @@ pub static DAMPING: Keys = Keys::new(
     ],
 );
 
-pub static ROTATION: Keys = Keys::new(
+pub(crate) static ROTATION: Keys = Keys::new(
     "rotation",
     "a turn about an axis",
     &[
@@ -56,7 +55,7 @@ pub static ROTATION: Keys = Keys::new(
     ],
 );
 
-pub static BODY_REGION: Keys = Keys::new(
+pub(crate) static BODY_REGION: Keys = Keys::new(
     "body_region",
     "a part of a body with a material of its own",
     &[
@@ -65,7 +64,7 @@ pub static BODY_REGION: Keys = Keys::new(
     ],
 );
 
-pub static BODY: Keys = Keys::new(
+pub(crate) static BODY: Keys = Keys::new(
     "body",
     "a soft solid",
     &[
@@ -74,15 +73,25 @@ pub static BODY: Keys = Keys::new(
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new("mass", Shape::Choice(&["lumped", "consistent"]), "how mass is spread over points")
             .or(Value::Text("lumped")),
-        Key::new("quadrature", Shape::Choice(&["default", "full"]), "samples in an element: the cheapest of full rank, or exact ones for quadratic stress")
-            .or(Value::Text("default")),
+        Key::new(
+            "quadrature",
+            Shape::Choice(&["default", "full"]),
+            "samples in an element: the cheapest of full rank, or exact ones for quadratic stress",
+        )
+        .or(Value::Text("default")),
         Key::new("damping", Shape::Table(&DAMPING), "what takes energy from it"),
-        Key::number("drag", "N s/m", Range::NOT_NEGATIVE, "of the whole body against a medium at rest, shared by its surface")
-            .or(Value::Number(0.0)),
+        Key::number(
+            "drag",
+            "N s/m",
+            Range::NOT_NEGATIVE,
+            "of the whole body against a medium at rest, shared by its surface",
+        )
+        .or(Value::Number(0.0)),
         Key::new("rotate", Shape::Table(&ROTATION), "turns the rest shape, before it is translated"),
         Key::vector("translate", "m", "moves the rest shape").or(Value::Vector([0.0; 3])),
         Key::vector("velocity", "m/s", "at the start").or(Value::Vector([0.0; 3])),
-        Key::vector("angular_velocity", "rad/s", "at the start, about the centre of mass").or(Value::Vector([0.0; 3])),
+        Key::vector("angular_velocity", "rad/s", "at the start, about the centre of mass")
+            .or(Value::Vector([0.0; 3])),
         Key::new("system", Shape::Text, "the system it steps in"),
         Key::new("pins", Shape::Tables(&PIN), "points that are held or led"),
         Key::new("loads", Shape::Tables(&LOAD), "forces on points"),
@@ -106,6 +115,7 @@ pub struct Body {
     pub velocity: Vec3,
     /// About the centre of mass [rad/s].
     pub angular_velocity: Vec3,
+    /// Name of its system; the only one, or `main`, where left out.
     pub system: String,
     pub pins: Vec<Pin>,
     pub loads: Vec<Load>,
@@ -187,7 +197,7 @@ impl Placement {
 }
 
 impl Body {
-    pub fn read(name: String, reader: &Reader) -> Self {
+    pub(crate) fn read(name: String, reader: &Reader) -> Self {
         let damping = reader.table("damping").map_or(Damping::default(), |table| Damping {
             rayleigh_mass: table.number("rayleigh_mass"),
             rayleigh_stiffness: table.number("rayleigh_stiffness"),
@@ -204,13 +214,17 @@ impl Body {
             material: reader.entry("material", &materials::TABLE),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
-            quadrature: if reader.choice("quadrature") == "full" { Quadrature::Full } else { Quadrature::Default },
+            quadrature: if reader.choice("quadrature") == "full" {
+                Quadrature::Full
+            } else {
+                Quadrature::Default
+            },
             damping,
             drag: reader.number("drag"),
             placement: Placement::read(reader),
             velocity: reader.vector("velocity"),
             angular_velocity: reader.vector("angular_velocity"),
-            system: reader.maybe_text("system").unwrap_or_else(|| DEFAULT_SYSTEM.to_owned()),
+            system: reader.text("system"),
             pins: reader.tables("pins").iter().map(Pin::read).collect(),
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),

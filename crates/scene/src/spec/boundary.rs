@@ -13,7 +13,7 @@ use crate::reader::Reader;
 /// Variables of formulas of loads (where the point is) and motions (where it started), and time.
 pub const LOAD_VARIABLES: &[&str] = &VARIABLES;
 
-pub static MOTION: Keys = Keys::new(
+pub(crate) static MOTION: Keys = Keys::new(
     "motion",
     "how points are led: key frames (`times` and `offsets`) or a `formula`",
     &[
@@ -21,11 +21,12 @@ pub static MOTION: Keys = Keys::new(
         Key::new("offsets", Shape::Vectors, "from where the point started, one for each time").in_unit("m"),
         Key::new("interpolation", Shape::Choice(&["linear", "smooth"]), "between key frames")
             .or(Value::Text("linear")),
-        Key::new("formula", Shape::VectorFormula(LOAD_VARIABLES), "offset from where the point started").in_unit("m"),
+        Key::new("formula", Shape::VectorFormula(LOAD_VARIABLES), "offset from where the point started")
+            .in_unit("m"),
     ],
 );
 
-pub static PIN: Keys = Keys::new(
+pub(crate) static PIN: Keys = Keys::new(
     "pin",
     "points that are held, or led where a motion is written",
     &[
@@ -37,7 +38,7 @@ pub static PIN: Keys = Keys::new(
 
 const DISTRIBUTION: Shape = Shape::Choice(&["total", "each"]);
 
-pub static LOAD: Keys = Keys::new(
+pub(crate) static LOAD: Keys = Keys::new(
     "load",
     "a force on points",
     &[
@@ -45,20 +46,28 @@ pub static LOAD: Keys = Keys::new(
         Key::new("force", Shape::VectorFormula(LOAD_VARIABLES), "numbers, or formulas of time and place")
             .in_unit("N")
             .required(),
-        Key::new("distribution", DISTRIBUTION, "`total`: shared by the points equally; `each`: on every point")
-            .or(Value::Text("total")),
+        Key::new(
+            "distribution",
+            DISTRIBUTION,
+            "`total`: shared by the points equally; `each`: on every point",
+        )
+        .or(Value::Text("total")),
     ],
 );
 
-pub static SPRING: Keys = Keys::new(
+pub(crate) static SPRING: Keys = Keys::new(
     "spring",
     "springs from points to where they start",
     &[
         Key::new("region", Shape::Region, "which points").required(),
         Key::number("stiffness", "N/m", Range::NOT_NEGATIVE, "force per displacement").required(),
         Key::number("damping", "N s/m", Range::NOT_NEGATIVE, "force per velocity").or(Value::Number(0.0)),
-        Key::new("distribution", DISTRIBUTION, "`total`: shared by the points equally; `each`: of every point")
-            .or(Value::Text("total")),
+        Key::new(
+            "distribution",
+            DISTRIBUTION,
+            "`total`: shared by the points equally; `each`: of every point",
+        )
+        .or(Value::Text("total")),
     ],
 );
 
@@ -75,7 +84,11 @@ pub struct Pin {
 /// An offset from the start, over time [m].
 #[derive(Clone, Debug)]
 pub enum MotionSpec {
-    KeyFrames { times: Vec<f64>, offsets: Vec<Vec3>, is_smooth: bool },
+    KeyFrames {
+        times: Vec<f64>,
+        offsets: Vec<Vec3>,
+        is_smooth: bool,
+    },
     /// Of [`LOAD_VARIABLES`].
     Formula([Formula; 3]),
 }
@@ -110,7 +123,7 @@ pub struct Spring {
 }
 
 impl Pin {
-    pub fn read(reader: &Reader) -> Self {
+    pub(crate) fn read(reader: &Reader) -> Self {
         let motion = reader.table("motion").and_then(|table| MotionSpec::read(&table));
         let (region, axes) = (Region::read(reader, "region"), reader.axes("axes"));
         Self { region, axes, motion, site: reader.site() }
@@ -118,7 +131,7 @@ impl Pin {
 }
 
 impl MotionSpec {
-    pub fn read(reader: &Reader) -> Option<Self> {
+    pub(crate) fn read(reader: &Reader) -> Option<Self> {
         let refuse = |message: String, expected: &str| {
             reader.log().add(Code::WrongType, &reader.site(), message, expected);
             None
@@ -131,7 +144,10 @@ impl MotionSpec {
         }
         let (times, offsets) = (reader.numbers("times"), reader.vectors("offsets"));
         if !(reader.has("times") && reader.has("offsets")) {
-            return refuse("a motion says neither how nor when".to_owned(), "`times` and `offsets`, or a `formula`");
+            return refuse(
+                "a motion says neither how nor when".to_owned(),
+                "`times` and `offsets`, or a `formula`",
+            );
         }
         if times.is_empty() || times.len() != offsets.len() {
             let message = format!("there are {} times and {} offsets", times.len(), offsets.len());
@@ -160,7 +176,7 @@ impl Distribution {
 }
 
 impl Load {
-    pub fn read(reader: &Reader) -> Self {
+    pub(crate) fn read(reader: &Reader) -> Self {
         Self {
             region: Region::read(reader, "region"),
             force: reader.maybe_vector_formula("force"),
@@ -171,7 +187,7 @@ impl Load {
 }
 
 impl Spring {
-    pub fn read(reader: &Reader) -> Self {
+    pub(crate) fn read(reader: &Reader) -> Self {
         Self {
             region: Region::read(reader, "region"),
             stiffness: reader.number("stiffness"),

@@ -7,7 +7,7 @@ use crate::diagnostic::Site;
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
 
-pub static ATTACHMENT: Keys = Keys::new(
+pub(crate) static ATTACHMENT: Keys = Keys::new(
     "attachment",
     "stiff springs from points of one body to the nearest places of another, in one system",
     &[
@@ -20,7 +20,7 @@ pub static ATTACHMENT: Keys = Keys::new(
     ],
 );
 
-pub static COUPLING: Keys = Keys::new(
+pub(crate) static COUPLING: Keys = Keys::new(
     "coupling",
     "damped springs between points of bodies in systems of different rates",
     &[
@@ -50,7 +50,7 @@ pub struct Link {
 }
 
 impl Link {
-    pub fn read(reader: &Reader, can_reach: bool) -> Self {
+    pub(crate) fn read(reader: &Reader, can_reach: bool) -> Self {
         let reach = if can_reach { reader.maybe_number("reach") } else { None };
         Self {
             from: reader.text("from"),

@@ -2,6 +2,7 @@
 
 pub mod body;
 pub mod boundary;
+pub mod contact;
 pub mod interaction;
 pub mod probe;
 pub mod region;
@@ -18,6 +19,7 @@ use crate::source::Place;
 use crate::values::Reading;
 
 use body::{BODY, Body};
+use contact::{Against, CONTACT, Contact, SHAPE, ShapeSpec};
 use interaction::{ATTACHMENT, COUPLING, Link};
 use probe::{EXPECT, Expect, PROBE, Probe};
 use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD, WorldSpec};
@@ -26,7 +28,7 @@ use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD
 pub const FORMAT: i64 = 1;
 
 /// The keys of a scene.
-pub static SCENE: Keys = Keys::new(
+pub(crate) static SCENE: Keys = Keys::new(
     "scene",
     "a world of soft things; numbers are in SI units or texts with a unit, such as \"10 kPa\"",
     &[
@@ -39,6 +41,8 @@ pub static SCENE: Keys = Keys::new(
         Key::new("world", Shape::Table(&WORLD), "what all systems share").required(),
         Key::new("systems", Shape::Named(&SYSTEM), "how bodies step; `main` where left out"),
         Key::new("bodies", Shape::Named(&BODY), "soft solids"),
+        Key::new("shapes", Shape::Named(&SHAPE), "things of fixed shape that bodies touch"),
+        Key::new("contacts", Shape::Tables(&CONTACT), "who touches whom"),
         Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
         Key::new("couplings", Shape::Tables(&COUPLING), "what joins systems"),
         Key::new("probes", Shape::Named(&PROBE), "what is measured"),
@@ -56,6 +60,8 @@ pub struct Spec {
     pub world: WorldSpec,
     pub systems: Vec<SystemSpec>,
     pub bodies: Vec<Body>,
+    pub shapes: Vec<ShapeSpec>,
+    pub contacts: Vec<Contact>,
     pub attachments: Vec<Link>,
     pub couplings: Vec<Link>,
     pub probes: Vec<Probe>,
@@ -65,7 +71,7 @@ pub struct Spec {
 
 impl Spec {
     /// Reads a document without includes and parameters; what is wrong goes to the log.
-    pub fn read(document: Table, source: usize, log: &Log) -> Self {
+    pub(crate) fn read(document: Table, source: usize, log: &Log) -> Self {
         let root = Node::new(Place::start_of(source), Content::Table(document));
         if is_other_format(&root, log) {
             // keys of another version would only give a hail of faults
@@ -78,9 +84,13 @@ impl Spec {
         let empty = Self::empty(source);
         let probes: Vec<Probe> =
             reader.named("probes").into_iter().map(|(name, probe)| Probe::read(name, &probe)).collect();
-        let expects = reader.tables("expect").iter().filter_map(|expect| Expect::read(expect, &probes)).collect();
-        let mut systems: Vec<SystemSpec> =
-            reader.named("systems").into_iter().map(|(name, system)| SystemSpec::read(name, &system)).collect();
+        let expects =
+            reader.tables("expect").iter().filter_map(|expect| Expect::read(expect, &probes)).collect();
+        let mut systems: Vec<SystemSpec> = reader
+            .named("systems")
+            .into_iter()
+            .map(|(name, system)| SystemSpec::read(name, &system))
+            .collect();
         if !reader.has("systems") {
             systems.push(SystemSpec::default_system(Site { path: "systems".to_owned(), ..reader.site() }));
         }
@@ -93,6 +103,12 @@ impl Spec {
             shows: reader.texts("shows"),
             world: reader.table("world").map_or(empty.world, |world| WorldSpec::read(&world)),
             bodies: reader.named("bodies").into_iter().map(|(name, body)| Body::read(name, &body)).collect(),
+            shapes: reader
+                .named("shapes")
+                .into_iter()
+                .map(|(name, shape)| ShapeSpec::read(name, &shape))
+                .collect(),
+            contacts: contacts(&reader),
             attachments: links("attachments", true),
             couplings: links("couplings", false),
             run: reader.table("run").map_or(empty.run, |run| RunSpec::read(&run)),
@@ -115,6 +131,8 @@ impl Spec {
             world: WorldSpec { period: f64::NAN, gravity: Vec3::ZERO, site },
             systems: Vec::new(),
             bodies: Vec::new(),
+            shapes: Vec::new(),
+            contacts: Vec::new(),
             attachments: Vec::new(),
             couplings: Vec::new(),
             probes: Vec::new(),
@@ -123,12 +141,14 @@ impl Spec {
         }
     }
 
-    /// Bodies that name no system belong to the only one there is.
+    /// Bodies that name no system belong to the only one there is, or to `main`.
     fn choose_systems(&mut self) {
-        if let [only] = &self.systems[..] {
-            for body in self.bodies.iter_mut().filter(|body| body.system == DEFAULT_SYSTEM) {
-                body.system.clone_from(&only.name);
-            }
+        let default = match &self.systems[..] {
+            [only] => only.name.clone(),
+            _ => DEFAULT_SYSTEM.to_owned(),
+        };
+        for body in self.bodies.iter_mut().filter(|body| body.system.is_empty()) {
+            body.system.clone_from(&default);
         }
     }
 
@@ -151,6 +171,21 @@ impl Spec {
                 check("body", body, &bodies, &probe.site);
             }
         }
+        let shapes: Vec<&str> = self.shapes.iter().map(|shape| shape.name.as_str()).collect();
+        let contacts: Vec<&str> = self.contacts.iter().map(|contact| contact.name.as_str()).collect();
+        for contact in &self.contacts {
+            check("body", &contact.body, &bodies, &contact.site);
+            match &contact.against {
+                Some(Against::Shape(shape)) => check("shape", shape, &shapes, &contact.site),
+                Some(Against::Body(body)) => check("body", body, &bodies, &contact.site),
+                None => {}
+            }
+        }
+        for probe in &self.probes {
+            if let Some(contact) = &probe.contact {
+                check("contact", contact, &contacts, &probe.site);
+            }
+        }
         for link in self.attachments.iter().chain(&self.couplings) {
             check("body", &link.from, &bodies, &link.from_site);
             check("body", &link.to, &bodies, &link.to_site);
@@ -171,13 +206,27 @@ impl Spec {
     }
 }
 
+fn contacts(reader: &Reader) -> Vec<Contact> {
+    reader
+        .tables("contacts")
+        .iter()
+        .enumerate()
+        .map(|(index, contact)| Contact::read(index, contact))
+        .collect()
+}
+
 /// Whether the scene says that it is of another version, which is then reported.
 fn is_other_format(root: &Node, log: &Log) -> bool {
     let Some(node) = root.as_table().and_then(|table| table.get("format")) else { return false };
     match node.content {
         Content::Integer(version) if version != FORMAT => {
             let site = Site { place: node.place, path: "format".to_owned() };
-            log.add(Code::Format, &site, format!("this is a scene of format {version}"), format!("format = {FORMAT}"));
+            log.add(
+                Code::Format,
+                &site,
+                format!("this is a scene of format {version}"),
+                format!("format = {FORMAT}"),
+            );
             true
         }
         _ => false,

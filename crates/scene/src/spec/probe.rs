@@ -1,5 +1,7 @@
 //! Probes: what is measured along a run, and what is expected of it.
 
+use std::fmt;
+
 use souple_math::Vec3;
 use souple_table::Range;
 
@@ -7,6 +9,7 @@ use super::region::Region;
 use crate::diagnostic::{Code, Site};
 use crate::document::Content;
 use crate::keys::{Key, Keys, Shape};
+use crate::measure::Measurement;
 use crate::reader::Reader;
 
 /// What a probe measures: name, unit, what it is of, whether it is a vector.
@@ -60,11 +63,21 @@ pub enum Quantity {
     Time,
 }
 
-const fn entry(quantity: Quantity, name: &'static str, unit: &'static str, subject: Subject) -> QuantityEntry {
+const fn entry(
+    quantity: Quantity,
+    name: &'static str,
+    unit: &'static str,
+    subject: Subject,
+) -> QuantityEntry {
     QuantityEntry { quantity, name, unit, subject, is_vector: false, reduction: Reduction::Sum }
 }
 
-const fn point_vector(quantity: Quantity, name: &'static str, unit: &'static str, mean: bool) -> QuantityEntry {
+const fn point_vector(
+    quantity: Quantity,
+    name: &'static str,
+    unit: &'static str,
+    mean: bool,
+) -> QuantityEntry {
     let reduction = if mean { Reduction::Mean } else { Reduction::Sum };
     QuantityEntry { quantity, name, unit, subject: Subject::Points, is_vector: true, reduction }
 }
@@ -81,8 +94,14 @@ pub static QUANTITIES: &[QuantityEntry] = &[
     // the sum of what holds the points, against all other forces and their inertia
     point_vector(Quantity::Reaction, "reaction", "N", false),
     point_vector(Quantity::ContactForce, "contact_force", "N", false),
-    QuantityEntry { reduction: Reduction::Max, ..entry(Quantity::VonMises, "von_mises", "Pa", Subject::Cells) },
-    QuantityEntry { reduction: Reduction::Mean, ..entry(Quantity::Pressure, "pressure", "Pa", Subject::Cells) },
+    QuantityEntry {
+        reduction: Reduction::Max,
+        ..entry(Quantity::VonMises, "von_mises", "Pa", Subject::Cells)
+    },
+    QuantityEntry {
+        reduction: Reduction::Mean,
+        ..entry(Quantity::Pressure, "pressure", "Pa", Subject::Cells)
+    },
     entry(Quantity::StrainEnergy, "strain_energy", "J", Subject::Cells),
     entry(Quantity::Volume, "volume", "m^3", Subject::Cells),
     entry(Quantity::KineticEnergy, "kinetic_energy", "J", Subject::Body),
@@ -111,7 +130,7 @@ const NAMES: &[&str] = &[
     "time",
 ];
 
-pub static PROBE: Keys = Keys::new(
+pub(crate) static PROBE: Keys = Keys::new(
     "probe",
     "a quantity measured at the end of every period",
     &[
@@ -119,12 +138,16 @@ pub static PROBE: Keys = Keys::new(
         Key::new("body", Shape::Text, "whose; not for quantities of the world"),
         Key::new("region", Shape::Region, "where; the whole body where left out"),
         Key::new("component", Shape::Choice(&["x", "y", "z", "length"]), "one number of a vector"),
-        Key::new("reduce", Shape::Choice(&["mean", "sum", "min", "max"]), "how the values of a region become one"),
+        Key::new(
+            "reduce",
+            Shape::Choice(&["mean", "sum", "min", "max"]),
+            "how the values of a region become one",
+        ),
         Key::new("contact", Shape::Text, "only the forces of this contact (for `contact_force`)"),
     ],
 );
 
-pub static EXPECT: Keys = Keys::new(
+pub(crate) static EXPECT: Keys = Keys::new(
     "expect",
     "what a probe must read; `souple run` fails where it does not",
     &[
@@ -197,7 +220,7 @@ pub enum Bound {
 }
 
 impl Probe {
-    pub fn read(name: String, reader: &Reader) -> Self {
+    pub(crate) fn read(name: String, reader: &Reader) -> Self {
         let chosen = reader.choice("quantity");
         let quantity = QUANTITIES.iter().find(|entry| entry.name == chosen).unwrap_or(&QUANTITIES[0]);
         let refuse = |key: &str, message: String, expected: &str| {
@@ -209,13 +232,25 @@ impl Probe {
                 refuse(key, format!("`{}` is of the whole world", quantity.name), "no body and no region");
             }
         } else if is_known && !reader.has("body") {
-            refuse("quantity", format!("`{}` is of a body, and none is named", quantity.name), "body = \"…\"");
+            refuse(
+                "quantity",
+                format!("`{}` is of a body, and none is named", quantity.name),
+                "body = \"…\"",
+            );
         }
         if is_known && !quantity.is_vector && reader.has("component") {
-            refuse("component", format!("`{}` is a number without components", quantity.name), "no component");
+            refuse(
+                "component",
+                format!("`{}` is a number without components", quantity.name),
+                "no component",
+            );
         }
         if reader.has("contact") && quantity.quantity != Quantity::ContactForce {
-            refuse("contact", format!("`{}` is of no contact", quantity.name), "quantity = \"contact_force\"");
+            refuse(
+                "contact",
+                format!("`{}` is of no contact", quantity.name),
+                "quantity = \"contact_force\"",
+            );
         }
         let reduction = match reader.has("reduce").then(|| reader.choice("reduce")) {
             Some("mean") => Reduction::Mean,
@@ -247,15 +282,33 @@ impl Probe {
 }
 
 impl Expect {
+    /// The part of a measurement of its probe that this is about.
+    pub fn part_of(&self, measured: Measurement) -> Measurement {
+        match (self.component, measured) {
+            (Some(component), Measurement::Vector(vector)) => Measurement::Number(component.of(vector)),
+            (_, measured) => measured,
+        }
+    }
+
+    /// Whether a measurement of its probe is accepted.
+    pub fn accepts(&self, measured: Measurement) -> bool {
+        self.bound.accepts(&self.part_of(measured))
+    }
+
     /// # Returns
     /// `None` where it was refused.
-    pub fn read(reader: &Reader, probes: &[Probe]) -> Option<Self> {
+    pub(crate) fn read(reader: &Reader, probes: &[Probe]) -> Option<Self> {
         let name = reader.maybe_text("probe")?;
         let Some(probe) = probes.iter().find(|probe| probe.name == name) else {
             let known: Vec<&str> = probes.iter().map(|probe| probe.name.as_str()).collect();
             let hint = crate::keys::did_you_mean(&name, known.iter().copied());
             let message = format!("there is no probe `{name}`{hint}");
-            reader.log().add(Code::UnknownName, &reader.site_of("probe"), message, format!("one of {}", known.join(", ")));
+            reader.log().add(
+                Code::UnknownName,
+                &reader.site_of("probe"),
+                message,
+                format!("one of {}", known.join(", ")),
+            );
             return None;
         };
         let component = Component::read(reader);
@@ -270,6 +323,22 @@ impl Expect {
 }
 
 impl Bound {
+    /// Whether a measurement is accepted; one that is not finite never is.
+    pub fn accepts(&self, measured: &Measurement) -> bool {
+        match (*self, *measured) {
+            (Self::Near { value, tolerance }, Measurement::Number(number)) => {
+                (number - value).abs() <= tolerance
+            }
+            (Self::NearVector { value, tolerance }, Measurement::Vector(vector)) => {
+                (vector - value).length() <= tolerance
+            }
+            (Self::Between { min, max }, Measurement::Number(number)) => {
+                number.is_finite() && number >= min && number <= max
+            }
+            _ => false,
+        }
+    }
+
     fn read(reader: &Reader, unit: &str, is_vector: bool) -> Option<Self> {
         let number = |key: &str, range: Range| {
             let expected = format!("{} [{unit}]", range.describe());
@@ -282,7 +351,11 @@ impl Bound {
         let has_limits = reader.has("min") || reader.has("max");
         if !reader.has("value") {
             if !has_limits {
-                return refuse("probe", "nothing is expected here", "`value` with a tolerance, `min` or `max`");
+                return refuse(
+                    "probe",
+                    "nothing is expected here",
+                    "`value` with a tolerance, `min` or `max`",
+                );
             }
             if is_vector {
                 return refuse("probe", "a vector has no least or greatest", "a component");
@@ -292,7 +365,11 @@ impl Bound {
             return Some(Self::Between { min, max });
         }
         if has_limits {
-            return refuse("value", "a value and limits at once", "`value` with a tolerance, or `min` and `max`");
+            return refuse(
+                "value",
+                "a value and limits at once",
+                "`value` with a tolerance, or `min` and `max`",
+            );
         }
         let reading = reader.reading("value")?;
         let (value, vector) = match (&reading.node.content, is_vector) {
@@ -307,7 +384,13 @@ impl Bound {
         let tolerance = match (reader.has("tolerance"), reader.has("relative_tolerance")) {
             (true, false) => number("tolerance", Range::NOT_NEGATIVE)?,
             (false, true) => reader.maybe_number("relative_tolerance")? * size,
-            _ => return refuse("value", "how close the value must be is not said, or twice", "`tolerance` or `relative_tolerance`"),
+            _ => {
+                return refuse(
+                    "value",
+                    "how close the value must be is not said, or twice",
+                    "`tolerance` or `relative_tolerance`",
+                );
+            }
         };
         Some(match vector {
             Some(value) => Self::NearVector { value, tolerance },
@@ -316,9 +399,42 @@ impl Bound {
     }
 }
 
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Near { value, tolerance } => write!(f, "{value} ± {tolerance}"),
+            Self::NearVector { value, tolerance } => {
+                write!(f, "({}, {}, {}) ± {tolerance}", value.x, value.y, value.z)
+            }
+            Self::Between { min, max } if *max == f64::INFINITY => write!(f, "at least {min}"),
+            Self::Between { min, max } if *min == f64::NEG_INFINITY => write!(f, "at most {max}"),
+            Self::Between { min, max } => write!(f, "between {min} and {max}"),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Bounds hold at their ends and refuse what is not finite.
+    #[test]
+    fn bounds_are_closed() {
+        let near = Bound::Near { value: 1.0, tolerance: 0.5 };
+        assert!(near.accepts(&Measurement::Number(1.5)) && !near.accepts(&Measurement::Number(1.6)));
+        let above = Bound::Between { min: 0.0, max: f64::INFINITY };
+        assert!(
+            above.accepts(&Measurement::Number(0.0)) && !above.accepts(&Measurement::Number(f64::INFINITY))
+        );
+        assert!(
+            !near.accepts(&Measurement::Number(f64::NAN)) && !above.accepts(&Measurement::Number(f64::NAN))
+        );
+        let vector = Bound::NearVector { value: Vec3::X, tolerance: 1.0 };
+        assert!(
+            vector.accepts(&Measurement::Vector(Vec3::ZERO)) && !vector.accepts(&Measurement::Number(1.0))
+        );
+        assert_eq!((above.to_string(), near.to_string()), ("at least 0".to_owned(), "1 ± 0.5".to_owned()));
+    }
 
     /// The choices of the key `quantity` are the names of the table.
     #[test]

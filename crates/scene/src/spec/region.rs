@@ -23,10 +23,19 @@ pub enum RegionKind {
     All,
     /// A group of the mesh.
     Group(String),
-    Box { low: Vec3, high: Vec3 },
-    Sphere { centre: Vec3, radius: f64 },
+    Box {
+        low: Vec3,
+        high: Vec3,
+    },
+    Sphere {
+        centre: Vec3,
+        radius: f64,
+    },
     /// Where `(x - point) · normal <= 0`.
-    HalfSpace { point: Vec3, normal: Vec3 },
+    HalfSpace {
+        point: Vec3,
+        normal: Vec3,
+    },
     /// The one point closest to a position.
     Nearest(Vec3),
     Points(Vec<u32>),
@@ -41,7 +50,7 @@ pub enum RegionKind {
 /// Regions within regions, at most.
 const DEEPEST: usize = 16;
 
-pub static SPHERE: Keys = Keys::new(
+pub(crate) static SPHERE: Keys = Keys::new(
     "sphere_region",
     "points within a ball",
     &[
@@ -50,7 +59,7 @@ pub static SPHERE: Keys = Keys::new(
     ],
 );
 
-pub static HALF_SPACE: Keys = Keys::new(
+pub(crate) static HALF_SPACE: Keys = Keys::new(
     "half_space_region",
     "points on the side of a plane that its normal points away from",
     &[
@@ -59,7 +68,7 @@ pub static HALF_SPACE: Keys = Keys::new(
     ],
 );
 
-pub static REGION: Keys = Keys::new(
+pub(crate) static REGION: Keys = Keys::new(
     "region",
     "a part of a body; exactly one of these keys, or the name of a group as text",
     &[
@@ -79,18 +88,13 @@ pub static REGION: Keys = Keys::new(
 );
 
 impl Region {
-    /// The whole body, where no region is written.
-    pub fn all(site: Site) -> Self {
-        Self { kind: RegionKind::All, site }
-    }
-
     /// The region at a key; `None` where it is left out or was refused.
-    pub fn read(reader: &Reader, key: &str) -> Option<Self> {
+    pub(crate) fn read(reader: &Reader, key: &str) -> Option<Self> {
         Self::from_reading(&reader.reading(key)?, 0)
     }
 
     /// `depth` regions lie around this one.
-    pub fn from_reading(reading: &Reading, depth: usize) -> Option<Self> {
+    pub(crate) fn from_reading(reading: &Reading, depth: usize) -> Option<Self> {
         let site = reading.site();
         if let Content::Text(name) = &reading.node.content {
             return Some(Self { kind: RegionKind::Group(name.clone()), site });
@@ -121,7 +125,10 @@ impl Region {
             }
             "sphere" => {
                 let sphere = reader.table(key)?;
-                RegionKind::Sphere { centre: sphere.maybe_vector("centre")?, radius: sphere.maybe_number("radius")? }
+                RegionKind::Sphere {
+                    centre: sphere.maybe_vector("centre")?,
+                    radius: sphere.maybe_number("radius")?,
+                }
             }
             "half_space" => {
                 let plane = reader.table(key)?;
@@ -134,7 +141,9 @@ impl Region {
             "formula" => RegionKind::Formula(reader.maybe_condition(key)?),
             "not" => RegionKind::Not(Box::new(Self::from_reading(&reader.reading(key)?, depth + 1)?)),
             _ => {
-                let items = reader.reading(key)?.list("a list of regions", |item| Self::from_reading(item, depth + 1))?;
+                let items = reader
+                    .reading(key)?
+                    .list("a list of regions", |item| Self::from_reading(item, depth + 1))?;
                 if key == "union" { RegionKind::Union(items) } else { RegionKind::Intersection(items) }
             }
         })
@@ -142,11 +151,16 @@ impl Region {
 }
 
 /// A vector of length one; a vector without length is refused.
-pub fn direction(reader: &Reader, key: &str) -> Option<Vec3> {
+pub(crate) fn direction(reader: &Reader, key: &str) -> Option<Vec3> {
     let vector = reader.maybe_vector(key)?;
     let length = vector.largest_component();
     if !(length > 0.0 && length.is_finite()) {
-        reader.log().add(Code::OutOfRange, &reader.site_of(key), "this vector has no direction", "a vector that is not zero");
+        reader.log().add(
+            Code::OutOfRange,
+            &reader.site_of(key),
+            "this vector has no direction",
+            "a vector that is not zero",
+        );
         return None;
     }
     // scaled first, so that the square of the length neither vanishes nor overflows

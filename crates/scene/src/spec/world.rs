@@ -13,20 +13,26 @@ const STEPS_MAX: f64 = 1e6;
 /// Longest run [periods] that is still counted exactly by times in `f64`.
 pub const PERIODS_MAX: f64 = 1e15;
 
-pub static WORLD: Keys = Keys::new(
+pub(crate) static WORLD: Keys = Keys::new(
     "world",
     "what all systems share",
     &[
-        Key::number("period", "s", Range::POSITIVE, "all systems meet at the ends of periods; frames and probes too")
-            .required(),
-        Key::vector("gravity", "m/s^2", "acceleration of everything that has mass").or(Value::Vector([0.0; 3])),
+        Key::number(
+            "period",
+            "s",
+            Range::POSITIVE,
+            "all systems meet at the ends of periods; frames and probes too",
+        )
+        .required(),
+        Key::vector("gravity", "m/s^2", "acceleration of everything that has mass")
+            .or(Value::Vector([0.0; 3])),
     ],
 );
 
 const STEPPER: EntryShape =
     EntryShape { tag: "name", kind: "stepper", outlines: || outlines(&steppers::TABLE), instead: None };
 
-pub static SYSTEM: Keys = Keys {
+pub(crate) static SYSTEM: Keys = Keys {
     name: "system",
     summary: "bodies that step together; the stepper's parameters stand beside it or in its table",
     keys: &[
@@ -37,7 +43,7 @@ pub static SYSTEM: Keys = Keys {
     others: Others::ParametersOf("stepper"),
 };
 
-pub static RUN: Keys = Keys::new(
+pub(crate) static RUN: Keys = Keys::new(
     "run",
     "what `souple run` does unless told otherwise",
     &[
@@ -79,13 +85,13 @@ pub struct RunSpec {
 pub const DEFAULT_SYSTEM: &str = "main";
 
 impl WorldSpec {
-    pub fn read(reader: &Reader) -> Self {
+    pub(crate) fn read(reader: &Reader) -> Self {
         Self { period: reader.number("period"), gravity: reader.vector("gravity"), site: reader.site() }
     }
 }
 
 impl SystemSpec {
-    pub fn read(name: String, reader: &Reader) -> Self {
+    pub(crate) fn read(name: String, reader: &Reader) -> Self {
         let stepper = reader.entry("stepper", &steppers::TABLE);
         if !reader.has("stepper") {
             reader.refuse_others();
@@ -98,7 +104,7 @@ impl SystemSpec {
     ///
     /// # Panics
     /// If the stepper's table lacks it: a bug.
-    pub fn default_system(site: Site) -> Self {
+    pub(crate) fn default_system(site: Site) -> Self {
         let entry = steppers::TABLE.find("backward_euler").expect("the default stepper is in its table");
         let values = entry.values(souple_table::Values::new()).expect("the default stepper needs no values");
         let stepper = Some(Chosen { entry, values, site: site.clone() });
@@ -107,7 +113,7 @@ impl SystemSpec {
 }
 
 impl RunSpec {
-    pub fn read(reader: &Reader) -> Self {
+    pub(crate) fn read(reader: &Reader) -> Self {
         Self {
             duration: reader.number("duration"),
             frames: reader.maybe_integer("frames").unwrap_or(0) as u64,

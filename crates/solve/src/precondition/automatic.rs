@@ -40,30 +40,32 @@ impl Choice {
     }
 }
 
-/// How much of the diagonal resists even a translation of the whole: the median over rows of
+/// Rows looked at, spread evenly over the matrix.
+const SAMPLES: usize = 1024;
+
+/// How much of the diagonal resists even a translation of the whole: the median over a sample of rows of
 /// `1 · Σ_c A_rc 1 / tr A_rr` with `1 = (1, 1, 1)`. For the matrix `M/h² + K` of a step it is the part of
 /// inertia, 0 in statics. Rows that are coupled to nothing (pinned ones) do not count; 1 where none is coupled.
 /// `per_row` is scratch.
 pub fn weight_of_the_diagonal(matrix: &BlockMatrix, per_row: &mut Vec<f64>) -> f64 {
     let pattern = matrix.pattern();
     let ones = Vec3::new(1.0, 1.0, 1.0);
-    per_row.resize(pattern.block_count(), 0.0);
-    reduce::for_each_chunk(per_row, &|first, chunk: &mut [f64]| {
-        for (row, weight) in (first..).zip(chunk) {
-            let (mut sum, mut coupling) = (Vec3::ZERO, 0.0);
-            let diagonal = pattern.diagonal_slot(row);
-            for slot in pattern.slots(row) {
-                let along = matrix.values()[slot] * ones;
-                sum += along;
-                if slot != diagonal {
-                    coupling += along.length_sq();
-                }
+    let weight = |row: usize| {
+        let (mut sum, mut coupling) = (Vec3::ZERO, 0.0);
+        let diagonal = pattern.diagonal_slot(row);
+        for slot in pattern.slots(row) {
+            let along = matrix.values()[slot] * ones;
+            sum += along;
+            if slot != diagonal {
+                coupling += along.length_sq();
             }
-            let trace = matrix.values()[diagonal].trace();
-            *weight = if coupling > 0.0 && trace > 0.0 { ones.dot(sum) / trace } else { f64::NAN };
         }
-    });
-    per_row.retain(|weight| !weight.is_nan());
+        let trace = matrix.values()[diagonal].trace();
+        (coupling > 0.0 && trace > 0.0).then(|| ones.dot(sum) / trace)
+    };
+    per_row.clear();
+    let stride = pattern.block_count().div_ceil(SAMPLES).max(1);
+    per_row.extend((0..pattern.block_count()).step_by(stride).filter_map(weight));
     let middle = per_row.len() / 2;
     if per_row.is_empty() { 1.0 } else { *per_row.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

@@ -35,7 +35,8 @@ fn binary(version_5: bool) -> Vec<u8> {
         bytes.extend([0, 1, 2, 3, 1, 2, 3, 4, 0, 1, 2i64].iter().flat_map(|node| node.to_be_bytes()));
     } else {
         bytes.extend(b"\nCELLS 3 14\n");
-        bytes.extend([4, 0, 1, 2, 3, 4, 1, 2, 3, 4, 3, 0, 1, 2i32].iter().flat_map(|node| node.to_be_bytes()));
+        bytes
+            .extend([4, 0, 1, 2, 3, 4, 1, 2, 3, 4, 3, 0, 1, 2i32].iter().flat_map(|node| node.to_be_bytes()));
     }
     bytes.extend(b"\nCELL_TYPES 3\n");
     bytes.extend([10, 10, 5i32].iter().flat_map(|number| number.to_be_bytes()));
@@ -77,7 +78,10 @@ fn faults_name_place_value_and_range() {
         assert!(TEXT.contains(from), "{from}");
         read(TEXT.replacen(from, to, 1).as_bytes()).unwrap_err().to_string()
     };
-    assert_eq!(fault("UNSTRUCTURED_GRID", "RECTILINEAR_GRID"), "line 4: the kind of data set is \"RECTILINEAR_GRID\"; expected UNSTRUCTURED_GRID or POLYDATA");
+    assert_eq!(
+        fault("UNSTRUCTURED_GRID", "RECTILINEAR_GRID"),
+        "line 4: the kind of data set is \"RECTILINEAR_GRID\"; expected UNSTRUCTURED_GRID or POLYDATA"
+    );
     assert!(fault("ASCII", "TEXT").contains("line 3: the encoding is \"TEXT\"; expected ASCII or BINARY"));
     assert!(fault("float\n0", "half\n0").contains("the type of the points is \"half\""));
     assert!(fault("CELLS 3 14", "CELLS 2 14").contains("the number of cells in the list is 3; expected 2"));

@@ -107,7 +107,8 @@ fn file(style: Style) -> Vec<u8> {
     let order = if style.big { "BigEndian" } else { "LittleEndian" };
     let header = if style.wide_header { "header_type='UInt64'" } else { "" };
     let compressor = if style.zlib { "compressor='vtkZLibDataCompressor'" } else { "" };
-    let body: String = sections.iter().map(|(name, content)| format!("<{name}>\n{content}</{name}>\n")).collect();
+    let body: String =
+        sections.iter().map(|(name, content)| format!("<{name}>\n{content}</{name}>\n")).collect();
     let mut bytes = format!(
         "<?xml version='1.0'?>\n<VTKFile type='UnstructuredGrid' version='1.0' byte_order='{order}' {header} \
          {compressor}>\n<UnstructuredGrid>\n<Piece NumberOfPoints='13' NumberOfCells='4'>\n{body}</Piece>\n\
@@ -140,7 +141,10 @@ fn styles() -> Vec<Style> {
 fn every_encoding_reads_the_same() {
     let expected = read(&file(styles()[0])).unwrap();
     let mesh = &expected.mesh;
-    assert_eq!((mesh.points.len(), mesh.count_of(ElementKind::Tet4), mesh.count_of(ElementKind::Hex8)), (13, 2, 1));
+    assert_eq!(
+        (mesh.points.len(), mesh.count_of(ElementKind::Tet4), mesh.count_of(ElementKind::Hex8)),
+        (13, 2, 1)
+    );
     let hexahedron = mesh.cell(2).unwrap();
     assert_eq!(hexahedron.nodes, [5, 6, 8, 7, 9, 10, 12, 11]);
     assert!((mesh.cell_volume(hexahedron) - 1.0).abs() < 1e-14);
@@ -167,11 +171,17 @@ fn faults_name_place_value_and_range() {
         read(text.replacen(from, to, 1).as_bytes()).unwrap_err().to_string()
     };
     assert!(fault("type='UnstructuredGrid'", "type='ImageData'").contains("expected UnstructuredGrid"));
-    assert!(fault("4 8 10 18", "4 8 10 17").contains("the length of the connectivity is 18, but the cells use 17"));
+    assert!(
+        fault("9 10 11 12", "9 10 11 12 0")
+            .contains("the length of the connectivity is 19, but the cells use 18")
+    );
     assert!(fault("4 8 10 18", "4 8 7 18").contains("offsets[2] is 7; expected 8 to 18"));
     assert!(fault("10 10 3 11", "10 24 3 11").contains("types[1] is 24"));
     assert!(fault("10 10 3 11", "10 14 3 11").contains("the number of nodes of cell 1 is 4; expected 5"));
-    assert!(fault("0 1 2 3 1", "0 1 2 13 1").contains("a node of cell 0 is 13; expected a point, of which there are 13"));
+    assert!(
+        fault("0 1 2 3 1", "0 1 2 13 1")
+            .contains("a node of cell 0 is 13; expected a point, of which there are 13")
+    );
     assert!(fault("0 1 2 3 1", "0 1 2 -1 1").contains("a node of cell 0 is -1"));
     assert!(fault("0 1 2 3 1", "0 1 2 3x 1").contains("a value of the array `connectivity` is \"3x\""));
     assert!(fault("NumberOfPoints='13'", "NumberOfPoints='14'").contains("is 39; expected 14 x 3"));
@@ -184,7 +194,8 @@ fn faults_name_place_value_and_range() {
 /// Arrays that all claim the same appended bytes are refused before they fill the memory.
 #[test]
 fn overlapping_appended_arrays_are_refused() {
-    let style = Style { form: Form::AppendedRaw, big: false, wide_header: true, zlib: false, header_apart: false };
+    let style =
+        Style { form: Form::AppendedRaw, big: false, wide_header: true, zlib: false, header_apart: false };
     let bytes = file(style);
     let head_end = bytes.windows(10).position(|window| window == b"</CellData").unwrap();
     let mut more = bytes[..head_end].to_vec();

@@ -1,0 +1,175 @@
+//! The camera: from where a picture is seen, and the distance at which everything fits.
+
+use souple_math::Vec3;
+use souple_mesh::BoundingBox;
+
+/// From where a picture is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From the eye towards the subject; of any length.
+    pub direction: Vec3,
+    /// What is up in the picture; any vector that is not along the direction.
+    pub up: Vec3,
+    /// Angle between the upper and the lower border [rad].
+    pub field_of_view: f64,
+    /// What must be in the picture; everything drawn where `None`. The same box for all frames of a series
+    /// keeps the camera still.
+    pub bounds: Option<BoundingBox>,
+}
+
+impl Default for View {
+    /// From the front, a little from the right and above, `y` upward.
+    fn default() -> Self {
+        Self { direction: Vec3::new(-0.5, -0.45, -1.0), up: Vec3::Y, field_of_view: 0.5, bounds: None }
+    }
+}
+
+/// The part of the picture that the subject may fill [pixels].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Frame {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+/// A pinhole camera.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Camera {
+    pub eye: Vec3,
+    pub right: Vec3,
+    pub up: Vec3,
+    pub forward: Vec3,
+    /// Distance of the plane of pixels [pixels].
+    focal: f64,
+    /// Where the axis of the camera meets the picture [pixels].
+    centre: [f64; 2],
+    /// Nearest depth that is drawn [m].
+    near: f64,
+}
+
+/// A point in the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Projected {
+    /// Pixels from the left.
+    pub x: f64,
+    /// Pixels from the top.
+    pub y: f64,
+    /// `1 / depth` [1/m]; linear in the picture along a straight line, greater means closer. Zero for points that
+    /// are not in front of the camera.
+    pub inverse_depth: f64,
+}
+
+impl Camera {
+    /// The closest camera along the direction of `view` that has all `points` within `frame`.
+    pub fn fitted(
+        view: &View,
+        points: impl Iterator<Item = Vec3>,
+        frame: Frame,
+        picture_height: f64,
+    ) -> Self {
+        let forward = view.direction.try_normalised().unwrap_or(-Vec3::Z);
+        let right = forward.cross(view.up).try_normalised().unwrap_or_else(|| forward.any_orthogonal());
+        let up = right.cross(forward);
+        let field_of_view = if view.field_of_view.is_finite() { view.field_of_view } else { 0.5 };
+        let focal = 0.5 * picture_height / libm::tan(0.5 * field_of_view.clamp(0.01, 2.5));
+
+        // In coordinates (a, b, c) along right, up, forward a point is within the frame, if
+        // |a − a₀| ≤ k (c − c₀) with k = half the width of the frame / focal; likewise for b.
+        // So a₀ ≥ max(a − k c) + k c₀ and −a₀ ≥ max(−a − k c) + k c₀, whose sum bounds c₀.
+        let slope = [0.5 * (frame.right - frame.left) / focal, 0.5 * (frame.bottom - frame.top) / focal];
+        let mut most = [[f64::NEG_INFINITY; 2]; 2];
+        let (mut nearest, mut extent) = (f64::INFINITY, BoundingBox::EMPTY);
+        for point in points.filter(|point| point.is_finite()) {
+            let across = [right.dot(point), up.dot(point)];
+            let along = forward.dot(point);
+            for axis in 0..2 {
+                most[axis][0] = most[axis][0].max(across[axis] - slope[axis] * along);
+                most[axis][1] = most[axis][1].max(-across[axis] - slope[axis] * along);
+            }
+            nearest = nearest.min(along);
+            extent = extent.with(point);
+        }
+        if !nearest.is_finite() {
+            (most, nearest, extent) = ([[0.0; 2]; 2], 0.0, extent.with(Vec3::ZERO));
+        }
+        let size = if extent.diagonal() > 0.0 { extent.diagonal() } else { 1.0 };
+        let fit = |axis: usize| -0.5 * (most[axis][0] + most[axis][1]) / slope[axis];
+        // not into the subject, however flat it is along the direction
+        let along = fit(0).min(fit(1)).min(nearest - 0.2 * size);
+        let across = [0, 1].map(|axis: usize| 0.5 * (most[axis][0] - most[axis][1]));
+        Self {
+            eye: right * across[0] + up * across[1] + forward * along,
+            right,
+            up,
+            forward,
+            focal,
+            centre: [0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom)],
+            near: 1e-3 * size,
+        }
+    }
+
+    pub fn project(&self, point: Vec3) -> Projected {
+        let relative = point - self.eye;
+        let depth = self.forward.dot(relative);
+        if depth.is_nan() || depth < self.near {
+            return Projected::default();
+        }
+        let scale = self.focal / depth;
+        Projected {
+            x: self.centre[0] + scale * self.right.dot(relative),
+            y: self.centre[1] - scale * self.up.dot(relative),
+            inverse_depth: 1.0 / depth,
+        }
+    }
+
+    /// Direction from the eye through a place of the picture, one long along `forward`.
+    pub fn ray(&self, x: f64, y: f64) -> Vec3 {
+        self.forward + self.right * ((x - self.centre[0]) / self.focal)
+            - self.up * ((y - self.centre[1]) / self.focal)
+    }
+
+    /// Pixels of a length of one metre across at a depth of one metre.
+    pub fn focal(&self) -> f64 {
+        self.focal
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The fitted box touches two opposite borders of the frame and crosses none.
+    #[test]
+    fn fits_the_frame() {
+        let frame = Frame { left: 20.0, top: 60.0, right: 500.0, bottom: 380.0 };
+        let bounds = BoundingBox { low: Vec3::new(-3.0, 1.0, 0.0), high: Vec3::new(5.0, 2.0, 1.5) };
+        let corners: Vec<Vec3> = super::super::corners_of(bounds).collect();
+        for direction in [Vec3::new(-0.5, -0.4, -1.0), Vec3::new(1.0, 0.0, 0.2), Vec3::new(0.0, -1.0, 0.0)] {
+            let view = View { direction, ..View::default() };
+            let camera = Camera::fitted(&view, corners.iter().copied(), frame, 400.0);
+            let places: Vec<_> = corners.iter().map(|corner| camera.project(*corner)).collect();
+            let least = |of: fn(&Projected) -> f64| places.iter().map(of).fold(f64::INFINITY, f64::min);
+            let (left, top) = (least(|p| p.x) - frame.left, least(|p| p.y) - frame.top);
+            let (right, bottom) = (frame.right + least(|p| -p.x), frame.bottom + least(|p| -p.y));
+            let margins = [left, top, right, bottom];
+            // rounding of coordinates of a few hundred pixels
+            assert!(margins.iter().all(|margin| *margin > -1e-9), "{margins:?}");
+            assert!((left + right).min(top + bottom) < 1e-9, "{margins:?}");
+            let centre = camera.ray(0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
+            assert!((centre - camera.forward).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn nothing_and_a_point_make_a_camera() {
+        let frame = Frame { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
+        for points in [vec![], vec![Vec3::X], vec![Vec3::new(f64::NAN, 0.0, 0.0)]] {
+            let camera = Camera::fitted(&View::default(), points.into_iter(), frame, 10.0);
+            assert!(camera.eye.is_finite());
+        }
+        let straight = View { direction: Vec3::Y, up: Vec3::Y, ..View::default() };
+        let camera = Camera::fitted(&straight, [Vec3::ZERO, Vec3::X].into_iter(), frame, 10.0);
+        assert!(camera.eye.is_finite() && camera.project(camera.eye) == Projected::default());
+    }
+}

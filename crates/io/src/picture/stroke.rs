@@ -1,0 +1,82 @@
+//! Dots, lines and arrows over a picture, hidden where something is before them.
+
+use super::camera::{Camera, Projected};
+use super::colour::Colour;
+use super::raster::distance_point_segment;
+use super::surface::{Stroke, StrokeShape};
+
+/// A piece of a stroke in the picture.
+#[derive(Clone, Debug)]
+pub(super) struct Drawn {
+    from: Projected,
+    to: Projected,
+    /// At both ends [pixels]; a dot has no length, the head of an arrow ends in a point.
+    half_widths: [f64; 2],
+    colour: Colour,
+    /// Rows of pixels that it may touch.
+    rows: std::ops::Range<usize>,
+}
+
+/// Share of the colour that is seen through what stands before a stroke.
+const SHINE_THROUGH: f32 = 0.16;
+/// How much closer a stroke counts than it is, relative: one that lies on a surface is seen whole.
+const LIFT: f64 = 4e-3;
+
+pub(super) fn prepared(strokes: &[Stroke], camera: &Camera) -> Vec<Drawn> {
+    let mut drawn = Vec::new();
+    for stroke in strokes {
+        let half = 0.5 * stroke.width.clamp(0.0, 1000.0);
+        let mut push = |from: Projected, to: Projected, half_widths: [f64; 2]| {
+            if from.inverse_depth > 0.0 && to.inverse_depth > 0.0 {
+                let reach = half_widths[0].max(half_widths[1]) + 1.0;
+                let first = (from.y.min(to.y) - reach).max(0.0) as usize;
+                let last = (from.y.max(to.y) + reach).max(0.0) as usize;
+                drawn.push(Drawn { from, to, half_widths, colour: stroke.colour, rows: first..last + 1 });
+            }
+        };
+        match &stroke.shape {
+            StrokeShape::Dot(point) => {
+                let place = camera.project(*point);
+                push(place, place, [half; 2]);
+            }
+            StrokeShape::Line(points) => {
+                for pair in points.windows(2) {
+                    push(camera.project(pair[0]), camera.project(pair[1]), [half; 2]);
+                }
+            }
+            StrokeShape::Arrow(from, to) => {
+                let (start, tip) = (camera.project(*from), camera.project(*to));
+                let length = (tip.x - start.x).hypot(tip.y - start.y);
+                // the head is seven half widths long, but leaves a third of the shaft
+                let head = (7.0 * half).min(0.66 * length);
+                let share = if length > 0.0 { 1.0 - head / length } else { 0.0 };
+                let neck = Projected {
+                    x: start.x + (tip.x - start.x) * share,
+                    y: start.y + (tip.y - start.y) * share,
+                    inverse_depth: start.inverse_depth + (tip.inverse_depth - start.inverse_depth) * share,
+                };
+                push(start, neck, [half; 2]);
+                push(neck, tip, [0.42 * head, 0.0]);
+            }
+        }
+    }
+    drawn
+}
+
+pub(super) fn near_row(strokes: &[Drawn], row: usize) -> Vec<&Drawn> {
+    strokes.iter().filter(|stroke| stroke.rows.contains(&row)).collect()
+}
+
+impl Drawn {
+    /// The colour of a sample with the stroke over it; `inverse_depth` of what is seen there, zero for nothing.
+    pub fn over(&self, below: Colour, place: [f64; 2], inverse_depth: f32) -> Colour {
+        let Self { from, to, half_widths, .. } = self;
+        let (distance, t) = distance_point_segment(place, [from.x, from.y], [to.x, to.y]);
+        if distance > half_widths[0] + (half_widths[1] - half_widths[0]) * t {
+            return below;
+        }
+        let own = from.inverse_depth + (to.inverse_depth - from.inverse_depth) * t;
+        let hidden = own * (1.0 + LIFT) < f64::from(inverse_depth);
+        below.mixed(self.colour, if hidden { SHINE_THROUGH } else { 1.0 })
+    }
+}

@@ -1,0 +1,235 @@
+//! What a picture shows: surfaces with their paint, and strokes.
+
+use std::collections::HashMap;
+
+use souple_math::Vec3;
+use souple_mesh::Mesh;
+
+use super::colour::Colour;
+use crate::IoError;
+
+/// Triangles with their paint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Positions [m].
+    pub points: Vec<Vec3>,
+    /// Corners, counterclockwise seen from outside; the inside is shown too, a little darker.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle whether its edges 01, 12, 20 are edges of the mesh, and drawn where edges are; empty:
+    /// all are.
+    pub edges: Vec<[bool; 3]>,
+    pub paint: Paint,
+    pub edge_style: EdgeStyle,
+}
+
+/// What a surface is painted with.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Paint {
+    Plain(Colour),
+    /// Values on the points, painted by the colour map; NaN is grey.
+    PointScalar(Vec<f64>),
+    /// Values on the triangles.
+    TriangleScalar(Vec<f64>),
+}
+
+impl Default for Paint {
+    /// The colour of tissue.
+    fn default() -> Self {
+        Self::Plain(Colour::from_screen([214, 122, 104]))
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EdgeStyle {
+    #[default]
+    Hidden,
+    /// Thin lines on the surface.
+    Drawn,
+    /// Lines alone, the surface left out.
+    Wireframe,
+}
+
+/// Lines, arrows and dots: pins, loads, tracks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    pub shape: StrokeShape,
+    pub colour: Colour,
+    /// Width, or diameter of a dot [pixels].
+    pub width: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum StrokeShape {
+    Dot(Vec3),
+    Line(Vec<Vec3>),
+    /// From, to [m]; the head is at the latter.
+    Arrow(Vec3, Vec3),
+}
+
+impl StrokeShape {
+    pub(super) fn points(&self) -> Vec<Vec3> {
+        match self {
+            Self::Dot(point) => vec![*point],
+            Self::Line(points) => points.clone(),
+            Self::Arrow(from, to) => vec![*from, *to],
+        }
+    }
+}
+
+/// A surface made of a mesh, with the points and cells that it came from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshSurface {
+    pub surface: Surface,
+    /// Point of the mesh that each point is.
+    pub points: Vec<u32>,
+    /// Cell (for a mesh without cells: facet) that each triangle bounds.
+    pub cells: Vec<u32>,
+}
+
+impl MeshSurface {
+    /// The boundary of a mesh, or its facets if it has no cells; quadrilaterals keep their four edges.
+    pub fn of(mesh: &Mesh) -> Self {
+        let mut of = Self::default();
+        let mut numbers = HashMap::new();
+        if mesh.cell_count() == 0 {
+            for (facet, view) in mesh.facets().enumerate() {
+                of.push(mesh, view.nodes, facet as u32, &mut numbers);
+            }
+            return of;
+        }
+        let boundary = mesh.faces().boundary;
+        let mut faces = boundary.iter().peekable();
+        for (cell, view) in mesh.cells().enumerate() {
+            while let Some(face) = faces.next_if(|face| face.cell as usize == cell) {
+                let nodes: Vec<u32> = view.face_nodes(face.face.into()).1.collect();
+                of.push(mesh, &nodes, face.cell, &mut numbers);
+            }
+        }
+        of
+    }
+
+    /// A polygon as triangles around its first corner.
+    fn push(&mut self, mesh: &Mesh, nodes: &[u32], cell: u32, numbers: &mut HashMap<u32, u32>) {
+        let corners: Vec<u32> = nodes
+            .iter()
+            .map(|node| {
+                *numbers.entry(*node).or_insert_with(|| {
+                    self.points.push(*node);
+                    self.surface.points.push(mesh.points[*node as usize]);
+                    self.points.len() as u32 - 1
+                })
+            })
+            .collect();
+        for k in 1..corners.len().saturating_sub(1) {
+            self.surface.triangles.push([corners[0], corners[k], corners[k + 1]]);
+            self.surface.edges.push([k == 1, true, k + 2 == corners.len()]);
+            self.cells.push(cell);
+        }
+    }
+
+    /// Moves the points to positions of all points of the mesh [m].
+    pub fn move_to(&mut self, positions: &[Vec3]) {
+        for (point, source) in self.surface.points.iter_mut().zip(&self.points) {
+            *point = positions[*source as usize];
+        }
+    }
+
+    /// Paints by a value for each point of the mesh.
+    pub fn paint_points(&mut self, values: &[f64]) {
+        self.surface.paint =
+            Paint::PointScalar(self.points.iter().map(|point| values[*point as usize]).collect());
+    }
+
+    /// Paints by a value for each cell of the mesh.
+    pub fn paint_cells(&mut self, values: &[f64]) {
+        self.surface.paint =
+            Paint::TriangleScalar(self.cells.iter().map(|cell| values[*cell as usize]).collect());
+    }
+}
+
+impl Surface {
+    pub(super) fn check(&self, number: usize) -> Result<(), IoError> {
+        let refuse = |what: &str, value: usize, expected: String| {
+            Err(IoError::request(format!("{what} of surfaces[{number}]"), value, expected))
+        };
+        let count = self.points.len();
+        if let Some(corner) = self.triangles.iter().flatten().find(|corner| **corner as usize >= count) {
+            return refuse("a corner", *corner as usize, format!("a number below {count}"));
+        }
+        if !self.edges.is_empty() && self.edges.len() != self.triangles.len() {
+            return refuse("the number of edge marks", self.edges.len(), format!("{}", self.triangles.len()));
+        }
+        match &self.paint {
+            Paint::PointScalar(values) if values.len() != count => {
+                refuse("the number of values", values.len(), format!("{count}, one for each point"))
+            }
+            Paint::TriangleScalar(values) if values.len() != self.triangles.len() => {
+                let expected = format!("{}, one for each triangle", self.triangles.len());
+                refuse("the number of values", values.len(), expected)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Finite values of the paint: least and greatest.
+    pub(super) fn range(&self) -> Option<(f64, f64)> {
+        let values = match &self.paint {
+            Paint::Plain(_) => return None,
+            Paint::PointScalar(values) | Paint::TriangleScalar(values) => values,
+        };
+        let finite = values.iter().copied().filter(|value| value.is_finite());
+        finite.fold(None, |range, value| match range {
+            None => Some((value, value)),
+            Some((low, high)) => Some((f64::min(low, value), f64::max(high, value))),
+        })
+    }
+
+    /// Unit normals at the corners of each triangle: those of the triangles around the point that are bent from
+    /// it by less than the crease, weighted by area. So a ball is round and a box keeps its edges.
+    pub(super) fn corner_normals(&self) -> Vec<[Vec3; 3]> {
+        let areas: Vec<Vec3> = self
+            .triangles
+            .iter()
+            .map(|corners| {
+                let [a, b, c] = corners.map(|corner| self.points[corner as usize]);
+                (b - a).cross(c - a)
+            })
+            .collect();
+        let units: Vec<Option<Vec3>> = areas.iter().map(|area| area.try_normalised()).collect();
+        // triangles around each point, in one list with the start of each point
+        let mut starts = vec![0u32; self.points.len() + 1];
+        for corner in self.triangles.iter().flatten() {
+            starts[*corner as usize + 1] += 1;
+        }
+        for point in 0..self.points.len() {
+            starts[point + 1] += starts[point];
+        }
+        let mut next = starts.clone();
+        let mut around = vec![0u32; 3 * self.triangles.len()];
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            for corner in corners {
+                around[next[*corner as usize] as usize] = triangle as u32;
+                next[*corner as usize] += 1;
+            }
+        }
+        let normal_at = |triangle: usize, corner: u32| {
+            let Some(own) = units[triangle] else { return Vec3::ZERO };
+            let point = corner as usize;
+            let mut sum = Vec3::ZERO;
+            // a point of thousands of triangles (the tip of a fan) needs no more than the first few hundred
+            for other in around[starts[point] as usize..starts[point + 1] as usize].iter().take(MOST_AROUND) {
+                let other = *other as usize;
+                if units[other].is_some_and(|unit| unit.dot(own) > CREASE) {
+                    sum += areas[other];
+                }
+            }
+            sum.try_normalised().unwrap_or(own)
+        };
+        let triangles = self.triangles.iter().enumerate();
+        triangles.map(|(triangle, corners)| corners.map(|corner| normal_at(triangle, corner))).collect()
+    }
+}
+
+/// Cosine of 40 degrees.
+const CREASE: f64 = 0.766;
+const MOST_AROUND: usize = 256;

@@ -1,0 +1,150 @@
+//! Pictures of simple things cover what they must, and the same picture is the same bits.
+
+use souple_mesh::{ElementKind, Mesh, generate};
+use souple_table::{Value, Values};
+
+use super::*;
+
+fn ball(element: &str) -> Mesh {
+    let values = Values::new()
+        .with("radius", Value::Number(1.0))
+        .with("cells", Value::Integer(6))
+        .with("element", Value::Text(element));
+    generate("sphere", values).unwrap()
+}
+
+fn cube() -> Mesh {
+    let corner = |index: usize| [index & 1, index >> 1 & 1, index >> 2].map(|bit| bit as f64);
+    let points = [0, 1, 3, 2, 4, 5, 7, 6].map(|index| Vec3::from_array(corner(index))).to_vec();
+    Mesh::new(points, ElementKind::Hex8, (0..8).collect())
+}
+
+/// Pixels that differ from the same picture without its surfaces.
+fn covered(picture: &Picture) -> usize {
+    let empty = Picture { surfaces: Vec::new(), strokes: Vec::new(), ..picture.clone() };
+    let (full, empty) = (picture.render().unwrap(), empty.render().unwrap());
+    full.pixels.iter().zip(&empty.pixels).filter(|(a, b)| a != b).count()
+}
+
+/// A square seen straight from the front fills the square that fits the frame: side² pixels.
+#[test]
+fn a_square_covers_its_pixels() {
+    let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec();
+    let surface = Surface { points, triangles: vec![[0, 1, 2], [0, 2, 3]], ..Surface::default() };
+    let view = View { direction: -Vec3::Z, ..View::default() };
+    for samples_per_pixel in [1, 2, 3] {
+        let picture = Picture {
+            surfaces: vec![surface.clone()],
+            view,
+            size: [300, 200],
+            samples_per_pixel,
+            ..Picture::default()
+        };
+        // the frame leaves 4.5 % of the height on either side
+        let side = 200.0 * (1.0 - 2.0 * 0.045);
+        // a row of pixels along each border may be covered in part
+        let measured = covered(&picture) as f64;
+        assert!((measured - side * side).abs() <= 4.0 * side + 4.0, "{measured} {}", side * side);
+    }
+}
+
+/// A ball covers a disc: π/4 of the square around it. The silhouette of a ball in perspective is fitted by its
+/// points, and its polygon is smaller than the disc by less than `(π/n)²/6` for `n` points around.
+#[test]
+fn a_ball_covers_a_disc() {
+    let surface = MeshSurface::of(&ball("hex8")).surface;
+    let picture = Picture { surfaces: vec![surface], size: [400, 400], ..Picture::default() };
+    let side = 400.0 * (1.0 - 2.0 * 0.045);
+    let expected = std::f64::consts::FRAC_PI_4 * side * side;
+    let measured = covered(&picture) as f64;
+    let polygon = (std::f64::consts::PI / 24.0).powi(2);
+    assert!((measured / expected - 1.0).abs() < 2.0 * polygon + 4.0 / side, "{}", measured / expected);
+}
+
+#[test]
+fn the_same_picture_is_the_same_bits() {
+    let picture = Picture {
+        surfaces: vec![MeshSurface::of(&cube()).surface],
+        ground: Some(Ground { point: Vec3::ZERO, normal: Vec3::Y }),
+        size: [160, 100],
+        title: "A cube".to_owned(),
+        ..Picture::default()
+    };
+    assert_eq!(picture.render().unwrap(), picture.render().unwrap());
+}
+
+/// A quadrilateral keeps its four edges, a cube its twelve: each of twelve triangles has one that is none.
+#[test]
+fn quadrilaterals_have_no_diagonal() {
+    let of = MeshSurface::of(&cube());
+    assert_eq!((of.surface.triangles.len(), of.points.len()), (12, 8));
+    assert!(of.surface.edges.iter().all(|marks| marks.iter().filter(|mark| **mark).count() == 2));
+    let triangles = MeshSurface::of(&ball("tet4")).surface;
+    assert!(triangles.edges.iter().flatten().all(|mark| *mark));
+}
+
+/// Normals of a box stand on its faces, those of a ball along its radius.
+#[test]
+fn normals_keep_creases_and_round_balls() {
+    let cube = MeshSurface::of(&cube()).surface;
+    for (corners, normals) in cube.triangles.iter().zip(cube.corner_normals()) {
+        let [a, b, c] = corners.map(|corner| cube.points[corner as usize]);
+        let face = (b - a).cross(c - a);
+        assert!(normals.iter().all(|normal| (*normal - face).length() < 1e-12));
+    }
+    let ball = MeshSurface::of(&ball("tet4")).surface;
+    for (corners, normals) in ball.triangles.iter().zip(ball.corner_normals()) {
+        for (corner, normal) in corners.iter().zip(normals) {
+            // 10 degrees: a third of the angle between neighbouring triangles
+            assert!(ball.points[*corner as usize].dot(normal) > 0.985);
+        }
+    }
+}
+
+/// A stroke before a surface is seen whole, one behind it shines through.
+#[test]
+fn strokes_are_hidden_by_what_is_before_them() {
+    let red = Colour([1.0, 0.0, 0.0]);
+    let pixel_of = |z: f64| {
+        let dot = Stroke { shape: StrokeShape::Dot(Vec3::new(0.5, 0.5, z)), colour: red, width: 9.0 };
+        let picture = Picture {
+            surfaces: vec![MeshSurface::of(&cube()).surface],
+            strokes: vec![dot],
+            view: View { direction: -Vec3::Z, ..View::default() },
+            size: [101, 101],
+            ..Picture::default()
+        };
+        picture.render().unwrap().pixels[50 * 101 + 50]
+    };
+    assert_eq!(pixel_of(1.0), [255, 0, 0]);
+    assert!(pixel_of(0.5)[1] > 60);
+}
+
+#[test]
+fn faulty_pictures_are_refused_and_strange_ones_drawn() {
+    let surface = MeshSurface::of(&cube()).surface;
+    let refused = |picture: Picture| picture.render().unwrap_err().to_string();
+    let plain = Picture { size: [40, 30], ..Picture::default() };
+    assert!(refused(Picture { size: [0, 30], ..plain.clone() }).contains("width"));
+    assert!(refused(Picture { samples_per_pixel: 0, ..plain.clone() }).contains("samples"));
+    let paint = Paint::PointScalar(vec![0.0; 3]);
+    let short = Surface { paint, ..surface.clone() };
+    assert!(refused(Picture { surfaces: vec![short], ..plain.clone() }).contains("one for each point"));
+    let far = Surface { triangles: vec![[0, 1, 99]], ..Surface { edges: Vec::new(), ..surface.clone() } };
+    assert!(refused(Picture { surfaces: vec![far], ..plain.clone() }).contains("a number below 8"));
+
+    let mut broken = surface.clone();
+    broken.points[0] = Vec3::new(f64::NAN, 0.0, 0.0);
+    broken.points[1] = Vec3::new(f64::INFINITY, 0.0, 1e300);
+    broken.paint = Paint::PointScalar(vec![f64::NAN; 8]);
+    let flat = Surface { points: vec![Vec3::X; 3], triangles: vec![[0, 1, 2]], ..Surface::default() };
+    for surfaces in [vec![], vec![broken], vec![flat]] {
+        let legend = Some(Legend { range: Some((f64::NAN, 1.0)), ..Legend::default() });
+        let ground = Some(Ground { point: Vec3::ZERO, normal: Vec3::ZERO });
+        for size in [[40, 30], [1, 1], [1, 300], [300, 1]] {
+            Picture { surfaces: surfaces.clone(), legend: legend.clone(), ground, size, ..plain.clone() }
+                .render()
+                .unwrap();
+        }
+    }
+}

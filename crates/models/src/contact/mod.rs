@@ -1,0 +1,18 @@
+//! Contact: bodies against shapes, and body against body, by penalty with Coulomb friction.
+//!
+//! [`law`] says what force two things exert that touch; [`shape`] says where shapes are; [`ShapeContact`] and
+//! [`SurfaceContact`] find what touches and hand the forces to rows.
+
+pub mod law;
+pub mod motion;
+pub mod shape;
+mod shape_contact;
+mod surface_contact;
+#[cfg(test)]
+mod tests;
+
+pub use law::{ContactForce, ContactLaw, penalty_stiffness};
+pub use motion::ShapeMotion;
+pub use shape::{Nearest, SHAPES, Shape, ShapeError};
+pub use shape_contact::{ContactPoint, ShapeContact, Touch};
+pub use surface_contact::{ContactSurface, SurfaceContact, SurfaceContactError, SurfaceTouch};

@@ -1,0 +1,114 @@
+//! Shapes that bodies touch: the nearest point of a shape, its normal and how it turns.
+//!
+//! A shape is written in its own place and knows no motion. Adding one is an entry in [`SHAPES`].
+
+mod capsule;
+mod closed_surface;
+mod cuboid;
+mod plane;
+mod sphere;
+
+use std::fmt::Debug;
+
+use souple_math::{Mat3, Vec3};
+use souple_mesh::{MeshError, TriangleSurface};
+use souple_table::{Entry, Parameter, Table, Value, Values};
+
+pub use capsule::Capsule;
+pub use closed_surface::ClosedSurface;
+pub use cuboid::Cuboid;
+pub use plane::Plane;
+pub use sphere::Sphere;
+
+/// What a point sees of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Negative inside [m].
+    pub distance: f64,
+    /// Unit gradient of the distance, outward.
+    pub normal: Vec3,
+    /// `∂normal/∂x` [1/m], symmetric.
+    pub curvature: Mat3,
+}
+
+/// A body of fixed shape.
+pub trait Shape: Send + Sync + Debug {
+    /// `None` where the distance surely exceeds `reach`, or has no answer (a point that is not finite).
+    fn nearest(&self, point: Vec3, reach: f64) -> Option<Nearest>;
+}
+
+/// A shape that cannot be.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ShapeError {
+    #[error("`{field}` is {value}, but must be {expected}")]
+    Unfit { field: &'static str, value: String, expected: &'static str },
+    #[error("`{field}` = \"{surface}\" cannot be a shape: {error}")]
+    Surface { field: &'static str, surface: String, error: Box<MeshError> },
+    #[error("`{field}` = \"{surface}\" cannot be read: {message}")]
+    NoSurface { field: &'static str, surface: String, message: String },
+}
+
+/// Finds the surface that a scene names (a file, a generator), or says why there is none.
+pub type SurfaceSource<'a> = &'a dyn Fn(&str) -> Result<TriangleSurface, String>;
+
+/// Constructor of a shape from completed values.
+pub type BuildShape = fn(&Values, SurfaceSource) -> Result<Box<dyn Shape>, ShapeError>;
+
+pub type ShapeEntry = Entry<BuildShape>;
+
+pub const SHAPES: Table<BuildShape> = Table {
+    kind: "shape",
+    entries: &[&plane::ENTRY, &sphere::ENTRY, &capsule::ENTRY, &cuboid::ENTRY, &closed_surface::ENTRY],
+};
+
+/// Whether bodies are kept outside or inside.
+const HOLLOW: Parameter =
+    Parameter::boolean("hollow", "`true`: bodies are kept inside the shape, which is a container")
+        .or(Value::Boolean(false));
+
+/// A container: the outside of a shape.
+#[derive(Debug)]
+struct Hollow<S>(S);
+
+impl<S: Shape> Shape for Hollow<S> {
+    fn nearest(&self, point: Vec3, _reach: f64) -> Option<Nearest> {
+        // points far outside the container are deep inside its wall: none is beyond reach
+        let Nearest { distance, normal, curvature } = self.0.nearest(point, f64::INFINITY)?;
+        Some(Nearest { distance: -distance, normal: -normal, curvature: -curvature })
+    }
+}
+
+fn boxed<S: Shape + 'static>(shape: S, values: &Values) -> Box<dyn Shape> {
+    if values.boolean("hollow") { Box::new(Hollow(shape)) } else { Box::new(shape) }
+}
+
+/// Distance to a rounded thing of `radius` about `centre`, the nearest point of a line, segment or point; at
+/// the centre itself, where every direction is as good, along `fallback`.
+///
+/// `flat` are directions in which the centre follows the point: they do not turn the normal.
+fn rounded(point: Vec3, centre: Vec3, radius: f64, flat: Mat3, fallback: Vec3) -> Nearest {
+    let offset = point - centre;
+    let length = offset.length();
+    match offset.try_normalised() {
+        // ∂n/∂x = (I - n nᵀ - flat)/|x - c|
+        Some(n) => Nearest {
+            distance: length - radius,
+            normal: n,
+            curvature: (Mat3::IDENTITY - n.outer(n) - flat) * (1.0 / length),
+        },
+        None => Nearest { distance: -radius, normal: fallback, curvature: Mat3::ZERO },
+    }
+}
+
+/// Parameter as a direction.
+fn direction(field: &'static str, values: &Values) -> Result<Vec3, ShapeError> {
+    let vector = Vec3::from_array(values.vector(field));
+    vector.try_normalised().ok_or_else(|| ShapeError::Unfit {
+        field,
+        value: format!("{:?}", vector.to_array()),
+        expected: "a vector that is not zero",
+    })
+}
+
+#[cfg(test)]
+mod tests;

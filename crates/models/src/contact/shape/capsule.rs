@@ -1,0 +1,55 @@
+//! A cylinder with round ends.
+
+use souple_math::{Mat3, Vec3};
+use souple_table::{Parameter, Range};
+
+use super::{HOLLOW, Nearest, Shape, ShapeEntry, boxed, rounded};
+
+/// All points within a radius of a segment; a segment of no length is a ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Capsule {
+    /// Ends of the segment [m].
+    pub from: Vec3,
+    pub to: Vec3,
+    /// [m]
+    pub radius: f64,
+}
+
+impl Shape for Capsule {
+    fn nearest(&self, point: Vec3, _reach: f64) -> Option<Nearest> {
+        if !point.is_finite() {
+            return None;
+        }
+        let along = self.to - self.from;
+        let Some(axis) = along.try_normalised() else {
+            return Some(rounded(point, self.from, self.radius, Mat3::ZERO, Vec3::Z));
+        };
+        let place = (point - self.from).dot(axis);
+        let length = along.length();
+        let (centre, flat) = if place <= 0.0 {
+            (self.from, Mat3::ZERO)
+        } else if place >= length {
+            (self.to, Mat3::ZERO)
+        } else {
+            (self.from + axis * place, axis.outer(axis))
+        };
+        Some(rounded(point, centre, self.radius, flat, axis.any_orthogonal()))
+    }
+}
+
+pub(super) const ENTRY: ShapeEntry = ShapeEntry {
+    name: "capsule",
+    summary: "a cylinder with round ends: fingers, pipes, rods",
+    source: "analytic",
+    parameters: &[
+        Parameter::vector("from", "m", "centre of one end"),
+        Parameter::vector("to", "m", "centre of the other end"),
+        Parameter::number("radius", "m", Range::POSITIVE, "its radius"),
+        HOLLOW,
+    ],
+    build: |values, _| {
+        let end = |name| Vec3::from_array(values.vector(name));
+        let capsule = Capsule { from: end("from"), to: end("to"), radius: values.number("radius") };
+        Ok(boxed(capsule, values))
+    },
+};

@@ -1,0 +1,71 @@
+//! The inside of a closed triangulated surface.
+
+use souple_math::{Mat3, Vec3};
+use souple_mesh::{MeshError, SignedDistance, TriangleSurface};
+use souple_table::Parameter;
+
+use super::{HOLLOW, Nearest, Shape, ShapeEntry, ShapeError, boxed};
+
+/// Signed distance to a closed surface of triangles.
+#[derive(Clone, Debug)]
+pub struct ClosedSurface {
+    distance: SignedDistance,
+}
+
+/// Closer than this part of the surface's size, the direction to the nearest point is lost in rounding and the
+/// surface's own normal serves.
+const ON_SURFACE: f64 = 1e-12;
+
+impl ClosedSurface {
+    /// # Errors
+    /// The surface is open, empty or has a triangle without area.
+    pub fn new(surface: TriangleSurface) -> Result<Self, MeshError> {
+        Ok(Self { distance: SignedDistance::new(surface)? })
+    }
+}
+
+impl Shape for ClosedSurface {
+    fn nearest(&self, point: Vec3, reach: f64) -> Option<Nearest> {
+        let bounds = self.distance.surface().bounds();
+        if !bounds.grown(reach).contains(point) {
+            return None;
+        }
+        let closest = self.distance.closest(point)?;
+        let n = (point - closest.position) * closest.distance.recip();
+        if closest.distance.abs() <= ON_SURFACE * bounds.diagonal() || !n.is_finite() {
+            let curvature = Mat3::ZERO;
+            return Some(Nearest { distance: closest.distance, normal: closest.normal, curvature });
+        }
+        // the nearest point follows over a face and along an edge, and stays at a corner
+        let corners = self.distance.surface().corners(closest.triangle);
+        let away: Vec<usize> = (0..3).filter(|corner| closest.weights[*corner] == 0.0).collect();
+        let flat = match away.as_slice() {
+            [] => Mat3::IDENTITY - n.outer(n),
+            [one] => {
+                let along = (corners[(one + 1) % 3] - corners[(one + 2) % 3]).try_normalised();
+                along.map_or(Mat3::ZERO, |edge| edge.outer(edge))
+            }
+            _ => Mat3::ZERO,
+        };
+        let curvature = (Mat3::IDENTITY - n.outer(n) - flat) * closest.distance.recip();
+        Some(Nearest { distance: closest.distance, normal: n, curvature })
+    }
+}
+
+pub(super) const ENTRY: ShapeEntry = ShapeEntry {
+    name: "closed_surface",
+    summary: "the inside of a closed triangulated surface: bones, moulds, tools",
+    source: "Bærentzen & Aanæs 2005, Signed distance computation using the angle weighted pseudonormal",
+    parameters: &[Parameter::text("surface", "file of a closed triangulated surface"), HOLLOW],
+    build: |values, source| {
+        let (field, name) = ("surface", values.text("surface"));
+        let surface = source(name).map_err(|message| ShapeError::NoSurface {
+            field,
+            surface: name.to_owned(),
+            message,
+        })?;
+        let wrong = |error| ShapeError::Surface { field, surface: name.to_owned(), error: Box::new(error) };
+        let closed = ClosedSurface::new(surface).map_err(wrong)?;
+        Ok(boxed(closed, values))
+    },
+};

@@ -1,0 +1,55 @@
+//! A box along the axes.
+
+use souple_math::{Mat3, Vec3};
+use souple_table::{Parameter, Value};
+
+use super::{HOLLOW, Nearest, Shape, ShapeEntry, ShapeError, boxed, rounded};
+
+/// Outside, edges and corners are round; inside, the nearest face pushes out, of equally near ones the first
+/// along x, y, z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cuboid {
+    /// [m]
+    pub centre: Vec3,
+    /// Half the length of its sides [m].
+    pub half_size: Vec3,
+}
+
+impl Shape for Cuboid {
+    fn nearest(&self, point: Vec3, _reach: f64) -> Option<Nearest> {
+        if !point.is_finite() {
+            return None;
+        }
+        let local = point - self.centre;
+        let beyond = [0, 1, 2].map(|axis: usize| local[axis].abs() - self.half_size[axis]);
+        let side = |axis: usize| Vec3::AXES[axis] * 1.0_f64.copysign(local[axis]);
+        if beyond.iter().all(|distance| *distance <= 0.0) {
+            let nearest = (1..3).fold(0, |best, axis| if beyond[axis] > beyond[best] { axis } else { best });
+            return Some(Nearest { distance: beyond[nearest], normal: side(nearest), curvature: Mat3::ZERO });
+        }
+        // directions in which the nearest point follows
+        let flat = Mat3::from_diagonal(Vec3::from_array(beyond.map(|d| if d > 0.0 { 0.0 } else { 1.0 })));
+        let on_surface = local.max_components(-self.half_size).min_components(self.half_size);
+        Some(rounded(local, on_surface, 0.0, flat, Vec3::Z))
+    }
+}
+
+pub(super) const ENTRY: ShapeEntry = ShapeEntry {
+    name: "box",
+    summary: "a box along the axes, or a room; a motion may turn it",
+    source: "analytic",
+    parameters: &[
+        Parameter::vector("centre", "m", "its centre").or(Value::Vector([0.0; 3])),
+        Parameter::vector("size", "m", "length of its sides"),
+        HOLLOW,
+    ],
+    build: |values, _| {
+        let size = values.vector("size");
+        if size.iter().any(|length| *length <= 0.0) {
+            let expected = "three lengths above 0 [m]";
+            return Err(ShapeError::Unfit { field: "size", value: format!("{size:?}"), expected });
+        }
+        let centre = Vec3::from_array(values.vector("centre"));
+        Ok(boxed(Cuboid { centre, half_size: Vec3::from_array(size) * 0.5 }, values))
+    },
+};

@@ -1,0 +1,37 @@
+//! A ball.
+
+use souple_math::{Mat3, Vec3};
+use souple_table::{Parameter, Range, Value};
+
+use super::{HOLLOW, Nearest, Shape, ShapeEntry, boxed, rounded};
+
+/// At the very centre the nearest point is taken along z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// [m]
+    pub centre: Vec3,
+    /// [m]
+    pub radius: f64,
+}
+
+impl Shape for Sphere {
+    fn nearest(&self, point: Vec3, _reach: f64) -> Option<Nearest> {
+        point.is_finite().then(|| rounded(point, self.centre, self.radius, Mat3::ZERO, Vec3::Z))
+    }
+}
+
+pub(super) const ENTRY: ShapeEntry = ShapeEntry {
+    name: "sphere",
+    summary: "a ball, or a round container",
+    source: "analytic",
+    parameters: &[
+        Parameter::vector("centre", "m", "its centre").or(Value::Vector([0.0; 3])),
+        Parameter::number("radius", "m", Range::POSITIVE, "its radius"),
+        HOLLOW,
+    ],
+    build: |values, _| {
+        let sphere =
+            Sphere { centre: Vec3::from_array(values.vector("centre")), radius: values.number("radius") };
+        Ok(boxed(sphere, values))
+    },
+};

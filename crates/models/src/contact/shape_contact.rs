@@ -1,0 +1,289 @@
+//! Points of a body against a shape.
+//!
+//! Every point keeps its anchor in the force's memory, also while it touches nothing: a touch that begins
+//! within an implicit step of any length is answered in that step, and the matrix keeps its pattern (a block
+//! per point) whatever comes and goes.
+
+use std::any::Any;
+
+use souple_engine::tangent::add_block;
+use souple_engine::{
+    Configuration, Declaration, Editable, Energy, Force, Pair, ParameterError, Scratch, TangentWeights,
+};
+use souple_math::{Dual, Mat3, Vec3};
+use souple_solve::BlockMatrix;
+
+use crate::loads::{LoadError, finite, not_negative};
+
+use super::law::Approach;
+use super::motion::Pose;
+use super::{ContactForce, ContactLaw, Nearest, Shape, ShapeMotion};
+
+/// A point of the body's surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    pub row: u32,
+    /// Its part of the law's stiffness: 1, or its area over the mean area.
+    pub share: f64,
+    /// Where it is at the start [m]: the first anchor.
+    pub start: Vec3,
+}
+
+/// A body's points against one shape, see [`ContactLaw`]. Friction acts relative to the moving shape.
+#[derive(Debug)]
+pub struct ShapeContact {
+    name: String,
+    points: Vec<ContactPoint>,
+    shape: Box<dyn Shape>,
+    motion: ShapeMotion,
+    law: ContactLaw,
+}
+
+/// One point that touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    pub row: u32,
+    /// How deep the point is, thickness included [m].
+    pub penetration: f64,
+    /// Unit, out of the shape.
+    pub normal: Vec3,
+    /// Forces on the point in the world's axes [N].
+    pub force: ContactForce,
+}
+
+/// Heat so far, before the points' own memory.
+const HEAT: usize = 1;
+/// Anchor and stretch of a point, in the shape's place.
+const PER_POINT: usize = 6;
+
+/// A point as the law sees it, in the shape's place.
+struct Local {
+    approach: Approach<f64>,
+    nearest: Nearest,
+}
+
+impl ShapeContact {
+    /// # Errors
+    /// No points, or a number that does not fit.
+    pub fn new(
+        name: impl Into<String>,
+        points: Vec<ContactPoint>,
+        shape: Box<dyn Shape>,
+        motion: ShapeMotion,
+        law: ContactLaw,
+    ) -> Result<Self, LoadError> {
+        if points.is_empty() {
+            return Err(LoadError::Empty { field: "points", expected: "point of a body's surface" });
+        }
+        for (index, point) in points.iter().enumerate() {
+            not_negative(format!("points[{index}].share"), point.share)?;
+            for axis in 0..3 {
+                finite(format!("points[{index}].start[{axis}]"), point.start[axis])?;
+            }
+        }
+        law.check()?;
+        Ok(Self { name: name.into(), points, shape, motion, law })
+    }
+
+    pub fn law(&self) -> &ContactLaw {
+        &self.law
+    }
+
+    /// Points that touch, with the forces on them.
+    pub fn touches(&self, at: &Configuration) -> Vec<Touch> {
+        let pose = self.motion.pose(at.time);
+        let touch = |(index, point): (usize, &ContactPoint)| {
+            let local = self.local(index, &pose, at)?;
+            let force = self.law.force(point.share, &local.approach, |number| number)?;
+            let [normal, friction, stretch] =
+                [force.normal, force.friction, force.stretch].map(|vector| pose.direction_to_world(vector));
+            Some(Touch {
+                row: point.row,
+                penetration: -local.approach.gap,
+                normal: pose.direction_to_world(local.approach.normal),
+                force: ContactForce { normal, friction, stretch, sliding: force.sliding },
+            })
+        };
+        self.points.iter().enumerate().filter_map(touch).collect()
+    }
+
+    /// Normal force and friction on the body [N]; the shape bears their opposite.
+    pub fn total(&self, at: &Configuration) -> (Vec3, Vec3) {
+        let touches = self.touches(at);
+        (touches.iter().map(|t| t.force.normal).sum(), touches.iter().map(|t| t.force.friction).sum())
+    }
+
+    /// `None` where the point is out of reach.
+    fn local(&self, index: usize, pose: &Pose, at: &Configuration) -> Option<Local> {
+        let row = self.points[index].row as usize;
+        let position = pose.to_shape(at.positions[row]);
+        let nearest = self.shape.nearest(position, self.law.thickness)?;
+        let (anchor, _) = remembered(at.memory, index);
+        let approach = Approach {
+            gap: nearest.distance - self.law.thickness,
+            normal: nearest.normal,
+            from_anchor: position - anchor,
+            velocity: pose.velocity_to_shape(at.positions[row], at.velocities[row]),
+        };
+        Some(Local { approach, nearest })
+    }
+
+    /// Change of the force on a touching point for changes of its position and velocity.
+    fn change(&self, share: f64, local: &Local, pose: &Pose, position: Vec3, velocity: Vec3) -> Vec3 {
+        let Local { approach, nearest } = local;
+        let moved = pose.direction_to_shape(position);
+        let gap = Dual::new(approach.gap, nearest.normal.dot(moved));
+        let dual = Approach {
+            gap,
+            normal: dual(approach.normal, nearest.curvature * moved),
+            from_anchor: dual(approach.from_anchor, moved),
+            velocity: dual(approach.velocity, pose.velocity_change_to_shape(position, velocity)),
+        };
+        let force = self.law.force(share, &dual, |number: Dual| number.value);
+        force.map_or(Vec3::ZERO, |force| pose.direction_to_world(derivative(force.total())))
+    }
+
+    /// Points that touch, as the law sees them.
+    fn touching<'a>(
+        &'a self,
+        pose: &'a Pose,
+        at: &'a Configuration,
+    ) -> impl Iterator<Item = (&'a ContactPoint, Local)> {
+        let local = move |(index, point)| Some((point, self.local(index, pose, at)?));
+        self.points.iter().enumerate().filter_map(local).filter(|(_, local)| local.approach.gap < 0.0)
+    }
+}
+
+/// Anchor and stretch of a point in the shape's place [m].
+fn remembered(memory: &[f64], point: usize) -> (Vec3, Vec3) {
+    let numbers = &memory[HEAT + PER_POINT * point..];
+    (Vec3::new(numbers[0], numbers[1], numbers[2]), Vec3::new(numbers[3], numbers[4], numbers[5]))
+}
+
+fn remember(memory: &mut [f64], point: usize, anchor: Vec3, stretch: Vec3) {
+    let numbers = &mut memory[HEAT + PER_POINT * point..][..PER_POINT];
+    numbers[..3].copy_from_slice(&anchor.to_array());
+    numbers[3..].copy_from_slice(&stretch.to_array());
+}
+
+pub(super) fn dual(value: Vec3, change: Vec3) -> Vec3<Dual> {
+    Vec3::new(Dual::new(value.x, change.x), Dual::new(value.y, change.y), Dual::new(value.z, change.z))
+}
+
+pub(super) fn derivative(vector: Vec3<Dual>) -> Vec3 {
+    Vec3::new(vector.x.derivative, vector.y.derivative, vector.z.derivative)
+}
+
+impl Force for ShapeContact {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn declaration(&self) -> Declaration {
+        let law = &self.law;
+        Declaration {
+            conservative: law.is_conservative(),
+            velocity_terms: law.damping > 0.0,
+            // sliding friction grows with the normal force, but not the other way round; damping acts along
+            // a normal that turns
+            symmetric_tangent: law.is_conservative(),
+            internal: false,
+            changing_pattern: false,
+        }
+    }
+
+    fn memory_len(&self) -> usize {
+        HEAT + PER_POINT * self.points.len()
+    }
+
+    fn initial_memory(&self, memory: &mut [f64]) {
+        memory.fill(0.0);
+        let pose = self.motion.pose(0.0);
+        for (index, point) in self.points.iter().enumerate() {
+            remember(memory, index, pose.to_shape(point.start), Vec3::ZERO);
+        }
+    }
+
+    fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
+        let pose = self.motion.pose(at.time);
+        let stored =
+            self.touching(&pose, at).map(|(point, local)| self.law.stored(point.share, &local.approach));
+        Energy { stored: stored.sum(), dissipated: at.memory[0] }
+    }
+
+    fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
+        let pose = self.motion.pose(at.time);
+        for (point, local) in self.touching(&pose, at) {
+            if let Some(force) = self.law.force(point.share, &local.approach, |number| number) {
+                out[point.row as usize] += pose.direction_to_world(force.total());
+            }
+        }
+    }
+
+    fn add_differential(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        delta: &[Vec3],
+        _scratch: &mut Scratch,
+        out: &mut [Vec3],
+    ) {
+        let pose = self.motion.pose(at.time);
+        for (point, local) in self.touching(&pose, at) {
+            let delta = delta[point.row as usize];
+            let (position, velocity) = (delta * weights.position, delta * weights.velocity);
+            out[point.row as usize] += self.change(point.share, &local, &pose, position, velocity);
+        }
+    }
+
+    fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
+        self.points.iter().for_each(|point| visit(&[point.row]));
+    }
+
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        let pose = self.motion.pose(at.time);
+        for (point, local) in self.touching(&pose, at) {
+            let column =
+                |e: Vec3| self.change(point.share, &local, &pose, e * weights.position, e * weights.velocity);
+            let block = Mat3::from_columns(column(Vec3::X), column(Vec3::Y), column(Vec3::Z));
+            add_block(matrix, point.row as usize, point.row as usize, &block);
+        }
+    }
+
+    fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
+        let pose = self.motion.pose(at.time);
+        for (index, point) in self.points.iter().enumerate() {
+            let (_, before) = remembered(at.memory, index);
+            let position = pose.to_shape(at.positions[point.row as usize]);
+            let (stretch, heat) = match self.local(index, &pose, at) {
+                Some(local) => self.law.advance(point.share, &local.approach, before, timestep),
+                // out of reach, so is whatever was stretched
+                None => (Vec3::ZERO, 0.5 * self.law.tangential_stiffness * point.share * before.length_sq()),
+            };
+            memory[0] += heat;
+            remember(memory, index, position - stretch, stretch);
+        }
+    }
+
+    fn editable(&self) -> Vec<Editable> {
+        self.law.editable()
+    }
+
+    fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
+        self.law.set_parameter(&self.name, name, value)
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(self.points.as_slice())
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+}

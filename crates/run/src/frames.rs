@@ -1,0 +1,108 @@
+//! The frames of a run: a series of files for ParaView per body.
+
+use souple_engine::World;
+use souple_io::{Facets, Field, Output, Precision, Series};
+use souple_math::Vec3;
+use souple_models::solids::SolidForce;
+use souple_scene::BodyInfo;
+
+use crate::{Options, RunError};
+
+/// Writes frames at even distances; none where the run has no folder.
+pub struct Frames {
+    series: Vec<Series>,
+    /// Steps between frames.
+    every: u64,
+    last_written: Option<u64>,
+    step: u64,
+}
+
+impl Frames {
+    pub fn open(options: &Options, bodies: &[BodyInfo], default_count: u64, steps: u64) -> Result<Self, RunError> {
+        let count = options.frames.unwrap_or(default_count);
+        let mut series = Vec::new();
+        if let Some(out) = &options.out {
+            let folder = out.join("frames");
+            std::fs::create_dir_all(if count > 0 { &folder } else { out })
+                .map_err(|source| RunError::Folder { path: out.clone(), source })?;
+            if count > 0 {
+                series = bodies.iter().map(|body| Series::new(&folder, &body.name)).collect();
+            }
+        }
+        let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };
+        Ok(Self { series, every, last_written: None, step: 0 })
+    }
+
+    /// The frame of a step, if one is due.
+    pub fn write(&mut self, world: &mut World, bodies: &[BodyInfo], step: u64) -> Result<(), RunError> {
+        self.step = step;
+        if self.series.is_empty() || !step.is_multiple_of(self.every) {
+            return Ok(());
+        }
+        self.write_now(world, bodies)
+    }
+
+    /// The last frame, however the run ended.
+    pub fn close(&mut self, world: &mut World, bodies: &[BodyInfo]) -> Result<(), RunError> {
+        if self.series.is_empty() || self.last_written == Some(self.step) {
+            return Ok(());
+        }
+        self.write_now(world, bodies)
+    }
+
+    fn write_now(&mut self, world: &mut World, bodies: &[BodyInfo]) -> Result<(), RunError> {
+        let time = world.time();
+        for (series, body) in self.series.iter_mut().zip(bodies) {
+            let positions = &world.rows(body.system).positions[body.rows.clone()];
+            let velocities = &world.rows(body.system).velocities[body.rows.clone()];
+            let displacements: Vec<Vec3> = positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
+            let point_fields =
+                [Field::new("displacement", 3, flat(&displacements)), Field::new("velocity", 3, flat(velocities))];
+            let cell_fields = cell_fields(world, body);
+            let output = Output {
+                mesh: &body.mesh,
+                positions: Some(positions),
+                point_fields: &point_fields,
+                cell_fields: &cell_fields,
+                facets: Facets::LeftOut,
+                precision: Precision::Single,
+            };
+            series.push(time, &output)?;
+        }
+        self.last_written = Some(self.step);
+        Ok(())
+    }
+}
+
+fn flat(vectors: &[Vec3]) -> Vec<f64> {
+    vectors.iter().flat_map(|vector| vector.to_array()).collect()
+}
+
+/// The elastic force of a body.
+pub fn solid_of<'a>(world: &'a World, body: &BodyInfo) -> Option<&'a SolidForce> {
+    let forces = &world.model().systems[body.system].forces;
+    forces.iter().find(|force| force.name() == body.force)?.as_any().downcast_ref()
+}
+
+/// Cauchy stress (six components xx, yy, zz, xy, yz, xz), von Mises stress and energy density of every cell.
+fn cell_fields(world: &World, body: &BodyInfo) -> Vec<Field> {
+    let Some(solid) = solid_of(world, body) else {
+        return Vec::new();
+    };
+    let positions = &world.rows(body.system).positions;
+    let (mut stress, mut von_mises, mut energy) = (Vec::new(), Vec::new(), Vec::new());
+    for cell in 0..body.mesh.cell_count() {
+        let Some(field) = solid.cell_field(cell, positions) else {
+            return Vec::new();
+        };
+        let s = field.cauchy;
+        stress.extend([s.entry(0, 0), s.entry(1, 1), s.entry(2, 2), s.entry(0, 1), s.entry(1, 2), s.entry(0, 2)]);
+        von_mises.push(field.von_mises);
+        energy.push(field.energy_density);
+    }
+    vec![
+        Field::new("stress", 6, stress),
+        Field::new("von_mises", 1, von_mises),
+        Field::new("strain_energy_density", 1, energy),
+    ]
+}

@@ -1,0 +1,108 @@
+//! What a probe read along a run.
+
+use std::path::Path;
+
+use souple_io::IoError;
+use souple_scene::{Measurement, ProbeInfo};
+
+/// The values of a probe, one for each step and one before the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    pub name: String,
+    pub unit: &'static str,
+    pub quantity: &'static str,
+    /// 1 or 3.
+    pub components: usize,
+    /// [s]
+    pub times: Vec<f64>,
+    /// Value after value.
+    pub values: Vec<f64>,
+}
+
+/// First, last and extreme values; of vectors component by component.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    pub name: String,
+    pub unit: &'static str,
+    pub first: Vec<f64>,
+    pub last: Vec<f64>,
+    pub min: Vec<f64>,
+    pub max: Vec<f64>,
+}
+
+impl Trace {
+    pub fn new(probe: &ProbeInfo) -> Self {
+        Self {
+            name: probe.name.clone(),
+            unit: probe.unit,
+            quantity: probe.quantity,
+            components: if probe.gives_vector() { 3 } else { 1 },
+            times: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+
+    pub fn push(&mut self, time: f64, measurement: Measurement) {
+        self.times.push(time);
+        self.values.extend(measurement.numbers());
+    }
+
+    /// The value of a step, from 0.
+    pub fn value(&self, step: usize) -> Option<&[f64]> {
+        self.values.get(step * self.components..(step + 1) * self.components)
+    }
+
+    /// The last value.
+    pub fn last(&self) -> Option<&[f64]> {
+        self.value(self.times.len().checked_sub(1)?)
+    }
+
+    /// The value at the step nearest to a time.
+    pub fn at(&self, time: f64) -> Option<&[f64]> {
+        let nearest = (0..self.times.len()).min_by(|a, b| {
+            (self.times[*a] - time).abs().total_cmp(&(self.times[*b] - time).abs())
+        })?;
+        self.value(nearest)
+    }
+
+    pub fn summary(&self) -> Summary {
+        let pick = |fold: fn(f64, f64) -> f64, start: f64| -> Vec<f64> {
+            (0..self.components)
+                .map(|c| self.values.iter().skip(c).step_by(self.components).fold(start, |a, b| fold(a, *b)))
+                .collect()
+        };
+        Summary {
+            name: self.name.clone(),
+            unit: self.unit,
+            first: self.value(0).map(<[f64]>::to_vec).unwrap_or_default(),
+            last: self.last().map(<[f64]>::to_vec).unwrap_or_default(),
+            min: pick(f64::min, f64::INFINITY),
+            max: pick(f64::max, f64::NEG_INFINITY),
+        }
+    }
+}
+
+/// All traces as one table: a column of times, then one or three for each probe, named with units.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_csv(path: &Path, traces: &[Trace]) -> Result<(), IoError> {
+    souple_io::write_file(path, |out| {
+        write!(out, "time [s]")?;
+        for trace in traces {
+            for suffix in if trace.components == 3 { &[".x", ".y", ".z"][..] } else { &[""][..] } {
+                write!(out, ",{}{suffix} [{}]", trace.name, trace.unit)?;
+            }
+        }
+        writeln!(out)?;
+        let steps = traces.first().map_or(0, |trace| trace.times.len());
+        for step in 0..steps {
+            write!(out, "{}", traces[0].times[step])?;
+            for number in traces.iter().flat_map(|trace| trace.value(step).unwrap_or_default()) {
+                write!(out, ",{number:e}")?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    })
+}

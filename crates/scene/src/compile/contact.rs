@@ -1,0 +1,198 @@
+//! Contacts become forces: surface points against shapes, and the surfaces of two bodies against each other.
+
+use std::path::Path;
+
+use souple_engine::Force;
+use souple_mesh::TriangleSurface;
+use souple_models::contact::{
+    ContactLaw, ContactPoint, ContactSurface, ShapeContact, ShapeMotion, SurfaceContact, penalty_stiffness,
+};
+use souple_models::materials::Lame;
+
+use super::bodies::Placed;
+use super::{Draft, boundary};
+use crate::diagnostic::Code;
+use crate::source::Sources;
+use crate::spec::contact::{Against, Contact, ShapeSpec};
+
+/// A body's points that touch, with the areas around them.
+struct Touching {
+    points: Vec<ContactPoint>,
+    /// [m²]
+    mean_area: f64,
+}
+
+/// All contacts.
+pub fn add(draft: &mut Draft, sources: &Sources) {
+    let mut added: Vec<(usize, Box<dyn Force>)> = Vec::new();
+    for contact in &draft.spec.contacts {
+        let Some(body) = draft.body(&contact.body) else { continue };
+        let Some(touching) = touching(draft, body, contact) else { continue };
+        let force: Option<Box<dyn Force>> = match &contact.against {
+            Some(Against::Shape(name)) => draft
+                .spec
+                .shapes
+                .iter()
+                .find(|shape| shape.name == *name)
+                .and_then(|shape| against_shape(draft, contact, shape, touching, body, sources))
+                .map(|force| Box::new(force) as _),
+            Some(Against::Body(name)) => draft
+                .body(name)
+                .and_then(|other| against_body(draft, contact, touching, [body, other]))
+                .map(|force| Box::new(force) as _),
+            None => None,
+        };
+        added.extend(force.map(|force| (body.system, force)));
+    }
+    for (system, force) in added {
+        draft.systems[system].forces.push(force);
+    }
+}
+
+/// Surface points in the region of a contact; `None` where there are none, which is reported.
+fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching> {
+    let surface = body.mesh.boundary_surface();
+    let inside: Option<Vec<u32>> = contact.region.as_ref().map(|region| draft.selector(body).points(region));
+    if inside.as_ref().is_some_and(Vec::is_empty) {
+        return None;
+    }
+    let areas = super::bodies::point_areas(&surface);
+    let chosen: Vec<(u32, f64)> = surface
+        .mesh_points
+        .iter()
+        .copied()
+        .zip(areas)
+        .filter(|(point, _)| inside.as_ref().is_none_or(|inside| inside.binary_search(point).is_ok()))
+        .collect();
+    if chosen.is_empty() {
+        let site = contact.region.as_ref().map_or(&contact.site, |region| &region.site);
+        let message = format!("this region holds no point on the surface of body `{}`", contact.body);
+        draft.log.add(Code::EmptyRegion, site, message, "a region that reaches the surface");
+        return None;
+    }
+    let mean_area = chosen.iter().map(|(_, area)| area).sum::<f64>() / chosen.len() as f64;
+    let first = body.rows.start as u32;
+    let contact_point = |(point, area): (u32, f64)| ContactPoint {
+        row: first + point,
+        share: area / mean_area,
+        start: body.mesh.points[point as usize],
+    };
+    Some(Touching { points: chosen.into_iter().map(contact_point).collect(), mean_area })
+}
+
+fn law(body: &Placed, contact: &Contact, mean_area: f64) -> ContactLaw {
+    let stiffness = contact.stiffness.unwrap_or_else(|| {
+        let material = body.spec.material.as_ref().map(|chosen| (chosen.entry.build)(&chosen.values));
+        let modulus = material.map_or(0.0, |material| youngs_modulus(&material.small_strain));
+        // the material behind a point resists over about the width of an element
+        penalty_stiffness(modulus, mean_area, mean_area.sqrt())
+    });
+    ContactLaw {
+        stiffness,
+        damping: contact.damping,
+        friction: contact.friction,
+        tangential_stiffness: contact.tangential_stiffness.unwrap_or(stiffness),
+        thickness: contact.thickness,
+    }
+}
+
+/// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].
+fn youngs_modulus(lame: &Lame) -> f64 {
+    lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu)
+}
+
+fn against_shape(
+    draft: &Draft,
+    contact: &Contact,
+    shape: &ShapeSpec,
+    touching: Touching,
+    body: &Placed,
+    sources: &Sources,
+) -> Option<ShapeContact> {
+    let chosen = shape.shape.as_ref()?;
+    let folder = &sources.get(chosen.site.place.source).folder;
+    let built = (chosen.entry.build)(&chosen.values, &|file| read_surface(&folder.join(file)));
+    let built = match built {
+        Ok(built) => built,
+        Err(error) => {
+            draft.log.add(Code::Mesh, &chosen.site, error.to_string(), "a shape that can be");
+            return None;
+        }
+    };
+    let motion = |spec| boundary::motion(draft.log, spec, &shape.site);
+    let motion = ShapeMotion {
+        translation: motion(shape.motion.as_ref())?,
+        rotation: motion(shape.rotation.as_ref())?,
+        pivot: shape.pivot,
+    };
+    let law = law(body, contact, touching.mean_area);
+    match ShapeContact::new(contact.name.clone(), touching.points, built, motion, law) {
+        Ok(force) => Some(force),
+        Err(error) => {
+            draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
+            None
+        }
+    }
+}
+
+fn against_body(
+    draft: &Draft,
+    contact: &Contact,
+    touching: Touching,
+    bodies: [&Placed; 2],
+) -> Option<SurfaceContact> {
+    let refuse = |message: String, expected: &str| {
+        draft.log.add(Code::Conflict, &contact.site, message, expected);
+        None
+    };
+    let [body, other] = bodies;
+    if body.spec.name == other.spec.name {
+        return refuse(format!("body `{}` touches itself", contact.body), "another body");
+    }
+    if body.system != other.system {
+        let message = format!("`{}` and `{}` step in different systems", body.spec.name, other.spec.name);
+        return refuse(message, "bodies of one system");
+    }
+    let surfaces = bodies.map(|placed| placed.mesh.boundary_surface());
+    let reach = f64::max(mean_edge(&surfaces[0]), mean_edge(&surfaces[1])) + contact.thickness;
+    let mut sides = bodies.iter().zip(surfaces).map(|(placed, surface)| {
+        let areas = super::bodies::point_areas(&surface);
+        let mean = areas.iter().sum::<f64>() / areas.len() as f64;
+        let first = placed.rows.start as u32;
+        let rows = surface.mesh_points.iter().map(|point| first + point).collect();
+        ContactSurface { rows, shares: areas.iter().map(|area| area / mean).collect(), surface }
+    });
+    let (mut a, b) = (sides.next()?, sides.next()?);
+    // points outside the region do not touch by themselves
+    let chosen: std::collections::BTreeSet<u32> = touching.points.iter().map(|point| point.row).collect();
+    for (row, share) in a.rows.iter().zip(&mut a.shares) {
+        if !chosen.contains(row) {
+            *share = 0.0;
+        }
+    }
+    let law = law(body, contact, touching.mean_area);
+    match SurfaceContact::new(contact.name.clone(), a, b, law, reach) {
+        Ok(force) => Some(force),
+        Err(error) => refuse(error.to_string(), "bodies with closed surfaces"),
+    }
+}
+
+/// Mean length of the edges of a surface [m].
+fn mean_edge(surface: &TriangleSurface) -> f64 {
+    let mut sum = 0.0;
+    for triangle in 0..surface.triangles.len() as u32 {
+        let [a, b, c] = surface.corners(triangle);
+        sum += (b - a).length() + (c - b).length() + (a - c).length();
+    }
+    sum / (3 * surface.triangles.len().max(1)) as f64
+}
+
+/// The triangles of a surface file, or the boundary of a volume mesh.
+fn read_surface(path: &Path) -> Result<TriangleSurface, String> {
+    let (mesh, _) = souple_io::read_mesh(path).map_err(|error| error.to_string())?;
+    match mesh.facet_surface() {
+        Some(surface) if mesh.cell_count() == 0 => Ok(surface),
+        _ if mesh.cell_count() > 0 => Ok(mesh.boundary_surface()),
+        _ => Err("the file holds neither triangles nor cells".to_owned()),
+    }
+}

@@ -1,0 +1,137 @@
+//! Shapes that bodies touch, and who touches whom.
+
+use souple_math::Vec3;
+use souple_models::contact::SHAPES;
+use souple_models::contact::shape::BuildShape;
+use souple_table::{Range, Value};
+
+use super::boundary::{MOTION, MotionSpec};
+use super::region::Region;
+use crate::diagnostic::{Code, Site};
+use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
+use crate::reader::{Chosen, Reader};
+
+const SHAPE_ENTRY: EntryShape =
+    EntryShape { tag: "name", kind: "shape", outlines: || outlines(&SHAPES), instead: None };
+
+pub(crate) static SHAPE: Keys = Keys::new(
+    "shape",
+    "a thing of fixed shape, at rest or led",
+    &[
+        Key::new("shape", Shape::Entry(SHAPE_ENTRY), "what it is").required(),
+        Key::new("motion", Shape::Table(&MOTION), "how it is moved"),
+        Key::new(
+            "rotation",
+            Shape::Table(&MOTION),
+            "how it is turned about the pivot: rotation vector, in radians",
+        ),
+        Key::vector("pivot", "m", "where it turns").or(Value::Vector([0.0; 3])),
+    ],
+);
+
+pub(crate) static CONTACT: Keys = Keys::new(
+    "contact",
+    "points of a body against a shape, or the surfaces of two bodies",
+    &[
+        Key::new("name", Shape::Text, "for probes; `contacts[0]` and so on where left out"),
+        Key::new("body", Shape::Text, "the body that touches").required(),
+        Key::new("shape", Shape::Text, "the shape it touches"),
+        Key::new("other", Shape::Text, "the body it touches"),
+        Key::new("region", Shape::Region, "the part of the body's surface that touches; all where left out"),
+        Key::number(
+            "stiffness",
+            "N/m",
+            Range::POSITIVE,
+            "of a point of mean area; where left out, that of the body's material behind it",
+        ),
+        Key::number("friction", "", Range::NOT_NEGATIVE, "Coulomb's coefficient").or(Value::Number(0.0)),
+        Key::number(
+            "damping",
+            "s/m",
+            Range::NOT_NEGATIVE,
+            "Hunt–Crossley: a collision at speed u gives back 1 - 2/3 d u",
+        )
+        .or(Value::Number(0.0)),
+        Key::number(
+            "tangential_stiffness",
+            "N/m",
+            Range::POSITIVE,
+            "of sticking; the stiffness where left out",
+        ),
+        Key::number("thickness", "m", Range::NOT_NEGATIVE, "distance at which touching starts")
+            .or(Value::Number(0.0)),
+    ],
+);
+
+/// A thing of fixed shape.
+pub struct ShapeSpec {
+    pub name: String,
+    pub shape: Option<Chosen<BuildShape>>,
+    pub motion: Option<MotionSpec>,
+    pub rotation: Option<MotionSpec>,
+    /// [m]
+    pub pivot: Vec3,
+    pub site: Site,
+}
+
+/// What a body touches.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Against {
+    Shape(String),
+    Body(String),
+}
+
+/// Who touches whom, and how; see `souple_models::contact::ContactLaw`.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    pub name: String,
+    pub body: String,
+    pub against: Option<Against>,
+    pub region: Option<Region>,
+    pub stiffness: Option<f64>,
+    pub friction: f64,
+    pub damping: f64,
+    pub tangential_stiffness: Option<f64>,
+    pub thickness: f64,
+    pub site: Site,
+}
+
+impl ShapeSpec {
+    pub(crate) fn read(name: String, reader: &Reader) -> Self {
+        let motion = |key: &str| reader.table(key).and_then(|table| MotionSpec::read(&table));
+        Self {
+            name,
+            shape: reader.entry("shape", &SHAPES),
+            motion: motion("motion"),
+            rotation: motion("rotation"),
+            pivot: reader.vector("pivot"),
+            site: reader.site(),
+        }
+    }
+}
+
+impl Contact {
+    pub(crate) fn read(index: usize, reader: &Reader) -> Self {
+        let against = match (reader.maybe_text("shape"), reader.maybe_text("other")) {
+            (Some(shape), None) => Some(Against::Shape(shape)),
+            (None, Some(body)) => Some(Against::Body(body)),
+            _ => {
+                let message = "a contact is with one thing, a shape or another body";
+                reader.log().add(Code::Conflict, &reader.site(), message, "`shape` or `other`");
+                None
+            }
+        };
+        Self {
+            name: reader.maybe_text("name").unwrap_or_else(|| format!("contacts[{index}]")),
+            body: reader.text("body"),
+            against,
+            region: Region::read(reader, "region"),
+            stiffness: reader.maybe_number("stiffness"),
+            friction: reader.number("friction"),
+            damping: reader.number("damping"),
+            tangential_stiffness: reader.maybe_number("tangential_stiffness"),
+            thickness: reader.number("thickness"),
+            site: reader.site(),
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! `souple bench`: speed with its error beside it.
+
+use serde_json::Value;
+use souple_verify::bench::{Figure, benches};
+
+use super::{End, Refusal, print_json, print_line};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Names of benchmarks; all where none is given
+    names: Vec<String>,
+    #[arg(long)]
+    list: bool,
+    /// Fewer samples
+    #[arg(long)]
+    quick: bool,
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn bench(arguments: &Arguments) -> Result<End, Refusal> {
+    let chosen = benches(&arguments.names).map_err(|unknown| {
+        Refusal::request("unknown_bench", &unknown, "a name that `souple bench --list` prints", format!("there is no benchmark `{unknown}`"))
+    })?;
+    if arguments.list {
+        if arguments.json {
+            print_json(&Value::Array(chosen.iter().map(|bench| bench.to_json()).collect()));
+        } else {
+            chosen.iter().for_each(|bench| print_line(format_args!("{:28} {}", bench.name, bench.what)));
+        }
+        return Ok(End::Done);
+    }
+    let mut figures: Vec<Figure> = Vec::new();
+    for bench in chosen {
+        let measured = (bench.run)(arguments.quick).map_err(|error| Refusal::work("bench", format!("{}: {error}", bench.name)))?;
+        if !arguments.json {
+            measured.iter().for_each(print_line);
+        }
+        figures.extend(measured);
+    }
+    if arguments.json {
+        print_json(&Value::Array(figures.iter().map(Figure::to_json).collect()));
+    }
+    Ok(End::Done)
+}

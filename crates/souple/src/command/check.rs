@@ -1,0 +1,97 @@
+//! `souple check`: a scene without running it.
+
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::{End, Refusal, print_json, print_line, read_scene, scene_path};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file, or a folder with a scene.toml
+    scene: String,
+    /// Changes a value of the scene; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    settings: Vec<String>,
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
+    let scene = read_scene(&arguments.scene, &arguments.settings)?;
+    let (title, bodies, probes) = (scene.title.clone(), scene.bodies.clone(), scene.probes.len());
+    let mut warnings = scene.warnings.clone();
+    let duration = scene.run.duration;
+    let period = scene.model.period;
+    let mut world = scene.model.start(scene.state);
+    let mut systems = Vec::new();
+    for index in 0..world.model().systems.len() {
+        let timestep = world.model().timestep(index);
+        let forecast = world.with_system(index, |system, state, around, ws| {
+            let forecast = souple_engine::stability::forecast(system, state, around, ws);
+            json!({
+                "name": system.name,
+                "stepper": system.stepper.name(),
+                "timestep_seconds": timestep,
+                "velocity_blocks": system.kinematics.block_count(),
+                "forces": system.forces.iter().map(|force| force.name().to_owned()).collect::<Vec<_>>(),
+                "highest_frequency_rad_per_second": forecast.highest_frequency,
+                "longest_stable_step_seconds": forecast.longest_step.is_finite().then_some(forecast.longest_step),
+            })
+        });
+        systems.push(forecast);
+    }
+    warnings.extend(souple_run::forecast_warnings(&mut world));
+    let counts = souple_run::counts(&world, &bodies);
+    let steps = duration / period;
+    // the cost of one step is measured on this scene, the state being thrown away
+    let clock = Instant::now();
+    let trial = world.step();
+    let seconds_per_step = clock.elapsed().as_secs_f64();
+    if let Err(error) = &trial {
+        warnings.push(format!("the first step is refused: {error}"));
+    }
+    let document = json!({
+        "scene": scene_path(&arguments.scene).display().to_string(),
+        "title": title,
+        "valid": true,
+        "counts": counts,
+        "systems": systems,
+        "probes": probes,
+        "steps": steps,
+        "forecast": {
+            "seconds_per_step": seconds_per_step,
+            "wall_seconds": seconds_per_step * steps,
+            "bytes": world.bytes(),
+        },
+        "warnings": warnings,
+    });
+    if arguments.json {
+        print_json(&document);
+        return Ok(End::Done);
+    }
+    print_line(format_args!("{title}: valid"));
+    for (name, count) in &counts {
+        print_line(format_args!("  {count:>9} {name}"));
+    }
+    for system in &systems {
+        let longest = system["longest_stable_step_seconds"].as_f64();
+        let stable = longest.map_or("any step is stable".to_owned(), |step| format!("longest stable step {step:.3e} s"));
+        print_line(format_args!(
+            "  system {}: {} at {:.3e} s; {stable}",
+            system["name"].as_str().unwrap_or_default(),
+            system["stepper"].as_str().unwrap_or_default(),
+            system["timestep_seconds"].as_f64().unwrap_or_default(),
+        ));
+    }
+    print_line(format_args!(
+        "  about {:.2} ms per step, {:.1} s for {steps:.0} steps, {:.1} MB of forces and matrices",
+        1e3 * seconds_per_step,
+        seconds_per_step * steps,
+        world.bytes() as f64 * 1e-6
+    ));
+    for warning in &warnings {
+        eprintln!("warning: {warning}");
+    }
+    Ok(End::Done)
+}

@@ -1,0 +1,101 @@
+//! `souple compare`: two results field by field.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use souple_engine::State;
+
+use super::{End, Refusal, print_json, print_line};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// A snapshot, or a file with fields (VTU, VTK)
+    a: PathBuf,
+    b: PathBuf,
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A field of a result.
+struct Named {
+    name: String,
+    numbers: Vec<f64>,
+}
+
+pub fn compare(arguments: &Arguments) -> Result<End, Refusal> {
+    let (a, b) = (read(&arguments.a)?, read(&arguments.b)?);
+    let mut rows = Vec::new();
+    for field in &a {
+        let Some(other) = b.iter().find(|other| other.name == field.name) else {
+            rows.push(json!({"field": field.name, "only_in": arguments.a.display().to_string()}));
+            continue;
+        };
+        rows.push(difference(field, other));
+    }
+    for field in b.iter().filter(|field| !a.iter().any(|other| other.name == field.name)) {
+        rows.push(json!({"field": field.name, "only_in": arguments.b.display().to_string()}));
+    }
+    if arguments.json {
+        print_json(&Value::Array(rows));
+        return Ok(End::Done);
+    }
+    for row in &rows {
+        let name = row["field"].as_str().unwrap_or_default();
+        match row["largest"].as_f64() {
+            Some(largest) => print_line(format_args!(
+                "{name}: largest difference {largest:e} at {}, rms {:e}, relative {:e}",
+                row["at"],
+                row["rms"].as_f64().unwrap_or_default(),
+                row["relative"].as_f64().unwrap_or_default()
+            )),
+            None => print_line(format_args!("{name}: {}", row)),
+        }
+    }
+    Ok(End::Done)
+}
+
+/// Largest and root-mean-square difference, and the Euclidean norm of it relative to that of the first.
+fn difference(a: &Named, b: &Named) -> Value {
+    if a.numbers.len() != b.numbers.len() {
+        return json!({"field": a.name, "lengths": [a.numbers.len(), b.numbers.len()]});
+    }
+    let differences: Vec<f64> = a.numbers.iter().zip(&b.numbers).map(|(a, b)| (a - b).abs()).collect();
+    let (at, largest) = differences
+        .iter()
+        .enumerate()
+        .fold((0, 0.0), |best, (i, d)| if *d > best.1 || d.is_nan() { (i, *d) } else { best });
+    let norm = |numbers: &[f64]| numbers.iter().map(|n| n * n).sum::<f64>().sqrt();
+    let (difference, scale) = (norm(&differences), norm(&a.numbers));
+    let count = differences.len().max(1) as f64;
+    json!({
+        "field": a.name,
+        "largest": largest,
+        "at": at,
+        "rms": difference / count.sqrt(),
+        "relative": if scale > 0.0 { difference / scale } else { difference },
+    })
+}
+
+fn read(path: &Path) -> Result<Vec<Named>, Refusal> {
+    let name = path.display().to_string();
+    let refuse =
+        |message: String| Refusal::request("result", name.clone(), "a snapshot (.souple) or a file with fields", message);
+    if path.extension().is_some_and(|extension| extension == "souple") {
+        let bytes = std::fs::read(path).map_err(|error| refuse(format!("`{name}` cannot be read: {error}")))?;
+        let start = bytes.iter().position(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+        let state = State::from_bytes(&bytes[start..]).map_err(|error| refuse(format!("`{name}`: {error}")))?;
+        let fields = state.fields();
+        return Ok(fields.iter().map(|(name, field)| Named { name: name.clone(), numbers: field.numbers() }).collect());
+    }
+    let dataset = souple_io::read_dataset(path).map_err(|error| refuse(error.to_string()))?;
+    let positions = dataset.mesh.points.iter().flat_map(|point| point.to_array()).collect();
+    let mut fields = vec![Named { name: "positions".to_owned(), numbers: positions }];
+    fields.extend(
+        dataset
+            .point_fields
+            .into_iter()
+            .chain(dataset.cell_fields)
+            .map(|field| Named { name: field.name, numbers: field.values }),
+    );
+    Ok(fields)
+}

@@ -1,0 +1,228 @@
+//! Commands: one file each.
+
+mod bench;
+mod check;
+mod compare;
+mod list;
+mod mesh;
+mod replay;
+mod run;
+mod verify;
+
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use serde_json::{Value, json};
+
+/// A simulator of soft things.
+#[derive(Parser)]
+#[command(name = "souple", version, about, disable_help_subcommand = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Runs a scene headless: report, probes, frames
+    Run(run::Arguments),
+    /// Validates a scene without running it: every error with its place, a forecast of stability and cost
+    Check(check::Arguments),
+    /// Lists what there is of a kind: materials, elements, steppers, …
+    List(list::ListArguments),
+    /// Prints the page of one thing
+    Describe(list::DescribeArguments),
+    /// Prints the JSON Schema of scene files
+    Schema,
+    /// Runs the validation cases: measured, reference, tolerance
+    Verify(verify::Arguments),
+    /// Runs the benchmarks: speed with its error beside it
+    Bench(bench::Arguments),
+    /// Plays a recording again
+    Replay(replay::Arguments),
+    /// Compares two results field by field
+    Compare(compare::Arguments),
+    /// Generates, converts and measures meshes
+    Mesh(mesh::Arguments),
+}
+
+/// How a command ended.
+pub enum End {
+    Done,
+    /// The work failed; the reason has been printed.
+    Failed,
+    Interrupted,
+}
+
+/// A request that was wrong, or work that failed, in words.
+pub struct Refusal {
+    pub status: u8,
+    pub errors: Vec<Value>,
+    /// For people; the errors' messages where `None`.
+    pub text: Option<String>,
+}
+
+/// Exit status of a request that was wrong.
+const WRONG_REQUEST: u8 = 2;
+const WORK_FAILED: u8 = 1;
+const INTERRUPTED: u8 = 130;
+
+impl Refusal {
+    /// The request was wrong: says what was read and what would be accepted.
+    pub fn request(code: &str, value: impl Into<String>, expected: impl Into<String>, message: impl Into<String>) -> Self {
+        Self::new(WRONG_REQUEST, code, value, expected, message)
+    }
+
+    /// The work failed.
+    pub fn work(code: &str, message: impl Into<String>) -> Self {
+        Self::new(WORK_FAILED, code, "", "", message)
+    }
+
+    fn new(
+        status: u8,
+        code: &str,
+        value: impl Into<String>,
+        expected: impl Into<String>,
+        message: impl Into<String>,
+    ) -> Self {
+        let error = json!({
+            "code": code, "file": Value::Null, "line": Value::Null, "column": Value::Null, "path": "",
+            "value": value.into(), "expected": expected.into(), "message": message.into(),
+        });
+        Self { status, errors: vec![error], text: None }
+    }
+
+    fn print(&self, as_json: bool) {
+        if as_json {
+            print_json(&json!({ "errors": self.errors }));
+        }
+        match &self.text {
+            Some(text) => eprintln!("{text}"),
+            None => {
+                for error in &self.errors {
+                    eprintln!("error: {}", error["message"].as_str().unwrap_or_default());
+                    match error["expected"].as_str() {
+                        Some(expected) if !expected.is_empty() => eprintln!("  = expected {expected}"),
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl From<souple_scene::Diagnostics> for Refusal {
+    fn from(diagnostics: souple_scene::Diagnostics) -> Self {
+        let errors = match diagnostics.to_json() {
+            Value::Object(mut object) => match object.remove("errors") {
+                Some(Value::Array(errors)) => errors,
+                _ => Vec::new(),
+            },
+            _ => Vec::new(),
+        };
+        Self { status: WRONG_REQUEST, errors, text: Some(diagnostics.to_string()) }
+    }
+}
+
+impl From<souple_run::RunError> for Refusal {
+    fn from(error: souple_run::RunError) -> Self {
+        use souple_run::RunError;
+        match &error {
+            RunError::Snapshot(_) | RunError::Edit { .. } | RunError::TooManySteps { .. } => {
+                Self::request("run", "", "", error.to_string())
+            }
+            RunError::Io(_) | RunError::Folder { .. } => Self::work("io", error.to_string()),
+        }
+    }
+}
+
+/// Runs a command and gives its exit status.
+pub fn execute(cli: Cli) -> ExitCode {
+    let Some(command) = cli.command else {
+        return exit_code(run::run_default_scene(), false);
+    };
+    let (ended, as_json) = match command {
+        Command::Run(arguments) => (run::run(&arguments), arguments.json),
+        Command::Check(arguments) => (check::check(&arguments), arguments.json),
+        Command::List(arguments) => (list::list(&arguments), arguments.json),
+        Command::Describe(arguments) => (list::describe(&arguments), arguments.json),
+        Command::Schema => {
+            print_json(&souple_scene::schema());
+            (Ok(End::Done), true)
+        }
+        Command::Verify(arguments) => (verify::verify(&arguments), arguments.json),
+        Command::Bench(arguments) => (bench::bench(&arguments), arguments.json),
+        Command::Replay(arguments) => (replay::replay(&arguments), arguments.json),
+        Command::Compare(arguments) => (compare::compare(&arguments), arguments.json),
+        Command::Mesh(arguments) => {
+            let as_json = arguments.wants_json();
+            (mesh::mesh(arguments), as_json)
+        }
+    };
+    exit_code(ended, as_json)
+}
+
+fn exit_code(ended: Result<End, Refusal>, as_json: bool) -> ExitCode {
+    match ended {
+        Ok(End::Done) => ExitCode::SUCCESS,
+        Ok(End::Failed) => ExitCode::from(WORK_FAILED),
+        Ok(End::Interrupted) => ExitCode::from(INTERRUPTED),
+        Err(refusal) => {
+            refusal.print(as_json);
+            ExitCode::from(refusal.status)
+        }
+    }
+}
+
+/// Help and version go out as they are; wrong arguments are a wrong request.
+pub fn refuse_arguments(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() {
+        let _ = error.print();
+        return ExitCode::SUCCESS;
+    }
+    if std::env::args().any(|argument| argument == "--json") {
+        let refusal = Refusal::request("arguments", "", "see `souple --help`", error.to_string().trim());
+        print_json(&json!({ "errors": refusal.errors }));
+    }
+    let _ = error.print();
+    ExitCode::from(WRONG_REQUEST)
+}
+
+/// One document on standard output; a reader that has gone away is no fault of ours.
+pub fn print_json(document: &Value) {
+    let _ = writeln!(std::io::stdout().lock(), "{document:#}");
+}
+
+/// One line on standard output; a reader that has gone away is no fault of ours.
+pub fn print_line(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stdout().lock(), "{line}");
+}
+
+/// Whether progress can be drawn over itself.
+pub fn on_terminal() -> bool {
+    std::io::stderr().is_terminal()
+}
+
+/// Reads a scene file.
+pub fn read_scene(path: &str, settings: &[String]) -> Result<souple_scene::Scene, Refusal> {
+    Ok(souple_scene::read_file(&scene_path(path), settings)?)
+}
+
+/// A scene is a file, or a folder with a `scene.toml`.
+pub fn scene_path(path: &str) -> PathBuf {
+    let path = PathBuf::from(path);
+    let inside = path.join("scene.toml");
+    if inside.is_file() { inside } else { path }
+}
+
+/// Sets the number of threads of the whole process.
+pub fn use_threads(threads: Option<usize>) -> Result<(), Refusal> {
+    let Some(threads) = threads else { return Ok(()) };
+    let refuse = |message: String| Refusal::request("threads", threads.to_string(), "1 to 1024", message);
+    if !(1..=1024).contains(&threads) {
+        return Err(refuse(format!("{threads} threads cannot be had")));
+    }
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| refuse(error.to_string()))
+}

@@ -1,0 +1,185 @@
+//! `souple run`: a scene from start to end.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use souple_run::{Control, Options, Outcome, Progress, Status};
+use souple_scene::Scene;
+
+use super::{End, Refusal, on_terminal, print_json, print_line, read_scene, scene_path, use_threads};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file, or a folder with a scene.toml
+    scene: String,
+    /// Folder for report, probes, frames and picture; made if missing
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// World periods to step
+    #[arg(long, conflicts_with = "duration")]
+    steps: Option<u64>,
+    /// Time to simulate, as `2 s` or `500 ms`
+    #[arg(long)]
+    duration: Option<String>,
+    /// Changes a value of the scene: `bodies.bar.material.youngs_modulus="20 MPa"`; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    settings: Vec<String>,
+    /// Worker threads; the results do not depend on it
+    #[arg(long)]
+    threads: Option<usize>,
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Frames of the series; the scene's number by default
+    #[arg(long)]
+    frames: Option<u64>,
+    /// Steps between hashes of the state
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..))]
+    hash_every: Option<u64>,
+    /// Steps between snapshots
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), requires = "out")]
+    snapshot_every: Option<u64>,
+    /// Continues from a snapshot
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    /// Writes a recording that `souple replay` repeats bit for bit
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// One JSON document (the report) on standard output
+    #[arg(long)]
+    pub json: bool,
+    /// No progress
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Set by the first Ctrl-C.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
+    use_threads(arguments.threads)?;
+    let scene = read_scene(&arguments.scene, &arguments.settings)?;
+    let mut options = Options {
+        steps: arguments.steps,
+        duration: arguments.duration.as_deref().map(parse_duration).transpose()?,
+        out: arguments.out.clone(),
+        frames: arguments.frames,
+        hash_every: arguments.hash_every,
+        snapshot_every: arguments.snapshot_every,
+        scene_name: scene_path(&arguments.scene).display().to_string(),
+        seed: arguments.seed,
+        ..Options::default()
+    };
+    if let Some(path) = &arguments.resume {
+        let state = souple_run::read_snapshot(path, &scene.scene_sha256);
+        let refuse = |error: souple_run::SnapshotFileError| {
+            Refusal::request("snapshot", path.display().to_string(), "a snapshot of this scene", error.to_string())
+        };
+        options.resume = Some(state.map_err(refuse)?);
+    }
+    let mut outcome = play(scene, &options, arguments.quiet)?;
+    if let Some(path) = &arguments.record {
+        outcome.recording.settings = arguments.settings.clone();
+        outcome.recording.write(path).map_err(|error| Refusal::work("io", error.to_string()))?;
+    }
+    conclude(&outcome, options.out.as_deref(), arguments.json, arguments.quiet)
+}
+
+/// Runs with progress, stopping cleanly at Ctrl-C.
+pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Refusal> {
+    // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
+    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    let target = if quiet || !on_terminal() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(None, target);
+    if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} steps  {msg}  {elapsed} left {eta}") {
+        bar.set_style(style);
+    }
+    let lines = !quiet && !on_terminal();
+    let mut next_line = 5.0;
+    let mut watch = |progress: &Progress| {
+        bar.set_length(progress.steps);
+        bar.set_position(progress.step);
+        let factor = progress.simulated_seconds / progress.wall_seconds.max(1e-9);
+        bar.set_message(format!("{factor:.2} x real time"));
+        if lines && progress.wall_seconds >= next_line {
+            next_line += 5.0;
+            eprintln!("{}/{} steps, {factor:.2} x real time", progress.step, progress.steps);
+        }
+        if INTERRUPTED.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
+    };
+    let outcome = souple_run::run(scene, options, &mut watch);
+    bar.finish_and_clear();
+    Ok(outcome?)
+}
+
+/// Prints what came out, and says how it ended.
+pub fn conclude(outcome: &Outcome, out: Option<&Path>, as_json: bool, quiet: bool) -> Result<End, Refusal> {
+    let report = &outcome.report;
+    for warning in &report.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let failed = outcome.verdicts.iter().filter(|verdict| !verdict.pass).count();
+    for verdict in outcome.verdicts.iter().filter(|verdict| !verdict.pass) {
+        eprintln!("not as expected: {}", verdict.message);
+    }
+    if as_json {
+        print_json(&report.to_json());
+    } else if !quiet {
+        print_line(format_args!(
+            "{}: {} steps, {:.4} s simulated in {:.2} s ({:.2} x real time)",
+            report.status.as_str(),
+            report.steps,
+            report.simulated_seconds,
+            report.wall_seconds,
+            report.real_time_factor()
+        ));
+        for probe in &report.probes {
+            print_line(format_args!("  {} = {:?} {}", probe.name, probe.last, probe.unit));
+        }
+        if let Some(out) = out {
+            print_line(format_args!("  {}", out.join("report.json").display()));
+            let picture = out.join("last.png");
+            if picture.is_file() {
+                print_line(format_args!("  {}", picture.display()));
+            }
+        }
+    }
+    Ok(match report.status {
+        Status::Interrupted => End::Interrupted,
+        Status::Failed => End::Failed,
+        Status::Done if failed > 0 => End::Failed,
+        Status::Done => End::Done,
+    })
+}
+
+fn parse_duration(text: &str) -> Result<f64, Refusal> {
+    let seconds = match text.parse::<f64>() {
+        Ok(seconds) => Ok(seconds),
+        Err(_) => souple_formal::quantity_in(text, "s").map_err(|error| error.to_string()),
+    };
+    let refuse = |message: String| Refusal::request("duration", text, "a time above 0, such as `2 s` or `500 ms`", message);
+    match seconds {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        Ok(seconds) => Err(refuse(format!("a duration of {seconds} s cannot be run"))),
+        Err(message) => Err(refuse(message)),
+    }
+}
+
+/// The scene of a program called without arguments, as it is in the repository.
+const DEFAULT_SCENE: &str = include_str!("../../../../scenes/soft_block/scene.toml");
+
+/// Greets, runs the default scene headless, and says what to try next.
+pub fn run_default_scene() -> Result<End, Refusal> {
+    print_line("Souple, a simulator of soft things. The default scene runs now: a soft block falls on a floor.");
+    let scene = souple_scene::read_text("soft_block", DEFAULT_SCENE, Path::new("."), &[])?;
+    let out = PathBuf::from("out").join("soft_block");
+    let options =
+        Options { out: Some(out.clone()), scene_name: "soft_block".to_owned(), ..Options::default() };
+    let outcome = play(scene, &options, false)?;
+    let end = conclude(&outcome, Some(&out), false, false)?;
+    print_line("Try next:");
+    print_line("  souple list materials");
+    print_line("  souple check scenes/cantilever/scene.toml");
+    print_line("  souple run scenes/cantilever/scene.toml --out out/cantilever --set bodies.bar.material.name=corotational");
+    Ok(end)
+}

@@ -1,0 +1,47 @@
+//! `souple verify`: the validation cases.
+
+use serde_json::Value;
+use souple_verify::Row;
+
+use super::{End, Refusal, print_json, print_line};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Ids of cases or capabilities; all where none is named
+    ids: Vec<String>,
+    /// Names the cases without running them
+    #[arg(long)]
+    list: bool,
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn verify(arguments: &Arguments) -> Result<End, Refusal> {
+    let cases = souple_verify::cases(&arguments.ids).map_err(|unknown| {
+        Refusal::request("unknown_case", &unknown, "an id that `souple verify --list` prints", format!("there is no case `{unknown}`"))
+    })?;
+    if arguments.list {
+        let rows: Vec<Value> = cases.iter().map(|case| case.to_json()).collect();
+        if arguments.json {
+            print_json(&Value::Array(rows));
+        } else {
+            cases.iter().for_each(|case| print_line(format_args!("{:32} {}", case.id, case.what)));
+        }
+        return Ok(End::Done);
+    }
+    let mut rows: Vec<Row> = Vec::new();
+    for case in cases {
+        let row = case.run();
+        if !arguments.json {
+            print_line(&row);
+        }
+        rows.push(row);
+    }
+    let failed = rows.iter().filter(|row| !row.pass).count();
+    if arguments.json {
+        print_json(&Value::Array(rows.iter().map(Row::to_json).collect()));
+    } else {
+        print_line(format_args!("{} of {} rows hold", rows.len() - failed, rows.len()));
+    }
+    Ok(if failed == 0 { End::Done } else { End::Failed })
+}

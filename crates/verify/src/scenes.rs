@@ -1,0 +1,19 @@
+//! The scenes of the repository, carried in the binary.
+
+/// `(name, text)` of every scene in `scenes/`.
+pub const SCENES: &[(&str, &str)] = &[
+    ("cantilever", include_str!("../../../scenes/cantilever/scene.toml")),
+    ("cantilever_dynamic", include_str!("../../../scenes/cantilever_dynamic/scene.toml")),
+    ("collision", include_str!("../../../scenes/collision/scene.toml")),
+    ("hanging_cube", include_str!("../../../scenes/hanging_cube/scene.toml")),
+    ("incline_slides", include_str!("../../../scenes/incline_slides/scene.toml")),
+    ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
+    ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
+    ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
+    ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
+];
+
+/// The text of a scene.
+pub fn text(name: &str) -> Option<&'static str> {
+    SCENES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}

@@ -1,0 +1,86 @@
+//! The released program: building it, asking it, its validation cases.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::capabilities;
+use crate::failure::Failure;
+use crate::tree::{Tree, answer, run, typed};
+
+pub const REMEDY: &str = "build it first: `cargo xtask test build`";
+
+pub fn build(tree: &Tree) -> Result<(), Failure> {
+    run(
+        &mut tree.cargo(&["build", "--release", "--package", "souple", "--locked"]),
+        "install Rust with rustup",
+    )
+}
+
+/// The folder of the released program.
+pub fn folder(tree: &Tree) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    tree.root.join(target).join("release")
+}
+
+pub fn souple(tree: &Tree, arguments: &[&str]) -> Command {
+    let mut command =
+        Command::new(folder(tree).join(Path::new("souple").with_extension(std::env::consts::EXE_EXTENSION)));
+    command.args(arguments).current_dir(&tree.root);
+    command
+}
+
+/// Runs all validation cases: every row passes, and rows that `docs/capabilities.md` names prove what it says.
+pub fn verify(tree: &Tree) -> Result<(), Failure> {
+    let mut command = souple(tree, &["verify", "--json"]);
+    let (status, text) = answer(&mut command, REMEDY)?;
+    let fail = |what: String| Failure::Answer { command: typed(&command), what };
+    let rows: Value = serde_json::from_str(&text).map_err(|error| fail(error.to_string()))?;
+    let rows = rows.as_array().ok_or_else(|| fail("no list of rows".to_owned()))?;
+    let mut faults: Vec<String> = rows.iter().filter_map(row_fault).collect();
+    faults.extend(capabilities::unproven(&tree.read(capabilities::FILE)?, rows));
+    Failure::unless_empty(faults)?;
+    if !status.success() {
+        return Err(Failure::Command { command: typed(&command), status });
+    }
+    println!("{} rows", rows.len());
+    Ok(())
+}
+
+/// A row that did not pass, in words.
+fn row_fault(row: &Value) -> Option<String> {
+    if row["pass"] == Value::Bool(true) {
+        return None;
+    }
+    let field = |name: &str| match &row[name] {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    Some(format!(
+        "{} failed: {}: {} {} was measured, the reference is {} within {}",
+        field("id"),
+        field("what"),
+        field("measured"),
+        field("unit"),
+        field("reference"),
+        field("tolerance")
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_row_is_told_in_words() {
+        let mut row = serde_json::json!({
+            "id": "bar_tip", "what": "tip of the bar", "measured": 1.5, "unit": "m", "reference": 1.0,
+            "tolerance": 0.1, "pass": false,
+        });
+        let text = "bar_tip failed: tip of the bar: 1.5 m was measured, the reference is 1.0 within 0.1";
+        assert_eq!(row_fault(&row).as_deref(), Some(text));
+        row["pass"] = Value::Bool(true);
+        assert_eq!(row_fault(&row), None);
+    }
+}
