@@ -36,7 +36,12 @@ pub fn check(tree: &Tree) -> Result<(), Failure> {
     let text = tree.read(FILE)?;
     let scene_exists = |scene: &str| tree.root.join("scenes").join(scene).is_dir();
     let test_exists = |file: &str, name: &str| tree.read(file).is_ok_and(|source| has_test(&source, name));
-    Failure::unless_empty(faults(&text, &scene_exists, &test_exists))?;
+    let mut faults = faults(&text, &scene_exists, &test_exists);
+    for file in tree.files()?.iter().filter(|file| file.starts_with("scenes/") && file.ends_with(".toml")) {
+        let scene = tree.read(file)?;
+        faults.extend(overclaims(&text, file, &shown(&scene)));
+    }
+    Failure::unless_empty(faults)?;
     let mut counts = BTreeMap::new();
     for status in rows(&text).filter_map(|row| status_of(row.status)) {
         *counts.entry(status).or_insert(0) += 1;
@@ -133,6 +138,29 @@ fn id_faults(text: &str) -> Vec<String> {
     faults
 }
 
+/// The ids in the list `shows` of a scene.
+fn shown(scene: &str) -> Vec<&str> {
+    let list = scene.lines().position(|line| line.starts_with("shows")).map(|line| scene.lines().skip(line));
+    let Some(lines) = list else { return Vec::new() };
+    let mut ids = Vec::new();
+    for line in lines {
+        ids.extend(line.split('"').skip(1).step_by(2));
+        if line.trim_end().ends_with(']') {
+            break;
+        }
+    }
+    ids
+}
+
+/// Ids that `claimant` claims to show, but the table does not know or calls `not yet`.
+fn overclaims(text: &str, claimant: &str, ids: &[&str]) -> Vec<String> {
+    let status = |id: &str| rows(text).find(|row| row.id == id).and_then(|row| status_of(row.status));
+    ids.iter()
+        .filter(|id| matches!(status(id), None | Some(Status::NotYet)))
+        .map(|id| format!("{claimant} claims to show {id}, which {FILE} does not know or calls `not yet`"))
+        .collect()
+}
+
 /// Whether a source has a function of this name marked as a test.
 fn has_test(source: &str, name: &str) -> bool {
     let mut is_marked = false;
@@ -149,9 +177,15 @@ fn has_test(source: &str, name: &str) -> bool {
     false
 }
 
-/// Rows of the table that lean on a row of `souple verify` which does not exist or does not name them.
+/// Rows of the table that lean on a row of `souple verify` which does not exist or does not name them, and rows of
+/// `souple verify` that claim what the table does not.
 pub fn unproven(text: &str, verify_rows: &[Value]) -> Vec<String> {
     let mut faults = Vec::new();
+    for row in verify_rows {
+        let ids: Vec<&str> =
+            row["capabilities"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+        faults.extend(overclaims(text, &format!("the row {} of `souple verify`", row["id"]), &ids));
+    }
     for row in rows(text) {
         for id in row.checks.iter().filter_map(|check| check.strip_prefix("verify:")) {
             let found = verify_rows.iter().find(|verify_row| verify_row["id"] == id);
@@ -236,7 +270,19 @@ mod tests {
         let text = with("| FAU-7 | x | works | | `verify:hooke` |");
         let row = |id: &str, capability: &str| serde_json::json!({"id": id, "capabilities": [capability]});
         assert_eq!(unproven(&text, &[row("hooke", "FAU-7")]), [""; 0]);
-        assert!(unproven(&text, &[row("hooke", "FAU-8")])[0].contains("does not name it"));
+        assert!(
+            unproven(&text, &[row("hooke", "FAU-8")]).iter().any(|fault| fault.contains("does not name it"))
+        );
         assert!(unproven(&text, &[row("other", "FAU-7")])[0].contains("does not have"));
+        assert!(unproven(&text, &[row("other", "FAU-8")])[0].contains("claims to show FAU-8"));
+    }
+
+    #[test]
+    fn scenes_claim_what_the_table_knows() {
+        let scene = "format = 1\nshows = [\"FAU-7\", \"FAU-8\",\n  \"FAU-93\"]\ntitle = \"bar\"\n";
+        assert_eq!(shown(scene), ["FAU-7", "FAU-8", "FAU-93"]);
+        let text = with("| FAU-7 | x | works | `bar` | `verify:hooke` |");
+        assert_eq!(overclaims(&text, "bar", &shown(scene)).len(), 2);
+        assert_eq!(shown("format = 1\n"), [""; 0]);
     }
 }

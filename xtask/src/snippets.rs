@@ -1,16 +1,21 @@
-//! What README and `docs/` show is run: commands by a shell, scenes by `souple check`.
+//! What README and `docs/` show is run: commands by a shell, scenes by `souple check`; and every key is explained.
 //!
 //! The word behind a block's language says what is done with it: `sh run` runs its lines in the root of the project,
 //! with the released program in the path; `toml scene` is a complete scene; `toml part` is laid over the last complete
 //! scene of its page. Examples in Rust are compiled with the crate `souple-tests`.
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 
+use serde_json::Value;
+
 use crate::failure::Failure;
 use crate::program;
-use crate::tree::{Tree, run};
+use crate::tree::{Tree, answer, run, typed};
+
+const FORMAT_PAGE: &str = "docs/scene-format.md";
 
 /// A fenced block of a page.
 #[derive(Debug, PartialEq)]
@@ -57,7 +62,34 @@ pub fn check(tree: &Tree) -> Result<(), Failure> {
         }
     }
     println!("{count} snippets");
-    Ok(())
+    check_keys(tree)
+}
+
+/// Every key of the JSON Schema stands in the page of the scene format.
+fn check_keys(tree: &Tree) -> Result<(), Failure> {
+    let mut command = program::souple(tree, &["schema"]);
+    let (_, text) = answer(&mut command, program::REMEDY)?;
+    let fail =
+        |error: serde_json::Error| Failure::Answer { command: typed(&command), what: error.to_string() };
+    let schema: Value = serde_json::from_str(&text).map_err(fail)?;
+    let page = tree.read(FORMAT_PAGE)?;
+    Failure::unless_empty(unexplained(&schema, &page))
+}
+
+/// Keys of the tables of a schema that a page does not mention.
+fn unexplained(schema: &Value, page: &str) -> Vec<String> {
+    let words: HashSet<&str> = page.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+    let tables = schema["$defs"].as_object().into_iter().flatten();
+    let keys = tables.flat_map(|(table, definition)| {
+        definition["properties"]
+            .as_object()
+            .into_iter()
+            .flat_map(|keys| keys.keys())
+            .map(move |key| (table, key))
+    });
+    keys.filter(|(_, key)| !words.contains(key.as_str()))
+        .map(|(table, key)| format!("{FORMAT_PAGE} does not explain the key `{key}` of the table `{table}`"))
+        .collect()
 }
 
 fn run_commands(tree: &Tree, place: &str, commands: &str) -> Result<(), Failure> {
@@ -109,5 +141,12 @@ mod tests {
             blocks(page),
             [block("sh run", 2, "souple list\nsouple check\n"), block("", 7, "plain\n")]
         );
+    }
+
+    #[test]
+    fn keys_without_a_word_are_found() {
+        let schema = serde_json::json!({"$defs": {"bar": {"properties": {"mesh": {}, "mesh_file": {}}}}});
+        assert_eq!(unexplained(&schema, "`mesh`, or a `mesh_file`"), [""; 0]);
+        assert_eq!(unexplained(&schema, "the mesh").len(), 1);
     }
 }

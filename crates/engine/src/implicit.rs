@@ -500,7 +500,7 @@ impl NewtonProblem for ImplicitProblem<'_, '_> {
     ) -> Result<Option<krylov::Report>, StepError> {
         let relative = norm(residual) / self.scale;
         // no tighter than what the wanted residual needs
-        let tolerance = (FORCING * self.settings.tolerance / relative).max((FORCING * relative).min(LOOSEST));
+        let tolerance = (0.1 * self.settings.tolerance / relative).max(FORCING * relative);
         self.solve(false, tolerance.min(LOOSEST))?;
         out.copy_from_slice(&self.buffers.direction);
         Ok(None)

@@ -156,7 +156,8 @@ pub struct LinearSystem<'a> {
     /// Places of the blocks now.
     pub positions: &'a [Vec3],
     pub indefinite: Indefinite,
-    /// Wanted true relative residual where it may be looser than that of the settings.
+    /// Wanted true relative residual where it may be looser than that of the settings; for symmetric matrices only,
+    /// whose loose solutions are directions of descent all the same.
     pub tolerance: f64,
 }
 
@@ -296,7 +297,6 @@ impl LinearSolver {
                 Some((system.kinematics, system.positions)),
             )?;
             x.fill(Vec3::ZERO);
-            made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
             judged(made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x))
         };
         match attempt(preconditioner) {

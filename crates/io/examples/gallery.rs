@@ -5,6 +5,7 @@ use std::path::Path;
 use souple_io::picture::{
     Colour, EdgeStyle, Ground, Legend, MeshSurface, Picture, Stroke, StrokeShape, Theme, View,
 };
+use souple_io::plot::{Axis, Curve, Plot};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, generate};
 use souple_table::{Value, Values};
@@ -14,6 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = Path::new(&folder);
     bent_bar()?.render()?.write_png(&folder.join("bar.png"))?;
     ball_on_ground()?.render()?.write_png(&folder.join("ball.png"))?;
+    probe_plot().write_svg(&folder.join("probes.svg"))?;
     if let Some(file) = std::env::args().nth(2) {
         let (mesh, notes) = souple_io::read_mesh(Path::new(&file))?;
         notes.iter().for_each(|note| println!("{note}"));
@@ -78,6 +80,23 @@ fn ball_on_ground() -> Result<Picture, Box<dyn std::error::Error>> {
         title: "A soft ball at rest".to_owned(),
         ..Picture::default()
     })
+}
+
+/// Two probes of a swinging tip.
+fn probe_plot() -> Plot {
+    let time: Vec<f64> = (0..400).map(|index| f64::from(index) * 5e-3).collect();
+    let swing =
+        |damping: f64| time.iter().map(|t| -2e-3 * (1.0 - (-damping * t).exp() * (9.0 * t).cos())).collect();
+    Plot {
+        title: "Tip of a clamped bar".to_owned(),
+        x: Axis::new("time", "s"),
+        y: Axis::new("displacement", "m"),
+        curves: vec![
+            Curve::new("tip.y", time.clone(), swing(1.5)),
+            Curve::new("tip.y, damped", time.clone(), swing(6.0)),
+        ],
+        ..Plot::default()
+    }
 }
 
 fn file_in_the_dark(mesh: &Mesh, name: &str) -> Picture {

@@ -99,8 +99,11 @@ impl<'a> Output<'a> {
         self.blocks().map(CellBlock::len).sum()
     }
 
-    /// Refuses what a reader would refuse: node numbers and lengths of fields that do not fit.
-    pub(crate) fn check(&self) -> Result<(), IoError> {
+    /// Refuses what a reader would refuse.
+    ///
+    /// # Errors
+    /// Node numbers, positions or lengths of fields that do not fit the mesh.
+    pub fn check(&self) -> Result<(), IoError> {
         let point_count = self.mesh.points.len();
         if let Some(positions) = self.positions
             && positions.len() != point_count

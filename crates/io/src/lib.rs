@@ -12,6 +12,7 @@ mod format;
 mod gmsh;
 mod obj;
 pub mod picture;
+pub mod plot;
 mod stl;
 #[cfg(test)]
 mod testing;

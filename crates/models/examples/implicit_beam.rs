@@ -146,8 +146,11 @@ fn time_steps(name: &str, bar: Bar, threads: usize, period: f64, steps: usize, s
     });
 }
 
-/// Tips after the given steps of 10 ms, n = 3, by an independent code [m].
-const TRACES: [(&str, NewtonMode, [(usize, [f64; 3]); 3]); 3] = [
+/// A step and the tip that an independent code has after it [m].
+type Row = (usize, [f64; 3]);
+
+/// Tips after steps of 10 ms, n = 3.
+const TRACES: [(&str, NewtonMode, [Row; 3]); 3] = [
     (
         "st_venant_kirchhoff",
         NewtonMode::One,

@@ -6,6 +6,7 @@
 mod expect;
 mod frames;
 mod machine;
+mod picture;
 mod recording;
 mod report;
 mod snapshot_file;
@@ -199,6 +200,8 @@ pub fn run(
         warnings,
     };
     if let Some(out) = &options.out {
+        picture::write_plots(out, &traces)?;
+        picture::write_picture(&out.join("last.png"), &report.title, &world, &bodies)?;
         report::write_all(out, &report, &traces, &verdicts)?;
     }
     Ok(Outcome { report, traces, verdicts, recording, world, bodies, failure })

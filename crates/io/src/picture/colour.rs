@@ -98,7 +98,7 @@ pub fn colour_map(value: f64) -> Colour {
 /// A point of the path in OKLab: lightness rises evenly, hue falls from violet to yellow, chroma as high as the
 /// screen allows, up to a limit.
 fn path(t: f64) -> [f64; 3] {
-    let lightness = 0.29 + 0.64 * t;
+    let lightness = 0.34 + 0.59 * t;
     let hue = (303.0 - 196.0 * t).to_radians();
     let at = |chroma: f64| [lightness, chroma * libm::cos(hue), chroma * libm::sin(hue)];
     // a saddle: the teal of the middle reaches less chroma than the ends

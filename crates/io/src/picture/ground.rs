@@ -116,8 +116,14 @@ impl ShadedGround {
         }
     }
 
-    /// Colour and `1 / depth` of the ground along a ray, over a background; `None` where the ray goes above it.
-    pub fn seen(&self, camera: &Camera, ray: Vec3, background: Colour) -> Option<(Colour, f32)> {
+    /// Colour and `1 / depth` of the ground along a ray, over a background, its grid in an ink of some strength; `None` where the ray goes above it.
+    pub fn seen(
+        &self,
+        camera: &Camera,
+        ray: Vec3,
+        background: Colour,
+        (ink, strength): (Colour, f32),
+    ) -> Option<(Colour, f32)> {
         let descent = self.normal.dot(ray);
         let height = self.normal.dot(camera.eye - self.origin);
         if descent >= 0.0 || height <= 0.0 {
@@ -137,7 +143,7 @@ impl ShadedGround {
             // a line of one pixel across, wider where the plane is seen at a glance
             let width = footprint / (descent.abs() / ray.length()).max(0.15);
             let line = (1.0 - off / (0.6 * width)).clamp(0.0, 1.0) as f32;
-            colour = colour.mixed(Colour::BLACK, 0.16 * line * fade);
+            colour = colour.mixed(ink, strength * line * fade);
         }
         Some((colour.scaled(1.0 - 0.72 * self.shade_at(point)), (1.0 / depth) as f32))
     }

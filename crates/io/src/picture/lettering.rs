@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 const CAPITAL: f64 = 16.0;
 const BASELINE: f64 = 4.0;
 /// Between glyphs, in the units of glyphs.
-const GAP: f64 = 4.5;
+const GAP: f64 = 4.0;
 const SPACE_WIDTH: f64 = 4.0;
 
 /// Segments of each spline piece.

@@ -41,11 +41,11 @@ impl Lamps {
         // wrapped a little around the terminator: soft matter scatters light beneath its surface
         let wrapped = |lamp: Vec3| ((normal.dot(lamp) + 0.25) / 1.25).max(0.0) as f32;
 
-        let ambient = EARTH.mixed(SKY, 0.5 + 0.5 * normal.dot(self.sky) as f32).scaled(0.42 * open);
+        let ambient = EARTH.mixed(SKY, 0.5 + 0.5 * normal.dot(self.sky) as f32).scaled(0.46 * open);
         // corners shade the lamps too, but less than the sky
         let lamp_open = 0.45 + 0.55 * open;
         let diffuse = ambient
-            .plus(KEY.scaled(0.62 * wrapped(self.key) * lamp_open))
+            .plus(KEY.scaled(0.78 * wrapped(self.key) * lamp_open))
             .plus(FILL.scaled(0.16 * facing(self.fill) * lamp_open))
             .plus(KEY.scaled(0.12 * facing(self.rim)));
 

@@ -95,6 +95,8 @@ struct Palette {
     top: Colour,
     bottom: Colour,
     ink: Colour,
+    /// Colour and strength of the lines of the ground.
+    grid: (Colour, f32),
 }
 
 impl Theme {
@@ -105,11 +107,14 @@ impl Theme {
                 top: colour([252, 252, 253]),
                 bottom: colour([214, 220, 228]),
                 ink: colour([34, 40, 49]),
+                grid: (Colour::BLACK, 0.2),
             },
             Self::Dark => Palette {
                 top: colour([58, 64, 74]),
                 bottom: colour([20, 22, 27]),
                 ink: colour([232, 235, 240]),
+                // a little white shows far on black
+                grid: (Colour::WHITE, 0.05),
             },
         }
     }
@@ -282,7 +287,10 @@ impl Scene {
     fn light(&self, sample: &raster::Sample, x: f64, y: f64, pixel: usize, height: usize) -> (Colour, f32) {
         let ray = self.camera.ray(x, y);
         let background = self.palette.background(y, height);
-        let ground = self.ground.as_ref().and_then(|ground| ground.seen(&self.camera, ray, background));
+        let ground = self
+            .ground
+            .as_ref()
+            .and_then(|ground| ground.seen(&self.camera, ray, background, self.palette.grid));
         let (behind, depth_behind) = ground.unwrap_or((background, 0.0));
         if sample.inverse_depth <= depth_behind {
             return (behind, depth_behind);
@@ -312,10 +320,12 @@ impl Layout {
         let legend_width = if picture.legend.is_some() { 9.5 * letter } else { 0.0 };
         let lines = usize::from(!picture.title.is_empty()) as f64 * 2.4
             + usize::from(!picture.subtitle.is_empty()) as f64 * 1.8;
+        // room for the shade around the place of contact
+        let shade = if picture.ground.is_some() { 0.07 * height } else { 0.0 };
         let right = (width - margin - legend_width).max(0.5 * width);
         let top = (margin + lines * letter).min(0.4 * height);
         Self {
-            frame: Frame { left: margin, top, right, bottom: (height - margin).max(top + 1.0) },
+            frame: Frame { left: margin, top, right, bottom: (height - margin - shade).max(top + 1.0) },
             letter,
             margin,
             legend_left: width - margin - 7.5 * letter,

@@ -47,8 +47,8 @@ pub(super) fn prepared(strokes: &[Stroke], camera: &Camera) -> Vec<Drawn> {
             StrokeShape::Arrow(from, to) => {
                 let (start, tip) = (camera.project(*from), camera.project(*to));
                 let length = (tip.x - start.x).hypot(tip.y - start.y);
-                // the head is seven half widths long, but leaves a third of the shaft
-                let head = (7.0 * half).min(0.66 * length);
+                // the head is nine half widths long, but leaves a third of the shaft
+                let head = (9.0 * half).min(0.66 * length);
                 let share = if length > 0.0 { 1.0 - head / length } else { 0.0 };
                 let neck = Projected {
                     x: start.x + (tip.x - start.x) * share,
@@ -56,7 +56,7 @@ pub(super) fn prepared(strokes: &[Stroke], camera: &Camera) -> Vec<Drawn> {
                     inverse_depth: start.inverse_depth + (tip.inverse_depth - start.inverse_depth) * share,
                 };
                 push(start, neck, [half; 2]);
-                push(neck, tip, [0.42 * head, 0.0]);
+                push(neck, tip, [0.4 * head, 0.0]);
             }
         }
     }

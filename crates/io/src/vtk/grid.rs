@@ -7,7 +7,7 @@ use souple_mesh::{Group, MAX_NODES, Mesh};
 
 use super::{CELL_TYPES, GROUP_PREFIX, WITHOUT_VOLUME};
 use crate::Dataset;
-use crate::dataset::{Destination, Field, Sorter};
+use crate::dataset::{Destination, Field, Sorter, tidy_groups};
 use crate::error::{Fault, Place};
 
 /// Arrays of whole numbers that mark parts of a mesh, as other programs call them.
@@ -41,8 +41,8 @@ impl Grid {
         for field in self.point_fields {
             match field.name.strip_prefix(GROUP_PREFIX) {
                 Some(name) => {
-                    let members = members(&field).map(|point| point as u32).collect();
-                    group(&mut dataset.mesh, name).points = members;
+                    let members = members(&field).map(|point| point as u32);
+                    group(&mut dataset.mesh, name).points.extend(members);
                 }
                 None => dataset.point_fields.push(field),
             }
@@ -57,6 +57,8 @@ impl Grid {
             }
             dataset.cell_fields.push(sorted(field, &destinations));
         }
+        // a group may stand in two arrays: its own and an array of marks
+        tidy_groups(&mut dataset.mesh);
         Ok(dataset)
     }
 

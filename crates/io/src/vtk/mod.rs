@@ -15,6 +15,7 @@ pub use series::Series;
 
 pub(crate) use legacy::VTK_LEGACY;
 pub(crate) use vtu::VTU;
+pub(crate) use xml::escape;
 
 use souple_mesh::ElementKind;
 

@@ -35,6 +35,11 @@ pub struct Nearest {
 pub trait Shape: Send + Sync + Debug {
     /// `None` where the distance surely exceeds `reach`, or has no answer (a point that is not finite).
     fn nearest(&self, point: Vec3, reach: f64) -> Option<Nearest>;
+
+    /// A point and the normal of a shape that is a half-space, for drawing it as a ground.
+    fn as_plane(&self) -> Option<(Vec3, Vec3)> {
+        None
+    }
 }
 
 /// A shape that cannot be.

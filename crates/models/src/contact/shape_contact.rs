@@ -89,6 +89,11 @@ impl ShapeContact {
         &self.law
     }
 
+    /// What is touched, where it stands when it does not move.
+    pub fn shape(&self) -> &dyn Shape {
+        self.shape.as_ref()
+    }
+
     /// Points that touch, with the forces on them.
     pub fn touches(&self, at: &Configuration) -> Vec<Touch> {
         let pose = self.motion.pose(at.time);

@@ -156,6 +156,16 @@ fn every_encoding_reads_the_same() {
     }
 }
 
+/// A mesh whose groups came from marks is the same after writing and reading: the marks and the group agree.
+#[test]
+fn groups_of_marks_round_trip() {
+    let dataset = read(&file(styles()[0])).unwrap();
+    let output = crate::Output { cell_fields: &dataset.cell_fields, ..crate::Output::new(&dataset.mesh) };
+    let mut bytes = Vec::new();
+    vtu_write::write(&output, &mut bytes).unwrap();
+    assert_eq!(read(&bytes).unwrap(), crate::Dataset { notes: Vec::new(), ..dataset });
+}
+
 #[test]
 fn no_fault_panics_in_any_encoding() {
     for style in styles().into_iter().step_by(5) {

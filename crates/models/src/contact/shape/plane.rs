@@ -19,6 +19,10 @@ impl Shape for Plane {
         let distance = (point - self.point).dot(self.normal);
         point.is_finite().then_some(Nearest { distance, normal: self.normal, curvature: Mat3::ZERO })
     }
+
+    fn as_plane(&self) -> Option<(Vec3, Vec3)> {
+        Some((self.point, self.normal))
+    }
 }
 
 pub(super) const ENTRY: ShapeEntry = ShapeEntry {

@@ -1,0 +1,390 @@
+//! Line plots as SVG: probes over time, errors over mesh sizes.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::picture::{labels, ticks};
+use crate::{IoError, write_file};
+
+/// One curve.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curve {
+    /// Shown in the legend, if not empty.
+    pub name: String,
+    pub x: Vec<f64>,
+    pub y: Vec<f64>,
+    pub mark: Mark,
+}
+
+impl Curve {
+    pub fn new(name: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
+        Self { name: name.into(), x, y, mark: Mark::default() }
+    }
+}
+
+/// How a curve is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mark {
+    #[default]
+    Line,
+    Dashes,
+    Dots,
+    /// Dots joined by a line: measured values.
+    DottedLine,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    #[default]
+    Linear,
+    /// Base 10; values that are not positive are left out.
+    Logarithmic,
+}
+
+/// One axis: what it shows, in which unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    pub name: String,
+    /// Written in brackets behind the name, if not empty.
+    pub unit: String,
+    pub scale: Scale,
+}
+
+impl Axis {
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into(), scale: Scale::default() }
+    }
+
+    fn label(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+}
+
+/// A plot of several curves over common axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plot {
+    pub title: String,
+    pub x: Axis,
+    pub y: Axis,
+    pub curves: Vec<Curve>,
+    /// Width and height [pixels].
+    pub size: [f64; 2],
+}
+
+impl Default for Plot {
+    fn default() -> Self {
+        Self {
+            title: String::new(),
+            x: Axis::default(),
+            y: Axis::default(),
+            curves: Vec::new(),
+            size: [800.0, 480.0],
+        }
+    }
+}
+
+/// Okabe & Ito 2008: told apart by all eyes.
+const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#444444"];
+const INK: &str = "#222831";
+const GRID: &str = "#e3e6eb";
+const LETTER: f64 = 13.0;
+/// Share of the range left free above and below the curves.
+const HEADROOM: f64 = 0.05;
+/// Most points of a curve in the file: more than two for each pixel cannot be seen.
+const MOST_POINTS: usize = 4000;
+
+/// The range of one axis and where it lies in the plot.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    scale: Scale,
+    /// In the coordinate of the axis: the value or its logarithm.
+    low: f64,
+    high: f64,
+    /// Where low and high stand [pixels].
+    from: f64,
+    to: f64,
+}
+
+impl Span {
+    /// All finite values, with some room.
+    fn of(values: impl Iterator<Item = f64>, scale: Scale, headroom: f64) -> Self {
+        let mut span = Self { scale, low: f64::INFINITY, high: f64::NEG_INFINITY, from: 0.0, to: 1.0 };
+        for value in values {
+            if let Some(coordinate) = span.coordinate(value) {
+                span.low = span.low.min(coordinate);
+                span.high = span.high.max(coordinate);
+            }
+        }
+        if span.low > span.high {
+            (span.low, span.high) = (0.0, 1.0);
+        } else if span.low == span.high {
+            let half =
+                if scale == Scale::Logarithmic || span.low == 0.0 { 0.5 } else { 0.5 * span.low.abs() };
+            (span.low, span.high) = (span.low - half, span.high + half);
+        } else {
+            let room = headroom * (span.high - span.low);
+            (span.low, span.high) = (span.low - room, span.high + room);
+        }
+        span
+    }
+
+    fn coordinate(&self, value: f64) -> Option<f64> {
+        let coordinate = match self.scale {
+            Scale::Linear => value,
+            Scale::Logarithmic => libm::log10(value),
+        };
+        // differences of the largest numbers would overflow
+        (coordinate.is_finite() && coordinate.abs() < 1e300).then_some(coordinate)
+    }
+
+    fn place(&self, coordinate: f64) -> f64 {
+        self.from + (coordinate - self.low) / (self.high - self.low) * (self.to - self.from)
+    }
+
+    /// Coordinates of the ticks and what is written at them.
+    fn ticks(&self, about: usize) -> Vec<(f64, String)> {
+        match self.scale {
+            Scale::Linear => {
+                let ticks = ticks(self.low, self.high, about);
+                let labels = labels(&ticks);
+                ticks.into_iter().zip(labels).collect()
+            }
+            Scale::Logarithmic => {
+                let powers: Vec<f64> = match ticks(self.low, self.high, about) {
+                    ticks if ticks.len() > 1 && ticks.iter().all(|tick| tick.fract() == 0.0) => ticks,
+                    _ => (self.low.ceil() as i64..=self.high.floor() as i64)
+                        .map(|power| power as f64)
+                        .collect(),
+                };
+                if powers.len() > 1 {
+                    return powers.into_iter().map(|power| (power, format!("1e{power}"))).collect();
+                }
+                // less than two powers of ten: 1, 2, 5
+                let decades = self.low.floor() as i64..=self.high.ceil() as i64;
+                let values =
+                    decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|m| m * libm::pow(10.0, decade as f64)));
+                let within = |value: &f64| (self.low..=self.high).contains(&libm::log10(*value));
+                values
+                    .filter(within)
+                    .map(|value| (libm::log10(value), format!("{value:.3e}").replace(".000", "")))
+                    .collect()
+            }
+        }
+    }
+}
+
+impl Plot {
+    /// The plot as SVG.
+    ///
+    /// # Errors
+    /// A curve whose `x` and `y` differ in length, a size that is not positive.
+    pub fn to_svg(&self) -> Result<String, IoError> {
+        for (index, curve) in self.curves.iter().enumerate() {
+            if curve.x.len() != curve.y.len() {
+                let expected = format!("{}, as of `x`", curve.x.len());
+                return Err(IoError::request(
+                    format!("the length of `y` of curves[{index}]"),
+                    curve.y.len(),
+                    expected,
+                ));
+            }
+        }
+        if let Some(side) = self.size.iter().find(|side| !(100.0..=20_000.0).contains(*side)) {
+            return Err(IoError::request("a side of the plot", side, "100 to 20000 pixels"));
+        }
+        Ok(self.draw())
+    }
+
+    /// Writes the plot.
+    ///
+    /// # Errors
+    /// Those of [`Plot::to_svg`]; the file cannot be written.
+    pub fn write_svg(&self, path: &Path) -> Result<(), IoError> {
+        let text = self.to_svg()?;
+        write_file(path, |out| out.write_all(text.as_bytes()))
+    }
+
+    fn draw(&self) -> String {
+        let [width, height] = self.size;
+        let named: Vec<(usize, &Curve)> =
+            self.curves.iter().enumerate().filter(|(_, curve)| !curve.name.is_empty()).collect();
+        let values = |of: fn(&Curve) -> &Vec<f64>| self.curves.iter().flat_map(of).copied();
+        let mut x = Span::of(values(|curve| &curve.x), self.x.scale, 0.0);
+        let mut y = Span::of(values(|curve| &curve.y), self.y.scale, HEADROOM);
+        let y_ticks = y.ticks((height / 70.0) as usize);
+        let x_ticks = x.ticks((width / 110.0) as usize);
+
+        let longest =
+            |texts: &mut dyn Iterator<Item = usize>| texts.max().unwrap_or(0) as f64 * 0.56 * LETTER;
+        let label_width = longest(&mut y_ticks.iter().map(|tick| tick.1.chars().count()));
+        // names beside the plot hide nothing of it
+        let legend_width = match longest(&mut named.iter().map(|(_, curve)| curve.name.chars().count())) {
+            0.0 => 0.0,
+            text => (text + 52.0).min(0.4 * width),
+        };
+        let top = if self.title.is_empty() { 20.0 } else { 46.0 };
+        let (left, right) = (label_width + 48.0, width - 22.0 - legend_width);
+        (x.from, x.to) = (left, right);
+        (y.from, y.to) = (height - 58.0, top);
+
+        let mut svg = String::new();
+        // writing to a string cannot fail
+        let _ = writeln!(
+            svg,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"Helvetica, Arial, sans-serif\" \
+             font-size=\"{LETTER}\" fill=\"{INK}\">"
+        );
+        let _ = writeln!(svg, "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>");
+        if !self.title.is_empty() {
+            text(&mut svg, [left, 28.0], "start", "font-size=\"17\" font-weight=\"600\"", &self.title);
+        }
+        for (coordinate, label) in &x_ticks {
+            let at = x.place(*coordinate);
+            line(&mut svg, [at, y.from], [at, y.to], GRID);
+            text(&mut svg, [at, y.from + 19.0], "middle", "", label);
+        }
+        for (coordinate, label) in &y_ticks {
+            let at = y.place(*coordinate);
+            line(&mut svg, [x.from, at], [x.to, at], GRID);
+            text(&mut svg, [x.from - 8.0, at + 0.35 * LETTER], "end", "", label);
+        }
+        line(&mut svg, [x.from, y.from], [x.to, y.from], INK);
+        line(&mut svg, [x.from, y.from], [x.from, y.to], INK);
+        text(&mut svg, [0.5 * (x.from + x.to), height - 14.0], "middle", "", &self.x.label());
+        let middle = 0.5 * (y.from + y.to);
+        let turned = format!("transform=\"rotate(-90 18 {middle:.2})\"");
+        text(&mut svg, [18.0, middle], "middle", &turned, &self.y.label());
+
+        for (index, curve) in self.curves.iter().enumerate() {
+            draw_curve(&mut svg, curve, COLOURS[index % COLOURS.len()], x, y);
+        }
+        for (row, (index, curve)) in named.iter().enumerate() {
+            let at = y.to + 12.0 + 21.0 * row as f64;
+            let sample = Curve { x: vec![0.0, 1.0], y: vec![0.0, 0.0], ..(*curve).clone() };
+            let across =
+                Span { scale: Scale::Linear, low: 0.0, high: 1.0, from: x.to + 16.0, to: x.to + 40.0 };
+            let flat = Span { low: -1.0, from: at, to: at, ..across };
+            draw_curve(&mut svg, &sample, COLOURS[index % COLOURS.len()], across, flat);
+            text(&mut svg, [x.to + 47.0, at + 0.35 * LETTER], "start", "", &curve.name);
+        }
+        svg.push_str("</svg>\n");
+        svg
+    }
+}
+
+/// Runs of finite points; what lies between them is left out, not joined.
+fn draw_curve(svg: &mut String, curve: &Curve, colour: &str, x: Span, y: Span) {
+    let stride = curve.x.len().div_ceil(MOST_POINTS).max(1);
+    let places: Vec<Option<[f64; 2]>> = thinned(curve, stride)
+        .map(|(at, value)| Some([x.place(x.coordinate(at)?), y.place(y.coordinate(value)?)]))
+        .collect();
+    if curve.mark != Mark::Dots {
+        let dashes = if curve.mark == Mark::Dashes { " stroke-dasharray=\"6 4\"" } else { "" };
+        for run in places.split(Option::is_none).filter(|run| run.len() > 1) {
+            let points: Vec<String> = run.iter().flatten().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+            let _ = writeln!(
+                svg,
+                "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" \
+                 stroke-linejoin=\"round\"{dashes}/>",
+                points.join(" ")
+            );
+        }
+    }
+    if matches!(curve.mark, Mark::Dots | Mark::DottedLine) {
+        for [x, y] in places.iter().flatten() {
+            let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3.2\" fill=\"{colour}\"/>");
+        }
+    }
+}
+
+/// Least and greatest value of each `2 stride` points in their order: peaks stay. All points for a stride of one.
+fn thinned(curve: &Curve, stride: usize) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
+    let all = curve.x.iter().copied().zip(curve.y.iter().copied());
+    if stride == 1 {
+        return Box::new(all);
+    }
+    let window = 2 * stride;
+    Box::new(curve.y.chunks(window).enumerate().flat_map(move |(index, values)| {
+        let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+        let low = (0..values.len()).min_by(by_value).unwrap_or(0);
+        let high = (0..values.len()).max_by(by_value).unwrap_or(0);
+        [low.min(high), low.max(high)].map(|place| (curve.x[index * window + place], values[place]))
+    }))
+}
+
+fn line(svg: &mut String, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], colour: &str) {
+    let _ = writeln!(
+        svg,
+        "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{colour}\" stroke-width=\"1\"/>"
+    );
+}
+
+fn text(svg: &mut String, [x, y]: [f64; 2], anchor: &str, more: &str, content: &str) {
+    let content = crate::vtk::escape(content);
+    let _ = writeln!(svg, "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\" {more}>{content}</text>");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine() -> Curve {
+        let x: Vec<f64> = (0..200).map(|index| f64::from(index) * 0.01).collect();
+        let y = x.iter().map(|x| (6.0 * x).sin()).collect();
+        Curve::new("tip & <root>", x, y)
+    }
+
+    #[test]
+    fn axes_curves_and_names_are_there() {
+        let (x, y) = (Axis::new("time", "s"), Axis::new("displacement", "m"));
+        let plot = Plot { title: "Probe".into(), x, y, curves: vec![sine(), sine()], ..Plot::default() };
+        let svg = plot.to_svg().unwrap();
+        assert_eq!(svg.matches("<polyline").count(), 4, "two curves, two samples in the legend");
+        for part in
+            [">time [s]<", ">displacement [m]<", ">Probe<", "tip &amp; &lt;root&gt;", ">0.5<", ">−0.5<"]
+        {
+            assert!(svg.contains(part), "{part}");
+        }
+    }
+
+    /// Points lie where the axes say: the ends of the curve at the ends of the horizontal axis.
+    #[test]
+    fn places_follow_the_axes() {
+        let span = Span { from: 50.0, to: 250.0, ..Span::of([1.0, 3.0].into_iter(), Scale::Linear, 0.0) };
+        assert_eq!([1.0, 2.0, 3.0].map(|value| span.place(value)), [50.0, 150.0, 250.0]);
+        let decades = Span::of([1e-3, 1e2].into_iter(), Scale::Logarithmic, 0.0);
+        let labels: Vec<_> = decades.ticks(6).into_iter().map(|tick| tick.1).collect();
+        assert_eq!(labels, ["1e-3", "1e-2", "1e-1", "1e0", "1e1", "1e2"]);
+        let narrow = Span::of([2.0, 30.0].into_iter(), Scale::Logarithmic, 0.0);
+        assert_eq!(narrow.ticks(4).len(), 4);
+    }
+
+    #[test]
+    fn gaps_are_not_joined_and_peaks_survive_thinning() {
+        let gap = Curve::new("", vec![0.0, 1.0, 2.0, 3.0, 4.0], vec![1.0, 2.0, f64::NAN, 2.0, 1.0]);
+        let svg = Plot { curves: vec![gap], ..Plot::default() }.to_svg().unwrap();
+        assert_eq!(svg.matches("<polyline").count(), 2);
+        let mut y = vec![0.0; 100_001];
+        y[77_777] = 5.0;
+        let curve = Curve::new("", (0..y.len()).map(|index| index as f64).collect(), y);
+        let kept: Vec<_> = thinned(&curve, curve.x.len().div_ceil(MOST_POINTS)).collect();
+        assert!(kept.len() <= MOST_POINTS + 2 && kept.contains(&(77_777.0, 5.0)));
+        assert!(kept.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    }
+
+    #[test]
+    fn strange_data_are_drawn_or_refused() {
+        let curve = Curve::new("a", vec![0.0; 3], vec![0.0; 2]);
+        assert!(Plot { curves: vec![curve], ..Plot::default() }.to_svg().is_err());
+        assert!(Plot { size: [f64::NAN, 400.0], ..Plot::default() }.to_svg().is_err());
+        for y in [vec![], vec![0.0], vec![f64::MAX, f64::MIN], vec![f64::NAN; 4], vec![1e-320, 0.0]] {
+            for scale in [Scale::Linear, Scale::Logarithmic] {
+                let x = (0..y.len()).map(|index| index as f64).collect();
+                let mut plot = Plot { curves: vec![Curve::new("a", x, y.clone())], ..Plot::default() };
+                plot.y.scale = scale;
+                assert!(!plot.to_svg().unwrap().contains("NaN"));
+            }
+        }
+    }
+}
