@@ -395,6 +395,9 @@ impl ImplicitStep<'_> {
     }
 }
 
+/// A Newton step shorter than this share of the positions is rounding.
+const POSITION_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// A step as Newton's method sees it: `buffers.q` is accepted, `(q_trial, v_trial)` current.
 struct ImplicitProblem<'p, 'a> {
     step: &'p ImplicitStep<'a>,
@@ -532,5 +535,9 @@ impl NewtonProblem for ImplicitProblem<'_, '_> {
 
     fn rounding(&mut self) -> f64 {
         self.rounding
+    }
+
+    fn is_negligible(&self, direction: &[Vec3]) -> bool {
+        norm(direction) <= POSITION_ROUNDING * norm(&self.buffers.q)
     }
 }

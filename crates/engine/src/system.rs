@@ -74,12 +74,12 @@ impl System {
     /// Where each force's numbers stand in [`SystemState::memory`].
     pub fn memory_ranges(&self) -> Vec<Range<usize>> {
         let mut start = 0;
-        let next = |force: &Box<dyn Force>| {
+        let next = |force: &dyn Force| {
             let range = start..start + force.memory_len();
             start = range.end;
             range
         };
-        self.forces.iter().map(next).collect()
+        self.forces.iter().map(AsRef::as_ref).map(next).collect()
     }
 
     fn memory_range(&self, force: usize) -> Range<usize> {

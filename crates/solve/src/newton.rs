@@ -60,6 +60,12 @@ pub trait NewtonProblem {
         None
     }
 
+    /// Whether a direction is no longer than the rounding of the unknowns themselves, so that following it
+    /// changes nothing that can be represented.
+    fn is_negligible(&self, _direction: &[Vec3]) -> bool {
+        false
+    }
+
     /// `‖r‖` that rounding alone makes near the accepted configuration: nothing below it can be asked for.
     fn rounding(&mut self) -> f64 {
         0.0
@@ -189,6 +195,9 @@ pub fn newton<P: NewtonProblem + ?Sized>(
             break;
         }
         linear_iterations += problem.direction(r, d)?.map_or(0, |report| report.iterations);
+        if problem.is_negligible(d) {
+            return Ok(report(iteration, linear_iterations, norm, Stop::Converged));
+        }
         // ∂Φ/∂q · d = −r · d
         let slope = -reduce::dot(r, d);
         let is_gradient = merit.is_none() && problem.is_gradient();
