@@ -88,7 +88,14 @@ impl CouplingSpring {
 
     /// Publishes where the slow point stands as a period starts; the account of energy opens with what the
     /// spring holds as the world starts.
-    pub(crate) fn start_period(&self, state: &mut State, time: f64, fast: Vec3, position: Vec3, velocity: Vec3) {
+    pub(crate) fn start_period(
+        &self,
+        state: &mut State,
+        time: f64,
+        fast: Vec3,
+        position: Vec3,
+        velocity: Vec3,
+    ) {
         let opens = state.period == 0;
         let driven = &mut state.driven[self.driven..self.driven + DRIVEN_LEN];
         if opens {
@@ -101,7 +108,13 @@ impl CouplingSpring {
 
     /// Ends a period: the opposite of its mean force acts on the slow point in the next, the work of both
     /// ends is booked, the fast end's memory starts anew.
-    pub(crate) fn end_period(&self, driven: &mut [f64], fast_memory: &mut [f64], period: f64, slow_moved: Vec3) {
+    pub(crate) fn end_period(
+        &self,
+        driven: &mut [f64],
+        fast_memory: &mut [f64],
+        period: f64,
+        slow_moved: Vec3,
+    ) {
         let driven = &mut driven[self.driven..self.driven + DRIVEN_LEN];
         let acted = vector(driven, SLOW_FORCE);
         driven[WORK] += fast_memory[3] + fast_memory[4] + acted.dot(slow_moved);
@@ -190,7 +203,13 @@ impl Force for FastEnd {
         visit(&[self.spring.fast_row]);
     }
 
-    fn add_blocks(&self, _at: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        _at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         let row = self.spring.fast_row as usize;
         add_block(matrix, row, row, &(Mat3::IDENTITY * self.stiffness(weights)));
     }
@@ -225,7 +244,15 @@ impl Force for SlowEnd {
         out[self.row as usize] += Vec3::new(force[0], force[1], force[2]);
     }
 
-    fn add_differential(&self, _: &Configuration, _: TangentWeights, _: &[Vec3], _: &mut Scratch, _: &mut [Vec3]) {}
+    fn add_differential(
+        &self,
+        _: &Configuration,
+        _: TangentWeights,
+        _: &[Vec3],
+        _: &mut Scratch,
+        _: &mut [Vec3],
+    ) {
+    }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
         visit(&[self.row]);

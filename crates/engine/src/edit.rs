@@ -64,7 +64,8 @@ impl Edit {
         match self {
             Self::SetParameter { force: name, parameter, value, .. } => {
                 let known = || system.forces.iter().map(|force| force.name().to_owned()).collect();
-                let error = EditError::NoForce { system: system.name.clone(), force: name.clone(), known: known() };
+                let error =
+                    EditError::NoForce { system: system.name.clone(), force: name.clone(), known: known() };
                 let force = system.forces.iter_mut().find(|force| force.name() == name).ok_or(error)?;
                 force.set_parameter(parameter, *value)?;
             }

@@ -40,7 +40,9 @@ pub fn accelerations_at(
     system.kinematics.forces_into(&state.q, &mut ws.row_force, &mut rhs);
     system.project_free(&mut rhs);
     let mut matrix = ws.tangent.take_mass_matrix(system);
-    assemble_generalised_mass(system, &state.q, &mut matrix);
+    matrix.set_zero();
+    add_generalised_mass(system, &state.q, &mut matrix);
+    constrain(system, &mut matrix);
     let solved = ws.linear.solve_mass(&matrix, &rhs, out);
     ws.tangent.put_mass_matrix(matrix);
     ws.blocks[7] = rhs;
@@ -52,9 +54,8 @@ pub fn accelerations_at(
     })
 }
 
-/// `matrix = TᵀMT` with constrained directions set to the identity.
-fn assemble_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatrix) {
-    matrix.set_zero();
+/// `matrix += TᵀMT`.
+pub fn add_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatrix) {
     let kinematics = &system.kinematics;
     let map = |row: u32| kinematics.position_map(row, q);
     for (row, mass) in system.mass.diagonal.iter().enumerate() {
@@ -69,7 +70,6 @@ fn assemble_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatr
             });
         }
     }
-    constrain(system, matrix);
 }
 
 /// `f -= M ẍ_bias`, the acceleration rows have while velocity blocks stay as they are: `ω × (ω × a)` on the

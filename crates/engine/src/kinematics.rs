@@ -94,7 +94,9 @@ pub struct Kinematics {
 /// A derived row that cannot be.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum KinematicsError {
-    #[error("derived row {row} hangs on row {parent}, which does not come before it; order rows so that each follows its parents, without cycles")]
+    #[error(
+        "derived row {row} hangs on row {parent}, which does not come before it; order rows so that each follows its parents, without cycles"
+    )]
     NotEarlier { row: usize, parent: u32 },
     #[error("derived row {row} has weight {weight} on row {parent}; weights are finite numbers")]
     BadWeight { row: usize, parent: u32, weight: f64 },
@@ -192,7 +194,8 @@ impl Kinematics {
     pub fn unknowns(&self) -> impl Iterator<Item = (UnknownKind, Range<usize>)> {
         self.runs.iter().flat_map(|run| {
             let size = run.kind.block_count();
-            (0..run.count).map(move |i| (run.kind, run.first_block + i * size..run.first_block + (i + 1) * size))
+            (0..run.count)
+                .map(move |i| (run.kind, run.first_block + i * size..run.first_block + (i + 1) * size))
         })
     }
 
@@ -214,7 +217,8 @@ impl Kinematics {
     /// The position block of a point unknown, or `None` for rows of frames and derived rows.
     pub fn point_block(&self, row: u32) -> Option<u32> {
         let run = self.runs.iter().find(|run| {
-            run.kind == UnknownKind::Point && (run.first_row..run.first_row + run.count).contains(&(row as usize))
+            run.kind == UnknownKind::Point
+                && (run.first_row..run.first_row + run.count).contains(&(row as usize))
         })?;
         Some((run.first_block + row as usize - run.first_row) as u32)
     }

@@ -13,6 +13,7 @@ pub mod inertia;
 pub mod kinematics;
 pub mod linear;
 pub mod mass;
+pub mod modes;
 pub mod snapshot;
 pub mod stability;
 pub mod state;

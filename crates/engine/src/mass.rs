@@ -58,9 +58,13 @@ impl Mass {
 
     /// `½ ẋᵀ M ẋ` [J].
     pub fn kinetic_energy(&self, velocities: &[Vec3]) -> f64 {
-        let lumped: f64 = self.diagonal.iter().zip(velocities).map(|(mass, v)| 0.5 * mass * v.length_sq()).sum();
-        let coupled: f64 =
-            self.couplings.iter().map(|&(a, b, mass)| mass * velocities[a as usize].dot(velocities[b as usize])).sum();
+        let lumped: f64 =
+            self.diagonal.iter().zip(velocities).map(|(mass, v)| 0.5 * mass * v.length_sq()).sum();
+        let coupled: f64 = self
+            .couplings
+            .iter()
+            .map(|&(a, b, mass)| mass * velocities[a as usize].dot(velocities[b as usize]))
+            .sum();
         lumped + coupled
     }
 }

@@ -23,7 +23,12 @@ const ITERATIONS: usize = 40;
 ///
 /// A random-like but fixed start vector; the Rayleigh quotient approaches the highest frequency from below,
 /// so the step it allows is taken with a margin of 5 %.
-pub fn forecast(system: &System, state: &SystemState, around: &Surroundings, ws: &mut SystemWorkspace) -> Forecast {
+pub fn forecast(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &mut SystemWorkspace,
+) -> Forecast {
     let rows = system.kinematics.row_count();
     let row_mass = lumped_row_mass(system);
     let mut direction: Vec<Vec3> = (0..rows).map(start_vector).collect();

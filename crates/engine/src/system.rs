@@ -175,22 +175,24 @@ impl System {
     }
 
     /// Stored and dissipated energy of each force [J].
-    pub fn energies(&self, ws: &mut SystemWorkspace, state: &SystemState, around: &Surroundings) -> Vec<Energy> {
+    pub fn energies(
+        &self,
+        ws: &mut SystemWorkspace,
+        state: &SystemState,
+        around: &Surroundings,
+    ) -> Vec<Energy> {
         let scratches = &mut ws.scratches;
         self.forces
             .iter()
             .enumerate()
-            .map(|(index, force)| force.energy(&self.view(index, &ws.rows, state, around), &mut scratches[index]))
+            .map(|(index, force)| {
+                force.energy(&self.view(index, &ws.rows, state, around), &mut scratches[index])
+            })
             .collect()
     }
 
     /// The new list of pairs at `(q, v)`: those still there keep their memory.
-    pub fn update_pairs(
-        &self,
-        ws: &mut SystemWorkspace,
-        state: &mut SystemState,
-        around: &Surroundings,
-    ) {
+    pub fn update_pairs(&self, ws: &mut SystemWorkspace, state: &mut SystemState, around: &Surroundings) {
         ws.found_pairs.clear();
         for (index, force) in self.forces.iter().enumerate() {
             let first = ws.found_pairs.len();
@@ -209,7 +211,11 @@ impl System {
             return;
         }
         // forces read the memory as it was: they are pure, and see their own part only
-        let before = SystemState { memory: state.memory.clone(), pairs: state.pairs.clone(), ..SystemState::default() };
+        let before = SystemState {
+            memory: state.memory.clone(),
+            pairs: state.pairs.clone(),
+            ..SystemState::default()
+        };
         for (index, force) in self.forces.iter().enumerate() {
             let at = self.view(index, rows, &before, around);
             let pairs = pairs_of(&state.pairs, index);
@@ -227,7 +233,8 @@ impl System {
     pub fn momentum(&self, rows: &Rows) -> (Vec3, Vec3) {
         let mut momentum = vec![Vec3::ZERO; rows.velocities.len()];
         self.mass.add_product(&rows.velocities, &mut momentum);
-        let linear = (0..momentum.len()).map(|row| momentum[row] * self.kinematics.translation_weight(row)).sum();
+        let linear =
+            (0..momentum.len()).map(|row| momentum[row] * self.kinematics.translation_weight(row)).sum();
         let angular = rows.positions.iter().zip(&momentum).map(|(x, p)| x.cross(*p)).sum();
         (linear, angular)
     }

@@ -80,7 +80,8 @@ impl Model {
     pub fn start(self, state: State) -> World {
         let systems = self.systems.iter().map(System::new_workspace).collect();
         let workspace = Workspace { systems, next: state.clone() };
-        let mut world = World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
+        let mut world =
+            World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
         world.place_all_rows();
         world
     }
@@ -144,8 +145,10 @@ impl World {
 
     /// Bytes of forces, matrices and solvers.
     pub fn bytes(&self) -> usize {
-        let forces: usize = self.model.systems.iter().flat_map(|s| &s.forces).map(|force| force.bytes()).sum();
-        let solvers: usize = self.workspace.systems.iter().map(|ws| ws.tangent.bytes() + ws.linear.bytes()).sum();
+        let forces: usize =
+            self.model.systems.iter().flat_map(|s| &s.forces).map(|force| force.bytes()).sum();
+        let solvers: usize =
+            self.workspace.systems.iter().map(|ws| ws.tangent.bytes() + ws.linear.bytes()).sum();
         forces + solvers
     }
 
@@ -232,7 +235,8 @@ impl World {
         for coupling in &self.model.couplings {
             let rows = &self.workspace.systems[coupling.slow_system].rows;
             let row = coupling.slow_row as usize;
-            let fast = self.workspace.systems[coupling.fast_system].rows.positions[coupling.fast_row as usize];
+            let fast =
+                self.workspace.systems[coupling.fast_system].rows.positions[coupling.fast_row as usize];
             coupling.start_period(next, start, fast, rows.positions[row], rows.velocities[row]);
         }
     }
@@ -244,7 +248,8 @@ impl World {
             let Some(force) = force else { continue };
             let range = fast.memory_ranges()[force].clone();
             let row = coupling.slow_row as usize;
-            let moved = self.workspace.systems[coupling.slow_system].rows.positions[row] - coupling.published_position(&next.driven);
+            let moved = self.workspace.systems[coupling.slow_system].rows.positions[row]
+                - coupling.published_position(&next.driven);
             let memory = &mut next.systems[coupling.fast_system].memory[range];
             coupling.end_period(&mut next.driven, memory, self.model.period, moved);
         }
@@ -266,7 +271,9 @@ impl World {
 
     fn place_all_rows(&mut self) {
         let time = self.time();
-        for ((system, state), ws) in self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems) {
+        for ((system, state), ws) in
+            self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems)
+        {
             system.place_rows(&state.q, &state.v, time, &mut ws.rows);
         }
     }
@@ -275,7 +282,9 @@ impl World {
     pub fn energy(&mut self) -> EnergyReport {
         let mut report = EnergyReport::default();
         let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
-        for ((system, state), ws) in self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems) {
+        for ((system, state), ws) in
+            self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems)
+        {
             report.kinetic += system.kinetic_energy(&ws.rows);
             let energies = system.energies(ws, state, &around);
             report.by_force.extend(system.forces.iter().map(|force| force.name().to_owned()).zip(energies));
@@ -285,10 +294,13 @@ impl World {
 
     /// Linear [kg m/s] and angular momentum about the origin [kg m²/s].
     pub fn momentum(&self) -> (Vec3, Vec3) {
-        self.model.systems.iter().zip(&self.workspace.systems).fold((Vec3::ZERO, Vec3::ZERO), |sum, (system, ws)| {
-            let (linear, angular) = system.momentum(&ws.rows);
-            (sum.0 + linear, sum.1 + angular)
-        })
+        self.model.systems.iter().zip(&self.workspace.systems).fold(
+            (Vec3::ZERO, Vec3::ZERO),
+            |sum, (system, ws)| {
+                let (linear, angular) = system.momentum(&ws.rows);
+                (sum.0 + linear, sum.1 + angular)
+            },
+        )
     }
 
     /// Lends system `index`, its state and its workspace to a reader (probes, forecasts).
@@ -298,6 +310,11 @@ impl World {
         read: impl FnOnce(&System, &crate::SystemState, &Surroundings, &mut SystemWorkspace) -> T,
     ) -> T {
         let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
-        read(&self.model.systems[index], &self.state.systems[index], &around, &mut self.workspace.systems[index])
+        read(
+            &self.model.systems[index],
+            &self.state.systems[index],
+            &around,
+            &mut self.workspace.systems[index],
+        )
     }
 }

@@ -7,12 +7,15 @@ use souple_engine::implicit::NewtonSettings;
 use souple_engine::linear::SolverSettings;
 use souple_engine::steppers::StaticEquilibrium;
 use souple_engine::{
-    Configuration, Constraint, Force, Kinematics, Mass, Model, Scratch, State, System, TangentWeights, UnknownKind,
+    Configuration, Constraint, Force, Kinematics, Mass, Model, Scratch, State, System, TangentWeights,
+    UnknownKind,
 };
 use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::Mesh;
 use souple_models::materials::{self, AnyLaw, Material};
-use souple_models::solids::{Quadrature, RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass};
+use souple_models::solids::{
+    Quadrature, RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
+};
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
 
@@ -37,16 +40,33 @@ fn material(law: &str) -> Material {
 
 fn describe<'a>(mesh: &'a Mesh, materials: &'a [Material], of_cell: &'a [u16]) -> SolidDescription<'a> {
     let quadrature = Quadrature::Default;
-    SolidDescription { name: "bar".into(), mesh, first_row: 0, materials, material_of_cell: of_cell, quadrature }
+    SolidDescription {
+        name: "bar".into(),
+        mesh,
+        first_row: 0,
+        materials,
+        material_of_cell: of_cell,
+        quadrature,
+    }
 }
 
 fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3]) -> Configuration<'a> {
-    Configuration { positions, velocities, time: 0.0, load: 1.0, memory: &[], pairs: &[], driven: &[], fields: &[] }
+    Configuration {
+        positions,
+        velocities,
+        time: 0.0,
+        load: 1.0,
+        memory: &[],
+        pairs: &[],
+        driven: &[],
+        fields: &[],
+    }
 }
 
 /// A small smooth deformation without symmetry.
 fn bent(mesh: &Mesh) -> Vec<Vec3> {
-    let wave = |p: &Vec3| Vec3::new((7.0 * p.y).sin(), (5.0 * p.x + p.z).cos(), (3.0 * p.x - 2.0 * p.y).sin());
+    let wave =
+        |p: &Vec3| Vec3::new((7.0 * p.y).sin(), (5.0 * p.x + p.z).cos(), (3.0 * p.x - 2.0 * p.y).sin());
     mesh.points.iter().map(|p| *p + wave(p) * 0.02).collect()
 }
 
@@ -110,7 +130,7 @@ fn check_tangent(name: &str, force: &dyn Force, x: &[Vec3], v: &[Vec3]) {
     }
 }
 
-/// FAU-30: for every law on every element: force = -∂E/∂x, tangent = ∂f/∂x, blocks = products, symmetry, zero
+/// For every law on every element: force = -∂E/∂x, tangent = ∂f/∂x, blocks = products, symmetry, zero
 /// at rest, no force in rigid motion and no net force or torque where the law is objective.
 #[test]
 fn battery_of_every_law_on_every_element() {
@@ -127,7 +147,8 @@ fn battery_of_every_law_on_every_element() {
             let f = force_at(&force, &mut scratch, &x, &v);
             let (direction, step) = (directions(x.len()), 1e-6);
             let energy = |sign: f64, scratch: &mut Scratch| {
-                let moved: Vec<Vec3> = x.iter().zip(&direction).map(|(x, d)| *x + *d * (sign * step)).collect();
+                let moved: Vec<Vec3> =
+                    x.iter().zip(&direction).map(|(x, d)| *x + *d * (sign * step)).collect();
                 force.energy(&at(&moved, &v), scratch).stored
             };
             let slope = (energy(1.0, &mut scratch) - energy(-1.0, &mut scratch)) / (2.0 * step);
@@ -140,7 +161,8 @@ fn battery_of_every_law_on_every_element() {
             // rigid motion and net force
             if force.declaration().internal {
                 let Q = exponential(Vec3::new(1.0, -2.0, 0.7));
-                let turned: Vec<Vec3> = mesh.points.iter().map(|p| Q * *p + Vec3::new(3.0, 1.0, -2.0)).collect();
+                let turned: Vec<Vec3> =
+                    mesh.points.iter().map(|p| Q * *p + Vec3::new(3.0, 1.0, -2.0)).collect();
                 let rigid = force_at(&force, &mut scratch, &turned, &v);
                 // positions of size 4 m carry rounding of 4e-16 m, strains of 1e-14 in cells of 0.1 m
                 assert!(norm(&rigid) <= 1e-9 * norm(&f), "{name}: {} N in rigid motion", norm(&rigid));
@@ -196,7 +218,8 @@ fn masses_add_up() {
 fn cantilever_tip(n: usize, element: &str, law: &str, quadrature: Quadrature) -> Vec3 {
     let mesh = bar([1.0, 0.1, 0.1], [10.0 * n as f64, n as f64, n as f64], element);
     let (materials, of_cell) = ([material(law)], vec![0; mesh.cell_count()]);
-    let force = SolidForce::new(&SolidDescription { quadrature, ..describe(&mesh, &materials, &of_cell) }).unwrap();
+    let force =
+        SolidForce::new(&SolidDescription { quadrature, ..describe(&mesh, &materials, &of_cell) }).unwrap();
     let mut kinematics = Kinematics::default();
     kinematics.add_unknowns(UnknownKind::Point, mesh.points.len());
     let mut mass = Mass::new(mesh.points.len());
@@ -255,7 +278,15 @@ impl Force for Weight {
     fn add_force(&self, at: &Configuration, _: &mut Scratch, out: &mut [Vec3]) {
         out.iter_mut().zip(&self.0).for_each(|(f, m)| f.y -= 9.81 * m * at.load);
     }
-    fn add_differential(&self, _: &Configuration, _: TangentWeights, _: &[Vec3], _: &mut Scratch, _: &mut [Vec3]) {}
+    fn add_differential(
+        &self,
+        _: &Configuration,
+        _: TangentWeights,
+        _: &[Vec3],
+        _: &mut Scratch,
+        _: &mut [Vec3],
+    ) {
+    }
     fn visit_cliques(&self, _: &[souple_engine::Pair], _: &mut dyn FnMut(&[u32])) {}
     fn add_blocks(&self, _: &Configuration, _: TangentWeights, _: &mut Scratch, _: &mut BlockMatrix) {}
     fn as_any(&self) -> &dyn std::any::Any {
@@ -279,7 +310,11 @@ fn discrete_cantilevers_of_independent_codes() {
     for &(n, element, law, expected, tolerance) in rows {
         let quadrature = if element == "tet4" { Quadrature::Default } else { Quadrature::Full };
         let tip = cantilever_tip(n, element, law, quadrature);
-        assert!((tip.y / expected - 1.0).abs() < tolerance, "{element} {law} n = {n}: {} for {expected}", tip.y);
+        assert!(
+            (tip.y / expected - 1.0).abs() < tolerance,
+            "{element} {law} n = {n}: {} for {expected}",
+            tip.y
+        );
     }
 }
 
@@ -316,11 +351,13 @@ fn patch_test_is_exact() {
                 stepper: Box::new(StaticEquilibrium { load_steps: 1, newton, solver }),
                 steps_per_period: 1,
             };
-            let state = State { systems: vec![system.initial_state(mesh.points.clone())], ..State::default() };
+            let state =
+                State { systems: vec![system.initial_state(mesh.points.clone())], ..State::default() };
             let mut world = Model { period: 1.0, systems: vec![system], ..Model::default() }.start(state);
             world.step().unwrap();
             let reached = &world.state().systems[0].q;
-            let error = mesh.points.iter().zip(reached).map(|(p, q)| (F * *p - *q).length()).fold(0.0, f64::max);
+            let error =
+                mesh.points.iter().zip(reached).map(|(p, q)| (F * *p - *q).length()).fold(0.0, f64::max);
             assert!(error < 1e-10, "{} on {element}: {error:e}", law.entry().name);
         }
     }

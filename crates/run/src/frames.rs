@@ -18,7 +18,12 @@ pub struct Frames {
 }
 
 impl Frames {
-    pub fn open(options: &Options, bodies: &[BodyInfo], default_count: u64, steps: u64) -> Result<Self, RunError> {
+    pub fn open(
+        options: &Options,
+        bodies: &[BodyInfo],
+        default_count: u64,
+        steps: u64,
+    ) -> Result<Self, RunError> {
         let count = options.frames.unwrap_or(default_count);
         let mut series = Vec::new();
         if let Some(out) = &options.out {
@@ -55,9 +60,12 @@ impl Frames {
         for (series, body) in self.series.iter_mut().zip(bodies) {
             let positions = &world.rows(body.system).positions[body.rows.clone()];
             let velocities = &world.rows(body.system).velocities[body.rows.clone()];
-            let displacements: Vec<Vec3> = positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
-            let point_fields =
-                [Field::new("displacement", 3, flat(&displacements)), Field::new("velocity", 3, flat(velocities))];
+            let displacements: Vec<Vec3> =
+                positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
+            let point_fields = [
+                Field::new("displacement", 3, flat(&displacements)),
+                Field::new("velocity", 3, flat(velocities)),
+            ];
             let cell_fields = cell_fields(world, body);
             let output = Output {
                 mesh: &body.mesh,
@@ -96,7 +104,14 @@ fn cell_fields(world: &World, body: &BodyInfo) -> Vec<Field> {
             return Vec::new();
         };
         let s = field.cauchy;
-        stress.extend([s.entry(0, 0), s.entry(1, 1), s.entry(2, 2), s.entry(0, 1), s.entry(1, 2), s.entry(0, 2)]);
+        stress.extend([
+            s.entry(0, 0),
+            s.entry(1, 1),
+            s.entry(2, 2),
+            s.entry(0, 1),
+            s.entry(1, 2),
+            s.entry(0, 2),
+        ]);
         von_mises.push(field.von_mises);
         energy.push(field.energy_density);
     }

@@ -78,8 +78,14 @@ pub enum RunError {
     Io(#[from] souple_io::IoError),
     #[error("the folder `{}` cannot be made: {source}", .path.display())]
     Folder { path: PathBuf, source: std::io::Error },
-    #[error("a duration of {duration} s at a period of {period} s is {steps:e} steps; at most {limit:e} can be counted")]
+    #[error(
+        "a duration of {duration:e} s at a period of {period} s is {steps:e} steps; at most {limit:e} can be counted"
+    )]
     TooManySteps { duration: f64, period: f64, steps: f64, limit: f64 },
+    #[error(
+        "the {kind} `{name}` cannot name the files of a run: without `/`, `\\` and control characters, not begun by a dot, it would"
+    )]
+    FileName { kind: &'static str, name: String },
 }
 
 /// What a run was.
@@ -119,12 +125,18 @@ pub fn run(
     options: &Options,
     watch: &mut dyn FnMut(&Progress) -> Control,
 ) -> Result<Outcome, RunError> {
-    let Scene { title, model, state, bodies, probes, expects, run: defaults, scene_sha256, mut warnings, .. } = scene;
+    let Scene {
+        title, model, state, bodies, probes, expects, run: defaults, scene_sha256, mut warnings, ..
+    } = scene;
     let period = model.period;
     let steps = match options.steps {
         Some(steps) => steps,
         None => steps_in(options.duration.unwrap_or(defaults.duration), period)?,
     };
+    if options.out.is_some() {
+        check_file_names("body", bodies.iter().map(|body| body.name.as_str()))?;
+        check_file_names("probe", probes.iter().map(|probe| probe.name.as_str()))?;
+    }
     let mut world = start(model, state, options)?;
     warnings.extend(forecast_warnings(&mut world));
     let first_step = world.state().period;
@@ -175,7 +187,7 @@ pub fn run(
     recording.finish(&world);
     frames.close(&mut world, &bodies)?;
     let verdicts: Vec<Verdict> = if status == Status::Done {
-        expects.iter().map(|expect| Verdict::of(expect, &traces)).collect()
+        expects.iter().filter_map(|expect| Verdict::of(expect, &traces, defaults.duration, period)).collect()
     } else {
         Vec::new()
     };
@@ -218,6 +230,21 @@ fn start(model: Model, state: State, options: &Options) -> Result<World, RunErro
     Ok(model.start(resumed))
 }
 
+/// Names become names of files, which stay inside the run's folder.
+fn check_file_names<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>) -> Result<(), RunError> {
+    let is_refused = |name: &str| {
+        name.is_empty()
+            || name.starts_with('.')
+            || name.contains(|c: char| matches!(c, '/' | '\\') || c.is_control())
+    };
+    for name in names {
+        if is_refused(name) {
+            return Err(RunError::FileName { kind, name: name.to_owned() });
+        }
+    }
+    Ok(())
+}
+
 fn measure(probes: &[ProbeInfo], traces: &mut [Trace], world: &mut World) {
     let time = world.time();
     for (probe, trace) in probes.iter().zip(traces) {
@@ -230,7 +257,8 @@ pub fn forecast_warnings(world: &mut World) -> Vec<String> {
     let mut warnings = Vec::new();
     for index in 0..world.model().systems.len() {
         let timestep = world.model().timestep(index);
-        let explicit = world.model().systems[index].stepper.stability() != souple_engine::steppers::Stability::Unconditional;
+        let explicit = world.model().systems[index].stepper.stability()
+            != souple_engine::steppers::Stability::Unconditional;
         if !explicit {
             continue;
         }

@@ -39,7 +39,8 @@ pub enum RecordingError {
 pub struct Divergence {
     pub period: u64,
     pub recorded: String,
-    pub replayed: String,
+    /// `None`: the repetition has no state of that period.
+    pub replayed: Option<String>,
 }
 
 impl Recording {
@@ -61,14 +62,14 @@ impl Recording {
         self.commands = world.log().to_vec();
     }
 
-    /// The first hash that differs from that of a repetition.
+    /// The first hash that differs from that of a repetition, or that the repetition does not have.
     pub fn first_divergence(&self, replayed: &Self) -> Option<Divergence> {
         self.hashes.iter().find_map(|(period, recorded)| {
-            let (_, other) = replayed.hashes.iter().find(|(other, _)| other == period)?;
-            (other != recorded).then(|| Divergence {
+            let other = replayed.hashes.iter().find(|(other, _)| other == period).map(|(_, hash)| hash);
+            (other != Some(recorded)).then(|| Divergence {
                 period: *period,
                 recorded: recorded.clone(),
-                replayed: other.clone(),
+                replayed: other.cloned(),
             })
         })
     }
@@ -76,7 +77,8 @@ impl Recording {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
-        let hashes: Vec<Value> = self.hashes.iter().map(|(step, hash)| json!({"step": step, "hash": hash})).collect();
+        let hashes: Vec<Value> =
+            self.hashes.iter().map(|(step, hash)| json!({"step": step, "hash": hash})).collect();
         let document = json!({
             "souple_recording": 1,
             "scene": self.scene,
@@ -108,18 +110,29 @@ impl Recording {
             let value = document[key].as_str().map(str::to_owned);
             value.ok_or_else(|| format!("`{key}` is missing or not a text"))
         };
-        let list = |key: &str| document[key].as_array().ok_or_else(|| format!("`{key}` is missing or not a list"));
-        let number = |key: &str| document[key].as_u64().ok_or_else(|| format!("`{key}` is missing or not a count"));
+        let list =
+            |key: &str| document[key].as_array().ok_or_else(|| format!("`{key}` is missing or not a list"));
+        let number =
+            |key: &str| document[key].as_u64().ok_or_else(|| format!("`{key}` is missing or not a count"));
         let settings = list("settings")?.iter().map(|value| value.as_str().map(str::to_owned));
+        if list("hashes")?.is_empty() {
+            return Err("`hashes` is empty: nothing could be compared".to_owned());
+        }
         let hash = |entry: &Value| Some((entry["step"].as_u64()?, entry["hash"].as_str()?.to_owned()));
         Ok(Self {
             scene: string("scene")?,
             scene_sha256: string("scene_sha256")?,
-            settings: settings.collect::<Option<_>>().ok_or("`settings` holds something that is not a text")?,
+            settings: settings
+                .collect::<Option<_>>()
+                .ok_or("`settings` holds something that is not a text")?,
             seed: number("seed")?,
             steps: number("steps")?,
             commands: list("commands")?.iter().map(command_from_json).collect::<Result<_, _>>()?,
-            hashes: list("hashes")?.iter().map(hash).collect::<Option<_>>().ok_or("`hashes` holds a wrong entry")?,
+            hashes: list("hashes")?
+                .iter()
+                .map(hash)
+                .collect::<Option<_>>()
+                .ok_or("`hashes` holds a wrong entry")?,
         })
     }
 }
@@ -143,10 +156,15 @@ pub fn command_to_json(command: &Command) -> Value {
 /// Says what is missing or of the wrong kind.
 pub fn command_from_json(value: &Value) -> Result<Command, String> {
     let edit = &value["edit"];
-    let count = |value: &Value, key: &str| value[key].as_u64().ok_or_else(|| format!("a command has no count `{key}`"));
-    let text = |key: &str| edit[key].as_str().map(str::to_owned).ok_or_else(|| format!("a command has no text `{key}`"));
+    let count = |value: &Value, key: &str| {
+        value[key].as_u64().ok_or_else(|| format!("a command has no count `{key}`"))
+    };
+    let text = |key: &str| {
+        edit[key].as_str().map(str::to_owned).ok_or_else(|| format!("a command has no text `{key}`"))
+    };
     let system = count(edit, "system")? as usize;
-    let block = || count(edit, "block").and_then(|block| u32::try_from(block).map_err(|error| error.to_string()));
+    let block =
+        || count(edit, "block").and_then(|block| u32::try_from(block).map_err(|error| error.to_string()));
     let edit = match edit["kind"].as_str() {
         Some("set_parameter") => Edit::SetParameter {
             system,

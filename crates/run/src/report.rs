@@ -67,7 +67,8 @@ impl Report {
 
     pub fn to_json(&self) -> Value {
         let probes: serde_json::Map<String, Value> = self.probes.iter().map(probe_to_json).collect();
-        let hashes: Vec<Value> = self.hashes.iter().map(|(step, hash)| json!({"step": step, "hash": hash})).collect();
+        let hashes: Vec<Value> =
+            self.hashes.iter().map(|(step, hash)| json!({"step": step, "hash": hash})).collect();
         let StageTimes { pairs, forces, assembly, solve, advance } = self.stages;
         json!({
             "version": env!("CARGO_PKG_VERSION"),
@@ -128,7 +129,9 @@ fn energy_to_json(energy: &EnergyReport) -> Value {
     let by_force: serde_json::Map<String, Value> = energy
         .by_force
         .iter()
-        .map(|(name, energy)| (name.clone(), json!({"stored": energy.stored, "dissipated": energy.dissipated})))
+        .map(|(name, energy)| {
+            (name.clone(), json!({"stored": energy.stored, "dissipated": energy.dissipated}))
+        })
         .collect();
     json!({"total": energy.total(), "kinetic": energy.kinetic, "forces": by_force})
 }

@@ -12,7 +12,9 @@ pub enum SnapshotFileError {
     Unreadable { path: String, source: std::io::Error },
     #[error("`{path}` is no snapshot: it has no line that names its scene")]
     NoHeader { path: String },
-    #[error("`{path}` is of another scene: SHA-256 {found}, not {expected}; resume with the scene and the settings it was made with")]
+    #[error(
+        "`{path}` is of another scene: SHA-256 {found}, not {expected}; resume with the scene and the settings it was made with"
+    )]
     OtherScene { path: String, found: String, expected: String },
     #[error("`{path}`: {source}")]
     Content { path: String, source: SnapshotError },
@@ -33,7 +35,8 @@ pub fn write_snapshot(path: &Path, scene_sha256: &str, state: &State) -> Result<
 /// The file cannot be read, is no snapshot, or is of another scene.
 pub fn read_snapshot(path: &Path, scene_sha256: &str) -> Result<State, SnapshotFileError> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|source| SnapshotFileError::Unreadable { path: name.clone(), source })?;
+    let bytes =
+        std::fs::read(path).map_err(|source| SnapshotFileError::Unreadable { path: name.clone(), source })?;
     let no_header = || SnapshotFileError::NoHeader { path: name.clone() };
     let end = bytes.iter().position(|byte| *byte == b'\n').ok_or_else(no_header)?;
     let header = std::str::from_utf8(&bytes[..end]).map_err(|_| no_header())?;

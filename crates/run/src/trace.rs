@@ -59,9 +59,8 @@ impl Trace {
 
     /// The value at the step nearest to a time.
     pub fn at(&self, time: f64) -> Option<&[f64]> {
-        let nearest = (0..self.times.len()).min_by(|a, b| {
-            (self.times[*a] - time).abs().total_cmp(&(self.times[*b] - time).abs())
-        })?;
+        let nearest = (0..self.times.len())
+            .min_by(|a, b| (self.times[*a] - time).abs().total_cmp(&(self.times[*b] - time).abs()))?;
         self.value(nearest)
     }
 

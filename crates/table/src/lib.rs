@@ -1,5 +1,4 @@
-//! Tables: one per kind of thing (materials, elements, steppers, …), read by scene validation, the command
-//! line, the reference pages, the JSON Schema and the standard battery of tests.
+//! Tables: one per kind of thing, read by scenes, command line, reference pages, schema and tests.
 //!
 //! An [`Entry`] names a thing, says what it is for and where it comes from, declares its [`Parameter`]s and
 //! carries its constructor. Adding a thing is one file in its room and one line in its [`Table`].

@@ -121,7 +121,9 @@ impl Parameter {
         let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
         match self.kind {
             Kind::Number => self.range.describe() + &unit,
-            Kind::Integer => self.range.describe().replace("a number", "a whole number").replace("a finite", "a whole"),
+            Kind::Integer => {
+                self.range.describe().replace("a number", "a whole number").replace("a finite", "a whole")
+            }
             Kind::Boolean => "true or false".to_owned(),
             Kind::Vector => format!("three finite numbers{unit}"),
             Kind::Text => "text".to_owned(),

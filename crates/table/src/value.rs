@@ -113,7 +113,9 @@ impl Values {
         }
         for parameter in parameters {
             let value = match (self.get(parameter.name), parameter.default) {
-                (Some(Value::Integer(number)), _) if parameter.kind == Kind::Number => Value::Number(number as f64),
+                (Some(Value::Integer(number)), _) if parameter.kind == Kind::Number => {
+                    Value::Number(number as f64)
+                }
                 (Some(value), _) => value,
                 (None, Some(default)) => default,
                 (None, None) => {

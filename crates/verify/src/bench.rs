@@ -44,10 +44,14 @@ pub struct Figure {
 /// # Errors
 /// The name that is unknown.
 pub fn benches(names: &[String]) -> Result<Vec<&'static Bench>, String> {
-    if let Some(unknown) = names.iter().find(|name| !BENCHES.iter().any(|bench| bench.name == name.as_str())) {
+    if let Some(unknown) = names.iter().find(|name| !BENCHES.iter().any(|bench| bench.name == name.as_str()))
+    {
         return Err(unknown.clone());
     }
-    Ok(BENCHES.iter().filter(|bench| names.is_empty() || names.iter().any(|name| name == bench.name)).collect())
+    Ok(BENCHES
+        .iter()
+        .filter(|bench| names.is_empty() || names.iter().any(|name| name == bench.name))
+        .collect())
 }
 
 /// Every benchmark.
@@ -146,7 +150,8 @@ fn median(mut samples: Vec<f64>) -> (f64, f64) {
 
 fn scene(name: &str, settings: &[String]) -> Result<Scene, String> {
     let text = scenes::text(name).ok_or_else(|| format!("there is no scene `{name}`"))?;
-    souple_scene::read_text(name, text, Path::new("."), settings).map_err(|diagnostics| diagnostics.to_string())
+    souple_scene::read_text(name, text, Path::new("."), settings)
+        .map_err(|diagnostics| diagnostics.to_string())
 }
 
 /// Threads to measure with: one, and all that the process may use.
@@ -156,16 +161,22 @@ fn thread_counts() -> Vec<usize> {
 }
 
 fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     Ok(pool.install(work))
 }
 
 /// Runs a scene and gives the last value of a probe's component.
 fn value_of(scene: Scene, steps: u64, probe: &str, component: usize) -> Result<f64, String> {
     let options = Options { steps: Some(steps), ..Options::default() };
-    let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
+    let outcome =
+        souple_run::run(scene, &options, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
     let trace = outcome.traces.iter().find(|trace| trace.name == probe).ok_or("the probe is missing")?;
-    trace.last().and_then(|value| value.get(component)).copied().ok_or_else(|| "the probe is empty".to_owned())
+    trace
+        .last()
+        .and_then(|value| value.get(component))
+        .copied()
+        .ok_or_else(|| "the probe is empty".to_owned())
 }
 
 fn explicit(name: &str, element: &str, n: u32, peer: f64, quick: bool) -> Result<Vec<Figure>, String> {
@@ -240,7 +251,8 @@ fn implicit_beam(name: &str, n: u32, peer: f64, quick: bool) -> Result<Vec<Figur
             ]
         };
         let error = if law == "st_venant_kirchhoff" {
-            (value_of(scene("cantilever_dynamic", &settings(3))?, 10, "tip", 1)? / -0.06758904669664875 - 1.0).abs()
+            (value_of(scene("cantilever_dynamic", &settings(3))?, 10, "tip", 1)? / -0.06758904669664875 - 1.0)
+                .abs()
         } else {
             f64::NAN
         };
@@ -294,7 +306,8 @@ fn soft_beam(name: &str, [x, y, z]: [u32; 3], peer: f64, quick: bool) -> Result<
             ]
         };
         let fast = settings("{ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-4 }");
-        let tight = settings("{ name = \"backward_euler\", newton_tolerance = 1e-9, solver_tolerance = 1e-10 }");
+        let tight =
+            settings("{ name = \"backward_euler\", newton_tolerance = 1e-9, solver_tolerance = 1e-10 }");
         let steps = if quick { 40 } else { 400 };
         let sag = |settings: &[String]| value_of(scene("cantilever_dynamic", settings)?, steps, "tip", 1);
         let error = (sag(&fast)? / sag(&tight)? - 1.0).abs();
@@ -321,7 +334,10 @@ fn soft_beam(name: &str, [x, y, z]: [u32; 3], peer: f64, quick: bool) -> Result<
                 unit: "ms/step",
                 higher_is_better: false,
                 error,
-                error_of: format!("sag after {:.2} s against the tightly converged run", f64::from(steps as u32) * 2e-3),
+                error_of: format!(
+                    "sag after {:.2} s against the tightly converged run",
+                    f64::from(steps as u32) * 2e-3
+                ),
                 baseline: Some(peer),
                 threads,
                 samples: count,

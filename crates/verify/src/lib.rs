@@ -109,7 +109,8 @@ impl Case {
         let scene = souple_scene::read_text(self.scene, text, Path::new("."), &settings)
             .map_err(|diagnostics| diagnostics.to_string())?;
         let options = Options { steps: self.steps, scene_name: self.scene.to_owned(), ..Options::default() };
-        let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
+        let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue)
+            .map_err(|error| error.to_string())?;
         if outcome.report.status != Status::Done {
             return Err(outcome.report.warnings.join("; "));
         }

@@ -10,6 +10,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
     ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
+    ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),
     ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
 ];
 

@@ -44,13 +44,17 @@ impl StepReport {
 pub enum StepError {
     #[error("the linear solve of a step failed: {0}")]
     Linear(String),
-    #[error("Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take a smaller step, more load steps or `newton = \"one\"`")]
+    #[error(
+        "Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take a smaller step, more load steps or `newton = \"one\"`"
+    )]
     NewtonStalled { iterations: u32, residual: f64, wanted: f64 },
     #[error("force `{force}` is not finite ({value:?} at row {row}, time {time} s)")]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
     #[error("{0}")]
     Field(String),
-    #[error("{field} is not finite after the step to {time} s; the step may be too long for what is stiff there")]
+    #[error(
+        "{field} is not finite after the step to {time} s; the step may be too long for what is stiff there"
+    )]
     StateNotFinite { field: String, time: f64 },
 }
 

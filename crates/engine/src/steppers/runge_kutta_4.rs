@@ -63,7 +63,14 @@ impl Stepper for RungeKutta4 {
                 let time = start + fraction * timestep;
                 system.impose_constraints(&mut next.q, &mut next.v, time, around.load);
             }
-            report.merge(&accelerations_at(system, around, start + fraction * timestep, next, ws, acceleration)?);
+            report.merge(&accelerations_at(
+                system,
+                around,
+                start + fraction * timestep,
+                next,
+                ws,
+                acceleration,
+            )?);
             velocity.copy_from_slice(&next.v);
             for i in 0..velocity.len() {
                 velocity_sum[i] += velocity[i] * weight;

@@ -116,21 +116,23 @@ impl ShadedGround {
         }
     }
 
-    /// Colour and `1 / depth` of the ground along a ray, over a background, its grid in an ink of some strength; `None` where the ray goes above it.
-    pub fn seen(
+    /// `1 / depth` of the ground along a ray; zero where the ray goes above it.
+    pub fn inverse_depth(&self, camera: &Camera, ray: Vec3) -> f32 {
+        let (descent, height) = (-self.normal.dot(ray), self.normal.dot(camera.eye - self.origin));
+        // the ray is one long along the axis of the camera, so that its length to the plane is the depth
+        if descent > 0.0 && height > 0.0 { (descent / height) as f32 } else { 0.0 }
+    }
+
+    /// Colour of the ground where a ray meets it, over a background, its grid in an ink of some strength.
+    pub fn colour(
         &self,
         camera: &Camera,
         ray: Vec3,
         background: Colour,
         (ink, strength): (Colour, f32),
-    ) -> Option<(Colour, f32)> {
+    ) -> Colour {
         let descent = self.normal.dot(ray);
-        let height = self.normal.dot(camera.eye - self.origin);
-        if descent >= 0.0 || height <= 0.0 {
-            return None;
-        }
-        // the ray is one long along the axis of the camera, so this is the depth
-        let depth = height / -descent;
+        let depth = self.normal.dot(camera.eye - self.origin) / -descent;
         let point = camera.eye + ray * depth;
         let relative = point - self.origin;
         let distance = relative.length() / self.horizon;
@@ -145,7 +147,7 @@ impl ShadedGround {
             let line = (1.0 - off / (0.6 * width)).clamp(0.0, 1.0) as f32;
             colour = colour.mixed(ink, strength * line * fade);
         }
-        Some((colour.scaled(1.0 - 0.72 * self.shade_at(point)), (1.0 / depth) as f32))
+        colour.scaled(1.0 - 0.72 * self.shade_at(point))
     }
 
     /// The map between its cells.

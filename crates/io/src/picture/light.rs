@@ -71,13 +71,22 @@ impl Lamps {
 /// `samples` has one sample for each pixel; `radius` is how far away a thing may be to count [m].
 pub(super) fn openness(samples: &Samples, camera: &Camera, radius: f64) -> Vec<f32> {
     let (width, height) = (samples.width, samples.height);
+    let depths: Vec<f32> = samples.samples.iter().map(|sample| sample.inverse_depth).collect();
+    let probes = probes(radius);
     let raw: Vec<f32> = (0..width * height)
         .map(|index| {
+            let (column, row) = (index % width, index / width);
+            let pattern = (column % PATTERN) * PATTERN + row % PATTERN;
             let sample = &samples.samples[index];
             if sample.inverse_depth <= 0.0 {
                 return 1.0;
             }
-            open_share(samples, camera, radius, index % width, index / width)
+            let (x, y) = samples.position(column, row);
+            let own = &probes[pattern * DIRECTIONS..(pattern + 1) * DIRECTIONS];
+            open_share(sample, camera.ray(x, y), own, camera, radius, |x, y| {
+                let within = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+                within.then(|| depths[y as usize * width + x as usize])
+            })
         })
         .collect();
     blurred(samples, &raw, radius)
@@ -87,38 +96,46 @@ const DIRECTIONS: usize = 20;
 /// Side of the pattern by which neighbouring pixels use different directions; the blur is as wide.
 const PATTERN: usize = 4;
 
-fn open_share(samples: &Samples, camera: &Camera, radius: f64, column: usize, row: usize) -> f32 {
-    let sample = &samples.samples[row * samples.width + column];
-    let (x, y) = samples.position(column, row);
-    let depth = 1.0 / f64::from(sample.inverse_depth);
+/// Where to look around a point, in the frame of its tangent plane [m].
+type Probe = [f64; 3];
+
+/// Directions over the hemisphere, crowded around the normal as light counts there, at growing distances; another
+/// set for each pixel of the pattern.
+fn probes(radius: f64) -> Vec<Probe> {
+    let probe = |index: usize| {
+        let (pattern, direction) = (index / DIRECTIONS, (index % DIRECTIONS) as f64);
+        let turn = pattern as f64 / (PATTERN * PATTERN) as f64;
+        let angle = std::f64::consts::TAU * (direction * 0.618_033_988_75 + turn);
+        let across = 0.95 * ((direction + 0.5) / DIRECTIONS as f64).sqrt();
+        let along = (1.0 - across * across).sqrt();
+        let reach = radius * (0.15 + 0.85 * (direction * 0.754_877_666_2 + turn).fract());
+        [across * libm::cos(angle), across * libm::sin(angle), along].map(|part| part * reach)
+    };
+    (0..PATTERN * PATTERN * DIRECTIONS).map(probe).collect()
+}
+
+/// `seen`: `1 / depth` of what is at a place of the picture.
+fn open_share(
+    sample: &Sample,
+    ray: Vec3,
+    probes: &[Probe],
+    camera: &Camera,
+    radius: f64,
+    seen: impl Fn(f64, f64) -> Option<f32>,
+) -> f32 {
     let [nx, ny, nz] = sample.normal.map(f64::from);
     let normal = Vec3::new(nx, ny, nz);
     let tangent = normal.any_orthogonal();
     let other = normal.cross(tangent);
-    // off the surface by a little, so that a slanted one does not shade itself
-    let origin = camera.eye + camera.ray(x, y) * depth + normal * (0.02 * radius);
-    let turn = ((column % PATTERN) * PATTERN + row % PATTERN) as f64 / (PATTERN * PATTERN) as f64;
+    let point = camera.eye + ray * (1.0 / f64::from(sample.inverse_depth));
     let mut closed = 0.0;
-    for direction in 0..DIRECTIONS {
-        // directions over the hemisphere, crowded around the normal as light counts there, at growing distances
-        let share = (direction as f64 + 0.5) / DIRECTIONS as f64;
-        let angle = std::f64::consts::TAU * (direction as f64 * 0.618_033_988_75 + turn);
-        let across = share.sqrt() * 0.95;
-        let along = (1.0 - across * across).sqrt();
-        let reach = radius * (0.15 + 0.85 * ((direction as f64 * 0.754_877_666_2 + turn) % 1.0));
-        let to = tangent * (across * libm::cos(angle)) + other * (across * libm::sin(angle)) + normal * along;
-        let probe = camera.project(origin + to * reach);
-        if probe.inverse_depth <= 0.0 || probe.x < 0.0 || probe.y < 0.0 {
-            continue;
-        }
-        let (column, row) = (probe.x as usize, probe.y as usize);
-        if column >= samples.width || row >= samples.height {
-            continue;
-        }
-        let seen = samples.samples[row * samples.width + column].inverse_depth;
-        if f64::from(seen) > probe.inverse_depth {
+    for [a, b, c] in probes {
+        // off the surface by a little, so that a slanted one does not shade itself
+        let probe = camera.project(point + tangent * *a + other * *b + normal * (c + 0.02 * radius));
+        let Some(seen) = seen(probe.x, probe.y).map(f64::from) else { continue };
+        if probe.inverse_depth > 0.0 && seen > probe.inverse_depth {
             // something is before the probe; far before it, it is another thing with a gap between
-            let gap = 1.0 / probe.inverse_depth - 1.0 / f64::from(seen);
+            let gap = 1.0 / probe.inverse_depth - 1.0 / seen;
             closed += (1.0 - gap / (2.0 * radius)).max(0.0);
         }
     }

@@ -286,14 +286,16 @@ impl Scene {
 
     fn light(&self, sample: &raster::Sample, x: f64, y: f64, pixel: usize, height: usize) -> (Colour, f32) {
         let ray = self.camera.ray(x, y);
-        let background = self.palette.background(y, height);
-        let ground = self
-            .ground
-            .as_ref()
-            .and_then(|ground| ground.seen(&self.camera, ray, background, self.palette.grid));
-        let (behind, depth_behind) = ground.unwrap_or((background, 0.0));
-        if sample.inverse_depth <= depth_behind {
-            return (behind, depth_behind);
+        let below = self.ground.as_ref().map_or(0.0, |ground| ground.inverse_depth(&self.camera, ray));
+        if sample.inverse_depth <= below {
+            let background = self.palette.background(y, height);
+            let colour = match &self.ground {
+                Some(ground) if below > 0.0 => {
+                    ground.colour(&self.camera, ray, background, self.palette.grid)
+                }
+                _ => background,
+            };
+            return (colour, below);
         }
         let view = (-ray).try_normalised().unwrap_or(Vec3::Z);
         // where the pixel's own sample fell beside the surface, its share says nothing

@@ -181,7 +181,13 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     pub fn sample(&self, sample: usize) -> (Mat3<Lanes<S>>, Lanes<S>) {
         let start = (self.block * self.samples + sample) * SAMPLE_LEN * LANES;
         let numbers = &self.chunk.samples[start..start + SAMPLE_LEN * LANES];
-        let mut inverse = Mat3 { columns: [Vec3::new(Lanes::constant(self.simd, 0.0), Lanes::constant(self.simd, 0.0), Lanes::constant(self.simd, 0.0)); 3] };
+        let mut inverse = Mat3 {
+            columns: [Vec3::new(
+                Lanes::constant(self.simd, 0.0),
+                Lanes::constant(self.simd, 0.0),
+                Lanes::constant(self.simd, 0.0),
+            ); 3],
+        };
         for column in 0..3 {
             let at = 3 * column * LANES + self.lane;
             inverse.columns[column] = Vec3::new(

@@ -76,7 +76,13 @@ impl Force for RayleighDamping {
         self.stiffness.visit_cliques(pairs, visit);
     }
 
-    fn add_blocks(&self, at: &Configuration, weights: TangentWeights, scratch: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         self.stiffness.add_blocks(at, self.weights(weights), scratch, matrix);
     }
 

@@ -65,7 +65,10 @@ impl Viscosity {
 impl Cell {
     /// `Σ x_a ⊗ ∂N_a/∂X`.
     fn gradient(&self, sample: &Sample, values: &[Vec3]) -> Mat3 {
-        self.rows.iter().zip(&sample.gradients).fold(Mat3::ZERO, |sum, (row, g)| sum + values[*row as usize].outer(*g))
+        self.rows
+            .iter()
+            .zip(&sample.gradients)
+            .fold(Mat3::ZERO, |sum, (row, g)| sum + values[*row as usize].outer(*g))
     }
 }
 
@@ -75,7 +78,12 @@ impl Force for Viscosity {
     }
 
     fn declaration(&self) -> Declaration {
-        Declaration { conservative: false, velocity_terms: true, symmetric_tangent: false, ..Declaration::ELASTIC }
+        Declaration {
+            conservative: false,
+            velocity_terms: true,
+            symmetric_tangent: false,
+            ..Declaration::ELASTIC
+        }
     }
 
     fn energy(&self, _: &Configuration, _: &mut Scratch) -> Energy {
@@ -123,7 +131,13 @@ impl Force for Viscosity {
         self.cells.iter().for_each(|cell| visit(&cell.rows));
     }
 
-    fn add_blocks(&self, at: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         for cell in &self.cells {
             for sample in &cell.samples {
                 let F = cell.gradient(sample, at.positions);
@@ -147,7 +161,8 @@ impl Force for Viscosity {
 
     fn bytes(&self) -> usize {
         let cell = |cell: &Cell| {
-            4 * cell.rows.len() + cell.samples.iter().map(|sample| 24 * sample.gradients.len() + 8).sum::<usize>()
+            4 * cell.rows.len()
+                + cell.samples.iter().map(|sample| 24 * sample.gradients.len() + 8).sum::<usize>()
         };
         self.cells.iter().map(cell).sum::<usize>() + size_of_val(&self.rows)
     }

@@ -50,9 +50,11 @@ fn replay_repeats_edits_bit_for_bit() {
 fn a_wrong_edit_changes_nothing() {
     let mut world = two_points("symplectic_euler");
     let before = world.state().hash();
-    let wrong = Edit::SetParameter { system: 0, force: "sprnig".into(), parameter: "stiffness".into(), value: 1.0 };
+    let wrong =
+        Edit::SetParameter { system: 0, force: "sprnig".into(), parameter: "stiffness".into(), value: 1.0 };
     assert!(matches!(world.edit(wrong), Err(EditError::NoForce { .. })));
-    let negative = Edit::SetParameter { system: 0, force: "spring".into(), parameter: "stiffness".into(), value: -1.0 };
+    let negative =
+        Edit::SetParameter { system: 0, force: "spring".into(), parameter: "stiffness".into(), value: -1.0 };
     assert!(matches!(world.edit(negative), Err(EditError::Parameter(_))));
     assert!(matches!(world.edit(Edit::Pin { system: 0, block: 9 }), Err(EditError::NoBlock { .. })));
     assert_eq!((world.state().hash(), world.log().len(), world.model().generation), (before, 0, 0));

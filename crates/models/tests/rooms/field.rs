@@ -42,7 +42,15 @@ impl Force for Follow {
     fn add_force(&self, at: &Configuration, _: &mut Scratch, out: &mut [Vec3]) {
         out[0].x += at.fields[0].values[at.fields[0].indices[0] as usize];
     }
-    fn add_differential(&self, _: &Configuration, _: TangentWeights, _: &[Vec3], _: &mut Scratch, _: &mut [Vec3]) {}
+    fn add_differential(
+        &self,
+        _: &Configuration,
+        _: TangentWeights,
+        _: &[Vec3],
+        _: &mut Scratch,
+        _: &mut [Vec3],
+    ) {
+    }
     fn visit_cliques(&self, _: &[Pair], _: &mut dyn FnMut(&[u32])) {}
     fn add_blocks(&self, _: &Configuration, _: TangentWeights, _: &mut Scratch, _: &mut BlockMatrix) {}
     fn as_any(&self) -> &dyn Any {
@@ -58,7 +66,8 @@ fn a_field_pushes_points() {
         let (system, q) = points(&[Vec3::ZERO], &[1.0], vec![Box::new(Follow)], stepper("symplectic_euler"));
         let field = FieldState { values: vec![0.0; 3], indices: vec![0] };
         let state = State { systems: vec![system.initial_state(q)], fields: vec![field], ..State::default() };
-        Model { period: 0.1, systems: vec![system], fields: vec![Box::new(Pressure)], ..Model::default() }.start(state)
+        Model { period: 0.1, systems: vec![system], fields: vec![Box::new(Pressure)], ..Model::default() }
+            .start(state)
     };
     let mut world = start();
     (0..10).for_each(|_| world.step().unwrap());

@@ -59,7 +59,13 @@ impl Force for Spring {
     fn visit_cliques(&self, _: &[Pair], visit: &mut dyn FnMut(&[u32])) {
         visit(&[self.a, self.b]);
     }
-    fn add_blocks(&self, _: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        _: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         let block = Mat3::IDENTITY * self.factor(weights);
         let (a, b) = (self.a as usize, self.b as usize);
         add_block(matrix, a, a, &-block);
@@ -74,7 +80,9 @@ impl Force for Spring {
         let (force, name) = ("spring".to_owned(), name.to_owned());
         match name.as_str() {
             "stiffness" if value >= 0.0 && value.is_finite() => self.stiffness = value,
-            "stiffness" => return Err(ParameterError::Unfit { force, name, value, expected: "0 or more".into() }),
+            "stiffness" => {
+                return Err(ParameterError::Unfit { force, name, value, expected: "0 or more".into() });
+            }
             _ => return Err(ParameterError::Unknown { force, name, known: vec!["stiffness".into()] }),
         }
         Ok(())
@@ -135,7 +143,13 @@ impl Force for PlasticLink {
     fn visit_cliques(&self, _: &[Pair], visit: &mut dyn FnMut(&[u32])) {
         visit(&[0]);
     }
-    fn add_blocks(&self, at: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         if self.pull(at.positions[0].x, at.memory[0]).1 == at.memory[0] {
             add_block(matrix, 0, 0, &(Vec3::X.outer(Vec3::X) * (-weights.position * self.stiffness)));
         }
@@ -169,7 +183,15 @@ impl Force for Push {
     fn add_force(&self, at: &Configuration, _: &mut Scratch, out: &mut [Vec3]) {
         out[self.row as usize] += self.force * at.load;
     }
-    fn add_differential(&self, _: &Configuration, _: TangentWeights, _: &[Vec3], _: &mut Scratch, _: &mut [Vec3]) {}
+    fn add_differential(
+        &self,
+        _: &Configuration,
+        _: TangentWeights,
+        _: &[Vec3],
+        _: &mut Scratch,
+        _: &mut [Vec3],
+    ) {
+    }
     fn visit_cliques(&self, _: &[Pair], _: &mut dyn FnMut(&[u32])) {}
     fn add_blocks(&self, _: &Configuration, _: TangentWeights, _: &mut Scratch, _: &mut BlockMatrix) {}
     fn as_any(&self) -> &dyn Any {

@@ -84,7 +84,13 @@ fn newton_is_quadratic_for_a_rigid_frame_with_tetrahedra() {
         let (system, q) = system(tolerance);
         let mut world = world((system, q), 0.05);
         // start spinning, so that the bias of the frame's inertia takes part
-        world.edit(souple_engine::Edit::SetVelocity { system: 0, block: 5, velocity: Vec3::new(1.0, -2.0, 3.0) }).unwrap();
+        world
+            .edit(souple_engine::Edit::SetVelocity {
+                system: 0,
+                block: 5,
+                velocity: Vec3::new(1.0, -2.0, 3.0),
+            })
+            .unwrap();
         for _ in 0..3 {
             world.step().unwrap();
         }
@@ -109,7 +115,13 @@ fn residuals_square() {
         let settings = NewtonSettings { tolerance: 1e-30, max_iterations: iterations };
         system.stepper = Box::new(BackwardEuler { newton: NewtonMode::Full(settings), solver });
         let mut world = world((system, q), 0.05);
-        world.edit(souple_engine::Edit::SetVelocity { system: 0, block: 5, velocity: Vec3::new(1.0, -2.0, 3.0) }).unwrap();
+        world
+            .edit(souple_engine::Edit::SetVelocity {
+                system: 0,
+                block: 5,
+                velocity: Vec3::new(1.0, -2.0, 3.0),
+            })
+            .unwrap();
         let error = world.step().unwrap_err();
         let souple_engine::StepError::NewtonStalled { residual, .. } = error.error else { panic!("{error}") };
         last.push(residual);

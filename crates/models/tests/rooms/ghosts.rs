@@ -11,7 +11,8 @@ use crate::{stepper, world};
 fn system(feedback: Feedback, name: &str) -> (System, Vec<Vec3>) {
     let mut kinematics = Kinematics::default();
     kinematics.add_unknowns(UnknownKind::Point, 4);
-    let middle = kinematics.add_derived_row(DerivedRow { parents: vec![(0, 0.5), (1, 0.5)], feedback }).unwrap();
+    let middle =
+        kinematics.add_derived_row(DerivedRow { parents: vec![(0, 0.5), (1, 0.5)], feedback }).unwrap();
     let parents = vec![(middle, 0.5), (2, 0.5)];
     let ghost = kinematics.add_derived_row(DerivedRow { parents, feedback: Feedback::Transpose }).unwrap();
     let mut mass = Mass::new(kinematics.row_count());
@@ -20,7 +21,18 @@ fn system(feedback: Feedback, name: &str) -> (System, Vec<Vec3>) {
     let q = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(2.0, 3.0, 1.0)];
     let stepper = stepper(name);
     let forces: Vec<Box<dyn souple_engine::Force>> = vec![Box::new(spring)];
-    (System { name: "main".into(), kinematics, mass, forces, constraints: vec![], stepper, steps_per_period: 1 }, q)
+    (
+        System {
+            name: "main".into(),
+            kinematics,
+            mass,
+            forces,
+            constraints: vec![],
+            stepper,
+            steps_per_period: 1,
+        },
+        q,
+    )
 }
 
 /// With transposed feedback all the way momentum is conserved to rounding; a row that gives nothing back
@@ -39,7 +51,10 @@ fn feedback_decides_over_momentum() {
             let (ghosts, pulled) = (v[0] + v[1] + v[2], v[3]);
             // the ghost returns all of the pull, or all but the half that goes to the middle row
             let balance = ghosts + pulled * (1.0 - share);
-            assert!(balance.length() < 1e-12 * pulled.length().max(1.0), "{name} {feedback:?}: {balance:?} of {pulled:?}");
+            assert!(
+                balance.length() < 1e-12 * pulled.length().max(1.0),
+                "{name} {feedback:?}: {balance:?} of {pulled:?}"
+            );
         }
     }
 }

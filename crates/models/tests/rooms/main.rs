@@ -16,13 +16,25 @@ use souple_engine::{Force, Kinematics, Mass, Model, State, Stepper, System, Unkn
 use souple_math::Vec3;
 
 /// A system of points at rest.
-fn points(positions: &[Vec3], masses: &[f64], forces: Vec<Box<dyn Force>>, stepper: Box<dyn Stepper>) -> (System, Vec<Vec3>) {
+fn points(
+    positions: &[Vec3],
+    masses: &[f64],
+    forces: Vec<Box<dyn Force>>,
+    stepper: Box<dyn Stepper>,
+) -> (System, Vec<Vec3>) {
     let mut kinematics = Kinematics::default();
     kinematics.add_unknowns(UnknownKind::Point, positions.len());
     let mut mass = Mass::new(positions.len());
     mass.diagonal.copy_from_slice(masses);
-    let system =
-        System { name: "main".into(), kinematics, mass, forces, constraints: vec![], stepper, steps_per_period: 1 };
+    let system = System {
+        name: "main".into(),
+        kinematics,
+        mass,
+        forces,
+        constraints: vec![],
+        stepper,
+        steps_per_period: 1,
+    };
     (system, positions.to_vec())
 }
 

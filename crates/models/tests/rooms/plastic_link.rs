@@ -11,8 +11,10 @@ use crate::{points, stepper, world};
 fn the_same_plastic_stretch_under_every_stepper() {
     let (stiffness, limit, mass, thrust) = (100.0, 5.0, 1.0, 8.0);
     let plastic_after = |name: &str, timestep: f64| {
-        let forces: Vec<Box<dyn souple_engine::Force>> =
-            vec![Box::new(PlasticLink { stiffness, limit }), Box::new(Push { row: 0, force: Vec3::X * thrust })];
+        let forces: Vec<Box<dyn souple_engine::Force>> = vec![
+            Box::new(PlasticLink { stiffness, limit }),
+            Box::new(Push { row: 0, force: Vec3::X * thrust }),
+        ];
         let mut world = world(points(&[Vec3::ZERO], &[mass], forces, stepper(name)), timestep);
         for _ in 0..(0.3 / timestep).round() as usize {
             world.step().unwrap();

@@ -53,7 +53,13 @@ impl Force for StickyGround {
     fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
         pairs.iter().for_each(|pair| visit(&[pair.a as u32]));
     }
-    fn add_blocks(&self, at: &Configuration, weights: TangentWeights, _: &mut Scratch, matrix: &mut BlockMatrix) {
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
         for pair in at.pairs {
             let row = pair.a as usize;
             add_block(matrix, row, row, &(Mat3::IDENTITY * (-weights.position * self.stiffness)));
@@ -113,9 +119,13 @@ fn a_pair_is_created_saved_resumed_and_destroyed() {
 #[test]
 fn touching_again_makes_a_new_anchor() {
     let mut remembered = vec![Pair { force: 1, ..Pair::new(4, 0, [1.0; 8]) }];
-    let mut found = vec![Pair { force: 1, ..Pair::new(5, 0, [2.0; 8]) }, Pair { force: 1, ..Pair::new(4, 0, [3.0; 8]) }];
+    let mut found =
+        vec![Pair { force: 1, ..Pair::new(5, 0, [2.0; 8]) }, Pair { force: 1, ..Pair::new(4, 0, [3.0; 8]) }];
     souple_engine::state::merge_pairs(&mut remembered, &mut found);
-    assert_eq!(remembered.iter().map(|pair| (pair.a, pair.memory[0])).collect::<Vec<_>>(), [(4, 1.0), (5, 2.0)]);
+    assert_eq!(
+        remembered.iter().map(|pair| (pair.a, pair.memory[0])).collect::<Vec<_>>(),
+        [(4, 1.0), (5, 2.0)]
+    );
     souple_engine::state::merge_pairs(&mut remembered, &mut Vec::new());
     let mut again = vec![Pair { force: 1, ..Pair::new(4, 0, [9.0; 8]) }];
     souple_engine::state::merge_pairs(&mut remembered, &mut again);

@@ -23,7 +23,8 @@ fn impulses_are_exchanged_exactly() {
     };
     assert!(spring.forecast(period).is_none(), "2 N s/m outweigh k H / 2 = 0.34");
     assert!(spring.forecast(1.0).is_some());
-    let (mut fast, fast_q) = points(&[Vec3::ZERO], &[0.2], vec![spring.fast_end()], stepper("symplectic_euler"));
+    let (mut fast, fast_q) =
+        points(&[Vec3::ZERO], &[0.2], vec![spring.fast_end()], stepper("symplectic_euler"));
     let (slow, slow_q) = points(&[Vec3::X], &[1.0], vec![spring.slow_end()], stepper("backward_euler"));
     fast.steps_per_period = 17;
     let systems = vec![fast.initial_state(fast_q), slow.initial_state(slow_q)];
@@ -42,7 +43,10 @@ fn impulses_are_exchanged_exactly() {
         largest_energy = largest_energy.max(world.energy().total());
     }
     let end = world.energy().total();
-    assert!(largest_energy < 1.01 * start && end < 0.05 * start, "{start} J, at most {largest_energy} J, {end} J left");
+    assert!(
+        largest_energy < 1.01 * start && end < 0.05 * start,
+        "{start} J, at most {largest_energy} J, {end} J left"
+    );
     let fast = world.rows(0).positions[0];
     let made = world.model().couplings[0].energy_made(world.state(), fast, world.time());
     // the delay feeds k H / 2 = 0.34 N s/m against a damping of 2: a sixth of what is dissipated at most

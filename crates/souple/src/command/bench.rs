@@ -1,9 +1,9 @@
 //! `souple bench`: speed with its error beside it.
 
 use serde_json::Value;
-use souple_verify::bench::{Figure, benches};
+use souple_verify::bench::{BENCHES, Figure, benches};
 
-use super::{End, Refusal, print_json, print_line};
+use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -20,7 +20,9 @@ pub struct Arguments {
 
 pub fn bench(arguments: &Arguments) -> Result<End, Refusal> {
     let chosen = benches(&arguments.names).map_err(|unknown| {
-        Refusal::request("unknown_bench", &unknown, "a name that `souple bench --list` prints", format!("there is no benchmark `{unknown}`"))
+        let hint = did_you_mean(&unknown, BENCHES.iter().map(|bench| bench.name));
+        let message = format!("there is no benchmark `{unknown}`{hint}");
+        Refusal::request("unknown_bench", &unknown, "a name that `souple bench --list` prints", message)
     })?;
     if arguments.list {
         if arguments.json {
@@ -32,7 +34,8 @@ pub fn bench(arguments: &Arguments) -> Result<End, Refusal> {
     }
     let mut figures: Vec<Figure> = Vec::new();
     for bench in chosen {
-        let measured = (bench.run)(arguments.quick).map_err(|error| Refusal::work("bench", format!("{}: {error}", bench.name)))?;
+        let measured = (bench.run)(arguments.quick)
+            .map_err(|error| Refusal::work("bench", format!("{}: {error}", bench.name)))?;
         if !arguments.json {
             measured.iter().for_each(print_line);
         }

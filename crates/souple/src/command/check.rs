@@ -76,7 +76,8 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     }
     for system in &systems {
         let longest = system["longest_stable_step_seconds"].as_f64();
-        let stable = longest.map_or("any step is stable".to_owned(), |step| format!("longest stable step {step:.3e} s"));
+        let stable = longest
+            .map_or("any step is stable".to_owned(), |step| format!("longest stable step {step:.3e} s"));
         print_line(format_args!(
             "  system {}: {} at {:.3e} s; {stable}",
             system["name"].as_str().unwrap_or_default(),

@@ -78,14 +78,20 @@ fn difference(a: &Named, b: &Named) -> Value {
 
 fn read(path: &Path) -> Result<Vec<Named>, Refusal> {
     let name = path.display().to_string();
-    let refuse =
-        |message: String| Refusal::request("result", name.clone(), "a snapshot (.souple) or a file with fields", message);
+    let refuse = |message: String| {
+        Refusal::request("result", name.clone(), "a snapshot (.souple) or a file with fields", message)
+    };
     if path.extension().is_some_and(|extension| extension == "souple") {
-        let bytes = std::fs::read(path).map_err(|error| refuse(format!("`{name}` cannot be read: {error}")))?;
+        let bytes =
+            std::fs::read(path).map_err(|error| refuse(format!("`{name}` cannot be read: {error}")))?;
         let start = bytes.iter().position(|byte| *byte == b'\n').map_or(0, |end| end + 1);
-        let state = State::from_bytes(&bytes[start..]).map_err(|error| refuse(format!("`{name}`: {error}")))?;
+        let state =
+            State::from_bytes(&bytes[start..]).map_err(|error| refuse(format!("`{name}`: {error}")))?;
         let fields = state.fields();
-        return Ok(fields.iter().map(|(name, field)| Named { name: name.clone(), numbers: field.numbers() }).collect());
+        return Ok(fields
+            .iter()
+            .map(|(name, field)| Named { name: name.clone(), numbers: field.numbers() })
+            .collect());
     }
     let dataset = souple_io::read_dataset(path).map_err(|error| refuse(error.to_string()))?;
     let positions = dataset.mesh.points.iter().flat_map(|point| point.to_array()).collect();

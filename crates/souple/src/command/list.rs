@@ -3,11 +3,11 @@
 use serde_json::{Value, json};
 use souple_table::{Entry, Parameter, Table};
 
-use super::{End, Refusal, print_json, print_line};
+use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct ListArguments {
-    /// materials, elements, steppers, solvers, preconditioners, generators, shapes, formats, benches
+    /// materials, elements, steppers, solvers, preconditioners, generators, shapes, formats
     kind: String,
     #[arg(long)]
     pub json: bool,
@@ -50,6 +50,7 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("solvers", pages_of(&souple_solve::solvers::TABLE)),
         ("preconditioners", pages_of(&souple_solve::precondition::TABLE)),
         ("generators", pages_of(&souple_mesh::GENERATORS)),
+        ("shapes", pages_of(&souple_models::contact::SHAPES)),
         ("formats", pages_of(&souple_io::FORMATS)),
     ]
 }
@@ -58,12 +59,17 @@ pub fn list(arguments: &ListArguments) -> Result<End, Refusal> {
     let tables = tables();
     let kinds: Vec<&str> = tables.iter().map(|(plural, _)| *plural).collect();
     let wanted = arguments.kind.as_str();
-    let found = tables.iter().find(|(plural, pages)| *plural == wanted || pages.iter().any(|page| page.kind == wanted));
+    let found = tables
+        .iter()
+        .find(|(plural, pages)| *plural == wanted || pages.iter().any(|page| page.kind == wanted));
     let Some((_, pages)) = found else {
-        let nearest = souple_table::nearest(wanted, kinds.iter().copied());
-        let hint = nearest.map(|name| format!(" (did you mean `{name}`?)")).unwrap_or_default();
-        let message = format!("there is no kind `{wanted}`{hint}");
-        return Err(Refusal::request("unknown_kind", wanted, format!("one of {}", kinds.join(", ")), message));
+        let message = format!("there is no kind `{wanted}`{}", did_you_mean(wanted, kinds.iter().copied()));
+        return Err(Refusal::request(
+            "unknown_kind",
+            wanted,
+            format!("one of {}", kinds.join(", ")),
+            message,
+        ));
     };
     if arguments.json {
         print_json(&Value::Array(pages.iter().map(to_json).collect()));
@@ -81,10 +87,14 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     let pages: Vec<&Page> = tables.iter().flat_map(|(_, pages)| pages).collect();
     let found: Vec<&&Page> = pages.iter().filter(|page| page.name == arguments.name).collect();
     if found.is_empty() {
-        let nearest = souple_table::nearest(&arguments.name, pages.iter().map(|page| page.name));
-        let hint = nearest.map(|name| format!(" (did you mean `{name}`?)")).unwrap_or_default();
+        let hint = did_you_mean(&arguments.name, pages.iter().map(|page| page.name));
         let message = format!("nothing is called `{}`{hint}", arguments.name);
-        return Err(Refusal::request("unknown_name", &arguments.name, "a name that `souple list` prints", message));
+        return Err(Refusal::request(
+            "unknown_name",
+            &arguments.name,
+            "a name that `souple list` prints",
+            message,
+        ));
     }
     if arguments.json {
         print_json(&Value::Array(found.iter().map(|page| to_json(page)).collect()));

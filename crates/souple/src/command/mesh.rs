@@ -44,7 +44,9 @@ enum Action {
 impl Arguments {
     pub fn wants_json(&self) -> bool {
         match &self.action {
-            Action::Generate { json, .. } | Action::Convert { json, .. } | Action::Quality { json, .. } => *json,
+            Action::Generate { json, .. } | Action::Convert { json, .. } | Action::Quality { json, .. } => {
+                *json
+            }
         }
     }
 }
@@ -65,7 +67,12 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             let (mut mesh, mut notes) = read(&input)?;
             let repairs = mesh.validate();
             let refuse = |error: souple_mesh::MeshError| {
-                Refusal::request("mesh", input.display().to_string(), "a mesh that can be computed with", error.to_string())
+                Refusal::request(
+                    "mesh",
+                    input.display().to_string(),
+                    "a mesh that can be computed with",
+                    error.to_string(),
+                )
             };
             notes.extend(repairs.map_err(refuse)?.messages());
             report(&mesh, &notes, json)
@@ -79,9 +86,11 @@ fn generate(name: &str, parameters: &[String]) -> Result<Mesh, Refusal> {
         .map_err(|error| Refusal::request("unknown_generator", name, "a generator", error.to_string()))?;
     let mut values = Values::new();
     for text in parameters {
-        let refuse = |message: &str| Refusal::request("parameter", text, "NAME=VALUE", format!("`{text}`: {message}"));
+        let refuse =
+            |message: &str| Refusal::request("parameter", text, "NAME=VALUE", format!("`{text}`: {message}"));
         let (key, value) = text.split_once('=').ok_or_else(|| refuse("there is no `=`"))?;
-        let kind = entry.parameters.iter().find(|parameter| parameter.name == key).map(|parameter| parameter.kind);
+        let kind =
+            entry.parameters.iter().find(|parameter| parameter.name == key).map(|parameter| parameter.kind);
         let numbers: Option<Vec<f64>> = value.split(',').map(|number| number.trim().parse().ok()).collect();
         let value = match (kind, numbers.as_deref()) {
             (Some(Kind::Integer), Some([number])) if number.fract() == 0.0 => Value::Integer(*number as i64),
@@ -91,13 +100,15 @@ fn generate(name: &str, parameters: &[String]) -> Result<Mesh, Refusal> {
         };
         values.set(key.to_owned(), value);
     }
-    souple_mesh::generate(name, values)
-        .map_err(|error| Refusal::request("generate", name, "parameters that `souple describe` prints", error.to_string()))
+    souple_mesh::generate(name, values).map_err(|error| {
+        Refusal::request("generate", name, "parameters that `souple describe` prints", error.to_string())
+    })
 }
 
 fn read(path: &Path) -> Result<(Mesh, Vec<String>), Refusal> {
-    souple_io::read_mesh(path)
-        .map_err(|error| Refusal::request("mesh", path.display().to_string(), "a readable mesh", error.to_string()))
+    souple_io::read_mesh(path).map_err(|error| {
+        Refusal::request("mesh", path.display().to_string(), "a readable mesh", error.to_string())
+    })
 }
 
 fn write(path: &Path, mesh: &Mesh) -> Result<(), Refusal> {
@@ -107,10 +118,14 @@ fn write(path: &Path, mesh: &Mesh) -> Result<(), Refusal> {
 fn report(mesh: &Mesh, notes: &[String], as_json: bool) -> Result<End, Refusal> {
     let conforming = mesh.faces().conforming().err().map(|error| error.to_string());
     let quality = mesh.quality();
-    let smallest = |pick: fn(&souple_mesh::CellQuality) -> f64| quality.iter().map(pick).fold(f64::INFINITY, f64::min);
+    let smallest =
+        |pick: fn(&souple_mesh::CellQuality) -> f64| quality.iter().map(pick).fold(f64::INFINITY, f64::min);
     let bounds = mesh.bounds();
-    let kinds: serde_json::Map<String, Json> =
-        mesh.blocks.iter().map(|block| (block.kind.name().to_owned(), json!(mesh.count_of(block.kind)))).collect();
+    let kinds: serde_json::Map<String, Json> = mesh
+        .blocks
+        .iter()
+        .map(|block| (block.kind.name().to_owned(), json!(mesh.count_of(block.kind))))
+        .collect();
     let document = json!({
         "points": mesh.points.len(),
         "cells": kinds,

@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod list;
 mod mesh;
+mod modes;
 mod replay;
 mod run;
 mod verify;
@@ -30,6 +31,8 @@ enum Command {
     Run(run::Arguments),
     /// Validates a scene without running it: every error with its place, a forecast of stability and cost
     Check(check::Arguments),
+    /// Computes natural frequencies about a scene's first state
+    Modes(modes::Arguments),
     /// Lists what there is of a kind: materials, elements, steppers, …
     List(list::ListArguments),
     /// Prints the page of one thing
@@ -71,7 +74,12 @@ const INTERRUPTED: u8 = 130;
 
 impl Refusal {
     /// The request was wrong: says what was read and what would be accepted.
-    pub fn request(code: &str, value: impl Into<String>, expected: impl Into<String>, message: impl Into<String>) -> Self {
+    pub fn request(
+        code: &str,
+        value: impl Into<String>,
+        expected: impl Into<String>,
+        message: impl Into<String>,
+    ) -> Self {
         Self::new(WRONG_REQUEST, code, value, expected, message)
     }
 
@@ -130,9 +138,10 @@ impl From<souple_run::RunError> for Refusal {
     fn from(error: souple_run::RunError) -> Self {
         use souple_run::RunError;
         match &error {
-            RunError::Snapshot(_) | RunError::Edit { .. } | RunError::TooManySteps { .. } => {
-                Self::request("run", "", "", error.to_string())
-            }
+            RunError::Snapshot(_)
+            | RunError::Edit { .. }
+            | RunError::TooManySteps { .. }
+            | RunError::FileName { .. } => Self::request("run", "", "", error.to_string()),
             RunError::Io(_) | RunError::Folder { .. } => Self::work("io", error.to_string()),
         }
     }
@@ -146,6 +155,7 @@ pub fn execute(cli: Cli) -> ExitCode {
     let (ended, as_json) = match command {
         Command::Run(arguments) => (run::run(&arguments), arguments.json),
         Command::Check(arguments) => (check::check(&arguments), arguments.json),
+        Command::Modes(arguments) => (modes::modes(&arguments), arguments.json),
         Command::List(arguments) => (list::list(&arguments), arguments.json),
         Command::Describe(arguments) => (list::describe(&arguments), arguments.json),
         Command::Schema => {
@@ -200,6 +210,11 @@ pub fn print_line(line: impl std::fmt::Display) {
     let _ = writeln!(std::io::stdout().lock(), "{line}");
 }
 
+/// ` (did you mean …?)` where a known name is near.
+pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    souple_table::nearest(name, known).map(|name| format!(" (did you mean `{name}`?)")).unwrap_or_default()
+}
+
 /// Whether progress can be drawn over itself.
 pub fn on_terminal() -> bool {
     std::io::stderr().is_terminal()
@@ -224,5 +239,8 @@ pub fn use_threads(threads: Option<usize>) -> Result<(), Refusal> {
     if !(1..=1024).contains(&threads) {
         return Err(refuse(format!("{threads} threads cannot be had")));
     }
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().map_err(|error| refuse(error.to_string()))
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| refuse(error.to_string()))
 }

@@ -29,7 +29,9 @@ pub struct Arguments {
 pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let name = arguments.recording.display().to_string();
-    let refuse = |message: String| Refusal::request("recording", name.clone(), "a recording of `souple run --record`", message);
+    let refuse = |message: String| {
+        Refusal::request("recording", name.clone(), "a recording of `souple run --record`", message)
+    };
     let recording = Recording::read(&arguments.recording).map_err(|error| refuse(error.to_string()))?;
     let scene = read_scene(&recording.scene, &recording.settings)?;
     if scene.scene_sha256 != recording.scene_sha256 {
@@ -66,7 +68,9 @@ pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
     if let Some(divergence) = divergence {
         eprintln!(
             "differs at step {}: recorded hash {}, replayed {}",
-            divergence.period, divergence.recorded, divergence.replayed
+            divergence.period,
+            divergence.recorded,
+            divergence.replayed.as_deref().unwrap_or("none: the replay has no such step")
         );
     }
     Ok(if same { End::Done } else { End::Failed })

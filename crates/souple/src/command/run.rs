@@ -20,7 +20,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "duration")]
     steps: Option<u64>,
     /// Time to simulate, as `2 s` or `500 ms`
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     duration: Option<String>,
     /// Changes a value of the scene: `bodies.bar.material.youngs_modulus="20 MPa"`; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
@@ -42,8 +42,8 @@ pub struct Arguments {
     /// Continues from a snapshot
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
-    /// Writes a recording that `souple replay` repeats bit for bit
-    #[arg(long, value_name = "FILE")]
+    /// Writes a recording that `souple replay` repeats bit for bit, from the scene's start
+    #[arg(long, value_name = "FILE", conflicts_with = "resume")]
     record: Option<PathBuf>,
     /// One JSON document (the report) on standard output
     #[arg(long)]
@@ -73,7 +73,12 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
     if let Some(path) = &arguments.resume {
         let state = souple_run::read_snapshot(path, &scene.scene_sha256);
         let refuse = |error: souple_run::SnapshotFileError| {
-            Refusal::request("snapshot", path.display().to_string(), "a snapshot of this scene", error.to_string())
+            Refusal::request(
+                "snapshot",
+                path.display().to_string(),
+                "a snapshot of this scene",
+                error.to_string(),
+            )
         };
         options.resume = Some(state.map_err(refuse)?);
     }
@@ -89,9 +94,11 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
 pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Refusal> {
     // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
-    let target = if quiet || !on_terminal() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let target =
+        if quiet || !on_terminal() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(None, target);
-    if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} steps  {msg}  {elapsed} left {eta}") {
+    if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} steps  {msg}  {elapsed} left {eta}")
+    {
         bar.set_style(style);
     }
     let lines = !quiet && !on_terminal();
@@ -157,7 +164,9 @@ fn parse_duration(text: &str) -> Result<f64, Refusal> {
         Ok(seconds) => Ok(seconds),
         Err(_) => souple_formal::quantity_in(text, "s").map_err(|error| error.to_string()),
     };
-    let refuse = |message: String| Refusal::request("duration", text, "a time above 0, such as `2 s` or `500 ms`", message);
+    let refuse = |message: String| {
+        Refusal::request("duration", text, "a time above 0, such as `2 s` or `500 ms`", message)
+    };
     match seconds {
         Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
         Ok(seconds) => Err(refuse(format!("a duration of {seconds} s cannot be run"))),
@@ -170,7 +179,9 @@ const DEFAULT_SCENE: &str = include_str!("../../../../scenes/soft_block/scene.to
 
 /// Greets, runs the default scene headless, and says what to try next.
 pub fn run_default_scene() -> Result<End, Refusal> {
-    print_line("Souple, a simulator of soft things. The default scene runs now: a soft block falls on a floor.");
+    print_line(
+        "Souple, a simulator of soft things. The default scene runs now: a soft block falls on a floor.",
+    );
     let scene = souple_scene::read_text("soft_block", DEFAULT_SCENE, Path::new("."), &[])?;
     let out = PathBuf::from("out").join("soft_block");
     let options =
@@ -180,6 +191,8 @@ pub fn run_default_scene() -> Result<End, Refusal> {
     print_line("Try next:");
     print_line("  souple list materials");
     print_line("  souple check scenes/cantilever/scene.toml");
-    print_line("  souple run scenes/cantilever/scene.toml --out out/cantilever --set bodies.bar.material.name=corotational");
+    print_line(
+        "  souple run scenes/cantilever/scene.toml --out out/cantilever --set bodies.bar.material.name=corotational",
+    );
     Ok(end)
 }

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use souple_verify::Row;
 
-use super::{End, Refusal, print_json, print_line};
+use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -18,7 +18,9 @@ pub struct Arguments {
 
 pub fn verify(arguments: &Arguments) -> Result<End, Refusal> {
     let cases = souple_verify::cases(&arguments.ids).map_err(|unknown| {
-        Refusal::request("unknown_case", &unknown, "an id that `souple verify --list` prints", format!("there is no case `{unknown}`"))
+        let hint = did_you_mean(&unknown, souple_verify::CASES.iter().map(|case| case.id));
+        let message = format!("there is no case `{unknown}`{hint}");
+        Refusal::request("unknown_case", &unknown, "an id that `souple verify --list` prints", message)
     })?;
     if arguments.list {
         let rows: Vec<Value> = cases.iter().map(|case| case.to_json()).collect();

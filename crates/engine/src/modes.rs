@@ -1,0 +1,44 @@
+//! Natural frequencies of a system about where it stands: `K φ = ω² M φ`, constrained directions at rest.
+
+use souple_math::Vec3;
+use souple_solve::modes::{Mass as MassMatrix, Modes, Settings, lowest_modes};
+use souple_solve::{BlockMatrix, SolveError};
+
+use crate::inertia::add_generalised_mass;
+use crate::state::SystemState;
+use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::tangent::Linearisation;
+
+/// The lowest modes about the placed rows; shapes are over velocity blocks.
+///
+/// # Errors
+/// More modes asked for than there are, or a stiffness that cannot be factorised: a body that is free to move
+/// has modes of frequency zero and needs a small negative shift.
+pub fn lowest(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &mut SystemWorkspace,
+    settings: &Settings,
+) -> Result<Modes, SolveError> {
+    let balanced = vec![Vec3::ZERO; system.kinematics.row_count()];
+    let SystemWorkspace { scratches, rows, tangent, .. } = ws;
+    let at = Linearisation {
+        system,
+        state,
+        around: *around,
+        rows,
+        q: &state.q,
+        v: &state.v,
+        timestep: None,
+        unbalanced: &balanced,
+    };
+    let stiffness = tangent.assemble(&at, scratches);
+    let mut mass = BlockMatrix::zeros(stiffness.pattern().clone());
+    add_generalised_mass(system, &state.q, &mut mass);
+    // held directions have no mass, and so take no part
+    let held = system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
+    mass.constrain_blocks(held, 0.0)?;
+    let positions = system.block_positions(&rows.positions);
+    lowest_modes(stiffness, MassMatrix::Consistent(&mass), Some(&positions), settings)
+}

@@ -1,0 +1,107 @@
+//! Every shipped scene, through the program: it runs, its energies are finite, what it says must be observed is.
+//!
+//! Long scenes are cut after some steps here; with `SOUPLE_SLOW=1` in the environment all run as they are.
+
+mod common;
+
+use common::{assert_finite, assert_report, scene_names, scenes, souple};
+
+/// Scenes that take too long for every day, and the steps they are cut after.
+const CUT: &[(&str, u64)] = &[
+    ("cantilever_dynamic", 25),
+    ("collision", 1500),
+    ("hanging_cube", 5),
+    ("incline_slides", 20),
+    ("incline_sticks", 20),
+    ("soft_block", 10),
+    ("two_materials", 25),
+];
+
+fn runs_whole() -> bool {
+    std::env::var_os("SOUPLE_SLOW").is_some_and(|value| value == "1")
+}
+
+/// The folder and the table of the validation cases hold the same scenes.
+#[test]
+fn every_scene_is_in_the_table() {
+    let folders = scene_names();
+    let mut table: Vec<&str> = souple::verify::scenes::SCENES.iter().map(|(name, _)| *name).collect();
+    table.sort_unstable();
+    assert_eq!(folders, table);
+    for name in folders {
+        let text = std::fs::read_to_string(scenes().join(&name).join("scene.toml"));
+        let text = text.unwrap_or_else(|error| panic!("{name}/scene.toml: {error}"));
+        assert_eq!(
+            Some(text.as_str()),
+            souple::verify::scenes::text(&name),
+            "{name} is not what was compiled"
+        );
+    }
+    for (name, _) in CUT {
+        assert!(table.contains(name), "there is no scene {name} to cut");
+    }
+}
+
+/// Each scene is valid, says what it shows, and expects something.
+#[test]
+fn every_scene_is_valid() {
+    for name in scene_names() {
+        let path = scenes().join(&name);
+        let answer = souple(["check", &path.display().to_string(), "--json"]).ends(0);
+        let document = answer.json();
+        assert_eq!(document["valid"], true, "{name}");
+        assert_eq!(document["warnings"], serde_json::json!([]), "{name} warns");
+        let text = souple::verify::scenes::text(&name).unwrap_or_default();
+        for wanted in ["title = ", "description = ", "shows = ", "[[expect]]", "[run]"] {
+            assert!(text.contains(wanted), "{name} has no `{wanted}`");
+        }
+    }
+}
+
+/// Each scene ends `done`, without warnings, with finite energies and probes; whole, its `expect` lines hold.
+#[test]
+fn every_scene_runs() {
+    let mut failures = Vec::new();
+    for name in scene_names() {
+        let path = scenes().join(&name).display().to_string();
+        let cut = CUT.iter().find(|(cut, _)| *cut == name).map(|(_, steps)| *steps).filter(|_| !runs_whole());
+        let mut arguments = vec!["run".to_owned(), path, "--json".to_owned(), "--quiet".to_owned()];
+        if let Some(steps) = cut {
+            arguments.extend(["--steps".to_owned(), steps.to_string()]);
+        }
+        let answer = souple(&arguments);
+        if answer.status != Some(0) {
+            failures.push(format!("{name}: status {:?}: {}", answer.status, answer.stderr));
+            continue;
+        }
+        let report = answer.json();
+        assert_report(&report);
+        assert_eq!(report["status"], "done", "{name}");
+        assert_eq!(report["warnings"], serde_json::json!([]), "{name}");
+        if let Some(steps) = cut {
+            assert_eq!(report["steps"], steps, "{name}");
+        }
+        for part in ["energy", "momentum", "probes", "counts", "stages_ms", "solver"] {
+            assert_finite(&format!("{name}.{part}"), &report[part]);
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// An `expect` line that does not hold ends a whole run with status 1 and says so; a run cut before its moment
+/// does not judge it.
+#[test]
+fn expectations_are_judged_at_their_moment() {
+    let folder = common::Folder::new("expectations");
+    let wrong = "[[expect]]\nprobe = \"place\"\ncomponent = \"y\"\nvalue = 7\ntolerance = 0.1\n";
+    let scene = folder.write("wrong.toml", format!("{}{wrong}", common::CUBE));
+    let whole = souple(["run", &scene, "--quiet"]).ends(1);
+    assert!(whole.stderr.contains("not as expected: place"), "{whole:#?}");
+    souple(["run", &scene, "--quiet", "--steps", "5"]).ends(0);
+    let timed = folder.write("timed.toml", format!("{}{wrong}time = \"50 ms\"\n", common::CUBE));
+    souple(["run", &timed, "--quiet", "--steps", "4"]).ends(0);
+    souple(["run", &timed, "--quiet", "--steps", "5"]).ends(1);
+    // a moment after the scene's end never comes; the line is not passed over in silence
+    let never = folder.write("never.toml", format!("{}{wrong}time = \"1 s\"\n", common::CUBE));
+    souple(["run", &never, "--quiet"]).ends(1);
+}
