@@ -172,9 +172,24 @@ impl State {
         all
     }
 
-    /// Copies `other` into the buffers at hand.
+    /// Copies `other` into the buffers at hand: no allocation while shapes stay.
     pub fn copy_from(&mut self, other: &Self) {
-        self.clone_from(other);
+        self.period = other.period;
+        self.systems.resize_with(other.systems.len(), SystemState::default);
+        for (mine, other) in self.systems.iter_mut().zip(&other.systems) {
+            mine.q.clone_from(&other.q);
+            mine.v.clone_from(&other.v);
+            mine.memory.clone_from(&other.memory);
+            mine.pairs.clone_from(&other.pairs);
+            mine.history.clone_from(&other.history);
+        }
+        self.driven.clone_from(&other.driven);
+        self.fields.resize_with(other.fields.len(), FieldState::default);
+        for (mine, other) in self.fields.iter_mut().zip(&other.fields) {
+            mine.values.clone_from(&other.values);
+            mine.indices.clone_from(&other.indices);
+        }
+        self.generators.clone_from(&other.generators);
     }
 
     /// The first field that is not finite, as `name[index]`.

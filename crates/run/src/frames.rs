@@ -73,13 +73,20 @@ impl Frames {
                 point_fields: &point_fields,
                 cell_fields: &cell_fields,
                 facets: Facets::LeftOut,
-                precision: Precision::Single,
+                precision: precision_for(positions),
             };
             series.push(time, &output)?;
         }
         self.last_written = Some(self.step);
         Ok(())
     }
+}
+
+/// Single, unless a run that went astray left coordinates which would become infinite by it: such a frame could not
+/// be read again.
+fn precision_for(positions: &[Vec3]) -> Precision {
+    let fits = positions.iter().all(|x| x.to_array().iter().all(|c| c.abs() <= f64::from(f32::MAX)));
+    if fits { Precision::Single } else { Precision::Double }
 }
 
 fn flat(vectors: &[Vec3]) -> Vec<f64> {

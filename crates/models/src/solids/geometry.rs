@@ -4,6 +4,9 @@ use souple_math::{Mat3, Real, Vec3};
 
 /// An element's nodes as the kernels see them; `reference` holds `∂N_a/∂ξ` at the sample.
 pub trait Geometry: Copy + Send + Sync + 'static {
+    /// Samples, where their number does not depend on the rule: one where the gradient is the same everywhere.
+    const SAMPLES: Option<usize>;
+
     /// `∂x/∂ξ = Σ x_a ⊗ ∂N_a/∂ξ`.
     fn gradient<R: Real>(positions: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R>;
 
@@ -16,6 +19,8 @@ pub trait Geometry: Copy + Send + Sync + 'static {
 pub struct Tetrahedron;
 
 impl Geometry for Tetrahedron {
+    const SAMPLES: Option<usize> = Some(1);
+
     #[inline(always)]
     fn gradient<R: Real>(x: &[Vec3<R>], _: &[Vec3]) -> Mat3<R> {
         Mat3::from_columns(x[1] - x[0], x[2] - x[0], x[3] - x[0])
@@ -36,6 +41,8 @@ impl Geometry for Tetrahedron {
 pub struct Nodes<const N: usize>;
 
 impl<const N: usize> Geometry for Nodes<N> {
+    const SAMPLES: Option<usize> = None;
+
     #[inline(always)]
     fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
         let like = x[0].x;

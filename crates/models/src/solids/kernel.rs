@@ -180,7 +180,7 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     #[inline(always)]
     pub fn sample(&self, sample: usize) -> (Mat3<Lanes<S>>, Lanes<S>) {
         let start = (self.block * self.samples + sample) * SAMPLE_LEN * LANES;
-        let numbers = &self.chunk.samples[start..start + SAMPLE_LEN * LANES];
+        let numbers = &self.chunk.samples()[start..start + SAMPLE_LEN * LANES];
         let mut inverse = Mat3 {
             columns: [Vec3::new(
                 Lanes::constant(self.simd, 0.0),
@@ -202,7 +202,7 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     #[inline(always)]
     pub fn parameters<P: Parameters<Lanes<S>>>(&self) -> P {
         let start = self.block * P::NAMES.len() * LANES + self.lane;
-        let (simd, numbers) = (self.simd, &self.chunk.parameters[start..]);
+        let (simd, numbers) = (self.simd, &self.chunk.parameters()[start..]);
         P::unpack(|i| Lanes::load(simd, &numbers[i * LANES..]))
     }
 
@@ -240,7 +240,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Forces<'_, L, G, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let samples = self.reference.len() / N;
+        let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
             let x = group.gather(self.positions);
             let mut f = group.zeros();
@@ -273,7 +273,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Differential<'_, L, G, N>
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let samples = self.reference.len() / N;
+        let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
             let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
             let mut df = group.zeros();
@@ -303,7 +303,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Energy<'_, L, G, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let samples = self.reference.len() / N;
+        let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         let mut sum = 0.0;
         for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
             let x = group.gather(self.positions);
@@ -336,7 +336,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Blocks<'_, L, G, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let samples = self.reference.len() / N;
+        let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         for_each_group!(simd, self.chunk, samples, self.block..self.block + 1, N, |group| {
             let x = group.gather(self.positions);
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();

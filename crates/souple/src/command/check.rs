@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde_json::json;
 
-use super::{End, Refusal, print_json, print_line, read_scene, scene_path};
+use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -92,7 +92,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         world.bytes() as f64 * 1e-6
     ));
     for warning in &warnings {
-        eprintln!("warning: {warning}");
+        print_note(format_args!("warning: {warning}"));
     }
     Ok(End::Done)
 }

@@ -13,6 +13,7 @@ mod verify;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Parser, Subcommand};
 use serde_json::{Value, json};
@@ -38,7 +39,7 @@ enum Command {
     /// Prints the page of one thing
     Describe(list::DescribeArguments),
     /// Prints the JSON Schema of scene files
-    Schema,
+    Schema(SchemaArguments),
     /// Runs the validation cases: measured, reference, tolerance
     Verify(verify::Arguments),
     /// Runs the benchmarks: speed with its error beside it
@@ -49,6 +50,13 @@ enum Command {
     Compare(compare::Arguments),
     /// Generates, converts and measures meshes
     Mesh(mesh::Arguments),
+}
+
+#[derive(clap::Args)]
+struct SchemaArguments {
+    /// As with every command; a schema is JSON in any case
+    #[arg(long)]
+    json: bool,
 }
 
 /// How a command ended.
@@ -107,12 +115,14 @@ impl Refusal {
             print_json(&json!({ "errors": self.errors }));
         }
         match &self.text {
-            Some(text) => eprintln!("{text}"),
+            Some(text) => print_note(text),
             None => {
                 for error in &self.errors {
-                    eprintln!("error: {}", error["message"].as_str().unwrap_or_default());
+                    print_note(format_args!("error: {}", error["message"].as_str().unwrap_or_default()));
                     match error["expected"].as_str() {
-                        Some(expected) if !expected.is_empty() => eprintln!("  = expected {expected}"),
+                        Some(expected) if !expected.is_empty() => {
+                            print_note(format_args!("  = expected {expected}"));
+                        }
                         _ => {}
                     }
                 }
@@ -158,7 +168,7 @@ pub fn execute(cli: Cli) -> ExitCode {
         Command::Modes(arguments) => (modes::modes(&arguments), arguments.json),
         Command::List(arguments) => (list::list(&arguments), arguments.json),
         Command::Describe(arguments) => (list::describe(&arguments), arguments.json),
-        Command::Schema => {
+        Command::Schema(_) => {
             print_json(&souple_scene::schema());
             (Ok(End::Done), true)
         }
@@ -176,6 +186,7 @@ pub fn execute(cli: Cli) -> ExitCode {
 
 fn exit_code(ended: Result<End, Refusal>, as_json: bool) -> ExitCode {
     match ended {
+        Ok(End::Done) if OUTPUT_LOST.load(Ordering::Relaxed) => ExitCode::from(WORK_FAILED),
         Ok(End::Done) => ExitCode::SUCCESS,
         Ok(End::Failed) => ExitCode::from(WORK_FAILED),
         Ok(End::Interrupted) => ExitCode::from(INTERRUPTED),
@@ -200,14 +211,28 @@ pub fn refuse_arguments(error: &clap::Error) -> ExitCode {
     ExitCode::from(WRONG_REQUEST)
 }
 
-/// One document on standard output; a reader that has gone away is no fault of ours.
+/// Whether something could not be written to standard output, and not because its reader has gone away.
+static OUTPUT_LOST: AtomicBool = AtomicBool::new(false);
+
+/// One document on standard output.
 pub fn print_json(document: &Value) {
-    let _ = writeln!(std::io::stdout().lock(), "{document:#}");
+    print_line(format_args!("{document:#}"));
 }
 
-/// One line on standard output; a reader that has gone away is no fault of ours.
+/// One line on standard output. A reader that has gone away is no fault of ours; a full disk ends with status 1.
 pub fn print_line(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stdout().lock(), "{line}");
+    let mut out = std::io::stdout().lock();
+    if let Err(error) = writeln!(out, "{line}").and_then(|()| out.flush())
+        && error.kind() != std::io::ErrorKind::BrokenPipe
+        && !OUTPUT_LOST.swap(true, Ordering::Relaxed)
+    {
+        print_note(format_args!("error: standard output cannot be written: {error}"));
+    }
+}
+
+/// One line on standard error; where even that is closed, there is nobody left to tell.
+pub fn print_note(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
 /// ` (did you mean …?)` where a known name is near.

@@ -6,7 +6,7 @@ use serde_json::json;
 use souple_run::{Options, Recording, Status};
 
 use super::run::{conclude, play};
-use super::{End, Refusal, print_json, print_line, read_scene, scene_path, use_threads};
+use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path, use_threads};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -66,12 +66,12 @@ pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
         print_line(format_args!("the same bits at all {} hashes", recording.hashes.len()));
     }
     if let Some(divergence) = divergence {
-        eprintln!(
+        print_note(format_args!(
             "differs at step {}: recorded hash {}, replayed {}",
             divergence.period,
             divergence.recorded,
             divergence.replayed.as_deref().unwrap_or("none: the replay has no such step")
-        );
+        ));
     }
     Ok(if same { End::Done } else { End::Failed })
 }

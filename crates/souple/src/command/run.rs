@@ -7,7 +7,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use souple_run::{Control, Options, Outcome, Progress, Status};
 use souple_scene::Scene;
 
-use super::{End, Refusal, on_terminal, print_json, print_line, read_scene, scene_path, use_threads};
+use super::{
+    End, Refusal, on_terminal, print_json, print_line, print_note, read_scene, scene_path, use_threads,
+};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -110,7 +112,7 @@ pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Ref
         bar.set_message(format!("{factor:.2} x real time"));
         if lines && progress.wall_seconds >= next_line {
             next_line += 5.0;
-            eprintln!("{}/{} steps, {factor:.2} x real time", progress.step, progress.steps);
+            print_note(format_args!("{}/{} steps, {factor:.2} x real time", progress.step, progress.steps));
         }
         if INTERRUPTED.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
     };
@@ -123,11 +125,11 @@ pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Ref
 pub fn conclude(outcome: &Outcome, out: Option<&Path>, as_json: bool, quiet: bool) -> Result<End, Refusal> {
     let report = &outcome.report;
     for warning in &report.warnings {
-        eprintln!("warning: {warning}");
+        print_note(format_args!("warning: {warning}"));
     }
     let failed = outcome.verdicts.iter().filter(|verdict| !verdict.pass).count();
     for verdict in outcome.verdicts.iter().filter(|verdict| !verdict.pass) {
-        eprintln!("not as expected: {}", verdict.message);
+        print_note(format_args!("not as expected: {}", verdict.message));
     }
     if as_json {
         print_json(&report.to_json());
