@@ -185,7 +185,7 @@ impl Kinematics {
         self.runs.iter().any(|run| run.kind == UnknownKind::RigidFrame)
     }
 
-    /// Whether some row takes forces without returning them: momentum is not conserved.
+    /// Whether every row returns the forces on it; where one does not, momentum is not conserved.
     pub fn is_conservative(&self) -> bool {
         self.derived.iter().all(|row| row.feedback == Feedback::Transpose)
     }

@@ -62,9 +62,14 @@ pub struct SystemState {
 }
 
 impl SystemState {
-    /// What forces remember, without configuration and velocity.
-    pub fn clone_without_motion(&self) -> Self {
-        Self { memory: self.memory.clone(), pairs: self.pairs.clone(), ..Self::default() }
+    /// Copies `other` into the buffers at hand.
+    fn copy_from(&mut self, other: &Self) {
+        let Self { q, v, memory, pairs, history } = other;
+        self.q.clone_from(q);
+        self.v.clone_from(v);
+        self.memory.clone_from(memory);
+        self.pairs.clone_from(pairs);
+        self.history.clone_from(history);
     }
 }
 
@@ -73,6 +78,15 @@ impl SystemState {
 pub struct FieldState {
     pub values: Vec<f64>,
     pub indices: Vec<u64>,
+}
+
+impl FieldState {
+    /// Copies `other` into the buffers at hand.
+    fn copy_from(&mut self, other: &Self) {
+        let Self { values, indices } = other;
+        self.values.clone_from(values);
+        self.indices.clone_from(indices);
+    }
 }
 
 /// The world as it stands between two periods.

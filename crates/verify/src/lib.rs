@@ -95,11 +95,7 @@ impl Case {
             Ok((number, unit)) => (number, unit, None),
             Err(problem) => (f64::NAN, String::new(), Some(problem)),
         };
-        let bound = match self.tolerance {
-            Tolerance::Absolute(bound) => bound,
-            Tolerance::Relative(fraction) => fraction * self.reference.abs(),
-        };
-        let pass = (measured - self.reference).abs() <= bound;
+        let pass = (measured - self.reference).abs() <= self.tolerance.absolute(self.reference);
         Row { case: *self, measured, unit, pass, seconds, problem }
     }
 

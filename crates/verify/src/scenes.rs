@@ -11,6 +11,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),
+    ("twisted_bar", include_str!("../../../scenes/twisted_bar/scene.toml")),
     ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
 ];
 

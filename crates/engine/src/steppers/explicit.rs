@@ -50,7 +50,14 @@ impl Stepper for ExplicitEuler {
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let mut acceleration = std::mem::take(&mut ws.blocks[0]);
-        let report = accelerations_at(system, around, start, next, ws, &mut acceleration)?;
+        let evaluated = accelerations_at(system, around, start, next, ws, &mut acceleration);
+        let report = match evaluated {
+            Ok(report) => report,
+            Err(error) => {
+                ws.blocks[0] = acceleration;
+                return Err(error);
+            }
+        };
         system.advance_memory(&ws.rows, next, around, timestep);
         // q' = q + h v
         system.kinematics.retract_scaled(&mut next.q, &next.v, timestep);
@@ -83,7 +90,14 @@ impl Stepper for SymplecticEuler {
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let mut acceleration = std::mem::take(&mut ws.blocks[0]);
-        let report = accelerations_at(system, around, start, next, ws, &mut acceleration)?;
+        let evaluated = accelerations_at(system, around, start, next, ws, &mut acceleration);
+        let report = match evaluated {
+            Ok(report) => report,
+            Err(error) => {
+                ws.blocks[0] = acceleration;
+                return Err(error);
+            }
+        };
         system.advance_memory(&ws.rows, next, around, timestep);
         // v' = v + h a
         for (v, a) in next.v.iter_mut().zip(&acceleration) {

@@ -42,7 +42,14 @@ impl Stepper for PositionVerlet {
         // q½ = q + h/2 v
         system.kinematics.retract_scaled(&mut next.q, &next.v, half);
         // v' = v + h a(q½, v)
-        let report = accelerations_at(system, around, start + half, next, ws, &mut acceleration)?;
+        let evaluated = accelerations_at(system, around, start + half, next, ws, &mut acceleration);
+        let report = match evaluated {
+            Ok(report) => report,
+            Err(error) => {
+                ws.blocks[0] = acceleration;
+                return Err(error);
+            }
+        };
         system.advance_memory(&ws.rows, next, around, timestep);
         for (v, a) in next.v.iter_mut().zip(&acceleration) {
             *v += *a * timestep;

@@ -79,7 +79,7 @@ pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
 /// The distance at which all recorded hashes are met again.
 fn hash_distance(recording: &Recording) -> Option<u64> {
     let periods: Vec<u64> = recording.hashes.iter().map(|(period, _)| *period).collect();
-    let distance = periods.windows(2).map(|pair| pair[1] - pair[0]).fold(0, gcd);
+    let distance = periods.windows(2).map(|pair| pair[1].abs_diff(pair[0])).fold(0, gcd);
     (distance > 0).then_some(distance)
 }
 

@@ -12,6 +12,9 @@ pub struct Arguments {
     /// Names the cases without running them
     #[arg(long)]
     list: bool,
+    /// Runs every case under its mutation instead: each row must fail
+    #[arg(long)]
+    mutations: bool,
     #[arg(long)]
     pub json: bool,
 }
@@ -33,17 +36,21 @@ pub fn verify(arguments: &Arguments) -> Result<End, Refusal> {
     }
     let mut rows: Vec<Row> = Vec::new();
     for case in cases {
-        let row = case.run();
+        let row = if arguments.mutations { case.run_mutated() } else { case.run() };
         if !arguments.json {
             print_line(&row);
         }
         rows.push(row);
     }
-    let failed = rows.iter().filter(|row| !row.pass).count();
+    // under its mutation a case that still holds, or that has no number at all, sees nothing
+    let is_as_wanted =
+        |row: &Row| if arguments.mutations { !row.pass && row.problem.is_none() } else { row.pass };
+    let failed = rows.iter().filter(|row| !is_as_wanted(row)).count();
     if arguments.json {
         print_json(&Value::Array(rows.iter().map(Row::to_json).collect()));
     } else {
-        print_line(format_args!("{} of {} rows hold", rows.len() - failed, rows.len()));
+        let verb = if arguments.mutations { "fail under their mutation, as they must" } else { "hold" };
+        print_line(format_args!("{} of {} rows {verb}", rows.len() - failed, rows.len()));
     }
     Ok(if failed == 0 { End::Done } else { End::Failed })
 }
