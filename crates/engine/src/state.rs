@@ -61,32 +61,11 @@ pub struct SystemState {
     pub history: Vec<f64>,
 }
 
-impl SystemState {
-    /// Copies `other` into the buffers at hand.
-    fn copy_from(&mut self, other: &Self) {
-        let Self { q, v, memory, pairs, history } = other;
-        self.q.clone_from(q);
-        self.v.clone_from(v);
-        self.memory.clone_from(memory);
-        self.pairs.clone_from(pairs);
-        self.history.clone_from(history);
-    }
-}
-
 /// A field on a grid (a skin, a temperature): values and whatever integers describe its active set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FieldState {
     pub values: Vec<f64>,
     pub indices: Vec<u64>,
-}
-
-impl FieldState {
-    /// Copies `other` into the buffers at hand.
-    fn copy_from(&mut self, other: &Self) {
-        let Self { values, indices } = other;
-        self.values.clone_from(values);
-        self.indices.clone_from(indices);
-    }
 }
 
 /// The world as it stands between two periods.

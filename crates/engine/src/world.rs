@@ -227,7 +227,9 @@ impl World {
             report.merge(&stepped.map_err(|error| WorldError { place: place(), error })?);
         }
         let state = &next.systems[index];
-        system.place_rows(&state.q, &state.v, start + self.model.period, &mut ws.rows);
+        // the very time that a resumed world has here, not `start + period`
+        let end = (next.period + 1) as f64 * self.model.period;
+        system.place_rows(&state.q, &state.v, end, &mut ws.rows);
         Ok(report)
     }
 

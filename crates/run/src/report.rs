@@ -126,11 +126,21 @@ fn probe_to_json(probe: &Summary) -> (String, Value) {
 }
 
 fn energy_to_json(energy: &EnergyReport) -> Value {
-    let by_force: serde_json::Map<String, Value> = energy
-        .by_force
-        .iter()
-        .map(|(name, energy)| {
-            (name.clone(), json!({"stored": energy.stored, "dissipated": energy.dissipated}))
+    // names are unique within a system only: `gravity` of two systems is one line
+    let mut by_force: Vec<(&str, f64, f64)> = Vec::new();
+    for (name, energy) in &energy.by_force {
+        match by_force.iter_mut().find(|(known, _, _)| known == name) {
+            Some((_, stored, dissipated)) => {
+                *stored += energy.stored;
+                *dissipated += energy.dissipated;
+            }
+            None => by_force.push((name, energy.stored, energy.dissipated)),
+        }
+    }
+    let by_force: serde_json::Map<String, Value> = by_force
+        .into_iter()
+        .map(|(name, stored, dissipated)| {
+            (name.to_owned(), json!({"stored": stored, "dissipated": dissipated}))
         })
         .collect();
     json!({"total": energy.total(), "kinetic": energy.kinetic, "forces": by_force})

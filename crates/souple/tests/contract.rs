@@ -115,7 +115,7 @@ fn one_document_each() {
     assert_eq!(rows[0]["pass"], true);
 
     let mesh = folder.at("ball.vtu");
-    let generated = json(&["mesh", "generate", "sphere", &mesh, "radius=1", "cells=2", "element=hex8"]);
+    let generated = json(&["mesh", "generate", "sphere", &mesh, "radius=1", "cells=3", "element=hex8"]);
     let converted = json(&["mesh", "convert", &mesh, &folder.at("ball.msh")]);
     let measured = json(&["mesh", "quality", &folder.at("ball.msh")]);
     for document in [&generated, &converted, &measured] {

@@ -53,6 +53,7 @@ impl Stepper for RungeKutta4 {
         velocity_sum.fill(Vec3::ZERO);
         acceleration_sum.fill(Vec3::ZERO);
         for (stage, (fraction, weight)) in STAGES.into_iter().enumerate() {
+            let time = start + fraction * timestep;
             if stage > 0 {
                 // q_i = q + c h v_{i-1},  v_i = v + c h a_{i-1}
                 next.q.copy_from_slice(&start_q);
@@ -60,17 +61,15 @@ impl Stepper for RungeKutta4 {
                 for ((v, start), a) in next.v.iter_mut().zip(&start_v).zip(acceleration.iter()) {
                     *v = *start + *a * (fraction * timestep);
                 }
-                let time = start + fraction * timestep;
                 system.impose_constraints(&mut next.q, &mut next.v, time, around.load);
             }
-            report.merge(&accelerations_at(
-                system,
-                around,
-                start + fraction * timestep,
-                next,
-                ws,
-                acceleration,
-            )?);
+            match accelerations_at(system, around, time, next, ws, acceleration) {
+                Ok(evaluated) => report.merge(&evaluated),
+                Err(error) => {
+                    give_back(ws, buffers, start_q, start_v);
+                    return Err(error);
+                }
+            }
             velocity.copy_from_slice(&next.v);
             for i in 0..velocity.len() {
                 velocity_sum[i] += velocity[i] * weight;
@@ -87,10 +86,15 @@ impl Stepper for RungeKutta4 {
             *v += *a * timestep;
         }
         system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
-        for (slot, buffer) in ws.blocks.iter_mut().zip(buffers) {
-            *slot = buffer;
-        }
-        (ws.configurations[0], ws.blocks[4]) = (start_q, start_v);
+        give_back(ws, buffers, start_q, start_v);
         Ok(report)
     }
+}
+
+/// Returns the buffers of a step to the workspace.
+fn give_back(ws: &mut SystemWorkspace, buffers: [Vec<Vec3>; 4], start_q: Vec<Vec3>, start_v: Vec<Vec3>) {
+    for (slot, buffer) in ws.blocks.iter_mut().zip(buffers) {
+        *slot = buffer;
+    }
+    (ws.configurations[0], ws.blocks[4]) = (start_q, start_v);
 }

@@ -1,7 +1,6 @@
 //! Kelvin–Voigt damping: stress proportional to the rate of strain, none in rigid motion.
 
 use std::any::Any;
-use std::ops::Range;
 
 use souple_engine::state::Pair;
 use souple_engine::tangent::add_block;
@@ -16,7 +15,6 @@ use super::{SolidDescription, nodes_of};
 pub struct Viscosity {
     name: String,
     cells: Vec<Cell>,
-    rows: Range<usize>,
     /// `2 η` [Pa s].
     modulus: f64,
 }
@@ -52,8 +50,7 @@ impl Viscosity {
             }
             cells.push(Cell { rows: nodes_of(&cell, description.first_row), samples });
         }
-        let rows = description.first_row..description.first_row + mesh.points.len();
-        Ok(Self { name: description.name.clone(), cells, rows, modulus: 2.0 * viscosity })
+        Ok(Self { name: description.name.clone(), cells, modulus: 2.0 * viscosity })
     }
 
     /// `S = 2 η sym(Fᵀ Ḟ)`.
@@ -164,7 +161,7 @@ impl Force for Viscosity {
             4 * cell.rows.len()
                 + cell.samples.iter().map(|sample| 24 * sample.gradients.len() + 8).sum::<usize>()
         };
-        self.cells.iter().map(cell).sum::<usize>() + size_of_val(&self.rows)
+        self.cells.iter().map(cell).sum()
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -93,7 +93,7 @@ fn read(path: &Path) -> Result<Vec<Named>, Refusal> {
             .map(|(name, field)| Named { name: name.clone(), numbers: field.numbers() })
             .collect());
     }
-    let dataset = souple_io::read_dataset(path).map_err(|error| refuse(error.to_string()))?;
+    let dataset = souple_io::read_dataset(path)?;
     let positions = dataset.mesh.points.iter().flat_map(|point| point.to_array()).collect();
     let mut fields = vec![Named { name: "positions".to_owned(), numbers: positions }];
     fields.extend(

@@ -106,13 +106,11 @@ fn generate(name: &str, parameters: &[String]) -> Result<Mesh, Refusal> {
 }
 
 fn read(path: &Path) -> Result<(Mesh, Vec<String>), Refusal> {
-    souple_io::read_mesh(path).map_err(|error| {
-        Refusal::request("mesh", path.display().to_string(), "a readable mesh", error.to_string())
-    })
+    Ok(souple_io::read_mesh(path)?)
 }
 
 fn write(path: &Path, mesh: &Mesh) -> Result<(), Refusal> {
-    souple_io::write_mesh(path, mesh).map_err(|error| Refusal::work("io", error.to_string()))
+    Ok(souple_io::write_mesh(path, mesh)?)
 }
 
 fn report(mesh: &Mesh, notes: &[String], as_json: bool) -> Result<End, Refusal> {

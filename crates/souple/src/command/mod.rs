@@ -144,6 +144,34 @@ impl From<souple_scene::Diagnostics> for Refusal {
     }
 }
 
+/// A file that cannot be read or asked for in this way is a wrong request; one that cannot be written, failed work.
+impl From<souple_io::IoError> for Refusal {
+    fn from(error: souple_io::IoError) -> Self {
+        use souple_io::{IoError, Place};
+        let message = error.to_string();
+        let (path, line, value, expected) = match error {
+            IoError::Content { path, fault } => {
+                let line = if let Place::Line(line) = fault.place { json!(line) } else { Value::Null };
+                (path, line, fault.found, fault.expected)
+            }
+            IoError::Read { path, .. } => (path, Value::Null, String::new(), "a file that can be read".to_owned()),
+            IoError::Extension { path, found, expected } => (path, Value::Null, found, expected),
+            IoError::Unsupported { .. } | IoError::Request { .. } | IoError::UnknownFormat(_) => {
+                return Self::request("file", "", "", message);
+            }
+            IoError::DiskFull { .. } | IoError::NotWritable { .. } | IoError::Write { .. } => {
+                return Self::work("io", message);
+            }
+        };
+        let mut refusal = Self::request("file", value, expected, message);
+        refusal.errors[0]["file"] = json!(path);
+        refusal.errors[0]["line"] = line;
+        // the message has it all
+        refusal.text = Some(format!("error: {}", refusal.errors[0]["message"].as_str().unwrap_or_default()));
+        refusal
+    }
+}
+
 impl From<souple_run::RunError> for Refusal {
     fn from(error: souple_run::RunError) -> Self {
         use souple_run::RunError;

@@ -12,6 +12,8 @@ use super::{
 };
 
 #[derive(clap::Args)]
+// `--steps -1` is a wrong count, not an argument of that name
+#[command(allow_negative_numbers = true)]
 pub struct Arguments {
     /// Scene file, or a folder with a scene.toml
     scene: String,
@@ -22,7 +24,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with = "duration")]
     steps: Option<u64>,
     /// Time to simulate, as `2 s` or `500 ms`
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long)]
     duration: Option<String>,
     /// Changes a value of the scene: `bodies.bar.material.youngs_modulus="20 MPa"`; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]

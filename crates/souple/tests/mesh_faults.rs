@@ -1,0 +1,281 @@
+//! Faulty mesh files of every format through the program: cut off, garbage, not finite, flat, tangled, absurd.
+
+mod common;
+
+use common::{CUBE, Folder, assert_errors, souple_in};
+use serde_json::Value;
+
+/// Extensions of the formats that hold volumes and can be written.
+const VOLUMES: &[&str] = &["msh", "msh2", "vtu", "vtk"];
+
+/// A mesh file measured by `mesh quality`: the document of a success, or the message of a refusal.
+#[track_caller]
+fn quality(folder: &Folder, file: &str) -> Result<Value, String> {
+    let answer = souple_in(folder.path(), ["mesh", "quality", file, "--json"]);
+    assert!(!answer.stderr.contains("panicked"), "{answer:#?}");
+    match answer.status {
+        Some(0) => Ok(answer.json()),
+        Some(2) => {
+            assert_errors(&answer.json());
+            Err(answer.stderr)
+        }
+        _ => panic!("{answer:#?}"),
+    }
+}
+
+fn generate(folder: &Folder, file: &str) -> Vec<u8> {
+    let call = ["mesh", "generate", "box", file, "size=1,1,1", "cells=4,1,1", "element=mixed"];
+    souple_in(folder.path(), call).ends(0);
+    std::fs::read(folder.path().join(file)).expect("the mesh just made")
+}
+
+/// A file of any format, cut anywhere before its last sign, is an error and no smaller mesh.
+#[test]
+fn cut_off_files_are_refused() {
+    let folder = Folder::new("cut");
+    let mut accepted = Vec::new();
+    for format in VOLUMES {
+        let whole = format!("whole.{format}");
+        let content = generate(&folder, &whole);
+        quality(&folder, &whole).expect("the whole file");
+        let length = content.trim_ascii_end().len();
+        for part in 0..40 {
+            let end = length * part / 40;
+            let name = format!("cut.{format}");
+            folder.write(&name, &content[..end]);
+            match quality(&folder, &name) {
+                Ok(mesh) => accepted.push(format!("{format} cut at {end} of {length}: {} points", mesh["points"])),
+                Err(message) => assert!(message.contains(&name), "{message}"),
+            }
+        }
+        folder.write(&format!("cut.{format}"), &content[..length - 1]);
+        if quality(&folder, &format!("cut.{format}")).is_ok() {
+            accepted.push(format!("{format} cut before its last sign"));
+        }
+    }
+    assert!(accepted.is_empty(), "{}", accepted.join("\n"));
+}
+
+/// Surfaces cut within a line or before their triangles are refused as the shape of a contact.
+#[test]
+fn cut_off_surfaces_are_refused() {
+    let folder = Folder::new("cut_surface");
+    let obj = String::from_utf8(generate(&folder, "box.obj")).expect("a text");
+    let stl = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid t\n";
+    let scene = |file: &str| {
+        let shape = format!("[shapes.wall]\nshape = {{ name = \"closed_surface\", surface = \"{file}\" }}\n[[contacts]]\nbody = \"cube\"\nshape = \"wall\"\n[probes.place]");
+        CUBE.replace("[probes.place]", &shape)
+    };
+    let first_face = obj.find("\nf ").expect("a face") + 1;
+    let second_line = obj.find("\nv ").expect("a vertex") + 5;
+    let cases: &[(&str, &[u8], &str)] = &[
+        ("no_faces.obj", &obj.as_bytes()[..first_face], "no_faces.obj"),
+        ("half_vertex.obj", &obj.as_bytes()[..second_line], "half_vertex.obj"),
+        ("half_face.obj", &obj.as_bytes()[..first_face + 3], "half_face.obj"),
+        ("empty.obj", b"", "empty.obj"),
+        ("not_finite.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "not_finite.obj"),
+        ("range.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "range.obj"),
+        ("zero.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "zero.obj"),
+        ("open.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "open.obj"),
+        ("half.stl", &stl.as_bytes()[..stl.len() / 2], "half.stl"),
+        ("open.stl", stl.as_bytes(), "open.stl"),
+        ("binary.stl", &[0; 84], "binary.stl"),
+        ("absurd.stl", &[0xff; 84], "absurd.stl"),
+    ];
+    let mut failures = Vec::new();
+    for (file, content, words) in cases {
+        folder.write(file, content);
+        folder.write("scene.toml", scene(file));
+        let answer = souple_in(folder.path(), ["run", "scene.toml", "--out", "out"]);
+        if answer.status != Some(2) || answer.stderr.contains("panicked") || !answer.stderr.contains(words) {
+            failures.push(format!("{file}: {answer:#?}"));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    assert!(!folder.path().join("out").exists());
+}
+
+/// Garbage, nothing, a folder, a file that is not there, a name that says nothing: errors for every extension.
+#[test]
+fn garbage_is_refused() {
+    let folder = Folder::new("garbage");
+    let mut state = 88_172_645_u32;
+    let mut byte = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 24) as u8
+    };
+    let noise: Vec<u8> = (0..500).map(|_| byte()).collect();
+    for format in ["msh", "msh2", "vtu", "vtk", "obj", "stl"] {
+        let contents: [(&str, &[u8]); 5] = [
+            ("noise", &noise),
+            ("empty", b""),
+            ("zeros", &[0; 200]),
+            ("prose", b"It was a dark and stormy night; the rain fell in torrents.\n"),
+            ("lines", b"\n\n\n\n\n"),
+        ];
+        for (name, content) in contents {
+            let file = format!("{name}.{format}");
+            folder.write(&file, content);
+            let message = quality(&folder, &file).expect_err(&file);
+            assert!(message.contains(&file) || message.contains("no cells") || message.contains("no points"), "{message}");
+        }
+        let missing = format!("missing.{format}");
+        assert!(quality(&folder, &missing).expect_err("a missing file").contains(&missing));
+        std::fs::create_dir(folder.path().join(format!("folder.{format}"))).expect("a folder");
+        quality(&folder, &format!("folder.{format}")).expect_err("a folder");
+    }
+    folder.write("mesh.xyz", "1 2 3\n");
+    assert!(quality(&folder, "mesh.xyz").expect_err("an unknown extension").contains("xyz"));
+    folder.write("mesh", "1 2 3\n");
+    quality(&folder, "mesh").expect_err("no extension");
+}
+
+/// A legacy VTK text of these points and cells.
+fn vtk(points: &[&str], cells: &str, types: &str) -> String {
+    let count = types.split_whitespace().count();
+    let size = cells.split_whitespace().count();
+    let points_text = points.join("\n");
+    format!(
+        "# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {} double\n{points_text}\nCELLS {count} {size}\n{cells}\nCELL_TYPES {count}\n{types}\n",
+        points.len()
+    )
+}
+
+const TET: [&str; 4] = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"];
+const HEX: [&str; 8] = ["0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "1 1 1", "0 1 1"];
+
+/// Meshes that cannot be computed on are refused in words, by `mesh quality` and in a scene alike.
+#[test]
+fn meshes_that_cannot_be_computed_on() {
+    let folder = Folder::new("meshes");
+    let with = |index: usize, point: &'static str| {
+        let mut points = TET;
+        points[index] = point;
+        points
+    };
+    let good = vtk(&TET, "4 0 1 2 3", "10");
+    let msh2 = |nodes: &str, elements: &str| {
+        format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{elements}$EndElements\n")
+    };
+    let four = "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
+    let vtu = |points: &str, cells: &str, coordinates: &str, connectivity: &str, types: &str| {
+        format!("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n<UnstructuredGrid><Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">{coordinates}</DataArray></Points>\n<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">{connectivity}</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{types}</DataArray></Cells>\n</Piece></UnstructuredGrid></VTKFile>\n")
+    };
+    let corners = "0 0 0 1 0 0 0 1 0 0 0 1";
+    let tangled = ["0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "0.2 0.2 -1", "0 1 1"];
+    let cases: Vec<(&str, String, &str)> = vec![
+        ("nan.vtk", vtk(&with(1, "nan 0 0"), "4 0 1 2 3", "10"), "finite"),
+        ("inf.vtk", vtk(&with(1, "inf 0 0"), "4 0 1 2 3", "10"), "finite"),
+        ("word.vtk", vtk(&with(1, "one 0 0"), "4 0 1 2 3", "10"), "one"),
+        ("flat.vtk", vtk(&with(3, "1 1 0"), "4 0 1 2 3", "10"), "flat"),
+        ("tangled.vtk", vtk(&tangled, "8 0 1 2 3 4 5 6 7", "12"), "cells[0] (hex8)"),
+        ("crossed.vtk", vtk(&HEX, "8 0 2 1 3 4 5 6 7", "12"), "cells[0] (hex8)"),
+        ("twice.vtk", vtk(&TET, "4 0 1 2 2", "10"), "point 2 twice"),
+        ("coincident.vtk", vtk(&with(3, "0 0 0"), "4 0 1 2 3", "10"), "flat"),
+        ("range.vtk", vtk(&TET, "4 0 1 2 4", "10"), "4"),
+        ("negative.vtk", vtk(&TET, "4 0 1 2 -3", "10"), "-3"),
+        ("kind.vtk", vtk(&TET, "4 0 1 2 3", "99"), "99"),
+        ("count.vtk", vtk(&TET, "5 0 1 2 3 0", "10"), "5"),
+        ("surface.vtk", vtk(&TET, "3 0 1 2", "5"), "no cells"),
+        ("no_cells.vtk", good.replace("CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "CELLS 0 0\n\nCELL_TYPES 0\n\n"), "no cells"),
+        ("absurd_points.vtk", good.replace("POINTS 4", "POINTS 99999999999999"), "line"),
+        ("absurd_cells.vtk", good.replace("CELLS 1 5", "CELLS 99999999999999 99999999999999"), "line"),
+        ("negative_points.vtk", good.replace("POINTS 4", "POINTS -4"), "-4"),
+        ("nan.msh", msh2(&four.replace("2 1 0 0", "2 1 nan 0"), "1\n1 4 2 0 1 1 2 3 4\n"), "nan"),
+        ("flat.msh", msh2(&four.replace("4 0 0 1", "4 1 1 0"), "1\n1 4 2 0 1 1 2 3 4\n"), "flat"),
+        ("missing_node.msh", msh2(four, "1\n1 4 2 0 1 1 2 3 9\n"), "9"),
+        ("same_node.msh", msh2(&four.replace("4 0 0 1", "3 0 0 1"), "1\n1 4 2 0 1 1 2 3 3\n"), "3"),
+        ("kind.msh", msh2(four, "1\n1 99 2 0 1 1 2 3 4\n"), "99"),
+        ("absurd.msh", msh2(&four.replacen('4', "99999999999999", 1), "1\n1 4 2 0 1 1 2 3 4\n"), "line"),
+        ("version.msh", msh2(four, "1\n1 4 2 0 1 1 2 3 4\n").replace("2.2 0 8", "7.7 0 8"), "7.7"),
+        ("tags.msh", msh2(four, "1\n1 4 99999999 0 1 1 2 3 4\n"), "line"),
+        ("nan.vtu", vtu("4", "1", "0 0 0 1 nan 0 0 1 0 0 0 1", "0 1 2 3", "10"), "nan"),
+        ("range.vtu", vtu("4", "1", corners, "0 1 2 9", "10"), "9"),
+        ("kind.vtu", vtu("4", "1", corners, "0 1 2 3", "77"), "77"),
+        ("short.vtu", vtu("4", "1", "0 0 0 1 0 0 0 1 0", "0 1 2 3", "10"), "short.vtu"),
+        ("absurd.vtu", vtu("99999999999999", "1", corners, "0 1 2 3", "10"), "absurd.vtu"),
+        ("absurd_cells.vtu", vtu("4", "99999999999999", corners, "0 1 2 3", "10"), "absurd_cells.vtu"),
+        ("overflow.vtu", vtu("18446744073709551615", "1", corners, "0 1 2 3", "10"), "overflow.vtu"),
+        ("xml.vtu", vtu("4", "1", corners, "0 1 2 3", "10").replace("</Points>", "</Point>"), "xml.vtu"),
+        ("piece.vtu", vtu("4", "1", corners, "0 1 2 3", "10").replace("Piece", "Peace"), "piece.vtu"),
+    ];
+    assert!(quality(&folder, "nothing.vtk").is_err());
+    folder.write("good.vtk", good);
+    folder.write("good.msh", msh2(four, "1\n1 4 2 0 1 1 2 3 4\n"));
+    folder.write("good.vtu", vtu("4", "1", corners, "0 1 2 3", "10"));
+    for file in ["good.vtk", "good.msh", "good.vtu"] {
+        let mesh = quality(&folder, file).unwrap_or_else(|message| panic!("{file}: {message}"));
+        assert_eq!((&mesh["points"], &mesh["cells"]["tet4"]), (&4.into(), &1.into()), "{file}");
+    }
+    let mut failures = Vec::new();
+    let generated = "generate = \"box\", size = [1, 1, 1], cells = [2, 2, 2], element = \"hex8\"";
+    for (file, content, words) in &cases {
+        folder.write(file, content);
+        match quality(&folder, file) {
+            Ok(mesh) => failures.push(format!("{file}: accepted: {mesh}")),
+            Err(message) if !message.contains(words) => failures.push(format!("{file}: no `{words}` in {message}")),
+            Err(_) => {}
+        }
+        folder.write("scene.toml", CUBE.replace(generated, &format!("file = \"{file}\"")));
+        let answer = souple_in(folder.path(), ["run", "scene.toml", "--out", "out"]);
+        if answer.status != Some(2) || !answer.stderr.contains(words) || answer.stderr.contains("panicked") {
+            failures.push(format!("{file} in a scene: {answer:#?}"));
+        }
+    }
+    assert!(failures.is_empty(), "{} of {}:\n{}", failures.len(), cases.len(), failures.join("\n"));
+    assert!(!folder.path().join("out").exists());
+}
+
+/// What can be repaired is, and is said: inverted cells are rewound, loose points and separate parts told.
+#[test]
+fn repairs_are_told() {
+    let folder = Folder::new("repairs");
+    let second = ["5 0 0", "6 0 0", "5 1 0", "5 0 1"];
+    folder.write("inverted.vtk", vtk(&TET, "4 0 2 1 3", "10"));
+    folder.write("loose.vtk", vtk(&[&TET[..], &["9 9 9"]].concat(), "4 0 1 2 3", "10"));
+    folder.write("parts.vtk", vtk(&[&TET[..], &second].concat(), "4 0 1 2 3\n4 4 5 6 7", "10 10"));
+    for (file, words) in [("inverted.vtk", "inverted"), ("loose.vtk", "belong to no cell"), ("parts.vtk", "2 parts")] {
+        let mesh = quality(&folder, file).unwrap_or_else(|message| panic!("{file}: {message}"));
+        assert!(mesh["notes"].to_string().contains(words), "{file}: {mesh:#}");
+        assert!(mesh["volume"].as_f64().is_some_and(|volume| volume > 0.0), "{file}: {mesh:#}");
+        let generated = "generate = \"box\", size = [1, 1, 1], cells = [2, 2, 2], element = \"hex8\"";
+        folder.write("scene.toml", CUBE.replace(generated, &format!("file = \"{file}\"")));
+        let answer = souple_in(folder.path(), ["run", "scene.toml", "--json"]).ends(0);
+        let report = answer.json();
+        assert!(report["warnings"].to_string().contains(words), "{file}: {report:#}");
+        // a loose point has no mass and would fall through every law: it is left out
+        let points = if file == "parts.vtk" { 8 } else { 4 };
+        assert_eq!(report["counts"]["points"], points, "{file}");
+    }
+}
+
+/// Three cells on one face overlap: `quality` says which, and that the mesh does not conform.
+#[test]
+fn overlapping_cells_are_told() {
+    let folder = Folder::new("overlap");
+    let points = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "0 0 2", "0 0 3"];
+    folder.write("thrice.vtk", vtk(&points, "4 0 1 2 3\n4 0 1 2 4\n4 0 1 2 5", "10 10 10"));
+    let mesh = quality(&folder, "thrice.vtk").unwrap_or_else(|message| panic!("{message}"));
+    assert_eq!(mesh["conforming"], false);
+    assert!(mesh["problem"].to_string().contains("is used 3 times"), "{mesh:#}");
+}
+
+/// A mesh with any byte changed is accepted or refused, never a panic.
+#[test]
+fn damaged_files_do_not_panic() {
+    let folder = Folder::new("damaged_meshes");
+    for format in VOLUMES {
+        let content = generate(&folder, &format!("whole.{format}"));
+        let file = format!("damaged.{format}");
+        for part in 0..60 {
+            let at = content.len() * part / 60;
+            for byte in [b'9', b'-', b'<', 0xff] {
+                let mut damaged = content.clone();
+                damaged[at] = byte;
+                folder.write(&file, damaged);
+                // refusals and successes are both in order; `quality` itself asserts that nothing else happens
+                let _ = quality(&folder, &file);
+            }
+        }
+    }
+}
