@@ -317,7 +317,7 @@ impl ImplicitStep<'_> {
         self.system.kinematics.retract(q, &buffers.direction);
         Ok(StepReport {
             newton_iterations: 1,
-            linear_iterations: solved.iterations,
+            linear_iterations: u64::from(solved.iterations),
             linear_residual: solved.residual,
             newton_residual: 0.0,
         })
@@ -384,6 +384,10 @@ impl ImplicitStep<'_> {
         let solved = solved?;
         report.newton_residual = if scale > 0.0 { solved.residual / scale } else { 0.0 };
         if !solved.converged() {
+            let SystemWorkspace { scratches, rows, .. } = ws;
+            if let Some(error) = self.system.first_force_not_finite(rows, &lent.0, &self.around, scratches) {
+                return Err(error);
+            }
             return Err(StepError::NewtonStalled {
                 iterations: report.newton_iterations,
                 residual: report.newton_residual,
@@ -438,7 +442,7 @@ impl ImplicitProblem<'_, '_> {
         // forces are sums of terms that cancel
         self.rounding = rounding.max(64.0 * f64::EPSILON * norm(&self.ws.row_force));
         self.report.newton_iterations += 1;
-        self.report.linear_iterations += solved.iterations;
+        self.report.linear_iterations += u64::from(solved.iterations);
         self.report.linear_residual = self.report.linear_residual.max(solved.residual);
         Ok(solved)
     }
@@ -477,7 +481,10 @@ impl ImplicitProblem<'_, '_> {
             q.copy_from_slice(q_trial);
             self.scale = self.scale.max(after);
         }
-        Ok(())
+        match self.step.prescribed_into(&self.buffers.q, &mut self.buffers.prescribed) {
+            0.0 => Ok(()),
+            to_go => Err(StepError::NotReached { to_go }),
+        }
     }
 }
 

@@ -25,6 +25,11 @@ pub fn accelerations_at(
     let clock = std::time::Instant::now();
     system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
     ws.stages.forces += clock.elapsed().as_secs_f64();
+    if ws.row_force.iter().any(|force| !force.is_finite())
+        && let Some(error) = system.first_force_not_finite(&ws.rows, state, around, &mut ws.scratches)
+    {
+        return Err(error);
+    }
     if system.kinematics.is_trivial() && system.mass.is_lumped() {
         // a = f / m
         for ((a, f), mass) in out.iter_mut().zip(&ws.row_force).zip(&system.mass.diagonal) {
@@ -48,7 +53,7 @@ pub fn accelerations_at(
     ws.blocks[7] = rhs;
     let solved = solved?;
     Ok(StepReport {
-        linear_iterations: solved.iterations,
+        linear_iterations: u64::from(solved.iterations),
         linear_residual: solved.residual,
         ..StepReport::default()
     })

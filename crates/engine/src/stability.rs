@@ -12,6 +12,8 @@ use crate::system::{Surroundings, System, SystemWorkspace};
 pub struct Forecast {
     /// Highest angular frequency of `M⁻¹ K` [rad/s], from below.
     pub highest_frequency: f64,
+    /// Highest rate of damping, of `M⁻¹ B` [1/s], from below.
+    pub highest_damping: f64,
     /// The longest stable step of the system's stepper [s]; infinite where any step is stable.
     pub longest_step: f64,
 }
@@ -19,7 +21,8 @@ pub struct Forecast {
 /// Iterations of the power method: the Rayleigh quotient of a mesh's spectrum is then within a few percent.
 const ITERATIONS: usize = 40;
 
-/// Highest frequency at the placed state, by the power method on `M⁻¹ K` with the lumped mass of rows.
+/// Highest frequency and rate of damping at the placed state, by the power method on `M⁻¹ K` and `M⁻¹ B` with the
+/// lumped mass of rows. What touches later is not in it.
 ///
 /// A random-like but fixed start vector; the Rayleigh quotient approaches the highest frequency from below,
 /// so the step it allows is taken with a margin of 5 %.
@@ -29,23 +32,54 @@ pub fn forecast(
     around: &Surroundings,
     ws: &mut SystemWorkspace,
 ) -> Forecast {
+    let stiffness = TangentWeights { position: -1.0, velocity: 0.0 };
+    let damping = TangentWeights { position: 0.0, velocity: -1.0 };
+    let highest_frequency = highest_eigenvalue(system, state, around, ws, stiffness).sqrt();
+    let is_damped = system.forces.iter().any(|force| force.declaration().velocity_terms);
+    let highest_damping =
+        if is_damped { highest_eigenvalue(system, state, around, ws, damping) } else { 0.0 };
+    let longest_step = match system.stepper.stability() {
+        Stability::Unconditional => f64::INFINITY,
+        Stability::Limited(limit) => 0.95 * longest_step(highest_frequency / limit, highest_damping),
+        // growth exp(ω² h t / 2): a tenth over a second's worth of the fastest oscillation's e-folds
+        Stability::Growing if highest_frequency > 0.0 => 0.2 / (highest_frequency * highest_frequency),
+        Stability::Growing => f64::INFINITY,
+    };
+    Forecast { highest_frequency, highest_damping, longest_step }
+}
+
+/// The step at which `(h ω / limit)² + h γ / 2 = 1`: exact for symplectic Euler, whose force sees the velocity
+/// of the start, and on the safe side of the Runge–Kutta method's region.
+fn longest_step(frequency: f64, damping: f64) -> f64 {
+    // h = 2 / (γ/2 + √(γ²/4 + 4 ω²)), without cancellation where ω is small
+    let half = 0.5 * damping;
+    2.0 / (half + (half * half + 4.0 * frequency * frequency).sqrt())
+}
+
+/// Highest eigenvalue of `M⁻¹ (weights · tangent)` by the power method.
+fn highest_eigenvalue(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &mut SystemWorkspace,
+    weights: TangentWeights,
+) -> f64 {
     let rows = system.kinematics.row_count();
     let row_mass = lumped_row_mass(system);
     let mut direction: Vec<Vec3> = (0..rows).map(start_vector).collect();
     let mut product = vec![Vec3::ZERO; rows];
-    let weights = TangentWeights { position: -1.0, velocity: 0.0 };
     let mut eigenvalue = 0.0;
     for _ in 0..ITERATIONS {
         system.project_free_rows(&mut direction);
         system.kinematics.derive_rows(&mut direction);
         // Rayleigh quotient (δ·K δ) / (δ·M δ)
         system.sum_row_differentials(ws, state, around, weights, &direction, &mut product);
-        let stiffness: f64 = direction.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum();
+        let tangent: f64 = direction.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum();
         let mass: f64 = direction.iter().zip(&row_mass).map(|(d, m)| m * d.length_sq()).sum();
-        if !(stiffness > 0.0 && mass > 0.0) {
+        if !(tangent > 0.0 && mass > 0.0) {
             break;
         }
-        eigenvalue = f64::max(eigenvalue, stiffness / mass);
+        eigenvalue = f64::max(eigenvalue, tangent / mass);
         // δ <- M⁻¹ K δ, normalised
         let mut largest: f64 = 0.0;
         for ((d, k), m) in direction.iter_mut().zip(&product).zip(&row_mass) {
@@ -57,15 +91,7 @@ pub fn forecast(
         }
         direction.iter_mut().for_each(|d| *d = *d * (1.0 / largest));
     }
-    let highest_frequency = eigenvalue.sqrt();
-    let longest_step = match system.stepper.stability() {
-        Stability::Unconditional => f64::INFINITY,
-        Stability::Limited(limit) if highest_frequency > 0.0 => 0.95 * limit / highest_frequency,
-        // growth exp(ω² h t / 2): a tenth over a second's worth of the fastest oscillation's e-folds
-        Stability::Growing if highest_frequency > 0.0 => 0.2 / (highest_frequency * highest_frequency),
-        Stability::Limited(_) | Stability::Growing => f64::INFINITY,
-    };
-    Forecast { highest_frequency, longest_step }
+    eigenvalue
 }
 
 /// Row sums of the mass.
@@ -85,4 +111,20 @@ fn start_vector(index: usize) -> Vec3 {
         (mixed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     };
     Vec3::new(number(0), number(1), number(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::longest_step;
+
+    /// Undamped `h = 1/ω` (of the scaled frequency), over-damped `h = 2/γ`, and the equation in between.
+    #[test]
+    fn the_longest_step_solves_its_equation() {
+        assert_eq!(longest_step(4.0, 0.0), 0.25);
+        assert_eq!(longest_step(0.0, 8.0), 0.25);
+        assert_eq!(longest_step(0.0, 0.0), f64::INFINITY);
+        let (frequency, damping) = (3.0, 5.0);
+        let step = longest_step(frequency, damping);
+        assert!(((step * frequency).powi(2) + 0.5 * step * damping - 1.0).abs() < 1e-14);
+    }
 }

@@ -11,7 +11,7 @@ use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::mass::Mass;
 use crate::state::{FieldState, Pair, SystemState, merge_pairs, pairs_of};
-use crate::steppers::Stepper;
+use crate::steppers::{StepError, Stepper};
 use crate::tangent::Tangent;
 
 /// The constant part of a system.
@@ -155,6 +155,24 @@ impl System {
         for (index, force) in self.forces.iter().enumerate() {
             force.add_force(&self.view(index, rows, state, around), &mut scratches[index], row_force);
         }
+    }
+
+    /// The first force that is not finite at the placed rows, evaluated one by one; `None` where all are.
+    pub fn first_force_not_finite(
+        &self,
+        rows: &Rows,
+        state: &SystemState,
+        around: &Surroundings,
+        scratches: &mut [Scratch],
+    ) -> Option<StepError> {
+        let mut alone = vec![Vec3::ZERO; rows.positions.len()];
+        self.forces.iter().enumerate().find_map(|(index, force)| {
+            alone.fill(Vec3::ZERO);
+            force.add_force(&self.view(index, rows, state, around), &mut scratches[index], &mut alone);
+            let row = alone.iter().position(|f| !f.is_finite())?;
+            let (force, value) = (force.name().to_owned(), alone[row].to_array());
+            Some(StepError::ForceNotFinite { force, row, value, time: rows.time })
+        })
     }
 
     /// `(a ∂f/∂x + b ∂f/∂v) δ` summed over forces, for row displacements `delta`.

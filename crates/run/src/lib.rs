@@ -212,9 +212,10 @@ pub fn run(
         warnings,
     };
     if let Some(out) = &options.out {
+        // numbers first: a picture that cannot be written must not cost the report
+        report::write_all(out, &report, &traces, &verdicts)?;
         picture::write_plots(out, &traces)?;
         picture::write_picture(&out.join("last.png"), &report.title, &world, &bodies)?;
-        report::write_all(out, &report, &traces, &verdicts)?;
     }
     Ok(Outcome { report, traces, verdicts, recording, world, bodies, failure })
 }

@@ -54,7 +54,10 @@ impl Recording {
     }
 
     pub(crate) fn push_hash(&mut self, world: &World) {
-        self.hashes.push((world.state().period, world.state().hash()));
+        let period = world.state().period;
+        if self.hashes.last().is_none_or(|(last, _)| *last != period) {
+            self.hashes.push((period, world.state().hash()));
+        }
     }
 
     pub(crate) fn finish(&mut self, world: &World) {

@@ -16,6 +16,8 @@ pub enum SnapshotFileError {
         "`{path}` is of another scene: SHA-256 {found}, not {expected}; resume with the scene and the settings it was made with"
     )]
     OtherScene { path: String, found: String, expected: String },
+    #[error("`{path}` is damaged: its content has the hash {found}, its first line says {expected}")]
+    Damaged { path: String, found: String, expected: String },
     #[error("`{path}`: {source}")]
     Content { path: String, source: SnapshotError },
 }
@@ -26,7 +28,7 @@ const HEADER: &str = "souple snapshot of scene ";
 /// The file cannot be written.
 pub fn write_snapshot(path: &Path, scene_sha256: &str, state: &State) -> Result<(), IoError> {
     souple_io::write_file(path, |out| {
-        writeln!(out, "{HEADER}{scene_sha256}")?;
+        writeln!(out, "{HEADER}{scene_sha256} state {}", state.hash())?;
         out.write_all(&state.to_bytes())
     })
 }
@@ -40,10 +42,21 @@ pub fn read_snapshot(path: &Path, scene_sha256: &str) -> Result<State, SnapshotF
     let no_header = || SnapshotFileError::NoHeader { path: name.clone() };
     let end = bytes.iter().position(|byte| *byte == b'\n').ok_or_else(no_header)?;
     let header = std::str::from_utf8(&bytes[..end]).map_err(|_| no_header())?;
-    let found = header.strip_prefix(HEADER).ok_or_else(no_header)?;
+    let (found, hash) =
+        header.strip_prefix(HEADER).and_then(|rest| rest.split_once(" state ")).ok_or_else(no_header)?;
     if found != scene_sha256 {
         let (found, expected) = (found.to_owned(), scene_sha256.to_owned());
         return Err(SnapshotFileError::OtherScene { path: name, found, expected });
     }
-    State::from_bytes(&bytes[end + 1..]).map_err(|source| SnapshotFileError::Content { path: name, source })
+    let state = State::from_bytes(&bytes[end + 1..])
+        .map_err(|source| SnapshotFileError::Content { path: name.clone(), source })?;
+    // numbers that were changed would be taken for indices
+    if state.hash() != hash {
+        return Err(SnapshotFileError::Damaged {
+            path: name,
+            found: state.hash(),
+            expected: hash.to_owned(),
+        });
+    }
+    Ok(state)
 }

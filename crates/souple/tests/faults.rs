@@ -86,14 +86,54 @@ const SCENES: &[(&str, &str, &str, &str)] = &[
     ("two_bodies", "[probes.place]", "[bodies.cube]\nmesh = 1\n[probes.place]", "cube"),
     ("unclosed", "[bodies.cube]", "[bodies.cube", "bodies.cube"),
     ("unclosed_text", "\"10 ms\"", "\"10 ms", "string"),
-    ("pin_on_nothing", "[probes.place]", "[[bodies.cube.pins]]\nregion = { sphere = { centre = [9, 9, 9], radius = 1 } }\n[probes.place]", "point"),
-    ("pin_on_no_group", "[probes.place]", "[[bodies.cube.pins]]\nregion = { group = \"x_mim\" }\n[probes.place]", "did you mean `x_min`"),
-    ("bad_formula", "[probes.place]", "[[bodies.cube.loads]]\nregion = \"x_min\"\nforce = [\"1 +\", 0, 0]\n[probes.place]", "force"),
-    ("unknown_stepper", "[probes.place]", "[systems.main]\nstepper = \"verlt\"\n[probes.place]", "did you mean `verlet`"),
-    ("zero_steps", "[probes.place]", "[systems.main]\nstepper = \"verlet\"\nsteps_per_period = 0\n[probes.place]", "steps_per_period"),
-    ("negative_friction", "[probes.place]", "[shapes.floor]\nshape = { name = \"plane\" }\n[[contacts]]\nbody = \"cube\"\nshape = \"floor\"\nfriction = -1\n[probes.place]", "friction"),
-    ("unknown_shape", "[probes.place]", "[shapes.floor]\nshape = { name = \"plain\" }\n[probes.place]", "did you mean `plane`"),
-    ("missing_mesh", "generate = \"box\", size = [1, 1, 1], cells = [2, 2, 2], element = \"hex8\"", "file = \"nowhere.msh\"", "nowhere.msh"),
+    (
+        "pin_on_nothing",
+        "[probes.place]",
+        "[[bodies.cube.pins]]\nregion = { sphere = { centre = [9, 9, 9], radius = 1 } }\n[probes.place]",
+        "point",
+    ),
+    (
+        "pin_on_no_group",
+        "[probes.place]",
+        "[[bodies.cube.pins]]\nregion = { group = \"x_mim\" }\n[probes.place]",
+        "did you mean `x_min`",
+    ),
+    (
+        "bad_formula",
+        "[probes.place]",
+        "[[bodies.cube.loads]]\nregion = \"x_min\"\nforce = [\"1 +\", 0, 0]\n[probes.place]",
+        "force",
+    ),
+    (
+        "unknown_stepper",
+        "[probes.place]",
+        "[systems.main]\nstepper = \"verlt\"\n[probes.place]",
+        "did you mean `verlet`",
+    ),
+    (
+        "zero_steps",
+        "[probes.place]",
+        "[systems.main]\nstepper = \"verlet\"\nsteps_per_period = 0\n[probes.place]",
+        "steps_per_period",
+    ),
+    (
+        "negative_friction",
+        "[probes.place]",
+        "[shapes.floor]\nshape = { name = \"plane\" }\n[[contacts]]\nbody = \"cube\"\nshape = \"floor\"\nfriction = -1\n[probes.place]",
+        "friction",
+    ),
+    (
+        "unknown_shape",
+        "[probes.place]",
+        "[shapes.floor]\nshape = { name = \"plain\" }\n[probes.place]",
+        "did you mean `plane`",
+    ),
+    (
+        "missing_mesh",
+        "generate = \"box\", size = [1, 1, 1], cells = [2, 2, 2], element = \"hex8\"",
+        "file = \"nowhere.msh\"",
+        "nowhere.msh",
+    ),
     ("missing_include", "title", "include = [\"nowhere.toml\"]\ntitle", "nowhere.toml"),
     ("own_include", "title", "include = [\"own_include.toml\"]\ntitle", "own_include.toml"),
     ("expect_of_nothing", "[run]", "[[expect]]\nprobe = \"plaice\"\nmax = 1\n[run]", "did you mean `place`"),
@@ -112,8 +152,14 @@ fn faulty_scenes() {
     folder.write("zeros.toml", [0; 64]);
     let mut files: Vec<(String, &str)> =
         SCENES.iter().map(|(name, _, _, words)| (format!("{name}.toml"), *words)).collect();
-    files.extend([("empty.toml", "format"), ("garbage.toml", "UTF-8"), ("zeros.toml", "zeros.toml")].map(|(f, w)| (f.to_owned(), w)));
-    files.extend([("nowhere.toml", "nowhere.toml"), (".", "."), ("nowhere", "nowhere")].map(|(f, w)| (f.to_owned(), w)));
+    files.extend(
+        [("empty.toml", "format"), ("garbage.toml", "UTF-8"), ("zeros.toml", "zeros.toml")]
+            .map(|(f, w)| (f.to_owned(), w)),
+    );
+    files.extend(
+        [("nowhere.toml", "nowhere.toml"), (".", "."), ("nowhere", "nowhere")]
+            .map(|(f, w)| (f.to_owned(), w)),
+    );
     for (file, words) in &files {
         let check = ["check", file.as_str()];
         let run = ["run", file.as_str(), "--out", "out"];
@@ -139,11 +185,21 @@ fn garbage(count: usize) -> Vec<u8> {
 fn names_stay_in_the_folder() {
     let folder = Folder::new("names");
     for (index, name) in ["../evil", "/evil", "a/b", "..", "a\\\\b", ".hidden", ""].iter().enumerate() {
-        let body = folder.write(&format!("body{index}.toml"), CUBE.replace("[bodies.cube]", &format!("[bodies.\"{name}\"]")).replace("body = \"cube\"", &format!("body = \"{name}\"")));
-        let probe = folder.write(&format!("probe{index}.toml"), CUBE.replace("[probes.place]", &format!("[probes.\"{name}\"]")));
+        let body = folder.write(
+            &format!("body{index}.toml"),
+            CUBE.replace("[bodies.cube]", &format!("[bodies.\"{name}\"]"))
+                .replace("body = \"cube\"", &format!("body = \"{name}\"")),
+        );
+        let probe = folder.write(
+            &format!("probe{index}.toml"),
+            CUBE.replace("[probes.place]", &format!("[probes.\"{name}\"]")),
+        );
         for (kind, scene) in [("body", &body), ("probe", &probe)] {
             let arguments = ["run", scene, "--out", "run/out", "--quiet"];
-            assert_refused(&folder, &[Fault { name: &format!("{kind} `{name}`"), arguments: &arguments, status: 2, words: kind }]);
+            assert_refused(
+                &folder,
+                &[Fault { name: &format!("{kind} `{name}`"), arguments: &arguments, status: 2, words: kind }],
+            );
         }
     }
 }
@@ -154,10 +210,12 @@ fn deep_nesting() {
     let folder = Folder::new("nesting");
     let deep = 20_000;
     folder.write("lists.toml", format!("{CUBE}\n[deep]\nx = {}", "[".repeat(deep)));
-    folder.write("closed_lists.toml", format!("{CUBE}\n[deep]\nx = {}{}", "[".repeat(deep), "]".repeat(deep)));
+    folder
+        .write("closed_lists.toml", format!("{CUBE}\n[deep]\nx = {}{}", "[".repeat(deep), "]".repeat(deep)));
     folder.write("keys.toml", format!("{CUBE}\n[deep]\nx{} = 1", ".x".repeat(deep)));
     let with_force = |force: &str| {
-        let load = format!("[[bodies.cube.loads]]\nregion = \"x_min\"\nforce = [\"{force}\", 0, 0]\n[probes.place]");
+        let load =
+            format!("[[bodies.cube.loads]]\nregion = \"x_min\"\nforce = [\"{force}\", 0, 0]\n[probes.place]");
         CUBE.replace("[probes.place]", &load)
     };
     folder.write("parentheses.toml", with_force(&format!("{}1{}", "(".repeat(deep), ")".repeat(deep))));
@@ -185,10 +243,16 @@ fn faulty_requests() {
     folder.write("garbage.souple", garbage(300));
     folder.write("garbage.json", garbage(300));
     folder.write("no.json", "{}");
-    let run = ["run", "cube.toml", "--quiet", "--out", "made", "--snapshot-every", "5", "--record", "run.json"];
+    let run =
+        ["run", "cube.toml", "--quiet", "--out", "made", "--snapshot-every", "5", "--record", "run.json"];
     souple_in(folder.path(), run).ends(0);
     let snapshot = std::fs::read(folder.path().join("made/snapshot_00000005.souple")).expect("a snapshot");
-    for (name, end) in [("cut_header", 10), ("cut_line", 90), ("cut_half", snapshot.len() / 2), ("cut_end", snapshot.len() - 1)] {
+    for (name, end) in [
+        ("cut_header", 10),
+        ("cut_line", 90),
+        ("cut_half", snapshot.len() / 2),
+        ("cut_end", snapshot.len() - 1),
+    ] {
         folder.write(&format!("{name}.souple"), &snapshot[..end]);
     }
     folder.write("longer.souple", [&snapshot[..], &[0; 8]].concat());
@@ -199,9 +263,23 @@ fn faulty_requests() {
     folder.write("version.json", changed(&recording, "\"souple_recording\": 1", "\"souple_recording\": 2"));
     folder.write("steps.json", changed(&recording, "\"steps\": 10", "\"steps\": -10"));
     folder.write("moved.json", changed(&recording, "cube.toml", "moved.toml"));
-    folder.write("commands.json", changed(&recording, "\"commands\": []", "\"commands\": [{\"period\": 1, \"edit\": {\"kind\": \"fly\", \"system\": 0}}]"));
+    folder.write(
+        "commands.json",
+        changed(
+            &recording,
+            "\"commands\": []",
+            "\"commands\": [{\"period\": 1, \"edit\": {\"kind\": \"fly\", \"system\": 0}}]",
+        ),
+    );
     folder.write("force.json", changed(&recording, "\"commands\": []", "\"commands\": [{\"period\": 1, \"edit\": {\"kind\": \"set_parameter\", \"system\": 0, \"force\": \"no\", \"parameter\": \"k\", \"value\": 1}}]"));
-    folder.write("system.json", changed(&recording, "\"commands\": []", "\"commands\": [{\"period\": 1, \"edit\": {\"kind\": \"pin\", \"system\": 7, \"block\": 0}}]"));
+    folder.write(
+        "system.json",
+        changed(
+            &recording,
+            "\"commands\": []",
+            "\"commands\": [{\"period\": 1, \"edit\": {\"kind\": \"pin\", \"system\": 7, \"block\": 0}}]",
+        ),
+    );
     folder.write("block.json", changed(&recording, "\"commands\": []", "\"commands\": [{\"period\": 1, \"edit\": {\"kind\": \"pin\", \"system\": 0, \"block\": 4000000000}}]"));
     let resume = |file: &'static str| ["run", "cube.toml", "--resume", file, "--out", "out"];
     let cases: &[(&[&str], i32, &str)] = &[
@@ -221,7 +299,11 @@ fn faulty_requests() {
         (&["run", "cube.toml", "--out", "out", "--snapshot-every", "0"], 2, "--snapshot-every"),
         (&["run", "cube.toml", "--snapshot-every", "1"], 2, "--out"),
         (&["run", "cube.toml", "--out", "out", "--seed", "-1"], 2, "--seed"),
-        (&["run", "cube.toml", "--out", "out", "--set", "bodies.cube.materal.density=1"], 2, "did you mean `material`"),
+        (
+            &["run", "cube.toml", "--out", "out", "--set", "bodies.cube.materal.density=1"],
+            2,
+            "did you mean `material`",
+        ),
         (&["run", "cube.toml", "--out", "out", "--set", "bodies.cube.material.density"], 2, "--set"),
         (&["run", "cube.toml", "--out", "out", "--set", "world.period=abc"], 2, "world.period"),
         (&["run", "cube.toml", "--out", "out", "--set", "world.period=-1"], 2, "world.period"),
@@ -241,8 +323,25 @@ fn faulty_requests() {
         (&resume("cut_end.souple"), 2, "cut_end.souple"),
         (&resume("longer.souple"), 2, "longer.souple"),
         (&resume("made"), 2, "made"),
-        (&["run", "other.toml", "--out", "out", "--resume", "made/snapshot_00000005.souple"], 2, "of another scene"),
-        (&["run", "cube.toml", "--out", "out", "--set", "world.period=5 ms", "--resume", "made/snapshot_00000005.souple"], 2, "of another scene"),
+        (
+            &["run", "other.toml", "--out", "out", "--resume", "made/snapshot_00000005.souple"],
+            2,
+            "of another scene",
+        ),
+        (
+            &[
+                "run",
+                "cube.toml",
+                "--out",
+                "out",
+                "--set",
+                "world.period=5 ms",
+                "--resume",
+                "made/snapshot_00000005.souple",
+            ],
+            2,
+            "of another scene",
+        ),
         (&["replay", "nowhere.json", "--out", "out"], 2, "nowhere.json"),
         (&["replay", "garbage.json", "--out", "out"], 2, "garbage.json"),
         (&["replay", "no.json", "--out", "out"], 2, "souple_recording"),
@@ -288,7 +387,8 @@ fn faulty_requests() {
 fn damaged_snapshots_do_not_panic() {
     let folder = Folder::new("damaged");
     let scene = folder.write("cube.toml", CUBE);
-    souple(["run", &scene, "--quiet", "--out", &folder.at("out"), "--snapshot-every", "5", "--frames", "0"]).ends(0);
+    souple(["run", &scene, "--quiet", "--out", &folder.at("out"), "--snapshot-every", "5", "--frames", "0"])
+        .ends(0);
     let snapshot = std::fs::read(folder.path().join("out/snapshot_00000005.souple")).expect("a snapshot");
     let header = snapshot.iter().position(|byte| *byte == b'\n').expect("a header") + 1;
     let beginning = header..(header + 200).min(snapshot.len());
@@ -298,7 +398,10 @@ fn damaged_snapshots_do_not_panic() {
             damaged[at] ^= flip;
             let damaged = folder.write("damaged.souple", damaged);
             let answer = souple(["run", &scene, "--quiet", "--steps", "2", "--resume", &damaged]);
-            assert!(matches!(answer.status, Some(0..=2)) && !answer.stderr.contains("panicked"), "{at}: {answer:#?}");
+            assert!(
+                matches!(answer.status, Some(0..=2)) && !answer.stderr.contains("panicked"),
+                "{at}: {answer:#?}"
+            );
         }
     }
 }
@@ -316,7 +419,10 @@ fn damaged_recordings_do_not_panic() {
             damaged[at] = byte;
             folder.write("damaged.json", damaged);
             let answer = souple_in(folder.path(), ["replay", "damaged.json", "--quiet", "--verify"]);
-            assert!(matches!(answer.status, Some(0..=2)) && !answer.stderr.contains("panicked"), "{at}: {answer:#?}");
+            assert!(
+                matches!(answer.status, Some(0..=2)) && !answer.stderr.contains("panicked"),
+                "{at}: {answer:#?}"
+            );
         }
     }
 }
@@ -354,7 +460,8 @@ fn overflow_is_refused() {
 #[cfg(target_os = "linux")]
 fn with_small_files(folder: &Folder, blocks: u32, arguments: &str) -> Answer {
     // the signal is ignored, so that writes fail with an error as they do on a full disk
-    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec {} {arguments}", env!("CARGO_BIN_EXE_souple"));
+    let script =
+        format!("trap '' XFSZ; ulimit -f {blocks}; exec {} {arguments}", env!("CARGO_BIN_EXE_souple"));
     let output = std::process::Command::new("sh").args(["-c", &script]).current_dir(folder.path()).output();
     Answer::of(script, output.expect("a shell"))
 }
@@ -372,7 +479,8 @@ fn full_disks_are_told() {
     assert!(!left.iter().any(|file| file.ends_with(".part") || file.ends_with(".vtu")), "{left:?}");
     let answer = with_small_files(&folder, 1, "mesh generate box out.msh size=1,1,1 cells=9,9,9").ends(1);
     assert!(answer.stderr.contains("out.msh"), "{answer:#?}");
-    let answer = with_small_files(&folder, 1, "run cube.toml --quiet --hash-every 1 --record run.json").ends(1);
+    let answer =
+        with_small_files(&folder, 1, "run cube.toml --quiet --hash-every 1 --record run.json").ends(1);
     assert!(answer.stderr.contains("run.json"), "{answer:#?}");
     let left = folder.files();
     assert!(!left.iter().any(|file| file.contains("out.msh") || file.contains("run.json")), "{left:?}");

@@ -29,7 +29,7 @@ fn generate(folder: &Folder, file: &str) -> Vec<u8> {
     std::fs::read(folder.path().join(file)).expect("the mesh just made")
 }
 
-/// A file of any format, cut anywhere before its last sign, is an error and no smaller mesh.
+/// A file of any format, cut anywhere, is an error and no smaller mesh.
 #[test]
 fn cut_off_files_are_refused() {
     let folder = Folder::new("cut");
@@ -44,13 +44,22 @@ fn cut_off_files_are_refused() {
             let name = format!("cut.{format}");
             folder.write(&name, &content[..end]);
             match quality(&folder, &name) {
-                Ok(mesh) => accepted.push(format!("{format} cut at {end} of {length}: {} points", mesh["points"])),
+                Ok(mesh) => {
+                    accepted.push(format!("{format} cut at {end} of {length}: {} points", mesh["points"]))
+                }
                 Err(message) => assert!(message.contains(&name), "{message}"),
             }
         }
-        folder.write(&format!("cut.{format}"), &content[..length - 1]);
+        // legacy VTK has no end mark: that a cut went through its last number cannot be seen, that the number is
+        // missing can
+        let last = if *format == "vtk" {
+            content[..length].iter().rposition(u8::is_ascii_whitespace).unwrap_or(0)
+        } else {
+            length - 1
+        };
+        folder.write(&format!("cut.{format}"), &content[..last]);
         if quality(&folder, &format!("cut.{format}")).is_ok() {
-            accepted.push(format!("{format} cut before its last sign"));
+            accepted.push(format!("{format} without its end"));
         }
     }
     assert!(accepted.is_empty(), "{}", accepted.join("\n"));
@@ -63,7 +72,9 @@ fn cut_off_surfaces_are_refused() {
     let obj = String::from_utf8(generate(&folder, "box.obj")).expect("a text");
     let stl = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid t\n";
     let scene = |file: &str| {
-        let shape = format!("[shapes.wall]\nshape = {{ name = \"closed_surface\", surface = \"{file}\" }}\n[[contacts]]\nbody = \"cube\"\nshape = \"wall\"\n[probes.place]");
+        let shape = format!(
+            "[shapes.wall]\nshape = {{ name = \"closed_surface\", surface = \"{file}\" }}\n[[contacts]]\nbody = \"cube\"\nshape = \"wall\"\n[probes.place]"
+        );
         CUBE.replace("[probes.place]", &shape)
     };
     let first_face = obj.find("\nf ").expect("a face") + 1;
@@ -117,7 +128,10 @@ fn garbage_is_refused() {
             let file = format!("{name}.{format}");
             folder.write(&file, content);
             let message = quality(&folder, &file).expect_err(&file);
-            assert!(message.contains(&file) || message.contains("no cells") || message.contains("no points"), "{message}");
+            assert!(
+                message.contains(&file) || message.contains("no cells") || message.contains("no points"),
+                "{message}"
+            );
         }
         let missing = format!("missing.{format}");
         assert!(quality(&folder, &missing).expect_err("a missing file").contains(&missing));
@@ -155,11 +169,15 @@ fn meshes_that_cannot_be_computed_on() {
     };
     let good = vtk(&TET, "4 0 1 2 3", "10");
     let msh2 = |nodes: &str, elements: &str| {
-        format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{elements}$EndElements\n")
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{elements}$EndElements\n"
+        )
     };
     let four = "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
     let vtu = |points: &str, cells: &str, coordinates: &str, connectivity: &str, types: &str| {
-        format!("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n<UnstructuredGrid><Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">{coordinates}</DataArray></Points>\n<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">{connectivity}</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{types}</DataArray></Cells>\n</Piece></UnstructuredGrid></VTKFile>\n")
+        format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n<UnstructuredGrid><Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">{coordinates}</DataArray></Points>\n<Cells><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">{connectivity}</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{types}</DataArray></Cells>\n</Piece></UnstructuredGrid></VTKFile>\n"
+        )
     };
     let corners = "0 0 0 1 0 0 0 1 0 0 0 1";
     let tangled = ["0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "0.2 0.2 -1", "0 1 1"];
@@ -177,7 +195,11 @@ fn meshes_that_cannot_be_computed_on() {
         ("kind.vtk", vtk(&TET, "4 0 1 2 3", "99"), "99"),
         ("count.vtk", vtk(&TET, "5 0 1 2 3 0", "10"), "5"),
         ("surface.vtk", vtk(&TET, "3 0 1 2", "5"), "no cells"),
-        ("no_cells.vtk", good.replace("CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "CELLS 0 0\n\nCELL_TYPES 0\n\n"), "no cells"),
+        (
+            "no_cells.vtk",
+            good.replace("CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n", "CELLS 0 0\n\nCELL_TYPES 0\n\n"),
+            "no cells",
+        ),
         ("absurd_points.vtk", good.replace("POINTS 4", "POINTS 99999999999999"), "line"),
         ("absurd_cells.vtk", good.replace("CELLS 1 5", "CELLS 99999999999999 99999999999999"), "line"),
         ("negative_points.vtk", good.replace("POINTS 4", "POINTS -4"), "-4"),
@@ -213,7 +235,9 @@ fn meshes_that_cannot_be_computed_on() {
         folder.write(file, content);
         match quality(&folder, file) {
             Ok(mesh) => failures.push(format!("{file}: accepted: {mesh}")),
-            Err(message) if !message.contains(words) => failures.push(format!("{file}: no `{words}` in {message}")),
+            Err(message) if !message.contains(words) => {
+                failures.push(format!("{file}: no `{words}` in {message}"))
+            }
             Err(_) => {}
         }
         folder.write("scene.toml", CUBE.replace(generated, &format!("file = \"{file}\"")));
@@ -234,7 +258,9 @@ fn repairs_are_told() {
     folder.write("inverted.vtk", vtk(&TET, "4 0 2 1 3", "10"));
     folder.write("loose.vtk", vtk(&[&TET[..], &["9 9 9"]].concat(), "4 0 1 2 3", "10"));
     folder.write("parts.vtk", vtk(&[&TET[..], &second].concat(), "4 0 1 2 3\n4 4 5 6 7", "10 10"));
-    for (file, words) in [("inverted.vtk", "inverted"), ("loose.vtk", "belong to no cell"), ("parts.vtk", "2 parts")] {
+    for (file, words) in
+        [("inverted.vtk", "inverted"), ("loose.vtk", "belong to no cell"), ("parts.vtk", "2 parts")]
+    {
         let mesh = quality(&folder, file).unwrap_or_else(|message| panic!("{file}: {message}"));
         assert!(mesh["notes"].to_string().contains(words), "{file}: {mesh:#}");
         assert!(mesh["volume"].as_f64().is_some_and(|volume| volume > 0.0), "{file}: {mesh:#}");

@@ -91,6 +91,7 @@ pub const BENCHES: &[Bench] = &[
         what: "the same bar with 5,880 tetrahedra [ms/step]",
         run: |quick| soft_beam("implicit_beam_5k", [20, 7, 7], 5.0, quick),
     },
+    Bench { name: "startup", what: "`souple list materials` from start to end [ms]", run: startup },
     Bench {
         name: "static_100k",
         what: "equilibrium of the reference bar, n = 12, St. Venant-Kirchhoff, to 1e-8 [s]",
@@ -379,5 +380,36 @@ fn static_100k(quick: bool) -> Result<Vec<Figure>, String> {
         samples: 1,
         spread: 0.0,
         bytes: world.bytes(),
+    }])
+}
+
+fn startup(quick: bool) -> Result<Vec<Figure>, String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let mut samples = Vec::new();
+    for _ in 0..if quick { 5 } else { 30 } {
+        let clock = Instant::now();
+        let output = std::process::Command::new(&program)
+            .args(["list", "materials"])
+            .output()
+            .map_err(|error| error.to_string())?;
+        samples.push(1e3 * clock.elapsed().as_secs_f64());
+        if !output.status.success() {
+            return Err(format!("`{} list materials` failed", program.display()));
+        }
+    }
+    let count = samples.len();
+    let (value, spread) = median(samples);
+    Ok(vec![Figure {
+        name: "startup".to_owned(),
+        value,
+        unit: "ms",
+        higher_is_better: false,
+        error: 0.0,
+        error_of: "nothing: a list has no error".to_owned(),
+        baseline: None,
+        threads: 1,
+        samples: count,
+        spread,
+        bytes: 0,
     }])
 }

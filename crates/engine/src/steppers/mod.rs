@@ -21,8 +21,8 @@ pub use static_equilibrium::StaticEquilibrium;
 /// What a step had to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
-    pub newton_iterations: u32,
-    pub linear_iterations: u32,
+    pub newton_iterations: u64,
+    pub linear_iterations: u64,
     /// Largest relative residual among the linear solves.
     pub linear_residual: f64,
     /// Norm of the remaining unbalanced force over that at the start; 0 for explicit steppers.
@@ -47,7 +47,11 @@ pub enum StepError {
     #[error(
         "Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take a smaller step, more load steps or `newton = \"one\"`"
     )]
-    NewtonStalled { iterations: u32, residual: f64, wanted: f64 },
+    NewtonStalled { iterations: u64, residual: f64, wanted: f64 },
+    #[error(
+        "prescribed points are {to_go:.3e} m from where they are led, and no step brings them closer; lead them more slowly"
+    )]
+    NotReached { to_go: f64 },
     #[error("force `{force}` is not finite ({value:?} at row {row}, time {time} s)")]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
     #[error("{0}")]

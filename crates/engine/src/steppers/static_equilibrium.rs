@@ -69,7 +69,8 @@ impl StaticEquilibrium {
             around,
             end,
             timestep: None,
-            has_potential: system.forces.iter().all(|force| force.declaration().conservative),
+            has_potential: system.kinematics.is_conservative()
+                && system.forces.iter().all(|force| force.declaration().conservative),
         };
         let lent = Lent::from(next);
         let solved = implicit.solve_newton(self.newton, &lent, &mut next.q, ws, buffers);

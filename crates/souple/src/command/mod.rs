@@ -154,7 +154,9 @@ impl From<souple_io::IoError> for Refusal {
                 let line = if let Place::Line(line) = fault.place { json!(line) } else { Value::Null };
                 (path, line, fault.found, fault.expected)
             }
-            IoError::Read { path, .. } => (path, Value::Null, String::new(), "a file that can be read".to_owned()),
+            IoError::Read { path, .. } => {
+                (path, Value::Null, String::new(), "a file that can be read".to_owned())
+            }
             IoError::Extension { path, found, expected } => (path, Value::Null, found, expected),
             IoError::Unsupported { .. } | IoError::Request { .. } | IoError::UnknownFormat(_) => {
                 return Self::request("file", "", "", message);
