@@ -206,6 +206,7 @@ pub fn run(
         energy: (energy_at_start, world.energy()),
         momentum: (momentum_at_start, world.momentum()),
         solver,
+        peak_bytes: peak_bytes(),
         solver_bytes: world.bytes(),
         probes: traces.iter().map(Trace::summary).collect(),
         hashes: recording.hashes.clone(),

@@ -9,7 +9,7 @@ use souple_io::IoError;
 use souple_math::Vec3;
 use souple_scene::BodyInfo;
 
-use crate::machine::{instruction_set, peak_bytes};
+use crate::machine::instruction_set;
 use crate::trace::{Summary, write_csv};
 use crate::{Trace, Verdict};
 
@@ -49,6 +49,9 @@ pub struct Report {
     /// Linear and angular, at the start and at the end.
     pub momentum: ((Vec3, Vec3), (Vec3, Vec3)),
     pub solver: StepReport,
+    /// Most memory the process has held up to the last step, pictures not included; `None` where the system does
+    /// not tell.
+    pub peak_bytes: Option<u64>,
     /// Bytes of forces, matrices and factors.
     pub solver_bytes: usize,
     pub probes: Vec<Summary>,
@@ -85,7 +88,7 @@ impl Report {
             "simulated_seconds": self.simulated_seconds,
             "wall_seconds": self.wall_seconds,
             "real_time_factor": self.real_time_factor(),
-            "peak_bytes": peak_bytes(),
+            "peak_bytes": self.peak_bytes,
             "solver_bytes": self.solver_bytes,
             "counts": self.counts,
             "stages_ms": {
