@@ -18,6 +18,13 @@ pub fn write_file(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> Result<(), IoError> {
+    // a device or a pipe is written as it is: renaming would put a file in its place
+    if let Ok(target) = fs::metadata(path)
+        && !target.is_file()
+        && !target.is_dir()
+    {
+        return write_through(path, content).map_err(|source| IoError::write(path, source));
+    }
     let temporary = name_beside(path)
         .ok_or_else(|| IoError::request("the path", format!("`{}`", path.display()), "the name of a file"))?;
     write_and_rename(path, &temporary, content).map_err(|source| {
@@ -37,6 +44,15 @@ fn write_and_rename(
     // a full disk may show only here, when the buffers go out
     writer.into_inner().map_err(|error| error.into_error())?.sync_all()?;
     fs::rename(temporary, path)
+}
+
+fn write_through(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut writer = BufWriter::with_capacity(1 << 16, File::options().write(true).open(path)?);
+    content(&mut writer)?;
+    writer.flush()
 }
 
 /// `.name.process-count.part`, different for each writer of each process.
@@ -77,6 +93,19 @@ mod tests {
         let error = write_file(&folder.path("no/such/file"), |_| Ok(())).unwrap_err();
         assert!(matches!(error, IoError::NotWritable { .. }), "{error}");
         assert!(matches!(write_file(Path::new("/"), |_| Ok(())), Err(IoError::Request { .. })));
+    }
+
+    /// Devices are written, not replaced: by a link, so that a fault here harms no device of the machine.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn devices_stay_what_they_are() {
+        let folder = TemporaryFolder::new("beside_device");
+        let (full, null) = (folder.path("full"), folder.path("null"));
+        std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+        std::os::unix::fs::symlink("/dev/null", &null).unwrap();
+        assert!(matches!(write_file(&full, |out| out.write_all(b"x")), Err(IoError::DiskFull { .. })));
+        write_file(&null, |out| out.write_all(b"x")).unwrap();
+        assert!(full.is_symlink() && null.is_symlink());
     }
 
     /// `/dev/full` refuses every byte as a full disk does.

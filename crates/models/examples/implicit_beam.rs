@@ -139,7 +139,7 @@ fn time_steps(name: &str, bar: Bar, threads: usize, period: f64, steps: usize, s
             stage(stages.forces, before.forces),
             stage(stages.assembly, before.assembly),
             stage(stages.solve, before.solve),
-            f64::from(iterations) / steps as f64,
+            iterations as f64 / steps as f64,
             world.bytes() / bar.mesh().cell_count(),
             load_average(),
         );

@@ -14,6 +14,7 @@ const CUT: &[(&str, u64)] = &[
     ("incline_slides", 20),
     ("incline_sticks", 20),
     ("soft_block", 10),
+    ("twisted_bar", 10),
     ("two_materials", 25),
 ];
 

@@ -195,8 +195,6 @@ pub fn run_default_scene() -> Result<End, Refusal> {
     print_line("Try next:");
     print_line("  souple list materials");
     print_line("  souple check scenes/cantilever/scene.toml");
-    print_line(
-        "  souple run scenes/cantilever/scene.toml --out out/cantilever --set bodies.bar.material.name=corotational",
-    );
+    print_line("  souple run scenes/twisted_bar/scene.toml --out out/twisted_bar");
     Ok(end)
 }
