@@ -212,10 +212,11 @@ pub fn newton<P: NewtonProblem + ?Sized>(
                 let c = settings.sufficient_decrease;
                 let lower = match (merit, trial_merit) {
                     (Some(before), Some(after)) => {
-                        // close to the solution the change of Φ drowns in its rounding: there the residual decides
-                        let rounding = 1e-13 * before.abs().max(after.abs());
+                        // the change of Φ drowns in its rounding where Φ is a sum of large terms that cancel;
+                        // the slopes at both ends do not: ΔΦ ≈ (slope + slope after) fraction/2
+                        let slope_after = -reduce::dot(trial_residual, d);
                         after <= before + c * fraction * slope
-                            || ((after - before).abs() <= rounding && trial_norm <= norm)
+                            || (trial_norm <= norm && slope_after <= (2.0 * c - 1.0) * slope)
                     }
                     // ΔΦ ≈ (slope + slope after) fraction/2 ≤ c fraction slope
                     _ if is_gradient => {
