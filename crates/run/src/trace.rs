@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_io::IoError;
+use souple_io::{Column, IoError};
 use souple_scene::{Measurement, ProbeInfo};
 
 /// The values of a probe, one for each step and one before the first.
@@ -86,22 +86,15 @@ impl Trace {
 /// # Errors
 /// The file cannot be written.
 pub fn write_csv(path: &Path, traces: &[Trace]) -> Result<(), IoError> {
-    souple_io::write_file(path, |out| {
-        write!(out, "time [s]")?;
-        for trace in traces {
-            for suffix in if trace.components == 3 { &[".x", ".y", ".z"][..] } else { &[""][..] } {
-                write!(out, ",{}{suffix} [{}]", trace.name, trace.unit)?;
-            }
+    let mut columns =
+        vec![Column::new("time [s]", traces.first().map_or(Vec::new(), |trace| trace.times.clone()))];
+    for trace in traces {
+        for (c, suffix) in
+            if trace.components == 3 { &[".x", ".y", ".z"][..] } else { &[""][..] }.iter().enumerate()
+        {
+            let values = trace.values.iter().skip(c).step_by(trace.components).copied().collect();
+            columns.push(Column::new(format!("{}{suffix} [{}]", trace.name, trace.unit), values));
         }
-        writeln!(out)?;
-        let steps = traces.first().map_or(0, |trace| trace.times.len());
-        for step in 0..steps {
-            write!(out, "{}", traces[0].times[step])?;
-            for number in traces.iter().flat_map(|trace| trace.value(step).unwrap_or_default()) {
-                write!(out, ",{number:e}")?;
-            }
-            writeln!(out)?;
-        }
-        Ok(())
-    })
+    }
+    souple_io::write_csv(path, &columns)
 }
