@@ -1,8 +1,9 @@
-//! Writes small good files of every format for the fuzzer to start from: `seeds FOLDER` fills `FOLDER/<target>`.
+//! Writes what the fuzzer starts from: `seeds FOLDER` fills `FOLDER/<target>` with small good files of every format, with
+//! the shipped scenes and the faulty ones, and writes the keys of scenes to `dictionaries/scene`.
 
 use std::path::Path;
 
-use souple_io::{FORMATS, Field, Output, write_dataset_as};
+use souple_io::{FORMATS, Field, Output, write_file};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Group, Mesh};
 
@@ -14,12 +15,68 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     mesh.groups.insert("floor".into(), Group { points: vec![0], cells: vec![0], facets: vec![0] });
     let fields = [Field::new("speed", 1, vec![0.0, 1.0, 2.0, 3.0])];
     let output = Output { point_fields: &fields, ..Output::new(&mesh) };
-    for entry in FORMATS.entries.iter().filter(|entry| entry.build.write.is_some()) {
+    for entry in FORMATS.entries.iter().filter(|entry| entry.build.read.is_some()) {
         let target = entry.name.split('_').next().unwrap_or(entry.name);
         let place = Path::new(&folder).join(target);
         std::fs::create_dir_all(&place)?;
         let output = if target == "gmsh" { Output { point_fields: &[], ..output } } else { output };
-        write_dataset_as(entry.name, &place.join(format!("seed_{}", entry.name)), &output)?;
+        let Some(write) = entry.build.write else { continue };
+        // in memory: formats of several files are fuzzed joined
+        let mut content = Vec::new();
+        write(&output, &mut content)?;
+        write_file(&place.join(format!("seed_{}", entry.name)), |out| out.write_all(&content))?;
+    }
+    copy_scenes(&Path::new(&folder).join("scene"))?;
+    write_formulas(&Path::new(&folder).join("formula"))?;
+    let mut words = Vec::new();
+    collect_words(&souple_scene::schema(), &mut words);
+    words.sort();
+    words.dedup();
+    let lines: String = words.iter().map(|word| format!("{word:?}\n")).collect();
+    std::fs::write(Path::new("dictionaries").join("scene"), lines)?;
+    Ok(())
+}
+
+/// All scenes of the repository, from its folder `fuzz`.
+fn copy_scenes(place: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(place)?;
+    for folder in ["../scenes", "../crates/scene/tests", "../crates/scene/tests/faults"] {
+        for entry in std::fs::read_dir(folder)? {
+            let path = entry?.path();
+            let (name, file) = match path.is_dir() {
+                true => (path.file_name().map(ToOwned::to_owned), path.join("scene.toml")),
+                false => (path.file_stem().map(ToOwned::to_owned), path),
+            };
+            if let Some(name) = name.filter(|_| file.extension().is_some_and(|e| e == "toml") && file.exists()) {
+                std::fs::copy(&file, place.join(name))?;
+            }
+        }
     }
     Ok(())
+}
+
+fn write_formulas(place: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(place)?;
+    let formulas = ["100 * sin(2 * pi * t) + 0 * x", "[0, -10 * exp(-t), max(x, y)^2]", "x > 0.5 and (y < z or not (t >= 1))", "10 kPa", "1.5e-3 kg m^2/s"];
+    formulas.iter().enumerate().try_for_each(|(index, text)| std::fs::write(place.join(index.to_string()), text))
+}
+
+/// All keys of a JSON Schema and all words that they may hold.
+fn collect_words(schema: &serde_json::Value, words: &mut Vec<String>) {
+    match schema {
+        serde_json::Value::Object(map) => {
+            if let Some(properties) = map.get("properties").and_then(|value| value.as_object()) {
+                words.extend(properties.keys().cloned());
+            }
+            let texts = ["const", "enum"].into_iter().filter_map(|key| map.get(key));
+            let single = |value: &serde_json::Value| value.as_str().map(str::to_owned);
+            for text in texts {
+                words.extend(single(text));
+                words.extend(text.as_array().into_iter().flatten().filter_map(single));
+            }
+            map.values().for_each(|value| collect_words(value, words));
+        }
+        serde_json::Value::Array(items) => items.iter().for_each(|item| collect_words(item, words)),
+        _ => {}
+    }
 }

@@ -1,12 +1,15 @@
 //! The project's own chores: `cargo xtask test` runs every check.
 //!
-//! A check is a line in [`STEPS`]; quick ones stand first. One of them alone: `cargo xtask test licences`.
+//! A check is a line in [`STEPS`]; quick ones stand first. One of them alone: `cargo xtask test licences`. Pages that
+//! are made by the program are written by `cargo xtask gallery` and `cargo xtask reference`.
 
 mod capabilities;
 mod cargo;
 mod failure;
+mod gallery;
 mod licences;
 mod program;
+mod reference;
 mod snippets;
 mod texts;
 mod tree;
@@ -35,6 +38,11 @@ const STEPS: &[Step] = &[
         summary: "docs/capabilities.md names what exists",
         run: capabilities::check,
     },
+    Step {
+        name: "gallery",
+        summary: "docs/gallery.md shows every scene by a small picture",
+        run: gallery::check,
+    },
     Step { name: "licences", summary: "every dependency's licence is on the list", run: licences::check },
     Step { name: "format", summary: "rustfmt changes nothing", run: cargo::format },
     Step { name: "lint", summary: "clippy has nothing to say on any target", run: cargo::lint },
@@ -46,6 +54,7 @@ const STEPS: &[Step] = &[
         run: cargo::doc_tests,
     },
     Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
+    Step { name: "reference", summary: "docs/reference is what the tables say", run: reference::check },
     Step { name: "snippets", summary: "every command and scene in README and docs/", run: snippets::check },
     Step { name: "verify", summary: "the validation cases of the released program", run: program::verify },
 ];
@@ -56,9 +65,15 @@ fn main() -> ExitCode {
         print!("{}", usage());
         return ExitCode::SUCCESS;
     };
-    if command != "test" {
-        eprintln!("there is no chore `{command}`\n\n{}", usage());
-        return ExitCode::from(2);
+    let tree = Tree::of_this_project();
+    match command.as_str() {
+        "test" => {}
+        "gallery" => return written(gallery::make(&tree, names)),
+        "reference" => return written(reference::make(&tree)),
+        _ => {
+            eprintln!("there is no chore `{command}`\n\n{}", usage());
+            return ExitCode::from(2);
+        }
     }
     match chosen(names) {
         Ok(steps) => run(&steps),
@@ -69,8 +84,22 @@ fn main() -> ExitCode {
     }
 }
 
+/// How a chore that writes pages ended.
+fn written(result: Result<(), Failure>) -> ExitCode {
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("\n{failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
 fn usage() -> String {
-    let mut text = "cargo xtask test            every check, in this order\n\
+    let mut text = "cargo xtask gallery         docs/gallery.md and its pictures, by the released program\n\
+                    cargo xtask gallery NAME…   the pictures of some scenes\n\
+                    cargo xtask reference       docs/reference, by the released program\n\
+                    cargo xtask test            every check, in this order\n\
                     cargo xtask test NAME…      some of them\n\n"
         .to_owned();
     for step in STEPS {

@@ -14,6 +14,9 @@ pub enum Edit {
     SetParameter { system: usize, force: String, parameter: String, value: f64 },
     /// Pins a velocity block where it is.
     Pin { system: usize, block: u32 },
+    /// Pins a velocity block at a position [m] (of a point: blocks of frames are held as they are). What
+    /// [`Edit::Pin`] comes to once it has been made: it means the same at any later state.
+    PinAt { system: usize, block: u32, position: Vec3 },
     /// Frees a block from every constraint on it.
     Unpin { system: usize, block: u32 },
     /// Gives a velocity block a velocity [m/s or rad/s].
@@ -38,6 +41,8 @@ pub enum EditError {
     NoBlock { system: String, block: u32, count: usize },
     #[error("a velocity of {velocity:?} is not finite")]
     NotFinite { velocity: [f64; 3] },
+    #[error("a pin at {position:?} is not at a finite place")]
+    PinNotFinite { position: [f64; 3] },
     #[error(transparent)]
     Parameter(#[from] ParameterError),
 }
@@ -47,9 +52,20 @@ impl Edit {
         match self {
             Self::SetParameter { system, .. }
             | Self::Pin { system, .. }
+            | Self::PinAt { system, .. }
             | Self::Unpin { system, .. }
             | Self::SetVelocity { system, .. } => *system,
         }
+    }
+
+    /// The same edit said so that it does not depend on the state it is made at.
+    pub(crate) fn resolved(self, model: &Model, state: &State) -> Self {
+        let Self::Pin { system, block } = self else { return self };
+        let place = || {
+            let row = model.systems.get(system)?.kinematics.point_block_row(block)?;
+            state.systems.get(system)?.q.get(row as usize).copied()
+        };
+        Self::PinAt { system, block, position: place().unwrap_or(Vec3::ZERO) }
     }
 
     pub(crate) fn apply(&self, model: &mut Model, state: &mut State) -> Result<(), EditError> {
@@ -75,6 +91,18 @@ impl Edit {
                 let start = row.map_or(Vec3::ZERO, |row| state.q[row as usize]);
                 system.constraints.retain(|constraint| constraint.block != *block);
                 system.constraints.push(Constraint::pin(*block, start));
+                state.v[*block as usize] = Vec3::ZERO;
+            }
+            Self::PinAt { block, position, .. } => {
+                check_block(*block)?;
+                if !position.is_finite() {
+                    return Err(EditError::PinNotFinite { position: position.to_array() });
+                }
+                system.constraints.retain(|constraint| constraint.block != *block);
+                system.constraints.push(Constraint::pin(*block, *position));
+                if let Some(row) = system.kinematics.point_block_row(*block) {
+                    state.q[row as usize] = *position;
+                }
                 state.v[*block as usize] = Vec3::ZERO;
             }
             Self::Unpin { block, .. } => {

@@ -6,9 +6,10 @@
 
 use std::any::Any;
 
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
+use crate::Obstacle;
 use crate::state::{FieldState, Pair};
 
 /// What a force reads: the rows as they stand, and its own memory.
@@ -92,6 +93,40 @@ pub enum ParameterError {
     Unfit { force: String, name: String, value: f64, expected: String },
 }
 
+/// What a force knows of a cell of its mesh: means over the cell's volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CellField {
+    /// Deformation gradient.
+    pub deformation: Mat3,
+    /// First Piola–Kirchhoff stress [Pa].
+    pub stress: Mat3,
+    /// Cauchy stress [Pa]; zero where the cell has no volume.
+    pub cauchy: Mat3,
+    /// `√(3/2 s:s)` of the deviator `s` of the Cauchy stress [Pa].
+    pub von_mises: f64,
+    /// Stored energy per rest volume [J/m³].
+    pub energy_density: f64,
+    /// Rest volume [m³].
+    pub volume: f64,
+    /// Volume as the cell stands, negative where it is inside out [m³].
+    pub current_volume: f64,
+}
+
+/// A point that touches, and what that does to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint<'a> {
+    /// Row of the point.
+    pub row: u32,
+    /// Rows that bear the opposite force, with their shares; none of a shape.
+    pub against: &'a [(u32, f64)],
+    /// How deep the point is, thickness included [m].
+    pub penetration: f64,
+    /// Along the normal, on the point [N].
+    pub normal_force: Vec3,
+    /// Across it, on the point [N].
+    pub friction: Vec3,
+}
+
 /// Buffers of one force, kept between calls; made by [`Force::new_scratch`], opaque to everyone else.
 pub type Scratch = Box<dyn Any + Send + Sync>;
 
@@ -142,11 +177,40 @@ pub trait Force: Send + Sync {
         matrix: &mut BlockMatrix,
     );
 
+    /// `matrix += a ∂f/∂x + b ∂f/∂v` near enough to precondition with, but symmetric, and of one sign where the exact
+    /// blocks are so only for want of symmetry. Asked of forces whose tangent is not symmetric.
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.add_blocks(at, weights, scratch, matrix);
+    }
+
     /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.
     fn advance_memory(&self, _at: &Configuration, _timestep: f64, _memory: &mut [f64], _pairs: &mut [Pair]) {}
 
     /// Pairs that may interact at this configuration, in any order; each comes with its initial state.
     fn find_pairs(&self, _at: &Configuration, _scratch: &mut Scratch, _found: &mut Vec<Pair>) {}
+
+    /// Whether pairs found at the rows `searched` may miss what touches at the rows `now`: the list is then searched
+    /// again, in explicit steps before the force, in implicit ones between solves, never while one iterates.
+    fn pairs_are_stale(&self, _searched: &[Vec3], _now: &[Vec3]) -> bool {
+        false
+    }
+
+    /// Stiffness that comes to act on rows when all that may touch does, `(row, [N/m])`: a bound from above by a diagonal
+    /// matrix, which forecasts take in place of the tangent as it stands. `None`: the tangent tells all.
+    fn touching_stiffness(&self) -> Option<Vec<(u32, f64)>> {
+        None
+    }
+
+    /// Whether a pair read from a file is one that it could have found: an index beyond its data would be a panic.
+    fn accepts_pair(&self, _pair: &Pair) -> bool {
+        false
+    }
 
     /// What this force leaves out of its tangent, or would warn of, at this configuration.
     fn warnings(&self, _at: &Configuration) -> Vec<String> {
@@ -167,11 +231,29 @@ pub trait Force: Send + Sync {
         })
     }
 
-    /// Bytes of constant data, for the memory report.
+    /// Stress and energy of cell number `cell` at row positions, of a force that deforms cells.
+    fn cell_field(&self, _cell: usize, _positions: &[Vec3]) -> Option<CellField> {
+        None
+    }
+
+    /// Calls `visit` for every point that touches something; never where the force is no contact.
+    fn visit_contacts(&self, _at: &Configuration, _visit: &mut dyn FnMut(&ContactPoint)) {}
+
+    /// What this force keeps bodies away from, where that is something rigid, for pictures.
+    fn obstacle(&self) -> Option<Obstacle> {
+        None
+    }
+
+    /// Bytes of constant data on the heap, for the memory report.
     fn bytes(&self) -> usize {
         0
     }
 
-    /// The concrete force, for probes of quantities only it knows (stress, contact force).
+    /// Bytes that a scratch of this force holds on the heap, for the memory report.
+    fn scratch_bytes(&self, _scratch: &Scratch) -> usize {
+        0
+    }
+
+    /// The concrete force, for tests of it. Programs ask the questions above, which every force may answer.
     fn as_any(&self) -> &dyn Any;
 }

@@ -18,7 +18,7 @@ use crate::linear::{Indefinite, LinearError, LinearSystem, Solved};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Surroundings, System, SystemWorkspace};
-use crate::tangent::{Linearisation, OperatorBuffers, TangentOperator};
+use crate::tangent::{Assembled, Linearisation, OperatorBuffers, TangentOperator};
 
 /// The step from `(q_start, v_start)` to the end of `timestep`.
 pub struct ImplicitStep<'a> {
@@ -96,6 +96,28 @@ impl ImplicitBuffers {
             newton: newton::Workspace::default(),
         }
     }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let buffers = [
+            &self.q_start,
+            &self.v_start,
+            &self.start_row_velocities,
+            &self.residual,
+            &self.unbalanced,
+            &self.direction,
+            &self.prescribed,
+            &self.rhs,
+            &self.q,
+            &self.q_trial,
+            &self.v_trial,
+            &self.at_rest,
+            &self.damping,
+        ];
+        buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
+            + self.operator.bytes()
+            + self.newton.bytes()
+    }
 }
 
 /// What forces may read of the state while its configuration is sought: the rest of `next` is lent to it, without
@@ -117,11 +139,34 @@ impl Lent {
         })
     }
 
+    /// Whether `history` is a configuration that [`Lent::from`] wrote down, or none.
+    pub fn accepts_history(system: &System, history: &[f64]) -> bool {
+        history.is_empty() || history.len() == 3 * system.kinematics.free_row_count()
+    }
+
     pub fn give_back(self, next: &mut SystemState) {
         next.memory = self.0.memory;
         next.pairs = self.0.pairs;
         next.history = self.0.history;
     }
+}
+
+/// What constrained components do in a linear solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Constrained {
+    /// They stay where they are.
+    Still,
+    /// They go where they are led (`prescribed`), and take the others along.
+    Led,
+}
+
+/// What is asked of a linear solve.
+#[derive(Clone, Copy, Debug)]
+struct Wanted {
+    constrained: Constrained,
+    indefinite: Indefinite,
+    /// As [`LinearSystem::tolerance`].
+    tolerance: f64,
 }
 
 impl ImplicitStep<'_> {
@@ -202,15 +247,14 @@ impl ImplicitStep<'_> {
         if to_go <= 1e-14 * norm(q) { 0.0 } else { to_go }
     }
 
-    /// `direction = A⁻¹ residual` at `(q_trial, v_trial)`, with constrained components prescribed if `lift`.
+    /// `direction = A⁻¹ residual` at `(q_trial, v_trial)`.
     /// Returns also the residual that rounding of positions makes, `ε |diag(A) x|`.
     fn solve(
         &self,
         state: &SystemState,
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
-        lift: bool,
-        (indefinite, tolerance): (Indefinite, f64),
+        wanted: Wanted,
     ) -> Result<(Solved, f64), LinearError> {
         let system = self.system;
         let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
@@ -237,7 +281,7 @@ impl ImplicitStep<'_> {
         };
         rhs.copy_from_slice(residual);
         let clock = Instant::now();
-        if lift {
+        if wanted.constrained == Constrained::Led {
             // A (δ_free + δ_prescribed) = -r
             TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
             for (rhs, lift) in rhs.iter_mut().zip(direction.iter()) {
@@ -254,10 +298,10 @@ impl ImplicitStep<'_> {
             &moved
         };
         let is_matrix_free = linear.is_matrix_free();
-        let matrix = if is_matrix_free {
-            tangent.assemble_diagonal(&at, scratches)
+        let Assembled { matrix, symmetric: nearby } = if is_matrix_free {
+            Assembled { matrix: tangent.assemble_diagonal(&at, scratches), symmetric: None }
         } else {
-            tangent.assemble(&at, scratches)
+            tangent.assemble_with_symmetric(&at, scratches)
         };
         stages.assembly += clock.elapsed().as_secs_f64();
         let weighted = (0..positions.len())
@@ -268,17 +312,18 @@ impl ImplicitStep<'_> {
         let linear_system = LinearSystem {
             matrix,
             operator: products.as_ref().map(|operator| operator as _),
+            nearby,
             symmetric,
             kinematics: &system.kinematics,
             reference: &state.history,
             positions,
-            indefinite,
-            tolerance,
+            indefinite: wanted.indefinite,
+            tolerance: wanted.tolerance,
         };
         let solved = linear.solve(linear_system, rhs, direction);
         stages.solve += clock.elapsed().as_secs_f64();
         system.project_free(direction);
-        if lift {
+        if wanted.constrained == Constrained::Led {
             for (direction, prescribed) in direction.iter_mut().zip(prescribed.iter()) {
                 *direction += *prescribed;
             }
@@ -312,8 +357,10 @@ impl ImplicitStep<'_> {
         if self.system.forces.iter().any(|force| force.declaration().velocity_terms) {
             self.shift_to_start_velocity(state, ws, buffers);
         }
-        let lift = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
-        let (solved, _) = self.solve(state, ws, buffers, lift, (Indefinite::Solve, 0.0))?;
+        let is_led = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
+        let constrained = if is_led { Constrained::Led } else { Constrained::Still };
+        let wanted = Wanted { constrained, indefinite: Indefinite::Solve, tolerance: 0.0 };
+        let (solved, _) = self.solve(state, ws, buffers, wanted)?;
         self.system.kinematics.retract(q, &buffers.direction);
         Ok(StepReport {
             newton_iterations: 1,
@@ -388,7 +435,11 @@ impl ImplicitStep<'_> {
             if let Some(error) = self.system.first_force_not_finite(rows, &lent.0, &self.around, scratches) {
                 return Err(error);
             }
+            let size = |block: &usize| buffers.residual[*block].length_sq();
             return Err(StepError::NewtonStalled {
+                block: (0..buffers.residual.len())
+                    .max_by(|a, b| size(a).total_cmp(&size(b)))
+                    .unwrap_or_default(),
                 iterations: report.newton_iterations,
                 residual: report.newton_residual,
                 wanted: settings.tolerance,
@@ -435,10 +486,10 @@ impl ImplicitProblem<'_, '_> {
         self.step.evaluate(self.state, self.ws, self.buffers)
     }
 
-    fn solve(&mut self, lift: bool, tolerance: f64) -> Result<Solved, StepError> {
+    fn solve(&mut self, constrained: Constrained, tolerance: f64) -> Result<Solved, StepError> {
         let indefinite = if self.step.is_symmetric() { Indefinite::Descend } else { Indefinite::Solve };
-        let (solved, rounding) =
-            self.step.solve(self.state, self.ws, self.buffers, lift, (indefinite, tolerance))?;
+        let wanted = Wanted { constrained, indefinite, tolerance };
+        let (solved, rounding) = self.step.solve(self.state, self.ws, self.buffers, wanted)?;
         // forces are sums of terms that cancel
         self.rounding = rounding.max(64.0 * f64::EPSILON * norm(&self.ws.row_force));
         self.report.newton_iterations += 1;
@@ -460,7 +511,7 @@ impl ImplicitProblem<'_, '_> {
                 self.place(None);
                 self.evaluate();
             }
-            self.solve(true, LOOSEST)?;
+            self.solve(Constrained::Led, LOOSEST)?;
             let direction = std::mem::take(&mut self.buffers.direction);
             let mut fraction = 1.0;
             let mut halvings = 0;
@@ -511,7 +562,7 @@ impl NewtonProblem for ImplicitProblem<'_, '_> {
         let relative = norm(residual) / self.scale;
         // no tighter than what the wanted residual needs
         let tolerance = (0.1 * self.settings.tolerance / relative).max(FORCING * relative);
-        self.solve(false, tolerance.min(LOOSEST))?;
+        self.solve(Constrained::Still, tolerance.min(LOOSEST))?;
         out.copy_from_slice(&self.buffers.direction);
         Ok(None)
     }

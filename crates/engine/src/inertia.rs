@@ -1,7 +1,7 @@
 //! Forces to accelerations: `TᵀMT a = Tᵀ(f - M ẍ_bias)`, constrained components zero.
 
 use souple_math::Vec3;
-use souple_solve::BlockMatrix;
+use souple_solve::{BlockMatrix, reduce};
 
 use crate::kinematics::UnknownKind;
 use crate::state::SystemState;
@@ -25,23 +25,27 @@ pub fn accelerations_at(
     let clock = std::time::Instant::now();
     system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
     ws.stages.forces += clock.elapsed().as_secs_f64();
-    if ws.row_force.iter().any(|force| !force.is_finite())
+    if !reduce::all_finite(&ws.row_force)
         && let Some(error) = system.first_force_not_finite(&ws.rows, state, around, &mut ws.scratches)
     {
         return Err(error);
     }
     if system.kinematics.is_trivial() && system.mass.is_lumped() {
         // a = f / m
-        for ((a, f), mass) in out.iter_mut().zip(&ws.row_force).zip(&system.mass.diagonal) {
-            *a = *f * (1.0 / mass);
-        }
+        let (forces, masses) = (&ws.row_force, &system.mass.diagonal);
+        reduce::for_each_chunk(out, &|first, out: &mut [Vec3]| {
+            for ((a, f), mass) in out.iter_mut().zip(&forces[first..]).zip(&masses[first..]) {
+                *a = *f * (1.0 / mass);
+            }
+        });
         system.project_free(out);
         return Ok(StepReport::default());
     }
     if system.kinematics.has_rigid_frames() {
         subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
     }
-    let mut rhs = std::mem::take(&mut ws.blocks[7]);
+    let mut rhs = std::mem::take(&mut ws.blocks[5]);
+    rhs.resize(out.len(), Vec3::ZERO);
     system.kinematics.forces_into(&state.q, &mut ws.row_force, &mut rhs);
     system.project_free(&mut rhs);
     let mut matrix = ws.tangent.take_mass_matrix(system);
@@ -50,7 +54,7 @@ pub fn accelerations_at(
     constrain(system, &mut matrix);
     let solved = ws.linear.solve_mass(&matrix, &rhs, out);
     ws.tangent.put_mass_matrix(matrix);
-    ws.blocks[7] = rhs;
+    ws.blocks[5] = rhs;
     let solved = solved?;
     Ok(StepReport {
         linear_iterations: u64::from(solved.iterations),
@@ -92,9 +96,5 @@ fn subtract_bias(system: &System, state: &SystemState, rows: &Rows, bias: &mut [
         row += kind.row_count();
     }
     system.kinematics.derive_rows(bias);
-    let mut inertia = vec![Vec3::ZERO; force.len()];
-    system.mass.add_product(bias, &mut inertia);
-    for (force, inertia) in force.iter_mut().zip(&inertia) {
-        *force -= *inertia;
-    }
+    system.mass.add_scaled_product(-1.0, bias, force);
 }

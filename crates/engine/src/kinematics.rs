@@ -13,8 +13,10 @@
 //! row's [`Feedback`] says that it gives nothing back.
 
 use std::ops::Range;
+use std::slice;
 
 use souple_math::{Mat3, Vec3, exponential, logarithm, orthonormalised};
+use souple_solve::reduce;
 
 /// What an unknown is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,9 +87,11 @@ pub struct Kinematics {
     carriers: Vec<(u32, Carrier)>,
     block_count: usize,
     derived: Vec<DerivedRow>,
-    /// Per row (free and derived): its weights over free rows; what positions follow.
+    /// Per free row: itself, with weight 1.
+    identity: Vec<(u32, f64)>,
+    /// Per derived row: its weights over free rows; what positions follow.
     forward: Vec<Vec<(u32, f64)>>,
-    /// Per row: the free rows that receive its force, and the weights.
+    /// Per derived row: the free rows that receive its force, and the weights.
     backward: Vec<Vec<(u32, f64)>>,
 }
 
@@ -125,10 +129,7 @@ impl Kinematics {
                 }
             }
         }
-        for row in first_row..self.carriers.len() {
-            self.forward.push(vec![(row as u32, 1.0)]);
-            self.backward.push(vec![(row as u32, 1.0)]);
-        }
+        self.identity.extend((first_row..self.carriers.len()).map(|row| (row as u32, 1.0)));
         self.block_count += count * kind.block_count();
         self.runs.push(Run { kind, first_row, first_block, count });
         UnknownRange { rows: first_row..self.carriers.len(), blocks: first_block..self.block_count }
@@ -151,17 +152,19 @@ impl Kinematics {
                 return Err(KinematicsError::BadWeight { row, parent, weight });
             }
         }
-        self.forward.push(compose(&derived.parents, &self.forward));
-        self.backward.push(match derived.feedback {
-            Feedback::Transpose => compose(&derived.parents, &self.backward),
+        let forward = compose(&derived.parents, |parent| self.forward(parent));
+        let backward = match derived.feedback {
+            Feedback::Transpose => compose(&derived.parents, |parent| self.backward(parent)),
             Feedback::None => Vec::new(),
-        });
+        };
+        self.forward.push(forward);
+        self.backward.push(backward);
         self.derived.push(derived);
         Ok(row as u32)
     }
 
     pub fn row_count(&self) -> usize {
-        self.forward.len()
+        self.carriers.len() + self.derived.len()
     }
 
     pub fn free_row_count(&self) -> usize {
@@ -190,6 +193,17 @@ impl Kinematics {
         self.derived.iter().all(|row| row.feedback == Feedback::Transpose)
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let entry = size_of::<(u32, f64)>();
+        let lists = self.derived.iter().map(|row| row.parents.capacity());
+        let lists = lists.chain(self.forward.iter().chain(&self.backward).map(Vec::capacity));
+        size_of::<(u32, Carrier)>() * self.carriers.capacity()
+            + entry * (self.identity.capacity() + lists.sum::<usize>())
+            + size_of::<DerivedRow>() * self.derived.capacity()
+            + size_of::<Vec<(u32, f64)>>() * (self.forward.capacity() + self.backward.capacity())
+    }
+
     /// Unknowns as (kind, blocks), in order.
     pub fn unknowns(&self) -> impl Iterator<Item = (UnknownKind, Range<usize>)> {
         self.runs.iter().flat_map(|run| {
@@ -201,12 +215,16 @@ impl Kinematics {
 
     /// Weights of a row over free rows, as positions follow them.
     pub fn forward(&self, row: usize) -> &[(u32, f64)] {
-        &self.forward[row]
+        self.identity
+            .get(row)
+            .map_or_else(|| self.forward[row - self.identity.len()].as_slice(), slice::from_ref)
     }
 
     /// Free rows that receive the force on a row.
     pub fn backward(&self, row: usize) -> &[(u32, f64)] {
-        &self.backward[row]
+        self.identity
+            .get(row)
+            .map_or_else(|| self.backward[row - self.identity.len()].as_slice(), slice::from_ref)
     }
 
     /// The velocity block that moves a free row.
@@ -237,12 +255,16 @@ impl Kinematics {
 
     /// Positions of all rows from the configuration `q` (free rows).
     pub fn positions_into(&self, q: &[Vec3], rows: &mut [Vec3]) {
-        rows[..q.len()].copy_from_slice(q);
+        reduce::copy(&mut rows[..q.len()], q);
         self.derive_rows(rows);
     }
 
     /// Velocities of all rows, `ẋ = T(q) v`.
     pub fn velocities_into(&self, q: &[Vec3], v: &[Vec3], rows: &mut [Vec3]) {
+        if self.is_trivial() {
+            reduce::copy(rows, v);
+            return;
+        }
         for (row, &(block, carrier)) in self.carriers.iter().enumerate() {
             rows[row] = match carrier {
                 Carrier::Translation => v[block as usize],
@@ -289,6 +311,10 @@ impl Kinematics {
 
     /// [`Kinematics::retract`] by `scale · displacement`.
     pub fn retract_scaled(&self, q: &mut [Vec3], displacement: &[Vec3], scale: f64) {
+        if self.is_trivial() {
+            reduce::add_scaled(q, scale, displacement);
+            return;
+        }
         for run in &self.runs {
             for unknown in 0..run.count {
                 let row = run.first_row + unknown * run.kind.row_count();
@@ -373,7 +399,7 @@ impl Kinematics {
     /// Whether a row moves with a translation of the whole: 1 for points and origins, 0 for axes, and what
     /// the weights make of it for derived rows.
     pub fn translation_weight(&self, row: usize) -> f64 {
-        self.forward[row].iter().map(|&(free, weight)| if self.is_axis(free) { 0.0 } else { weight }).sum()
+        self.forward(row).iter().map(|&(free, weight)| if self.is_axis(free) { 0.0 } else { weight }).sum()
     }
 
     fn is_axis(&self, free_row: u32) -> bool {
@@ -395,10 +421,10 @@ pub struct UnknownRange {
 }
 
 /// Weights over free rows of `Σ weight · parent`, parents expanded, each free row once, in order.
-fn compose(parents: &[(u32, f64)], expansions: &[Vec<(u32, f64)>]) -> Vec<(u32, f64)> {
+fn compose<'a>(parents: &[(u32, f64)], expansion: impl Fn(usize) -> &'a [(u32, f64)]) -> Vec<(u32, f64)> {
     let mut sum: Vec<(u32, f64)> = Vec::new();
     for &(parent, weight) in parents {
-        for &(free, share) in &expansions[parent as usize] {
+        for &(free, share) in expansion(parent as usize) {
             match sum.binary_search_by_key(&free, |entry| entry.0) {
                 Ok(at) => sum[at].1 += weight * share,
                 Err(at) => sum.insert(at, (free, weight * share)),

@@ -7,13 +7,14 @@ pub mod constraint;
 pub mod coupling;
 pub mod edit;
 pub mod force;
-mod hash;
+pub mod hash;
 pub mod implicit;
 pub mod inertia;
 pub mod kinematics;
 pub mod linear;
 pub mod mass;
 pub mod modes;
+pub mod obstacle;
 pub mod snapshot;
 pub mod stability;
 pub mod state;
@@ -25,12 +26,15 @@ pub mod world;
 pub use constraint::{Constraint, Motion};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
-    Configuration, Declaration, Editable, Energy, Force, ParameterError, Scratch, TangentWeights,
+    CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, ParameterError, Scratch,
+    TangentWeights,
 };
+pub use hash::Fingerprint;
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
 pub use mass::Mass;
+pub use obstacle::Obstacle;
 pub use snapshot::SnapshotError;
-pub use state::{FieldRef, FieldState, Pair, State, SystemState};
+pub use state::{FieldName, FieldRef, FieldState, Pair, Place, State, SystemState};
 pub use steppers::{StepError, StepReport, Stepper};
 pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
-pub use world::{EnergyReport, Field, Model, Workspace, World, WorldError};
+pub use world::{CommittedRows, EnergyReport, Field, Model, ResumeError, Workspace, World, WorldError};

@@ -29,8 +29,8 @@ impl From<LinearError> for StepError {
 /// How linear systems are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Direct where a factor is cheap, conjugate gradients otherwise; LU or GMRES where the matrix is not
-    /// symmetric.
+    /// Direct where a factor is cheap, conjugate gradients otherwise; where the matrix is not symmetric GMRES if a
+    /// symmetric one near it is known, and LU of small ones.
     Auto,
     Cg,
     Direct,
@@ -77,7 +77,7 @@ const PRECONDITIONERS: &[&str] = &[AUTOMATIC, "rigid_modes", "incomplete_cholesk
 pub const SOLVER: Parameter = Parameter::choice(
     "solver",
     &["auto", "cg", "direct", "gmres", "bicgstab"],
-    "linear solver; `auto`: direct where a factor is cheap, else `cg`; where the tangent is not symmetric LU or `gmres`",
+    "linear solver; `auto`: direct where a factor is cheap, else `cg`; where the tangent is not symmetric `gmres` (or LU)",
 )
 .or(Value::Text("auto"));
 
@@ -149,6 +149,8 @@ pub struct LinearSystem<'a> {
     pub matrix: &'a mut BlockMatrix,
     /// The matrix by its products.
     pub operator: Option<&'a dyn LinearOperator>,
+    /// A symmetric matrix to precondition with, where `matrix` is not symmetric and such a one is known.
+    pub nearby: Option<&'a BlockMatrix>,
     pub symmetric: bool,
     pub kinematics: &'a Kinematics,
     /// The configuration that orders and patches refer to: free rows, by components.
@@ -156,8 +158,9 @@ pub struct LinearSystem<'a> {
     /// Places of the blocks now.
     pub positions: &'a [Vec3],
     pub indefinite: Indefinite,
-    /// Wanted true relative residual where it may be looser than that of the settings; for symmetric matrices only,
-    /// whose loose solutions are directions of descent all the same.
+    /// Wanted true relative residual where it may be looser than that of the settings: solutions of a symmetric
+    /// matrix are directions of descent all the same, and along those of others the residual falls, at the rate
+    /// `1 - tolerance`.
     pub tolerance: f64,
 }
 
@@ -278,30 +281,42 @@ impl LinearSolver {
         b: &[Vec3],
         x: &mut [Vec3],
     ) -> Result<Solved, SolveError> {
-        let automatic = self.settings.preconditioner == AUTOMATIC || system.operator.is_some();
-        let preconditioner = if automatic { "block_jacobi" } else { self.settings.preconditioner };
+        let is_stored = system.operator.is_none();
+        let automatic = match system.nearby {
+            Some(_) => AUTOMATIC,
+            None => "block_jacobi",
+        };
+        let is_free = self.settings.preconditioner == AUTOMATIC || !is_stored;
+        let preconditioner = if is_free { automatic } else { self.settings.preconditioner };
         let is_small = system.matrix.pattern().block_count() < LU_BELOW;
         let name = match self.settings.method {
             Method::Bicgstab => "bicgstab",
-            Method::Direct if system.operator.is_none() => "lu",
-            Method::Auto if system.operator.is_none() && is_small => "lu",
+            Method::Direct if is_stored => "lu",
+            Method::Auto if is_stored && is_small && system.nearby.is_none() => "lu",
             _ => "gmres",
         };
-        let mut attempt = |preconditioner: &'static str| {
+        let mut attempt = |name: &'static str, preconditioner: &'static str| {
             let made = prepare(
                 &mut self.general,
                 (name, preconditioner),
                 &self.settings,
-                system.matrix,
+                system.nearby.filter(|_| name != "lu").unwrap_or(&*system.matrix),
                 system.reference,
                 Some((system.kinematics, system.positions)),
             )?;
             x.fill(Vec3::ZERO);
+            made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
             judged(made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x))
         };
-        match attempt(preconditioner) {
-            Err(SolveError::NotPositiveDefinite { .. }) => attempt("none"),
-            attempted => attempted,
+        let attempted = attempt(name, preconditioner);
+        match &attempted {
+            Err(SolveError::NotPositiveDefinite { .. } | SolveError::NotConverged { .. })
+                if is_stored && is_small && name == "gmres" && self.settings.method == Method::Auto =>
+            {
+                attempt("lu", preconditioner)
+            }
+            Err(SolveError::NotPositiveDefinite { .. }) => attempt(name, "none"),
+            _ => attempted,
         }
     }
 

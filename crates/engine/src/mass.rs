@@ -41,18 +41,28 @@ impl Mass {
         });
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        8 * self.diagonal.capacity() + size_of::<(u32, u32, f64)>() * self.couplings.capacity()
+    }
+
     pub fn is_lumped(&self) -> bool {
         self.couplings.is_empty()
     }
 
     /// `out += M x`.
     pub fn add_product(&self, x: &[Vec3], out: &mut [Vec3]) {
+        self.add_scaled_product(1.0, x, out);
+    }
+
+    /// `out += scale M x`.
+    pub fn add_scaled_product(&self, scale: f64, x: &[Vec3], out: &mut [Vec3]) {
         for ((out, x), mass) in out.iter_mut().zip(x).zip(&self.diagonal) {
-            *out += *x * *mass;
+            *out += *x * (*mass * scale);
         }
         for &(a, b, mass) in &self.couplings {
-            out[a as usize] += x[b as usize] * mass;
-            out[b as usize] += x[a as usize] * mass;
+            out[a as usize] += x[b as usize] * (mass * scale);
+            out[b as usize] += x[a as usize] * (mass * scale);
         }
     }
 
@@ -66,5 +76,24 @@ impl Mass {
             .map(|&(a, b, mass)| mass * velocities[a as usize].dot(velocities[b as usize]))
             .sum();
         lumped + coupled
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `scale M x` is `scale` times `M x`, lumped and coupled parts alike: exactly so for powers of two.
+    #[test]
+    fn scaled_products_are_multiples() {
+        let mass = Mass { diagonal: vec![2.0, 0.5], couplings: vec![(0, 1, 0.3)] };
+        let x = [Vec3::new(1.0, -2.0, 0.7), Vec3::new(0.1, 0.2, 0.3)];
+        let (mut once, mut scaled) = ([Vec3::ZERO; 2], [Vec3::ZERO; 2]);
+        mass.add_product(&x, &mut once);
+        mass.add_scaled_product(-4.0, &x, &mut scaled);
+        assert_eq!(scaled, once.map(|force| force * -4.0));
+        // vᵀ M v is twice the kinetic energy: a sum of products of order one
+        let twice: f64 = once.iter().zip(&x).map(|(p, v)| p.dot(*v)).sum();
+        assert!((twice - 2.0 * mass.kinetic_energy(&x)).abs() < 4.0 * f64::EPSILON * twice);
     }
 }

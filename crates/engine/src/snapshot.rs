@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 
 use crate::state::{FieldMut, Pair};
-use crate::{FieldState, State, SystemState};
+use crate::{FieldState, Model, State, System, SystemState};
 
 const MAGIC: &[u8; 8] = b"SOUPLE01";
 
@@ -18,6 +18,12 @@ pub enum SnapshotError {
     TooLong { extra: usize },
     #[error("the snapshot has {found} {what}, the scene has {expected}; it is of another scene")]
     OtherModel { what: String, found: u64, expected: usize },
+    #[error(
+        "{field} of the snapshot holds {found}, which does not fit {reader}; it is of another scene or damaged"
+    )]
+    Unreadable { field: String, found: String, reader: String },
+    #[error("{field} of the snapshot is not finite")]
+    NotFinite { field: String },
     #[error("a {what} of {bytes} bytes is not a whole number of entries")]
     Ragged { what: &'static str, bytes: u64 },
 }
@@ -28,7 +34,7 @@ impl State {
         let mut bytes = MAGIC.to_vec();
         bytes.extend((self.systems.len() as u64).to_le_bytes());
         bytes.extend((self.fields.len() as u64).to_le_bytes());
-        for (_, field) in self.fields() {
+        for (_, field) in self.each_field() {
             let content = field.bytes();
             bytes.extend((content.len() as u64).to_le_bytes());
             bytes.extend_from_slice(content);
@@ -66,26 +72,76 @@ impl State {
             extra => Err(SnapshotError::TooLong { extra }),
         }
     }
+}
 
-    /// Whether this state has the shape of `like` (a state of the same model).
+impl Model {
+    /// Whether `state` can be stepped by this model; `like` is a state that can.
     ///
     /// # Errors
-    /// Names the first count that differs.
-    pub fn check_shape(&self, like: &Self) -> Result<(), SnapshotError> {
+    /// Names the first count that differs, the first number that is not finite, and what forces, fields and steppers
+    /// cannot read.
+    pub fn check_state(&self, state: &State, like: &State) -> Result<(), SnapshotError> {
         let differ = |what: &str, found: usize, expected: usize| {
             let error = SnapshotError::OtherModel { what: what.to_owned(), found: found as u64, expected };
             if found == expected { Ok(()) } else { Err(error) }
         };
-        differ("systems", self.systems.len(), like.systems.len())?;
-        differ("fields", self.fields.len(), like.fields.len())?;
-        differ("driven parameters", self.driven.len(), like.driven.len())?;
-        for (index, (mine, other)) in self.systems.iter().zip(&like.systems).enumerate() {
-            differ(&format!("free rows in system {index}"), mine.q.len(), other.q.len())?;
-            differ(&format!("velocity blocks in system {index}"), mine.v.len(), other.v.len())?;
-            differ(&format!("numbers of memory in system {index}"), mine.memory.len(), other.memory.len())?;
+        differ("systems", state.systems.len(), self.systems.len())?;
+        differ("driven parameters", state.driven.len(), like.driven.len())?;
+        differ("random generators", state.generators.len(), like.generators.len())?;
+        differ("fields", state.fields.len(), like.fields.len())?;
+        for (index, (system, state)) in self.systems.iter().zip(&state.systems).enumerate() {
+            let (rows, blocks) = (system.kinematics.free_row_count(), system.kinematics.block_count());
+            differ(&format!("free rows in system {index}"), state.q.len(), rows)?;
+            differ(&format!("velocity blocks in system {index}"), state.v.len(), blocks)?;
+            let memory = system.forces.iter().map(|force| force.memory_len()).sum();
+            differ(&format!("numbers of memory in system {index}"), state.memory.len(), memory)?;
+            check_pairs(index, system, &state.pairs)?;
+            if !system.stepper.accepts_history(system, &state.history) {
+                let (field, found) = (format!("systems[{index}].history"), state.history.len());
+                return Err(SnapshotError::Unreadable {
+                    field,
+                    found: format!("{found} numbers"),
+                    reader: format!("stepper `{}`", system.stepper.name()),
+                });
+            }
         }
-        Ok(())
+        for (index, ((field, found), current)) in
+            self.fields.iter().zip(&state.fields).zip(&like.fields).enumerate()
+        {
+            if !field.accepts(found, current) {
+                let (values, indices) = (found.values.len(), found.indices.len());
+                return Err(SnapshotError::Unreadable {
+                    field: format!("fields[{index}]"),
+                    found: format!("{values} values and {indices} indices"),
+                    reader: format!("field `{}`", field.name()),
+                });
+            }
+        }
+        state
+            .first_not_finite()
+            .map_or(Ok(()), |place| Err(SnapshotError::NotFinite { field: place.to_string() }))
     }
+}
+
+/// Pairs ascend, and each is one that its force could have found.
+fn check_pairs(index: usize, system: &System, pairs: &[Pair]) -> Result<(), SnapshotError> {
+    let unreadable = |at: usize, reader: String| {
+        let Pair { force, a, b, .. } = pairs[at];
+        let field = format!("systems[{index}].pairs[{at}]");
+        SnapshotError::Unreadable { field, found: format!("pair ({force}, {a}, {b})"), reader }
+    };
+    if let Some(at) = pairs.windows(2).position(|pair| pair[0].key() >= pair[1].key()) {
+        return Err(unreadable(at + 1, "a list that ascends".to_owned()));
+    }
+    for (at, pair) in pairs.iter().enumerate() {
+        let force = usize::try_from(pair.force).ok().and_then(|force| system.forces.get(force));
+        match force {
+            Some(force) if force.accepts_pair(pair) => {}
+            Some(force) => return Err(unreadable(at, format!("force `{}`", force.name()))),
+            None => return Err(unreadable(at, format!("any of the {} forces", system.forces.len()))),
+        }
+    }
+    Ok(())
 }
 
 struct Reader<'a> {

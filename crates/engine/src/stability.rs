@@ -22,7 +22,8 @@ pub struct Forecast {
 const ITERATIONS: usize = 40;
 
 /// Highest frequency and rate of damping at the placed state, by the power method on `M⁻¹ K` and `M⁻¹ B` with the
-/// lumped mass of rows. What touches later is not in it.
+/// lumped mass of rows. What may touch later counts as if all of it touched at once, by
+/// [`crate::Force::touching_stiffness`]; how it would damp then does not.
 ///
 /// A random-like but fixed start vector; the Rayleigh quotient approaches the highest frequency from below,
 /// so the step it allows is taken with a margin of 5 %.
@@ -66,6 +67,11 @@ fn highest_eigenvalue(
 ) -> f64 {
     let rows = system.kinematics.row_count();
     let row_mass = lumped_row_mass(system);
+    let touching: Vec<_> = system
+        .forces
+        .iter()
+        .map(|force| if weights.position == 0.0 { None } else { force.touching_stiffness() })
+        .collect();
     let mut direction: Vec<Vec3> = (0..rows).map(start_vector).collect();
     let mut product = vec![Vec3::ZERO; rows];
     let mut eigenvalue = 0.0;
@@ -73,7 +79,20 @@ fn highest_eigenvalue(
         system.project_free_rows(&mut direction);
         system.kinematics.derive_rows(&mut direction);
         // Rayleigh quotient (δ·K δ) / (δ·M δ)
-        system.sum_row_differentials(ws, state, around, weights, &direction, &mut product);
+        product.fill(Vec3::ZERO);
+        for (index, force) in system.forces.iter().enumerate() {
+            match &touching[index] {
+                Some(stiffness) => stiffness
+                    .iter()
+                    .map(|&(row, k)| (row as usize, k))
+                    .for_each(|(row, k)| product[row] += direction[row] * (-weights.position * k)),
+                None => {
+                    let at = system.view(index, &ws.rows, state, around);
+                    let scratch = &mut ws.scratches[index];
+                    force.add_differential(&at, weights, &direction, scratch, &mut product);
+                }
+            }
+        }
         let tangent: f64 = direction.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum();
         let mass: f64 = direction.iter().zip(&row_mass).map(|(d, m)| m * d.length_sq()).sum();
         if !(tangent > 0.0 && mass > 0.0) {

@@ -1,6 +1,9 @@
 //! All that evolves. Whatever is here is saved, hashed, compared and replayed without further work.
 
+use std::fmt;
+
 use souple_math::Vec3;
+use souple_solve::reduce;
 
 /// Two things that touch, with what the contact remembers (an anchor, a phase).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -23,7 +26,7 @@ impl Pair {
         Self { force: 0, a: a as u64, b: b as u64, memory }
     }
 
-    fn key(&self) -> (u64, u64, u64) {
+    pub(crate) fn key(&self) -> (u64, u64, u64) {
         (self.force, self.a, self.b)
     }
 }
@@ -81,6 +84,26 @@ pub struct State {
     pub generators: Vec<u64>,
 }
 
+/// The name of a field of State, written out only where it is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldName {
+    World(&'static str),
+    /// Index of the system.
+    System(usize, &'static str),
+    /// Index of the field.
+    Field(usize, &'static str),
+}
+
+impl fmt::Display for FieldName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::World(name) => f.write_str(name),
+            Self::System(index, name) => write!(f, "systems[{index}].{name}"),
+            Self::Field(index, name) => write!(f, "fields[{index}].{name}"),
+        }
+    }
+}
+
 /// The values of one field of State, in place.
 #[derive(Debug)]
 pub enum FieldRef<'a> {
@@ -113,6 +136,17 @@ impl FieldRef<'_> {
         }
     }
 
+    /// Bytes that its list holds, beyond its length too.
+    fn capacity(&self) -> usize {
+        match self {
+            Self::Integer(_) => 0,
+            Self::Integers(values) => 8 * values.capacity(),
+            Self::Numbers(values) => 8 * values.capacity(),
+            Self::Vectors(values) => size_of::<Vec3>() * values.capacity(),
+            Self::Pairs(values) => size_of::<Pair>() * values.capacity(),
+        }
+    }
+
     /// The field's numbers for comparing two states; integers as numbers.
     pub fn numbers(&self) -> Vec<f64> {
         match self {
@@ -126,24 +160,34 @@ impl FieldRef<'_> {
 }
 
 impl State {
-    /// Every field with its name, in the declared order of hashes, snapshots and comparisons.
+    /// Every field, in the declared order of hashes, snapshots and comparisons; allocates nothing.
+    pub fn each_field(&self) -> impl Iterator<Item = (FieldName, FieldRef<'_>)> {
+        let systems = self.systems.iter().enumerate().flat_map(|(index, system)| {
+            [
+                (FieldName::System(index, "q"), FieldRef::Vectors(&system.q)),
+                (FieldName::System(index, "v"), FieldRef::Vectors(&system.v)),
+                (FieldName::System(index, "memory"), FieldRef::Numbers(&system.memory)),
+                (FieldName::System(index, "pairs"), FieldRef::Pairs(&system.pairs)),
+                (FieldName::System(index, "history"), FieldRef::Numbers(&system.history)),
+            ]
+        });
+        let fields = self.fields.iter().enumerate().flat_map(|(index, field)| {
+            [
+                (FieldName::Field(index, "values"), FieldRef::Numbers(&field.values)),
+                (FieldName::Field(index, "indices"), FieldRef::Integers(&field.indices)),
+            ]
+        });
+        let one = |name, field| std::iter::once((FieldName::World(name), field));
+        one("period", FieldRef::Integer(&self.period))
+            .chain(systems)
+            .chain(one("driven", FieldRef::Numbers(&self.driven)))
+            .chain(fields)
+            .chain(one("generators", FieldRef::Integers(&self.generators)))
+    }
+
+    /// [`State::each_field`] with names written out.
     pub fn fields(&self) -> Vec<(String, FieldRef<'_>)> {
-        let mut all = vec![("period".to_owned(), FieldRef::Integer(&self.period))];
-        for (index, system) in self.systems.iter().enumerate() {
-            let name = |field: &str| format!("systems[{index}].{field}");
-            all.push((name("q"), FieldRef::Vectors(&system.q)));
-            all.push((name("v"), FieldRef::Vectors(&system.v)));
-            all.push((name("memory"), FieldRef::Numbers(&system.memory)));
-            all.push((name("pairs"), FieldRef::Pairs(&system.pairs)));
-            all.push((name("history"), FieldRef::Numbers(&system.history)));
-        }
-        all.push(("driven".to_owned(), FieldRef::Numbers(&self.driven)));
-        for (index, field) in self.fields.iter().enumerate() {
-            all.push((format!("fields[{index}].values"), FieldRef::Numbers(&field.values)));
-            all.push((format!("fields[{index}].indices"), FieldRef::Integers(&field.indices)));
-        }
-        all.push(("generators".to_owned(), FieldRef::Integers(&self.generators)));
-        all
+        self.each_field().map(|(name, field)| (name.to_string(), field)).collect()
     }
 
     /// [`State::fields`] to be written to, in the same order.
@@ -170,8 +214,10 @@ impl State {
         self.period = other.period;
         self.systems.resize_with(other.systems.len(), SystemState::default);
         for (mine, other) in self.systems.iter_mut().zip(&other.systems) {
-            mine.q.clone_from(&other.q);
-            mine.v.clone_from(&other.v);
+            for (mine, other) in [(&mut mine.q, &other.q), (&mut mine.v, &other.v)] {
+                mine.resize(other.len(), Vec3::ZERO);
+                reduce::copy(mine, other);
+            }
             mine.memory.clone_from(&other.memory);
             mine.pairs.clone_from(&other.pairs);
             mine.history.clone_from(&other.history);
@@ -185,19 +231,91 @@ impl State {
         self.generators.clone_from(&other.generators);
     }
 
-    /// The first field that is not finite, as `name[index]`.
-    pub fn first_not_finite(&self) -> Option<String> {
-        self.fields().into_iter().find_map(|(name, field)| {
-            let numbers: &[f64] = match field {
-                FieldRef::Numbers(values) => values,
-                FieldRef::Vectors(values) => bytemuck::cast_slice(values),
-                _ => return None,
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.each_field().map(|(_, field)| field.capacity()).sum()
+    }
+
+    /// The first entry that is not finite; allocates nothing where all are.
+    pub fn first_not_finite(&self) -> Option<Place> {
+        self.each_field().find_map(|(name, field)| {
+            let not_finite = |number: &f64| !number.is_finite();
+            let at = match field {
+                FieldRef::Numbers(values) => values.iter().position(not_finite),
+                FieldRef::Vectors(values) if reduce::all_finite(values) => None,
+                FieldRef::Vectors(values) => values.iter().position(|vector| !vector.is_finite()),
+                FieldRef::Pairs(pairs) => pairs.iter().position(|pair| pair.memory.iter().any(not_finite)),
+                FieldRef::Integer(_) | FieldRef::Integers(_) => None,
             };
-            let at = numbers.iter().position(|number| !number.is_finite())?;
-            Some(match field {
-                FieldRef::Vectors(_) => format!("{name}[{}]", at / 3),
-                _ => format!("{name}[{at}]"),
-            })
+            at.map(|index| Place { field: name.to_string(), index })
         })
+    }
+
+    /// The system that a place belongs to; `None` for what is of the whole world.
+    pub fn system_of(&self, place: &Place) -> Option<usize> {
+        (0..self.systems.len()).find(|index| place.field.starts_with(&format!("systems[{index}].")))
+    }
+}
+
+/// An entry of State: a vector or a number of a field.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// A name of [`State::fields`].
+    pub field: String,
+    pub index: usize,
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}[{}]", self.field, self.index)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever kind of field is not finite is named with its index, memories of pairs too.
+    #[test]
+    fn what_is_not_finite_is_named() {
+        let finite = State {
+            systems: vec![SystemState {
+                q: vec![Vec3::X; 2],
+                v: vec![Vec3::Y; 2],
+                memory: vec![1.0; 3],
+                pairs: vec![Pair::default(); 2],
+                history: vec![0.0],
+            }],
+            driven: vec![0.0; 2],
+            fields: vec![FieldState { values: vec![0.0; 2], indices: vec![3] }],
+            ..State::default()
+        };
+        assert_eq!(finite.first_not_finite(), None);
+        type Spoil = fn(&mut State);
+        let spoils: [(&str, Spoil); 6] = [
+            ("systems[0].q[1]", |state| state.systems[0].q[1].z = f64::NAN),
+            ("systems[0].v[0]", |state| state.systems[0].v[0].y = f64::INFINITY),
+            ("systems[0].memory[2]", |state| state.systems[0].memory[2] = f64::NAN),
+            ("systems[0].pairs[1]", |state| state.systems[0].pairs[1].memory[7] = f64::NAN),
+            ("driven[0]", |state| state.driven[0] = f64::NEG_INFINITY),
+            ("fields[0].values[1]", |state| state.fields[0].values[1] = f64::NAN),
+        ];
+        for (name, spoil) in spoils {
+            let mut state = finite.clone();
+            spoil(&mut state);
+            assert_eq!(state.first_not_finite().map(|place| place.to_string()).as_deref(), Some(name));
+        }
+    }
+
+    /// Names to read and places to write stand in the same order.
+    #[test]
+    fn fields_to_write_are_those_to_read() {
+        let mut state = State {
+            systems: vec![SystemState::default(); 2],
+            fields: vec![FieldState::default()],
+            ..State::default()
+        };
+        assert_eq!(state.fields().len(), state.fields_mut().len());
+        assert_eq!(state.fields()[4].0, "systems[0].pairs");
     }
 }

@@ -41,11 +41,15 @@ pub struct SystemWorkspace {
     pub rows: Rows,
     pub row_force: Vec<Vec3>,
     pub row_scratch: Vec<Vec3>,
-    /// Buffers of the size of the velocity, for steppers.
-    pub blocks: [Vec<Vec3>; 8],
-    /// Buffers of the size of the configuration, for steppers.
-    pub configurations: [Vec<Vec3>; 4],
+    /// Buffers for steppers in the size of the velocity; who takes one gives it that size.
+    pub blocks: [Vec<Vec3>; 6],
+    /// A buffer for steppers in the size of the configuration, likewise.
+    pub configuration: Vec<Vec3>,
     pub found_pairs: Vec<Pair>,
+    /// Rows at the last search of pairs; every step begins with one, so nothing of it outlives the step.
+    searched: Vec<Vec3>,
+    /// Memories and pairs while they are moved on.
+    before: SystemState,
     pub tangent: Tangent,
     pub linear: LinearSolver,
     pub implicit: Option<ImplicitBuffers>,
@@ -67,7 +71,31 @@ pub struct StageTimes {
     pub forces: f64,
     pub assembly: f64,
     pub solve: f64,
+    /// The rest of a step: positions and velocities moved on, energies of the line search, internal variables.
     pub advance: f64,
+}
+
+impl StageTimes {
+    pub fn total(&self) -> f64 {
+        self.pairs + self.forces + self.assembly + self.solve + self.advance
+    }
+}
+
+impl SystemWorkspace {
+    /// Bytes held for a system, scratches of its forces included.
+    pub fn bytes(&self, system: &System) -> usize {
+        let Rows { positions, velocities, .. } = &self.rows;
+        let buffers = [positions, velocities, &self.row_force, &self.row_scratch, &self.searched];
+        let buffers = buffers.into_iter().chain(&self.blocks).chain([&self.configuration]);
+        let scratches = system.forces.iter().zip(&self.scratches);
+        buffers.map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
+            + scratches.map(|(force, scratch)| force.scratch_bytes(scratch)).sum::<usize>()
+            + size_of::<Pair>() * (self.found_pairs.capacity() + self.before.pairs.capacity())
+            + 8 * self.before.memory.capacity()
+            + self.tangent.bytes()
+            + self.linear.bytes()
+            + self.implicit.as_ref().map_or(0, ImplicitBuffers::bytes)
+    }
 }
 
 impl System {
@@ -82,7 +110,8 @@ impl System {
         self.forces.iter().map(AsRef::as_ref).map(next).collect()
     }
 
-    fn memory_range(&self, force: usize) -> Range<usize> {
+    /// Where the numbers of one force stand.
+    pub(crate) fn memory_range(&self, force: usize) -> Range<usize> {
         let start = self.forces[..force].iter().map(|force| force.memory_len()).sum();
         start..start + self.forces[force].memory_len()
     }
@@ -98,16 +127,18 @@ impl System {
     }
 
     pub fn new_workspace(&self) -> SystemWorkspace {
-        let (rows, blocks) = (self.kinematics.row_count(), self.kinematics.block_count());
         let zeros = |count: usize| vec![Vec3::ZERO; count];
+        let rows = self.kinematics.row_count();
         SystemWorkspace {
             scratches: self.forces.iter().map(|force| force.new_scratch()).collect(),
             rows: Rows { positions: zeros(rows), velocities: zeros(rows), time: 0.0 },
             row_force: zeros(rows),
             row_scratch: zeros(rows),
-            blocks: std::array::from_fn(|_| zeros(blocks)),
-            configurations: std::array::from_fn(|_| zeros(self.kinematics.free_row_count())),
+            blocks: Default::default(),
+            configuration: Vec::new(),
             found_pairs: Vec::new(),
+            searched: Vec::new(),
+            before: SystemState::default(),
             tangent: Tangent::default(),
             linear: LinearSolver::new(self.stepper.solver_settings()),
             implicit: None,
@@ -221,21 +252,40 @@ impl System {
             }
         }
         merge_pairs(&mut state.pairs, &mut ws.found_pairs);
+        ws.searched.clone_from(&ws.rows.positions);
+    }
+
+    /// [`System::update_pairs`] at the placed rows if those of the last search are stale there; whether they were.
+    pub fn refresh_pairs(
+        &self,
+        ws: &mut SystemWorkspace,
+        state: &mut SystemState,
+        around: &Surroundings,
+    ) -> bool {
+        let stale = |force: &dyn Force| {
+            force.declaration().changing_pattern && force.pairs_are_stale(&ws.searched, &ws.rows.positions)
+        };
+        let is_stale = self.forces.iter().any(|force| stale(force.as_ref()));
+        if is_stale {
+            self.update_pairs(ws, state, around);
+        }
+        is_stale
     }
 
     /// Moves memories and pair states on at the placed rows.
-    pub fn advance_memory(&self, rows: &Rows, state: &mut SystemState, around: &Surroundings, timestep: f64) {
-        if state.memory.is_empty() && state.pairs.is_empty() {
-            return;
-        }
+    pub fn advance_memory(
+        &self,
+        ws: &mut SystemWorkspace,
+        state: &mut SystemState,
+        around: &Surroundings,
+        timestep: f64,
+    ) {
         // forces read the memory as it was: they are pure, and see their own part only
-        let before = SystemState {
-            memory: state.memory.clone(),
-            pairs: state.pairs.clone(),
-            ..SystemState::default()
-        };
+        let before = &mut ws.before;
+        before.memory.clone_from(&state.memory);
+        before.pairs.clone_from(&state.pairs);
         for (index, force) in self.forces.iter().enumerate() {
-            let at = self.view(index, rows, &before, around);
+            let at = self.view(index, &ws.rows, before, around);
             let pairs = pairs_of(&state.pairs, index);
             let memory = self.memory_range(index);
             force.advance_memory(&at, timestep, &mut state.memory[memory], &mut state.pairs[pairs]);

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
 
-use crate::force::{Scratch, TangentWeights};
+use crate::force::{Force, Scratch, TangentWeights};
 use crate::kinematics::Kinematics;
 use crate::state::{Pair, SystemState};
 use crate::system::{Rows, Surroundings, System};
@@ -30,6 +30,15 @@ pub struct Tangent {
     blocks: Option<BlockMatrix>,
     mass: Option<BlockMatrix>,
     diagonal: Option<BlockMatrix>,
+    /// The matrix with symmetric stand-ins of what is not symmetric, for points alone.
+    symmetric: Option<BlockMatrix>,
+}
+
+/// A system matrix and what is known to precondition it with.
+pub struct Assembled<'a> {
+    pub matrix: &'a mut BlockMatrix,
+    /// Symmetric and near the matrix, where that is not symmetric itself.
+    pub symmetric: Option<&'a BlockMatrix>,
 }
 
 /// Where the matrix is taken.
@@ -112,6 +121,45 @@ impl Tangent {
         self.blocks.insert(blocks)
     }
 
+    /// [`Tangent::assemble`], and where forces are not symmetric the same with [`Force::add_symmetric_blocks`].
+    pub fn assemble_with_symmetric(
+        &mut self,
+        at: &Linearisation,
+        scratches: &mut [Scratch],
+    ) -> Assembled<'_> {
+        let system = at.system;
+        let has_symmetry = |force: &dyn Force| force.declaration().symmetric_tangent;
+        let all_symmetric = system.forces.iter().all(|force| has_symmetry(force.as_ref()));
+        if all_symmetric || !system.kinematics.is_trivial() {
+            return Assembled { matrix: self.assemble(at, scratches), symmetric: None };
+        }
+        self.update_patterns(system, &at.state.pairs);
+        let rate = at.timestep.map_or(0.0, f64::recip);
+        let weights = TangentWeights { position: -1.0, velocity: -rate };
+        let mut matrix = self.rows.take().unwrap_or_else(|| unreachable!("patterns were just made"));
+        matrix.set_zero();
+        for (index, force) in system.forces.iter().enumerate() {
+            if has_symmetry(force.as_ref()) {
+                let view = system.view(index, at.rows, at.state, &at.around);
+                force.add_blocks(&view, weights, &mut scratches[index], &mut matrix);
+            }
+        }
+        add_mass(system, rate * rate, &mut matrix);
+        let known = self.symmetric.take().filter(|known| Arc::ptr_eq(known.pattern(), matrix.pattern()));
+        let mut symmetric = known.unwrap_or_else(|| BlockMatrix::zeros(Arc::clone(matrix.pattern())));
+        symmetric.values_mut().copy_from_slice(matrix.values());
+        for (index, force) in system.forces.iter().enumerate() {
+            if !has_symmetry(force.as_ref()) {
+                let view = system.view(index, at.rows, at.state, &at.around);
+                force.add_blocks(&view, weights, &mut scratches[index], &mut matrix);
+                force.add_symmetric_blocks(&view, weights, &mut scratches[index], &mut symmetric);
+            }
+        }
+        constrain(system, &mut matrix);
+        constrain(system, &mut symmetric);
+        Assembled { matrix: self.rows.insert(matrix), symmetric: Some(self.symmetric.insert(symmetric)) }
+    }
+
     /// The diagonal blocks alone, for preconditioning products without a matrix; for points only: rows of
     /// frames and derived rows have their diagonal taken from the full matrix.
     pub fn assemble_diagonal(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &mut BlockMatrix {
@@ -132,12 +180,10 @@ impl Tangent {
     }
 
     fn update_patterns(&mut self, system: &System, pairs: &[Pair]) {
-        let key: Vec<_> = if system.forces.iter().any(|force| force.declaration().changing_pattern) {
-            pairs.iter().map(|pair| (pair.force, pair.a, pair.b)).collect()
-        } else {
-            Vec::new()
-        };
-        if self.pattern_pairs.as_ref() == Some(&key) {
+        let changes = system.forces.iter().any(|force| force.declaration().changing_pattern);
+        let coupling = if changes { pairs } else { &[] };
+        let keys = || coupling.iter().map(Pair::key);
+        if self.pattern_pairs.as_ref().is_some_and(|known| known.iter().copied().eq(keys())) {
             return;
         }
         let kinematics = &system.kinematics;
@@ -177,7 +223,7 @@ impl Tangent {
         self.rows = Some(BlockMatrix::zeros(build(over_rows)));
         self.row_velocities = None;
         self.blocks = (!kinematics.is_trivial()).then(|| BlockMatrix::zeros(build(over_blocks)));
-        self.pattern_pairs = Some(key);
+        self.pattern_pairs = Some(keys().collect());
     }
 
     /// The buffer for `TᵀMT`; give it back with [`Tangent::put_mass_matrix`].
@@ -210,8 +256,10 @@ impl Tangent {
 
     /// Bytes of matrices held.
     pub fn bytes(&self) -> usize {
-        let held = [&self.rows, &self.row_velocities, &self.blocks, &self.mass, &self.diagonal];
-        held.into_iter().flatten().map(BlockMatrix::bytes).sum()
+        let held =
+            [&self.rows, &self.row_velocities, &self.blocks, &self.mass, &self.diagonal, &self.symmetric];
+        let keys = size_of::<(u64, u64, u64)>() * self.pattern_pairs.as_ref().map_or(0, Vec::capacity);
+        held.into_iter().flatten().map(BlockMatrix::bytes).sum::<usize>() + keys
     }
 }
 
@@ -326,6 +374,13 @@ impl OperatorBuffers {
             row_force: rows(),
             row_inertia: rows(),
         }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let Self { free, row_positions, row_velocities, row_force, row_inertia } = self;
+        let buffers = [free, row_positions, row_velocities, row_force, row_inertia];
+        buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum()
     }
 }
 

@@ -4,8 +4,10 @@ use std::time::Instant;
 
 use souple_math::Vec3;
 
+use crate::constraint::Constraint;
 use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
+use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
@@ -15,11 +17,33 @@ use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 pub trait Field: Send + Sync {
     fn name(&self) -> &str;
 
+    /// Whether it can go on from a field read from a file, by default one of the sizes of `current`: an index beyond
+    /// its grid would be a panic.
+    fn accepts(&self, field: &FieldState, current: &FieldState) -> bool {
+        (field.values.len(), field.indices.len()) == (current.values.len(), current.indices.len())
+    }
+
     /// Moves `field` on from `start` to `start + timestep` seconds, reading the committed rows of all systems.
     ///
     /// # Errors
     /// The field cannot be stepped; says why.
-    fn step(&self, rows: &[Rows], start: f64, timestep: f64, field: &mut FieldState) -> Result<(), String>;
+    fn step(
+        &self,
+        rows: CommittedRows,
+        start: f64,
+        timestep: f64,
+        field: &mut FieldState,
+    ) -> Result<(), String>;
+}
+
+/// The rows of all systems as they stand at the end of a period.
+#[derive(Clone, Copy)]
+pub struct CommittedRows<'a>(&'a [SystemWorkspace]);
+
+impl<'a> CommittedRows<'a> {
+    pub fn of(&self, system: usize) -> &'a Rows {
+        &self.0[system].rows
+    }
 }
 
 /// The constant part of a world.
@@ -39,6 +63,8 @@ pub struct Workspace {
     pub systems: Vec<SystemWorkspace>,
     /// The next State, swapped in when a step is complete.
     next: State,
+    /// For each coupling the number of its force in the faster system.
+    fast_ends: Vec<Option<usize>>,
 }
 
 /// A model, its state and its scratch, stepped together.
@@ -66,6 +92,9 @@ pub struct EnergyReport {
     pub kinetic: f64,
     /// Stored and dissipated, by the name of the force.
     pub by_force: Vec<(String, crate::Energy)>,
+    /// What the exchange between systems has made so far, by the name of the coupling spring; negative: lost
+    /// (see [`crate::coupling`]).
+    pub made_by_coupling: Vec<(String, f64)>,
 }
 
 impl EnergyReport {
@@ -76,10 +105,15 @@ impl EnergyReport {
 }
 
 impl Model {
-    /// Starts a world at `state`.
+    /// Starts a world at `state`, which was made for this model; one from a file goes through [`World::resume`].
     pub fn start(self, state: State) -> World {
         let systems = self.systems.iter().map(System::new_workspace).collect();
-        let workspace = Workspace { systems, next: state.clone() };
+        let fast_end = |coupling: &CouplingSpring| {
+            let (forces, name) = (&self.systems[coupling.fast_system].forces, coupling.fast_name());
+            forces.iter().position(|force| force.name() == name)
+        };
+        let fast_ends = self.couplings.iter().map(fast_end).collect();
+        let workspace = Workspace { systems, next: state.clone(), fast_ends };
         let mut world =
             World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
         world.place_all_rows();
@@ -100,6 +134,15 @@ impl Model {
         self.generation += 1;
         Ok(())
     }
+}
+
+/// Why a world does not go on from a state.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ResumeError {
+    #[error(transparent)]
+    Edit(#[from] EditError),
+    #[error(transparent)]
+    State(#[from] SnapshotError),
 }
 
 impl World {
@@ -143,13 +186,15 @@ impl World {
         })
     }
 
-    /// Bytes of forces, matrices and solvers.
+    /// Bytes held on the heap: both states, masses and maps, constants and scratch of forces, matrices, solvers and
+    /// buffers of steppers. Counted, not estimated; what a force leaves out of [`crate::Force::bytes`] is not in it.
     pub fn bytes(&self) -> usize {
-        let forces: usize =
-            self.model.systems.iter().flat_map(|s| &s.forces).map(|force| force.bytes()).sum();
-        let solvers: usize =
-            self.workspace.systems.iter().map(|ws| ws.tangent.bytes() + ws.linear.bytes()).sum();
-        forces + solvers
+        let systems = self.model.systems.iter().zip(&self.workspace.systems).map(|(system, ws)| {
+            let forces: usize = system.forces.iter().map(|force| force.bytes()).sum();
+            let constraints = size_of::<Constraint>() * system.constraints.capacity();
+            forces + constraints + system.mass.bytes() + system.kinematics.bytes() + ws.bytes(system)
+        });
+        systems.sum::<usize>() + self.state.bytes() + self.workspace.next.bytes()
     }
 
     /// Changes the world between steps, and keeps the command for replay.
@@ -157,16 +202,35 @@ impl World {
     /// # Errors
     /// See [`Model::apply`].
     pub fn edit(&mut self, edit: Edit) -> Result<(), EditError> {
+        let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
         self.log.push(Command { period: self.state.period, edit });
         self.place_all_rows();
         Ok(())
     }
 
+    /// Continues a world that had been edited: makes its edits anew, so that the model is of its generation, and
+    /// takes its state. Edits in a log mean the same at any state (see [`Edit::PinAt`]).
+    ///
+    /// # Errors
+    /// An edit cannot be made (see [`Model::apply`]), or the state is none of the edited model.
+    pub fn resume_edited(&mut self, state: State, log: Vec<Command>) -> Result<(), ResumeError> {
+        for command in &log {
+            self.model.apply(&mut self.state, &command.edit)?;
+        }
+        self.log = log;
+        Ok(self.resume(state)?)
+    }
+
     /// Continues from another state of the same model.
-    pub fn resume(&mut self, state: State) {
+    ///
+    /// # Errors
+    /// The state is none of this model, see [`Model::check_state`]; the world stays where it was.
+    pub fn resume(&mut self, state: State) -> Result<(), SnapshotError> {
+        self.model.check_state(&state, &self.state)?;
         self.state = state;
         self.place_all_rows();
+        Ok(())
     }
 
     /// One period of the world.
@@ -211,6 +275,7 @@ impl World {
         let system = &self.model.systems[index];
         let ws = &mut self.workspace.systems[index];
         let timestep = self.model.timestep(index);
+        let (clock, before) = (Instant::now(), ws.stages.total());
         let has_pairs = system.forces.iter().any(|force| force.declaration().changing_pattern);
         for step in 0..system.steps_per_period {
             let time = start + f64::from(step) * timestep;
@@ -230,6 +295,9 @@ impl World {
         // the very time that a resumed world has here, not `start + period`
         let end = (next.period + 1) as f64 * self.model.period;
         system.place_rows(&state.q, &state.v, end, &mut ws.rows);
+        // what no stage has claimed
+        let claimed = ws.stages.total() - before;
+        ws.stages.advance += (clock.elapsed().as_secs_f64() - claimed).max(0.0);
         Ok(report)
     }
 
@@ -244,11 +312,9 @@ impl World {
     }
 
     fn exchange_impulses(&mut self, next: &mut State) {
-        for coupling in &self.model.couplings {
-            let fast = &self.model.systems[coupling.fast_system];
-            let force = fast.forces.iter().position(|force| force.name() == coupling.fast_name());
-            let Some(force) = force else { continue };
-            let range = fast.memory_ranges()[force].clone();
+        for (coupling, fast_end) in self.model.couplings.iter().zip(&self.workspace.fast_ends) {
+            let Some(force) = *fast_end else { continue };
+            let range = self.model.systems[coupling.fast_system].memory_range(force);
             let row = coupling.slow_row as usize;
             let moved = self.workspace.systems[coupling.slow_system].rows.positions[row]
                 - coupling.published_position(&next.driven);
@@ -258,12 +324,9 @@ impl World {
     }
 
     fn step_fields(&mut self, start: f64, next: &mut State) -> Result<(), WorldError> {
-        if self.model.fields.is_empty() {
-            return Ok(());
-        }
-        let rows: Vec<Rows> = self.workspace.systems.iter().map(|ws| ws.rows.clone()).collect();
+        let rows = CommittedRows(&self.workspace.systems);
         for (field, state) in self.model.fields.iter().zip(&mut next.fields) {
-            field.step(&rows, start, self.model.period, state).map_err(|message| WorldError {
+            field.step(rows, start, self.model.period, state).map_err(|message| WorldError {
                 place: format!("field `{}`", field.name()),
                 error: StepError::Field(message),
             })?;
@@ -290,6 +353,15 @@ impl World {
             report.kinetic += system.kinetic_energy(&ws.rows);
             let energies = system.energies(ws, state, &around);
             report.by_force.extend(system.forces.iter().map(|force| force.name().to_owned()).zip(energies));
+        }
+        let time = self.time();
+        for coupling in &self.model.couplings {
+            let rows = &self.workspace.systems[coupling.fast_system].rows;
+            let fast = rows.positions[coupling.fast_row as usize];
+            // before the first period nothing has been exchanged, and the account is not open yet
+            let made =
+                if self.state.period == 0 { 0.0 } else { coupling.energy_made(&self.state, fast, time) };
+            report.made_by_coupling.push((coupling.name.clone(), made));
         }
         report
     }

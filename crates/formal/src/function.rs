@@ -3,7 +3,7 @@
 use crate::Kind;
 
 /// What can be called with numbers, or chosen by a condition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Function {
     Sin,
     Cos,

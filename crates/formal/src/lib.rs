@@ -6,15 +6,20 @@
 
 mod arithmetic;
 mod dimension;
+pub mod element;
+pub mod emit;
 mod error;
 mod expression;
 mod formula;
 mod function;
+pub mod graph;
+pub mod law;
 mod lexer;
 mod parser;
 mod program;
 mod quantity;
 mod span;
+pub mod tape;
 mod unit;
 
 pub use dimension::Dimension;
@@ -24,4 +29,4 @@ pub use formula::{Condition, Formula};
 pub use function::{ArgumentCount, CONSTANTS, FUNCTIONS, Function, FunctionEntry};
 pub use quantity::{Quantity, parse_quantity, quantity_in};
 pub use span::Span;
-pub use unit::{Unit, UnitError, parse_unit};
+pub use unit::{Unit, UnitEntry, UnitError, parse_unit, units};

@@ -158,6 +158,32 @@ const PREFIXES: &[(&str, i32)] = &[
     ("T", 12),
 ];
 
+/// A unit as it is listed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitEntry {
+    pub symbol: &'static str,
+    /// What it is in words, or in SI units.
+    pub meaning: String,
+    /// Prefixes it takes.
+    pub prefixes: Vec<&'static str>,
+}
+
+/// All units that may be written, without their products.
+pub fn units() -> impl Iterator<Item = UnitEntry> {
+    SYMBOLS.iter().map(|entry| UnitEntry {
+        symbol: entry.symbol,
+        meaning: match entry.unit.dimension {
+            Dimension::PURE => format!("the number {}", entry.unit.scale()),
+            dimension if entry.unit.scale() == 1.0 => dimension.describe(),
+            dimension => format!("{} SI units of {}", entry.unit.scale(), dimension.describe()),
+        },
+        prefixes: match entry.prefixes {
+            Prefixes::All => PREFIXES.iter().map(|(prefix, _)| *prefix).collect(),
+            Prefixes::None => Vec::new(),
+        },
+    })
+}
+
 /// The unit of a symbol with or without prefix; a symbol as a whole goes first (`min` is no milli-inch).
 fn lookup(symbol: &str) -> Option<Unit> {
     let exact = |text: &str| SYMBOLS.iter().find(|entry| entry.symbol == text);

@@ -34,16 +34,50 @@ pub fn write_file(
     })
 }
 
+/// Writes several files that belong together: all are complete beside before the first is renamed.
+///
+/// # Errors
+/// Those of [`write_file`]; files not yet renamed stand as they were.
+pub(crate) fn write_files(files: &[(PathBuf, Vec<u8>)]) -> Result<(), IoError> {
+    let mut pairs: Vec<(&Path, PathBuf)> = Vec::with_capacity(files.len());
+    let result = files.iter().try_for_each(|(path, content)| {
+        let temporary = name_beside(path).ok_or_else(|| {
+            IoError::request("the path", format!("`{}`", path.display()), "the name of a file")
+        })?;
+        pairs.push((path, temporary.clone()));
+        write_synced(&temporary, |out| out.write_all(content)).map_err(|source| IoError::write(path, source))
+    });
+    let result = result.and_then(|()| {
+        pairs.iter().try_for_each(|(path, temporary)| {
+            fs::rename(temporary, path).map_err(|source| IoError::write(path, source))
+        })
+    });
+    if result.is_err() {
+        for (_, temporary) in &pairs {
+            // the first failure is the one to report; renamed ones are gone already
+            let _ = fs::remove_file(temporary);
+        }
+    }
+    result
+}
+
 fn write_and_rename(
     path: &Path,
     temporary: &Path,
     content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let mut writer = BufWriter::with_capacity(1 << 16, File::create_new(temporary)?);
+    write_synced(temporary, content)?;
+    fs::rename(temporary, path)
+}
+
+fn write_synced(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut writer = BufWriter::with_capacity(1 << 16, File::create_new(path)?);
     content(&mut writer)?;
     // a full disk may show only here, when the buffers go out
-    writer.into_inner().map_err(|error| error.into_error())?.sync_all()?;
-    fs::rename(temporary, path)
+    writer.into_inner().map_err(|error| error.into_error())?.sync_all()
 }
 
 fn write_through(

@@ -10,7 +10,7 @@ pub enum IoError {
     #[error("cannot read {}: {source}", .path.display())]
     Read { path: PathBuf, source: std::io::Error },
     #[error("{}: {fault}", .path.display())]
-    Content { path: PathBuf, fault: Fault },
+    Content { path: PathBuf, fault: Box<Fault> },
     #[error("cannot write {}: the disk is full; nothing was left behind", .path.display())]
     DiskFull { path: PathBuf },
     #[error("cannot write {}: its folder is missing or may not be written to ({source})", .path.display())]
@@ -44,6 +44,8 @@ pub struct Fault {
 pub enum Place {
     /// Line of a text, from 1.
     Line(usize),
+    /// Line of one file of several, from 1.
+    PartLine { extension: &'static str, line: usize },
     /// Offset from the start of the file.
     Byte(usize),
 }
@@ -52,6 +54,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
+            Self::PartLine { extension, line } => write!(f, "line {line} of the .{extension} file"),
             Self::Byte(offset) => write!(f, "byte {offset}"),
         }
     }
@@ -80,6 +83,10 @@ impl IoError {
         expected: impl Into<String>,
     ) -> Self {
         Self::Request { subject: subject.into(), value: value.to_string(), expected: expected.into() }
+    }
+
+    pub(crate) fn content(path: &Path, fault: Fault) -> Self {
+        Self::Content { path: path.to_owned(), fault: Box::new(fault) }
     }
 
     /// The error of a failed write, by its cause.

@@ -1,14 +1,16 @@
 //! The table of file formats, and reading and writing by it.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use souple_mesh::Mesh;
 use souple_table::{Entry, Table};
 
+use crate::beside::write_files;
 use crate::dataset::Output;
 use crate::error::{Fault, Place, quoted};
-use crate::{Dataset, IoError, gmsh, obj, stl, vtk, write_file};
+use crate::holds::Holds;
+use crate::{Dataset, IoError, gltf, gmsh, obj, off, parts, ply, stl, tetgen, vtk, write_file};
 
 /// Reads a whole content.
 pub type Read = fn(&[u8]) -> Result<Dataset, Fault>;
@@ -16,15 +18,20 @@ pub type Read = fn(&[u8]) -> Result<Dataset, Fault>;
 /// Writes a whole content.
 pub type WriteInto = fn(&Output<'_>, &mut dyn Write) -> Result<(), WriteError>;
 
-/// A file format: how it is found, read, written.
+/// A file format: how it is found, read, written, and what it has room for.
 #[derive(Clone, Copy, Debug)]
 pub struct Format {
     /// File name extensions that stand for it, in lower case, without the dot.
     pub extensions: &'static [&'static str],
+    /// Extensions of the files that one mesh is kept in, for formats of several; `read` and `write` then take
+    /// them joined (see [`crate::parts`]). Empty for formats of one file.
+    pub parts: &'static [&'static str],
     /// Whether content begins like this format.
     pub recognises: fn(&[u8]) -> bool,
     pub read: Option<Read>,
     pub write: Option<WriteInto>,
+    /// What of a mesh the writer keeps.
+    pub holds: Holds,
 }
 
 /// Why a writer stopped: what it was given, or the system.
@@ -45,8 +52,14 @@ pub static FORMATS: Table<Format> = Table {
         &gmsh::GMSH_2,
         &vtk::VTU,
         &vtk::VTK_LEGACY,
+        &tetgen::TETGEN,
         &obj::OBJ,
+        &ply::PLY,
+        &ply::PLY_TEXT,
+        &off::OFF,
         &stl::STL,
+        &stl::STL_TEXT,
+        &gltf::GLTF,
     ],
 };
 
@@ -59,16 +72,43 @@ pub fn read_mesh(path: &Path) -> Result<(Mesh, Vec<String>), IoError> {
     Ok((dataset.mesh, dataset.notes))
 }
 
+/// The files that a mesh is read from: that of the path, then those that stand beside it where a format has several.
+pub fn files_of_mesh(path: &Path) -> Vec<PathBuf> {
+    let parts = by_extension(path).map_or(&[][..], |entry| entry.build.parts);
+    let mut files = vec![path.to_owned()];
+    files.extend(parts::others_of(path, parts));
+    files
+}
+
+/// The mesh of a file whose content is already in memory; `path` says its extension and is named in errors.
+///
+/// # Errors
+/// The extension is unknown, the content is faulty.
+pub fn read_mesh_content(path: &Path, bytes: &[u8]) -> Result<(Mesh, Vec<String>), IoError> {
+    let dataset = read_content(path, bytes)?;
+    Ok((dataset.mesh, dataset.notes))
+}
+
 /// The mesh and the fields of a file; the format goes by the extension, or by the content where that says more.
 ///
 /// # Errors
 /// The file cannot be opened, its extension is unknown, its content is faulty.
 pub fn read_dataset(path: &Path) -> Result<Dataset, IoError> {
+    if let Ok(Entry { build: format @ Format { read: Some(read), .. }, .. }) = by_extension(path)
+        && !format.parts.is_empty()
+    {
+        let bytes = parts::read_joined(path, format.parts)?;
+        return read(&bytes).map_err(|fault| IoError::content(path, fault));
+    }
     let bytes = std::fs::read(path).map_err(|source| IoError::Read { path: path.to_owned(), source })?;
-    let by_content = FORMATS.entries.iter().copied().find(|entry| (entry.build.recognises)(&bytes));
+    read_content(path, &bytes)
+}
+
+fn read_content(path: &Path, bytes: &[u8]) -> Result<Dataset, IoError> {
+    let by_content = FORMATS.entries.iter().copied().find(|entry| (entry.build.recognises)(bytes));
     let entry = match (by_extension(path), by_content) {
         // the extension rules while the content agrees or says nothing
-        (Ok(named), found) if (named.build.recognises)(&bytes) || found.is_none() => named,
+        (Ok(named), found) if (named.build.recognises)(bytes) || found.is_none() => named,
         (_, Some(found)) => found,
         (Ok(named), None) => named,
         (Err(error), None) => return Err(error),
@@ -78,7 +118,7 @@ pub fn read_dataset(path: &Path) -> Result<Dataset, IoError> {
         action: "read",
         expected: readable(),
     })?;
-    let mut dataset = read(&bytes).map_err(|fault| IoError::Content { path: path.to_owned(), fault })?;
+    let mut dataset = read(bytes).map_err(|fault| IoError::content(path, fault))?;
     if by_extension(path).map_or(true, |named| !std::ptr::eq(named, entry)) {
         dataset.notes.insert(0, format!("the content was recognised as the format `{}`", entry.name));
     }
@@ -103,7 +143,7 @@ pub fn read_dataset_bytes(format: &str, bytes: &[u8]) -> Result<Dataset, IoError
     let expected = readable();
     let read =
         entry.build.read.ok_or(IoError::Unsupported { format: entry.name, action: "read", expected })?;
-    read(bytes).map_err(|fault| IoError::Content { path: "<memory>".into(), fault })
+    read(bytes).map_err(|fault| IoError::content(Path::new("<memory>"), fault))
 }
 
 /// Writes a mesh, the format by the extension.
@@ -137,19 +177,36 @@ fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -
         expected: format!("one of {}", names_where(|format| format.write.is_some())),
     })?;
     output.check()?;
+    entry.build.holds.check(entry.name, output)?;
     let mut refusal = None;
-    let written = write_file(path, |out| match write(output, out) {
+    let mut content = |out: &mut dyn Write| match write(output, out) {
         Ok(()) => Ok(()),
         Err(WriteError::System(error)) => Err(error),
         Err(WriteError::Request(error)) => {
             refusal = Some(error);
             Err(std::io::ErrorKind::InvalidInput.into())
         }
-    });
+    };
+    let written = if entry.build.parts.is_empty() {
+        write_file(path, content)
+    } else {
+        let mut joined = Vec::new();
+        let made = content(&mut joined).map_err(|source| IoError::write(path, source));
+        made.and_then(|()| write_files(&parts::split_for(path, &joined)))
+    };
     match refusal {
         Some(error) => Err(error),
         None => written,
     }
+}
+
+/// What a file of that name will not hold of a mesh, in words; nothing where all of it is kept.
+///
+/// # Errors
+/// The extension is unknown.
+pub fn losses(path: &Path, output: &Output<'_>) -> Result<Vec<String>, IoError> {
+    let entry = by_extension(path)?;
+    Ok(entry.build.holds.losses(entry.name, output))
 }
 
 fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {

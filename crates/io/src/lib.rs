@@ -8,14 +8,21 @@ mod csv;
 mod cursor;
 mod dataset;
 mod error;
+mod facets;
 mod format;
+pub mod gltf;
 mod gmsh;
+mod holds;
 mod obj;
+mod off;
+mod parts;
 pub mod picture;
 pub mod plot;
+mod ply;
 mod stl;
 #[cfg(test)]
 mod testing;
+mod tetgen;
 mod vtk;
 
 pub use beside::write_file;
@@ -23,7 +30,8 @@ pub use csv::{Column, write_csv};
 pub use dataset::{Dataset, Facets, Field, Output, Precision};
 pub use error::{Fault, IoError, Place};
 pub use format::{
-    FORMATS, Format, Read, WriteError, WriteInto, read_dataset, read_dataset_bytes, read_mesh,
-    read_mesh_bytes, write_dataset, write_dataset_as, write_mesh,
+    FORMATS, Format, Read, WriteError, WriteInto, files_of_mesh, losses, read_dataset, read_dataset_bytes,
+    read_mesh, read_mesh_bytes, read_mesh_content, write_dataset, write_dataset_as, write_mesh,
 };
-pub use vtk::Series;
+pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
+pub use vtk::{Series, read_series};

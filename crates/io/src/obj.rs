@@ -6,13 +6,15 @@
 use std::io::Write;
 
 use souple_math::Vec3;
-use souple_mesh::{CellBlock, ElementKind, Mesh};
+use souple_mesh::{ElementKind, Mesh};
 use souple_table::Entry;
 
 use crate::cursor::parse;
 use crate::dataset::{Output, tidy_groups};
 use crate::error::{Fault, Place, quoted};
+use crate::facets::{Origin, SurfacePart};
 use crate::format::{Format, WriteError};
+use crate::holds::{HeldGroups, Holds, Shapes};
 use crate::{Dataset, IoError};
 
 pub(crate) static OBJ: Entry<Format> = Entry {
@@ -20,7 +22,14 @@ pub(crate) static OBJ: Entry<Format> = Entry {
     summary: "Wavefront OBJ surface: triangles and quadrilaterals in groups",
     source: "Wavefront, Object Files (.obj), 1992",
     parameters: &[],
-    build: Format { extensions: &["obj"], recognises: |_| false, read: Some(read), write: Some(write) },
+    build: Format {
+        extensions: &["obj"],
+        parts: &[],
+        recognises: |_| false,
+        read: Some(read),
+        write: Some(write),
+        holds: Holds { shapes: Shapes::Facets, groups: HeldGroups::OfFacets, ..Holds::BARE },
+    },
 };
 
 /// Statements that change nothing of the geometry.
@@ -202,19 +211,34 @@ fn read_point<'a>(mut words: impl Iterator<Item = &'a [u8]>, place: Place) -> Re
 
 /// Writes the facets; a mesh with cells and without facets gives its boundary.
 fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-    let mesh = output.mesh;
-    if mesh.facet_count() == 0 {
-        return write_boundary(output, out);
+    let part = SurfacePart::of(output);
+    writeln!(out, "# souple surface{}", part.origin.remark())?;
+    part.positions.iter().try_for_each(|position| write_point(*position, out))?;
+    let memberships = memberships(output, &part)?;
+    let mut current: &[&str] = &[];
+    for (facet, groups) in part.facets.iter().zip(&memberships) {
+        if groups != current {
+            // a group line without names means the default group
+            writeln!(out, "g {}", if groups.is_empty() { "default".to_owned() } else { groups.join(" ") })?;
+            current = groups;
+        }
+        write_facet(facet.corners(), out)?;
     }
-    writeln!(out, "# souple surface")?;
-    write_points(output, out)?;
-    let mut memberships = vec![Vec::new(); mesh.facet_count()];
-    for (name, group) in &mesh.groups {
+    Ok(())
+}
+
+/// Names of the groups of each facet; none for a boundary.
+fn memberships<'a>(output: &Output<'a>, part: &SurfacePart) -> Result<Vec<Vec<&'a str>>, IoError> {
+    let mut memberships = vec![Vec::new(); part.facets.len()];
+    if part.origin == Origin::Boundary {
+        return Ok(memberships);
+    }
+    for (name, group) in &output.mesh.groups {
         if !group.facets.is_empty()
             && (name.is_empty() || name.contains(char::is_whitespace) || name.contains('#'))
         {
             let expected = "a word without spaces in an OBJ file";
-            return Err(IoError::request("the name of a group", format!("`{name}`"), expected).into());
+            return Err(IoError::request("the name of a group", format!("`{name}`"), expected));
         }
         for facet in &group.facets {
             let count = memberships.len();
@@ -228,32 +252,7 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
             list.push(name.as_str());
         }
     }
-    let mut current: &[&str] = &[];
-    for (nodes, groups) in mesh.facet_blocks.iter().flat_map(CellBlock::cells).zip(&memberships) {
-        if groups != current {
-            // a group line without names means the default group
-            writeln!(out, "g {}", if groups.is_empty() { "default".to_owned() } else { groups.join(" ") })?;
-            current = groups;
-        }
-        write_facet(nodes, out)?;
-    }
-    Ok(())
-}
-
-fn write_boundary(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-    writeln!(out, "# souple surface: the boundary of the cells")?;
-    let surface = output.mesh.boundary_surface();
-    for point in &surface.mesh_points {
-        write_point(output.positions()[*point as usize], out)?;
-    }
-    for triangle in &surface.triangles {
-        write_facet(triangle, out)?;
-    }
-    Ok(())
-}
-
-fn write_points(output: &Output<'_>, out: &mut dyn Write) -> std::io::Result<()> {
-    output.positions().iter().try_for_each(|position| write_point(*position, out))
+    Ok(memberships)
 }
 
 fn write_point(position: Vec3, out: &mut dyn Write) -> std::io::Result<()> {

@@ -1,22 +1,51 @@
-//! STL: triangles, each with corners of its own; equal corners become one point. Text and binary; read only.
+//! STL: triangles, each with corners of its own; equal corners become one point. Text and binary.
+//!
+//! What is strange about a surface is told as it is read: triangles without area, stored normals that point against
+//! the order of the corners, edges that two triangles do not share, bytes behind the last triangle.
 
 use std::collections::HashMap;
+use std::io::Write;
 
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh};
 use souple_table::Entry;
 
-use crate::Dataset;
 use crate::cursor::Cursor;
+use crate::dataset::Output;
 use crate::error::{Fault, Place, quoted};
-use crate::format::Format;
+use crate::facets::SurfacePart;
+use crate::format::{Format, WriteError};
+use crate::holds::{Digits, Holds};
+use crate::{Dataset, IoError};
 
 pub(crate) static STL: Entry<Format> = Entry {
     name: "stl",
-    summary: "STL surface, text or binary; equal corners are joined to points",
+    summary: "STL surface; reads text and binary and joins equal corners to points, writes binary",
     source: "3D Systems, StereoLithography Interface Specification, 1988",
     parameters: &[],
-    build: Format { extensions: &["stl"], recognises: |_| false, read: Some(read), write: None },
+    build: Format {
+        extensions: &["stl"],
+        parts: &[],
+        recognises: |_| false,
+        read: Some(read),
+        write: Some(write_binary),
+        holds: Holds { digits: Digits::Single, ..Holds::BARE },
+    },
+};
+
+pub(crate) static STL_TEXT: Entry<Format> = Entry {
+    name: "stl_text",
+    summary: "STL surface; writes text whose corners read back as the same bits",
+    source: "3D Systems, StereoLithography Interface Specification, 1988",
+    parameters: &[],
+    build: Format {
+        extensions: &[],
+        parts: &[],
+        recognises: |_| false,
+        read: Some(read),
+        write: Some(write_text),
+        holds: Holds::BARE,
+    },
 };
 
 /// Bytes before the triangles of a binary file: a comment and their count.
@@ -30,6 +59,8 @@ struct Joiner {
     mesh: Mesh,
     points: HashMap<[u64; 3], u32>,
     degenerate: usize,
+    /// Triangles whose stored normal points against the order of their corners.
+    against: usize,
 }
 
 impl Joiner {
@@ -42,7 +73,10 @@ impl Joiner {
         })
     }
 
-    fn triangle(&mut self, corners: [Vec3; 3]) {
+    fn triangle(&mut self, normal: Vec3, corners: [Vec3; 3]) {
+        let [a, b, c] = corners;
+        // a normal of zeros or NaN says nothing
+        self.against += usize::from(normal.dot((b - a).cross(c - a)) < 0.0);
         let [a, b, c] = corners.map(|corner| self.point(corner));
         if a == b || b == c || c == a {
             self.degenerate += 1;
@@ -55,10 +89,16 @@ impl Joiner {
         if self.mesh.facet_blocks.is_empty() {
             return Err(Fault::new(place, "the number of triangles", "0", "1 or more"));
         }
-        let mut notes = Vec::new();
-        if self.degenerate > 0 {
-            notes.push(format!("{} triangles with equal corners were left out", self.degenerate));
-        }
+        let open = self.mesh.facet_surface().map_or(0, |surface| {
+            surface.edge_uses().iter().filter(|(_, forward, backward)| forward != backward).count()
+        });
+        let told = [
+            (self.degenerate, "triangles with equal corners were left out"),
+            (self.against, "triangles have a normal against the order of their corners, which was taken"),
+            (open, "edges are not shared by two triangles of opposite direction: the surface is not closed"),
+        ];
+        let notes = told.into_iter().filter(|(count, _)| *count > 0);
+        let notes = notes.map(|(count, what)| format!("{count} {what}")).collect();
         Ok(Dataset { mesh: self.mesh, notes, ..Dataset::default() })
     }
 }
@@ -112,9 +152,13 @@ fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {
                 "finite coordinates",
             ));
         }
-        joiner.triangle(corners);
+        joiner.triangle(corner(0), corners);
     }
-    joiner.finish(Place::Byte(80))
+    let mut dataset = joiner.finish(Place::Byte(80))?;
+    if bytes.len() > length {
+        dataset.notes.push(format!("{} bytes behind the last triangle were left out", bytes.len() - length));
+    }
+    Ok(dataset)
 }
 
 fn read_text(bytes: &[u8]) -> Result<Dataset, Fault> {
@@ -150,9 +194,10 @@ fn read_text(bytes: &[u8]) -> Result<Dataset, Fault> {
             return Err(cursor.fault("the next word", quoted(word), "facet, endsolid or end solid"));
         }
         expect(&mut cursor, "normal")?;
-        for _ in 0..3 {
+        let mut normal = [0.0; 3];
+        for component in &mut normal {
             // normals follow from the corners; some programs write them as NaN
-            cursor.double(format_args!("the normal of a facet"))?;
+            *component = cursor.double(format_args!("the normal of a facet"))?;
         }
         expect(&mut cursor, "outer")?;
         expect(&mut cursor, "loop")?;
@@ -167,60 +212,60 @@ fn read_text(bytes: &[u8]) -> Result<Dataset, Fault> {
         }
         expect(&mut cursor, "endloop")?;
         expect(&mut cursor, "endfacet")?;
-        joiner.triangle(corners);
+        joiner.triangle(Vec3::from_array(normal), corners);
     }
+}
+
+/// Corners of the triangles to write, with their unit normals; a triangle without area has a normal of zeros.
+fn triangles(output: &Output<'_>) -> Vec<(Vec3, [Vec3; 3])> {
+    let part = SurfacePart::of(output);
+    let triangles = part.facets.iter().flat_map(|facet| facet.triangles());
+    let with_normal = |corners: [u32; 3]| {
+        let [a, b, c] = corners.map(|corner| part.positions[corner as usize]);
+        ((b - a).cross(c - a).try_normalised().unwrap_or(Vec3::ZERO), [a, b, c])
+    };
+    triangles.map(with_normal).collect()
+}
+
+fn write_binary(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let triangles = triangles(output);
+    let largest =
+        output.positions().iter().flat_map(|p| p.to_array()).fold(0.0, |most: f64, x| most.max(x.abs()));
+    if largest > f64::from(f32::MAX) {
+        let expected = "at most 3.4e38, the largest number of 4 bytes (the format `stl_text` takes more)";
+        return Err(IoError::request("a coordinate", format!("{largest:e}"), expected).into());
+    }
+    let count = u32::try_from(triangles.len())
+        .map_err(|_| IoError::request("the number of triangles", triangles.len(), "less than 2^32"))?;
+    // the head must not begin with "solid"
+    let mut head = [b' '; 80];
+    head[..14].copy_from_slice(b"souple surface");
+    out.write_all(&head)?;
+    out.write_all(&count.to_le_bytes())?;
+    for (normal, corners) in triangles {
+        for vector in [normal].iter().chain(&corners) {
+            for component in vector.to_array() {
+                out.write_all(&(component as f32).to_le_bytes())?;
+            }
+        }
+        out.write_all(&[0; 2])?;
+    }
+    Ok(())
+}
+
+fn write_text(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    writeln!(out, "solid souple")?;
+    for (normal, corners) in triangles(output) {
+        let [x, y, z] = normal.to_array();
+        writeln!(out, "facet normal {x:e} {y:e} {z:e}\nouter loop")?;
+        for corner in corners {
+            let [x, y, z] = corner.to_array();
+            writeln!(out, "vertex {x:?} {y:?} {z:?}")?;
+        }
+        writeln!(out, "endloop\nendfacet")?;
+    }
+    Ok(writeln!(out, "endsolid souple")?)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{real_input, survives_faults};
-
-    const TEXT: &str = "solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
-                        endfacet\nfacet normal nan 0 0\nouter loop\nvertex 1 0 0\nvertex 1 1 0\nvertex -0 1 0\nendloop\n\
-                        endfacet\nendsolid a b\n";
-
-    fn binary() -> Vec<u8> {
-        let mut bytes = vec![b'x'; 80];
-        bytes.extend(2u32.to_le_bytes());
-        let triangles: [[f32; 9]; 2] =
-            [[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 1.0, 1.0, 0.0, -0.0, 1.0, 0.0]];
-        for triangle in triangles {
-            bytes.extend([0u8; 12]);
-            bytes.extend(triangle.iter().flat_map(|number| number.to_le_bytes()));
-            bytes.extend([0u8; 2]);
-        }
-        bytes
-    }
-
-    #[test]
-    fn text_and_binary_agree() {
-        let (text, binary) = (read(TEXT.as_bytes()).unwrap(), read(&binary()).unwrap());
-        assert_eq!(text.mesh, binary.mesh);
-        assert_eq!((text.mesh.points.len(), text.mesh.facet_count()), (4, 2));
-    }
-
-    #[test]
-    fn cuts_are_faults() {
-        let bytes = binary();
-        assert!((0..bytes.len()).all(|length| read(&bytes[..length]).is_err()));
-        let end = TEXT.find("endsolid").unwrap();
-        assert!((0..end).all(|length| read(&TEXT.as_bytes()[..length]).is_err()));
-    }
-
-    #[test]
-    fn no_fault_panics() {
-        survives_faults("stl", TEXT.as_bytes(), read);
-        survives_faults("stl", &binary(), read);
-    }
-
-    #[test]
-    fn real_surfaces() {
-        for name in ["circle_knot_ascii.stl", "pliers_binary.stl"] {
-            let Some(bytes) = real_input(name) else { return };
-            let mesh = read(&bytes).unwrap().mesh;
-            // a closed surface of triangles has about half as many points as triangles
-            assert!(mesh.points.len() < mesh.facet_count(), "{name}");
-        }
-    }
-}
+mod tests;

@@ -90,3 +90,36 @@ pub(crate) fn real_input(name: &str) -> Option<Vec<u8>> {
     let folder = std::env::var_os("SOUPLE_DATA")?;
     std::fs::read(Path::new(&folder).join(name)).ok()
 }
+
+/// A quadrilateral and three triangles that use the points in their order, one in a group.
+pub(crate) fn surface_mesh() -> Mesh {
+    let points = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 1e-3],
+        [1.0, 1.0 / 3.0, 0.0],
+        [0.0, 1.0, -0.25],
+        [0.5, 0.5, 1.7],
+        [-1e-7, 0.9, 0.3],
+    ];
+    let mut mesh = Mesh { points: points.map(Vec3::from_array).to_vec(), ..Mesh::default() };
+    mesh.push_facet(ElementKind::Quad4, &[0, 1, 2, 3]);
+    mesh.push_facet(ElementKind::Tri3, &[0, 1, 4]);
+    mesh.push_facet(ElementKind::Tri3, &[3, 4, 5]);
+    mesh.push_facet(ElementKind::Tri3, &[4, 2, 5]);
+    mesh.groups.insert("lid".into(), Group { facets: vec![1, 2], ..Group::default() });
+    mesh
+}
+
+/// Two tetrahedra and two triangles, with groups called by number.
+pub(crate) fn tetrahedra_mesh() -> Mesh {
+    let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 1e-9], [0.0, 1.0, 0.0], [0.0, 1.0 / 3.0, 1.0], [1.0, 1.0, 1.0]];
+    let mut mesh = Mesh { points: points.map(Vec3::from_array).to_vec(), ..Mesh::default() };
+    mesh.push_cell(ElementKind::Tet4, &[0, 1, 2, 3]);
+    mesh.push_cell(ElementKind::Tet4, &[4, 2, 1, 3]);
+    mesh.push_facet(ElementKind::Tri3, &[0, 2, 1]);
+    mesh.push_facet(ElementKind::Tri3, &[0, 1, 3]);
+    mesh.groups.insert("point_2".into(), Group { points: vec![0, 3], ..Group::default() });
+    mesh.groups.insert("surface_9".into(), Group { facets: vec![1], ..Group::default() });
+    mesh.groups.insert("volume_7".into(), Group { cells: vec![1], ..Group::default() });
+    mesh
+}

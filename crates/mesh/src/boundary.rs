@@ -3,7 +3,9 @@
 //! A face of two cells is inside, a face of one is on the boundary. A face of three or more, or a quadrilateral
 //! that meets two triangles, is a fault: fields would tear or overlap there.
 
-use crate::{Cell, Mesh, MeshError, TriangleSurface};
+use souple_math::Vec3;
+
+use crate::{Cell, ElementKind, Mesh, MeshError, TriangleSurface};
 
 /// A face that belongs to one cell only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +126,22 @@ impl Mesh {
         }
         (!triangles.is_empty()).then(|| TriangleSurface::from_mesh(&self.points, &triangles, facets))
     }
+}
+
+/// `∫ N_a dA` over a triangle or a bilinear quadrilateral for each of its corners [m²]; they add up to its area.
+pub fn face_node_areas(corners: &[Vec3]) -> Vec<f64> {
+    let kind = if corners.len() == 3 { ElementKind::Tri3 } else { ElementKind::Quad4 };
+    let mut areas = vec![0.0; corners.len()];
+    // exact where the face is flat; the area of a warped one is no polynomial
+    let rule = kind.rule_of_degree(3).unwrap_or_else(|| kind.default_rule());
+    for point in &rule.points {
+        let (shape, gradients) = (kind.shape(point.position), kind.shape_gradients(point.position));
+        let tangent =
+            |axis: usize| -> Vec3 { corners.iter().zip(&*gradients).map(|(x, g)| *x * g[axis]).sum() };
+        let area = tangent(0).cross(tangent(1)).length() * point.weight;
+        areas.iter_mut().zip(&*shape).for_each(|(total, share)| *total += area * share);
+    }
+    areas
 }
 
 /// A polygon as triangles around its corner of lowest number.

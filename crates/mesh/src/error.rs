@@ -51,6 +51,8 @@ pub enum MeshError {
     #[error("{requested} cells were asked for; expected at most {limit}")]
     TooManyCells { requested: f64, limit: u64 },
     #[error(transparent)]
+    Fill(#[from] crate::fill::FillError),
+    #[error(transparent)]
     Value(#[from] souple_table::ValueError),
     #[error(transparent)]
     UnknownGenerator(#[from] souple_table::UnknownName),

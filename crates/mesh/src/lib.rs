@@ -5,24 +5,32 @@
 //! knows an element by name except the generators.
 
 mod boundary;
+mod conformity;
 mod element;
 mod error;
+pub mod fill;
 mod generate;
+pub mod implicit;
 mod locate;
 mod measure;
 mod mesh;
 mod ordering;
 mod quadrature;
 mod quality;
+pub mod repair;
 mod signed_distance;
+pub mod simplify;
 mod surface;
+mod surface_quality;
 mod tree;
 mod validate;
+mod winding;
 
-pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral};
+pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral, face_node_areas};
+pub use conformity::{Conformity, HangingPoint};
 pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodeValues};
 pub use error::MeshError;
-pub use generate::{Build, GENERATORS, MAX_CELLS, generate};
+pub use generate::{Build, GENERATORS, MAX_CELLS, MeshSize, generate};
 pub use locate::{CellLocator, Location};
 pub use measure::BoundingBox;
 pub use mesh::{Cell, CellBlock, Group, Mesh};
@@ -31,5 +39,7 @@ pub use quadrature::{QuadraturePoint, QuadratureRule};
 pub use quality::{CellQuality, Histogram, QualitySummary};
 pub use signed_distance::{ClosestPoint, SignedDistance};
 pub use surface::{Feature, TriangleSurface, closest_point_on_triangle, vertex_normals};
+pub use surface_quality::TriangleQuality;
 pub use tree::{Aabb, AabbTree};
 pub use validate::Repairs;
+pub use winding::WindingNumber;

@@ -89,6 +89,23 @@ impl Mesh {
         self.cells().map(relative).collect()
     }
 
+    /// Numbers of dihedral angles of all cells, in bins of equal width from 0 to π.
+    pub fn dihedral_histogram(&self, bins: usize) -> Vec<usize> {
+        let mut counts = vec![0; bins.max(1)];
+        let mut buffer = [Vec3::ZERO; MAX_NODES];
+        for cell in self.cells() {
+            let positions = self.positions_into(cell.nodes, &mut buffer);
+            let normals: Vec<Vec3> =
+                cell.kind.faces().iter().map(|face| area_vector(face.nodes, positions)).collect();
+            for angle in edge_angles(cell.kind, &normals) {
+                let bin = angle / std::f64::consts::PI * counts.len() as f64;
+                let last = counts.len() - 1;
+                counts[(bin as usize).min(last)] += 1;
+            }
+        }
+        counts
+    }
+
     /// Histograms of `bins` bins over all cells.
     pub fn quality_summary(&self, bins: usize) -> QualitySummary {
         let cells = self.quality();
@@ -106,6 +123,12 @@ impl Mesh {
             worst_cell: worst.unwrap_or(0) as u32,
         }
     }
+}
+
+/// Scaled Jacobian of one cell of given nodes, as in [`CellQuality`].
+pub(crate) fn scaled_jacobian(kind: ElementKind, positions: &[Vec3]) -> f64 {
+    let regular: Vec<Vec3> = kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
+    least_corner(kind, positions) / least_corner(kind, &regular)
 }
 
 /// Measures of a cell as it is.
@@ -151,19 +174,19 @@ fn area_vector(nodes: &[u8], positions: &[Vec3]) -> Vec3 {
 }
 
 /// The interior angle at each edge is `π` less the angle between the outward normals.
-fn dihedrals(kind: ElementKind, normals: &[Vec3]) -> (f64, f64) {
-    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for edge in kind.edges() {
+fn edge_angles(kind: ElementKind, normals: &[Vec3]) -> impl Iterator<Item = f64> + '_ {
+    kind.edges().iter().filter_map(move |edge| {
         let mut sides =
             (0..normals.len()).filter(|f| edge.iter().all(|n| kind.faces()[*f].nodes.contains(n)));
-        if let (Some(f), Some(g)) = (sides.next(), sides.next()) {
-            let (u, v) = (normals[f], normals[g]);
-            let angle = std::f64::consts::PI - libm::atan2(u.cross(v).length(), u.dot(v));
-            least = least.min(angle);
-            greatest = greatest.max(angle);
-        }
-    }
-    (least, greatest)
+        let (u, v) = (normals[sides.next()?], normals[sides.next()?]);
+        Some(std::f64::consts::PI - libm::atan2(u.cross(v).length(), u.dot(v)))
+    })
+}
+
+fn dihedrals(kind: ElementKind, normals: &[Vec3]) -> (f64, f64) {
+    edge_angles(kind, normals).fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), angle| {
+        (least.min(angle), greatest.max(angle))
+    })
 }
 
 fn least_corner(kind: ElementKind, positions: &[Vec3]) -> f64 {

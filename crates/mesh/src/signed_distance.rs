@@ -83,6 +83,16 @@ impl SignedDistance {
         self.reoriented
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let TriangleSurface { points, triangles, mesh_points, cells } = &self.surface;
+        let vectors = points.capacity() + self.face_normals.capacity() + self.corner_normals.capacity();
+        size_of::<Vec3>() * (vectors + 3 * self.edge_normals.capacity())
+            + size_of::<[u32; 3]>() * (triangles.capacity() + self.opposite.capacity())
+            + 4 * (mesh_points.capacity() + cells.capacity())
+            + self.tree.bytes()
+    }
+
     /// New positions of the points of the same surface; no allocation.
     ///
     /// # Panics

@@ -73,6 +73,13 @@ impl AabbTree {
         self.boxes.len()
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of::<Aabb>() * self.boxes.capacity()
+            + size_of::<Node>() * self.nodes.capacity()
+            + 4 * self.order.capacity()
+    }
+
     pub fn is_empty(&self) -> bool {
         self.boxes.is_empty()
     }

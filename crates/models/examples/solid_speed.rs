@@ -37,7 +37,7 @@ fn main() {
             .with("youngs_modulus", Value::Number(1e7))
             .with("poissons_ratio", Value::Number(0.3))
             .with("density", Value::Number(1000.0));
-        let material = (entry.build)(&entry.values(values).unwrap());
+        let material = (entry.build)(&entry.values(values).unwrap()).unwrap();
         let cells = mesh.cell_count();
         let material_of_cell = vec![0; cells];
         let description = SolidDescription {

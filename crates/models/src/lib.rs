@@ -3,6 +3,7 @@
 #![allow(non_snake_case)] // symbols of the mathematics: F, P, K
 
 pub mod contact;
+pub mod derive;
 pub mod loads;
 pub mod materials;
 pub mod solids;

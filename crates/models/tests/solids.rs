@@ -35,7 +35,39 @@ fn material(law: &str) -> Material {
         .with("youngs_modulus", Value::Number(1e7))
         .with("poissons_ratio", Value::Number(0.3))
         .with("density", Value::Number(1000.0));
-    (entry.build)(&entry.values(values).unwrap())
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
+/// A law as text.
+fn text(energy: &str) -> Material {
+    let entry = materials::TABLE.find("hyperelastic").unwrap();
+    let (mu, lambda) = (1e7 / 2.6, 3e6 / (1.3 * 0.4));
+    let parameters = [
+        ("mu".to_owned(), format!("{mu} Pa")),
+        ("lambda".to_owned(), format!("{lambda} Pa")),
+        ("a".to_owned(), "[1, 2, -1]".to_owned()),
+    ];
+    let values = Values::new()
+        .with("energy", Value::Text(energy))
+        .with("parameters", Value::Texts(&parameters))
+        .with("density", Value::Number(1000.0));
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
+/// The compiled laws as text, and others: one for every kind of instruction.
+const TEXTS: [(&str, &str); 6] = [
+    ("linear", "mu*dot(eps, eps) + lambda/2*tr(eps)^2"),
+    ("st_venant_kirchhoff", "mu*dot(E, E) + lambda/2*tr(E)^2"),
+    ("neo_hookean", "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2"),
+    ("ogden", "mu/2*(l1^3 + l2^3 + l3^3 - 3) - 1.5*mu*ln(J) + lambda/2*(J - 1)^2"),
+    ("isochoric", "mu/2*(I1_bar - 3) + mu/5*(I2_bar - 3) + mu*(I1_bar - 3)^2 + lambda/2*(J - 1)^2"),
+    ("fibres", "mu/2*(I1 - 3) - mu*ln(J) + lambda/2*ln(J)^2 + mu/4*(exp(2*max(I4(a) - 1, 0)^2) - 1)"),
+];
+
+/// Every material of the battery with its name.
+fn all_materials() -> Vec<(String, Material)> {
+    let known = AnyLaw::ALL.iter().map(|law| (law.entry().name.to_owned(), material(law.entry().name)));
+    known.chain(TEXTS.map(|(name, energy)| (format!("{name} as text"), text(energy)))).collect()
 }
 
 fn describe<'a>(mesh: &'a Mesh, materials: &'a [Material], of_cell: &'a [u16]) -> SolidDescription<'a> {
@@ -134,11 +166,11 @@ fn check_tangent(name: &str, force: &dyn Force, x: &[Vec3], v: &[Vec3]) {
 /// at rest, no force in rigid motion and no net force or torque where the law is objective.
 #[test]
 fn battery_of_every_law_on_every_element() {
-    for law in AnyLaw::ALL {
+    for (law, material) in all_materials() {
         for element in ELEMENTS {
-            let name = format!("{} on {element}", law.entry().name);
+            let name = format!("{law} on {element}");
             let mesh = bar([1.0, 0.4, 0.3], [4.0, 2.0, 2.0], element);
-            let (materials, of_cell) = ([material(law.entry().name)], vec![0; mesh.cell_count()]);
+            let (materials, of_cell) = ([material.clone()], vec![0; mesh.cell_count()]);
             let force = SolidForce::new(&describe(&mesh, &materials, &of_cell)).unwrap();
             let mut scratch = force.new_scratch();
             let (x, v) = (bent(&mesh), vec![Vec3::ZERO; mesh.points.len()]);
@@ -174,6 +206,46 @@ fn battery_of_every_law_on_every_element() {
     }
 }
 
+/// Laws as text give the forces, energies and tangents of the same laws compiled ahead, whatever the rule of quadrature.
+#[test]
+fn texts_agree_with_compiled_laws() {
+    for (law, energy) in &TEXTS[..3] {
+        for element in ELEMENTS {
+            for quadrature in [Quadrature::Default, Quadrature::Full] {
+                let mesh = bar([1.0, 0.4, 0.3], [4.0, 3.0, 2.0], element);
+                let of_cell = vec![0; mesh.cell_count()];
+                let (x, v) = (bent(&mesh), vec![Vec3::ZERO; mesh.points.len()]);
+                let results = [material(law), text(energy)].map(|material| {
+                    let description = SolidDescription {
+                        quadrature,
+                        ..describe(&mesh, std::slice::from_ref(&material), &of_cell)
+                    };
+                    let force = SolidForce::new(&description).unwrap();
+                    let mut scratch = force.new_scratch();
+                    let mut product = vec![Vec3::ZERO; x.len()];
+                    let weights = TangentWeights { position: 2.0, velocity: 0.0 };
+                    force.add_differential(
+                        &at(&x, &v),
+                        weights,
+                        &directions(x.len()),
+                        &mut scratch,
+                        &mut product,
+                    );
+                    let energy = force.energy(&at(&x, &v), &mut scratch).stored;
+                    (force_at(&force, &mut scratch, &x, &v), product, energy)
+                });
+                let [(f, df, energy), (text_f, text_df, text_energy)] = results;
+                for (compiled, text) in [(f, text_f), (df, text_df)] {
+                    let difference: Vec<Vec3> = compiled.iter().zip(&text).map(|(a, b)| *a - *b).collect();
+                    // roundings of some tens of operations in another order, and of cancelling stresses
+                    assert!(norm(&difference) <= 1e-12 * norm(&compiled), "{law} on {element}");
+                }
+                assert!((energy - text_energy).abs() <= 1e-12 * energy, "{law} on {element}");
+            }
+        }
+    }
+}
+
 /// Kelvin–Voigt stress has no force in rigid rotation, dissipates otherwise, and its tangents are exact;
 /// Rayleigh damping is linear and symmetric.
 #[test]
@@ -188,12 +260,81 @@ fn damping_forces() {
             check_tangent(&format!("{name} on {element}"), force, &x, &v);
             let power = dot(&force_at(force, &mut force.new_scratch(), &x, &v), &v);
             assert!(power < 0.0, "{name} on {element} gives {power} W");
+            // the heat of a step is the power taken
+            let mut memory = [0.0];
+            force.advance_memory(&at(&x, &v), 0.5, &mut memory, &mut []);
+            assert!(
+                (memory[0] + 0.5 * power).abs() < 1e-12 * memory[0],
+                "{name} on {element}: {memory:?} {power}"
+            );
         }
         let omega = Vec3::new(0.3, 2.0, -1.0);
         let spin: Vec<Vec3> = x.iter().map(|x| omega.cross(*x)).collect();
         let rigid = norm(&force_at(&viscosity, &mut viscosity.new_scratch(), &x, &spin));
         let free = norm(&force_at(&viscosity, &mut viscosity.new_scratch(), &x, &v));
         assert!(rigid <= 1e-12 * free, "{element}: {rigid} N in rigid rotation");
+    }
+}
+
+/// A clamped bar that swings while `damping` takes its energy: what is missing at the end from kinetic energy, stored
+/// energy and heat, and the heat, relative to the energy at the start.
+fn unaccounted(
+    damping: &dyn Fn(&SolidDescription) -> Box<dyn Force>,
+    stepper: &str,
+    steps: u32,
+) -> (f64, f64) {
+    let mesh = bar([1.0, 0.4, 0.3], [4.0, 2.0, 2.0], "tet4");
+    let (materials, of_cell) = ([material("neo_hookean")], vec![0; mesh.cell_count()]);
+    let description = describe(&mesh, &materials, &of_cell);
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, mesh.points.len());
+    let mut mass = Mass::new(mesh.points.len());
+    lumped_mass(&mesh, 0, &|_| 1000.0, &mut mass);
+    mass.seal();
+    let clamped = |(i, p): (usize, &Vec3)| (p.x < 1e-9).then(|| Constraint::pin(i as u32, *p));
+    let entry = souple_engine::steppers::TABLE.find(stepper).unwrap();
+    let system = System {
+        name: "main".into(),
+        kinematics,
+        mass,
+        forces: vec![Box::new(SolidForce::new(&description).unwrap()), damping(&description)],
+        constraints: mesh.points.iter().enumerate().filter_map(clamped).collect(),
+        stepper: (entry.build)(&entry.values(Values::new()).unwrap()),
+        steps_per_period: 1,
+    };
+    let mut start = system.initial_state(mesh.points.clone());
+    for (v, p) in start.v.iter_mut().zip(&mesh.points) {
+        *v = Vec3::Y * (2.0 * p.x * p.x);
+    }
+    let state = State { systems: vec![start], ..State::default() };
+    let model = Model { period: 0.04 / f64::from(steps), systems: vec![system], ..Model::default() };
+    let mut world = model.start(state);
+    let before = world.energy().total();
+    (0..steps).for_each(|_| world.step().unwrap());
+    let after = world.energy();
+    let heat = after.by_force[1].1.dissipated;
+    ((before - after.total() - heat) / before, heat / before)
+}
+
+/// Energy at the start is energy at the end and heat, for strain-rate and stiffness damping alike, to the first order of
+/// the step: halved steps halve what is missing.
+#[test]
+fn damped_oscillations_account_for_their_energy() {
+    let viscosity = |d: &SolidDescription| -> Box<dyn Force> { Box::new(Viscosity::new(d, 1e4).unwrap()) };
+    let rayleigh =
+        |d: &SolidDescription| -> Box<dyn Force> { Box::new(RayleighDamping::new(d, 2e-3).unwrap()) };
+    type Make<'a> = &'a dyn Fn(&SolidDescription) -> Box<dyn Force>;
+    for (name, damping) in [("viscosity", &viscosity as Make), ("rayleigh", &rayleigh)] {
+        for (stepper, steps) in [("symplectic_euler", 400), ("rk4", 400), ("backward_euler", 40)] {
+            let (coarse, _) = unaccounted(damping, stepper, steps);
+            let (fine, heat) = unaccounted(damping, stepper, 2 * steps);
+            // long backward Euler steps take as much by themselves
+            assert!(heat > 0.1, "{name}, {stepper}: {heat} of the energy became heat");
+            assert!(coarse.abs() < 0.3, "{name}, {stepper}: {coarse} of the energy is missing");
+            // c h + d h²: the second term is a few percent of the first here
+            let ratio = fine / coarse;
+            assert!((0.35..0.65).contains(&ratio), "{name}, {stepper}: {coarse} {fine}");
+        }
     }
 }
 

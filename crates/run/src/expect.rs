@@ -1,58 +1,138 @@
 //! What a scene says must be observed, held against what was.
 
-use souple_scene::spec::probe::{Bound, Expect};
+use serde_json::{Value, json};
+use souple_math::Vec3;
+use souple_scene::Measurement;
+use souple_scene::spec::expect::Expect;
+use souple_scene::spec::probe::Component;
 
 use crate::Trace;
+use crate::report::{Status, numbers_to_json};
 
-/// One `expect` line and how it fared.
+/// How an expectation fared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finding {
+    Holds,
+    Fails,
+    /// The run did not pass its moment.
+    NotJudged,
+}
+
+impl Finding {
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Fails => "fails",
+            Self::NotJudged => "not judged",
+        }
+    }
+}
+
+/// One `expect` of a scene and how it fared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    pub pass: bool,
-    /// In words: what was measured, what was expected.
-    pub message: String,
+    pub finding: Finding,
+    /// What is expected, in words.
+    pub text: String,
+    /// What was measured, in `unit`; `None` where it was not judged.
+    pub value: Option<Vec<f64>>,
+    pub unit: &'static str,
+    /// Why it was not judged.
+    pub why: Option<String>,
+}
+
+/// The stretch of time that a run covers.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Where the scene itself ends [s]: the moment of an expectation without a time, also in a longer run.
+    pub scene_end: f64,
+    /// [s]
+    pub period: f64,
+    pub status: Status,
+    /// The first and the last time measured [s].
+    pub measured: (f64, f64),
 }
 
 impl Verdict {
-    /// The verdict of one line; `None` where a run that was cut short, or begun late, did not pass its moment.
-    ///
-    /// `end` [s] is where the scene itself ends: the moment of a line without a time, also in a longer run.
-    pub fn of(expect: &Expect, traces: &[Trace], end: f64, period: f64) -> Option<Self> {
-        let moment = expect.time.unwrap_or(end);
-        let (first, last) =
-            traces.first().and_then(|trace| Some((*trace.times.first()?, *trace.times.last()?)))?;
-        // a scene ends at the step nearest to its end; a line beyond it is judged there, as it never comes
-        let slack = 0.5 * period * (1.0 + 1e-9);
-        let is_passed = first - slack <= moment && moment.min(end) <= last + slack;
-        is_passed.then(|| Self::at(expect, traces, moment))
+    pub fn of(expect: &Expect, traces: &[Trace], span: &Span) -> Self {
+        let moment = expect.time.unwrap_or(span.scene_end);
+        let trace = traces.iter().find(|trace| trace.name == expect.probe);
+        let unit = trace.map_or("", |trace| trace.unit);
+        let component = match expect.component {
+            Some(Component::Axis(axis)) => [".x", ".y", ".z"][axis],
+            Some(Component::Length) => ".length",
+            None => "",
+        };
+        let text = format!("{}{component} at {moment} s: {} {unit}", expect.probe, expect.bound);
+        let not_judged = |why: String| Self {
+            finding: Finding::NotJudged,
+            text: text.clone(),
+            value: None,
+            unit,
+            why: Some(why),
+        };
+        // a moment belongs to the nearest step
+        let slack = 0.5 * span.period * (1.0 + 1e-9);
+        let (first, last) = span.measured;
+        if moment > last + slack {
+            let how = match span.status {
+                Status::Done => "ended",
+                Status::Interrupted => "was interrupted",
+                Status::Failed => "failed",
+            };
+            return not_judged(format!("the run {how} at {last} s"));
+        }
+        if moment < first - slack {
+            return not_judged(format!("the run began at {first} s"));
+        }
+        let Some(value) = trace.and_then(|trace| trace.at(moment)) else {
+            return not_judged(format!("probe `{}` has no value", expect.probe));
+        };
+        let measured = match *value {
+            [x, y, z] => Measurement::Vector(Vec3::new(x, y, z)),
+            [number, ..] => Measurement::Number(number),
+            [] => Measurement::Number(f64::NAN),
+        };
+        let finding = if expect.accepts(measured) { Finding::Holds } else { Finding::Fails };
+        Self { finding, text, value: Some(expect.part_of(measured).numbers()), unit, why: None }
     }
 
-    fn at(expect: &Expect, traces: &[Trace], moment: f64) -> Self {
-        let Some(trace) = traces.iter().find(|trace| trace.name == expect.probe) else {
-            return Self { pass: false, message: format!("probe `{}` was not measured", expect.probe) };
-        };
-        let Some(value) = trace.at(moment) else {
-            return Self { pass: false, message: format!("probe `{}` has no value", expect.probe) };
-        };
-        let number = match (expect.component, value) {
-            (Some(component), [x, y, z]) => component.of(souple_math::Vec3::new(*x, *y, *z)),
-            (_, [single]) => *single,
-            (None, _) => value.iter().map(|c| c * c).sum::<f64>().sqrt(),
-            (Some(_), _) => f64::NAN,
-        };
-        let (pass, expected) = match &expect.bound {
-            Bound::Near { value, tolerance } => {
-                ((number - value).abs() <= *tolerance, format!("{value} within {tolerance}"))
+    /// In words: what was expected, and what was measured or why nothing was.
+    pub fn message(&self) -> String {
+        match (&self.value, &self.why) {
+            (Some(value), _) => {
+                let value = match &value[..] {
+                    [number] => number.to_string(),
+                    several => format!("{several:?}"),
+                };
+                format!("{}; measured {value} {}", self.text, self.unit)
             }
-            Bound::NearVector { value: wanted, tolerance } => {
-                let distance =
-                    value.iter().zip(wanted.to_array()).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-                (distance <= *tolerance, format!("{:?} within {tolerance}", wanted.to_array()))
-            }
-            Bound::Between { min, max } => {
-                ((*min..=*max).contains(&number), format!("between {min} and {max}"))
-            }
-        };
-        let message = format!("{} at {moment} s: {number} {}, expected {expected}", trace.name, trace.unit);
-        Self { pass, message }
+            (None, why) => format!("{}; not judged: {}", self.text, why.as_deref().unwrap_or_default()),
+        }
     }
+
+    pub fn to_json(&self) -> Value {
+        json!({
+            "text": self.text,
+            "status": self.finding.as_str(),
+            "value": self.value.as_deref().map(numbers_to_json),
+            "unit": self.unit,
+            "reason": self.why,
+        })
+    }
+}
+
+/// All findings on one line: `5 of 6 hold, 1 not judged: the run ended at 0.2 s`.
+pub fn summary(verdicts: &[Verdict]) -> String {
+    let count = |finding: Finding| verdicts.iter().filter(|verdict| verdict.finding == finding).count();
+    let mut text = format!("{} of {} hold", count(Finding::Holds), verdicts.len());
+    if count(Finding::Fails) > 0 {
+        text += &format!(", {} do not", count(Finding::Fails));
+    }
+    if count(Finding::NotJudged) > 0 {
+        let mut reasons: Vec<&str> = verdicts.iter().filter_map(|verdict| verdict.why.as_deref()).collect();
+        reasons.dedup();
+        text += &format!(", {} not judged: {}", count(Finding::NotJudged), reasons.join("; "));
+    }
+    text
 }

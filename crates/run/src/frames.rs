@@ -1,12 +1,11 @@
 //! The frames of a run: a series of files for ParaView per body.
 
-use souple_engine::World;
+use souple_engine::{Force, World};
 use souple_io::{Facets, Field, Output, Precision, Series};
 use souple_math::Vec3;
-use souple_models::solids::SolidForce;
 use souple_scene::BodyInfo;
 
-use crate::{Options, RunError};
+use crate::output::{FRAMES, OutputError, OutputFolder};
 
 /// Writes frames at even distances; none where the run has no folder.
 pub struct Frames {
@@ -19,54 +18,58 @@ pub struct Frames {
 
 impl Frames {
     pub fn open(
-        options: &Options,
+        folder: Option<&OutputFolder>,
         bodies: &[BodyInfo],
-        default_count: u64,
+        count: u64,
         steps: u64,
-    ) -> Result<Self, RunError> {
-        let count = options.frames.unwrap_or(default_count);
+    ) -> Result<Self, OutputError> {
         let mut series = Vec::new();
-        if let Some(out) = &options.out {
-            let folder = out.join("frames");
-            std::fs::create_dir_all(if count > 0 { &folder } else { out })
-                .map_err(|source| RunError::Folder { path: out.clone(), source })?;
-            if count > 0 {
-                series = bodies.iter().map(|body| Series::new(&folder, &body.name)).collect();
-            }
+        if let Some(folder) = folder.filter(|_| count > 0) {
+            let folder = folder.frames()?;
+            series = bodies.iter().map(|body| Series::new(&folder, &body.name)).collect();
         }
         let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };
         Ok(Self { series, every, last_written: None, step: 0 })
     }
 
     /// The frame of a step, if one is due.
-    pub fn write(&mut self, world: &mut World, bodies: &[BodyInfo], step: u64) -> Result<(), RunError> {
+    pub fn write(
+        &mut self,
+        folder: Option<&mut OutputFolder>,
+        world: &World,
+        bodies: &[BodyInfo],
+        step: u64,
+    ) -> Result<(), OutputError> {
         self.step = step;
-        if self.series.is_empty() || !step.is_multiple_of(self.every) {
-            return Ok(());
+        match folder {
+            Some(folder) if step.is_multiple_of(self.every) => self.write_now(folder, world, bodies),
+            _ => Ok(()),
         }
-        self.write_now(world, bodies)
     }
 
     /// The last frame, however the run ended.
-    pub fn close(&mut self, world: &mut World, bodies: &[BodyInfo]) -> Result<(), RunError> {
-        if self.series.is_empty() || self.last_written == Some(self.step) {
-            return Ok(());
+    pub fn close(
+        &mut self,
+        folder: Option<&mut OutputFolder>,
+        world: &World,
+        bodies: &[BodyInfo],
+    ) -> Result<(), OutputError> {
+        match folder {
+            Some(folder) if self.last_written != Some(self.step) => self.write_now(folder, world, bodies),
+            _ => Ok(()),
         }
-        self.write_now(world, bodies)
     }
 
-    fn write_now(&mut self, world: &mut World, bodies: &[BodyInfo]) -> Result<(), RunError> {
+    fn write_now(
+        &mut self,
+        folder: &mut OutputFolder,
+        world: &World,
+        bodies: &[BodyInfo],
+    ) -> Result<(), OutputError> {
         let time = world.time();
         for (series, body) in self.series.iter_mut().zip(bodies) {
             let positions = &world.rows(body.system).positions[body.rows.clone()];
-            let velocities = &world.rows(body.system).velocities[body.rows.clone()];
-            let displacements: Vec<Vec3> =
-                positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
-            let point_fields = [
-                Field::new("displacement", 3, flat(&displacements)),
-                Field::new("velocity", 3, flat(velocities)),
-            ];
-            let cell_fields = cell_fields(world, body);
+            let (point_fields, cell_fields) = fields(world, body);
             let output = Output {
                 mesh: &body.mesh,
                 positions: Some(positions),
@@ -75,6 +78,9 @@ impl Frames {
                 facets: Facets::LeftOut,
                 precision: precision_for(positions),
             };
+            for name in series.next_names() {
+                folder.claim(&format!("{FRAMES}/{name}"))?;
+            }
             series.push(time, &output)?;
         }
         self.last_written = Some(self.step);
@@ -89,14 +95,35 @@ fn precision_for(positions: &[Vec3]) -> Precision {
     if fits { Precision::Single } else { Precision::Double }
 }
 
+/// Displacement and velocity of every point; stress and energy density of every cell.
+pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
+    let positions = &world.rows(body.system).positions[body.rows.clone()];
+    let velocities = &world.rows(body.system).velocities[body.rows.clone()];
+    let displacements: Vec<Vec3> =
+        positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
+    let point_fields = vec![
+        Field::new("displacement", 3, flat(&displacements)),
+        Field::new("velocity", 3, flat(velocities)),
+    ];
+    (point_fields, cell_fields(world, body))
+}
+
 fn flat(vectors: &[Vec3]) -> Vec<f64> {
     vectors.iter().flat_map(|vector| vector.to_array()).collect()
 }
 
+/// Whether a file in the folder of frames may be a body's: `NAME.pvd` or `NAME_0000.vtu`.
+pub fn is_frame_of(body: &str, file: &str) -> bool {
+    let Some(rest) = file.strip_prefix(body) else { return false };
+    let number = rest.strip_prefix('_').and_then(|rest| rest.strip_suffix(".vtu"));
+    rest == ".pvd"
+        || number.is_some_and(|digits| digits.len() >= 4 && digits.bytes().all(|b| b.is_ascii_digit()))
+}
+
 /// The elastic force of a body.
-pub fn solid_of<'a>(world: &'a World, body: &BodyInfo) -> Option<&'a SolidForce> {
+pub fn solid_of<'a>(world: &'a World, body: &BodyInfo) -> Option<&'a dyn Force> {
     let forces = &world.model().systems[body.system].forces;
-    forces.iter().find(|force| force.name() == body.force)?.as_any().downcast_ref()
+    forces.iter().find(|force| force.name() == body.force).map(AsRef::as_ref)
 }
 
 /// Cauchy stress (six components xx, yy, zz, xy, yz, xz), von Mises stress and energy density of every cell.

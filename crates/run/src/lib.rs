@@ -3,34 +3,45 @@
 //! [`run`] steps a scene to its end, with what a run leaves on disk; `souple run`, the validation cases and the
 //! benchmarks all go through it, so that each of their numbers can be had again from the command line.
 
+mod command;
+mod duration;
 mod expect;
+mod failure;
 mod frames;
+mod frequencies;
 mod machine;
+mod output;
 mod picture;
 mod recording;
 mod report;
+pub mod show;
 mod snapshot_file;
 mod trace;
-
-pub use report::counts;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
-use souple_engine::{Model, State, StepReport, World, WorldError};
+use souple_engine::{Model, ResumeError, State, StepReport, World};
 use souple_scene::{BodyInfo, ProbeInfo, Scene};
 
-pub use expect::Verdict;
-pub use machine::{instruction_set, peak_bytes};
-pub use recording::{Divergence, Recording, RecordingError, command_from_json, command_to_json};
-pub use report::{Report, Status};
-pub use snapshot_file::{SnapshotFileError, read_snapshot, write_snapshot};
+pub use command::{command_from_json, command_to_json};
+pub use duration::{Periods, periods_in};
+pub use expect::{Finding, Verdict, summary};
+pub use failure::Failure;
+pub use frequencies::{FrequencyError, NaturalFrequencies, natural_frequencies};
+pub use machine::{binary, instruction_set, peak_bytes};
+pub use output::{MANIFEST, OutputError};
+pub use recording::{Divergence, Hashed, Recording, RecordingError};
+pub use report::{AroundSteps, Report, Status, counts};
+pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
 pub use trace::{Trace, write_csv};
+
+use output::{OutputFolder, Plan};
 
 /// What a run is asked for beyond its scene.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// World periods to step; the scene's duration where `None`.
+    /// World periods to step; where `None`, to the end of the scene's duration.
     pub steps: Option<u64>,
     /// Seconds to simulate, where `steps` is `None`.
     pub duration: Option<f64>,
@@ -42,9 +53,9 @@ pub struct Options {
     pub hash_every: Option<u64>,
     /// Periods between snapshots.
     pub snapshot_every: Option<u64>,
-    /// Continue from this state.
-    pub resume: Option<State>,
-    /// Commands to re-execute, in order of their periods.
+    /// Continue from this state, with the edits before it.
+    pub resume: Option<Snapshot>,
+    /// Commands to re-execute, in order of their periods; those before the snapshot that is resumed are skipped.
     pub commands: Vec<souple_engine::Command>,
     /// How the scene is called in the report.
     pub scene_name: String,
@@ -75,9 +86,11 @@ pub enum RunError {
     #[error("command before period {period}: {error}")]
     Edit { period: u64, error: souple_engine::EditError },
     #[error(transparent)]
-    Io(#[from] souple_io::IoError),
-    #[error("the folder `{}` cannot be made: {source}", .path.display())]
-    Folder { path: PathBuf, source: std::io::Error },
+    Output(#[from] OutputError),
+    #[error(
+        "a duration of {duration} s is {share:.3e} of a period of {period} s: no step would be made; a run lasts at least half a period"
+    )]
+    NoStep { duration: f64, period: f64, share: f64 },
     #[error(
         "a duration of {duration:e} s at a period of {period} s is {steps:e} steps; at most {limit:e} can be counted"
     )]
@@ -92,144 +105,196 @@ pub enum RunError {
 pub struct Outcome {
     pub report: Report,
     pub traces: Vec<Trace>,
-    pub verdicts: Vec<Verdict>,
     pub recording: Recording,
     pub world: World,
     pub bodies: Vec<BodyInfo>,
-    /// Where a step was refused, if one was.
-    pub failure: Option<WorldError>,
-}
-
-/// Steps beyond which a count is surely a slip of the pen.
-const MOST_STEPS: f64 = 1e12;
-
-/// Whole periods in `duration`, to the nearest.
-///
-/// # Errors
-/// There are absurdly many.
-pub fn steps_in(duration: f64, period: f64) -> Result<u64, RunError> {
-    let steps = (duration / period).round();
-    if steps.is_nan() || steps > MOST_STEPS {
-        return Err(RunError::TooManySteps { duration, period, steps, limit: MOST_STEPS });
-    }
-    Ok(steps.max(0.0) as u64)
 }
 
 /// Runs a scene to its end, to a refused step, or until `watch` stops it.
 ///
+/// Files in the folder of an earlier run are replaced when the first step is about to be made; a run that cannot
+/// start removes nothing.
+///
 /// # Errors
-/// The run cannot start, or a file cannot be written. A refused step is no error: the outcome holds it, with all
+/// The run cannot start, or a file cannot be written. A refused step is no error: the report holds it, with all
 /// that was computed before.
 pub fn run(
     scene: Scene,
     options: &Options,
     watch: &mut dyn FnMut(&Progress) -> Control,
 ) -> Result<Outcome, RunError> {
-    let Scene {
-        title, model, state, bodies, probes, expects, run: defaults, scene_sha256, mut warnings, ..
-    } = scene;
+    let Scene { title, model, state, bodies, probes, expects, run: defaults, picture: view, .. } = scene;
+    let (scene_sha256, mut warnings) = (scene.scene_sha256, scene.warnings);
     let period = model.period;
-    let steps = match options.steps {
-        Some(steps) => steps,
-        None => steps_in(options.duration.unwrap_or(defaults.duration), period)?,
-    };
-    if options.out.is_some() {
-        check_file_names("body", bodies.iter().map(|body| body.name.as_str()))?;
-        check_file_names("probe", probes.iter().map(|probe| probe.name.as_str()))?;
-    }
     let mut world = start(model, state, options)?;
-    warnings.extend(forecast_warnings(&mut world));
     let first_step = world.state().period;
+    let periods = duration::periods_of(options, defaults.duration, period, world.state())?;
+    let steps = periods.count;
+    warnings.extend(periods.warning);
+    warnings.extend(forecast_warnings(&mut world));
+    let resumed_seed = options.resume.as_ref().map(|snapshot| snapshot.seed);
+    let seed = options.seed.or(resumed_seed).unwrap_or(defaults.seed);
+    let frame_count = options.frames.unwrap_or(defaults.frames);
+    let mut folder = output_folder(options, &bodies, &probes, first_step)?;
     let mut traces: Vec<Trace> = probes.iter().map(Trace::new).collect();
-    let mut frames = frames::Frames::open(options, &bodies, defaults.frames, steps)?;
-    let mut recording = Recording::new(options, &scene_sha256, defaults.seed);
+    let mut frames = frames::Frames::open(folder.as_ref(), &bodies, frame_count, steps)?;
+    let mut recording = Recording::new(&options.scene_name, &scene_sha256, scene.inputs, seed);
     let mut status = Status::Done;
     let mut failure = None;
     let mut solver = StepReport::default();
+    let mut around = AroundSteps::default();
     let energy_at_start = world.energy();
     let momentum_at_start = world.momentum();
-    let mut commands = options.commands.iter().peekable();
+    let mut commands = commands_left(options, &world).peekable();
     let clock = Instant::now();
-    measure(&probes, &mut traces, &mut world);
+    timed(&mut around.measure, || measure(&probes, &mut traces, &mut world));
     recording.push_hash(&world);
-    frames.write(&mut world, &bodies, 0)?;
+    frames.write(folder.as_mut(), &world, &bodies, 0)?;
     for step in 1..=steps {
         while let Some(command) = commands.next_if(|command| command.period <= world.state().period) {
             let error = |error| RunError::Edit { period: command.period, error };
             world.edit(command.edit.clone()).map_err(error)?;
         }
         if let Err(error) = world.step() {
-            warnings.push(error.to_string());
-            (status, failure) = (Status::Failed, Some(error));
+            (status, failure) = (Status::Failed, Some(Failure::of(error, &world, &bodies)));
             break;
         }
         solver.merge(world.last_report());
-        measure(&probes, &mut traces, &mut world);
+        timed(&mut around.measure, || measure(&probes, &mut traces, &mut world));
         let last = step == steps;
+        let write_clock = Instant::now();
         if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
             recording.push_hash(&world);
         }
-        frames.write(&mut world, &bodies, step)?;
-        if let (Some(every), Some(out)) = (options.snapshot_every, &options.out)
-            && (last || step.is_multiple_of(every))
-        {
-            let name = format!("snapshot_{:08}.souple", world.state().period);
-            write_snapshot(&out.join(name), &scene_sha256, world.state())?;
-        }
+        frames.write(folder.as_mut(), &world, &bodies, step)?;
         let wall_seconds = clock.elapsed().as_secs_f64();
         let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
-        if watch(&progress) == Control::Stop && !last {
+        let stops = watch(&progress) == Control::Stop && !last;
+        if let (Some(every), Some(folder)) = (options.snapshot_every, &mut folder)
+            && (last || stops || step.is_multiple_of(every))
+        {
+            let path = folder.claim(&snapshot_name(world.state().period))?;
+            write_snapshot(&path, &scene_sha256, seed, world.state(), world.log())
+                .map_err(OutputError::from)?;
+        }
+        around.write += write_clock.elapsed().as_secs_f64();
+        if stops {
             status = Status::Interrupted;
             recording.push_hash(&world);
             break;
         }
     }
     recording.finish(&world);
-    frames.close(&mut world, &bodies)?;
-    let verdicts: Vec<Verdict> = if status == Status::Done {
-        expects.iter().filter_map(|expect| Verdict::of(expect, &traces, defaults.duration, period)).collect()
-    } else {
-        Vec::new()
+    frames.close(folder.as_mut(), &world, &bodies)?;
+    let span = expect::Span {
+        scene_end: defaults.duration,
+        period,
+        status,
+        measured: (first_step as f64 * period, world.time()),
     };
     let report = Report {
         status,
         title,
         scene: options.scene_name.clone(),
         scene_sha256,
-        seed: options.seed.unwrap_or(defaults.seed),
+        seed,
         threads: rayon::current_num_threads(),
+        first_step,
         steps: world.state().period - first_step,
         simulated_seconds: (world.state().period - first_step) as f64 * period,
         wall_seconds: clock.elapsed().as_secs_f64(),
-        counts: report::counts(&world, &bodies),
+        counts: counts(&world, &bodies),
         stages: world.stages(),
+        around,
         energy: (energy_at_start, world.energy()),
         momentum: (momentum_at_start, world.momentum()),
         solver,
         peak_bytes: peak_bytes(),
         solver_bytes: world.bytes(),
         probes: traces.iter().map(Trace::summary).collect(),
-        hashes: recording.hashes.clone(),
+        hashes: recording
+            .hashes
+            .iter()
+            .map(|hashed| (hashed.period, hashed.fingerprint.hash.clone()))
+            .collect(),
+        expectations: expects.iter().map(|expect| Verdict::of(expect, &traces, &span)).collect(),
+        failure,
         warnings,
     };
-    if let Some(out) = &options.out {
+    if let Some(folder) = &mut folder {
         // numbers first: a picture that cannot be written must not cost the report
-        report::write_all(out, &report, &traces, &verdicts)?;
-        picture::write_plots(out, &traces)?;
-        picture::write_picture(&out.join("last.png"), &report.title, &world, &bodies)?;
+        report::write_all(folder, &report, &traces)?;
+        picture::write_plots(folder, &traces)?;
+        let path = folder.claim(PICTURE)?;
+        picture::write_picture(&path, &report.title, view, &world, &bodies).map_err(OutputError::from)?;
     }
-    Ok(Outcome { report, traces, verdicts, recording, world, bodies, failure })
+    Ok(Outcome { report, traces, recording, world, bodies })
+}
+
+/// The picture of the last state.
+const PICTURE: &str = "last.png";
+
+fn snapshot_name(period: u64) -> String {
+    format!("snapshot_{period:08}.souple")
+}
+
+/// The period of a snapshot by its name.
+fn snapshot_period(name: &str) -> Option<u64> {
+    name.strip_prefix("snapshot_")?.strip_suffix(".souple")?.parse().ok()
+}
+
+/// Adds the wall seconds of some work.
+fn timed(seconds: &mut f64, work: impl FnOnce()) {
+    let clock = Instant::now();
+    work();
+    *seconds += clock.elapsed().as_secs_f64();
 }
 
 fn start(model: Model, state: State, options: &Options) -> Result<World, RunError> {
-    let resumed = match &options.resume {
-        Some(resumed) => {
-            resumed.check_shape(&state)?;
-            resumed.clone()
+    let Some(snapshot) = &options.resume else { return Ok(model.start(state)) };
+    let mut world = model.start(state);
+    let period = snapshot.state.period;
+    world.resume_edited(snapshot.state.clone(), snapshot.commands.clone()).map_err(|error| match error {
+        ResumeError::Edit(error) => RunError::Edit { period, error },
+        ResumeError::State(error) => error.into(),
+    })?;
+    Ok(world)
+}
+
+/// Commands that the world has not seen: those after its state, and those at its state's period that came later
+/// than what its log holds.
+fn commands_left<'a>(
+    options: &'a Options,
+    world: &World,
+) -> impl Iterator<Item = &'a souple_engine::Command> + use<'a> {
+    let now = world.state().period;
+    let done = world.log().iter().filter(|command| command.period == now).count();
+    let from = if options.resume.is_some() { now } else { 0 };
+    options.commands.iter().filter(move |command| command.period >= from).skip(done)
+}
+
+/// The folder of the run, cleared of the run before.
+fn output_folder(
+    options: &Options,
+    bodies: &[BodyInfo],
+    probes: &[ProbeInfo],
+    first_step: u64,
+) -> Result<Option<OutputFolder>, RunError> {
+    let Some(out) = &options.out else { return Ok(None) };
+    check_file_names("body", bodies.iter().map(|body| body.name.as_str()))?;
+    check_file_names("probe", probes.iter().map(|probe| probe.name.as_str()))?;
+    let writes = |name: &str| match name.split_once('/') {
+        Some((output::FRAMES, file)) => bodies.iter().any(|body| frames::is_frame_of(&body.name, file)),
+        _ => {
+            name == PICTURE
+                || report::NAMES.contains(&name)
+                || probes.iter().any(|probe| picture::plot_names(&probe.name).iter().any(|plot| plot == name))
+                || (options.snapshot_every.is_some() && snapshot_period(name).is_some())
         }
-        None => state,
     };
-    Ok(model.start(resumed))
+    let keeps = |name: &str| snapshot_period(name).is_some_and(|period| period <= first_step);
+    let keeps: Option<&dyn Fn(&str) -> bool> = if options.resume.is_some() { Some(&keeps) } else { None };
+    Ok(Some(OutputFolder::open(out, &Plan { writes: &writes, keeps })?))
 }
 
 /// Names become names of files, which stay inside the run's folder.

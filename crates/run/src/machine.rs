@@ -14,6 +14,11 @@ pub fn instruction_set() -> &'static str {
     std::env::consts::ARCH
 }
 
+/// The program and its version.
+pub fn binary() -> String {
+    format!("souple {}", env!("CARGO_PKG_VERSION"))
+}
+
 /// Most memory the process has held so far [bytes], where the system tells.
 pub fn peak_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

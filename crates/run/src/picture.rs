@@ -4,74 +4,50 @@ use std::path::Path;
 
 use souple_engine::World;
 use souple_io::IoError;
-use souple_io::picture::{EdgeStyle, Ground, Legend, MeshSurface, Picture};
 use souple_io::plot::{Axis, Curve, Plot};
-use souple_math::Vec3;
-use souple_models::contact::ShapeContact;
 use souple_scene::BodyInfo;
+use souple_scene::spec::picture::PictureView;
 
 use crate::Trace;
-use crate::frames::solid_of;
+use crate::output::{OutputError, OutputFolder};
+use crate::show::{Figure, Moment, Show, ShowError, Stage};
 
-/// All bodies as they stand, coloured by the von Mises stress of their cells, on the floor they touch.
+/// All bodies as they stand, coloured by the von Mises stress of their cells, and the shapes they touch.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_picture(path: &Path, title: &str, world: &World, bodies: &[BodyInfo]) -> Result<(), IoError> {
-    let mut surfaces = Vec::new();
-    for body in bodies {
-        let positions = &world.rows(body.system).positions[body.rows.clone()];
-        if positions.iter().any(|x| !x.is_finite()) {
-            continue;
-        }
-        let mut surface = MeshSurface::of(&body.mesh);
-        surface.move_to(positions);
-        let rows = &world.rows(body.system).positions;
-        if let Some(solid) = solid_of(world, body) {
-            let stress = |cell| solid.cell_field(cell, rows).map_or(f64::NAN, |field| field.von_mises);
-            let cells: Vec<f64> = (0..body.mesh.cell_count()).map(stress).collect();
-            surface.paint_points(&mean_at_points(body, &cells));
-        }
-        surface.surface.edge_style = EdgeStyle::Drawn;
-        surfaces.push(surface.surface);
-    }
-    let picture = Picture {
-        surfaces,
-        ground: floor(world),
-        title: title.to_owned(),
-        subtitle: format!("{:.3} s", world.time()),
-        legend: Some(Legend { title: "von Mises stress".to_owned(), unit: "Pa".to_owned(), range: None }),
-        ..Picture::default()
+pub fn write_picture(
+    path: &Path,
+    title: &str,
+    from: PictureView,
+    world: &World,
+    bodies: &[BodyInfo],
+) -> Result<(), IoError> {
+    let mut stage = Stage::of_model(world.model(), from);
+    stage.title = title.to_owned();
+    let moment = Moment::of_world(world, bodies);
+    let show = Show { stage, moments: Vec::new() };
+    let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
+    let plain = Figure { colour_by: None, ..figure.clone() };
+    // bodies without stress are shown in colours of their own
+    let picture = match figure.picture(&show, &moment).or_else(|_| plain.picture(&show, &moment)) {
+        Ok(picture) => picture,
+        Err(ShowError::Io(error)) => return Err(error),
+        Err(_) => return Ok(()),
     };
     picture.render()?.write_png(path)
 }
 
-/// Values of cells as means over the cells around each point, so that colours run smoothly.
-fn mean_at_points(body: &BodyInfo, cells: &[f64]) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0); body.mesh.points.len()];
-    for (cell, value) in body.mesh.cells().zip(cells) {
-        for node in cell.nodes {
-            let (sum, count) = &mut sums[*node as usize];
-            *sum += value;
-            *count += 1.0;
-        }
-    }
-    sums.into_iter().map(|(sum, count)| sum / count).collect()
+/// The files of a probe's plot.
+pub fn plot_names(probe: &str) -> [String; 2] {
+    [format!("{probe}.svg"), format!("{probe}.plot.png")]
 }
 
-/// The first plane that a body may touch.
-fn floor(world: &World) -> Option<Ground> {
-    let forces = world.model().systems.iter().flat_map(|system| &system.forces);
-    let planes = forces.filter_map(|force| force.as_any().downcast_ref::<ShapeContact>()?.shape().as_plane());
-    let (point, normal) = planes.into_iter().find(|(_, normal)| normal.dot(Vec3::Y) > 0.5)?;
-    Some(Ground { point, normal })
-}
-
-/// A plot over time for each probe, `NAME.svg`.
+/// A plot over time for each probe, `NAME.svg` and `NAME.plot.png`.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_plots(folder: &Path, traces: &[Trace]) -> Result<(), IoError> {
+pub fn write_plots(folder: &mut OutputFolder, traces: &[Trace]) -> Result<(), OutputError> {
     for trace in traces.iter().filter(|trace| trace.times.len() > 1) {
         let component = |c: usize| trace.values.iter().skip(c).step_by(trace.components).copied().collect();
         let curves = match trace.components {
@@ -89,7 +65,9 @@ pub fn write_plots(folder: &Path, traces: &[Trace]) -> Result<(), IoError> {
             curves,
             ..Plot::default()
         };
-        plot.write_svg(&folder.join(format!("{}.svg", trace.name)))?;
+        let [drawing, image] = plot_names(&trace.name);
+        plot.write_svg(&folder.claim(&drawing)?)?;
+        plot.to_image(2.0)?.write_png(&folder.claim(&image)?)?;
     }
     Ok(())
 }

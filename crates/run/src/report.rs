@@ -1,15 +1,16 @@
 //! The report of a run: `report.json`, and the files beside it.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use serde_json::{Value, json};
 use souple_engine::{EnergyReport, StageTimes, StepReport, UnknownKind, World};
-use souple_io::IoError;
 use souple_math::Vec3;
 use souple_scene::BodyInfo;
 
-use crate::machine::instruction_set;
+use crate::expect::summary;
+use crate::failure::Failure;
+use crate::machine::{binary, instruction_set};
+use crate::output::{OutputError, OutputFolder};
 use crate::trace::{Summary, write_csv};
 use crate::{Trace, Verdict};
 
@@ -39,11 +40,15 @@ pub struct Report {
     pub scene_sha256: String,
     pub seed: u64,
     pub threads: usize,
+    /// The period it began at: 0, or that of the snapshot it went on from.
+    pub first_step: u64,
+    /// Periods stepped.
     pub steps: u64,
     pub simulated_seconds: f64,
     pub wall_seconds: f64,
     pub counts: BTreeMap<String, u64>,
     pub stages: StageTimes,
+    pub around: AroundSteps,
     /// At the start and at the end.
     pub energy: (EnergyReport, EnergyReport),
     /// Linear and angular, at the start and at the end.
@@ -56,7 +61,19 @@ pub struct Report {
     pub solver_bytes: usize,
     pub probes: Vec<Summary>,
     pub hashes: Vec<(u64, String)>,
+    pub expectations: Vec<Verdict>,
+    /// Why the run ended early, where a step was refused.
+    pub failure: Option<Failure>,
     pub warnings: Vec<String>,
+}
+
+/// Wall seconds spent beside the steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AroundSteps {
+    /// Probes.
+    pub measure: f64,
+    /// Hashes, frames and snapshots along the way.
+    pub write: f64,
 }
 
 /// Version of the layout of `report.json`.
@@ -80,10 +97,11 @@ impl Report {
             "scene": self.scene,
             "title": self.title,
             "scene_sha256": self.scene_sha256,
-            "binary": format!("souple {}", env!("CARGO_PKG_VERSION")),
+            "binary": binary(),
             "isa": instruction_set(),
             "threads": self.threads,
             "seed": self.seed,
+            "first_step": self.first_step,
             "steps": self.steps,
             "simulated_seconds": self.simulated_seconds,
             "wall_seconds": self.wall_seconds,
@@ -97,6 +115,8 @@ impl Report {
                 "assembly": 1e3 * assembly,
                 "solve": 1e3 * solve,
                 "advance": 1e3 * advance,
+                "measure": 1e3 * self.around.measure,
+                "write": 1e3 * self.around.write,
             },
             "energy": { "initial": energy_to_json(&self.energy.0), "final": energy_to_json(&self.energy.1) },
             "momentum": { "initial": momentum_to_json(self.momentum.0), "final": momentum_to_json(self.momentum.1) },
@@ -108,16 +128,15 @@ impl Report {
             },
             "probes": probes,
             "hashes": hashes,
+            "expectations": self.expectations.iter().map(Verdict::to_json).collect::<Vec<_>>(),
+            "error": self.failure.as_ref().map(Failure::to_json),
             "warnings": self.warnings,
         })
     }
 }
 
 fn probe_to_json(probe: &Summary) -> (String, Value) {
-    let value = |numbers: &[f64]| match numbers {
-        [single] => json!(single),
-        several => json!(several),
-    };
+    let value = numbers_to_json;
     let summary = json!({
         "unit": probe.unit,
         "first": value(&probe.first),
@@ -126,6 +145,14 @@ fn probe_to_json(probe: &Summary) -> (String, Value) {
         "max": value(&probe.max),
     });
     (probe.name.clone(), summary)
+}
+
+/// One number, or a list.
+pub fn numbers_to_json(numbers: &[f64]) -> Value {
+    match numbers {
+        [single] => json!(single),
+        several => json!(several),
+    }
 }
 
 fn energy_to_json(energy: &EnergyReport) -> Value {
@@ -146,7 +173,20 @@ fn energy_to_json(energy: &EnergyReport) -> Value {
             (name.to_owned(), json!({"stored": stored, "dissipated": dissipated}))
         })
         .collect();
-    json!({"total": energy.total(), "kinetic": energy.kinetic, "forces": by_force})
+    // a coupling is a spring from each of its points, `couplings[0].17`: one line for each coupling
+    let mut couplings: BTreeMap<&str, f64> = BTreeMap::new();
+    for (name, made) in &energy.made_by_coupling {
+        let coupling = name.rsplit_once('.').map_or(name.as_str(), |(coupling, _)| coupling);
+        *couplings.entry(coupling).or_default() += made;
+    }
+    let couplings: serde_json::Map<String, Value> =
+        couplings.into_iter().map(|(name, made)| (name.to_owned(), json!({"made": made}))).collect();
+    json!({
+        "total": energy.total(),
+        "kinetic": energy.kinetic,
+        "forces": by_force,
+        "couplings": couplings,
+    })
 }
 
 fn momentum_to_json((linear, angular): (Vec3, Vec3)) -> Value {
@@ -176,21 +216,28 @@ pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
     counts
 }
 
-/// `report.json`, `probes.csv` and `expect.txt` into a folder.
+/// Names of the files that [`write_all`] may write.
+pub const NAMES: [&str; 3] = ["probes.csv", "expect.txt", "report.json"];
+
+/// `report.json`, `probes.csv` and `expect.txt` into the folder of a run.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_all(out: &Path, report: &Report, traces: &[Trace], verdicts: &[Verdict]) -> Result<(), IoError> {
+pub fn write_all(folder: &mut OutputFolder, report: &Report, traces: &[Trace]) -> Result<(), OutputError> {
+    let [probes, expect, numbers] = NAMES;
     if !traces.is_empty() {
-        write_csv(&out.join("probes.csv"), traces)?;
+        write_csv(&folder.claim(probes)?, traces)?;
     }
+    let verdicts = &report.expectations;
     if !verdicts.is_empty() {
-        souple_io::write_file(&out.join("expect.txt"), |file| {
+        souple_io::write_file(&folder.claim(expect)?, |file| {
+            writeln!(file, "{}", summary(verdicts))?;
             verdicts.iter().try_for_each(|verdict| {
-                writeln!(file, "{} {}", if verdict.pass { "ok  " } else { "FAIL" }, verdict.message)
+                writeln!(file, "{:10}  {}", verdict.finding.as_str(), verdict.message())
             })
         })?;
     }
     let document = report.to_json();
-    souple_io::write_file(&out.join("report.json"), |file| writeln!(file, "{document:#}"))
+    souple_io::write_file(&folder.claim(numbers)?, |file| writeln!(file, "{document:#}"))?;
+    Ok(())
 }

@@ -47,6 +47,11 @@ impl<'a> Includer<'a> {
             self.log.push(fault);
             None
         };
+        if let Some(text) = self.sources.text_in_library(path) {
+            let folder = path.parent().map(Path::to_owned).unwrap_or_default();
+            // the library holds what was read once: its includes end
+            return Some(self.read_text(Source { name, folder, text }));
+        }
         let canonical = match path.canonicalize() {
             Ok(canonical) => canonical,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {

@@ -58,6 +58,8 @@ pub enum Shape {
     Integers,
     Numbers,
     Vectors,
+    /// A number or formula of these variables.
+    Formula(&'static [&'static str]),
     /// Three numbers or formulas of these variables, or the formula of a vector.
     VectorFormula(&'static [&'static str]),
     /// A condition on these variables.
@@ -87,8 +89,8 @@ pub struct EntryShape {
     pub tag: &'static str,
     pub kind: &'static str,
     pub outlines: fn() -> Vec<Outline>,
-    /// Keys beside the entry's own parameters, or a whole other form (`{ file = … }`).
-    pub instead: Option<&'static Keys>,
+    /// Whole other forms (`{ file = … }`); the first of them also as a text alone.
+    pub instead: &'static [&'static Keys],
 }
 
 /// An entry of a table without its constructor.
@@ -159,6 +161,7 @@ impl Key {
             Shape::Integers => "a list of whole numbers of at least 0".to_owned(),
             Shape::Numbers => format!("a list of numbers{unit}"),
             Shape::Vectors => format!("a list of vectors{unit}"),
+            Shape::Formula(variables) => format!("a number{unit} or a formula of {}", variables.join(", ")),
             Shape::VectorFormula(variables) => {
                 format!("three numbers{unit} or formulas of {}", variables.join(", "))
             }

@@ -8,6 +8,7 @@ mod compile;
 pub mod diagnostic;
 mod document;
 mod include;
+pub mod inputs;
 mod keys;
 mod measure;
 mod overrides;
@@ -21,6 +22,6 @@ mod values;
 
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{Measurement, ProbeInfo};
-pub use scene::{BodyInfo, Scene, read_file, read_text};
+pub use scene::{BodyInfo, Scene, read_again, read_file, read_spec, read_text};
 pub use schema::schema;
 pub use spec::Spec;

@@ -2,7 +2,8 @@
 //!
 //! A path names keys by `.` and items of lists by `[index]`. A value is read as TOML, or as text where it is none
 //! (`5ms`, `linear`). Keys that may be written can be set even where the scene leaves them out; bodies, systems
-//! and the like must be there.
+//! and the like must be there, except the system `main` that a scene has where it writes none. Files are relative to
+//! the current folder, as everything on the command line is.
 
 use std::path::PathBuf;
 
@@ -11,6 +12,7 @@ use crate::document::{Content, Entry, Node, Table, parse_value};
 use crate::keys::{Keys, Shape, did_you_mean};
 use crate::source::{Place, Source, Sources};
 use crate::spec::SCENE;
+use crate::spec::world::{DEFAULT_STEPPER, DEFAULT_SYSTEM};
 
 /// A step of a path.
 enum Step<'a> {
@@ -42,9 +44,24 @@ pub fn apply(document: &mut Table, overrides: &[String], sources: &mut Sources, 
             );
             continue;
         };
+        if let [Step::Key("systems"), Step::Key(DEFAULT_SYSTEM), ..] = steps[..] {
+            write_default_system(document, place);
+        }
         let setting = Setting { path, place, log };
         setting.set(document, Some(&SCENE), &steps, node);
     }
+}
+
+/// Writes the system that a scene has where it writes none, so that it can be set.
+fn write_default_system(document: &mut Table, place: Place) {
+    if document.get("systems").is_some() {
+        return;
+    }
+    let entry =
+        |key: &str, content| Entry { key: key.to_owned(), key_place: place, node: Node::new(place, content) };
+    let stepper = entry("stepper", Content::Text(DEFAULT_STEPPER.to_owned()));
+    let system = entry(DEFAULT_SYSTEM, Content::Table(Table { entries: vec![stepper] }));
+    document.entries.push(entry("systems", Content::Table(Table { entries: vec![system] })));
 }
 
 /// The steps of a path; `None` where it is malformed.
@@ -211,6 +228,21 @@ mod tests {
             table.get("bodies").and_then(Node::as_table).and_then(|t| t.get("a")).and_then(Node::as_table);
         let material = body.and_then(|body| body.get("material")).and_then(Node::as_table).expect("a table");
         assert_eq!(material.keys().collect::<Vec<_>>(), ["name", "density"]);
+    }
+
+    /// The system that stands where none is written can be set, and only it.
+    #[test]
+    fn the_default_system_is_set() {
+        let text = "[world]\nperiod = 1\n";
+        let overrides = ["systems.main.steps_per_period=4", "systems.main.newton_tolerance=1e-9"];
+        let (table, faults) = set(text, &overrides);
+        assert_eq!(faults, 0);
+        let systems = table.get("systems").and_then(Node::as_table).expect("systems");
+        let main = systems.get("main").and_then(Node::as_table).expect("the system");
+        assert_eq!(main.keys().collect::<Vec<_>>(), ["stepper", "steps_per_period", "newton_tolerance"]);
+        assert_eq!(set(text, &["systems.other.steps_per_period=4"]).1, 1);
+        let written = "[world]\nperiod = 1\n[systems.fast]\nstepper = \"verlet\"\n";
+        assert_eq!(set(written, &["systems.main.steps_per_period=4"]).1, 1);
     }
 
     /// A path that leads nowhere is refused.

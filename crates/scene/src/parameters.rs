@@ -3,20 +3,26 @@
 //! A text that is nothing but `"$name"` becomes the parameter's value, whatever that is. Within a longer text a
 //! parameter stands for its number in SI units, so that `"2 * $stiffness"` and `"$amplitude * sin(t)"` work.
 
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+
 use souple_formal::{Formula, parse_quantity};
 use souple_table::nearest;
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node, Table};
 
-/// Parameters within parameters, at most; more is a cycle.
+/// Parameters within parameters, at most.
 const DEEPEST: usize = 32;
+/// Bytes and values that all uses of parameters put in together, at most: a few parameters that each name the one
+/// before twice would otherwise grow without bound.
+const LARGEST: usize = 1 << 20;
 
 /// Puts the parameters of a document in and takes their table out.
 pub fn substitute(document: &mut Table, log: &Log) {
     let Some(entry) = document.remove("parameters") else {
         let none = Table::default();
-        Substitution { parameters: &none, log }.table(document, "", 0);
+        Substitution::new(&none, log).table(document, "");
         return;
     };
     let Content::Table(parameters) = entry.node.content else {
@@ -29,35 +35,46 @@ pub fn substitute(document: &mut Table, log: &Log) {
         );
         return;
     };
-    Substitution { parameters: &parameters, log }.table(document, "", 0);
+    Substitution::new(&parameters, log).table(document, "");
 }
 
 struct Substitution<'a> {
     parameters: &'a Table,
     log: &'a Log,
+    /// Parameters being resolved, outermost first: meeting one again is a cycle.
+    open: RefCell<Vec<String>>,
+    /// Parameters resolved; `None`: refused, which is reported.
+    resolved: RefCell<BTreeMap<String, Option<Node>>>,
+    /// What may still be put in, see [`LARGEST`].
+    left: Cell<usize>,
 }
 
-impl Substitution<'_> {
-    fn table(&self, table: &mut Table, path: &str, depth: usize) {
+impl<'a> Substitution<'a> {
+    fn new(parameters: &'a Table, log: &'a Log) -> Self {
+        let (open, resolved) = (RefCell::default(), RefCell::default());
+        Self { parameters, log, open, resolved, left: Cell::new(LARGEST) }
+    }
+
+    fn table(&self, table: &mut Table, path: &str) {
         for entry in &mut table.entries {
             let separator = if path.is_empty() { "" } else { "." };
             let path = format!("{path}{separator}{}", entry.key);
-            self.node(&mut entry.node, &path, depth);
+            self.node(&mut entry.node, &path);
         }
     }
 
-    fn node(&self, node: &mut Node, path: &str, depth: usize) {
+    fn node(&self, node: &mut Node, path: &str) {
         match &mut node.content {
-            Content::Table(table) => self.table(table, path, depth),
+            Content::Table(table) => self.table(table, path),
             Content::List(items) => {
                 for (index, item) in items.iter_mut().enumerate() {
-                    self.node(item, &format!("{path}[{index}]"), depth);
+                    self.node(item, &format!("{path}[{index}]"));
                 }
             }
             Content::Text(text) if text.contains('$') => {
                 let text = std::mem::take(text);
                 let site = Site { place: node.place, path: path.to_owned() };
-                let (content, computed) = self.text(&text, &site, depth);
+                let (content, computed) = self.text(&text, &site);
                 node.content = content;
                 node.computed = computed;
             }
@@ -66,11 +83,11 @@ impl Substitution<'_> {
     }
 
     /// What a text with `$` in it becomes, and whether it may be a formula.
-    fn text(&self, text: &str, site: &Site, depth: usize) -> (Content, bool) {
+    fn text(&self, text: &str, site: &Site) -> (Content, bool) {
         if let Some(name) = text.strip_prefix('$')
             && name_length(name) == name.len()
         {
-            return match self.value(name, site, depth) {
+            return match self.value(name, site) {
                 Some(node) => (node.content, node.computed),
                 None => (Content::Text(text.to_owned()), false),
             };
@@ -88,7 +105,7 @@ impl Substitution<'_> {
                     "`$` without a name",
                     "`$` and the name of a parameter",
                 );
-            } else if let Some(node) = self.value(name, site, depth) {
+            } else if let Some(node) = self.value(name, site) {
                 result.push_str(&self.within(name, &node, site));
             }
             rest = behind;
@@ -98,37 +115,58 @@ impl Substitution<'_> {
     }
 
     /// The parameter's value, parameters in it put in.
-    fn value(&self, name: &str, site: &Site, depth: usize) -> Option<Node> {
-        let Some(node) = self.parameters.get(name) else {
-            let near = nearest(name, self.parameters.keys());
-            let hint = near.map(|near| format!(" (did you mean `${near}`?)")).unwrap_or_default();
-            let known: Vec<&str> = self.parameters.keys().collect();
-            let expected = if known.is_empty() {
-                "a table [parameters] with it".to_owned()
-            } else {
-                format!("one of {}", known.join(", "))
-            };
-            self.log.add(
-                Code::UnknownParameter,
-                site,
-                format!("there is no parameter `{name}`{hint}"),
-                expected,
-            );
+    fn value(&self, name: &str, site: &Site) -> Option<Node> {
+        let refuse = |message: String, expected: &str| {
+            self.log.add(Code::UnknownParameter, site, message, expected);
+            None
+        };
+        let known = self.resolved.borrow().get(name).cloned();
+        let node = match known {
+            Some(node) => node?,
+            None => {
+                let Some(node) = self.parameters.get(name) else {
+                    let near = nearest(name, self.parameters.keys());
+                    let hint = near.map(|near| format!(" (did you mean `${near}`?)")).unwrap_or_default();
+                    let known: Vec<&str> = self.parameters.keys().collect();
+                    let expected = if known.is_empty() {
+                        "a table [parameters] with it".to_owned()
+                    } else {
+                        format!("one of {}", known.join(", "))
+                    };
+                    return refuse(format!("there is no parameter `{name}`{hint}"), &expected);
+                };
+                if self.open.borrow().iter().any(|open| open == name) {
+                    let expected = "parameters that do not refer to each other in a circle";
+                    return refuse(format!("parameter `{name}` is made of itself"), expected);
+                }
+                if self.open.borrow().len() == DEEPEST {
+                    let expected = format!("at most {DEEPEST} parameters within each other");
+                    return refuse(format!("parameter `{name}` is nested too deep"), &expected);
+                }
+                self.resolve(name, node)
+            }
+        };
+        let Some(left) = self.left.get().checked_sub(size(&node)) else {
+            let message = format!("parameter `{name}` makes the scene too large");
+            let expected = format!("at most {LARGEST} bytes and values put in by parameters");
+            self.log.add(Code::TooLarge, site, message, expected);
+            // said once: nothing more is put in
+            self.left.set(0);
+            self.resolved.borrow_mut().values_mut().for_each(|node| *node = None);
             return None;
         };
-        if depth == DEEPEST {
-            let message = format!("parameter `{name}` is made of itself");
-            self.log.add(
-                Code::UnknownParameter,
-                site,
-                message,
-                "parameters that do not refer to each other in a circle",
-            );
-            return None;
-        }
-        let mut node = node.clone();
-        self.node(&mut node, &format!("parameters.{name}"), depth + 1);
+        self.left.set(left);
         Some(node)
+    }
+
+    /// A parameter with the parameters in it put in, once for all its uses.
+    fn resolve(&self, name: &str, node: &Node) -> Node {
+        let mut node = node.clone();
+        self.open.borrow_mut().push(name.to_owned());
+        self.node(&mut node, &format!("parameters.{name}"));
+        self.open.borrow_mut().pop();
+        self.resolved.borrow_mut().insert(name.to_owned(), Some(node.clone()));
+        node
     }
 
     /// A parameter as it stands within a longer text: a number in parentheses, or a text as it is.
@@ -150,6 +188,18 @@ impl Substitution<'_> {
                 String::new()
             }
         }
+    }
+}
+
+/// Bytes of texts and number of values in a node.
+fn size(node: &Node) -> usize {
+    match &node.content {
+        Content::Text(text) => 1 + text.len(),
+        Content::List(items) => 1 + items.iter().map(size).sum::<usize>(),
+        Content::Table(table) => {
+            1 + table.entries.iter().map(|entry| entry.key.len() + size(&entry.node)).sum::<usize>()
+        }
+        _ => 1,
     }
 }
 

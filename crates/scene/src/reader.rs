@@ -220,6 +220,11 @@ impl<'a> Reader<'a> {
         read.unwrap_or_default()
     }
 
+    pub fn maybe_formula(&self, name: &str) -> Option<Formula> {
+        let Shape::Formula(variables) = self.key(name).shape else { unreachable!("`{name}` is no formula") };
+        self.read(name, |value, key, expected| value.formula(key.unit, variables, expected))
+    }
+
     pub fn maybe_vector_formula(&self, name: &str) -> Option<[Formula; 3]> {
         let Shape::VectorFormula(variables) = self.key(name).shape else {
             unreachable!("`{name}` is no formula")

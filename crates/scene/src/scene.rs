@@ -1,5 +1,6 @@
 //! A scene ready to run, and how to come by one.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -10,10 +11,12 @@ use crate::compile::compile;
 use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
+use crate::inputs::{Inputs, Library};
 use crate::measure::ProbeInfo;
 use crate::source::{Source, Sources};
 use crate::spec::Spec;
-use crate::spec::probe::Expect;
+use crate::spec::expect::Expect;
+use crate::spec::picture::PictureView;
 use crate::spec::world::RunSpec;
 use crate::{overrides, parameters};
 
@@ -29,8 +32,11 @@ pub struct Scene {
     pub probes: Vec<ProbeInfo>,
     pub expects: Vec<Expect>,
     pub run: RunSpec,
-    /// Of the texts, overrides and mesh files it was made from.
+    pub picture: PictureView,
+    /// Of all it was made from: texts with what they include, overrides, mesh and surface files.
     pub scene_sha256: String,
+    /// What it was made from.
+    pub inputs: Inputs,
     /// What is not wrong but should be known.
     pub warnings: Vec<String>,
 }
@@ -64,7 +70,7 @@ impl BodyInfo {
 /// # Errors
 /// Everything that is wrong with it.
 pub fn read_file(path: &Path, overrides: &[String]) -> Result<Scene, Diagnostics> {
-    read(overrides, |includer| includer.read_file(path, None))
+    read(Library::default(), overrides, |includer| includer.read_file(path, None))
 }
 
 /// The same from a text; files it names are relative to `folder`, and messages call it `name`.
@@ -73,25 +79,62 @@ pub fn read_file(path: &Path, overrides: &[String]) -> Result<Scene, Diagnostics
 /// Everything that is wrong with it.
 pub fn read_text(name: &str, text: &str, folder: &Path, overrides: &[String]) -> Result<Scene, Diagnostics> {
     let source = Source { name: name.to_owned(), folder: PathBuf::from(folder), text: text.to_owned() };
-    read(overrides, |includer| Some(includer.read_text(source)))
+    read(Library::default(), overrides, |includer| Some(includer.read_text(source)))
+}
+
+/// Reads a scene again from what it was read from before, wherever that is now: texts are taken from `inputs`, other
+/// files from `places` (the path of each in `inputs` to where it is), or from where they were.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn read_again(inputs: &Inputs, places: BTreeMap<PathBuf, PathBuf>) -> Result<Scene, Diagnostics> {
+    let mut texts = inputs.texts.iter();
+    let first = texts.next().cloned().unwrap_or_default();
+    let library = Library {
+        texts: texts.map(|text| (PathBuf::from(&text.name), text.text.clone())).collect(),
+        files: places,
+    };
+    let source = Source { name: first.name, folder: first.folder, text: first.text };
+    read(library, &inputs.settings, |includer| Some(includer.read_text(source)))
+}
+
+/// What a text says, with what it includes, checked key by key; nothing is built. For editors and for asking a scene
+/// what it would cost.
+///
+/// # Errors
+/// What is wrong with its keys and values; meshes, regions and what else needs building is not looked at.
+pub fn read_spec(name: &str, text: &str, folder: &Path, overrides: &[String]) -> Result<Spec, Diagnostics> {
+    let source = Source { name: name.to_owned(), folder: PathBuf::from(folder), text: text.to_owned() };
+    let (mut sources, log) = (Sources::default(), Log::default());
+    let document = Includer::new(&mut sources, &log).read_text(source);
+    match specify(document, overrides, &mut sources, &log) {
+        Some(spec) if log.is_empty() => Ok(spec),
+        _ => Err(log.into_diagnostics(&sources)),
+    }
+}
+
+/// The specification of a document with overrides and parameters put in; `None` for a text that is no TOML, which would
+/// only give a hail of missing keys.
+fn specify(mut document: Table, overrides: &[String], sources: &mut Sources, log: &Log) -> Option<Spec> {
+    if !log.is_empty() {
+        return None;
+    }
+    overrides::apply(&mut document, overrides, sources, log);
+    parameters::substitute(&mut document, log);
+    Some(Spec::read(document, 0, log))
 }
 
 fn read(
+    library: Library,
     overrides: &[String],
     load: impl FnOnce(&mut Includer) -> Option<Table>,
 ) -> Result<Scene, Diagnostics> {
-    let (mut sources, log) = (Sources::default(), Log::default());
+    let (mut sources, log) = (Sources::with_library(library), Log::default());
     let document = load(&mut Includer::new(&mut sources, &log));
-    let mut scene = None;
-    // a text that is no TOML would only give a hail of missing keys
-    if let Some(mut document) = document.filter(|_| log.is_empty()) {
-        overrides::apply(&mut document, overrides, &mut sources, &log);
-        parameters::substitute(&mut document, &log);
-        let spec = Spec::read(document, 0, &log);
-        scene = compile(&spec, &sources, &log);
-    }
+    let spec = document.and_then(|document| specify(document, overrides, &mut sources, &log));
+    let scene = spec.and_then(|spec| compile(&spec, &sources, &log));
     match scene {
-        Some(scene) if log.is_empty() => Ok(scene),
+        Some(scene) if log.is_empty() => Ok(Scene { inputs: sources.into_inputs(overrides), ..scene }),
         _ => Err(log.into_diagnostics(&sources)),
     }
 }

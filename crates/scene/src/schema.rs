@@ -97,6 +97,7 @@ impl Definitions {
             Shape::Integers => list(integer(Range::NOT_NEGATIVE)),
             Shape::Numbers => list(number()),
             Shape::Vectors => list(vector(number())),
+            Shape::Formula(_) => json!({ "type": ["number", "string"] }),
             Shape::VectorFormula(_) => {
                 json!({ "anyOf": [text(), vector(json!({ "type": ["number", "string"] }))] })
             }
@@ -123,10 +124,10 @@ impl Definitions {
         let mut forms =
             vec![json!({ "enum": names, "description": format!("a {} by name alone", shape.kind) })];
         forms.extend(outlines.iter().map(|outline| outlined(shape.tag, outline)));
-        if let Some(keys) = shape.instead {
+        if !shape.instead.is_empty() {
             forms.push(json!({ "type": "string" }));
-            forms.push(self.reference(keys));
         }
+        forms.extend(shape.instead.iter().map(|keys| self.reference(keys)));
         json!({ "anyOf": forms })
     }
 }
@@ -157,6 +158,14 @@ fn parameter_schema(parameter: &Parameter) -> Json {
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Vector => vector(number()),
         Kind::Text => json!({ "type": "string" }),
+        Kind::Texts => {
+            let entry = json!({ "anyOf": [
+                { "type": "string" },
+                { "type": "number" },
+                vector(json!({ "type": "number" })),
+            ] });
+            json!({ "type": "object", "additionalProperties": entry })
+        }
         Kind::Choice(choices) => json!({ "enum": choices }),
     };
     if let Json::Object(object) = &mut schema {
@@ -205,6 +214,9 @@ fn value(value: Value) -> Json {
         Value::Boolean(truth) => json!(truth),
         Value::Vector(vector) => json!(vector),
         Value::Text(text) => json!(text),
+        Value::Texts(texts) => {
+            texts.iter().map(|(name, text)| (name.clone(), json!(text))).collect::<Map<_, _>>().into()
+        }
     }
 }
 
@@ -222,8 +234,10 @@ mod tests {
             assert!(schema["$defs"][name]["properties"].is_object(), "{name}");
         }
         let materials = souple_models::materials::TABLE.names();
-        for name in
-            materials.chain(souple_engine::steppers::TABLE.names()).chain(souple_mesh::GENERATORS.names())
+        for name in materials
+            .chain(souple_engine::steppers::TABLE.names())
+            .chain(souple_mesh::GENERATORS.names())
+            .chain(souple_mesh::implicit::SHAPES.names())
         {
             assert!(text.contains(&format!("\"{name}\"")), "{name}");
         }

@@ -1,6 +1,9 @@
 //! Texts a scene is read from, and places in them.
 
-use std::path::PathBuf;
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use crate::inputs::{InputFile, InputText, Inputs, Library, fingerprint, sha256};
 
 /// One text: a file, or an override from the command line.
 #[derive(Clone, Debug)]
@@ -12,9 +15,13 @@ pub struct Source {
     pub text: String,
 }
 
-/// All texts of a scene, in the order they were read.
+/// All texts of a scene, in the order they were read, and the other files it was made from.
 #[derive(Clone, Debug, Default)]
-pub struct Sources(Vec<Source>);
+pub struct Sources {
+    texts: Vec<Source>,
+    files: RefCell<Vec<InputFile>>,
+    library: Library,
+}
 
 /// Characters shown on either side of a place in a long line.
 const WINDOW: usize = 60;
@@ -35,22 +42,72 @@ impl Place {
 }
 
 impl Sources {
+    /// No texts yet; what they name is looked up in a library first.
+    pub(crate) fn with_library(library: Library) -> Self {
+        Self { library, ..Self::default() }
+    }
+
     pub fn add(&mut self, source: Source) -> usize {
-        self.0.push(source);
-        self.0.len() - 1
+        self.texts.push(source);
+        self.texts.len() - 1
     }
 
     pub fn get(&self, index: usize) -> &Source {
-        &self.0[index]
+        &self.texts[index]
     }
 
     pub fn iter(&self) -> impl Iterator<Item = &Source> {
-        self.0.iter()
+        self.texts.iter()
+    }
+
+    /// The text of a scene file that the library has.
+    pub(crate) fn text_in_library(&self, path: &Path) -> Option<String> {
+        self.library.texts.get(path).cloned()
+    }
+
+    /// Where a file is that the text of `source` names.
+    pub(crate) fn place_of(&self, source: usize, file: &str) -> PathBuf {
+        self.library.place_of(&self.texts[source].folder.join(file)).to_owned()
+    }
+
+    /// Opens a file that the text of `source` names, and keeps its fingerprint and those of the files beside it that
+    /// hold parts of the same mesh; returns where it is.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub(crate) fn open(&self, source: usize, file: &str) -> std::io::Result<PathBuf> {
+        let path = self.texts[source].folder.join(file);
+        let place = self.library.place_of(&path).to_owned();
+        let mut files = self.files.borrow_mut();
+        for part in souple_io::files_of_mesh(&place) {
+            // as it is named, wherever it is now; parts differ by their extensions
+            let path = match part == place {
+                true => path.clone(),
+                false => path.with_extension(part.extension().unwrap_or_default()),
+            };
+            if !files.iter().any(|known| known.path == path) {
+                files.push(InputFile { sha256: sha256(&std::fs::read(&part)?), path });
+            }
+        }
+        Ok(place)
+    }
+
+    pub(crate) fn fingerprint(&self) -> String {
+        fingerprint(self.iter().map(|source| source.text.as_str()), &self.files.borrow())
+    }
+
+    /// What was read; texts of settings stand apart.
+    pub(crate) fn into_inputs(self, settings: &[String]) -> Inputs {
+        // settings were read last
+        let count = self.texts.len() - settings.len();
+        let texts = self.texts.into_iter().take(count).filter(|source| !source.text.is_empty());
+        let texts = texts.map(|Source { name, folder, text }| InputText { name, folder, text }).collect();
+        Inputs { texts, files: self.files.into_inner(), settings: settings.to_vec() }
     }
 
     /// Line and column of a place, both from 1; columns count characters.
     pub fn line_column(&self, place: Place) -> (usize, usize) {
-        let text = &self.0[place.source].text;
+        let text = &self.texts[place.source].text;
         let before = &text[..text.floor_char_boundary(place.start)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
@@ -58,7 +115,7 @@ impl Sources {
 
     /// The line of a place with `^^^` below it; long lines are cut.
     pub fn underlined(&self, place: Place) -> String {
-        let text = &self.0[place.source].text;
+        let text = &self.texts[place.source].text;
         let start = text.floor_char_boundary(place.start);
         let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
@@ -77,7 +134,7 @@ impl Sources {
 
     /// The text at a place, on one line and at most 80 characters of it.
     pub fn excerpt(&self, place: Place) -> String {
-        let text = &self.0[place.source].text;
+        let text = &self.texts[place.source].text;
         let start = text.floor_char_boundary(place.start);
         let end = text.ceil_char_boundary(place.end.max(start));
         let line: String = text[start..end].chars().map(|c| if c.is_control() { ' ' } else { c }).collect();

@@ -2,7 +2,7 @@
 //!
 //! Each function says what is wrong to the log and returns `None` then.
 
-use souple_formal::{Condition, Formula, quantity_in};
+use souple_formal::{Condition, Formula, parse_quantity, quantity_in};
 use souple_math::Vec3;
 use souple_table::{Kind, Parameter, Range, Value, Values, nearest};
 
@@ -178,16 +178,47 @@ impl<'a> Reading<'a> {
         }
     }
 
+    /// A table of names with a text, number or direction each, as written.
+    fn texts(&self, expected: &str) -> Option<Vec<(String, String)>> {
+        let Content::Table(table) = &self.node.content else { return self.wrong_type(expected) };
+        let mut texts = Vec::with_capacity(table.entries.len());
+        for entry in &table.entries {
+            let path = format!("{}.{}", self.path, entry.key);
+            let item = Reading { node: &entry.node, path, log: self.log };
+            let text = match &entry.node.content {
+                Content::Text(text) if entry.node.computed => {
+                    let value =
+                        if parse_quantity(text).is_ok() { None } else { item.computed(text, expected) };
+                    value.map_or_else(|| text.clone(), |value| value.to_string())
+                }
+                Content::Text(text) => text.clone(),
+                Content::Integer(number) => number.to_string(),
+                Content::Number(number) => number.to_string(),
+                Content::List(_) => {
+                    let [x, y, z] = item.vector("", Range::ANY, expected)?.to_array();
+                    format!("[{x}, {y}, {z}]")
+                }
+                _ => return item.wrong_type(expected),
+            };
+            texts.push((entry.key.clone(), text));
+        }
+        Some(texts)
+    }
+
     /// Sets `parameter` of `values` to this.
     pub fn parameter(&self, parameter: &Parameter, values: &mut Values) -> Option<()> {
         let expected = parameter.expected();
         let (unit, range) = (parameter.unit, parameter.range);
+        if parameter.kind == Kind::Texts {
+            values.set(parameter.name, Value::Texts(&self.texts(&expected)?));
+            return Some(());
+        }
         let value = match parameter.kind {
             Kind::Number => Value::Number(self.number(unit, range, &expected)?),
             Kind::Integer => Value::Integer(self.integer(range, &expected)?),
             Kind::Boolean => Value::Boolean(self.boolean()?),
             Kind::Vector => Value::Vector(self.vector(unit, range, &expected)?.to_array()),
-            Kind::Text => Value::Text(self.text()?),
+            Kind::Text | Kind::Texts => Value::Text(self.text()?),
             Kind::Choice(choices) => Value::Text(self.choice(choices)?),
         };
         values.set(parameter.name, value);

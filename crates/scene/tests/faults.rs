@@ -99,6 +99,25 @@ fn what_is_no_scene_is_refused() {
     assert_eq!(found, Some("not_text"));
 }
 
+/// A parameter that names itself twice, or thirty that each name the one before twice, end at once: found by mutated
+/// scenes, which took 2³² steps and all memory.
+#[test]
+fn parameters_do_not_grow_without_bound() {
+    let circle = errors_of("format = 1\n[parameters]\na = \"$a + $a\"\n[world]\nperiod = \"$a + 1\"\n");
+    assert!(circle.to_string().contains("made of itself"), "{circle}");
+    let doubled = |one: &str, two: &dyn Fn(usize) -> String| {
+        let lines: String = (1..30).map(|i| format!("p{i} = {}\n", two(i - 1))).collect();
+        format!("format = 1\n[parameters]\np0 = {one}\n{lines}[world]\nperiod = \"$p29\"\n")
+    };
+    for text in [
+        doubled("\"x\"", &|i| format!("\"$p{i} $p{i}\"")),
+        doubled("[1]", &|i| format!("[\"$p{i}\", \"$p{i}\"]")),
+    ] {
+        let errors = errors_of(&text).to_string();
+        assert!(errors.contains("makes the scene too large"), "{}", &errors[..errors.len().min(2000)]);
+    }
+}
+
 /// A scene cut anywhere, or with any byte changed, is accepted or refused, never a panic.
 #[test]
 fn damaged_scenes_do_not_panic() {

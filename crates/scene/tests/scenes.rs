@@ -286,3 +286,60 @@ fn included_files_are_below() {
     assert_eq!(scene.model.systems[0].name, "slow");
     assert_eq!(scene.model.systems[0].mass.diagonal.iter().sum::<f64>(), 1.0);
 }
+
+/// The loads of a face, of its area and of the volume: what holds the cube carries their totals.
+#[test]
+fn loads_of_faces_and_volumes_have_their_totals() {
+    let total = |load: &str| {
+        // points and faces keep their places within the strain of 1e-7, and forces of 1e7 Pa m² round to 1e-9 N
+        let text = CUBE.replace("\"backward_euler\"", "\"static\"").replace("20 kPa", "20 MPa")
+            + "[[bodies.cube.pins]]\nregion = \"y_min\"\n[[bodies.cube.loads]]\n"
+            + load
+            + "\n[probes.hold]\nbody = \"cube\"\nregion = \"y_min\"\nquantity = \"reaction\"\n";
+        let (mut world, probes) = run(scene(&text), 1);
+        vector(&probes, "hold", &mut world)
+    };
+    for (load, expected) in [
+        ("region = \"y_max\"\ntraction = [\"3 Pa\", 1, 0]", Vec3::new(-3.0, -1.0, 0.0)),
+        // one cell of eight
+        ("region = { cells = [3] }\nbody_force = [0, 0, \"8 N/m^3\"]", Vec3::new(0.0, 0.0, -1.0)),
+        // by the points: the trapezium rule is exact for a linear field
+        ("region = { all = true }\nbody_force = [\"2 * x\", 0, 0]", Vec3::new(-1.0, 0.0, 0.0)),
+        ("region = \"y_max\"\npressure = \"1 Pa\"", Vec3::new(0.0, 1.0, 0.0)),
+    ] {
+        let hold = total(load);
+        assert!((hold - expected).length() < 1e-6 * expected.length(), "{load}: {hold:?}");
+    }
+}
+
+/// A pin that turns leads its points around the pivot: a quarter turn of a face in its plane.
+#[test]
+fn pins_turn_about_their_pivot() {
+    let text = CUBE.to_owned()
+        + r#"
+[[bodies.cube.pins]]
+region = { all = true }
+rotation = { formula = "[0, 0, pi / 2 * t / 0.05]" }
+motion = { formula = "[0, 0, t]" }
+pivot = [0, 3, 0]
+[probes.corner]
+body = "cube"
+region = { nearest = [1, 3, 0] }
+quantity = "position"
+"#;
+    let (mut world, probes) = run(scene(&text), 5);
+    let corner = vector(&probes, "corner", &mut world);
+    // sine and cosine of a right angle, to rounding
+    assert!((corner - Vec3::new(0.0, 4.0, 0.05)).length() < 1e-14, "{corner:?}");
+}
+
+/// Gravity as a formula of time: a free cube follows its second integral to the first order of the stepper.
+#[test]
+fn gravity_may_vary() {
+    let text = CUBE.replace("[systems.slow]", "gravity = [0, \"10 * t\", 0]\n[systems.slow]")
+        + "[probes.middle]\nbody = \"cube\"\nregion = { nearest = [0.5, 3.5, 0.5] }\nquantity = \"velocity\"\n";
+    let (mut world, probes) = run(scene(&text), 10);
+    let speed = vector(&probes, "middle", &mut world).y;
+    // backward Euler sums g at the ends of steps: h Σ 10 i h = 10 h² 55
+    assert!((speed - 10.0 * 1e-4 * 55.0).abs() < 1e-9, "{speed}");
+}

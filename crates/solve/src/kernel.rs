@@ -8,10 +8,19 @@ use souple_math::{Mat3, Vec3};
 
 /// How a row is multiplied.
 pub(crate) trait Kernel: Copy {
+    /// A 3×3 block in registers.
+    type Block: Copy;
+
     /// `Σ A_k x[column_k]`.
     fn row(self, blocks: &[Mat3], columns: &[u32], x: &[Vec3]) -> Vec3;
     /// The same with blocks kept in single precision; sums are in double.
     fn row_single(self, blocks: &[[f32; 9]], columns: &[u32], x: &[Vec3]) -> Vec3;
+    /// `sum + A Bᵀ`.
+    fn add_mul_transpose(self, sum: Self::Block, A: &Mat3, B: &Mat3) -> Self::Block;
+    /// `A B`.
+    fn mul(self, A: &Mat3, B: &Mat3) -> Self::Block;
+    fn zero(self) -> Self::Block;
+    fn store(self, block: Self::Block) -> Mat3;
 }
 
 /// A loop over rows that can run on any kernel.
@@ -42,6 +51,28 @@ pub(crate) fn run<L: RowLoop>(rows: L) -> L::Output {
 pub(crate) struct Plain;
 
 impl Kernel for Plain {
+    type Block = Mat3;
+
+    #[inline(always)]
+    fn add_mul_transpose(self, sum: Mat3, A: &Mat3, B: &Mat3) -> Mat3 {
+        sum + A.mul_transpose(B)
+    }
+
+    #[inline(always)]
+    fn mul(self, A: &Mat3, B: &Mat3) -> Mat3 {
+        *A * *B
+    }
+
+    #[inline(always)]
+    fn zero(self) -> Mat3 {
+        Mat3::ZERO
+    }
+
+    #[inline(always)]
+    fn store(self, block: Mat3) -> Mat3 {
+        block
+    }
+
     #[inline(always)]
     fn row(self, blocks: &[Mat3], columns: &[u32], x: &[Vec3]) -> Vec3 {
         let mut sum = Vec3::ZERO;
@@ -65,6 +96,46 @@ impl Kernel for Plain {
 
 #[cfg(target_arch = "x86_64")]
 impl Kernel for pulp::x86::V3 {
+    /// Columns; the fourth lanes are of no meaning.
+    type Block = [pulp::f64x4; 3];
+
+    #[inline(always)]
+    fn add_mul_transpose(self, sum: Self::Block, A: &Mat3, B: &Mat3) -> Self::Block {
+        let (a, [x, y, z], mut sum) = (columns(self, A), B.columns, sum);
+        for (k, b) in [x, y, z].into_iter().enumerate() {
+            sum[0] = self.mul_add_f64x4(a[k], self.splat_f64x4(b.x), sum[0]);
+            sum[1] = self.mul_add_f64x4(a[k], self.splat_f64x4(b.y), sum[1]);
+            sum[2] = self.mul_add_f64x4(a[k], self.splat_f64x4(b.z), sum[2]);
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn mul(self, A: &Mat3, B: &Mat3) -> Self::Block {
+        let (a, mut product) = (columns(self, A), self.zero());
+        for (j, b) in B.columns.iter().enumerate() {
+            let first = self.mul_f64x4(a[0], self.splat_f64x4(b.x));
+            let second = self.mul_add_f64x4(a[1], self.splat_f64x4(b.y), first);
+            product[j] = self.mul_add_f64x4(a[2], self.splat_f64x4(b.z), second);
+        }
+        product
+    }
+
+    #[inline(always)]
+    fn zero(self) -> Self::Block {
+        [self.splat_f64x4(0.0); 3]
+    }
+
+    #[inline(always)]
+    fn store(self, block: Self::Block) -> Mat3 {
+        let [a, b, c] = block.map(|column| -> [f64; 4] { pulp::cast(column) });
+        Mat3::from_columns(
+            Vec3::new(a[0], a[1], a[2]),
+            Vec3::new(b[0], b[1], b[2]),
+            Vec3::new(c[0], c[1], c[2]),
+        )
+    }
+
     #[inline(always)]
     fn row(self, blocks: &[Mat3], columns: &[u32], x: &[Vec3]) -> Vec3 {
         let load = |four: &[f64]| -> pulp::f64x4 { pulp::cast([four[0], four[1], four[2], four[3]]) };
@@ -93,6 +164,17 @@ impl Kernel for pulp::x86::V3 {
         }
         gather_columns(sums)
     }
+}
+
+/// The columns of a block, their fourth lanes filled by their neighbours.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn columns(simd: pulp::x86::V3, A: &Mat3) -> [pulp::f64x4; 3] {
+    let entries = cast_ref::<Mat3, [f64; 9]>(A);
+    let load = |four: &[f64]| -> pulp::f64x4 { pulp::cast([four[0], four[1], four[2], four[3]]) };
+    // the third is loaded with its neighbour in front, and turned by one lane
+    let third = simd.avx2._mm256_permute4x64_pd::<0b00_11_10_01>(pulp::cast(load(&entries[5..9])));
+    [load(&entries[0..4]), load(&entries[3..7]), pulp::cast(third)]
 }
 
 /// Adds the three columns' shares; the third lies one lane higher.

@@ -38,7 +38,7 @@ impl BlockMatrix {
     }
 
     pub fn set_zero(&mut self) {
-        self.values.fill(Mat3::ZERO);
+        reduce::for_each_chunk(&mut self.values, &|_, chunk: &mut [Mat3]| chunk.fill(Mat3::ZERO));
     }
 
     /// Adds to the block at `slot` of [`Pattern::slot`].
@@ -183,16 +183,7 @@ impl BlockMatrix {
     /// Names the first row with an entry that is infinite or not a number.
     pub fn check_finite(&self) -> Result<(), SolveError> {
         // a sum is finite only if all its terms are: one quick pass before looking for the place
-        let mut probes = [0.0; 16];
-        let sixteens = bytemuck::cast_slice::<Mat3, f64>(&self.values).chunks_exact(16);
-        let rest: f64 = sixteens.remainder().iter().map(|entry| entry * 0.0).sum();
-        for sixteen in sixteens {
-            // sixteen sums, so that the additions need not wait for each other
-            for (probe, entry) in probes.iter_mut().zip(sixteen) {
-                *probe += entry * 0.0;
-            }
-        }
-        if probes.iter().sum::<f64>() + rest == 0.0 {
+        if reduce::all_finite(bytemuck::cast_slice(&self.values)) {
             return Ok(());
         }
         let bad_row = |row: &usize| self.pattern.slots(*row).any(|slot| !self.values[slot].is_finite());

@@ -142,6 +142,13 @@ pub struct Workspace {
 }
 
 impl Workspace {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let vectors = [&self.residual, &self.trial_residual, &self.direction];
+        vectors.into_iter().map(|vector| size_of::<Vec3>() * vector.capacity()).sum::<usize>()
+            + 8 * (self.residuals.capacity() + self.fractions.capacity())
+    }
+
     /// `‖r‖` before the first step and after each.
     pub fn residuals(&self) -> &[f64] {
         &self.residuals

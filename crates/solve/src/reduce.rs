@@ -21,7 +21,8 @@ fn middle(length: usize) -> Option<usize> {
     (length > CHUNK).then(|| length.div_ceil(CHUNK).div_ceil(2) * CHUNK)
 }
 
-fn both<A: Send, B: Send>(
+/// Both results, by two threads where the work `is_long`.
+pub(crate) fn both<A: Send, B: Send>(
     is_long: bool,
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
@@ -121,6 +122,32 @@ pub fn for_each_rows<T: Send>(y: &mut [T], leaf: &(impl Fn(usize, &mut [T]) + Sy
     });
 }
 
+/// `to = from`.
+pub fn copy(to: &mut [Vec3], from: &[Vec3]) {
+    assert_eq!(to.len(), from.len(), "vectors of one length");
+    for_each_chunk(to, &|first, chunk: &mut [Vec3]| {
+        chunk.copy_from_slice(&from[first..first + chunk.len()]);
+    });
+}
+
+/// Whether all entries are finite.
+pub fn all_finite(a: &[Vec3]) -> bool {
+    // 0 x is zero, or not a number where x is not finite; sums need no branches
+    let zeros = |range: Range<usize>| {
+        let numbers: &[f64] = bytemuck::cast_slice(&a[range]);
+        let quads = numbers.chunks_exact(4);
+        let rest: f64 = quads.remainder().iter().map(|number| number * 0.0).sum();
+        let mut partial = [0.0; 4];
+        for quad in quads {
+            for lane in 0..4 {
+                partial[lane] += quad[lane] * 0.0;
+            }
+        }
+        partial[0] + partial[1] + partial[2] + partial[3] + rest
+    };
+    sum(0..a.len(), &zeros) == 0.0
+}
+
 /// `a · b`.
 pub fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
     sum(0..a.len(), &|range: Range<usize>| dot_chunk(&a[range.clone()], &b[range]))
@@ -171,6 +198,20 @@ mod tests {
             let plain: f64 = a.iter().zip(&b).map(|(a, b)| a.x * b.x + a.y * b.y + a.z * b.z).sum();
             let terms = 3.0 * count as f64;
             assert!((dot(&a, &b) - plain).abs() <= terms * terms * f64::EPSILON);
+        }
+    }
+
+    /// One entry that is not finite is found wherever it stands.
+    #[test]
+    fn finds_what_is_not_finite() {
+        let finite = wave(2 * CHUNK + 3, 0.3);
+        assert!(all_finite(&finite) && all_finite(&[]) && all_finite(&[Vec3::new(f64::MAX, -f64::MAX, 0.0)]));
+        for at in [0, 1, CHUNK, finite.len() - 1] {
+            for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                let mut entries = finite.clone();
+                entries[at].y = bad;
+                assert!(!all_finite(&entries), "{bad} at {at}");
+            }
         }
     }
 

@@ -117,6 +117,7 @@ static AUTO: Entry<Build> = Entry {
                 iterative: None,
                 is_direct: false,
                 per_row: Vec::new(),
+                followed: Vec::new(),
             };
             auto.update(matrix)?;
             Ok(Box::new(auto))
@@ -261,6 +262,8 @@ struct Auto {
     /// What serves the last matrix.
     is_direct: bool,
     per_row: Vec<f64>,
+    /// Where blocks are now, if that was said after their places in `coordinates`.
+    followed: Vec<Vec3>,
 }
 
 /// Systems of fewer blocks are factorised whatever the weight of their diagonal.
@@ -269,6 +272,18 @@ const TINY: usize = 64;
 impl Auto {
     fn current(&mut self) -> Option<&mut Box<dyn LinearSolver>> {
         if self.is_direct { self.direct.as_mut() } else { self.iterative.as_mut() }
+    }
+
+    fn make(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
+        let geometry = Geometry { coordinates: self.coordinates.as_deref(), roles: self.roles.as_deref() };
+        if self.is_direct {
+            let order = ordering::best(&self.pattern, geometry.coordinates)?;
+            self.direct = Some(build_direct(&self.values, matrix, order)?);
+        } else {
+            let preconditioner = preconditioner_name(&self.values);
+            self.iterative = Some(build_cg(preconditioner, &self.values, matrix, geometry)?);
+        }
+        Ok(())
     }
 
     fn prefers_direct(&mut self, matrix: &BlockMatrix) -> Result<bool, SolveError> {
@@ -292,18 +307,19 @@ impl LinearSolver for Auto {
     fn update(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
         crate::matrix::check_pattern(&self.pattern, matrix.pattern())?;
         self.is_direct = self.prefers_direct(matrix)?;
-        if let Some(solver) = self.current() {
-            return solver.update(matrix);
+        if self.current().is_none() {
+            self.make(matrix)?;
+            if self.followed.is_empty() {
+                return Ok(());
+            }
         }
-        let geometry = Geometry { coordinates: self.coordinates.as_deref(), roles: self.roles.as_deref() };
-        if self.is_direct {
-            let order = ordering::best(&self.pattern, geometry.coordinates)?;
-            self.direct = Some(build_direct(&self.values, matrix, order)?);
-        } else {
-            let preconditioner = preconditioner_name(&self.values);
-            self.iterative = Some(build_cg(preconditioner, &self.values, matrix, geometry)?);
+        let Self { direct, iterative, followed, is_direct, .. } = self;
+        let Some(solver) = (if *is_direct { direct } else { iterative }) else { return Ok(()) };
+        if !followed.is_empty() {
+            // also where it was made only now: what came before must not show
+            solver.follow(followed)?;
         }
-        Ok(())
+        solver.update(matrix)
     }
 
     fn rebuild(&mut self, matrix: &BlockMatrix) -> Result<(), SolveError> {
@@ -312,7 +328,10 @@ impl LinearSolver for Auto {
     }
 
     fn follow(&mut self, coordinates: &[Vec3]) -> Result<(), SolveError> {
-        self.iterative.as_mut().map_or(Ok(()), |solver| solver.follow(coordinates))
+        crate::error::check_length("coordinates", coordinates.len(), self.pattern.block_count())?;
+        self.followed.clear();
+        self.followed.extend_from_slice(coordinates);
+        Ok(())
     }
 
     fn set_tolerance(&mut self, tolerance: f64) {
@@ -338,7 +357,8 @@ impl LinearSolver for Auto {
     }
 
     fn bytes(&self) -> usize {
-        let places = self.coordinates.as_ref().map_or(0, Vec::capacity) * size_of::<Vec3>();
+        let places = (self.coordinates.as_ref().map_or(0, Vec::capacity) + self.followed.capacity())
+            * size_of::<Vec3>();
         let made = [&self.direct, &self.iterative].into_iter().flatten();
         made.map(|solver| solver.bytes()).sum::<usize>() + places + 8 * self.per_row.capacity()
     }

@@ -129,6 +129,35 @@ fn incomplete_cholesky_in_a_given_order() {
     assert!(matches!(error, SolveError::NoPermutation { block_count: 50, .. }));
 }
 
+/// From both ends as from one: exact on a chain, about as few iterations on a truss, the same bits for any number of
+/// threads.
+#[test]
+fn incomplete_cholesky_from_both_ends() {
+    let matrix = chain(1500, 1.0, 0.5);
+    let x = noise(1500, 2);
+    let mut b = x.clone();
+    matrix.apply(&x, &mut b);
+    let mut z = b.clone();
+    IncompleteCholesky::new(&matrix).unwrap().apply(&b, &mut z);
+    assert!(distance(&z, &x) < 9.0 * f64::from(f32::EPSILON) * norm(&x));
+
+    let truss = truss([40, 6, 6], 300.0);
+    let count = truss.places.len();
+    let b = noise(count, 3);
+    let solved = |factor: &IncompleteCholesky| {
+        let mut x = vec![Vec3::ZERO; count];
+        let report = cg(&truss.matrix, factor, &b, &mut x, 1e-8);
+        assert!(report.converged() && factor.shift() == 0.0);
+        (x, report.iterations)
+    };
+    let from_both = || solved(&IncompleteCholesky::with_coordinates(&truss.matrix, &truss.places).unwrap());
+    let natural = (0..count as u32).collect();
+    let (_, from_one) = solved(&IncompleteCholesky::with_order(&truss.matrix, natural).unwrap());
+    let one = on_threads(1, from_both);
+    assert!(one.1.abs_diff(from_one) <= 1 + from_one / 10, "{} against {from_one}", one.1);
+    assert!(one == on_threads(2, from_both) && one == on_threads(5, from_both));
+}
+
 /// A numbering that jumps about in the body is replaced by a sweep: as few iterations as with a local one.
 #[test]
 fn shuffled_numbering_costs_no_iterations() {

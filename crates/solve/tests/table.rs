@@ -51,6 +51,32 @@ fn auto_chooses_by_weight_and_work() {
     assert_eq!(build("auto", Values::new(), &thick.matrix, &thick.places).name(), "cg");
 }
 
+/// What a solver has met before does not show in its answers: places followed while a factor served count for the
+/// preconditioner made later.
+#[test]
+fn auto_forgets_what_it_met_before() {
+    let truss = truss([40, 3, 3], 1e3);
+    let count = truss.places.len();
+    let mut light = truss.matrix.clone();
+    light.add_scaled_diagonal(1e3, &vec![1.0; count]).unwrap();
+    let moved: Vec<Vec3> = truss.places.iter().map(|p| *p + Vec3::Y * (0.01 * p.x * p.x)).collect();
+    let values = || Values::new().with("preconditioner", Value::Text("rigid_modes"));
+    let b = noise(count, 6);
+    let solved = |matrices: &[&BlockMatrix]| {
+        let mut solver = build("auto", values(), matrices[0], &truss.places);
+        for matrix in matrices {
+            solver.follow(&moved).unwrap();
+            solver.update(matrix).unwrap();
+        }
+        let mut x = vec![Vec3::ZERO; count];
+        solver.solve(&light, &b, &mut x).unwrap();
+        (solver.name(), x)
+    };
+    assert_eq!(build("auto", values(), &truss.matrix, &truss.places).name(), "direct");
+    assert_eq!(solved(&[&light]).0, "cg");
+    assert!(solved(&[&truss.matrix, &light]) == solved(&[&light]));
+}
+
 #[test]
 fn failures_are_typed() {
     let matrix = chain(40, 1.0, 0.0);

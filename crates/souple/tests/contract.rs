@@ -93,6 +93,8 @@ fn one_document_each() {
     let page = ["kind", "name", "summary", "source", "parameters"];
     for kind in
         ["materials", "elements", "steppers", "solvers", "preconditioners", "generators", "shapes", "formats"]
+            .into_iter()
+            .chain(["quantities", "functions", "units"])
     {
         assert_list(&json(&["list", kind]), &page);
     }
@@ -241,10 +243,13 @@ fn a_refused_step_is_reported() {
     assert_eq!(report["status"], "failed");
     assert!(report["steps"].as_u64().is_some_and(|steps| steps < 10_000));
     let warnings = report["warnings"].as_array().expect("warnings");
-    assert!(
-        warnings.len() >= 2 && warnings.iter().any(|text| text.to_string().contains("main")),
-        "{report:#}"
-    );
+    assert!(warnings.iter().any(|text| text.to_string().contains("main")), "{report:#}");
+    let error = &report["error"];
+    assert_keys(error, &["message", "step", "place", "force", "body", "point", "position"]);
+    assert_eq!(error["body"], "cube", "{error:#}");
+    let message = error["message"].as_str().expect("a message");
+    assert!(message.contains("of body `cube`"), "{message}");
+    assert!(answer.stderr.contains(&format!("error: {message}")), "{answer:#?}");
     assert_complete(&folder, "failed");
 }
 
@@ -271,10 +276,18 @@ fn assert_complete(folder: &Folder, status: &str) {
     assert_eq!(probes.lines().count(), steps + 2, "a line of names, one before the first step, one for each");
 }
 
-/// Ctrl-C ends a run with 130 after complete files: report, series, probes, and a recording that replays.
+/// Ctrl-C, and the system's wish to end, end a run with 130 after complete files: report, series, probes, and a
+/// recording that replays.
 #[cfg(unix)]
 #[test]
 fn interruption_leaves_complete_files() {
+    for signal in ["-INT", "-TERM"] {
+        interrupt(signal);
+    }
+}
+
+#[cfg(unix)]
+fn interrupt(signal: &str) {
     let folder = Folder::new("interrupted");
     let scene = folder.write("long.toml", CUBE.replace("\"100 ms\"", "\"10000 s\""));
     let recording = folder.at("run.json");
@@ -300,8 +313,8 @@ fn interruption_leaves_complete_files() {
         std::thread::sleep(std::time::Duration::from_millis(50));
     }
     assert!(third.exists(), "no frame within half a minute");
-    let signal = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(signal.expect("kill").success());
+    let sent = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(sent.expect("kill").success());
     let answer = Answer::of(call, child.wait_with_output().expect("an end")).ends(130);
     let report = answer.json();
     assert_report(&report);

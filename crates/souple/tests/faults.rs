@@ -136,6 +136,68 @@ const SCENES: &[(&str, &str, &str, &str)] = &[
     ),
     ("missing_include", "title", "include = [\"nowhere.toml\"]\ntitle", "nowhere.toml"),
     ("own_include", "title", "include = [\"own_include.toml\"]\ntitle", "own_include.toml"),
+    (
+        "pins_of_two_minds",
+        "[probes.place]",
+        "[[bodies.cube.pins]]\nregion = \"x_min\"\n[[bodies.cube.pins]]\nregion = \"x_min\"\nmotion = { formula = [\"t\", 0, 0] }\n[probes.place]",
+        "`bodies.cube.pins[0]` (pins_of_two_minds.toml:",
+    ),
+    (
+        "static_without_pins",
+        "[probes.place]",
+        "[systems.main]\nstepper = \"static\"\n[probes.place]",
+        "6 of 6 rigid motions are held by nothing",
+    ),
+    (
+        "static_on_a_hinge",
+        "[probes.place]",
+        "[systems.main]\nstepper = \"static\"\n[[bodies.cube.pins]]\nregion = { box = [[0, 0, 0], [0, 0, 1]] }\n[probes.place]",
+        "1 of 6 rigid motions",
+    ),
+    (
+        "load_without_a_start",
+        "[probes.place]",
+        "[[bodies.cube.loads]]\nregion = \"x_min\"\nforce = [\"1 / t\", 0, 0]\n[probes.place]",
+        "the load on point 0, at (0, 0, 0), is (inf, 0, 0) at t = 0",
+    ),
+    (
+        "load_outside_its_range",
+        "[probes.place]",
+        "[[bodies.cube.loads]]\nregion = \"x_max\"\nforce = [0, \"sqrt(-x)\", 0]\n[probes.place]",
+        "at (1, 0, 0)",
+    ),
+    (
+        "motion_without_a_start",
+        "[probes.place]",
+        "[[bodies.cube.pins]]\nregion = \"x_min\"\nmotion = { formula = [\"sqrt(t)\", 0, 0] }\n[probes.place]",
+        "the velocity of point 0",
+    ),
+    (
+        "shape_without_a_start",
+        "[probes.place]",
+        "[shapes.floor]\nshape = { name = \"plane\" }\nmotion = { formula = [0, \"ln(t)\", 0] }\n[[contacts]]\nbody = \"cube\"\nshape = \"floor\"\n[probes.place]",
+        "the motion of shape `floor` is not finite",
+    ),
+    ("body_named_as_a_path", "[bodies.cube]", "[bodies.\"../cube\"]", "cannot name a file"),
+    ("probe_without_a_name", "[probes.place]", "[probes.\"\"]", "cannot name a file"),
+    (
+        "probe_about_nothing",
+        "quantity = \"position\"",
+        "quantity = \"position\"\nabout = [0, 0, 0]",
+        "no moment",
+    ),
+    (
+        "limits_crossed",
+        "[run]",
+        "[[expect]]\nprobe = \"place\"\ncomponent = \"y\"\nmin = 2\nmax = 1\n[run]",
+        "at least 2 and at most 1",
+    ),
+    (
+        "picture_along_up",
+        "[run]",
+        "[picture]\ndirection = [0, 1, 0]\nup = [0, -1, 0]\n[run]",
+        "along what is up",
+    ),
     ("expect_of_nothing", "[run]", "[[expect]]\nprobe = \"plaice\"\nmax = 1\n[run]", "did you mean `place`"),
 ];
 
@@ -168,6 +230,18 @@ fn faulty_scenes() {
         let calls = if file.starts_with("absurd_duration") { &calls[1..] } else { &calls[..] };
         assert_refused(&folder, calls);
     }
+}
+
+/// A scene that reads well but whose first step is refused is called so by `check`, which ends with 1.
+#[test]
+fn refused_first_steps_are_found() {
+    let folder = Folder::new("first_step");
+    folder.write("cube.toml", changed(CUBE, "gravity = [0, -9.81, 0]", "gravity = [0, -1e308, 0]"));
+    let answer = souple_in(folder.path(), ["check", "cube.toml", "--json"]).ends(1);
+    let document = answer.json();
+    assert_eq!(document["valid"], false);
+    assert_errors(&document);
+    assert!(document["errors"][0]["message"].to_string().contains("system `main`"), "{document:#}");
 }
 
 /// Bytes without pattern, the same each time (a linear congruential generator).
@@ -256,13 +330,14 @@ fn faulty_requests() {
         folder.write(&format!("{name}.souple"), &snapshot[..end]);
     }
     folder.write("longer.souple", [&snapshot[..], &[0; 8]].concat());
-    folder.write("header.souple", "souple snapshot of scene 1234 state 5678\n");
+    folder.write("header.souple", "souple snapshot 2 {\"scene_sha256\": \"1234\"}\n");
+    folder.write("old.souple", "souple snapshot of scene 1234 state 5678\n");
     folder.write("empty.souple", "");
     let recording = std::fs::read_to_string(folder.path().join("run.json")).expect("a recording");
     folder.write("cut.json", &recording[..recording.len() / 2]);
-    folder.write("version.json", changed(&recording, "\"souple_recording\": 1", "\"souple_recording\": 2"));
+    folder.write("version.json", changed(&recording, "\"souple_recording\": 2", "\"souple_recording\": 1"));
     folder.write("steps.json", changed(&recording, "\"steps\": 10", "\"steps\": -10"));
-    folder.write("moved.json", changed(&recording, "cube.toml", "moved.toml"));
+    folder.write("altered.json", changed(&recording, "20 kPa", "21 kPa"));
     folder.write(
         "commands.json",
         changed(
@@ -292,6 +367,7 @@ fn faulty_requests() {
         (&["run", "cube.toml", "--out", "out", "--duration", "nan"], 2, "a time above 0"),
         (&["run", "cube.toml", "--out", "out", "--duration", "5 kg"], 2, "kg"),
         (&["run", "cube.toml", "--out", "out", "--duration", "1e300"], 2, "at most 1e12"),
+        (&["run", "cube.toml", "--out", "out", "--duration", "4 ms"], 2, "no step would be made"),
         (&["run", "cube.toml", "--out", "out", "--threads", "0"], 2, "1 to 1024"),
         (&["run", "cube.toml", "--out", "out", "--threads", "100000"], 2, "1 to 1024"),
         (&["run", "cube.toml", "--out", "out", "--frames", "-1"], 2, "--frames"),
@@ -317,6 +393,7 @@ fn faulty_requests() {
         (&resume("garbage.souple"), 2, "garbage.souple"),
         (&resume("empty.souple"), 2, "no line that names its scene"),
         (&resume("header.souple"), 2, "of another scene"),
+        (&resume("old.souple"), 2, "no line that names its scene"),
         (&resume("cut_header.souple"), 2, "cut_header.souple"),
         (&resume("cut_line.souple"), 2, "cut_line.souple"),
         (&resume("cut_half.souple"), 2, "cut_half.souple"),
@@ -346,9 +423,9 @@ fn faulty_requests() {
         (&["replay", "garbage.json", "--out", "out"], 2, "garbage.json"),
         (&["replay", "no.json", "--out", "out"], 2, "souple_recording"),
         (&["replay", "cut.json", "--out", "out"], 2, "cut.json"),
-        (&["replay", "version.json", "--out", "out"], 2, "souple_recording"),
+        (&["replay", "version.json", "--out", "out"], 2, "it is of version 1, this program plays version 2"),
         (&["replay", "steps.json", "--out", "out"], 2, "`steps`"),
-        (&["replay", "moved.json", "--out", "out"], 2, "moved.toml"),
+        (&["replay", "altered.json", "--out", "out"], 2, "the recording was changed"),
         (&["replay", "commands.json", "--out", "out"], 2, "fly"),
         (&["replay", "cube.toml", "--out", "out"], 2, "cube.toml"),
         (&["compare", "garbage.souple", "garbage.souple"], 2, "garbage.souple"),

@@ -92,6 +92,25 @@ fn cut_off_surfaces_are_refused() {
         ("open.stl", stl.as_bytes(), "open.stl"),
         ("binary.stl", &[0; 84], "binary.stl"),
         ("absurd.stl", &[0xff; 84], "absurd.stl"),
+        ("word.stl", b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n", "\"zero\"; expected a number"),
+        ("loop.stl", b"solid a\nfacet normal 0 0 1\ninner loop\n", "expected outer"),
+        ("head.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "expected a line end_header"),
+        ("encoding.ply", b"ply\nformat morse 1.0\nend_header\n", "\"morse\"; expected ascii"),
+        ("type.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty bool x\nend_header\n1\n", "\"bool\""),
+        ("no_x.ply", b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float y\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1\n3 0 0 0\n", "the property x of vertex is missing"),
+        ("absurd.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 99999999999\nproperty double x\nproperty double y\nproperty double z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n", "99999999999; expected at most"),
+        ("list.ply", b"ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\nabc\xff\xff\xff\xff", "4294967295; expected at most"),
+        ("no_faces.ply", b"ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n", "the number of facets is 0"),
+        ("open.ply", b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "open.ply"),
+        ("kind.off", b"4OFF\n1 1 0\n", "\"4OFF\"; expected OFF"),
+        ("counts.off", b"OFF\n0\n", "the number of facets"),
+        ("absurd.off", b"OFF\n99999999999999 1 0\n", "99999999999999; expected at most"),
+        ("short.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n", "point 2 of 3 is missing"),
+        ("range.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6: a corner of facet 0 is \"3\""),
+        ("not_finite.off", b"OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "line 4: z of point 1 is \"inf\""),
+        ("line.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "expected 3 or more"),
+        ("open.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "open.off"),
+        ("model.glb", b"glTF\x02\0\0\0", "the format `gltf` cannot be read"),
     ];
     let mut failures = Vec::new();
     for (file, content, words) in cases {
@@ -116,7 +135,7 @@ fn garbage_is_refused() {
         (state >> 24) as u8
     };
     let noise: Vec<u8> = (0..500).map(|_| byte()).collect();
-    for format in ["msh", "msh2", "vtu", "vtk", "obj", "stl"] {
+    for format in ["msh", "msh2", "vtu", "vtk", "obj", "stl", "ply", "off", "node", "ele"] {
         let contents: [(&str, &[u8]); 5] = [
             ("noise", &noise),
             ("empty", b""),
@@ -128,13 +147,16 @@ fn garbage_is_refused() {
             let file = format!("{name}.{format}");
             folder.write(&file, content);
             let message = quality(&folder, &file).expect_err(&file);
+            // TetGen's reader asks for the points first
+            let asked = file.replace(".ele", ".node");
             assert!(
-                message.contains(&file) || message.contains("no cells") || message.contains("no points"),
+                message.contains(&file) || message.contains(&asked) || message.contains("no cells"),
                 "{message}"
             );
         }
         let missing = format!("missing.{format}");
-        assert!(quality(&folder, &missing).expect_err("a missing file").contains(&missing));
+        let asked = missing.replace(".ele", ".node");
+        assert!(quality(&folder, &missing).expect_err("a missing file").contains(&asked));
         std::fs::create_dir(folder.path().join(format!("folder.{format}"))).expect("a folder");
         quality(&folder, &format!("folder.{format}")).expect_err("a folder");
     }
@@ -142,6 +164,86 @@ fn garbage_is_refused() {
     assert!(quality(&folder, "mesh.xyz").expect_err("an unknown extension").contains("xyz"));
     folder.write("mesh", "1 2 3\n");
     quality(&folder, "mesh").expect_err("no extension");
+}
+
+/// TetGen's files: each fault with the file, the line, the value.
+#[test]
+fn faulty_tetgen_files() {
+    let folder = Folder::new("tetgen");
+    const NODE: &str = "4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
+    const ELE: &str = "1 4 0\n1 1 2 3 4\n";
+    let cases: &[(&str, &str, &str)] = &[
+        ("4 3 0 0\n1 0 0 0\n", ELE, "line 1 of the .node file: the number of points is 4; expected at most"),
+        ("4 2 0 0\n1 0 0\n2 0 1\n3 1 0\n4 1 1\n", ELE, "line 1 of the .node file: the dimension is 2"),
+        ("99999999999 3 0 0\n", ELE, "99999999999; expected at most"),
+        ("-4 3 0 0\n", ELE, "\"-4\"; expected a whole number of at least 0"),
+        ("4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 nan\n", ELE, "line 5 of the .node file: z of point 4"),
+        ("4 3 0 0\n1 0 0 0\n2 1 0 0\n2 0 1 0\n4 0 0 1\n", ELE, "the number of a point is 2; expected 3"),
+        ("4 3 0 0\n7 0 0 0\n8 1 0 0\n9 0 1 0\n10 0 0 1\n", ELE, "numbered on from 0 or 1"),
+        (NODE, "", "the number of tetrahedra is missing"),
+        (NODE, "2 4 0\n1 1 2 3 4\n", "tetrahedron 1 of 2 is missing"),
+        (NODE, "1 8 0\n1 1 2 3 4\n", "the number of nodes of a tetrahedron is 8; expected 4 or 10"),
+        (NODE, "1 4 0\n1 1 2 3 5\n", "line 2 of the .ele file: a corner of tetrahedron 1 is 5"),
+        (NODE, "1 4 0\n1 1 2 3 0\n", "is 0; expected a point: 1 to 4"),
+        (NODE, "1 4 1\n1 1 2 3 4 x\n", "the region of a tetrahedron is \"x\""),
+        (NODE, "1 4 0\n1 1 2 3 3\n", "point 2 twice"),
+        ("4 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n", ELE, "flat"),
+    ];
+    for (node, ele, words) in cases {
+        folder.write("a.node", node);
+        folder.write("a.ele", ele);
+        let message = quality(&folder, "a.node").expect_err(words);
+        assert!(message.contains(words), "`{words}` is not in {message}");
+    }
+    folder.write("a.node", NODE);
+    folder.write("a.ele", ELE);
+    folder.write("a.face", "1 1\n1 1 2 9 1\n");
+    assert!(
+        quality(&folder, "a.ele")
+            .expect_err("a face")
+            .contains("line 2 of the .face file: a corner of triangle 1")
+    );
+    std::fs::remove_file(folder.path().join("a.face")).expect("the file just written");
+    assert_eq!(quality(&folder, "a.ele").expect("a good mesh")["points"], 4);
+}
+
+/// What a format has no room for is told by `mesh convert`, or refused, and nothing is left behind.
+#[test]
+fn conversions_tell_what_they_lose() {
+    let folder = Folder::new("convert");
+    generate(&folder, "mixed.vtu");
+    let call = ["mesh", "generate", "box", "tets.vtu", "size=1,1,1", "cells=2,2,2", "element=tet4"];
+    souple_in(folder.path(), call).ends(0);
+    for (from, to, words) in [
+        ("mixed.vtu", "a.stl", "cells: "),
+        ("mixed.vtu", "a.ply", "groups"),
+        ("mixed.vtu", "a.off", "cells: "),
+        ("mixed.vtu", "a.glb", "cells: "),
+        ("tets.vtu", "a.node", "groups by name"),
+    ] {
+        let answer = souple_in(folder.path(), ["mesh", "convert", from, to, "--json"]).ends(0).json();
+        assert!(answer["notes"].to_string().contains(words), "{to}: {answer:#}");
+    }
+    let before = folder.files();
+    for (from, to, words) in [
+        ("mixed.vtu", "b.ele", "expected tet4 or tri3"),
+        ("a.stl", "b.xyz", "no format has the extension `xyz`"),
+        ("a.glb", "b.stl", "the format `gltf` cannot be read"),
+        ("a.stl", "no/such/folder.ply", "its folder is missing"),
+    ] {
+        let answer = souple_in(folder.path(), ["mesh", "convert", from, to, "--json"]);
+        assert!(matches!(answer.status, Some(1 | 2)) && answer.stderr.contains(words), "{answer:#?}");
+    }
+    assert_eq!(folder.files(), before);
+    // a tetrahedral mesh through every format of volumes and back
+    let original = quality(&folder, "tets.vtu").expect("a good mesh");
+    for file in ["t.msh", "t.msh2", "t.vtk", "t.node"] {
+        souple_in(folder.path(), ["mesh", "convert", "tets.vtu", file]).ends(0);
+        let mesh = quality(&folder, file).unwrap_or_else(|message| panic!("{message}"));
+        for key in ["points", "cells", "volume", "bounds"] {
+            assert_eq!(mesh[key], original[key], "{file}: {key}");
+        }
+    }
 }
 
 /// A legacy VTK text of these points and cells.
@@ -234,6 +336,8 @@ fn meshes_that_cannot_be_computed_on() {
     for (file, content, words) in &cases {
         folder.write(file, content);
         match quality(&folder, file) {
+            // triangles alone have a quality, and make no body
+            Ok(mesh) if *file == "surface.vtk" && mesh["triangles"] == 1 => {}
             Ok(mesh) => failures.push(format!("{file}: accepted: {mesh}")),
             Err(message) if !message.contains(words) => {
                 failures.push(format!("{file}: no `{words}` in {message}"))
@@ -284,6 +388,33 @@ fn overlapping_cells_are_told() {
     let mesh = quality(&folder, "thrice.vtk").unwrap_or_else(|message| panic!("{message}"));
     assert_eq!(mesh["conforming"], false);
     assert!(mesh["problem"].to_string().contains("is used 3 times"), "{mesh:#}");
+}
+
+/// Meshes that do not conform: overlapping cells are refused by scenes, cracks and hanging points are told.
+#[test]
+fn meshes_that_do_not_conform() {
+    let folder = Folder::new("conformity");
+    let generated = "generate = \"box\", size = [1, 1, 1], cells = [2, 2, 2], element = \"hex8\"";
+    let scene = |file: &str| {
+        folder.write("scene.toml", CUBE.replace(generated, &format!("file = \"{file}\"")));
+        souple_in(folder.path(), ["check", "scene.toml"])
+    };
+    // the fifth point stands on the wrong side of the common face
+    let through = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "0.1 0.1 0.5"];
+    folder.write("inverted.vtk", vtk(&through, "4 0 1 2 3\n4 0 2 1 4", "10 10"));
+    let answer = scene("inverted.vtk").ends(2);
+    assert!(
+        answer.stderr.contains("overlap") && answer.stderr.contains("cells[1] is inverted"),
+        "{answer:#?}"
+    );
+    // two tetrahedra face to face whose three common points are there twice
+    let twice = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "0 0 0", "1 0 0", "0 1 0", "0 0 -1"];
+    folder.write("crack.vtk", vtk(&twice, "4 0 1 2 3\n4 4 6 5 7", "10 10"));
+    let answer = scene("crack.vtk").ends(0);
+    assert!(answer.stderr.contains("3 pairs of points coincide"), "{answer:#?}");
+    let sliver = ["0 0 0", "1 0 0", "0 1 0", "0.3 0.3 1e-5"];
+    folder.write("sliver.vtk", vtk(&sliver, "4 0 1 2 3", "10"));
+    assert!(scene("sliver.vtk").stderr.contains("nearly no volume"));
 }
 
 /// A mesh with any byte changed is accepted or refused, never a panic.

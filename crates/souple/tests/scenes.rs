@@ -13,6 +13,7 @@ const CUT: &[(&str, u64)] = &[
     ("hanging_cube", 5),
     ("incline_slides", 20),
     ("incline_sticks", 20),
+    ("liver", 10),
     ("soft_block", 10),
     ("twisted_bar", 10),
     ("two_materials", 25),
@@ -82,6 +83,10 @@ fn every_scene_runs() {
         if let Some(steps) = cut {
             assert_eq!(report["steps"], steps, "{name}");
         }
+        // of a whole run no expectation is left without a judgement
+        let expectations = report["expectations"].as_array().cloned().unwrap_or_default();
+        let holds = expectations.iter().all(|expectation| expectation["status"] == "holds");
+        assert!(!expectations.is_empty() && (cut.is_some() || holds), "{name}: {expectations:#?}");
         for part in ["energy", "momentum", "probes", "counts", "stages_ms", "solver"] {
             assert_finite(&format!("{name}.{part}"), &report[part]);
         }
@@ -102,7 +107,38 @@ fn expectations_are_judged_at_their_moment() {
     let timed = folder.write("timed.toml", format!("{}{wrong}time = \"50 ms\"\n", common::CUBE));
     souple(["run", &timed, "--quiet", "--steps", "4"]).ends(0);
     souple(["run", &timed, "--quiet", "--steps", "5"]).ends(1);
-    // a moment after the scene's end never comes; the line is not passed over in silence
+    // a moment after the scene's end never comes; the line is not passed over in silence, not even by --quiet
     let never = folder.write("never.toml", format!("{}{wrong}time = \"1 s\"\n", common::CUBE));
-    souple(["run", &never, "--quiet"]).ends(1);
+    let answer = souple(["run", &never, "--quiet"]).ends(0);
+    let told = "expectations: 0 of 1 hold, 1 not judged: the run ended at 0.1 s";
+    assert!(answer.stderr.contains(told), "{answer:#?}");
+}
+
+/// The report holds each expectation with what became of it; a changed scene may fail them, unless it must not.
+#[test]
+fn expectations_are_reported() {
+    let folder = common::Folder::new("reported");
+    let line = |rest: &str| format!("[[expect]]\nprobe = \"place\"\ncomponent = \"y\"\n{rest}\n");
+    let text =
+        format!("{}{}{}", common::CUBE, line("min = 0.44\nmax = 0.5"), line("max = 2\ntime = \"1 s\""));
+    let scene = folder.write("scene.toml", text);
+    let out = folder.at("out");
+    let report = souple(["run", &scene, "--json", "--quiet", "--out", &out]).ends(0).json();
+    let expectations = report["expectations"].as_array().expect("a list");
+    assert_eq!(expectations.len(), 2);
+    assert_eq!(
+        (&expectations[0]["status"], &expectations[1]["status"]),
+        (&"holds".into(), &"not judged".into())
+    );
+    // backward Euler falls h² g n (n + 1)/2 from 0.5
+    let fallen = 0.5 - 1e-4 * 9.81 * 55.0;
+    assert!(expectations[0]["value"].as_f64().is_some_and(|value| (value - fallen).abs() < 1e-9));
+    assert!(expectations[1]["value"].is_null() && expectations[1]["reason"] == "the run ended at 0.1 s");
+    let told = std::fs::read_to_string(folder.path().join("out/expect.txt")).expect("expect.txt");
+    assert!(told.starts_with("1 of 2 hold, 1 not judged: the run ended at 0.1 s\nholds "), "{told}");
+    let up = ["run", &scene, "--quiet", "--set", "world.gravity=[0,9.81,0]"];
+    let answer = souple(up).ends(0);
+    assert!(answer.stderr.contains("warning: not as expected: place.y"), "{answer:#?}");
+    souple(up.iter().chain(&["--expect", "strict"])).ends(1);
+    souple(["run", &scene, "--quiet", "--expect", "warn"]).ends(0);
 }

@@ -25,6 +25,8 @@ pub enum Kind {
     Vector,
     /// Free text: a name, a file, a formula; the summary says which.
     Text,
+    /// Texts under names of the writer's choice; numbers and directions are kept as they were written.
+    Texts,
     Choice(&'static [&'static str]),
 }
 
@@ -106,6 +108,10 @@ impl Parameter {
         Self { name, summary, kind: Kind::Text, unit: "", range: Range::ANY, default: None }
     }
 
+    pub const fn texts(name: &'static str, summary: &'static str) -> Self {
+        Self { name, summary, kind: Kind::Texts, unit: "", range: Range::ANY, default: None }
+    }
+
     pub const fn choice(name: &'static str, choices: &'static [&'static str], summary: &'static str) -> Self {
         Self { name, summary, kind: Kind::Choice(choices), unit: "", range: Range::ANY, default: None }
     }
@@ -127,6 +133,7 @@ impl Parameter {
             Kind::Boolean => "true or false".to_owned(),
             Kind::Vector => format!("three finite numbers{unit}"),
             Kind::Text => "text".to_owned(),
+            Kind::Texts => "a table of names with a number, quantity, direction or text each".to_owned(),
             Kind::Choice(choices) => format!("one of {}", choices.join(", ")),
         }
     }

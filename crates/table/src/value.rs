@@ -14,6 +14,8 @@ pub enum Value<'a> {
     Boolean(bool),
     Vector([f64; 3]),
     Text(&'a str),
+    /// Names and what stands for them.
+    Texts(&'a [(String, String)]),
 }
 
 impl fmt::Display for Value<'_> {
@@ -24,6 +26,11 @@ impl fmt::Display for Value<'_> {
             Self::Boolean(truth) => write!(f, "{truth}"),
             Self::Vector([x, y, z]) => write!(f, "[{x}, {y}, {z}]"),
             Self::Text(text) => write!(f, "\"{text}\""),
+            Self::Texts(texts) => {
+                let entries: Vec<String> =
+                    texts.iter().map(|(name, text)| format!("{name} = \"{text}\"")).collect();
+                write!(f, "{{ {} }}", entries.join(", "))
+            }
         }
     }
 }
@@ -35,6 +42,7 @@ enum Owned {
     Boolean(bool),
     Vector([f64; 3]),
     Text(Cow<'static, str>),
+    Texts(Vec<(String, String)>),
 }
 
 /// Named values for one entry.
@@ -80,6 +88,7 @@ impl Values {
             Value::Boolean(truth) => Owned::Boolean(truth),
             Value::Vector(vector) => Owned::Vector(vector),
             Value::Text(text) => Owned::Text(Cow::Owned(text.to_owned())),
+            Value::Texts(texts) => Owned::Texts(texts.to_vec()),
         };
         self.0.insert(name.into(), owned);
     }
@@ -91,6 +100,7 @@ impl Values {
             Owned::Boolean(truth) => Value::Boolean(*truth),
             Owned::Vector(vector) => Value::Vector(*vector),
             Owned::Text(text) => Value::Text(text),
+            Owned::Texts(texts) => Value::Texts(texts),
         })
     }
 
@@ -126,7 +136,9 @@ impl Values {
             let fits = match (parameter.kind, value) {
                 (Kind::Number, Value::Number(number)) => parameter.range.contains(number),
                 (Kind::Integer, Value::Integer(number)) => parameter.range.contains(number as f64),
-                (Kind::Boolean, Value::Boolean(_)) | (Kind::Text, Value::Text(_)) => true,
+                (Kind::Boolean, Value::Boolean(_))
+                | (Kind::Text, Value::Text(_))
+                | (Kind::Texts, Value::Texts(_)) => true,
                 (Kind::Vector, Value::Vector(vector)) => vector.iter().all(|component| component.is_finite()),
                 (Kind::Choice(choices), Value::Text(text)) => choices.contains(&text),
                 _ => false,
@@ -173,6 +185,14 @@ impl Values {
         match self.get(name) {
             Some(Value::Vector(vector)) => vector,
             other => panic!("the entry declares no vector `{name}`: {other:?}"),
+        }
+    }
+
+    /// Texts by names among completed values; panics like [`Values::number`].
+    pub fn texts(&self, name: &str) -> &[(String, String)] {
+        match self.get(name) {
+            Some(Value::Texts(texts)) => texts,
+            other => panic!("the entry declares no texts `{name}`: {other:?}"),
         }
     }
 

@@ -1,22 +1,39 @@
 //! Benchmarks: speed with its error beside it, on scenes anyone can run.
 
+mod timing;
+
 use std::fmt;
-use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
 use souple_run::{Control, Options};
 use souple_scene::Scene;
 
-use crate::scenes;
+use timing::{Held, Timing, as_it_is, bend, median, scene, with_threads};
 
 /// One benchmark.
 #[derive(Clone, Copy)]
 pub struct Bench {
     pub name: &'static str,
     pub what: &'static str,
-    /// Measures; `true` asks for few samples.
-    pub run: fn(bool) -> Result<Vec<Figure>, String>,
+    pub run: fn(Effort) -> Result<Vec<Figure>, String>,
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Few samples: whether all runs, and about how fast.
+    Quick,
+    Full,
+}
+
+impl Effort {
+    fn choose<T>(self, quick: T, full: T) -> T {
+        match self {
+            Self::Quick => quick,
+            Self::Full => full,
+        }
+    }
 }
 
 /// One figure.
@@ -59,37 +76,47 @@ pub const BENCHES: &[Bench] = &[
     Bench {
         name: "explicit_tet4_stvk_100k",
         what: "complete symplectic steps of the reference bar, n = 12 (103,680 tetrahedra), bent [elements/s]",
-        run: |quick| explicit("explicit_tet4_stvk_100k", "tet4", 12, 20e6, quick),
+        run: |effort| explicit("explicit_tet4_stvk_100k", "tet4", 12, 20e6, effort),
     },
     Bench {
         name: "explicit_hex8_stvk",
         what: "the same with hexahedra of eight samples, n = 12 [elements/s]",
-        run: |quick| explicit("explicit_hex8_stvk", "hex8", 12, 3e6, quick),
+        run: |effort| explicit("explicit_hex8_stvk", "hex8", 12, 3e6, effort),
     },
     Bench {
         name: "implicit_beam_n3",
         what: "one linearised backward Euler step of the reference bar, n = 3, to 1e-6 [ms/step]",
-        run: |quick| implicit_beam("implicit_beam_n3", 3, 4.8, quick),
+        run: |effort| implicit_beam("implicit_beam_n3", 3, 4.8, effort),
     },
     Bench {
         name: "implicit_beam_n6",
         what: "the same, n = 6 (12,960 tetrahedra) [ms/step]",
-        run: |quick| implicit_beam("implicit_beam_n6", 6, 96.0, quick),
+        run: |effort| implicit_beam("implicit_beam_n6", 6, 96.0, effort),
     },
     Bench {
         name: "implicit_beam_n12",
         what: "the same, n = 12 (103,680 tetrahedra) [ms/step]",
-        run: |quick| implicit_beam("implicit_beam_n12", 12, 1700.0, quick),
+        run: |effort| implicit_beam("implicit_beam_n12", 12, 1700.0, effort),
     },
     Bench {
         name: "implicit_beam_24k",
         what: "a soft bar of 24,000 tetrahedra at 2 ms steps [ms/step]",
-        run: |quick| soft_beam("implicit_beam_24k", [40, 10, 10], 27.0, quick),
+        run: |effort| soft_beam("implicit_beam_24k", [40, 10, 10], 27.0, effort),
     },
     Bench {
         name: "implicit_beam_5k",
         what: "the same bar with 5,880 tetrahedra [ms/step]",
-        run: |quick| soft_beam("implicit_beam_5k", [20, 7, 7], 5.0, quick),
+        run: |effort| soft_beam("implicit_beam_5k", [20, 7, 7], 5.0, effort),
+    },
+    Bench {
+        name: "contact_block",
+        what: "a gel block that falls on a floor with friction (324 hexahedra), Newton to 1e-7 [ms/step]",
+        run: contact_block,
+    },
+    Bench {
+        name: "fill_100k",
+        what: "the liver filled with about 100,000 tetrahedra, one thread [s]",
+        run: fill_100k,
     },
     Bench { name: "startup", what: "`souple list materials` from start to end [ms]", run: startup },
     Bench {
@@ -142,31 +169,6 @@ impl fmt::Display for Figure {
     }
 }
 
-/// Median and half the interquartile distance over it.
-fn median(mut samples: Vec<f64>) -> (f64, f64) {
-    samples.sort_by(f64::total_cmp);
-    let at = |fraction: f64| samples[((samples.len() - 1) as f64 * fraction).round() as usize];
-    (at(0.5), 0.5 * (at(0.75) - at(0.25)) / at(0.5))
-}
-
-fn scene(name: &str, settings: &[String]) -> Result<Scene, String> {
-    let text = scenes::text(name).ok_or_else(|| format!("there is no scene `{name}`"))?;
-    souple_scene::read_text(name, text, Path::new("."), settings)
-        .map_err(|diagnostics| diagnostics.to_string())
-}
-
-/// Threads to measure with: one, and all that the process may use.
-fn thread_counts() -> Vec<usize> {
-    let all = rayon::current_num_threads();
-    if all > 1 { vec![1, all] } else { vec![1] }
-}
-
-fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
-    Ok(pool.install(work))
-}
-
 /// Runs a scene and gives the last value of a probe's component.
 fn value_of(scene: Scene, steps: u64, probe: &str, component: usize) -> Result<f64, String> {
     let options = Options { steps: Some(steps), ..Options::default() };
@@ -180,75 +182,44 @@ fn value_of(scene: Scene, steps: u64, probe: &str, component: usize) -> Result<f
         .ok_or_else(|| "the probe is empty".to_owned())
 }
 
-fn explicit(name: &str, element: &str, n: u32, peer: f64, quick: bool) -> Result<Vec<Figure>, String> {
-    let settings = |cells: u32| {
+fn explicit(name: &str, element: &str, n: u32, peer: f64, effort: Effort) -> Result<Vec<Figure>, String> {
+    let settings = |element: &str, cells: u32, period: &str| {
         vec![
-            "world.period=\"10 us\"".to_owned(),
+            format!("world.period=\"{period}\""),
             "systems.main.stepper=\"symplectic_euler\"".to_owned(),
             format!("bodies.bar.mesh.cells=[{}, {cells}, {cells}]", 10 * cells),
             format!("bodies.bar.mesh.element=\"{element}\""),
         ]
     };
     // the error of this very scheme: the trace of an independent code at n = 3 after 1000 steps of 50 µs
-    let mut reference = settings(3);
-    reference[0] = "world.period=\"50 us\"".to_owned();
-    reference[3] = "bodies.bar.mesh.element=\"tet4\"".to_owned();
+    let reference = settings("tet4", 3, "50 us");
     let expected = -0.015741317589581534;
-    let error = (value_of(scene("cantilever_dynamic", &reference)?, 1000, "tip", 1)? / expected - 1.0).abs();
-    let mut figures = Vec::new();
-    for threads in thread_counts() {
-        let settings = settings(n);
-        let (samples, bytes) = with_threads(threads, move || -> Result<_, String> {
-            let scene = scene("cantilever_dynamic", &settings)?;
-            let elements = scene.bodies[0].mesh.cell_count();
-            let mut world = scene.model.start(scene.state);
-            bend(&mut world);
-            let mut samples = Vec::new();
-            for _ in 0..if quick { 5 } else { 30 } {
-                let clock = Instant::now();
-                for _ in 0..5 {
-                    world.step().map_err(|error| error.to_string())?;
-                }
-                samples.push(5.0 * elements as f64 / clock.elapsed().as_secs_f64());
-            }
-            Ok((samples, world.bytes()))
-        })??;
-        let count = samples.len();
-        let (value, spread) = median(samples);
-        figures.push(Figure {
-            name: format!("{name}_{threads}t"),
-            value,
-            unit: "elements/s",
-            higher_is_better: true,
-            error,
-            error_of: "tip after 1000 steps at n = 3 (tet4), independent code".to_owned(),
-            baseline: Some(peer),
-            threads,
-            samples: count,
-            spread,
-            bytes,
-        });
-    }
-    Ok(figures)
+    let held = Held {
+        error: (value_of(scene("cantilever_dynamic", &reference)?, 1000, "tip", 1)? / expected - 1.0).abs(),
+        error_of: "tip after 1000 steps at n = 3 (tet4), independent code".to_owned(),
+        baseline: Some(peer),
+    };
+    let timing = Timing {
+        scene: "cantilever_dynamic",
+        settings: &settings(element, n, "10 us"),
+        prepare: bend,
+        warm_up: 0,
+        samples: effort.choose(5, 30),
+        steps_per_sample: 5,
+    };
+    Ok(timing.run()?.iter().map(|timed| timed.elements_per_second(name, &held)).collect())
 }
 
-/// Bends the bar to a parabola, so that no element is at rest.
-fn bend(world: &mut souple_engine::World) {
-    let mut state = world.state().clone();
-    for q in &mut state.systems[0].q {
-        q.y -= 0.1 * q.x * q.x;
-    }
-    world.resume(state);
-}
-
-fn implicit_beam(name: &str, n: u32, peer: f64, quick: bool) -> Result<Vec<Figure>, String> {
+fn implicit_beam(name: &str, n: u32, peer: f64, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
     for law in ["corotational", "st_venant_kirchhoff"] {
-        let settings = |n: u32| {
+        let settings = |n: u32, tolerance: &str| {
             vec![
                 format!("bodies.bar.mesh.cells=[{}, {n}, {n}]", 10 * n),
                 format!("bodies.bar.material.name=\"{law}\""),
-                "systems.main.stepper={ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-6 }".to_owned(),
+                format!(
+                    "systems.main.stepper={{ name = \"backward_euler\", newton = \"one\", solver_tolerance = {tolerance} }}"
+                ),
             ]
         };
         // at n = 3: an independent code's ten steps, or where there is none ours solved to rounding
@@ -256,47 +227,28 @@ fn implicit_beam(name: &str, n: u32, peer: f64, quick: bool) -> Result<Vec<Figur
         let (reference, error_of) = if law == "st_venant_kirchhoff" {
             (-0.06758904669664875, "tip after 10 steps at n = 3, independent code with one Newton step")
         } else {
-            let mut tight = settings(3);
-            tight[2] = tight[2].replace("1e-6", "1e-12");
-            (tip(&tight)?, "tip after 10 steps at n = 3, the same solved to 1e-12")
+            (tip(&settings(3, "1e-12"))?, "tip after 10 steps at n = 3, the same solved to 1e-12")
         };
-        let error = (tip(&settings(3))? / reference - 1.0).abs();
-        for threads in thread_counts() {
-            let settings = settings(n);
-            let (samples, bytes) = with_threads(threads, move || -> Result<_, String> {
-                let scene = scene("cantilever_dynamic", &settings)?;
-                let mut world = scene.model.start(scene.state);
-                let mut samples = Vec::new();
-                for step in 0..if quick { 8 } else { 30 } {
-                    let clock = Instant::now();
-                    world.step().map_err(|error| error.to_string())?;
-                    if step > 1 {
-                        samples.push(1e3 * clock.elapsed().as_secs_f64());
-                    }
-                }
-                Ok((samples, world.bytes()))
-            })??;
-            let count = samples.len();
-            let (value, spread) = median(samples);
-            figures.push(Figure {
-                name: format!("{name}_{law}_{threads}t"),
-                value,
-                unit: "ms/step",
-                higher_is_better: false,
-                error,
-                error_of: error_of.to_owned(),
-                baseline: Some(peer),
-                threads,
-                samples: count,
-                spread,
-                bytes,
-            });
-        }
+        let held = Held {
+            error: (tip(&settings(3, "1e-6"))? / reference - 1.0).abs(),
+            error_of: error_of.to_owned(),
+            baseline: Some(peer),
+        };
+        let timing = Timing {
+            scene: "cantilever_dynamic",
+            settings: &settings(n, "1e-6"),
+            prepare: as_it_is,
+            warm_up: 2,
+            samples: effort.choose(6, 28),
+            steps_per_sample: 1,
+        };
+        let name = format!("{name}_{law}");
+        figures.extend(timing.run()?.iter().map(|timed| timed.milliseconds_per_step(&name, &held)));
     }
     Ok(figures)
 }
 
-fn soft_beam(name: &str, [x, y, z]: [u32; 3], peer: f64, quick: bool) -> Result<Vec<Figure>, String> {
+fn soft_beam(name: &str, [x, y, z]: [u32; 3], peer: f64, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
     for law in ["corotational", "neo_hookean"] {
         let settings = |stepper: &str| {
@@ -313,80 +265,130 @@ fn soft_beam(name: &str, [x, y, z]: [u32; 3], peer: f64, quick: bool) -> Result<
         let fast = settings("{ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-4 }");
         let tight =
             settings("{ name = \"backward_euler\", newton_tolerance = 1e-9, solver_tolerance = 1e-10 }");
-        let steps = if quick { 40 } else { 400 };
+        let steps = effort.choose(40, 400);
         let sag = |settings: &[String]| value_of(scene("cantilever_dynamic", settings)?, steps, "tip", 1);
-        let error = (sag(&fast)? / sag(&tight)? - 1.0).abs();
-        for threads in thread_counts() {
-            let settings = fast.clone();
-            let (samples, bytes) = with_threads(threads, move || -> Result<_, String> {
-                let scene = scene("cantilever_dynamic", &settings)?;
-                let mut world = scene.model.start(scene.state);
-                let mut samples = Vec::new();
-                for step in 0..if quick { 10 } else { 100 } {
-                    let clock = Instant::now();
-                    world.step().map_err(|error| error.to_string())?;
-                    if step > 1 {
-                        samples.push(1e3 * clock.elapsed().as_secs_f64());
-                    }
-                }
-                Ok((samples, world.bytes()))
-            })??;
-            let count = samples.len();
-            let (value, spread) = median(samples);
-            figures.push(Figure {
-                name: format!("{name}_{law}_{threads}t"),
-                value,
-                unit: "ms/step",
-                higher_is_better: false,
-                error,
-                error_of: format!(
-                    "sag after {:.2} s against the tightly converged run",
-                    f64::from(steps as u32) * 2e-3
-                ),
-                baseline: Some(peer),
-                threads,
-                samples: count,
-                spread,
-                bytes,
-            });
-        }
+        let held = Held {
+            error: (sag(&fast)? / sag(&tight)? - 1.0).abs(),
+            error_of: format!("sag after {:.2} s against the tightly converged run", steps as f64 * 2e-3),
+            baseline: Some(peer),
+        };
+        let timing = Timing {
+            scene: "cantilever_dynamic",
+            settings: &fast,
+            prepare: as_it_is,
+            warm_up: 2,
+            samples: effort.choose(8, 98),
+            steps_per_sample: 1,
+        };
+        let name = format!("{name}_{law}");
+        figures.extend(timing.run()?.iter().map(|timed| timed.milliseconds_per_step(&name, &held)));
     }
     Ok(figures)
 }
 
-fn static_100k(quick: bool) -> Result<Vec<Figure>, String> {
-    let n = if quick { 6 } else { 12 };
-    let settings = vec![
-        format!("bodies.bar.mesh.cells=[{}, {n}, {n}]", 10 * n),
-        "systems.main.stepper={ name = \"static\", newton_tolerance = 1e-8 }".to_owned(),
-    ];
+fn contact_block(effort: Effort) -> Result<Vec<Figure>, String> {
+    // touch begins at step 28; the block then squashes, slides and springs back
+    let steps = effort.choose(60, 200);
+    let height = |settings: &[String]| value_of(scene("soft_block", settings)?, steps, "height", 0);
+    let tight =
+        ["systems.main.stepper={ name = \"backward_euler\", newton_tolerance = 1e-10, solver = \"direct\" }"
+            .to_owned()];
+    let held = Held {
+        error: (height(&[])? / height(&tight)? - 1.0).abs(),
+        error_of: format!(
+            "height after {:.1} s against the run converged to 1e-10 with sparse LU",
+            steps as f64 * 5e-3
+        ),
+        baseline: None,
+    };
+    let timing = Timing {
+        scene: "soft_block",
+        settings: &[],
+        prepare: as_it_is,
+        warm_up: 30,
+        samples: effort.choose(30, 170),
+        steps_per_sample: 1,
+    };
+    Ok(timing.run()?.iter().map(|timed| timed.milliseconds_per_step("contact_block", &held)).collect())
+}
+
+fn static_100k(effort: Effort) -> Result<Vec<Figure>, String> {
+    let (n, name) = effort.choose((6, "static_13k"), (12, "static_100k"));
+    let settings = |n: u32| {
+        vec![
+            format!("bodies.bar.mesh.cells=[{}, {n}, {n}]", 10 * n),
+            "systems.main.stepper={ name = \"static\", newton_tolerance = 1e-8 }".to_owned(),
+        ]
+    };
     let expected = -0.12977445957955291;
-    let mut at_six = settings.clone();
-    at_six[0] = "bodies.bar.mesh.cells=[60, 6, 6]".to_owned();
-    let error = (value_of(scene("cantilever", &at_six)?, 1, "tip", 1)? / expected - 1.0).abs();
-    let scene = scene("cantilever", &settings)?;
-    let mut world = scene.model.start(scene.state);
-    let clock = Instant::now();
-    world.step().map_err(|error| error.to_string())?;
+    let error = (value_of(scene("cantilever", &settings(6))?, 1, "tip", 1)? / expected - 1.0).abs();
+    let timing = Timing {
+        scene: "cantilever",
+        settings: &settings(n),
+        prepare: as_it_is,
+        warm_up: 0,
+        samples: 1,
+        steps_per_sample: 1,
+    };
+    let timed = timing.sample(rayon::current_num_threads())?;
     Ok(vec![Figure {
-        name: if quick { "static_13k".to_owned() } else { "static_100k".to_owned() },
-        value: clock.elapsed().as_secs_f64(),
+        name: name.to_owned(),
+        value: timed.seconds[0],
         unit: "s",
         higher_is_better: false,
         error,
         error_of: "tip at n = 6, FEniCSx".to_owned(),
         baseline: None,
-        threads: rayon::current_num_threads(),
+        threads: timed.threads,
         samples: 1,
         spread: 0.0,
-        bytes: world.bytes(),
+        bytes: timed.bytes,
     }])
 }
 
-fn startup(quick: bool) -> Result<Vec<Figure>, String> {
+/// The organ on a lattice of the size that gives about a hundred thousand tetrahedra; the error is that of its volume.
+fn fill_100k(effort: Effort) -> Result<Vec<Figure>, String> {
+    use souple_mesh::fill::{Cells, Size, fill};
+    let body =
+        souple_mesh::implicit::body("liver", souple_table::Values::new()).map_err(|e| e.to_string())?;
+    let filled = |size: f64| {
+        fill(&*body.shape, &Size::uniform(size), Cells::Tetrahedra, &[]).map_err(|error| error.to_string())
+    };
+    let (size, finer) = (FILL_SIZE, 0.6 * FILL_SIZE);
+    let mut samples = Vec::new();
+    let mut cells = 0;
+    let mut volume = 0.0;
+    for _ in 0..effort.choose(1, 5) {
+        let clock = Instant::now();
+        let mesh = with_threads(1, || filled(size))??;
+        samples.push(clock.elapsed().as_secs_f64());
+        (cells, volume) = (mesh.cell_count(), mesh.volume());
+    }
+    let error = (volume / filled(finer)?.volume() - 1.0).abs();
+    let count = samples.len();
+    let (value, spread) = median(samples);
+    Ok(vec![Figure {
+        name: "fill_100k".to_owned(),
+        value,
+        unit: "s",
+        higher_is_better: false,
+        error,
+        error_of: format!("volume of {cells} tetrahedra, against three fifths of the size"),
+        baseline: None,
+        threads: 1,
+        samples: count,
+        spread,
+        bytes: 0,
+    }])
+}
+
+/// Edge of the lattice for about a hundred thousand tetrahedra in the liver [m].
+const FILL_SIZE: f64 = 5.4e-3;
+
+fn startup(effort: Effort) -> Result<Vec<Figure>, String> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let mut samples = Vec::new();
-    for _ in 0..if quick { 5 } else { 30 } {
+    for _ in 0..effort.choose(5, 30) {
         let clock = Instant::now();
         let output = std::process::Command::new(&program)
             .args(["list", "materials"])

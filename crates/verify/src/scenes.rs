@@ -2,15 +2,21 @@
 
 /// `(name, text)` of every scene in `scenes/`.
 pub const SCENES: &[(&str, &str)] = &[
+    ("block_on_springs", include_str!("../../../scenes/block_on_springs/scene.toml")),
     ("cantilever", include_str!("../../../scenes/cantilever/scene.toml")),
     ("cantilever_dynamic", include_str!("../../../scenes/cantilever_dynamic/scene.toml")),
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
     ("hanging_cube", include_str!("../../../scenes/hanging_cube/scene.toml")),
     ("incline_slides", include_str!("../../../scenes/incline_slides/scene.toml")),
     ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
+    ("liver", include_str!("../../../scenes/liver/scene.toml")),
     ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
+    ("patch", include_str!("../../../scenes/patch/scene.toml")),
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
+    ("spinning_cube", include_str!("../../../scenes/spinning_cube/scene.toml")),
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),
+    ("thick_sphere", include_str!("../../../scenes/thick_sphere/scene.toml")),
+    ("traction", include_str!("../../../scenes/traction/scene.toml")),
     ("twisted_bar", include_str!("../../../scenes/twisted_bar/scene.toml")),
     ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
 ];

@@ -1,4 +1,8 @@
-//! The two Euler methods that evaluate the force once, at the start of the step.
+//! Methods that evaluate the force once a step, somewhere along a drift: two Euler methods, and the frame they
+//! share with Störmer–Verlet.
+
+use souple_math::Vec3;
+use souple_solve::reduce;
 
 use crate::inertia::accelerations_at;
 use crate::state::SystemState;
@@ -6,12 +10,14 @@ use crate::system::{Surroundings, System, SystemWorkspace};
 
 use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
 
-/// `q' = q + h v`, `v' = v + h a(q, v)`: first order, gains energy at any step; for comparison.
+/// `q' = q + h v`, `v' = v + h a(q, v)`: first order; for comparison. The energy of an oscillation grows by
+/// `1 + (h ω)²` every step, exactly and at any step.
 #[derive(Debug)]
 pub struct ExplicitEuler;
 
-/// `v' = v + h a(q, v)`, `q' = q + h v'`: first order, keeps energy bounded below `h ω = 2`; the cheapest
-/// way to move a body freely, called modified or semi-implicit Euler too.
+/// `v' = v + h a(q, v)`, `q' = q + h v'`: first order; the cheapest way to move a body freely, called modified or
+/// semi-implicit Euler too. Energy swings by `h ω / 2` of itself about a constant and does not drift below
+/// `h ω = 2`: `½ m v² + ½ k q² - ½ h k q v` of a linear oscillator is kept exactly.
 #[derive(Debug)]
 pub struct SymplecticEuler;
 
@@ -31,6 +37,63 @@ pub(super) const SYMPLECTIC_EULER: StepperEntry = StepperEntry {
     build: |_| Box::new(SymplecticEuler),
 };
 
+/// Where in a step the force is evaluated, and which velocity moves the rest of the way.
+pub(super) struct OneForce {
+    /// Part of the step drifted with the velocity of the start before the force is evaluated.
+    pub before: f64,
+    pub drifts: Drifts,
+}
+
+/// Which velocity the drift after the force takes.
+pub(super) enum Drifts {
+    BeforeKick,
+    AfterKick,
+}
+
+impl OneForce {
+    pub(super) fn step(
+        self,
+        system: &System,
+        around: &Surroundings,
+        start: f64,
+        timestep: f64,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError> {
+        let first = self.before * timestep;
+        let rest = timestep - first;
+        if first > 0.0 {
+            system.kinematics.retract_scaled(&mut next.q, &next.v, first);
+            system.place_rows(&next.q, &next.v, start + first, &mut ws.rows);
+            system.refresh_pairs(ws, next, around);
+        }
+        let mut acceleration = std::mem::take(&mut ws.blocks[0]);
+        acceleration.resize(next.v.len(), Vec3::ZERO);
+        let evaluated = accelerations_at(system, around, start + first, next, ws, &mut acceleration);
+        if evaluated.is_ok() {
+            system.advance_memory(ws, next, around, timestep);
+            match self.drifts {
+                Drifts::BeforeKick => {
+                    system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
+                    kick(&mut next.v, &acceleration, timestep);
+                }
+                Drifts::AfterKick => {
+                    kick(&mut next.v, &acceleration, timestep);
+                    system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
+                }
+            }
+            system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
+        }
+        ws.blocks[0] = acceleration;
+        evaluated
+    }
+}
+
+/// `v += h a`.
+pub(super) fn kick(v: &mut [Vec3], acceleration: &[Vec3], timestep: f64) {
+    reduce::add_scaled(v, timestep, acceleration);
+}
+
 impl Stepper for ExplicitEuler {
     fn name(&self) -> &'static str {
         EXPLICIT_EULER.name
@@ -40,6 +103,7 @@ impl Stepper for ExplicitEuler {
         Stability::Growing
     }
 
+    // q' = q + h v,  v' = v + h a(q, v)
     fn step(
         &self,
         system: &System,
@@ -49,25 +113,8 @@ impl Stepper for ExplicitEuler {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
-        let mut acceleration = std::mem::take(&mut ws.blocks[0]);
-        let evaluated = accelerations_at(system, around, start, next, ws, &mut acceleration);
-        let report = match evaluated {
-            Ok(report) => report,
-            Err(error) => {
-                ws.blocks[0] = acceleration;
-                return Err(error);
-            }
-        };
-        system.advance_memory(&ws.rows, next, around, timestep);
-        // q' = q + h v
-        system.kinematics.retract_scaled(&mut next.q, &next.v, timestep);
-        // v' = v + h a
-        for (v, a) in next.v.iter_mut().zip(&acceleration) {
-            *v += *a * timestep;
-        }
-        system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
-        ws.blocks[0] = acceleration;
-        Ok(report)
+        let method = OneForce { before: 0.0, drifts: Drifts::BeforeKick };
+        method.step(system, around, start, timestep, next, ws)
     }
 }
 
@@ -80,6 +127,7 @@ impl Stepper for SymplecticEuler {
         Stability::Limited(2.0)
     }
 
+    // v' = v + h a(q, v),  q' = q + h v'
     fn step(
         &self,
         system: &System,
@@ -89,24 +137,7 @@ impl Stepper for SymplecticEuler {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
-        let mut acceleration = std::mem::take(&mut ws.blocks[0]);
-        let evaluated = accelerations_at(system, around, start, next, ws, &mut acceleration);
-        let report = match evaluated {
-            Ok(report) => report,
-            Err(error) => {
-                ws.blocks[0] = acceleration;
-                return Err(error);
-            }
-        };
-        system.advance_memory(&ws.rows, next, around, timestep);
-        // v' = v + h a
-        for (v, a) in next.v.iter_mut().zip(&acceleration) {
-            *v += *a * timestep;
-        }
-        // q' = q + h v'
-        system.kinematics.retract_scaled(&mut next.q, &next.v, timestep);
-        system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
-        ws.blocks[0] = acceleration;
-        Ok(report)
+        let method = OneForce { before: 0.0, drifts: Drifts::AfterKick };
+        method.step(system, around, start, timestep, next, ws)
     }
 }

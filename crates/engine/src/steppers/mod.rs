@@ -9,7 +9,7 @@ mod static_equilibrium;
 use souple_table::{Entry, Table, Values};
 
 use crate::linear::SolverSettings;
-use crate::state::SystemState;
+use crate::state::{Place, SystemState};
 use crate::system::{Surroundings, System, SystemWorkspace};
 
 pub use backward_euler::{BackwardEuler, NewtonMode};
@@ -47,19 +47,29 @@ pub enum StepError {
     #[error(
         "Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take a smaller step, more load steps or `newton = \"one\"`"
     )]
-    NewtonStalled { iterations: u64, residual: f64, wanted: f64 },
+    NewtonStalled {
+        iterations: u64,
+        residual: f64,
+        wanted: f64,
+        /// The velocity block of the largest unbalanced force.
+        block: usize,
+    },
     #[error(
         "prescribed points are {to_go:.3e} m from where they are led, and no step brings them closer; lead them more slowly"
     )]
     NotReached { to_go: f64 },
     #[error("force `{force}` is not finite ({value:?} at row {row}, time {time} s)")]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
+    #[error(
+        "what touches changed {searches} times within a step, and with it where the step leads; take a smaller step or more load steps"
+    )]
+    PairsUnsettled { searches: u32 },
     #[error("{0}")]
     Field(String),
     #[error(
         "{field} is not finite after the step to {time} s; the step may be too long for what is stiff there"
     )]
-    StateNotFinite { field: String, time: f64 },
+    StateNotFinite { field: Place, time: f64 },
 }
 
 /// How long a step may be for an oscillation of angular frequency `ω`.
@@ -85,9 +95,19 @@ pub trait Stepper: Send + Sync {
 
     fn stability(&self) -> Stability;
 
+    /// Whether mass resists acceleration in its steps; statics knows no inertia.
+    fn has_inertia(&self) -> bool {
+        true
+    }
+
     /// How it solves linear systems; defaults for those that solve none but masses.
     fn solver_settings(&self) -> SolverSettings {
         SolverSettings::default()
+    }
+
+    /// Whether it can go on from a [`SystemState::history`] read from a file.
+    fn accepts_history(&self, _system: &System, history: &[f64]) -> bool {
+        history.is_empty()
     }
 
     /// Steps `next`, which holds the state at `start` seconds, on by `timestep` seconds.

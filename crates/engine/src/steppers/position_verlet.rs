@@ -1,13 +1,15 @@
 //! Störmer–Verlet in its position form: half a drift, a kick, half a drift.
 
-use crate::inertia::accelerations_at;
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
+use super::explicit::{Drifts, OneForce};
 use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
 
 /// `q½ = q + h/2 v`, `v' = v + h a(q½, v)`, `q' = q½ + h/2 v'`: second order and symplectic at one force a
-/// step. Forces that depend on velocity see that of the start, which makes their part first order.
+/// step. Forces that depend on velocity see that of the start, which makes their part first order. Energy swings by
+/// `(h ω)² / 4` of itself and does not drift below `h ω = 2`: `½ m (1 - (h ω)²/4) v² + ½ k q²` of a linear
+/// oscillator is kept exactly.
 #[derive(Debug)]
 pub struct PositionVerlet;
 
@@ -28,6 +30,7 @@ impl Stepper for PositionVerlet {
         Stability::Limited(2.0)
     }
 
+    // q½ = q + h/2 v,  v' = v + h a(q½, v),  q' = q½ + h/2 v'
     fn step(
         &self,
         system: &System,
@@ -37,27 +40,7 @@ impl Stepper for PositionVerlet {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
-        let half = 0.5 * timestep;
-        let mut acceleration = std::mem::take(&mut ws.blocks[0]);
-        // q½ = q + h/2 v
-        system.kinematics.retract_scaled(&mut next.q, &next.v, half);
-        // v' = v + h a(q½, v)
-        let evaluated = accelerations_at(system, around, start + half, next, ws, &mut acceleration);
-        let report = match evaluated {
-            Ok(report) => report,
-            Err(error) => {
-                ws.blocks[0] = acceleration;
-                return Err(error);
-            }
-        };
-        system.advance_memory(&ws.rows, next, around, timestep);
-        for (v, a) in next.v.iter_mut().zip(&acceleration) {
-            *v += *a * timestep;
-        }
-        // q' = q½ + h/2 v'
-        system.kinematics.retract_scaled(&mut next.q, &next.v, half);
-        system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
-        ws.blocks[0] = acceleration;
-        Ok(report)
+        let method = OneForce { before: 0.5, drifts: Drifts::AfterKick };
+        method.step(system, around, start, timestep, next, ws)
     }
 }

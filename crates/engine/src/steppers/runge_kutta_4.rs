@@ -6,10 +6,15 @@ use crate::inertia::accelerations_at;
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
+use super::explicit::kick;
 use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
 
 /// Four force evaluations a step; fourth order for points, and for rotations as far as increments from the
 /// step's start commute (their correction `[θ, ω]/2` is left out: second order in the angle turned).
+///
+/// Energy is not kept exactly: that of an oscillation is multiplied by `1 - (h ω)⁶/72 + (h ω)⁸/576` every step, a loss
+/// of sixth order in a step and fifth per second, and a gain beyond `h ω = 2 √2`. What is kept account of as
+/// dissipated is summed at the starts of steps, to first order.
 #[derive(Debug)]
 pub struct RungeKutta4;
 
@@ -43,58 +48,74 @@ impl Stepper for RungeKutta4 {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let mut stages = Stages {
+            blocks: std::array::from_fn(|i| std::mem::take(&mut ws.blocks[i])),
+            start_q: std::mem::take(&mut ws.configuration),
+        };
+        let stepped = stages.step(system, around, start, timestep, next, ws);
+        for (slot, buffer) in ws.blocks.iter_mut().zip(stages.blocks) {
+            *slot = buffer;
+        }
+        ws.configuration = stages.start_q;
+        stepped
+    }
+}
+
+/// Buffers of a step, lent by the workspace.
+struct Stages {
+    /// Acceleration and velocity of a stage, their weighted sums, and the velocity of the start.
+    blocks: [Vec<Vec3>; 5],
+    start_q: Vec<Vec3>,
+}
+
+impl Stages {
+    fn step(
+        &mut self,
+        system: &System,
+        around: &Surroundings,
+        start: f64,
+        timestep: f64,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError> {
         let mut report = StepReport::default();
-        let mut buffers: [Vec<Vec3>; 4] = std::array::from_fn(|i| std::mem::take(&mut ws.blocks[i]));
-        let [acceleration, velocity, velocity_sum, acceleration_sum] = &mut buffers;
-        let (mut start_q, mut start_v) =
-            (std::mem::take(&mut ws.configurations[0]), std::mem::take(&mut ws.blocks[4]));
+        let Self { blocks: [acceleration, velocity, acceleration_sum, velocity_sum, start_v], start_q } =
+            self;
         start_q.clone_from(&next.q);
         start_v.clone_from(&next.v);
+        for buffer in [&mut *acceleration, velocity, acceleration_sum, velocity_sum] {
+            buffer.resize(next.v.len(), Vec3::ZERO);
+        }
         velocity_sum.fill(Vec3::ZERO);
         acceleration_sum.fill(Vec3::ZERO);
         for (stage, (fraction, weight)) in STAGES.into_iter().enumerate() {
             let time = start + fraction * timestep;
             if stage > 0 {
                 // q_i = q + c h v_{i-1},  v_i = v + c h a_{i-1}
-                next.q.copy_from_slice(&start_q);
+                next.q.copy_from_slice(start_q);
+                next.v.copy_from_slice(start_v);
                 system.kinematics.retract_scaled(&mut next.q, velocity, fraction * timestep);
-                for ((v, start), a) in next.v.iter_mut().zip(&start_v).zip(acceleration.iter()) {
-                    *v = *start + *a * (fraction * timestep);
-                }
+                kick(&mut next.v, acceleration, fraction * timestep);
                 system.impose_constraints(&mut next.q, &mut next.v, time, around.load);
+                system.place_rows(&next.q, &next.v, time, &mut ws.rows);
+                system.refresh_pairs(ws, next, around);
             }
-            match accelerations_at(system, around, time, next, ws, acceleration) {
-                Ok(evaluated) => report.merge(&evaluated),
-                Err(error) => {
-                    give_back(ws, buffers, start_q, start_v);
-                    return Err(error);
-                }
-            }
+            report.merge(&accelerations_at(system, around, time, next, ws, acceleration)?);
             velocity.copy_from_slice(&next.v);
             for i in 0..velocity.len() {
                 velocity_sum[i] += velocity[i] * weight;
                 acceleration_sum[i] += acceleration[i] * weight;
             }
         }
-        next.q.copy_from_slice(&start_q);
-        next.v.copy_from_slice(&start_v);
+        next.q.copy_from_slice(start_q);
+        next.v.copy_from_slice(start_v);
         // memory moves on at the start of the step, unseen by the stages
         system.place_rows(&next.q, &next.v, start, &mut ws.rows);
-        system.advance_memory(&ws.rows, next, around, timestep);
+        system.advance_memory(ws, next, around, timestep);
+        // q' = q + h Σ b v_i,  v' = v + h Σ b a_i
         system.kinematics.retract_scaled(&mut next.q, velocity_sum, timestep);
-        for (v, a) in next.v.iter_mut().zip(acceleration_sum.iter()) {
-            *v += *a * timestep;
-        }
+        kick(&mut next.v, acceleration_sum, timestep);
         system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
-        give_back(ws, buffers, start_q, start_v);
         Ok(report)
     }
-}
-
-/// Returns the buffers of a step to the workspace.
-fn give_back(ws: &mut SystemWorkspace, buffers: [Vec<Vec3>; 4], start_q: Vec<Vec3>, start_v: Vec<Vec3>) {
-    for (slot, buffer) in ws.blocks.iter_mut().zip(buffers) {
-        *slot = buffer;
-    }
-    (ws.configurations[0], ws.blocks[4]) = (start_q, start_v);
 }

@@ -8,7 +8,7 @@ use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
-use super::backward_euler::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings};
+use super::backward_euler::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
 use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
 
 /// Equilibrium at the end of every step: loads and prescribed motion grow over `load_steps` in the first
@@ -72,10 +72,7 @@ impl StaticEquilibrium {
             has_potential: system.kinematics.is_conservative()
                 && system.forces.iter().all(|force| force.declaration().conservative),
         };
-        let lent = Lent::from(next);
-        let solved = implicit.solve_newton(self.newton, &lent, &mut next.q, ws, buffers);
-        lent.give_back(next);
-        solved
+        settle(&implicit, self.newton, next, ws, buffers)
     }
 }
 
@@ -88,8 +85,16 @@ impl Stepper for StaticEquilibrium {
         Stability::Unconditional
     }
 
+    fn has_inertia(&self) -> bool {
+        false
+    }
+
     fn solver_settings(&self) -> SolverSettings {
         self.solver.clone()
+    }
+
+    fn accepts_history(&self, system: &System, history: &[f64]) -> bool {
+        Lent::accepts_history(system, history)
     }
 
     fn step(
@@ -133,7 +138,7 @@ impl Stepper for StaticEquilibrium {
         let report = outcome?;
         next.v.fill(Vec3::ZERO);
         system.place_rows(&next.q, &next.v, start + timestep, &mut ws.rows);
-        system.advance_memory(&ws.rows, next, around, timestep);
+        system.advance_memory(ws, next, around, timestep);
         Ok(report)
     }
 }

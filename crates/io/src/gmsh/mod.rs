@@ -16,6 +16,7 @@ use crate::Dataset;
 use crate::cursor::{Cursor, Encoding, Endian};
 use crate::error::{Fault, quoted};
 use crate::format::Format;
+use crate::holds::{HeldFields, Holds};
 
 use assembly::Assembly;
 
@@ -26,9 +27,11 @@ pub(crate) static GMSH: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["msh"],
+        parts: &[],
         recognises,
         read: Some(read),
         write: Some(|output, out| write::version_4(output, Encoding::Text, out)),
+        holds: Holds { fields: HeldFields::None, ..Holds::ALL },
     },
 };
 
@@ -39,9 +42,11 @@ pub(crate) static GMSH_BINARY: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &[],
+        parts: &[],
         recognises,
         read: Some(read),
         write: Some(|output, out| write::version_4(output, Encoding::Binary(Endian::Little), out)),
+        holds: Holds { fields: HeldFields::None, ..Holds::ALL },
     },
 };
 
@@ -52,9 +57,11 @@ pub(crate) static GMSH_2: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["msh2"],
+        parts: &[],
         recognises,
         read: Some(read),
         write: Some(|output, out| write::version_2(output, Encoding::Text, out)),
+        holds: Holds { fields: HeldFields::None, ..Holds::ALL },
     },
 };
 

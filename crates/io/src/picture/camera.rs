@@ -6,6 +6,8 @@ use souple_mesh::BoundingBox;
 /// From where a picture is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
+    /// Where the eye is [m]; where everything fits along the direction, if `None`.
+    pub eye: Option<Vec3>,
     /// From the eye towards the subject; of any length.
     pub direction: Vec3,
     /// What is up in the picture; any vector that is not along the direction.
@@ -20,7 +22,14 @@ pub struct View {
 impl Default for View {
     /// From the front, a little from the right and above, `y` upward.
     fn default() -> Self {
-        Self { direction: Vec3::new(-0.5, -0.45, -1.0), up: Vec3::Y, field_of_view: 0.5, bounds: None }
+        Self::along(Vec3::new(-0.5, -0.45, -1.0), Vec3::Y)
+    }
+}
+
+impl View {
+    /// Everything drawn, seen along a direction.
+    pub fn along(direction: Vec3, up: Vec3) -> Self {
+        Self { eye: None, direction, up, field_of_view: 0.5, bounds: None }
     }
 }
 
@@ -98,8 +107,10 @@ impl Camera {
         // not into the subject, however flat it is along the direction
         let along = fit(0).min(fit(1)).min(nearest - 0.2 * size);
         let across = [0, 1].map(|axis: usize| 0.5 * (most[axis][0] - most[axis][1]));
+        let fitted = right * across[0] + up * across[1] + forward * along;
+        let eye = view.eye.filter(|eye| eye.is_finite()).unwrap_or(fitted);
         Self {
-            eye: right * across[0] + up * across[1] + forward * along,
+            eye,
             right,
             up,
             forward,

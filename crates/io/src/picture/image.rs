@@ -23,6 +23,7 @@ impl Image {
             let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
             encoder.set_color(png::ColorType::Rgb);
             encoder.set_depth(png::BitDepth::Eight);
+            encoder.set_compression(png::Compression::High);
             encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
             let mut writer = encoder.write_header()?;
             writer.write_image_data(self.pixels.as_flattened())?;
@@ -31,16 +32,41 @@ impl Image {
     }
 }
 
+impl Image {
+    /// Several images as one, row by row, each in a cell as large as the largest; what is left free is white.
+    pub fn sheet(images: &[Self], columns: usize) -> Self {
+        let columns = columns.clamp(1, images.len().max(1));
+        let side = |of: fn(&Self) -> usize| images.iter().map(of).max().unwrap_or(1);
+        let [width, height] = [side(|image| image.width), side(|image| image.height)];
+        let rows = images.len().div_ceil(columns).max(1);
+        let mut sheet = Self {
+            width: width * columns,
+            height: height * rows,
+            pixels: vec![[255; 3]; width * columns * height * rows],
+        };
+        for (index, image) in images.iter().enumerate() {
+            let (left, top) = (index % columns * width, index / columns * height);
+            for row in 0..image.height {
+                let to = (top + row) * sheet.width + left;
+                let from = row * image.width;
+                sheet.pixels[to..to + image.width].copy_from_slice(&image.pixels[from..from + image.width]);
+            }
+        }
+        sheet
+    }
+}
+
 /// Where a text is anchored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     Left,
     Middle,
+    Right,
 }
 
 /// Pixels in linear light, to draw on.
 #[derive(Clone, Debug)]
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     pub width: usize,
     pub height: usize,
     pub pixels: Vec<Colour>,
@@ -99,13 +125,33 @@ impl Canvas {
     }
 
     /// A line of text; `height` is that of capitals, `y` the baseline.
-    pub fn text(&mut self, text: &str, [x, y]: [f64; 2], height: f64, anchor: Anchor, colour: Colour) {
+    pub fn text(&mut self, text: &str, place: [f64; 2], height: f64, anchor: Anchor, colour: Colour) {
+        self.letters(text, place, height, anchor, colour, |[x, y]| [x, y]);
+    }
+
+    /// The same, written from below upward: `x` is the baseline.
+    pub fn text_upward(&mut self, text: &str, [x, y]: [f64; 2], height: f64, anchor: Anchor, colour: Colour) {
+        let turned = |[along, below]: [f64; 2]| [x + below - y, y - (along - x)];
+        self.letters(text, [x, y], height, anchor, colour, turned);
+    }
+
+    fn letters(
+        &mut self,
+        text: &str,
+        [x, y]: [f64; 2],
+        height: f64,
+        anchor: Anchor,
+        colour: Colour,
+        turned: impl Fn([f64; 2]) -> [f64; 2],
+    ) {
         let width = text_width(text, height);
         let left = match anchor {
             Anchor::Left => x,
             Anchor::Middle => x - 0.5 * width,
+            Anchor::Right => x - width,
         };
         for stroke in text_strokes(text, left, y, height) {
+            let stroke: Vec<[f64; 2]> = stroke.into_iter().map(&turned).collect();
             self.line(&stroke, (0.115 * height).max(1.15), colour);
         }
     }

@@ -1,11 +1,11 @@
 //! Letters as strokes: no font file, the same on every machine, legible at any size.
 //!
-//! A glyph is a string of strokes. Each stroke is a row of points, two signs for each: `x`, then `y`, in base 36.
-//! Baseline at `y = 4`, small letters up to `f` (15), capitals to `k` (20). A stroke that begins with `~` is a
-//! quadratic B-spline from its first to its last point, with `@` a closed one.
+//! Glyphs are those of the table, letters of it under a mark (`é`), and small ones raised or lowered (`10⁻³`, `x₀`).
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
+
+use super::glyphs::{GLYPHS, LIKE, LOWERED, MARKED, Mark, RAISED};
 
 /// Height of capitals in the units of glyphs.
 const CAPITAL: f64 = 16.0;
@@ -17,117 +17,6 @@ const SPACE_WIDTH: f64 = 4.0;
 /// Segments of each spline piece.
 const PIECES: usize = 6;
 
-const GLYPHS: &[(char, &str)] = &[
-    ('A', "045ka4 2a8a"),
-    ('B', "040k ~0k5k9k9c5c0c ~0c6caca46404"),
-    ('C', "~ah9k5k0k0c045494a7"),
-    ('D', "040k ~0k4kaka44404"),
-    ('E', "9k0k0494 0c8c"),
-    ('F', "9k0k04 0c8c"),
-    ('G', "~ah9k5k0k0c045494a4aa 6aaa"),
-    ('H', "040k a4ak 0cac"),
-    ('I', "040k"),
-    ('J', "~6k6764340407"),
-    ('K', "040k ak0a 3da4"),
-    ('L', "0k0484"),
-    ('M', "040k68ckc4"),
-    ('N', "040ka4ak"),
-    ('O', "@0k5kakaca454040c"),
-    ('P', "040k ~0k6kakab6b0b"),
-    ('Q', "@0k5kakaca454040c 68b3"),
-    ('R', "040k ~0k6kakab6b0b 5ba4"),
-    ('S', "~9h8k5k0k0c5caca4541407"),
-    ('T', "0kak 5k54"),
-    ('U', "~0k090454a4a9ak"),
-    ('V', "0k54ak"),
-    ('W', "0k346h94ck"),
-    ('X', "04ak 0ka4"),
-    ('Y', "0k5bak 5b54"),
-    ('Z', "0kak04a4"),
-    ('a', "@0f4f8f8a8444040a 8f84"),
-    ('b', "0k04 @0f4f8f8a8444040a"),
-    ('c', "~7d6f4f0f04446476"),
-    ('d', "8k84 @0f4f8f8a8444040a"),
-    ('e', "0a8a ~8a8f4f0f04446477"),
-    ('f', "~5k4k2k2g2b 2b24 0f5f"),
-    ('g', "@0f4f8f8a8444040a ~8f8680401002"),
-    ('h', "0k04 ~0a0f4f8f8a84"),
-    ('i', "0f04 0j0k"),
-    ('j', "~3f36302000 3j3k"),
-    ('k', "0k04 7f09 2b74"),
-    ('l', "0k04"),
-    ('m', "0f04 ~0a0f3f6f6a64 ~6a6f9fcfcac4"),
-    ('n', "0f04 ~0a0f4f8f8a84"),
-    ('o', "@0f4f8f8a8444040a"),
-    ('p', "0f00 @0f4f8f8a8444040a"),
-    ('q', "8f80 @0f4f8f8a8444040a"),
-    ('r', "0f04 ~0a0f3f5f"),
-    ('s', "~7d6f4f0f0a4a8a84441406"),
-    ('t', "~2k28244454 0f5f"),
-    ('u', "~0f080444848a 8f84"),
-    ('v', "0f448f"),
-    ('w', "0f346e94cf"),
-    ('x', "048f 0f84"),
-    ('y', "0f44 8f20"),
-    ('z', "0f8f0484"),
-    ('0', "@0k4k8k8c8444040c"),
-    ('1', "0g3k34"),
-    ('2', "~0g0k4k8k8e6a04 0484"),
-    ('3', "~0h1k4k8k8c4c2c ~2c4c9c94440407"),
-    ('4', "646k0989"),
-    ('5', "7k1k0c ~0c1e4e9e94440407"),
-    ('6', "@0d4d8d8884440408 ~7i6k4k0k0d08"),
-    ('7', "0k8k34"),
-    ('8', "@0c4c8c8884440408 @1k4k7k7g7c4c1c1g"),
-    ('9', "@0k4k8k8g8b4b0b0g ~162444848b8g"),
-    ('.', "0405"),
-    (',', "1501"),
-    (':', "0405 0e0f"),
-    (';', "1502 1e1f"),
-    ('-', "0b6b"),
-    ('−', "0b8b"),
-    ('–', "0b9b"),
-    ('+', "0b8b 4f47"),
-    ('=', "0d8d 0989"),
-    ('/', "027l"),
-    ('\\', "0l72"),
-    ('(', "~3l0h0631"),
-    (')', "~0l3h3601"),
-    ('[', "3l0l0131"),
-    (']', "0l3l3101"),
-    ('{', "~4l2l2d0b ~0b292141"),
-    ('}', "~0l2l2d4b ~4b292101"),
-    ('%', "@0k4k4e0e @5aaaa454 149k"),
-    ('°', "@0k4k4f0f"),
-    ('²', "~0i0k2k4k4h3f0c 0c4c"),
-    ('³', "~0j1k2k4k4g2g ~2g4g4c2c0c0d"),
-    ('·', "0b0c"),
-    ('×', "1e78 187e"),
-    ('µ', "0f00 ~0f080444848a 8f84"),
-    ('μ', "0f00 ~0f080444848a 8f84"),
-    ('|', "0l01"),
-    ('_', "0282"),
-    ('*', "4k4e 1i7g 1g7i"),
-    ('\'', "0k0h"),
-    ('"', "0k0h 3k3h"),
-    ('!', "0k09 0405"),
-    ('?', "~0h0k4k8k8d4d49 4445"),
-    ('<', "8f0b87"),
-    ('>', "0f8b07"),
-    ('#', "3k24 7k64 0f9f 0989"),
-    ('&', "~a42g2k5k7k7g0b0444849a"),
-    ('^', "0f4k8f"),
-    ('~', "~0a0d3d5a8a8d"),
-    ('σ', "@0f4f8f8a8444040a 4f9f"),
-    ('ε', "~7d6f4f0f0a4a ~4a0a04446476"),
-    ('λ', "~0k2k3g84 4b04"),
-    ('ν', "0f448f"),
-    ('ρ', "@0f4f8f8a8444040a 0a00"),
-    ('θ', "@0k4k8k8c8444040c 0c8c"),
-    ('Δ', "045ka404"),
-    ('π', "0f8f 2f24 6f64"),
-];
-
 /// What stands for a character that has no glyph.
 const UNKNOWN: &str = "040k8k8404";
 
@@ -138,8 +27,56 @@ struct Glyph {
     width: f64,
 }
 
-static TABLE: LazyLock<HashMap<char, Glyph>> =
-    LazyLock::new(|| GLYPHS.iter().map(|(letter, text)| (*letter, parse(text))).collect());
+static TABLE: LazyLock<HashMap<char, Glyph>> = LazyLock::new(|| {
+    let mut table: HashMap<char, Glyph> =
+        GLYPHS.iter().map(|(letter, text)| (*letter, parse(text))).collect();
+    for (letters, bases) in LIKE {
+        derive(&mut table, letters, bases, Glyph::clone);
+    }
+    for (letters, bases, mark) in MARKED {
+        derive(&mut table, letters, bases, |base| base.marked(mark));
+    }
+    derive(&mut table, RAISED.0, RAISED.1, |base| base.small(SMALL_RISE));
+    derive(&mut table, LOWERED.0, LOWERED.1, |base| base.small(-SMALL_DROP));
+    table
+});
+
+/// Raised and lowered signs: their size, and how far their baseline is from that of the line.
+const SMALL: f64 = 0.62;
+const SMALL_RISE: f64 = 7.5;
+const SMALL_DROP: f64 = 3.0;
+
+/// Glyphs of `letters` made from those of `bases`, one by one.
+fn derive(table: &mut HashMap<char, Glyph>, letters: &str, bases: &str, make: impl Fn(&Glyph) -> Glyph) {
+    for (letter, base) in letters.chars().zip(bases.chars()) {
+        if let Some(glyph) = table.get(&base).map(&make) {
+            table.insert(letter, glyph);
+        }
+    }
+}
+
+impl Glyph {
+    fn small(&self, rise: f64) -> Self {
+        let place = |[x, y]: [f64; 2]| [SMALL * x, BASELINE + rise + SMALL * (y - BASELINE)];
+        let strokes = self.strokes.iter().map(|stroke| stroke.iter().copied().map(place).collect()).collect();
+        Self { strokes, width: SMALL * self.width }
+    }
+
+    /// With a mark over its middle, above its own height, or below the line.
+    fn marked(&self, mark: &Mark) -> Self {
+        let sign = parse(mark.strokes);
+        let top = self.strokes.iter().flatten().map(|point| point[1]).fold(0.0, f64::max);
+        let rise = if mark.is_below { 0.0 } else { top + 2.0 };
+        let shift = 0.5 * (self.width - sign.width);
+        // a mark wider than its letter pushes the letter to the right
+        let left = shift.min(0.0);
+        let moved = |[x, y]: &[f64; 2], by: [f64; 2]| [x + by[0], y + by[1]];
+        let own = self.strokes.iter().map(|stroke| stroke.iter().map(|p| moved(p, [-left, 0.0])).collect());
+        let added =
+            sign.strokes.iter().map(|stroke| stroke.iter().map(|p| moved(p, [shift - left, rise])).collect());
+        Self { strokes: own.chain(added).collect(), width: self.width.max(sign.width) }
+    }
+}
 static UNKNOWN_GLYPH: LazyLock<Glyph> = LazyLock::new(|| parse(UNKNOWN));
 
 fn parse(text: &str) -> Glyph {
@@ -233,10 +170,11 @@ pub(crate) fn text_strokes(text: &str, x: f64, y: f64, height: f64) -> Vec<Vec<[
 mod tests {
     use super::*;
 
-    /// Every printable ASCII character but two that nobody writes in a title has a glyph of pairs of digits.
+    /// Every printable ASCII character, Greek and what stands in titles has a glyph; glyphs are pairs of digits.
     #[test]
     fn glyphs_are_complete() {
-        for letter in ('!'..='~').filter(|letter| !['$', '@', '`'].contains(letter)) {
+        let others = ('α'..='ω').chain("ΑΩΣ äöüÄÖÜßéèêëçñåøíÍ 10⁻³ x₀ ≤≥≈±∞√∂∇·×→←…“”°µ".chars());
+        for letter in ('!'..='~').chain(others).filter(|letter| *letter != ' ') {
             assert!(TABLE.contains_key(&letter), "{letter}");
         }
         for (letter, text) in GLYPHS {
@@ -246,7 +184,20 @@ mod tests {
                 assert!(digits.chars().all(|digit| digit.is_digit(36)), "{letter}: {stroke}");
             }
         }
-        assert_eq!(GLYPHS.len(), TABLE.len(), "a character has two glyphs");
+        let mut letters: Vec<char> = GLYPHS.iter().map(|(letter, _)| *letter).collect();
+        letters.extend(LIKE.iter().chain([&RAISED, &LOWERED]).flat_map(|(letters, _)| letters.chars()));
+        letters.extend(MARKED.iter().flat_map(|(letters, _, _)| letters.chars()));
+        let count = letters.len();
+        letters.sort_unstable();
+        letters.dedup();
+        assert_eq!(letters.len(), count, "a character has two glyphs");
+        assert_eq!(letters.len(), TABLE.len(), "a character is made from one that has no glyph");
+        for (letters, bases) in LIKE.iter().chain([&RAISED, &LOWERED]) {
+            assert_eq!(letters.chars().count(), bases.chars().count(), "{letters}");
+        }
+        for (letters, bases, _) in MARKED {
+            assert_eq!(letters.chars().count(), bases.chars().count(), "{letters}");
+        }
     }
 
     /// Width is that of the strokes plus nothing.

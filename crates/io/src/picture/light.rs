@@ -29,8 +29,14 @@ impl Lamps {
         }
     }
 
-    /// Light that a sample sends to the eye; `view`: unit vector to the eye, `open`: share of the sky it sees.
-    pub fn shade(&self, sample: &Sample, view: Vec3, open: f32) -> Colour {
+    /// Towards the lamp that throws shadows, unit.
+    pub fn key(&self) -> Vec3 {
+        self.key
+    }
+
+    /// Light that a sample sends to the eye; `view`: unit vector to the eye, `open`: share of the sky it sees,
+    /// `lit`: share of the key lamp that it sees.
+    pub fn shade(&self, sample: &Sample, view: Vec3, open: f32, lit: f32) -> Colour {
         const KEY: Colour = Colour([1.0, 0.97, 0.92]);
         const FILL: Colour = Colour([0.82, 0.88, 1.0]);
         const SKY: Colour = Colour([0.92, 0.96, 1.0]);
@@ -45,7 +51,7 @@ impl Lamps {
         // corners shade the lamps too, but less than the sky
         let lamp_open = 0.45 + 0.55 * open;
         let diffuse = ambient
-            .plus(KEY.scaled(0.78 * wrapped(self.key) * lamp_open))
+            .plus(KEY.scaled(0.78 * wrapped(self.key) * lamp_open * lit))
             .plus(FILL.scaled(0.16 * facing(self.fill) * lamp_open))
             .plus(KEY.scaled(0.12 * facing(self.rim)));
 
@@ -54,15 +60,15 @@ impl Lamps {
             let middle = (lamp + view).try_normalised().unwrap_or(view);
             (normal.dot(middle).max(0.0) as f32).powi(sharpness)
         };
-        let gloss = 0.07 * shine(self.key, 42) + 0.025 * shine(self.fill, 24);
+        let gloss = 0.07 * lit * shine(self.key, 42) + 0.025 * shine(self.fill, 24);
         // Schlick: surfaces seen at a glance reflect the sky
         let glance = (1.0 - normal.dot(view).clamp(0.0, 1.0) as f32).powi(4) * 0.07 * open;
-        let lit = sample
+        let reflected = sample
             .albedo
             .times(diffuse)
             .plus(Colour::WHITE.scaled(gloss * lamp_open))
             .plus(SKY.scaled(glance));
-        if sample.inside { lit.scaled(0.6) } else { lit }
+        if sample.inside { reflected.scaled(0.6) } else { reflected }
     }
 }
 

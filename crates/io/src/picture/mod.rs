@@ -1,14 +1,21 @@
 //! Pictures without a display and without a graphics card: a rasteriser with soft light, a colour map with its
 //! legend, edges, arrows, dots, a ground that shows contact. The same bits on every run.
 
+mod animated_png;
 mod camera;
 mod colour;
+mod colour_map;
+mod gif;
+mod glyphs;
 mod ground;
 mod image;
+mod layout;
 mod legend;
 mod lettering;
 mod light;
+mod mesh_surface;
 mod raster;
+mod shadow;
 mod stroke;
 mod surface;
 
@@ -16,19 +23,24 @@ use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 
 use crate::IoError;
-use camera::{Camera, Frame};
-use colour::colour_map as map_colour;
+use camera::Camera;
 use ground::ShadedGround;
-use image::{Anchor, Canvas};
+use layout::Layout;
 use light::Lamps;
 use raster::{PaintAt, Painted, Samples};
+use shadow::Shadow;
 
+pub use animated_png::write_animated_png;
 pub use camera::View;
-pub use colour::{Colour, colour_map};
+pub use colour::Colour;
+pub use colour_map::{COLOUR_MAPS, ColourMap};
+pub use gif::write_gif;
 pub use ground::Ground;
 pub use image::Image;
+pub(crate) use image::{Anchor, Canvas};
 pub(crate) use legend::{labels, ticks};
-pub use surface::{EdgeStyle, MeshSurface, Paint, Stroke, StrokeShape, Surface};
+pub use mesh_surface::{Between, Cut, MeshSurface};
+pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
 
 /// Everything that a picture shows and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +61,8 @@ pub struct Picture {
     pub subtitle: String,
     /// What the colours mean; surfaces painted by values need one.
     pub legend: Option<Legend>,
+    /// From values to colours.
+    pub colours: ColourMap,
 }
 
 /// The quantity of a colour map.
@@ -80,6 +94,7 @@ impl Default for Picture {
             title: String::new(),
             subtitle: String::new(),
             legend: None,
+            colours: ColourMap::default(),
         }
     }
 }
@@ -87,6 +102,8 @@ impl Default for Picture {
 /// Largest side of a picture [pixels].
 const LARGEST_SIDE: usize = 16384;
 const MOST_SAMPLES: usize = 8;
+/// Share of the light of the ground that comes from the lamp that throws shadows.
+const GROUND_SHADOW: f32 = 0.3;
 /// Rows of pixels that are sampled at once, to keep memory small.
 const BAND: usize = 64;
 
@@ -134,10 +151,10 @@ impl Picture {
     pub fn render(&self) -> Result<Image, IoError> {
         self.check()?;
         let [width, height] = self.size;
-        let layout = Layout::of(self);
+        let range = self.range();
+        let layout = Layout::of(self, range);
         let bounds = self.bounds();
         let camera = self.camera(bounds, &layout);
-        let range = self.range();
         let triangles = self.painted(&camera, range);
         let ground = self.ground.and_then(|ground| ShadedGround::of(ground, &self.surfaces, bounds));
 
@@ -146,9 +163,11 @@ impl Picture {
         let open = light::openness(&whole, &camera, 0.09 * bounds.diagonal().max(f64::MIN_POSITIVE));
         drop(whole);
 
+        let lamps = Lamps::of(&camera, self.view.up);
         let scene = Scene {
             camera,
-            lamps: Lamps::of(&camera, self.view.up),
+            shadow: Shadow::of(&self.surfaces, lamps.key()),
+            lamps,
             palette: self.theme.palette(),
             ground,
             open,
@@ -160,7 +179,7 @@ impl Picture {
             triangles.iter().for_each(|triangle| samples.draw(triangle));
             scene.develop(&samples, &mut canvas);
         }
-        layout.write(self, range, &scene.palette, &mut canvas);
+        layout.write(self, &scene.palette, &mut canvas);
         Ok(canvas.finish())
     }
 
@@ -213,6 +232,11 @@ impl Picture {
             ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
         };
         let (low, high) = given.or_else(of_surfaces).unwrap_or((0.0, 1.0));
+        // the middle of a diverging map is zero
+        let (low, high) = match (self.colours, given) {
+            (ColourMap::Diverging, None) => (-low.abs().max(high.abs()), low.abs().max(high.abs())),
+            _ => (low, high),
+        };
         if low < high { (low, high) } else { (low, low + low.abs().max(f64::MIN_POSITIVE)) }
     }
 
@@ -237,6 +261,8 @@ impl Picture {
                     paint,
                     edges: [0, 1, 2].map(|edge: usize| all[edge] && marked[edge]),
                     wireframe: surface.edge_style == EdgeStyle::Wireframe,
+                    map: self.colours,
+                    faces: surface.faces,
                 });
             }
         }
@@ -256,6 +282,7 @@ fn corners_of(bounds: BoundingBox) -> impl Iterator<Item = Vec3> {
 struct Scene {
     camera: Camera,
     lamps: Lamps,
+    shadow: Shadow,
     palette: Palette,
     ground: Option<ShadedGround>,
     /// Share of the sky that each pixel sees.
@@ -291,102 +318,20 @@ impl Scene {
             let background = self.palette.background(y, height);
             let colour = match &self.ground {
                 Some(ground) if below > 0.0 => {
-                    ground.colour(&self.camera, ray, background, self.palette.grid)
+                    let colour = ground.colour(&self.camera, ray, background, self.palette.grid);
+                    let place = self.camera.eye + ray * (1.0 / f64::from(below));
+                    colour.scaled(1.0 - GROUND_SHADOW * (1.0 - self.shadow.lit(place, None, x, y)))
                 }
                 _ => background,
             };
             return (colour, below);
         }
         let view = (-ray).try_normalised().unwrap_or(Vec3::Z);
+        let place = self.camera.eye + ray * (1.0 / f64::from(sample.inverse_depth));
+        let [nx, ny, nz] = sample.normal.map(f64::from);
+        let lit = self.shadow.lit(place, Some(Vec3::new(nx, ny, nz)), x, y);
         // where the pixel's own sample fell beside the surface, its share says nothing
-        (self.lamps.shade(sample, view, self.open[pixel]), sample.inverse_depth)
-    }
-}
-
-/// Where title, legend and subject stand [pixels].
-struct Layout {
-    frame: Frame,
-    /// Height of capitals of plain text.
-    letter: f64,
-    margin: f64,
-    legend_left: f64,
-    legend_top: f64,
-    legend_height: f64,
-}
-
-impl Layout {
-    fn of(picture: &Picture) -> Self {
-        let [width, height] = picture.size.map(|side| side as f64);
-        let letter = (0.0165 * height).max(8.0);
-        let margin = 0.045 * width.min(height);
-        let legend_width = if picture.legend.is_some() { 9.5 * letter } else { 0.0 };
-        let lines = usize::from(!picture.title.is_empty()) as f64 * 2.4
-            + usize::from(!picture.subtitle.is_empty()) as f64 * 1.8;
-        // room for the shade around the place of contact
-        let shade = if picture.ground.is_some() { 0.07 * height } else { 0.0 };
-        let right = (width - margin - legend_width).max(0.5 * width);
-        let top = (margin + lines * letter).min(0.4 * height);
-        Self {
-            frame: Frame { left: margin, top, right, bottom: (height - margin - shade).max(top + 1.0) },
-            letter,
-            margin,
-            legend_left: width - margin - 7.5 * letter,
-            legend_top: 0.5 * height - 0.21 * height,
-            legend_height: 0.42 * height,
-        }
-    }
-
-    fn write(&self, picture: &Picture, range: (f64, f64), palette: &Palette, canvas: &mut Canvas) {
-        let mut baseline = self.margin + 1.15 * self.letter;
-        if !picture.title.is_empty() {
-            canvas.text(
-                &picture.title,
-                [self.margin, baseline],
-                1.45 * self.letter,
-                Anchor::Left,
-                palette.ink,
-            );
-            baseline += 2.1 * self.letter;
-        }
-        if !picture.subtitle.is_empty() {
-            let background = palette.background(baseline, canvas.height);
-            let ink = palette.ink.mixed(background, 0.25);
-            canvas.text(&picture.subtitle, [self.margin, baseline], self.letter, Anchor::Left, ink);
-        }
-        if let Some(legend) = &picture.legend {
-            self.write_legend(legend, range, palette, canvas);
-        }
-    }
-
-    fn write_legend(&self, legend: &Legend, (low, high): (f64, f64), palette: &Palette, canvas: &mut Canvas) {
-        let whole = |value: f64| value.max(0.0) as usize;
-        let (left, right) = (whole(self.legend_left), whole(self.legend_left + 1.4 * self.letter));
-        let (top, bottom) = (whole(self.legend_top), whole(self.legend_top + self.legend_height));
-        let span = (bottom - top).max(2) as f64;
-        canvas.fill(left.saturating_sub(1)..right + 1, top.saturating_sub(1)..bottom + 1, palette.ink, 0.8);
-        for row in top..bottom {
-            let share = 1.0 - (row - top) as f64 / (span - 1.0);
-            canvas.fill(left..right, row..row + 1, map_colour(share), 1.0);
-        }
-        let ticks = ticks(low, high, 5);
-        for (tick, label) in ticks.iter().zip(labels(&ticks)) {
-            let y = bottom as f64 - (tick - low) / (high - low) * span;
-            let x = right as f64;
-            canvas.line(&[[x + 1.0, y], [x + 0.45 * self.letter, y]], 1.2, palette.ink);
-            let place = [x + 0.95 * self.letter, y + 0.5 * self.letter];
-            canvas.text(&label, place, self.letter, Anchor::Left, palette.ink);
-        }
-        let title = if legend.unit.is_empty() {
-            legend.title.clone()
-        } else {
-            format!("{} [{}]", legend.title, legend.unit)
-        };
-        // centred over the bar and its numbers, but never beyond the border of the picture
-        let half = 0.5 * lettering::text_width(&title, self.letter);
-        let middle =
-            (self.legend_left + 3.2 * self.letter).min(canvas.width as f64 - 0.4 * self.margin - half);
-        let place = [middle, top as f64 - 1.4 * self.letter];
-        canvas.text(&title, place, self.letter, Anchor::Middle, palette.ink);
+        (self.lamps.shade(sample, view, self.open[pixel], lit), sample.inverse_depth)
     }
 }
 

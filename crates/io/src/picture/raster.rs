@@ -2,6 +2,8 @@
 
 use super::camera::Projected;
 use super::colour::Colour;
+use super::colour_map::ColourMap;
+use super::surface::Faces;
 
 /// What is seen at one place.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +42,8 @@ pub(super) struct Painted {
     /// Whether the edges 01, 12, 20 are lines.
     pub edges: [bool; 3],
     pub wireframe: bool,
+    pub map: ColourMap,
+    pub faces: Faces,
 }
 
 /// A colour, or a value that becomes a colour after interpolation.
@@ -88,7 +92,7 @@ impl Samples {
         }
         // twice the signed area; y points downward, so a front seen from outside is negative
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-        if area == 0.0 || !area.is_finite() {
+        if area == 0.0 || !area.is_finite() || (area > 0.0 && triangle.faces == Faces::Front) {
             return;
         }
         let extent = |of: fn(&Projected) -> f64| {
@@ -162,7 +166,7 @@ impl Painted {
                 PaintAt::Value(at) => value += weight * at,
             }
         }
-        super::colour::colour_map(f64::from(value))
+        self.map.colour(f64::from(value))
     }
 }
 

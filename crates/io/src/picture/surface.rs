@@ -1,9 +1,6 @@
 //! What a picture shows: surfaces with their paint, and strokes.
 
-use std::collections::HashMap;
-
 use souple_math::Vec3;
-use souple_mesh::Mesh;
 
 use super::colour::Colour;
 use crate::IoError;
@@ -20,6 +17,16 @@ pub struct Surface {
     pub edges: Vec<[bool; 3]>,
     pub paint: Paint,
     pub edge_style: EdgeStyle,
+    pub faces: Faces,
+}
+
+/// Which sides of a surface are seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Faces {
+    #[default]
+    Both,
+    /// Triangles seen from their inside are left out: one looks into a container.
+    Front,
 }
 
 /// What a surface is painted with.
@@ -73,77 +80,6 @@ impl StrokeShape {
             Self::Line(points) => points.clone(),
             Self::Arrow(from, to) => vec![*from, *to],
         }
-    }
-}
-
-/// A surface made of a mesh, with the points and cells that it came from.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MeshSurface {
-    pub surface: Surface,
-    /// Point of the mesh that each point is.
-    pub points: Vec<u32>,
-    /// Cell (for a mesh without cells: facet) that each triangle bounds.
-    pub cells: Vec<u32>,
-}
-
-impl MeshSurface {
-    /// The boundary of a mesh, or its facets if it has no cells; quadrilaterals keep their four edges.
-    pub fn of(mesh: &Mesh) -> Self {
-        let mut of = Self::default();
-        let mut numbers = HashMap::new();
-        if mesh.cell_count() == 0 {
-            for (facet, view) in mesh.facets().enumerate() {
-                of.push(mesh, view.nodes, facet as u32, &mut numbers);
-            }
-            return of;
-        }
-        let boundary = mesh.faces().boundary;
-        let mut faces = boundary.iter().peekable();
-        for (cell, view) in mesh.cells().enumerate() {
-            while let Some(face) = faces.next_if(|face| face.cell as usize == cell) {
-                let nodes: Vec<u32> = view.face_nodes(face.face.into()).1.collect();
-                of.push(mesh, &nodes, face.cell, &mut numbers);
-            }
-        }
-        of
-    }
-
-    /// A polygon as triangles around its first corner.
-    fn push(&mut self, mesh: &Mesh, nodes: &[u32], cell: u32, numbers: &mut HashMap<u32, u32>) {
-        let corners: Vec<u32> = nodes
-            .iter()
-            .map(|node| {
-                *numbers.entry(*node).or_insert_with(|| {
-                    self.points.push(*node);
-                    self.surface.points.push(mesh.points[*node as usize]);
-                    self.points.len() as u32 - 1
-                })
-            })
-            .collect();
-        for k in 1..corners.len().saturating_sub(1) {
-            self.surface.triangles.push([corners[0], corners[k], corners[k + 1]]);
-            self.surface.edges.push([k == 1, true, k + 2 == corners.len()]);
-            self.cells.push(cell);
-        }
-    }
-
-    /// Moves the points to positions of all points of the mesh [m].
-    pub fn move_to(&mut self, positions: &[Vec3]) {
-        for (point, source) in self.surface.points.iter_mut().zip(&self.points) {
-            *point = positions[*source as usize];
-        }
-    }
-
-    /// Paints by a value for each point of the mesh.
-    pub fn paint_points(&mut self, values: &[f64]) {
-        self.surface.paint =
-            Paint::PointScalar(self.points.iter().map(|point| values[*point as usize]).collect());
-    }
-
-    /// Paints by a value for each cell of the mesh.
-    pub fn paint_cells(&mut self, values: &[f64]) {
-        self.surface.paint =
-            Paint::TriangleScalar(self.cells.iter().map(|cell| values[*cell as usize]).collect());
     }
 }
 

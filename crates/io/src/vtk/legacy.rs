@@ -13,6 +13,7 @@ use crate::cursor::{Cursor, Encoding, Endian};
 use crate::dataset::{Field, Output};
 use crate::error::{Fault, quoted};
 use crate::format::{Format, WriteError, wrong_start};
+use crate::holds::Holds;
 use crate::{Dataset, IoError};
 
 pub(crate) static VTK_LEGACY: Entry<Format> = Entry {
@@ -20,7 +21,14 @@ pub(crate) static VTK_LEGACY: Entry<Format> = Entry {
     summary: "legacy VTK unstructured grid or polygons with fields; written as text",
     source: "VTK file formats, simple legacy formats",
     parameters: &[],
-    build: Format { extensions: &["vtk"], recognises, read: Some(read), write: Some(write) },
+    build: Format {
+        extensions: &["vtk"],
+        parts: &[],
+        recognises,
+        read: Some(read),
+        write: Some(write),
+        holds: Holds::ALL,
+    },
 };
 
 const START: &[u8] = b"# vtk DataFile";

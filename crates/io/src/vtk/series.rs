@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use super::xml::escape;
+use super::xml::{Document, escape};
 use crate::dataset::Output;
+use crate::error::{Fault, quoted};
 use crate::{IoError, write_dataset, write_file};
 
 /// Writes frames `name_0000.vtu`, `name_0001.vtu`, … and keeps `name.pvd` complete after each.
@@ -33,6 +34,11 @@ impl Series {
 
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()
+    }
+
+    /// Names of the files that the next frame writes, its own first.
+    pub fn next_names(&self) -> [String; 2] {
+        [self.frame_name(self.times.len()), format!("{}.pvd", self.name)]
     }
 
     /// Writes one frame at a time [s] and the list with it; returns the path of the frame.
@@ -68,4 +74,36 @@ impl Series {
             writeln!(out, "  </Collection>\n</VTKFile>")
         })
     }
+}
+
+/// Times [s] and files of the frames that a `.pvd` file lists, in its order.
+///
+/// # Errors
+/// The file cannot be read, or is no list of frames with finite times.
+pub fn read_series(path: &Path) -> Result<Vec<(f64, PathBuf)>, IoError> {
+    let bytes = std::fs::read(path).map_err(|source| IoError::Read { path: path.to_owned(), source })?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let read = || -> Result<Vec<(f64, PathBuf)>, Fault> {
+        let document = Document::parse(&bytes, "AppendedData")?;
+        let mut frames = Vec::new();
+        for element in document.elements.iter().filter(|element| element.name == "DataSet") {
+            let missing = |what: &str| document.fault(element.position, what, "missing", "a time and a file");
+            let time = element.attribute("timestep").ok_or_else(|| missing("the attribute `timestep`"))?;
+            let file = element.attribute("file").ok_or_else(|| missing("the attribute `file`"))?;
+            let time = time.parse().ok().filter(|time: &f64| time.is_finite()).ok_or_else(|| {
+                document.fault(
+                    element.position,
+                    "the time of a frame",
+                    quoted(time.as_bytes()),
+                    "a finite number",
+                )
+            })?;
+            frames.push((time, folder.join(file)));
+        }
+        if frames.is_empty() {
+            return Err(document.fault(0, "the number of frames", "0", "elements <DataSet>, one or more"));
+        }
+        Ok(frames)
+    };
+    read().map_err(|fault| IoError::content(path, fault))
 }

@@ -13,13 +13,21 @@ use crate::cursor::Endian;
 use crate::dataset::Field;
 use crate::error::{Fault, Place};
 use crate::format::{Format, wrong_start};
+use crate::holds::Holds;
 
 pub(crate) static VTU: Entry<Format> = Entry {
     name: "vtu",
     summary: "VTK XML unstructured grid with fields, for ParaView; written as appended raw data",
     source: "VTK file formats, XML",
     parameters: &[],
-    build: Format { extensions: &["vtu"], recognises, read: Some(read), write: Some(vtu_write::write) },
+    build: Format {
+        extensions: &["vtu"],
+        parts: &[],
+        recognises,
+        read: Some(read),
+        write: Some(vtu_write::write),
+        holds: Holds::ALL,
+    },
 };
 
 fn recognises(bytes: &[u8]) -> bool {

@@ -1,9 +1,9 @@
-//! Solid balls: a core of n³ cubes and a shell of layers around it, six blocks of n² columns each.
+//! Balls, solid and hollow: a core of n³ cubes and a shell of layers around it, six blocks of n² columns each.
 //!
 //! A cube mapped to a ball would flatten the cells at its edges and corners on the sphere; here three blocks meet
 //! along the edges of the core, and no cell has a corner flatter than those between three blocks.
 //!
-//! Points: the core's `i + (n+1)(j + (n+1)k)`, then layer after layer the points on its outside in that order,
+//! Points: the core's (of a hollow ball, only those on its outside, on the inner sphere) `i + (n+1)(j + (n+1)k)`, then layer after layer the points on its outside in that order,
 //! then centres of cubes where a cut needs them.
 
 use std::f64::consts::FRAC_PI_4;
@@ -13,7 +13,7 @@ use souple_table::{Parameter, Range, Value, Values};
 
 use super::cut::{BASE_X_MAX, BASE_X_MIN, BASE_Z_MAX, Blocks, CORNERS, Cut};
 use super::{Build, GeneratorEntry};
-use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError};
+use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
 pub(super) static SPHERE: GeneratorEntry = GeneratorEntry {
     name: "sphere",
@@ -29,7 +29,30 @@ pub(super) static SPHERE: GeneratorEntry = GeneratorEntry {
         Cut::PARAMETER,
         Parameter::vector("centre", "m", "centre of the ball").or(Value::Vector([0.0; 3])),
     ],
-    build: ball as Build,
+    build: Build { size, mesh: ball },
+};
+
+pub(super) static HOLLOW_SPHERE: GeneratorEntry = GeneratorEntry {
+    name: "hollow_sphere",
+    summary: "ball with a concentric hollow; groups `surface` and `inner` hold the points on the two spheres",
+    source: "Ronchi, Iacono & Paolucci 1996 (equiangular cubed sphere)",
+    parameters: &[
+        Parameter::number("radius", "m", Range::POSITIVE, "radius of the outer sphere"),
+        Parameter::number("inner_radius", "m", Range::POSITIVE, "radius of the hollow"),
+        Parameter::integer(
+            "cells",
+            Range::at_least(1.0),
+            "number of cubes along a quarter of a great circle",
+        ),
+        Parameter::integer(
+            "layers",
+            Range::at_least(1.0),
+            "number of cubes through the wall; `mixed` takes 3 or more",
+        ),
+        Cut::PARAMETER,
+        Parameter::vector("centre", "m", "centre of the ball").or(Value::Vector([0.0; 3])),
+    ],
+    build: Build { size: hollow_size, mesh: hollow_ball },
 };
 
 /// Half the edge of the core, relative to the radius: cells of core and shell are then of like size.
@@ -40,8 +63,8 @@ const BULGE: f64 = 0.5;
 /// Layers that a mixed ball needs: pyramids, tetrahedra, prisms.
 const MIXED_LAYERS: usize = 3;
 
-fn ball(values: &Values) -> Result<Mesh, MeshError> {
-    let (radius, centre) = (values.number("radius"), Vec3::from_array(values.vector("centre")));
+/// Cubes along the edge of the core, and layers of the shell around it.
+fn core_and_layers(values: &Values) -> Result<(usize, usize), MeshError> {
     let (cells, cut) = (values.integer("cells"), Cut::from_values(values));
     let requested = (cells as f64).powi(3) * cut.cells_per_cube() as f64;
     if requested > MAX_CELLS as f64 {
@@ -57,17 +80,87 @@ fn ball(values: &Values) -> Result<Mesh, MeshError> {
             return Err(MeshError::Parameter { name: "cells", value: cells.to_string(), expected });
         }
     }
-    let mut mesh = Shells::new(cells - 2 * layers, layers).mesh(cut);
+    Ok((cells - 2 * layers, layers))
+}
+
+fn size(values: &Values) -> Result<MeshSize, MeshError> {
+    let (n, layers) = core_and_layers(values)?;
+    let (n, layers, cut) = (n as u64, layers as u64, Cut::from_values(values));
+    let cubes = n.pow(3) + 6 * n.pow(2) * layers;
+    // the outside of the core, once for each layer: 6 n² + 2 points
+    let corners = (n + 1).pow(3) + layers * (6 * n.pow(2) + 2);
+    let centres = match cut {
+        Cut::Pyramids => cubes,
+        Cut::Mixed => 6 * n.pow(2),
+        _ => 0,
+    };
+    Ok(MeshSize { points: corners + centres, cells: cubes * cut.cells_per_cube() })
+}
+
+fn ball(values: &Values) -> Result<Mesh, MeshError> {
+    let (radius, centre) = (values.number("radius"), Vec3::from_array(values.vector("centre")));
+    let (n, layers) = core_and_layers(values)?;
+    let mut mesh = Shells::new(n, layers, Core::Solid).mesh(Cut::from_values(values));
     for point in &mut mesh.points {
         *point = centre + *point * radius;
     }
     Ok(mesh)
 }
 
+/// The relative radius of the hollow, cubes along a quarter and through the wall, or why there are none.
+fn wall(values: &Values) -> Result<(f64, usize, usize), MeshError> {
+    let (radius, inner) = (values.number("radius"), values.number("inner_radius"));
+    let (cells, layers) = (values.integer("cells"), values.integer("layers"));
+    if inner >= radius {
+        let expected = format!("less than the radius, {radius} m");
+        return Err(MeshError::Parameter { name: "inner_radius", value: inner.to_string(), expected });
+    }
+    let cut = Cut::from_values(values);
+    if cut == Cut::Mixed && layers < MIXED_LAYERS as i64 {
+        let expected = format!("at least {MIXED_LAYERS} for `mixed`");
+        return Err(MeshError::Parameter { name: "layers", value: layers.to_string(), expected });
+    }
+    let requested = 6.0 * (cells as f64).powi(2) * layers as f64 * cut.cells_per_cube() as f64;
+    if requested > MAX_CELLS as f64 {
+        return Err(MeshError::TooManyCells { requested, limit: MAX_CELLS });
+    }
+    Ok((inner / radius, cells as usize, layers as usize))
+}
+
+fn hollow_size(values: &Values) -> Result<MeshSize, MeshError> {
+    let (_, n, layers) = wall(values)?;
+    let (n, layers, cut) = (n as u64, layers as u64, Cut::from_values(values));
+    let cubes = 6 * n.pow(2) * layers;
+    let centres = match cut {
+        Cut::Pyramids => cubes,
+        Cut::Mixed => 6 * n.pow(2),
+        _ => 0,
+    };
+    Ok(MeshSize { points: (layers + 1) * (6 * n.pow(2) + 2) + centres, cells: cubes * cut.cells_per_cube() })
+}
+
+fn hollow_ball(values: &Values) -> Result<Mesh, MeshError> {
+    let (inner, n, layers) = wall(values)?;
+    let (radius, centre) = (values.number("radius"), Vec3::from_array(values.vector("centre")));
+    let mut mesh = Shells::new(n, layers, Core::Hollow { radius: inner }).mesh(Cut::from_values(values));
+    for point in &mut mesh.points {
+        *point = centre + *point * radius;
+    }
+    Ok(mesh)
+}
+
+/// What is inside the shell of a unit ball.
+#[derive(Clone, Copy, PartialEq)]
+enum Core {
+    Solid,
+    Hollow { radius: f64 },
+}
+
 struct Shells {
     /// Cubes along the edge of the core.
     n: usize,
     layers: usize,
+    core: Core,
     /// Points on the outside of the core.
     outside: Vec<[usize; 3]>,
     /// Place in `outside` of each point of the core.
@@ -81,7 +174,7 @@ struct Cube {
 }
 
 impl Shells {
-    fn new(n: usize, layers: usize) -> Self {
+    fn new(n: usize, layers: usize, core: Core) -> Self {
         let mut outside = Vec::new();
         let mut rank = Vec::with_capacity((n + 1).pow(3));
         for k in 0..=n {
@@ -94,16 +187,26 @@ impl Shells {
                 }
             }
         }
-        Self { n, layers, outside, rank }
+        Self { n, layers, core, outside, rank }
     }
 
     /// Point of the core (layer 0) or above its outside.
     fn point(&self, [i, j, k]: [usize; 3], layer: usize) -> u32 {
         let core = i + (self.n + 1) * (j + (self.n + 1) * k);
-        match layer {
-            0 => core as u32,
-            _ => (self.rank.len() + (layer - 1) * self.outside.len()) as u32 + self.rank[core],
+        match (self.core, layer) {
+            (Core::Solid, 0) => core as u32,
+            (Core::Solid, _) => self.first_of(layer) + self.rank[core],
+            (Core::Hollow { .. }, _) => self.first_of(layer) + self.rank[core],
         }
+    }
+
+    /// Number of the first point of a layer; layer 0 only where there is a hollow.
+    fn first_of(&self, layer: usize) -> u32 {
+        let before = match self.core {
+            Core::Solid => self.rank.len() + (layer - 1) * self.outside.len(),
+            Core::Hollow { .. } => layer * self.outside.len(),
+        };
+        before as u32
     }
 
     /// Positions in the unit ball, in the order of `point`.
@@ -114,12 +217,18 @@ impl Shells {
             Vec3::new(x, y, z)
         };
         let mut points = Vec::with_capacity(self.rank.len() + self.layers * self.outside.len());
-        for k in 0..=self.n {
-            for j in 0..=self.n {
-                points.extend((0..=self.n).map(|i| core_position(unit([i, j, k]))));
+        let first_layer = match self.core {
+            Core::Hollow { .. } => 0,
+            Core::Solid => {
+                for k in 0..=self.n {
+                    for j in 0..=self.n {
+                        points.extend((0..=self.n).map(|i| core_position(unit([i, j, k]))));
+                    }
+                }
+                1
             }
-        }
-        for layer in 1..=self.layers {
+        };
+        for layer in first_layer..=self.layers {
             let share = layer as f64 / self.layers as f64;
             for index in &self.outside {
                 let cube = unit(*index);
@@ -127,7 +236,10 @@ impl Shells {
                 let tangent = |c: f64| libm::tan(FRAC_PI_4 * c);
                 let ray = Vec3::new(tangent(cube.x), tangent(cube.y), tangent(cube.z));
                 let sphere = ray / ray.length();
-                points.push(core_position(cube) * (1.0 - share) + sphere * share);
+                points.push(match self.core {
+                    Core::Solid => core_position(cube) * (1.0 - share) + sphere * share,
+                    Core::Hollow { radius } => sphere * (radius + (1.0 - radius) * share),
+                });
             }
         }
         points
@@ -138,7 +250,8 @@ impl Shells {
     fn cubes(&self) -> Vec<Cube> {
         let n = self.n;
         let mut cubes = Vec::new();
-        for k in 0..n {
+        let core_cubes = if self.core == Core::Solid { n } else { 0 };
+        for k in 0..core_cubes {
             for j in 0..n {
                 for i in 0..n {
                     let corners = CORNERS.map(|[a, b, c]| self.point([i + a, j + b, k + c], 0));
@@ -190,8 +303,12 @@ impl Shells {
                 (Cut::Mixed, Some(_)) => blocks.numbered_tetrahedra(corners),
             }
         }
-        let groups = [("surface".to_owned(), Group { points: surface, ..Group::default() })];
-        Mesh { points, blocks: blocks.list(), facet_blocks: Vec::new(), groups: groups.into() }
+        let of_points = |points| Group { points, ..Group::default() };
+        let mut groups = std::collections::BTreeMap::from([("surface".to_owned(), of_points(surface))]);
+        if let Core::Hollow { .. } = self.core {
+            groups.insert("inner".to_owned(), of_points((0..self.outside.len() as u32).collect()));
+        }
+        Mesh { points, blocks: blocks.list(), facet_blocks: Vec::new(), groups }
     }
 }
 

@@ -18,7 +18,7 @@ pub(super) static BAR: GeneratorEntry = GeneratorEntry {
     summary: "bar along x from the origin; groups x_min, x_max, y_min, …",
     source: "Kuhn 1960 for the tetrahedra",
     parameters: &[SIZE, CELLS, Cut::PARAMETER, ORIGIN],
-    build: cuboid as Build,
+    build: BUILD,
 };
 
 pub(super) static BOX: GeneratorEntry = GeneratorEntry {
@@ -26,8 +26,14 @@ pub(super) static BOX: GeneratorEntry = GeneratorEntry {
     summary: "box from its lowest corner; groups x_min, x_max, y_min, …",
     source: "Kuhn 1960 for the tetrahedra",
     parameters: &[SIZE, CELLS, Cut::PARAMETER, ORIGIN],
-    build: cuboid as Build,
+    build: BUILD,
 };
+
+const BUILD: Build = Build { size: |values| Ok(grid(values)?.size()), mesh: cuboid };
+
+fn grid(values: &Values) -> Result<Grid, MeshError> {
+    Grid::new("cells", values.vector("cells"), Cut::from_values(values))
+}
 
 fn cuboid(values: &Values) -> Result<Mesh, MeshError> {
     let size = values.vector("size");
@@ -40,7 +46,7 @@ fn cuboid(values: &Values) -> Result<Mesh, MeshError> {
         });
     }
     let (origin, size) = (Vec3::from_array(values.vector("origin")), Vec3::from_array(size));
-    let grid = Grid::new("cells", values.vector("cells"), Cut::from_values(values))?;
+    let grid = grid(values)?;
     // origin + size ξ, with ξ = i/n computed first: the corners are exact
     Ok(grid.mesh(|unit| origin + Vec3::new(size.x * unit.x, size.y * unit.y, size.z * unit.z)))
 }

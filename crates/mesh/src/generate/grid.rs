@@ -9,7 +9,7 @@ use souple_math::Vec3;
 use souple_table::Value;
 
 use super::cut::{BASE_X_MAX, Blocks, CORNERS, Cut};
-use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError};
+use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
 pub(super) struct Grid {
     cells: [usize; 3],
@@ -36,6 +36,17 @@ impl Grid {
             return Err(unfit("at least 4 cubes along x for `mixed`"));
         }
         Ok(Self { cells: counts.map(|count| count as usize), cut })
+    }
+
+    pub(super) fn size(&self) -> MeshSize {
+        let cubes = self.cells.iter().map(|count| *count as u64).product::<u64>();
+        let corners = self.cells.iter().map(|count| *count as u64 + 1).product::<u64>();
+        let centres = match self.cut {
+            Cut::Pyramids => cubes,
+            Cut::Mixed => (self.cells[1] * self.cells[2]) as u64,
+            _ => 0,
+        };
+        MeshSize { points: corners + centres, cells: cubes * self.cut.cells_per_cube() }
     }
 
     /// The mesh with its points at `place(ξ)`, `ξ` in the unit cube.

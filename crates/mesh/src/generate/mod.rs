@@ -1,22 +1,46 @@
-//! Meshes made from a few numbers: bar, box, sphere, in every kind of cell and in mixes.
+//! Meshes made from a few numbers: bar, box, sphere, cylinder, shell, in every kind of cell and in mixes.
 //!
-//! Boxes are grids of cubes (`grid`), balls a grid in a shell of six (`ball`); each cube is `cut` into cells.
+//! Boxes are grids of cubes (`grid`), balls a grid in a shell of six (`ball`), cylinders a section
+//! swept (`cylinder`); each cube is `cut` into cells.
 
 mod ball;
 mod cuboid;
 mod cut;
+mod cylinder;
 mod grid;
 
 use souple_table::{Entry, Table, Values};
 
 use crate::{Mesh, MeshError};
 
-/// Constructor of a generated mesh from completed values.
-pub type Build = fn(&Values) -> Result<Mesh, MeshError>;
+/// A generator at work on completed values.
+#[derive(Clone, Copy, Debug)]
+pub struct Build {
+    /// How large the mesh will be, without making it.
+    pub size: fn(&Values) -> Result<MeshSize, MeshError>,
+    pub mesh: fn(&Values) -> Result<Mesh, MeshError>,
+}
+
+/// Counts of a mesh that is not made yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshSize {
+    pub points: u64,
+    /// At most this many.
+    pub cells: u64,
+}
 
 /// All generators.
-pub static GENERATORS: Table<Build> =
-    Table { kind: "mesh generator", entries: &[&cuboid::BAR, &cuboid::BOX, &ball::SPHERE] };
+pub static GENERATORS: Table<Build> = Table {
+    kind: "mesh generator",
+    entries: &[
+        &cuboid::BAR,
+        &cuboid::BOX,
+        &ball::SPHERE,
+        &ball::HOLLOW_SPHERE,
+        &cylinder::CYLINDER,
+        &cylinder::SHELL,
+    ],
+};
 
 type GeneratorEntry = Entry<Build>;
 
@@ -29,7 +53,7 @@ pub const MAX_CELLS: u64 = 50_000_000;
 /// The name or a parameter is unknown or out of range; more than [`MAX_CELLS`] cells.
 pub fn generate(name: &str, values: Values) -> Result<Mesh, MeshError> {
     let entry = GENERATORS.find(name)?;
-    (entry.build)(&entry.values(values)?)
+    (entry.build.mesh)(&entry.values(values)?)
 }
 
 #[cfg(test)]

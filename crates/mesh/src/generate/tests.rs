@@ -162,3 +162,143 @@ fn balls_are_well_shaped() {
         }
     }
 }
+
+/// The size told beforehand is that of the mesh: points exactly, cells exactly where all cubes are cut alike and from
+/// above where they are not.
+#[test]
+fn sizes_are_known_beforehand() {
+    let size = |name: &str, values: Values| {
+        let entry = GENERATORS.find(name).unwrap();
+        let values = entry.values(values).unwrap();
+        ((entry.build.size)(&values).unwrap(), (entry.build.mesh)(&values).unwrap())
+    };
+    for element in ELEMENTS {
+        let cells = Value::Vector([7.0, 3.0, 2.0]);
+        let bar = Values::new().with("size", Value::Vector([1.0; 3])).with("cells", cells);
+        let ball = Values::new().with("radius", Value::Number(1.0)).with("cells", Value::Integer(9));
+        let hollow = Values::new()
+            .with("radius", Value::Number(1.0))
+            .with("inner_radius", Value::Number(0.5))
+            .with("cells", Value::Integer(4))
+            .with("layers", Value::Integer(4));
+        let mut shapes = vec![("bar", bar), ("sphere", ball), ("hollow_sphere", hollow)];
+        if element != "mixed" {
+            let swept = Values::new()
+                .with("length", Value::Number(1.0))
+                .with("radius", Value::Number(0.5))
+                .with("cells_along", Value::Integer(3));
+            let shell = swept.clone().with("thickness", Value::Number(0.1));
+            shapes.push(("cylinder", swept.with("cells", Value::Integer(7))));
+            shapes.push(("shell", shell.with("cells_around", Value::Integer(9))));
+        }
+        for (name, values) in shapes {
+            let (size, mesh) = size(name, values.with("element", Value::Text(element)));
+            let cells = mesh.cell_count() as u64;
+            if element == "mixed" {
+                assert!(size.points >= mesh.points.len() as u64 && size.cells >= cells, "{name}: {size:?}");
+            } else {
+                let counted = MeshSize { points: mesh.points.len() as u64, cells };
+                assert_eq!(size, counted, "{name} of {element}");
+            }
+        }
+    }
+}
+/// A hollow ball of every kind: in one part, conforming, two closed spheres; its volume converges as the square of the
+/// size of cells, by 4 from one to the next.
+#[test]
+fn hollow_balls_of_every_kind_are_sound() {
+    let hollow = |cells: i64, element: &'static str| {
+        let values = Values::new()
+            .with("radius", Value::Number(2.0))
+            .with("inner_radius", Value::Number(1.0))
+            .with("cells", Value::Integer(cells))
+            .with("layers", Value::Integer(3))
+            .with("element", Value::Text(element));
+        generate("hollow_sphere", values).unwrap()
+    };
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * 7.0;
+    for element in ELEMENTS {
+        let mut mesh = hollow(4, element);
+        let repairs = mesh.validate().unwrap();
+        assert_eq!(repairs, crate::Repairs { component_count: 1, ..Default::default() }, "{element}");
+        mesh.faces().conforming().unwrap();
+        mesh.boundary_surface().check_closed().unwrap();
+        for (group, radius) in [("inner", 1.0), ("surface", 2.0)] {
+            let points = &mesh.groups[group].points;
+            assert_eq!(points.len(), 98, "{element} {group}");
+            let off = |point: &u32| (mesh.points[*point as usize].length() - radius).abs();
+            assert!(points.iter().all(|point| off(point) < 1e-15 * 4.0), "{element} {group}");
+        }
+        let errors = [4, 8].map(|cells| exact - hollow(cells, element).volume());
+        let ratio = errors[0] / errors[1];
+        // the next term of the error is the square of this one: some percent
+        assert!((ratio - 4.0).abs() < 0.2, "{element}: {errors:?} {ratio}");
+    }
+}
+
+#[test]
+fn hollow_balls_without_a_wall_are_refused() {
+    let values = Values::new()
+        .with("radius", Value::Number(1.0))
+        .with("inner_radius", Value::Number(1.0))
+        .with("cells", Value::Integer(2))
+        .with("layers", Value::Integer(1));
+    let error = generate("hollow_sphere", values).unwrap_err();
+    assert!(error.to_string().contains("less than the radius"), "{error}");
+}
+
+/// Cylinders and shells of every kind of cell are sound, and their volumes are those of their polygons.
+#[test]
+fn cylinders_and_shells() {
+    let number = |x: f64| Value::Number(x);
+    for element in ["tet4", "hex8", "prism6", "pyramid5"] {
+        let common = Values::new()
+            .with("length", number(0.5))
+            .with("radius", number(0.2))
+            .with("cells_along", Value::Integer(4))
+            .with("element", Value::Text(element));
+        let cylinder = common.clone().with("cells", Value::Integer(9));
+        let shell = common
+            .with("thickness", number(0.05))
+            .with("cells_around", Value::Integer(12))
+            .with("cells_through", Value::Integer(2));
+        let slab = shell.clone().with("angle", number(1.0));
+        // n chords of a circle enclose n/2 r² sin(2π/n); five squares along an edge of the core make twenty chords
+        let polygon = |chords: f64, angle: f64| 0.5 * chords * (angle / chords).sin();
+        let whole = std::f64::consts::TAU;
+        let cases = [
+            ("cylinder", cylinder, 0.5 * 0.04 * polygon(20.0, whole), true),
+            ("shell", shell, 0.5 * (0.04 - 0.0225) * polygon(12.0, whole), false),
+            ("shell", slab, 0.5 * (0.04 - 0.0225) * polygon(12.0, 1.0), false),
+        ];
+        for (name, values, volume, is_equal_angled) in cases {
+            let mut mesh = generate(name, values).unwrap();
+            let repairs = mesh.validate().unwrap();
+            assert_eq!(
+                repairs,
+                crate::Repairs { component_count: 1, ..Default::default() },
+                "{name} {element}"
+            );
+            mesh.faces().conforming().unwrap();
+            mesh.boundary_surface().check_closed().unwrap();
+            // equal angles between the columns from the core: tan is exact there to rounding
+            let bound = if is_equal_angled { 1e-14 } else { 1e-15 };
+            assert!((mesh.volume() - volume).abs() < bound, "{name} {element} {} {volume}", mesh.volume());
+            assert!(mesh.groups.values().all(|group| !group.points.is_empty()));
+        }
+    }
+}
+
+#[test]
+fn cylinder_refusals() {
+    let values = Values::new()
+        .with("length", Value::Number(1.0))
+        .with("radius", Value::Number(0.1))
+        .with("thickness", Value::Number(0.1))
+        .with("cells_around", Value::Integer(8))
+        .with("cells_along", Value::Integer(1));
+    let refused = generate("shell", values.clone()).unwrap_err();
+    assert!(matches!(refused, MeshError::Parameter { name: "thickness", .. }));
+    let two = values.with("thickness", Value::Number(0.01)).with("cells_around", Value::Integer(2));
+    assert!(matches!(generate("shell", two), Err(MeshError::Parameter { name: "cells_around", .. })));
+}

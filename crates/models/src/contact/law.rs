@@ -10,8 +10,8 @@
 //! can hold (return mapping); a point that touches nothing draws its anchor with it. Friction thus acts from
 //! the first moment of a touch, in explicit and in implicit steps.
 
-use souple_engine::{Editable, ParameterError};
-use souple_math::{Real, Vec3};
+use souple_engine::{Editable, ParameterError, TangentWeights};
+use souple_math::{Mat3, Real, Vec3};
 
 use crate::loads::{Fit, LoadError, editable, not_negative, set_number};
 
@@ -43,6 +43,20 @@ pub struct ContactForce<R = f64> {
 impl<R: Real> ContactForce<R> {
     pub fn total(&self) -> Vec3<R> {
         self.normal + self.friction
+    }
+}
+
+/// `-∂f/∂x` [N/m] and `-∂f/∂v` [N s/m] of a contact with the normal force lagged: symmetric, positive semidefinite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaggedStiffness {
+    pub position: Mat3,
+    pub velocity: Mat3,
+}
+
+impl LaggedStiffness {
+    /// `a ∂f/∂x + b ∂f/∂v`.
+    pub fn weighted(&self, weights: TangentWeights) -> Mat3 {
+        self.position * -weights.position + self.velocity * -weights.velocity
     }
 }
 
@@ -86,6 +100,12 @@ impl ContactLaw {
         fields.into_iter().try_for_each(|(field, value)| not_negative(field, value).map(|_| ()))
     }
 
+    /// The stiffness of a touching point of share 1 in the direction where it is highest [N/m].
+    pub(super) fn stiffest(&self) -> f64 {
+        let sticking = if self.friction > 0.0 { self.tangential_stiffness } else { 0.0 };
+        self.stiffness.max(sticking)
+    }
+
     /// Whether a contact is minus the gradient of its energy.
     pub fn is_conservative(&self) -> bool {
         self.friction == 0.0 && self.damping == 0.0
@@ -118,6 +138,35 @@ impl ContactLaw {
         let sliding = stiffness * stiffness * value(length_sq) > value(limit) * value(limit);
         let held = if sliding { stretch * (limit / (length_sq.sqrt() * stiffness)) } else { stretch };
         Some(ContactForce { normal, friction: held * (magnitude.splat(-stiffness)), stretch: held, sliding })
+    }
+
+    /// How the force falls with displacement and with velocity, the normal force that limits friction held fixed and
+    /// the normal with it; `None` where nothing touches.
+    ///
+    /// What is left out is what makes the tangent of friction lose its symmetry: a slider's friction grows as it is
+    /// pressed on, but it is not pressed on as it slides.
+    pub fn lagged_stiffness(&self, share: f64, approach: &Approach<f64>) -> Option<LaggedStiffness> {
+        let force = self.force(share, approach, |number| number)?;
+        let n = approach.normal;
+        let along_normal = n.outer(n);
+        // ∂N/∂p = k (1 + d ṗ)₊,  ∂N/∂ṗ = k p d
+        let pressed = -approach.gap * self.stiffness * share;
+        let magnitude = n.dot(force.normal);
+        let damping = if magnitude > 0.0 { pressed * self.damping } else { 0.0 };
+        // sticking: k_t across the normal; sliding: μN/|s| across the stretch too
+        let stretch = approach.stretch();
+        let mut across_normal = Mat3::IDENTITY + along_normal * -1.0;
+        let mut friction = self.tangential_stiffness * share;
+        if self.friction == 0.0 {
+            friction = 0.0;
+        } else if force.sliding {
+            friction = self.friction * magnitude / stretch.length();
+            across_normal += stretch.outer(stretch) * (-1.0 / stretch.length_sq());
+        }
+        Some(LaggedStiffness {
+            position: along_normal * (magnitude / -approach.gap) + across_normal * friction,
+            velocity: along_normal * damping,
+        })
     }
 
     /// `½ k p² + |T|²/(2 k_t)` of a touching point [J].

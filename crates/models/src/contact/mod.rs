@@ -4,7 +4,8 @@
 //! [`SurfaceContact`] find what touches and hand the forces to rows.
 
 pub mod law;
-pub mod motion;
+#[cfg(test)]
+mod pair_tests;
 pub mod shape;
 mod shape_contact;
 mod surface_contact;
@@ -12,7 +13,6 @@ mod surface_contact;
 mod tests;
 
 pub use law::{ContactForce, ContactLaw, penalty_stiffness};
-pub use motion::ShapeMotion;
-pub use shape::{Nearest, SHAPES, Shape, ShapeError};
+pub use shape::{Nearest, Outline, SHAPES, Shape, ShapeError};
 pub use shape_contact::{ContactPoint, ShapeContact, Touch};
 pub use surface_contact::{ContactSurface, SurfaceContact, SurfaceContactError, SurfaceTouch};

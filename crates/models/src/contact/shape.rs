@@ -10,6 +10,7 @@ mod sphere;
 
 use std::fmt::Debug;
 
+use souple_engine::obstacle::Side;
 use souple_math::{Mat3, Vec3};
 use souple_mesh::{MeshError, TriangleSurface};
 use souple_table::{Entry, Parameter, Table, Value, Values};
@@ -39,6 +40,26 @@ pub trait Shape: Send + Sync + Debug {
     /// A point and the normal of a shape that is a half-space, for drawing it as a ground.
     fn as_plane(&self) -> Option<(Vec3, Vec3)> {
         None
+    }
+
+    /// The surface of a bounded shape, for drawing it.
+    fn outline(&self) -> Option<Outline> {
+        None
+    }
+}
+
+/// The surface of a shape, curved ones by triangles small enough to look round.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Facing out of the solid, also where that is into the hollow of a container.
+    pub surface: TriangleSurface,
+    /// On which side of it bodies are.
+    pub bodies: Side,
+}
+
+impl Outline {
+    fn solid(surface: TriangleSurface) -> Self {
+        Self { surface, bodies: Side::Outside }
     }
 }
 
@@ -81,6 +102,12 @@ impl<S: Shape> Shape for Hollow<S> {
         let Nearest { distance, normal, curvature } = self.0.nearest(point, f64::INFINITY)?;
         Some(Nearest { distance: -distance, normal: -normal, curvature: -curvature })
     }
+
+    fn outline(&self) -> Option<Outline> {
+        let mut outline = self.0.outline()?;
+        outline.surface.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        Some(Outline { bodies: Side::Inside, ..outline })
+    }
 }
 
 fn boxed<S: Shape + 'static>(shape: S, values: &Values) -> Box<dyn Shape> {
@@ -103,6 +130,42 @@ fn rounded(point: Vec3, centre: Vec3, radius: f64, flat: Mat3, fallback: Vec3) -
         },
         None => Nearest { distance: -radius, normal: fallback, curvature: Mat3::ZERO },
     }
+}
+
+/// Rings of a half ball, and points around each ring.
+const RINGS: usize = 12;
+const AROUND: usize = 4 * RINGS;
+
+/// The surface of all points within `radius` of a segment: rings about its axis, from pole to pole.
+fn rounded_surface(from: Vec3, to: Vec3, radius: f64) -> TriangleSurface {
+    let axis = (to - from).try_normalised().unwrap_or(Vec3::Z);
+    let across = axis.any_orthogonal();
+    let along = axis.cross(across);
+    // the ring at the equator is there twice, once about each end
+    let mut points = vec![from - axis * radius];
+    for (centre, first) in [(from, 1), (to, RINGS)] {
+        for ring in first..first + RINGS {
+            let polar = std::f64::consts::FRAC_PI_2 * (ring as f64 / RINGS as f64);
+            let (height, width) = (-radius * libm::cos(polar), radius * libm::sin(polar));
+            points.extend((0..AROUND).map(|k| {
+                let angle = std::f64::consts::TAU * k as f64 / AROUND as f64;
+                centre + axis * height + (across * libm::cos(angle) + along * libm::sin(angle)) * width
+            }));
+        }
+    }
+    points.push(to + axis * radius);
+    let (rings, last) = (2 * RINGS, points.len() as u32 - 1);
+    let at = |ring: usize, k: usize| (1 + ring * AROUND + k % AROUND) as u32;
+    let mut triangles = Vec::new();
+    for k in 0..AROUND {
+        triangles.push([0, at(0, k + 1), at(0, k)]);
+        for ring in 1..rings {
+            triangles.push([at(ring - 1, k), at(ring - 1, k + 1), at(ring, k + 1)]);
+            triangles.push([at(ring - 1, k), at(ring, k + 1), at(ring, k)]);
+        }
+        triangles.push([at(rings - 1, k), at(rings - 1, k + 1), last]);
+    }
+    TriangleSurface { points, triangles, ..TriangleSurface::default() }
 }
 
 /// Parameter as a direction.

@@ -5,10 +5,13 @@
 //! per point) whatever comes and goes.
 
 use std::any::Any;
+use std::sync::Arc;
 
+use souple_engine::obstacle::Form;
 use souple_engine::tangent::add_block;
 use souple_engine::{
-    Configuration, Declaration, Editable, Energy, Force, Pair, ParameterError, Scratch, TangentWeights,
+    Configuration, Declaration, Editable, Energy, Force, Obstacle, Pair, ParameterError, Scratch,
+    TangentWeights,
 };
 use souple_math::{Dual, Mat3, Vec3};
 use souple_solve::BlockMatrix;
@@ -16,8 +19,8 @@ use souple_solve::BlockMatrix;
 use crate::loads::{LoadError, finite, not_negative};
 
 use super::law::Approach;
-use super::motion::Pose;
-use super::{ContactForce, ContactLaw, Nearest, Shape, ShapeMotion};
+use super::{ContactForce, ContactLaw, Nearest, Outline, Shape};
+use crate::loads::{Pose, RigidMotion};
 
 /// A point of the body's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +38,7 @@ pub struct ShapeContact {
     name: String,
     points: Vec<ContactPoint>,
     shape: Box<dyn Shape>,
-    motion: ShapeMotion,
+    motion: RigidMotion,
     law: ContactLaw,
 }
 
@@ -69,7 +72,7 @@ impl ShapeContact {
         name: impl Into<String>,
         points: Vec<ContactPoint>,
         shape: Box<dyn Shape>,
-        motion: ShapeMotion,
+        motion: RigidMotion,
         law: ContactLaw,
     ) -> Result<Self, LoadError> {
         if points.is_empty() {
@@ -261,6 +264,22 @@ impl Force for ShapeContact {
         }
     }
 
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        let pose = self.motion.pose(at.time);
+        for (point, local) in self.touching(&pose, at) {
+            if let Some(stiffness) = self.law.lagged_stiffness(point.share, &local.approach) {
+                let block = pose.tensor_to_world(&stiffness.weighted(weights));
+                add_block(matrix, point.row as usize, point.row as usize, &block);
+            }
+        }
+    }
+
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
         let pose = self.motion.pose(at.time);
         for (index, point) in self.points.iter().enumerate() {
@@ -276,6 +295,12 @@ impl Force for ShapeContact {
         }
     }
 
+    // k n nᵀ + k_t (I - n nᵀ)
+    fn touching_stiffness(&self) -> Option<Vec<(u32, f64)>> {
+        let stiffness = self.law.stiffest();
+        Some(self.points.iter().map(|point| (point.row, stiffness * point.share)).collect())
+    }
+
     fn editable(&self) -> Vec<Editable> {
         self.law.editable()
     }
@@ -286,6 +311,29 @@ impl Force for ShapeContact {
 
     fn bytes(&self) -> usize {
         size_of_val(self.points.as_slice())
+    }
+
+    fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&souple_engine::ContactPoint)) {
+        for touch in self.touches(at) {
+            visit(&souple_engine::ContactPoint {
+                row: touch.row,
+                against: &[],
+                penetration: touch.penetration,
+                normal_force: touch.force.normal,
+                friction: touch.force.friction,
+            });
+        }
+    }
+
+    fn obstacle(&self) -> Option<Obstacle> {
+        let form = match (self.shape.as_plane(), self.shape.outline()) {
+            (Some((point, normal)), _) => Form::Plane { point, normal },
+            (None, Some(Outline { surface, bodies })) => {
+                Form::Surface { points: surface.points, triangles: surface.triangles, bodies }
+            }
+            (None, None) => return None,
+        };
+        Some(Obstacle { form, motion: Arc::new(self.motion.clone()) })
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -1,13 +1,16 @@
 //! Two bodies' closed surfaces against each other: points of each against triangles of the other.
 //!
-//! A pair is a point and what it is nearest to, found at the start of a step and kept through it, so that the
-//! force is smooth within the step: the plane of a triangle, or, from outside, an edge or a corner. Its memory
+//! A pair is a point and what it is nearest to, found at the start of a step and kept while the step is solved, so that
+//! the force is smooth meanwhile: the plane of a triangle, or, from outside, an edge or a corner. Points within reach
+//! make pairs; what has come farther than that since is searched again ([`Force::pairs_are_stale`]). Its memory
 //! is the anchor of friction, in barycentric coordinates of the triangle; a point that goes on to another
 //! triangle takes it along.
 //!
 //! Decided on purpose: a point exactly on the surface takes the plane of its triangle; one that passes an edge
 //! from outside without thickness is found inside at the next step; a triangle squeezed to a line has no plane
 //! and pushes nobody, its neighbours do.
+
+mod geometry;
 
 use std::any::Any;
 
@@ -16,7 +19,7 @@ use souple_engine::{
     Configuration, Declaration, Editable, Energy, Force, Pair, ParameterError, Scratch, TangentWeights,
 };
 use souple_math::{Dual, Mat3, Real, Vec3};
-use souple_mesh::{MeshError, SignedDistance, TriangleSurface};
+use souple_mesh::{ClosestPoint, MeshError, SignedDistance, TriangleSurface, closest_point_on_triangle};
 use souple_solve::BlockMatrix;
 
 use crate::loads::{LoadError, not_negative};
@@ -24,6 +27,7 @@ use crate::loads::{LoadError, not_negative};
 use super::law::Approach;
 use super::shape_contact::{derivative, dual};
 use super::{ContactForce, ContactLaw};
+use geometry::{Corners, OVER, REGIONS, Region, approach, barycentric, corner_areas, region_code, turn};
 
 /// The closed surface of a body and where its points stand among rows.
 #[derive(Clone, Debug)]
@@ -56,7 +60,7 @@ pub struct SurfaceContact {
     /// Surfaces with their rows and shares.
     sides: [Side; 2],
     law: ContactLaw,
-    /// Distance up to which a point makes a pair, outside and inside [m].
+    /// Distance up to which a point outside makes a pair [m].
     reach: f64,
 }
 
@@ -82,18 +86,6 @@ pub struct SurfaceTouch {
     pub force: ContactForce,
 }
 
-/// What of a triangle a point is nearest to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Region {
-    Face,
-    /// From this corner to the next.
-    Edge(usize),
-    Corner(usize),
-}
-
-/// Kinds of region in the number of a pair: face, edges, corners.
-const REGIONS: u64 = 7;
-
 /// What a pair's numbers mean: the point, the triangle, and where on it.
 #[derive(Clone, Copy, Debug)]
 struct Place {
@@ -104,7 +96,8 @@ struct Place {
 }
 
 impl SurfaceContact {
-    /// `reach` is how far a point may come in one step [m]: about the length of an edge.
+    /// `reach` is how far points may come towards each other before pairs are searched again [m]: about the length of
+    /// an edge.
     ///
     /// # Errors
     /// A surface is not closed, has not as many rows and shares as points, shares a row with the other; a
@@ -157,7 +150,9 @@ impl SurfaceContact {
     }
 
     fn approach(&self, place: &Place, pair: &Pair, at: &Configuration) -> Option<(Approach<f64>, [f64; 3])> {
-        approach(place, &Corners::at(place, at), pair, self.law.thickness, |number| number)
+        approach(place.region, &Corners::at(place.rows, at), anchor(pair), self.law.thickness, |number| {
+            number
+        })
     }
 
     /// Which body a pair's point is of, and its number there: those of the second follow those of the first.
@@ -171,11 +166,7 @@ impl SurfaceContact {
         let (points, other) = (&self.sides[side], &self.sides[1 - side]);
         let [a, b, c] =
             other.distance.surface().triangles[(pair.b / REGIONS) as usize].map(|p| other.rows[p as usize]);
-        let region = match (pair.b % REGIONS) as usize {
-            0 => Region::Face,
-            edge @ 1..=3 => Region::Edge(edge - 1),
-            corner => Region::Corner(corner - 4),
-        };
+        let region = Region::from_code(pair.b % REGIONS);
         Place { rows: [points.rows[point], a, b, c], region, share: points.shares[point] }
     }
 
@@ -187,7 +178,7 @@ impl SurfaceContact {
         pair: &Pair,
         value: impl Fn(R) -> f64,
     ) -> Option<[Vec3<R>; 4]> {
-        let (approach, weights) = approach(place, corners, pair, self.law.thickness, &value)?;
+        let (approach, weights) = approach(place.region, corners, anchor(pair), self.law.thickness, &value)?;
         let force = self.law.force(place.share, &approach, &value)?;
         let total = force.total();
         let [a, b, c] = weights.map(|weight| -(total * weight));
@@ -209,7 +200,7 @@ impl SurfaceContact {
         deltas: [Vec3; 4],
         weights: TangentWeights,
     ) -> [Vec3; 4] {
-        let values = Corners::at(place, at);
+        let values = Corners::at(place.rows, at);
         let corners = Corners {
             positions: std::array::from_fn(|i| dual(values.positions[i], deltas[i] * weights.position)),
             velocities: std::array::from_fn(|i| dual(values.velocities[i], deltas[i] * weights.velocity)),
@@ -238,102 +229,12 @@ impl Side {
     }
 }
 
-/// Positions and velocities of a point and the corners of a triangle.
-struct Corners<R> {
-    positions: [Vec3<R>; 4],
-    velocities: [Vec3<R>; 4],
-}
-
-impl Corners<f64> {
-    fn at(place: &Place, at: &Configuration) -> Self {
-        Self {
-            positions: place.rows.map(|row| at.positions[row as usize]),
-            velocities: place.rows.map(|row| at.velocities[row as usize]),
-        }
-    }
-}
-
-/// How the point stands to the triangle, and the weights of the corners at the nearest point; `None` where
-/// there is no direction: a triangle squeezed to a line, a point on the edge or corner itself.
-///
-/// In the plane of a triangle the weights may leave `[0, 1]` during a step: the plane goes on.
-fn approach<R: Real>(
-    place: &Place,
-    corners: &Corners<R>,
-    pair: &Pair,
-    thickness: f64,
-    value: impl Fn(R) -> f64,
-) -> Option<(Approach<R>, [R; 3])> {
-    let [x, a, b, c] = corners.positions;
-    let ends = [a, b, c];
-    let (zero, one) = (x.x.zero(), x.x.one());
-    let (offset, weights) = match place.region {
-        Region::Face => {
-            // areas of the triangles of the projection of x with two corners each
-            let across = (b - a).cross(c - a);
-            let double_area_sq = across.length_sq();
-            let area = |q: Vec3<R>, r: Vec3<R>| (q - x).cross(r - x).dot(across) / double_area_sq;
-            (across, [area(b, c), area(c, a), area(a, b)])
-        }
-        Region::Edge(edge) => {
-            let (from, to) = (edge, (edge + 1) % 3);
-            let along = ends[to] - ends[from];
-            let t = (x - ends[from]).dot(along) / along.length_sq();
-            let mut weights = [zero; 3];
-            (weights[from], weights[to]) = (one - t, t);
-            (x - (ends[from] + along * t), weights)
-        }
-        Region::Corner(corner) => {
-            let mut weights = [zero; 3];
-            weights[corner] = one;
-            (x - ends[corner], weights)
-        }
-    };
-    let length = offset.length();
-    if !value(length).is_normal() || !weights.into_iter().all(|weight| value(weight).is_finite()) {
-        return None;
-    }
-    let normal = offset * (one / length);
-    let distance = if place.region == Region::Face { normal.dot(x - a) } else { length };
-    let anchor = ends[0] * one.splat(pair.memory[ANCHOR])
-        + ends[1] * one.splat(pair.memory[ANCHOR + 1])
-        + ends[2] * one.splat(pair.memory[ANCHOR + 2]);
-    let [v, va, vb, vc] = corners.velocities;
-    let velocity = v - (va * weights[0] + vb * weights[1] + vc * weights[2]);
-    Some((Approach { gap: distance - thickness, normal, from_anchor: x - anchor, velocity }, weights))
-}
-
-/// Forces on three corners of no sum and moment `M`: those of a rigid turn, `h_i = (I⁻¹ M) × r_i` with
-/// `I = Σ |r|² - r rᵀ` about the middle. None for a triangle squeezed to a line.
-fn turn<R: Real>(corners: [Vec3<R>; 3], moment: Vec3<R>, value: impl Fn(R) -> f64) -> [Vec3<R>; 3] {
-    let middle = (corners[0] + corners[1] + corners[2]) * moment.x.splat(1.0 / 3.0);
-    let arms = corners.map(|corner| corner - middle);
-    let mut inertia = arms[0].outer(arms[0]).scaled(-moment.x.one()).plus_diagonal(arms[0].length_sq());
-    for arm in &arms[1..] {
-        inertia += arm.outer(*arm).scaled(-moment.x.one()).plus_diagonal(arm.length_sq());
-    }
-    let (determinant, size) = (inertia.determinant(), inertia.trace());
-    if value(determinant) <= 1e-18 * value(size).powi(3) {
-        return [moment * moment.x.zero(); 3];
-    }
-    let rotation = (inertia.cofactor().transpose() * moment) * (moment.x.one() / determinant);
-    arms.map(|arm| rotation.cross(arm))
-}
-
 /// Memory of a pair: barycentric anchor, and the stretch left by the last step.
 const ANCHOR: usize = 0;
 const STRETCH: usize = 3;
 
-/// Barycentric coordinates of the projection of `x` on a triangle's plane, of its nearest point where it has none.
-fn barycentric(x: Vec3, corners: [Vec3; 3]) -> [f64; 3] {
-    let [a, b, c] = corners;
-    let across = (b - a).cross(c - a);
-    let area = |q: Vec3, r: Vec3| (q - x).cross(r - x).dot(across) / across.length_sq();
-    let weights = [area(b, c), area(c, a), area(a, b)];
-    if weights.iter().all(|weight| weight.is_finite()) {
-        return weights;
-    }
-    souple_mesh::closest_point_on_triangle(x, corners).0
+fn anchor(pair: &Pair) -> [f64; 3] {
+    std::array::from_fn(|i| pair.memory[ANCHOR + i])
 }
 
 fn anchored(weights: [f64; 3], stretch: Vec3) -> [f64; 8] {
@@ -393,7 +294,8 @@ impl Force for SurfaceContact {
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
         for pair in at.pairs {
             let place = self.place(pair);
-            let Some(forces) = self.forces(&place, &Corners::at(&place, at), pair, |number| number) else {
+            let Some(forces) = self.forces(&place, &Corners::at(place.rows, at), pair, |number| number)
+            else {
                 continue;
             };
             for (row, force) in place.rows.iter().zip(forces) {
@@ -446,6 +348,27 @@ impl Force for SurfaceContact {
         }
     }
 
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        for pair in at.pairs {
+            let place = self.place(pair);
+            let Some((approach, [a, b, c])) = self.approach(&place, pair, at) else { continue };
+            let Some(stiffness) = self.law.lagged_stiffness(place.share, &approach) else { continue };
+            // the point moves against the nearest point of the triangle, whose weights are held too
+            let (block, shares) = (stiffness.weighted(weights), [1.0, -a, -b, -c]);
+            for (row, share) in place.rows.iter().zip(shares) {
+                for (column, other) in place.rows.iter().zip(shares) {
+                    add_block(matrix, *row as usize, *column as usize, &(block * (share * other)));
+                }
+            }
+        }
+    }
+
     fn find_pairs(&self, at: &Configuration, scratch: &mut Scratch, found: &mut Vec<Pair>) {
         let Some(moved) = scratch.downcast_mut::<Moved>() else {
             unreachable!("scratch is made by new_scratch")
@@ -460,18 +383,67 @@ impl Force for SurfaceContact {
                 if !bounds.contains(x) {
                     continue;
                 }
-                let Some(closest) = surface.closest_within(x, self.reach + self.law.thickness) else {
-                    continue;
-                };
-                let corners = surface.surface().corners(closest.triangle);
-                let region = region_code(x, corners, closest.weights, closest.distance);
+                // a point inside touches however deep it has come
+                let inside = || surface.closest(x).filter(|closest| closest.distance < 0.0);
+                let near = surface.closest_within(x, self.reach + self.law.thickness);
+                let Some(closest) = near.or_else(inside) else { continue };
                 let mut pair = Pair::new(first + point, 0, [0.0; 8]);
-                pair.b = u64::from(closest.triangle) * REGIONS + region;
-                pair.memory = self.taken_along(&pair, at, x, corners);
+                let known = known_pair(&pair, at);
+                // of triangles that share the nearest place, the one it was on: a pattern that flickers with rounding
+                // would be made anew every step
+                let (triangle, weights) = known
+                    .and_then(|known| same_place(surface.surface(), known, x, &closest))
+                    .unwrap_or((closest.triangle, closest.weights));
+                let corners = surface.surface().corners(triangle);
+                pair.b = u64::from(triangle) * REGIONS + region_code(x, corners, weights, closest.distance);
+                pair.memory = match known {
+                    Some(known) => self.taken_along(known, at, corners),
+                    None => anchored(barycentric(x, corners), Vec3::ZERO),
+                };
                 found.push(pair);
             }
             first += self.sides[side].rows.len();
         }
+    }
+
+    /// A point that was out of reach comes to touch only if it or a corner has moved by half the reach, apart from
+    /// what all move together.
+    fn pairs_are_stale(&self, searched: &[Vec3], now: &[Vec3]) -> bool {
+        let rows = || self.sides.iter().flat_map(|side| &side.rows).map(|row| *row as usize);
+        let count = (self.sides[0].rows.len() + self.sides[1].rows.len()) as f64;
+        let common = rows().map(|row| now[row] - searched[row]).sum::<Vec3>() * (1.0 / count);
+        let limit_sq = 0.25 * self.reach * self.reach;
+        // written so that what is not finite is left to the check at the end of the step
+        rows().any(|row| (now[row] - searched[row] - common).length_sq() > limit_sq)
+    }
+
+    // k g gᵀ with g = (1, -w) over point and corners is at most k |g_i| Σ|g_j| = 2 k |g_i| on the diagonal
+    fn touching_stiffness(&self) -> Option<Vec<(u32, f64)>> {
+        let mut bound = Vec::new();
+        for (side, other) in [(0, 1), (1, 0)] {
+            let (points, corners) = (&self.sides[side], &self.sides[other]);
+            let stiffest = 2.0 * self.law.stiffest();
+            bound.extend(points.rows.iter().zip(&points.shares).map(|(row, share)| (*row, stiffest * share)));
+            // as many of the other's points as fall to a corner where both surfaces are covered alike
+            let share = points.shares.iter().sum::<f64>() / points.distance.surface().area();
+            let largest = points.shares.iter().copied().fold(0.0, f64::max);
+            let areas = corner_areas(corners.distance.surface());
+            let load = areas.iter().map(|area| stiffest * f64::max(share * area, largest));
+            bound.extend(corners.rows.iter().copied().zip(load));
+        }
+        Some(bound)
+    }
+
+    fn accepts_pair(&self, pair: &Pair) -> bool {
+        let [first, second] = &self.sides;
+        let points = first.rows.len() as u64;
+        let (point, limit, other) = if pair.a < points {
+            (pair.a, points, second)
+        } else {
+            (pair.a - points, second.rows.len() as u64, first)
+        };
+        let triangles = other.distance.surface().triangles.len() as u64;
+        point < limit && pair.b / REGIONS < triangles
     }
 
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], pairs: &mut [Pair]) {
@@ -482,7 +454,7 @@ impl Force for SurfaceContact {
             let Some((approach, _)) = self.approach(&place, before, at) else { continue };
             let (stretch, heat) = self.law.advance(place.share, &approach, remembered, timestep);
             memory[0] += heat;
-            let [x, triangle @ ..] = Corners::at(&place, at).positions;
+            let [x, triangle @ ..] = Corners::at(place.rows, at).positions;
             pair.memory = anchored(barycentric(x - stretch, triangle), stretch);
         }
     }
@@ -496,10 +468,31 @@ impl Force for SurfaceContact {
     }
 
     fn bytes(&self) -> usize {
-        self.sides
-            .iter()
-            .map(|side| 12 * side.rows.len() + 72 * side.distance.surface().triangles.len())
-            .sum()
+        let side = |side: &Side| {
+            side.distance.bytes() + 4 * side.rows.capacity() + size_of::<f64>() * side.shares.capacity()
+        };
+        self.sides.iter().map(side).sum()
+    }
+
+    fn scratch_bytes(&self, scratch: &Scratch) -> usize {
+        scratch.downcast_ref::<Moved>().map_or(0, |moved| {
+            moved.sides.iter().map(SignedDistance::bytes).sum::<usize>()
+                + size_of::<Vec3>() * moved.positions.capacity()
+        })
+    }
+
+    fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&souple_engine::ContactPoint)) {
+        for touch in self.touches(at) {
+            let [row, a, b, c] = touch.rows;
+            let [wa, wb, wc] = touch.weights;
+            visit(&souple_engine::ContactPoint {
+                row,
+                against: &[(a, wa), (b, wb), (c, wc)],
+                penetration: touch.penetration,
+                normal_force: touch.force.normal,
+                friction: touch.force.friction,
+            });
+        }
     }
 
     fn as_any(&self) -> &dyn Any {
@@ -508,37 +501,32 @@ impl Force for SurfaceContact {
 }
 
 impl SurfaceContact {
-    /// Memory of a pair found at `x`: the anchor of the pair that the point had before, carried over to the
-    /// triangle it is nearest to now, or the point itself.
-    fn taken_along(&self, pair: &Pair, at: &Configuration, x: Vec3, corners: [Vec3; 3]) -> [f64; 8] {
-        let start = at.pairs.partition_point(|old| old.a < pair.a);
-        let Some(old) = at.pairs.get(start).filter(|old| old.a == pair.a) else {
-            return anchored(barycentric(x, corners), Vec3::ZERO);
-        };
-        let [_, triangle @ ..] = self.place(old).rows.map(|row| at.positions[row as usize]);
-        let anchor = (0..3).map(|corner| triangle[corner] * old.memory[ANCHOR + corner]).sum();
-        let stretch = Vec3::new(old.memory[STRETCH], old.memory[STRETCH + 1], old.memory[STRETCH + 2]);
+    /// Memory of a pair that was known: its anchor carried over to the triangle that the point is nearest to now.
+    fn taken_along(&self, known: &Pair, at: &Configuration, corners: [Vec3; 3]) -> [f64; 8] {
+        let [_, triangle @ ..] = self.place(known).rows.map(|row| at.positions[row as usize]);
+        let anchor = triangle.into_iter().zip(anchor(known)).map(|(corner, weight)| corner * weight).sum();
+        let stretch = Vec3::new(known.memory[STRETCH], known.memory[STRETCH + 1], known.memory[STRETCH + 2]);
         anchored(barycentric(anchor, corners), stretch)
     }
 }
 
-/// A point this close to the prism over a triangle, in parts of its size, is over the triangle itself: points
-/// over the edges of a flat part are on its plane, not on an edge.
-const OVER: f64 = 1e-6;
+/// The pair that the point of `pair` had in the step before.
+fn known_pair<'a>(pair: &Pair, at: &Configuration<'a>) -> Option<&'a Pair> {
+    let start = at.pairs.partition_point(|known| known.a < pair.a);
+    at.pairs.get(start).filter(|known| known.a == pair.a)
+}
 
-/// Where the nearest point lies, as part of a pair's number: from outside, weights of zero are corners it is
-/// away from; from inside, and on the surface itself, the plane serves.
-fn region_code(x: Vec3, corners: [Vec3; 3], weights: [f64; 3], distance: f64) -> u64 {
-    if distance <= 0.0 || barycentric(x, corners).iter().all(|weight| *weight >= -OVER) {
-        return 0;
-    }
-    match weights.map(|weight| weight == 0.0) {
-        [false, false, false] => 0,
-        [false, false, true] => 1,
-        [true, false, false] => 2,
-        [false, true, false] => 3,
-        [false, true, true] => 4,
-        [true, false, true] => 5,
-        _ => 6,
-    }
+/// The triangle of a known pair and the weights of its place nearest to `x`, if that is where `closest` is.
+fn same_place(
+    surface: &TriangleSurface,
+    known: &Pair,
+    x: Vec3,
+    closest: &ClosestPoint,
+) -> Option<(u32, [f64; 3])> {
+    let triangle = (known.b / REGIONS) as u32;
+    let corners = surface.corners(triangle);
+    let (weights, _) = closest_point_on_triangle(x, corners);
+    let position: Vec3 = corners.into_iter().zip(weights).map(|(corner, weight)| corner * weight).sum();
+    let size_sq = (corners[1] - corners[0]).length_sq();
+    ((position - closest.position).length_sq() <= OVER * OVER * size_sq).then_some((triangle, weights))
 }

@@ -4,16 +4,18 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use souple_engine::{Configuration, Force, Stepper, World};
-use souple_math::Vec3;
+use souple_math::{Dual, Vec3, eigen_symmetric};
 use souple_mesh::TriangleSurface;
 use souple_table::{Value, Values};
 
-use super::shape::{Capsule, Cuboid, Plane, Sphere};
+use super::law::Approach;
+use super::shape::{Capsule, ClosedSurface, Cuboid, Plane, Sphere};
+use super::shape_contact::{derivative, dual};
 use super::*;
 use crate::loads::battery::{Setting, assert_force, stepper, world};
-use crate::loads::{Attachments, Combination, FormulaVector, Link, PointLoad, UniformForce};
+use crate::loads::{Attachments, Combination, FormulaVector, Link, PointLoad, RigidMotion, UniformForce};
 
-const LAW: ContactLaw = ContactLaw {
+pub(super) const LAW: ContactLaw = ContactLaw {
     stiffness: 300.0,
     damping: 0.4,
     friction: 0.5,
@@ -41,8 +43,8 @@ fn points(positions: &[Vec3]) -> Vec<ContactPoint> {
 }
 
 /// Two turning and two straight motions of a shape, none of them slow.
-fn moving() -> ShapeMotion {
-    ShapeMotion {
+fn moving() -> RigidMotion {
+    RigidMotion {
         translation: Some(Arc::new(FormulaVector::compile("[0.1 * sin(t), 0.02 * t, -0.1 * t]").unwrap())),
         rotation: Some(Arc::new(FormulaVector::compile("[0.2 * t, -0.3 * sin(2 * t), t^2]").unwrap())),
         pivot: Vec3::new(0.3, -0.2, 0.1),
@@ -52,12 +54,22 @@ fn moving() -> ShapeMotion {
 /// Sticking, sliding and separate points of every shape, at rest and moving, agree with their derivatives.
 #[test]
 fn shape_contacts_agree_with_energies_and_derivatives() {
-    let shapes: [fn() -> Box<dyn Shape>; 4] = [
-        || Box::new(Plane { point: Vec3::ZERO, normal: Vec3::new(0.6, 0.8, 0.0) }),
-        || Box::new(Sphere { centre: Vec3::new(0.1, 0.0, 0.2), radius: 1.0 }),
-        || Box::new(Capsule { from: Vec3::new(-0.5, 0.0, 0.0), to: Vec3::X, radius: 0.6 }),
-        || Box::new(Cuboid { centre: Vec3::ZERO, half_size: Vec3::new(0.9, 0.5, 0.7) }),
+    type Make = fn() -> Box<dyn Shape>;
+    let shapes: [(&str, Make); 5] = [
+        ("plane", || Box::new(Plane { point: Vec3::ZERO, normal: Vec3::new(0.6, 0.8, 0.0) })),
+        ("sphere", || Box::new(Sphere { centre: Vec3::new(0.1, 0.0, 0.2), radius: 1.0 })),
+        ("capsule", || Box::new(Capsule { from: Vec3::new(-0.5, 0.0, 0.0), to: Vec3::X, radius: 0.6 })),
+        ("box", || Box::new(Cuboid { centre: Vec3::ZERO, half_size: Vec3::new(0.9, 0.5, 0.7) })),
+        ("closed_surface", || {
+            let surface = cube(Vec3::new(-0.6, -0.5, -0.4), Vec3::new(0.1, 0.2, -0.1));
+            Box::new(ClosedSurface::new(surface).unwrap())
+        }),
     ];
+    // a new shape of the table needs its row here
+    assert_eq!(
+        shapes.map(|(name, _)| name),
+        SHAPES.entries.iter().map(|entry| entry.name).collect::<Vec<_>>()[..]
+    );
     let positions = vec![
         Vec3::new(0.2, -0.3, 0.1),
         Vec3::new(-0.4, 0.2, 0.3),
@@ -68,9 +80,9 @@ fn shape_contacts_agree_with_energies_and_derivatives() {
     let velocities: Vec<Vec3> =
         (0..5).map(|i| Vec3::new(0.3, (i as f64).sin(), 0.4 - 0.2 * i as f64)).collect();
     let (mut stuck, mut slid) = (0, 0);
-    for shape in shapes {
+    for (_, shape) in shapes {
         for law in laws() {
-            for motion in [ShapeMotion::default(), moving()] {
+            for motion in [RigidMotion::default(), moving()] {
                 let contact = ShapeContact::new("contact", points(&positions), shape(), motion, law).unwrap();
                 for step in [0.001, 0.5] {
                     let mut setting = Setting::new(&contact, positions.clone(), velocities.clone());
@@ -90,13 +102,51 @@ fn shape_contacts_agree_with_energies_and_derivatives() {
     assert!(stuck > 30 && slid > 30, "{stuck} {slid}");
 }
 
+/// Along a normal that does not turn, the lagged stiffness is symmetric, of no negative eigenvalue, and all of the
+/// derivative but `-μ s/|s| ⊗ ∂N` of a sliding point.
+#[test]
+fn lagged_stiffness_leaves_out_the_growth_of_friction() {
+    let (n, t) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.8, -0.6, 0.0));
+    let (share, pressed) = (2.0, 0.1);
+    for (law, slip) in laws().into_iter().flat_map(|law| [(law, 0.01), (law, 0.7)]) {
+        let velocity = n * -0.3 + t * 0.2;
+        let approach = Approach { gap: -pressed, normal: n, from_anchor: t * slip + n * 0.03, velocity };
+        let lagged = law.lagged_stiffness(share, &approach).unwrap();
+        let sliding = law.force(share, &approach, |number| number).unwrap().sliding;
+        assert_eq!(sliding, slip == 0.7 && law.friction > 0.0);
+        for stiffness in [lagged.position, lagged.velocity] {
+            let least = eigen_symmetric(&stiffness).values.z;
+            assert!(stiffness == stiffness.transpose() && least >= -1e-13 * law.stiffness, "{least:e}");
+        }
+        let slowing = 1.0 + 0.3 * law.damping;
+        for axis in Vec3::AXES {
+            let change = |position: Vec3, velocity: Vec3| {
+                let moving = Approach {
+                    gap: Dual::new(approach.gap, n.dot(position)),
+                    normal: dual(n, Vec3::ZERO),
+                    from_anchor: dual(approach.from_anchor, position),
+                    velocity: dual(approach.velocity, velocity),
+                };
+                derivative(law.force(share, &moving, |number: Dual| number.value).unwrap().total())
+            };
+            let along = n.dot(axis) * share * law.stiffness;
+            let friction = t * if sliding { law.friction } else { 0.0 };
+            let rest = change(axis, Vec3::ZERO) + lagged.position * axis - friction * (along * slowing);
+            assert!(rest.length() < 1e-12 * law.stiffness, "{rest:?}");
+            let rest = change(Vec3::ZERO, axis) + lagged.velocity * axis
+                - friction * (along * pressed * law.damping);
+            assert!(rest.length() < 1e-12 * law.stiffness, "{rest:?}");
+        }
+    }
+}
+
 /// What probes read is what acts.
 #[test]
 fn touches_sum_to_the_force() {
     let positions = vec![Vec3::new(0.0, -0.1, 0.0), Vec3::new(1.0, -0.2, 0.0), Vec3::Y];
     let plane = Box::new(Plane { point: Vec3::ZERO, normal: Vec3::Y });
     let contact =
-        ShapeContact::new("contact", points(&positions), plane, ShapeMotion::default(), LAW).unwrap();
+        ShapeContact::new("contact", points(&positions), plane, RigidMotion::default(), LAW).unwrap();
     let mut setting = Setting::new(&contact, positions, vec![Vec3::ZERO; 3]);
     setting.positions[0].x += 0.01;
     let (normal, friction) = contact.total(&setting.at());
@@ -132,7 +182,7 @@ fn incline(angle: f64, friction: f64, stepper: Box<dyn Stepper>, period: f64) ->
     let forces: Vec<Box<dyn Force>> = vec![
         Box::new(Attachments::new("body", links, 1e3, 1.0).unwrap()),
         Box::new(PointLoad::new("weight", (0..8).map(|row| (row, 1.0)).collect(), Arc::new(weight)).unwrap()),
-        Box::new(ShapeContact::new("contact", bottom, plane, ShapeMotion::default(), law).unwrap()),
+        Box::new(ShapeContact::new("contact", bottom, plane, RigidMotion::default(), law).unwrap()),
     ];
     world(&positions, &[Vec3::ZERO; 8], &[mass; 8], forces, stepper, period)
 }
@@ -200,7 +250,7 @@ fn friction_turns_motion_to_heat() {
     let plane = Box::new(Plane { point: Vec3::ZERO, normal: Vec3::Y });
     let point = ContactPoint { row: 0, share: 1.0, start };
     let forces: Vec<Box<dyn Force>> = vec![
-        Box::new(ShapeContact::new("contact", vec![point], plane, ShapeMotion::default(), law).unwrap()),
+        Box::new(ShapeContact::new("contact", vec![point], plane, RigidMotion::default(), law).unwrap()),
         Box::new(
             PointLoad::new("weight", vec![(0, mass)], Arc::new(UniformForce(Vec3::Y * -gravity))).unwrap(),
         ),
@@ -233,7 +283,7 @@ fn cube(at: Vec3, turn: Vec3) -> TriangleSurface {
 }
 
 /// Two cubes, the second above the first with its bottom at `height`, and their contact.
-fn two_cubes(law: ContactLaw, height: f64, turn: Vec3) -> (Vec<Vec3>, SurfaceContact) {
+pub(super) fn two_cubes(law: ContactLaw, height: f64, turn: Vec3) -> (Vec<Vec3>, SurfaceContact) {
     let (low, high) = (cube(Vec3::ZERO, Vec3::ZERO), cube(Vec3::new(0.23, height, 0.17), turn));
     let first = low.points.len() as u32;
     let positions = [low.points.clone(), high.points.clone()].concat();
@@ -276,11 +326,8 @@ fn surface_contacts_agree_with_energies_and_derivatives() {
     assert!(stuck > 20 && slid > 20 && over_edges > 5, "{stuck} {slid} {over_edges}");
 }
 
-/// Two cubes held in shape by springs, the upper one on its way to hit the lower one off its centre.
-fn collision(stepper: Box<dyn Stepper>, period: f64) -> World {
-    let law = ContactLaw { stiffness: 2e3, tangential_stiffness: 1e3, thickness: 0.0, ..LAW };
-    let (positions, contact) = two_cubes(law, 1.1, Vec3::new(0.1, 0.3, 0.05));
-    let half = positions.len() / 2;
+/// Springs between all points of each of two bodies, the second of which starts at row `half`.
+pub(super) fn springs_within(positions: &[Vec3], half: usize) -> Vec<Link> {
     let mut links = Vec::new();
     for a in 0..positions.len() {
         for b in (0..a).filter(|b| (*b < half) == (a < half)) {
@@ -288,6 +335,15 @@ fn collision(stepper: Box<dyn Stepper>, period: f64) -> World {
             links.push(Link { a: Combination::row(a as u32), b: Combination::row(b as u32), rest_length });
         }
     }
+    links
+}
+
+/// Two cubes held in shape by springs, the upper one on its way to hit the lower one off its centre.
+fn collision(stepper: Box<dyn Stepper>, period: f64) -> World {
+    let law = ContactLaw { stiffness: 2e3, tangential_stiffness: 1e3, thickness: 0.0, ..LAW };
+    let (positions, contact) = two_cubes(law, 1.1, Vec3::new(0.1, 0.3, 0.05));
+    let half = positions.len() / 2;
+    let links = springs_within(&positions, half);
     let forces: Vec<Box<dyn Force>> =
         vec![Box::new(contact), Box::new(Attachments::new("bodies", links, 200.0, 0.0).unwrap())];
     let velocities: Vec<Vec3> = (0..positions.len())
@@ -342,7 +398,7 @@ fn an_implicit_collision_conserves_momentum() {
     assert!(most > 1, "{most}");
 }
 
-fn read<T>(world: &mut World, ask: impl FnOnce(&SurfaceContact, &Configuration) -> T) -> T {
+pub(super) fn read<T>(world: &mut World, ask: impl FnOnce(&SurfaceContact, &Configuration) -> T) -> T {
     world.with_system(0, |system, state, around, ws| {
         let contact = system.forces[0].as_any().downcast_ref::<SurfaceContact>().unwrap();
         ask(contact, &system.view(0, &ws.rows, state, around))
@@ -369,12 +425,12 @@ fn degenerate_surfaces() {
 fn bad_contacts_are_named() {
     let plane = || Box::new(Plane { point: Vec3::ZERO, normal: Vec3::Y });
     let bad = ContactLaw { friction: -0.1, ..LAW };
-    let error = ShapeContact::new("contact", points(&[Vec3::ZERO]), plane(), ShapeMotion::default(), bad);
+    let error = ShapeContact::new("contact", points(&[Vec3::ZERO]), plane(), RigidMotion::default(), bad);
     assert_eq!(
         error.unwrap_err().to_string(),
         "`friction` is -0.1, but must be a finite number of at least 0"
     );
-    assert!(ShapeContact::new("contact", vec![], plane(), ShapeMotion::default(), LAW).is_err());
+    assert!(ShapeContact::new("contact", vec![], plane(), RigidMotion::default(), LAW).is_err());
     let side = |rows: std::ops::Range<u32>| {
         let surface = cube(Vec3::ZERO, Vec3::ZERO);
         let shares = vec![1.0; surface.points.len()];

@@ -1,5 +1,5 @@
 //! What every load and contact must satisfy, for tests: force against energy, differential against force,
-//! blocks against differential, no net force where none is declared.
+//! blocks against differential, heat never negative, no velocity terms, net force or torque where none is declared.
 
 use std::sync::Arc;
 
@@ -137,6 +137,7 @@ pub(crate) fn assert_force(force: &dyn Force, setting: &Setting) {
             );
         }
     }
+    assert_dissipation(force, setting);
     if declaration.internal {
         let (mut net, mut torque) = (Vec3::ZERO, Vec3::ZERO);
         for (f, x) in value.iter().zip(&setting.positions) {
@@ -150,6 +151,24 @@ pub(crate) fn assert_force(force: &dyn Force, setting: &Setting) {
             "{}: torque {torque:?}",
             force.name()
         );
+    }
+}
+
+/// Heat of a step is never negative, none where the force is conservative; and it is not the velocity that makes a force
+/// without velocity terms.
+fn assert_dissipation(force: &dyn Force, setting: &Setting) {
+    let heat = |setting: &Setting| force.energy(&setting.at(), &mut force.new_scratch()).dissipated;
+    let mut after = setting.clone();
+    after.advance(force, 0.01);
+    let (gained, size) = (heat(&after) - heat(setting), setting.stored(force).abs() + heat(setting).abs());
+    // sums of terms of the size of the energies
+    assert!(gained >= -1e-13 * size, "{}: {gained} J of heat", force.name());
+    if force.declaration().conservative {
+        assert!(gained <= 1e-13 * size, "{}: {gained} J of heat of a conservative force", force.name());
+    }
+    if !force.declaration().velocity_terms {
+        let still = Setting { velocities: vec![Vec3::ZERO; setting.positions.len()], ..setting.clone() };
+        assert_eq!(setting.force(force), still.force(force), "{}: velocity terms", force.name());
     }
 }
 

@@ -154,7 +154,7 @@ impl Force for MassDamping {
     }
 
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        add_scaled_product(&self.mass, -self.rate, at.velocities, out);
+        self.mass.add_scaled_product(-self.rate, at.velocities, out);
     }
 
     fn add_differential(
@@ -165,7 +165,7 @@ impl Force for MassDamping {
         _scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        add_scaled_product(&self.mass, -self.rate * weights.velocity, delta, out);
+        self.mass.add_scaled_product(-self.rate * weights.velocity, delta, out);
     }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
@@ -210,16 +210,5 @@ impl Force for MassDamping {
 
     fn as_any(&self) -> &dyn Any {
         self
-    }
-}
-
-/// `out += scale M x`.
-fn add_scaled_product(mass: &Mass, scale: f64, x: &[Vec3], out: &mut [Vec3]) {
-    for ((out, x), mass) in out.iter_mut().zip(x).zip(&mass.diagonal) {
-        *out += *x * (*mass * scale);
-    }
-    for &(a, b, mass) in &mass.couplings {
-        out[a as usize] += x[b as usize] * (mass * scale);
-        out[b as usize] += x[a as usize] * (mass * scale);
     }
 }

@@ -6,17 +6,40 @@ use souple_engine::{
     Configuration, Declaration, Editable, Energy, Force, Kinematics, Mass, ParameterError, Scratch,
     TangentWeights,
 };
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 
 use super::{Fit, LoadError, editable, finite, set_number};
 
-/// `f_a = m_a g` with `m_a = Σ_b M_ab`, the sum over rows that move with a translation.
+/// What pulls.
+#[derive(Clone, Debug)]
+enum Acceleration {
+    /// Always the same; may be edited [m/s²].
+    Constant(Vec3),
+    /// Three formulas of [`TIME_VARIABLES`] [m/s²].
+    Varying([Formula; 3]),
+}
+
+/// What a gravity that varies may refer to: the time [s].
+pub const TIME_VARIABLES: [&str; 1] = ["t"];
+
+impl Acceleration {
+    fn at(&self, time: f64) -> Vec3 {
+        match self {
+            Self::Constant(g) => *g,
+            Self::Varying(formulas) => {
+                Vec3::from_array([0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&[time])))
+            }
+        }
+    }
+}
+
+/// `f_a = m_a g(t)` with `m_a = Σ_b M_ab`, the sum over rows that move with a translation.
 #[derive(Clone, Debug)]
 pub struct Gravity {
     name: String,
-    /// [m/s²]
-    acceleration: Vec3,
+    acceleration: Acceleration,
     /// Per row [kg].
     row_masses: Vec<f64>,
 }
@@ -36,6 +59,20 @@ impl Gravity {
         for axis in 0..3 {
             finite(format!("gravity[{axis}]"), acceleration[axis])?;
         }
+        Ok(Self::of(name.into(), Acceleration::Constant(acceleration), mass, kinematics))
+    }
+
+    /// The same with three formulas of [`TIME_VARIABLES`]: a shaken or turned world, seen from inside it.
+    pub fn varying(
+        name: impl Into<String>,
+        acceleration: [Formula; 3],
+        mass: &Mass,
+        kinematics: &Kinematics,
+    ) -> Self {
+        Self::of(name.into(), Acceleration::Varying(acceleration), mass, kinematics)
+    }
+
+    fn of(name: String, acceleration: Acceleration, mass: &Mass, kinematics: &Kinematics) -> Self {
         // a fall moves row b by its translation weight: f = M (w g)
         let share = |row| kinematics.translation_weight(row);
         let mut row_masses: Vec<f64> =
@@ -44,12 +81,12 @@ impl Gravity {
             row_masses[a as usize] += coupling * share(b as usize);
             row_masses[b as usize] += coupling * share(a as usize);
         }
-        Ok(Self { name: name.into(), acceleration, row_masses })
+        Self { name, acceleration, row_masses }
     }
 
-    /// Total weight [N].
-    pub fn total(&self) -> Vec3 {
-        self.acceleration * self.row_masses.iter().sum::<f64>()
+    /// Total weight at a time [N].
+    pub fn total(&self, time: f64) -> Vec3 {
+        self.acceleration.at(time) * self.row_masses.iter().sum::<f64>()
     }
 }
 
@@ -64,13 +101,13 @@ impl Force for Gravity {
 
     // E = -Σ m g · x
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let weight = self.acceleration * at.load;
+        let weight = self.acceleration.at(at.time) * at.load;
         let stored = self.row_masses.iter().zip(at.positions).map(|(mass, x)| -mass * weight.dot(*x)).sum();
         Energy { stored, dissipated: 0.0 }
     }
 
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        let weight = self.acceleration * at.load;
+        let weight = self.acceleration.at(at.time) * at.load;
         for (out, mass) in out.iter_mut().zip(&self.row_masses) {
             *out += weight * *mass;
         }
@@ -91,12 +128,15 @@ impl Force for Gravity {
     fn add_blocks(&self, _: &Configuration, _: TangentWeights, _: &mut Scratch, _: &mut BlockMatrix) {}
 
     fn editable(&self) -> Vec<Editable> {
+        let Acceleration::Constant(g) = self.acceleration else { return Vec::new() };
         let names = ["gravity_x", "gravity_y", "gravity_z"];
-        (0..3).map(|axis| editable(names[axis], "m/s²", self.acceleration[axis])).collect()
+        (0..3).map(|axis| editable(names[axis], "m/s²", g[axis])).collect()
     }
 
     fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
-        let Vec3 { x, y, z } = &mut self.acceleration;
+        let Acceleration::Constant(Vec3 { x, y, z }) = &mut self.acceleration else {
+            return set_number(&self.name, &mut [], name, value);
+        };
         let numbers = &mut [
             ("gravity_x", x, Fit::Finite),
             ("gravity_y", y, Fit::Finite),

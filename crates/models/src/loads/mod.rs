@@ -15,6 +15,8 @@ mod gravity;
 mod ground_springs;
 mod motion;
 mod point_load;
+mod pressure;
+mod rigid_motion;
 #[cfg(test)]
 mod tests;
 
@@ -26,10 +28,12 @@ pub use drag::{Drag, MassDamping};
 pub use field::{ForceField, UniformForce};
 pub use formula::{FormulaVector, VARIABLES};
 pub use grab::Grab;
-pub use gravity::Gravity;
+pub use gravity::{Gravity, TIME_VARIABLES};
 pub use ground_springs::{GroundSpring, GroundSprings};
 pub use motion::{Interpolation, KeyFrames, TimeFunction};
 pub use point_load::PointLoad;
+pub use pressure::{PressedFace, Pressure};
+pub use rigid_motion::{Pose, RigidMotion};
 
 /// A number a load cannot take.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

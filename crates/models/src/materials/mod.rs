@@ -1,22 +1,30 @@
 //! Materials: hyperelastic laws, one file each, and their table.
 //!
-//! A new law is a file with an `impl Law` and an `ENTRY`, and its line in the list below.
+//! A new law is a file with an `impl Law` and an `ENTRY`, and its line in the list below. A law that is wanted in one
+//! scene needs no file: [`hyperelastic`] takes it as text.
 
 // F, P, S, J as in the equations: the reader has the paper beside the code
 #![allow(non_snake_case)]
 
 mod corotational;
+mod hyperelastic;
 mod invariants;
 mod law;
+mod library;
 mod linear;
 mod neo_hookean;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
 
+use std::sync::Arc;
+
+use souple_formal::law::Strain;
 use souple_math::Mat3;
 use souple_table::{Entry, Parameter, Range, Table, Values};
 
+pub use hyperelastic::{MaterialError, TextLaw, law_text};
 pub use law::{Lame, Law, Parameters};
+pub use library::{WRITTEN_LAWS, WrittenLaw};
 
 /// Writes the table, the choice of a law at run time and its dispatch from one list.
 macro_rules! laws {
@@ -24,9 +32,10 @@ macro_rules! laws {
         $(pub use $module::$Law;)+
 
         /// All materials.
-        pub static TABLE: Table<Build> = Table { kind: "material", entries: &[$(&$module::ENTRY),+] };
+        pub static TABLE: Table<Build> =
+            Table { kind: "material", entries: &[$(&$module::ENTRY,)+ &hyperelastic::ENTRY] };
 
-        /// One of the laws of [`TABLE`], as a value.
+        /// One of the laws of [`TABLE`] that are compiled ahead, as a value.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum AnyLaw { $($Law),+ }
 
@@ -55,7 +64,7 @@ laws! {
 }
 
 /// What an entry makes of its completed values.
-pub type Build = fn(&Values) -> Material;
+pub type Build = fn(&Values) -> Result<Material, MaterialError>;
 
 /// A function generic over laws, to be instantiated for each and chosen by [`AnyLaw::visit`].
 pub trait LawVisitor {
@@ -66,11 +75,38 @@ pub trait LawVisitor {
 /// The most numbers a law may have: the width of [`Material::parameters`].
 pub const PARAMETERS_MAX: usize = 8;
 
+/// The law of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialLaw {
+    /// Compiled with the program.
+    Known(AnyLaw),
+    /// Written as text, compiled when the scene is read.
+    Text(Arc<TextLaw>),
+}
+
+impl MaterialLaw {
+    /// Whether a rotation of the body leaves its energy as it is.
+    pub fn is_objective(&self) -> bool {
+        struct IsObjective;
+        impl LawVisitor for IsObjective {
+            type Output = bool;
+            fn visit<L: Law>(self, _: L) -> bool {
+                L::OBJECTIVE
+            }
+        }
+        match self {
+            Self::Known(law) => law.visit(IsObjective),
+            Self::Text(law) => law.law().strain == Strain::Finite,
+        }
+    }
+}
+
 /// A law with its numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    pub law: AnyLaw,
-    /// The law's numbers in the order of its [`Parameters::NAMES`], zeros behind them.
+    pub law: MaterialLaw,
+    /// The numbers of a known law in the order of its [`Parameters::NAMES`], zeros behind them; a law as text holds its
+    /// own.
     pub parameters: [f64; PARAMETERS_MAX],
     /// Moduli at rest, for wave speeds and scales [Pa].
     pub small_strain: Lame,
@@ -92,11 +128,12 @@ const ISOTROPIC: &[Parameter] = &[
 
 impl Material {
     /// From the completed values of [`ISOTROPIC`].
-    fn isotropic(law: AnyLaw, values: &Values) -> Self {
+    fn isotropic(law: AnyLaw, values: &Values) -> Result<Self, MaterialError> {
         let lame = Lame::from_young_poisson(values.number("youngs_modulus"), values.number("poissons_ratio"));
         let mut parameters = [0.0; PARAMETERS_MAX];
         lame.pack(|i, number| parameters[i] = number);
-        Self { law, parameters, small_strain: lame, density: values.number("density") }
+        let law = MaterialLaw::Known(law);
+        Ok(Self { law, parameters, small_strain: lame, density: values.number("density") })
     }
 
     /// The numbers as the law `L` takes them.
@@ -113,7 +150,10 @@ impl Material {
                 L::energy_density(&self.0.parameters_of::<L>(), self.1)
             }
         }
-        self.law.visit(Energy(self, F))
+        match &self.law {
+            MaterialLaw::Known(law) => law.visit(Energy(self, F)),
+            MaterialLaw::Text(law) => law.law().energy_at(F),
+        }
     }
 
     /// [`Law::stress`] of this material [Pa].
@@ -125,7 +165,18 @@ impl Material {
                 L::stress(&self.0.parameters_of::<L>(), self.1)
             }
         }
-        self.law.visit(Stress(self, F))
+        match &self.law {
+            MaterialLaw::Known(law) => law.visit(Stress(self, F)),
+            MaterialLaw::Text(law) => law.law().stress_at(F),
+        }
+    }
+
+    /// What is legal in the law and doubtful.
+    pub fn warnings(&self) -> &[String] {
+        match &self.law {
+            MaterialLaw::Known(_) => &[],
+            MaterialLaw::Text(law) => &law.law().warnings,
+        }
     }
 }
 

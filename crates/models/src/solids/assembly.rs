@@ -14,12 +14,10 @@ use rayon::prelude::*;
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, Pattern};
 
-use super::Batch;
-use super::kernel::BLOCK_LEN_MAX;
+use super::elements::{Batch, Elements};
 use super::layout::{Chunk, LANES};
+use super::parallel;
 
-/// Chunks below which threads cost more than they bring.
-const PARALLEL_CHUNKS: usize = 4;
 /// Blocks of the matrix gathered by one task.
 const SLOTS_PER_TASK: usize = 4096;
 /// Place of a block that the matrix does not store.
@@ -33,9 +31,35 @@ enum Pairs {
     Equal,
 }
 
+/// Which blocks an element gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Symmetry {
+    /// `(a, b)` with `a ≤ b`; those below the diagonal are their transposes.
+    #[default]
+    Symmetric,
+    /// All `(a, b)`.
+    General,
+}
+
+impl Symmetry {
+    /// Pairs of an element's nodes in the order of its blocks.
+    fn pairs(self, nodes: usize) -> impl Iterator<Item = (usize, usize)> {
+        let first = move |a| if self == Self::Symmetric { a } else { 0 };
+        (0..nodes).flat_map(move |a| (first(a)..nodes).map(move |b| (a, b)))
+    }
+
+    fn pair_count(self, nodes: usize) -> usize {
+        match self {
+            Self::Symmetric => nodes * (nodes + 1) / 2,
+            Self::General => nodes * nodes,
+        }
+    }
+}
+
 /// Lists and buffers of both passes, kept between calls.
 #[derive(Default)]
 pub struct Assembly {
+    symmetry: Symmetry,
     pairs: Option<Pairs>,
     pattern: Option<Arc<Pattern>>,
     /// `[block][pair of nodes][lane]` of all chunks: which of its chunk's sums an element block goes to, times two,
@@ -43,7 +67,7 @@ pub struct Assembly {
     places: Vec<u16>,
     /// Where each chunk's places and sums start, and where they end.
     starts: Vec<Start>,
-    /// `(row, column)` of each sum, `row ≤ column`.
+    /// `(row, column)` of each sum; `row ≤ column` where blocks are symmetric.
     entries: Vec<(u32, u32)>,
     sums: Vec<Mat3>,
     /// Slots of the body's rows, and for each of them `sources[source_starts[i] .. source_starts[i + 1]]`: a sum
@@ -60,31 +84,57 @@ struct Start {
 }
 
 thread_local! {
-    /// A chunk's own rows and the element blocks of one block of lanes.
-    static LOCAL: RefCell<(Vec<Vec3>, Vec<f64>)> = const { RefCell::new((Vec::new(), Vec::new())) };
+    /// The element blocks of some blocks of lanes.
+    static BLOCKS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
 
 impl Assembly {
-    /// `matrix += scale ∂f/∂x` at `positions` for all chunks of a body of the rows `rows`.
-    pub fn add_blocks(
+    pub fn new(symmetry: Symmetry) -> Self {
+        Self { symmetry, ..Self::default() }
+    }
+
+    /// Adds the elements' blocks to `matrix`: `blocks_of(batch, chunk, blocks, own rows of inputs, out)` writes those of
+    /// some blocks of lanes, at most [`Batch::blocks_at_once`], `[block][pair of nodes][entry by columns][lane]`.
+    pub fn add_blocks<K: Send + Sync, const I: usize>(
         &mut self,
-        batches: &[Batch],
-        rows: &Range<usize>,
-        positions: &[Vec3],
-        scale: f64,
+        elements: &Elements<K>,
+        inputs: [&[Vec3]; I],
         matrix: &mut BlockMatrix,
+        blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Vec3]; I], &mut [f64]) + Sync,
     ) {
-        self.update(batches, rows, matrix.pattern());
+        self.update(elements, matrix.pattern());
         let mut sums = std::mem::take(&mut self.sums);
-        let (mut remaining, mut first) = (sums.as_mut_slice(), 0);
-        for batch in batches {
-            let chunks = first..first + batch.chunks.len();
-            let (mine, rest) = remaining.split_at_mut(self.starts[chunks.end].sum - self.starts[first].sum);
-            BatchSums { assembly: self, batch, first, positions, scale }.fill(chunks.clone(), mine);
-            (remaining, first) = (rest, chunks.end);
-        }
+        let start_of = |number: usize| self.starts[number].sum;
+        parallel::fill(0..elements.chunk_count(), parallel::HEAVY, &mut sums, &start_of, &|number, sums| {
+            let (batch, chunk) = elements.chunk(number);
+            let places = &self.places[self.starts[number].place..self.starts[number + 1].place];
+            // one block's places
+            let block_len = self.symmetry.pair_count(batch.kind.node_count()) * LANES;
+            let at_once = batch.blocks_at_once;
+            sums.fill(Mat3::ZERO);
+            chunk.with_own_rows(inputs, |inputs| {
+                BLOCKS.with_borrow_mut(|blocks| {
+                    blocks.resize(9 * block_len * at_once, 0.0);
+                    for (several, places) in places.chunks(block_len * at_once).enumerate() {
+                        let first = several * at_once;
+                        let range = first..first + places.len() / block_len;
+                        blocks_of(batch, chunk, range, inputs, blocks);
+                        add_to_sums(blocks, places, sums);
+                    }
+                });
+            });
+        });
         self.sums = sums;
         self.gather(matrix);
+    }
+
+    /// Bytes of lists and sums.
+    pub fn bytes(&self) -> usize {
+        2 * self.places.capacity()
+            + size_of::<Start>() * self.starts.capacity()
+            + 8 * self.entries.capacity()
+            + size_of::<Mat3>() * self.sums.capacity()
+            + 4 * (self.source_starts.capacity() + self.sources.capacity())
     }
 
     fn gather(&self, matrix: &mut BlockMatrix) {
@@ -107,38 +157,39 @@ impl Assembly {
         }
     }
 
-    fn update(&mut self, batches: &[Batch], rows: &Range<usize>, pattern: &Arc<Pattern>) {
+    fn update<K: Send + Sync>(&mut self, elements: &Elements<K>, pattern: &Arc<Pattern>) {
         if self.pattern.as_ref().is_some_and(|known| Arc::ptr_eq(known, pattern)) {
             return;
         }
         let is_diagonal = pattern.slot_count() == pattern.block_count();
         let pairs = if is_diagonal { Pairs::Equal } else { Pairs::All };
         if self.pairs != Some(pairs) {
-            self.number_sums(batches, pairs);
+            self.number_sums(elements, pairs);
         }
-        self.list_sources(rows, pattern);
+        self.list_sources(&elements.rows(), pattern);
         self.pattern = Some(Arc::clone(pattern));
     }
 
     /// Numbers the pairs of nodes that occur in each chunk.
-    fn number_sums(&mut self, batches: &[Batch], pairs: Pairs) {
-        *self = Self { pairs: Some(pairs), ..Self::default() };
+    fn number_sums<K: Send + Sync>(&mut self, elements: &Elements<K>, pairs: Pairs) {
+        let symmetry = self.symmetry;
+        *self = Self { symmetry, pairs: Some(pairs), ..Self::default() };
         let mut known: Vec<(u16, u16)> = Vec::new();
         let mut ordered: Vec<Option<((u16, u16), bool)>> = Vec::new();
-        for (batch, chunk) in
-            batches.iter().flat_map(|batch| batch.chunks.iter().map(move |chunk| (batch, chunk)))
-        {
+        for (batch, chunk) in elements.chunks() {
             self.starts.push(Start { place: self.places.len(), sum: self.entries.len() });
             let nodes = batch.kind.node_count();
             ordered.clear();
             for block in 0..chunk.block_count() {
                 let local = |a: usize, lane: usize| chunk.connectivity[(block * nodes + a) * LANES + lane];
-                for (a, b) in (0..nodes).flat_map(|a| (a..nodes).map(move |b| (a, b))) {
+                for (a, b) in symmetry.pairs(nodes) {
                     for lane in 0..LANES {
                         let is_summed = lane < chunk.lanes_in(block) && (a == b || pairs == Pairs::All);
                         // rows of a chunk ascend, so its own numbers stand for them
                         let (i, j) = (local(a, lane), local(b, lane));
-                        ordered.push(is_summed.then(|| ((i.min(j), i.max(j)), i > j)));
+                        let is_transposed = symmetry == Symmetry::Symmetric && i > j;
+                        let pair = if is_transposed { (j, i) } else { (i, j) };
+                        ordered.push(is_summed.then_some((pair, is_transposed)));
                     }
                 }
             }
@@ -162,10 +213,12 @@ impl Assembly {
     fn list_sources(&mut self, rows: &Range<usize>, pattern: &Pattern) {
         self.slots = pattern.row_starts()[rows.start] as usize..pattern.row_starts()[rows.end] as usize;
         let first = self.slots.start;
+        let symmetry = self.symmetry;
         let slots_of = |&(row, column): &(u32, u32)| {
             let slot = |a: u32, b: u32| pattern.slot(a as usize, b as usize).map(|slot| slot - first);
             let upper = slot(row, column).map(|slot| (slot, 0));
-            let lower = if row == column { None } else { slot(column, row).map(|slot| (slot, 1)) };
+            let is_alone = row == column || symmetry == Symmetry::General;
+            let lower = if is_alone { None } else { slot(column, row).map(|slot| (slot, 1)) };
             [upper, lower].into_iter().flatten()
         };
         self.source_starts.clear();
@@ -191,62 +244,21 @@ impl Assembly {
     }
 }
 
-/// The sums of one batch, whose chunks are numbered from `first`.
-#[derive(Clone, Copy)]
-struct BatchSums<'a> {
-    assembly: &'a Assembly,
-    batch: &'a Batch,
-    first: usize,
-    positions: &'a [Vec3],
-    scale: f64,
-}
-
-impl BatchSums<'_> {
-    /// Fills the sums of some chunks, halving the work among threads.
-    fn fill(self, chunks: Range<usize>, sums: &mut [Mat3]) {
-        let starts = &self.assembly.starts;
-        if chunks.len() >= PARALLEL_CHUNKS && rayon::current_num_threads() > 1 {
-            let middle = chunks.start + chunks.len() / 2;
-            let (head, tail) = sums.split_at_mut(starts[middle].sum - starts[chunks.start].sum);
-            rayon::join(|| self.fill(chunks.start..middle, head), || self.fill(middle..chunks.end, tail));
-            return;
-        }
-        let mut remaining = sums;
-        for number in chunks {
-            let (mine, rest) = remaining.split_at_mut(starts[number + 1].sum - starts[number].sum);
-            remaining = rest;
-            let places = &self.assembly.places[starts[number].place..starts[number + 1].place];
-            self.fill_chunk(&self.batch.chunks[number - self.first], places, mine);
-        }
-    }
-
-    fn fill_chunk(self, chunk: &Chunk, places: &[u16], sums: &mut [Mat3]) {
-        let Self { batch, scale, .. } = self;
-        let nodes = batch.kind.node_count();
-        let block_len = nodes * (nodes + 1) / 2 * LANES;
-        sums.fill(Mat3::ZERO);
-        LOCAL.with_borrow_mut(|(positions, blocks)| {
-            chunk.localise(self.positions, positions);
-            blocks.resize(BLOCK_LEN_MAX, 0.0);
-            for (block, places) in places.chunks_exact(block_len).enumerate() {
-                batch.kernel.blocks(chunk, block, &batch.reference, positions, scale, blocks);
-                for (numbers, places) in blocks.chunks_exact(9 * LANES).zip(places.chunks_exact(LANES)) {
-                    for (lane, &place) in places.iter().enumerate() {
-                        if place == NOWHERE {
-                            continue;
-                        }
-                        let number = |i: usize| numbers[i * LANES + lane];
-                        let column =
-                            |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
-                        let row = |i: usize| Vec3::new(number(i), number(i + 3), number(i + 6));
-                        sums[(place >> 1) as usize] += if place & 1 == 0 {
-                            Mat3::from_columns(column(0), column(1), column(2))
-                        } else {
-                            Mat3::from_columns(row(0), row(1), row(2))
-                        };
-                    }
-                }
+/// Adds the element blocks of some blocks of lanes to the sums of its chunk.
+fn add_to_sums(blocks: &[f64], places: &[u16], sums: &mut [Mat3]) {
+    for (numbers, places) in blocks.chunks_exact(9 * LANES).zip(places.chunks_exact(LANES)) {
+        for (lane, &place) in places.iter().enumerate() {
+            if place == NOWHERE {
+                continue;
             }
-        });
+            let number = |i: usize| numbers[i * LANES + lane];
+            let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+            let row = |i: usize| Vec3::new(number(i), number(i + 3), number(i + 6));
+            sums[(place >> 1) as usize] += if place & 1 == 0 {
+                Mat3::from_columns(column(0), column(1), column(2))
+            } else {
+                Mat3::from_columns(row(0), row(1), row(2))
+            };
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! partial sums to one gather over rows, in chunk order. Neither order depends on the number of threads.
 
 use souple_math::{Mat3, Vec3};
-use souple_mesh::{ElementKind, QuadratureRule};
+use souple_mesh::{Cell, ElementKind, Mesh, QuadratureRule};
 
 /// Elements side by side in a block.
 pub const LANES: usize = 8;
@@ -27,7 +27,7 @@ unsafe impl bytemuck::Pod for LaneBlock {}
 /// A few hundred neighbouring samples.
 #[derive(Clone, Debug)]
 pub struct Chunk {
-    /// Cell numbers of the body. Lane `l` of block `b` holds the `(l · block_count + b)`-th of them: neighbours
+    /// Cell numbers of the body, ascending. Lane `l` of block `b` holds the `(l · block_count + b)`-th of them: neighbours
     /// in the list, which share nodes, stand in different blocks, so that sums on a node do not wait for
     /// each other.
     pub cells: Vec<u32>,
@@ -59,6 +59,14 @@ impl Chunk {
         bytemuck::cast_slice(&self.samples)
     }
 
+    /// `X_ξ⁻¹` and the volume of the chunk's `slot`-th cell at a sample of `count`.
+    pub fn sample_of(&self, slot: usize, sample: usize, count: usize) -> (Mat3, f64) {
+        let (lane, block) = (slot / self.block_count(), slot % self.block_count());
+        let number = |i: usize| self.samples[(block * count + sample) * SAMPLE_LEN + i].0[lane];
+        let column = |i: usize| Vec3::new(number(3 * i), number(3 * i + 1), number(3 * i + 2));
+        (Mat3::from_columns(column(0), column(1), column(2)), number(9))
+    }
+
     /// `[block][parameter][lane]`, flat.
     #[inline(always)]
     pub fn parameters(&self) -> &[f64] {
@@ -84,72 +92,94 @@ pub struct FlatCell {
     pub determinant: f64,
 }
 
-/// Lays out `cells` (numbers with their rows) into chunks.
+/// The body that cells are of.
+pub struct Body<'a> {
+    pub mesh: &'a Mesh,
+    /// Row of the mesh's first point.
+    pub first_row: usize,
+    pub rule: &'a QuadratureRule,
+}
+
+/// Lays out `cells` (numbers, all of one kind) into chunks; `parameters_of` gives as many numbers for each.
 ///
 /// # Errors
 /// A cell is flat or inverted at a sample.
-pub fn chunks(
-    kind: ElementKind,
-    rule: &QuadratureRule,
-    rest_positions: &[Vec3],
-    cells: &[(u32, &[u32])],
-    parameters_of: &dyn Fn(u32) -> Vec<f64>,
+pub fn chunks<'p>(
+    body: &Body,
+    cells: &[u32],
+    parameters_of: &dyn Fn(u32) -> &'p [f64],
     first_partial: usize,
 ) -> Result<Vec<Chunk>, FlatCell> {
-    let per_chunk = (SAMPLES_PER_CHUNK / rule.points.len() / LANES).max(1) * LANES;
-    let centre = |rows: &[u32]| -> Vec3 {
-        rows.iter().map(|row| rest_positions[*row as usize]).sum::<Vec3>() * (1.0 / rows.len() as f64)
-    };
-    let centres: Vec<Vec3> = cells.iter().map(|(_, rows)| centre(rows)).collect();
+    let per_chunk = (SAMPLES_PER_CHUNK / body.rule.points.len() / LANES).max(1) * LANES;
     // compact chunks share few nodes with others: fewer partial sums, positions that stay in cache
-    let order = souple_mesh::recursive_bisection(&centres, per_chunk);
-    let ordered: Vec<(u32, &[u32])> = order.iter().map(|index| cells[*index as usize]).collect();
+    let order = {
+        let centres: Vec<Vec3> = cells.iter().map(|cell| body.centre(*cell)).collect();
+        souple_mesh::recursive_bisection(&centres, per_chunk)
+    };
     let mut next_partial = first_partial;
-    ordered
-        .chunks(per_chunk)
-        .map(|members| {
-            let chunk = lay_out(kind, rule, rest_positions, members, parameters_of, next_partial)?;
-            next_partial += chunk.rows.len();
-            Ok(chunk)
-        })
-        .collect()
+    let mut members = Vec::with_capacity(per_chunk);
+    let mut chunks = Vec::with_capacity(cells.len().div_ceil(per_chunk));
+    for numbers in order.chunks(per_chunk) {
+        members.clear();
+        members.extend(numbers.iter().map(|index| cells[*index as usize]));
+        let chunk = lay_out(body, &members, parameters_of, next_partial)?;
+        next_partial += chunk.rows.len();
+        chunks.push(chunk);
+    }
+    Ok(chunks)
 }
 
-fn lay_out(
-    kind: ElementKind,
-    rule: &QuadratureRule,
-    rest_positions: &[Vec3],
-    members: &[(u32, &[u32])],
-    parameters_of: &dyn Fn(u32) -> Vec<f64>,
+impl Body<'_> {
+    fn cell(&self, cell: u32) -> Cell<'_> {
+        self.mesh.cell(cell).unwrap_or_else(|| unreachable!("cells are numbers of the mesh's own"))
+    }
+
+    fn centre(&self, cell: u32) -> Vec3 {
+        let nodes = self.cell(cell).nodes;
+        nodes.iter().map(|node| self.mesh.points[*node as usize]).sum::<Vec3>() * (1.0 / nodes.len() as f64)
+    }
+}
+
+fn lay_out<'p>(
+    body: &Body,
+    members: &[u32],
+    parameters_of: &dyn Fn(u32) -> &'p [f64],
     first_partial: usize,
 ) -> Result<Chunk, FlatCell> {
+    let Body { mesh, first_row, rule } = body;
+    let kind = body.cell(members[0]).kind;
+    let row = |node: &u32| node + *first_row as u32;
     let nodes = kind.node_count();
-    let mut rows: Vec<u32> = members.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
+    let mut rows: Vec<u32> = members.iter().flat_map(|cell| body.cell(*cell).nodes.iter().map(row)).collect();
     rows.sort_unstable();
     rows.dedup();
+    rows.shrink_to_fit();
     let blocks = members.len().div_ceil(LANES);
-    let parameter_count = parameters_of(members[0].0).len();
+    let parameter_count = parameters_of(members[0]).len();
     let mut chunk = Chunk {
-        cells: members.iter().map(|(cell, _)| *cell).collect(),
+        cells: members.to_vec(),
         connectivity: vec![0; blocks * nodes * LANES],
         samples: vec![LaneBlock::default(); blocks * rule.points.len() * SAMPLE_LEN],
         parameters: vec![LaneBlock::default(); blocks * parameter_count],
         rows,
         first_partial,
     };
+    let mut corners = [Vec3::ZERO; souple_mesh::MAX_NODES];
     for slot in 0..blocks * LANES {
         let (lane, block) = (slot / blocks, slot % blocks);
-        let (cell, cell_rows) = members[slot.min(members.len() - 1)];
-        for (a, row) in cell_rows.iter().enumerate() {
-            let local = chunk.rows.binary_search(row).unwrap_or_else(|_| unreachable!("collected above"));
+        let cell = members[slot.min(members.len() - 1)];
+        let cell_nodes = body.cell(cell).nodes;
+        for (a, node) in cell_nodes.iter().enumerate() {
+            let local =
+                chunk.rows.binary_search(&row(node)).unwrap_or_else(|_| unreachable!("collected above"));
             chunk.connectivity[(block * nodes + a) * LANES + lane] = local as u16;
         }
-        for (i, number) in parameters_of(cell).into_iter().enumerate() {
-            chunk.parameters[block * parameter_count + i].0[lane] = number;
+        for (i, number) in parameters_of(cell).iter().enumerate() {
+            chunk.parameters[block * parameter_count + i].0[lane] = *number;
         }
-        let corners: Vec<Vec3> = cell_rows.iter().map(|row| rest_positions[*row as usize]).collect();
+        let corners = mesh.positions_into(cell_nodes, &mut corners);
         for (sample, point) in rule.points.iter().enumerate() {
-            let jacobian = kind.jacobian(&corners, point.position);
+            let jacobian = kind.jacobian(corners, point.position);
             let determinant = jacobian.determinant();
             let inverse = jacobian.try_inverse().filter(|inverse| determinant > 0.0 && inverse.is_finite());
             let inverse = inverse.ok_or(FlatCell { kind, cell, sample, determinant })?;

@@ -1,66 +1,51 @@
 //! Solids: finite elements of any kind and law, mixed in one body.
 
 mod assembly;
+mod elements;
 mod geometry;
+mod group;
 mod kernel;
 mod layout;
 mod mass;
 mod output;
+mod parallel;
 mod rayleigh;
+mod text_kernel;
 mod viscosity;
+mod viscous_kernel;
 
 use std::any::Any;
-use std::cell::RefCell;
 use std::ops::Range;
+use std::sync::Arc;
 
-use rayon::prelude::*;
 use souple_engine::state::Pair;
-use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
-use crate::materials::{AnyLaw, Law, LawVisitor, Material, Parameters};
-use assembly::Assembly;
+use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters, TextLaw};
+use assembly::{Assembly, Symmetry};
+use elements::{Batch, Elements, Sorting};
 use geometry::{Nodes, Tetrahedron};
 use kernel::{Kernel, LawKernel};
 use layout::Chunk;
+use text_kernel::TextKernel;
 
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass};
-pub use output::CellField;
 pub use rayleigh::RayleighDamping;
 pub use viscosity::Viscosity;
 
 /// Elastic forces of a body.
 pub struct SolidForce {
     name: String,
-    batches: Vec<Batch>,
-    /// For each row of the body, the partial sums of chunks that it gathers, in chunk order.
-    gather: Gather,
-    rows: Range<usize>,
-    partial_count: usize,
-    /// Per cell of the body.
+    elements: Elements<Box<dyn Kernel>>,
     materials: Vec<Material>,
+    /// Per cell of the body.
     material_of_cell: Vec<u16>,
-    mesh: Mesh,
+    chunk_of_cell: Vec<u32>,
     quadrature: Quadrature,
-}
-
-/// The elements of one kind and law.
-struct Batch {
-    kind: ElementKind,
-    kernel: Box<dyn Kernel>,
-    /// `∂N_a/∂ξ`, sample after sample.
-    reference: Vec<Vec3>,
-    chunks: Vec<Chunk>,
-}
-
-/// Compressed lists: `slots[starts[r] .. starts[r + 1]]` of row `r`.
-#[derive(Default)]
-struct Gather {
-    starts: Vec<u32>,
-    slots: Vec<u32>,
 }
 
 /// Which rule of quadrature integrates the energy of an element.
@@ -95,23 +80,30 @@ pub struct SolidDescription<'a> {
     pub quadrature: Quadrature,
 }
 
-/// Chunks below which threads cost more than they bring.
-const PARALLEL_CHUNKS: usize = 16;
-/// Rows gathered by one task.
-const ROWS_PER_TASK: usize = 2048;
-
-/// Partial sums, kept between calls.
-#[derive(Default)]
+/// Partial sums and what assembles matrices, kept between calls.
 struct SolidScratch {
     partials: Vec<Vec3>,
-    energies: Vec<f64>,
     assembly: Assembly,
 }
 
-thread_local! {
-    /// A chunk's own rows, gathered.
-    static LOCAL: RefCell<[Vec<Vec3>; 2]> = const { RefCell::new([Vec::new(), Vec::new()]) };
+impl SolidScratch {
+    fn boxed(symmetry: Symmetry) -> Scratch {
+        Box::new(Self { partials: Vec::new(), assembly: Assembly::new(symmetry) })
+    }
+
+    fn of(scratch: &mut Scratch) -> &mut Self {
+        scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
+    }
+
+    fn bytes(scratch: &Scratch) -> usize {
+        scratch
+            .downcast_ref()
+            .map_or(0, |Self { partials, assembly }| 24 * partials.capacity() + assembly.bytes())
+    }
 }
+
+/// A cell's batch and chunk, and its number there.
+type Place<'a> = (&'a Batch<Box<dyn Kernel>>, &'a Chunk, usize);
 
 struct MakeKernel(ElementKind);
 
@@ -129,101 +121,57 @@ impl LawVisitor for MakeKernel {
     }
 }
 
+/// Elements by law, with the law's numbers.
+struct ByLaw<'a> {
+    materials: &'a [Material],
+    material_of_cell: &'a [u16],
+}
+
+impl Sorting for ByLaw<'_> {
+    type Law = MaterialLaw;
+    type Kernel = Box<dyn Kernel>;
+
+    fn law_of(&self, cell: usize) -> &MaterialLaw {
+        &self.materials[self.material_of_cell[cell] as usize].law
+    }
+
+    fn parameters_of(&self, cell: usize) -> &[f64] {
+        let material = &self.materials[self.material_of_cell[cell] as usize];
+        let count = match &material.law {
+            MaterialLaw::Known(law) => law.visit(ParameterCount),
+            // its numbers are constants of its tape
+            MaterialLaw::Text(_) => 0,
+        };
+        &material.parameters[..count]
+    }
+
+    fn kernel(&self, kind: ElementKind, law: &MaterialLaw) -> Box<dyn Kernel> {
+        match law {
+            MaterialLaw::Known(law) => law.visit(MakeKernel(kind)),
+            MaterialLaw::Text(law) => text_kernel(kind, law),
+        }
+    }
+
+    fn blocks_at_once(&self, kernel: &Box<dyn Kernel>) -> usize {
+        kernel.blocks_at_once()
+    }
+}
+
 impl SolidForce {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        let SolidDescription { name, mesh, first_row, materials, material_of_cell, quadrature } = description;
-        let rows = *first_row..*first_row + mesh.points.len();
-        let nodes_of_cell: Vec<Vec<u32>> = mesh
-            .cells()
-            .map(|cell| cell.nodes.iter().map(|node| node + *first_row as u32).collect())
-            .collect();
-        let mut rest_positions = vec![Vec3::ZERO; rows.end];
-        rest_positions[rows.clone()].copy_from_slice(&mesh.points);
-        let mut batches: Vec<Batch> = Vec::new();
-        let mut partial_count = 0;
-        for (kind, law) in kinds_and_laws(mesh, materials, material_of_cell) {
-            let cells: Vec<(u32, &[u32])> = mesh
-                .cells()
-                .enumerate()
-                .filter(|(index, cell)| {
-                    cell.kind == kind && materials[material_of_cell[*index] as usize].law == law
-                })
-                .map(|(index, _)| (index as u32, nodes_of_cell[index].as_slice()))
-                .collect();
-            let rule = quadrature.rule(kind);
-            let count = law.visit(ParameterCount);
-            let parameters_of =
-                |cell: u32| materials[material_of_cell[cell as usize] as usize].parameters[..count].to_vec();
-            let chunks = layout::chunks(kind, rule, &rest_positions, &cells, &parameters_of, partial_count)?;
-            partial_count += chunks.iter().map(|chunk| chunk.rows.len()).sum::<usize>();
-            let kernel = law.visit(MakeKernel(kind));
-            batches.push(Batch { kind, kernel, reference: reference_gradients(kind, rule), chunks });
-        }
-        let gather = Gather::new(&rows, &batches);
+        let SolidDescription { name, mesh, materials, material_of_cell, quadrature, .. } = description;
+        let elements = Elements::new(description, &ByLaw { materials, material_of_cell })?;
         Ok(Self {
             name: name.clone(),
-            batches,
-            gather,
-            rows,
-            partial_count,
+            chunk_of_cell: elements.chunk_of_cell(mesh.cell_count()),
+            elements,
             materials: materials.to_vec(),
             material_of_cell: material_of_cell.to_vec(),
-            mesh: (*mesh).clone(),
             quadrature: *quadrature,
         })
     }
-
-    fn chunks(&self) -> impl Iterator<Item = (&Batch, &Chunk)> {
-        self.batches.iter().flat_map(|batch| batch.chunks.iter().map(move |chunk| (batch, chunk)))
-    }
-
-    /// Runs `work` on every chunk with its slice of partial sums, then adds the sums to `out`.
-    fn sum_over_chunks(
-        &self,
-        scratch: &mut SolidScratch,
-        out: &mut [Vec3],
-        work: impl Fn(&Batch, &Chunk, &mut [Vec3]) + Sync,
-    ) {
-        scratch.partials.resize(self.partial_count, Vec3::ZERO);
-        let mut remaining = scratch.partials.as_mut_slice();
-        let mut tasks = Vec::with_capacity(self.chunks().count());
-        for (batch, chunk) in self.chunks() {
-            let (mine, rest) = remaining.split_at_mut(chunk.rows.len());
-            remaining = rest;
-            tasks.push((batch, chunk, mine));
-        }
-        let run = |(batch, chunk, sums): (&Batch, &Chunk, &mut [Vec3])| {
-            sums.fill(Vec3::ZERO);
-            work(batch, chunk, sums);
-        };
-        let parallel = tasks.len() >= PARALLEL_CHUNKS && rayon::current_num_threads() > 1;
-        if parallel {
-            tasks.into_par_iter().for_each(run);
-        } else {
-            tasks.into_iter().for_each(run);
-        }
-        let partials = &scratch.partials;
-        let gather_rows = |(task, rows): (usize, &mut [Vec3])| {
-            for (offset, row) in rows.iter_mut().enumerate() {
-                let sum =
-                    self.gather.of(task * ROWS_PER_TASK + offset).iter().map(|slot| partials[*slot as usize]);
-                *row += sum.sum();
-            }
-        };
-        let rows = &mut out[self.rows.clone()];
-        if parallel {
-            rows.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
-        } else {
-            rows.chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
-        }
-    }
-}
-
-/// Rows of a cell's nodes.
-fn nodes_of(cell: &souple_mesh::Cell, first_row: usize) -> Vec<u32> {
-    cell.nodes.iter().map(|node| node + first_row as u32).collect()
 }
 
 struct ParameterCount;
@@ -236,70 +184,14 @@ impl LawVisitor for ParameterCount {
     }
 }
 
-struct IsObjective;
-
-impl LawVisitor for IsObjective {
-    type Output = bool;
-
-    fn visit<L: Law>(self, _: L) -> bool {
-        L::OBJECTIVE
+fn text_kernel(kind: ElementKind, law: &Arc<TextLaw>) -> Box<dyn Kernel> {
+    match kind.node_count() {
+        4 => Box::new(TextKernel::<Tetrahedron, 4>::new(law)),
+        5 => Box::new(TextKernel::<Nodes<5>, 5>::new(law)),
+        6 => Box::new(TextKernel::<Nodes<6>, 6>::new(law)),
+        8 => Box::new(TextKernel::<Nodes<8>, 8>::new(law)),
+        other => unreachable!("no volume element has {other} nodes"),
     }
-}
-
-/// The pairs of element and law that occur, in order of first occurrence.
-fn kinds_and_laws(
-    mesh: &Mesh,
-    materials: &[Material],
-    material_of_cell: &[u16],
-) -> Vec<(ElementKind, AnyLaw)> {
-    let mut found = Vec::new();
-    for (cell, material) in mesh.cells().zip(material_of_cell) {
-        let pair = (cell.kind, materials[*material as usize].law);
-        if !found.contains(&pair) {
-            found.push(pair);
-        }
-    }
-    found
-}
-
-fn reference_gradients(kind: ElementKind, rule: &QuadratureRule) -> Vec<Vec3> {
-    rule.points
-        .iter()
-        .flat_map(|point| kind.shape_gradients(point.position).iter().copied().collect::<Vec<_>>())
-        .collect()
-}
-
-impl Gather {
-    fn new(rows: &Range<usize>, batches: &[Batch]) -> Self {
-        let mut lists = vec![Vec::new(); rows.len()];
-        for chunk in batches.iter().flat_map(|batch| &batch.chunks) {
-            for (local, row) in chunk.rows.iter().enumerate() {
-                lists[*row as usize - rows.start].push((chunk.first_partial + local) as u32);
-            }
-        }
-        let mut gather = Self { starts: vec![0], slots: Vec::new() };
-        for list in lists {
-            gather.slots.extend(list);
-            gather.starts.push(gather.slots.len() as u32);
-        }
-        gather
-    }
-
-    fn of(&self, row: usize) -> &[u32] {
-        &self.slots[self.starts[row] as usize..self.starts[row + 1] as usize]
-    }
-}
-
-impl Chunk {
-    /// The chunk's rows of `values`, in `local`.
-    fn localise(&self, values: &[Vec3], local: &mut Vec<Vec3>) {
-        local.clear();
-        local.extend(self.rows.iter().map(|row| values[*row as usize]));
-    }
-}
-
-fn solid_scratch(scratch: &mut Scratch) -> &mut SolidScratch {
-    scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
 }
 
 impl Force for SolidForce {
@@ -313,33 +205,20 @@ impl Force for SolidForce {
     }
 
     fn new_scratch(&self) -> Scratch {
-        Box::new(SolidScratch::default())
+        SolidScratch::boxed(Symmetry::Symmetric)
     }
 
-    fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
-        let scratch = solid_scratch(scratch);
-        let chunks: Vec<_> = self.chunks().collect();
-        scratch.energies.resize(chunks.len(), 0.0);
-        let energy_of = |(energy, (batch, chunk)): (&mut f64, &(&Batch, &Chunk))| {
-            LOCAL.with_borrow_mut(|[positions, _]| {
-                chunk.localise(at.positions, positions);
-                *energy = batch.kernel.energy(chunk, &batch.reference, positions);
-            });
-        };
-        if chunks.len() >= PARALLEL_CHUNKS {
-            scratch.energies.par_iter_mut().zip(&chunks).for_each(energy_of);
-        } else {
-            scratch.energies.iter_mut().zip(&chunks).for_each(energy_of);
-        }
-        Energy { stored: scratch.energies.iter().sum(), dissipated: 0.0 }
+    fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
+        let stored = self
+            .elements
+            .sum([at.positions], |batch, chunk, [x]| batch.kernel.energy(chunk, &batch.reference, x));
+        Energy { stored, dissipated: 0.0 }
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
-        self.sum_over_chunks(solid_scratch(scratch), out, |batch, chunk, sums| {
-            LOCAL.with_borrow_mut(|[positions, _]| {
-                chunk.localise(at.positions, positions);
-                batch.kernel.forces(chunk, &batch.reference, positions, sums);
-            });
+        let partials = &mut SolidScratch::of(scratch).partials;
+        self.elements.add_sums([at.positions], partials, out, |batch, chunk, [x], sums| {
+            batch.kernel.forces(chunk, &batch.reference, x, sums);
         });
     }
 
@@ -354,22 +233,14 @@ impl Force for SolidForce {
         if weights.position == 0.0 {
             return;
         }
-        self.sum_over_chunks(solid_scratch(scratch), out, |batch, chunk, sums| {
-            LOCAL.with_borrow_mut(|[positions, deltas]| {
-                chunk.localise(at.positions, positions);
-                chunk.localise(delta, deltas);
-                batch.kernel.differential(chunk, &batch.reference, positions, deltas, weights.position, sums);
-            });
+        let partials = &mut SolidScratch::of(scratch).partials;
+        self.elements.add_sums([at.positions, delta], partials, out, |batch, chunk, [x, delta], sums| {
+            batch.kernel.differential(chunk, &batch.reference, x, delta, weights.position, sums);
         });
     }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
-        let mut rows = Vec::new();
-        for cell in self.mesh.cells() {
-            rows.clear();
-            rows.extend(cell.nodes.iter().map(|node| node + self.rows.start as u32));
-            visit(&rows);
-        }
+        self.elements.visit_cliques(visit);
     }
 
     fn add_blocks(
@@ -382,17 +253,25 @@ impl Force for SolidForce {
         if weights.position == 0.0 {
             return;
         }
-        let assembly = &mut solid_scratch(scratch).assembly;
-        assembly.add_blocks(&self.batches, &self.rows, at.positions, weights.position, matrix);
+        let assembly = &mut SolidScratch::of(scratch).assembly;
+        assembly.add_blocks(&self.elements, [at.positions], matrix, |batch, chunk, blocks, [x], out| {
+            batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
+        });
     }
 
     fn bytes(&self) -> usize {
-        let chunks: usize = self.chunks().map(|(_, chunk)| chunk.bytes()).sum();
-        let cells: usize = self.mesh.blocks.iter().map(|block| 4 * block.nodes.len()).sum();
-        chunks
-            + cells
-            + 4 * (self.gather.starts.len() + self.gather.slots.len())
-            + 24 * self.mesh.points.len()
+        self.elements.bytes()
+            + 4 * self.chunk_of_cell.capacity()
+            + 2 * self.material_of_cell.capacity()
+            + size_of::<Material>() * self.materials.capacity()
+    }
+
+    fn scratch_bytes(&self, scratch: &Scratch) -> usize {
+        SolidScratch::bytes(scratch)
+    }
+
+    fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
+        self.field_of_cell(cell, positions)
     }
 
     fn as_any(&self) -> &dyn Any {
@@ -403,16 +282,27 @@ impl Force for SolidForce {
 impl SolidForce {
     /// Whether every law gives rotated bodies no stress.
     fn is_objective(&self) -> bool {
-        self.materials.iter().all(|material| material.law.visit(IsObjective))
+        self.materials.iter().all(|material| material.law.is_objective())
     }
 
-    /// The rest shape; its point `i` is row `rows().start + i`.
-    pub fn mesh(&self) -> &Mesh {
-        &self.mesh
+    pub fn cell_count(&self) -> usize {
+        self.material_of_cell.len()
+    }
+
+    /// The kind of a cell and the rows of its nodes.
+    pub fn cell(&self, cell: usize) -> Option<(ElementKind, impl Iterator<Item = usize>)> {
+        let (batch, chunk, slot) = self.place(cell)?;
+        Some((batch.kind, chunk.rows_of(slot, batch.kind.node_count()).map(|row| row as usize)))
+    }
+
+    fn place(&self, cell: usize) -> Option<Place<'_>> {
+        let (batch, chunk) = self.elements.chunk(*self.chunk_of_cell.get(cell)? as usize);
+        let slot = chunk.cells.binary_search(&(cell as u32)).ok()?;
+        Some((batch, chunk, slot))
     }
 
     pub fn rows(&self) -> Range<usize> {
-        self.rows.clone()
+        self.elements.rows()
     }
 
     pub fn quadrature(&self) -> Quadrature {

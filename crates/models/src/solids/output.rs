@@ -1,37 +1,19 @@
 //! What can be read off a solid: stress and energy per cell.
 
+use souple_engine::CellField;
 use souple_math::{Mat3, Vec3};
 
 use super::SolidForce;
 use crate::materials::cauchy_stress;
 
-/// Means over the volume of a cell.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CellField {
-    /// Deformation gradient.
-    pub deformation: Mat3,
-    /// First Piola–Kirchhoff stress [Pa].
-    pub stress: Mat3,
-    /// Cauchy stress [Pa]; zero where the cell has no volume.
-    pub cauchy: Mat3,
-    /// `√(3/2 s:s)` of the deviator `s` of the Cauchy stress [Pa].
-    pub von_mises: f64,
-    /// Stored energy per rest volume [J/m³].
-    pub energy_density: f64,
-    /// Rest volume [m³].
-    pub volume: f64,
-}
-
 impl SolidForce {
     /// Fields of one cell at row positions.
-    pub fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
-        let view = self.mesh().cell(cell as u32)?;
+    pub(super) fn field_of_cell(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
+        let (batch, chunk, slot) = self.place(cell)?;
+        let kind = batch.kind;
         let material = self.material(cell);
-        let at = |place: &dyn Fn(usize) -> Vec3| -> Vec<Vec3> {
-            view.nodes.iter().map(|node| place(*node as usize)).collect()
-        };
-        let rest = at(&|node| self.mesh().points[node]);
-        let now = at(&|node| positions[self.rows().start + node]);
+        let rows = chunk.rows_of(slot, kind.node_count());
+        let now: Vec<Vec3> = rows.map(|row| positions[row as usize]).collect();
         let mut sum = CellField {
             deformation: Mat3::ZERO,
             stress: Mat3::ZERO,
@@ -39,11 +21,12 @@ impl SolidForce {
             von_mises: 0.0,
             energy_density: 0.0,
             volume: 0.0,
+            current_volume: 0.0,
         };
-        for point in &self.quadrature().rule(view.kind).points {
-            let jacobian = view.kind.jacobian(&rest, point.position);
-            let volume = jacobian.determinant() * point.weight;
-            let F = view.kind.jacobian(&now, point.position) * jacobian.try_inverse()?;
+        let points = &self.quadrature().rule(kind).points;
+        for (sample, point) in points.iter().enumerate() {
+            let (inverse, volume) = chunk.sample_of(slot, sample, points.len());
+            let F = kind.jacobian(&now, point.position) * inverse;
             let P = material.stress(&F);
             sum.deformation += F * volume;
             sum.stress += P * volume;
@@ -61,6 +44,13 @@ impl SolidForce {
             von_mises: (1.5 * deviator.dot(&deviator)).sqrt(),
             energy_density: sum.energy_density * mean,
             volume: sum.volume,
+            // by the rule that is exact for the determinant, whatever the samples of the law
+            current_volume: kind
+                .default_rule()
+                .points
+                .iter()
+                .map(|point| point.weight * kind.jacobian(&now, point.position).determinant())
+                .sum(),
         })
     }
 }

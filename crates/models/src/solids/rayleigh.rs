@@ -7,14 +7,19 @@ use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentW
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 
-use super::{FlatCell, SolidDescription, SolidForce};
-use crate::materials::{AnyLaw, Material, Parameters};
+use super::assembly::Symmetry;
+use super::elements::Elements;
+use super::kernel::Kernel;
+use super::{ByLaw, FlatCell, SolidDescription, SolidScratch};
+use crate::materials::{AnyLaw, Material, MaterialLaw, Parameters};
 
 /// `f = -β K₀ v` with the stiffness of small strain at rest: linear and symmetric. A rotating body is damped
-/// too, in proportion to how far it has turned; [`super::Viscosity`] leaves rigid motion alone.
+/// too, in proportion to how far it has turned; [`super::Viscosity`] leaves rigid motion alone. Memory keeps account
+/// of the heat, `∫ β vᵀ K₀ v dt` [J].
 pub struct RayleighDamping {
+    name: String,
     /// The body with the linear law of the same moduli: its tangent is `-K₀` wherever it is.
-    stiffness: SolidForce,
+    elements: Elements<Box<dyn Kernel>>,
     /// `β` [s].
     seconds: f64,
 }
@@ -24,41 +29,56 @@ impl RayleighDamping {
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription, seconds: f64) -> Result<Self, FlatCell> {
         let linear = |material: &Material| {
-            let mut of_rest = *material;
-            of_rest.law = AnyLaw::Linear;
+            let mut of_rest = material.clone();
+            of_rest.law = MaterialLaw::Known(AnyLaw::Linear);
             material.small_strain.pack(|i, number| of_rest.parameters[i] = number);
             of_rest
         };
         let materials: Vec<Material> = description.materials.iter().map(linear).collect();
-        let stiffness = SolidForce::new(&SolidDescription { materials: &materials, ..description.clone() })?;
-        Ok(Self { stiffness, seconds })
+        let sorting = ByLaw { materials: &materials, material_of_cell: description.material_of_cell };
+        let elements = Elements::new(description, &sorting)?;
+        Ok(Self { name: description.name.clone(), elements, seconds })
     }
 
-    fn weights(&self, weights: TangentWeights) -> TangentWeights {
-        TangentWeights { position: weights.velocity * self.seconds, velocity: 0.0 }
+    /// `out += scale ∂f/∂x δ` of the elements, wherever they are.
+    fn add_stiffness(
+        &self,
+        at: &Configuration,
+        scale: f64,
+        delta: &[Vec3],
+        scratch: &mut Scratch,
+        out: &mut [Vec3],
+    ) {
+        let partials = &mut SolidScratch::of(scratch).partials;
+        self.elements.add_sums([at.positions, delta], partials, out, |batch, chunk, [x, delta], sums| {
+            batch.kernel.differential(chunk, &batch.reference, x, delta, scale, sums);
+        });
     }
 }
 
 impl Force for RayleighDamping {
     fn name(&self) -> &str {
-        self.stiffness.name()
+        &self.name
     }
 
     fn declaration(&self) -> Declaration {
         Declaration { conservative: false, velocity_terms: true, internal: false, ..Declaration::ELASTIC }
     }
 
-    fn new_scratch(&self) -> Scratch {
-        self.stiffness.new_scratch()
+    fn memory_len(&self) -> usize {
+        1
     }
 
-    fn energy(&self, _: &Configuration, _: &mut Scratch) -> Energy {
-        Energy::default()
+    fn new_scratch(&self) -> Scratch {
+        SolidScratch::boxed(Symmetry::Symmetric)
+    }
+
+    fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
+        Energy { stored: 0.0, dissipated: at.memory[0] }
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
-        let weights = TangentWeights { position: self.seconds, velocity: 0.0 };
-        self.stiffness.add_differential(at, weights, at.velocities, scratch, out);
+        self.add_stiffness(at, self.seconds, at.velocities, scratch, out);
     }
 
     fn add_differential(
@@ -69,11 +89,13 @@ impl Force for RayleighDamping {
         scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        self.stiffness.add_differential(at, self.weights(weights), delta, scratch, out);
+        if weights.velocity != 0.0 {
+            self.add_stiffness(at, self.seconds * weights.velocity, delta, scratch, out);
+        }
     }
 
-    fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
-        self.stiffness.visit_cliques(pairs, visit);
+    fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
+        self.elements.visit_cliques(visit);
     }
 
     fn add_blocks(
@@ -83,11 +105,30 @@ impl Force for RayleighDamping {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        self.stiffness.add_blocks(at, self.weights(weights), scratch, matrix);
+        if weights.velocity == 0.0 {
+            return;
+        }
+        let scale = self.seconds * weights.velocity;
+        let assembly = &mut SolidScratch::of(scratch).assembly;
+        assembly.add_blocks(&self.elements, [at.positions], matrix, |batch, chunk, blocks, [x], out| {
+            batch.kernel.blocks(chunk, blocks, &batch.reference, x, scale, out);
+        });
+    }
+
+    // heat: ∫ β vᵀ K₀ v dt
+    fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
+        let power = self.elements.sum([at.positions, at.velocities], |batch, chunk, [x, v]| {
+            batch.kernel.quadratic_form(chunk, &batch.reference, x, v)
+        });
+        memory[0] += timestep * self.seconds * power;
     }
 
     fn bytes(&self) -> usize {
-        self.stiffness.bytes()
+        self.elements.bytes()
+    }
+
+    fn scratch_bytes(&self, scratch: &Scratch) -> usize {
+        SolidScratch::bytes(scratch)
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -46,6 +46,44 @@ fn replay_repeats_edits_bit_for_bit() {
     }
 }
 
+/// A state between two edits, continued in a new world that makes the earlier ones anew, ends with the bits of the
+/// unbroken run; without the edits it does not.
+#[test]
+fn an_edited_world_resumes() {
+    let stiffen =
+        Edit::SetParameter { system: 0, force: "spring".into(), parameter: "stiffness".into(), value: 30.0 };
+    for name in ["symplectic_euler", "backward_euler"] {
+        let mut unbroken = two_points(name);
+        let mut middle = None;
+        for step in 0..60 {
+            match step {
+                10 => unbroken.edit(stiffen.clone()).unwrap(),
+                20 => unbroken.edit(Edit::Pin { system: 0, block: 1 }).unwrap(),
+                30 => middle = Some((unbroken.state().clone(), unbroken.log().to_vec())),
+                40 => unbroken.edit(Edit::Unpin { system: 0, block: 1 }).unwrap(),
+                _ => {}
+            }
+            unbroken.step().unwrap();
+        }
+        let (state, log) = middle.unwrap();
+        let finish = |mut world: souple_engine::World| {
+            (30..40).for_each(|_| world.step().unwrap());
+            world.edit(Edit::Unpin { system: 0, block: 1 }).unwrap();
+            (40..60).for_each(|_| world.step().unwrap());
+            world
+        };
+        let mut resumed = two_points(name);
+        resumed.resume_edited(state.clone(), log).unwrap();
+        let resumed = finish(resumed);
+        assert_eq!(resumed.state().hash(), unbroken.state().hash(), "{name}");
+        assert_eq!(resumed.log(), unbroken.log(), "{name}");
+        assert_eq!(resumed.model().generation, 3, "{name}");
+        let mut forgetful = two_points(name);
+        forgetful.resume(state).unwrap();
+        assert_ne!(finish(forgetful).state().hash(), unbroken.state().hash(), "{name}");
+    }
+}
+
 #[test]
 fn a_wrong_edit_changes_nothing() {
     let mut world = two_points("symplectic_euler");

@@ -4,7 +4,8 @@ use std::any::Any;
 
 use souple_engine::state::Pair;
 use souple_engine::{
-    Configuration, Declaration, Energy, Field, FieldState, Force, Model, Rows, Scratch, State, TangentWeights,
+    CommittedRows, Configuration, Declaration, Energy, Field, FieldState, Force, Model, Scratch, State,
+    TangentWeights,
 };
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
@@ -18,8 +19,8 @@ impl Field for Pressure {
     fn name(&self) -> &str {
         "pressure"
     }
-    fn step(&self, rows: &[Rows], _: f64, timestep: f64, field: &mut FieldState) -> Result<(), String> {
-        let cell = (rows[0].positions[0].x.clamp(0.0, 2.0)) as usize;
+    fn step(&self, rows: CommittedRows, _: f64, timestep: f64, field: &mut FieldState) -> Result<(), String> {
+        let cell = (rows.of(0).positions[0].x.clamp(0.0, 2.0)) as usize;
         field.values[cell] += timestep;
         field.indices[0] = cell as u64;
         Ok(())
@@ -76,7 +77,26 @@ fn a_field_pushes_points() {
     let saved = world.state().to_bytes();
     (0..20).for_each(|_| world.step().unwrap());
     let mut resumed = start();
-    resumed.resume(State::from_bytes(&saved).unwrap());
+    resumed.resume(State::from_bytes(&saved).unwrap()).unwrap();
     (0..20).for_each(|_| resumed.step().unwrap());
     assert_eq!(resumed.state().hash(), world.state().hash());
+}
+
+/// A field of other sizes than the model's own is refused by name.
+#[test]
+fn foreign_fields_are_refused() {
+    let (system, q) = points(&[Vec3::ZERO], &[1.0], vec![Box::new(Follow)], stepper("symplectic_euler"));
+    let field = FieldState { values: vec![0.0; 3], indices: vec![0] };
+    let state = State { systems: vec![system.initial_state(q)], fields: vec![field], ..State::default() };
+    let model =
+        Model { period: 0.1, systems: vec![system], fields: vec![Box::new(Pressure)], ..Model::default() };
+    let mut world = model.start(state.clone());
+    let mut short = state.clone();
+    short.fields[0].values.pop();
+    let error = world.resume(short).unwrap_err().to_string();
+    assert!(error.contains("fields[0]") && error.contains("`pressure`"), "{error}");
+    let mut none = state;
+    none.fields.clear();
+    let error = world.resume(none).unwrap_err().to_string();
+    assert!(error.contains("0 fields"), "{error}");
 }

@@ -47,7 +47,7 @@ fn system(tolerance: f64) -> (System, Vec<Vec3>) {
         .with("youngs_modulus", Value::Number(1e4))
         .with("poissons_ratio", Value::Number(0.3))
         .with("density", Value::Number(1000.0));
-    let material = (entry.build)(&entry.values(values).unwrap());
+    let material = (entry.build)(&entry.values(values).unwrap()).unwrap();
     let description = SolidDescription {
         name: "cube".into(),
         mesh: &rest,

@@ -1,14 +1,17 @@
 //! The rooms of the floor, each proved by a small permanent test before anything is built on it:
 //! (a) a rigid frame and tetrahedra in one implicit solve, (b) a plastic link under three kinds of stepper,
 //! (c) a ghost of a ghost, (d) a sticking pair, (e) two systems at 1:17, (f) an edit and its replay,
-//! (g) a field that pushes points.
+//! (g) a field that pushes points. And what each stepper makes of energy, and forecasts of stability, against what is
+//! known of them.
 
 mod edit;
+mod energy;
 mod field;
 mod forces;
 mod frame_and_tets;
 mod ghosts;
 mod plastic_link;
+mod stability;
 mod sticking_pair;
 mod two_rates;
 
@@ -47,4 +50,11 @@ fn world((system, q): (System, Vec<Vec3>), period: f64) -> World {
 fn stepper(name: &str) -> Box<dyn Stepper> {
     let entry = souple_engine::steppers::TABLE.find(name).unwrap();
     (entry.build)(&entry.values(souple_table::Values::new()).unwrap())
+}
+
+/// A stepper that solves `newton = "full"` or `"one"`.
+fn stepper_of(name: &str, newton: &str) -> Box<dyn Stepper> {
+    let entry = souple_engine::steppers::TABLE.find(name).unwrap();
+    let given = souple_table::Values::new().with("newton", souple_table::Value::Text(newton));
+    (entry.build)(&entry.values(given).unwrap())
 }

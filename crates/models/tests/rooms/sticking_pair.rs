@@ -65,6 +65,9 @@ impl Force for StickyGround {
             add_block(matrix, row, row, &(Mat3::IDENTITY * (-weights.position * self.stiffness)));
         }
     }
+    fn accepts_pair(&self, pair: &Pair) -> bool {
+        (pair.a, pair.b) == (0, 0)
+    }
     fn find_pairs(&self, at: &Configuration, _: &mut Scratch, found: &mut Vec<Pair>) {
         for (row, x) in at.positions.iter().enumerate().filter(|(_, x)| x.y < 0.0) {
             found.push(Pair::new(row, 0, [x.x, 0.0, x.z, 0.0, 0.0, 0.0, 0.0, 0.0]));
@@ -99,7 +102,7 @@ fn a_pair_is_created_saved_resumed_and_destroyed() {
         through.step().unwrap();
         // resumed, the pair keeps its anchor and the run its bits
         let mut resumed = falling(name);
-        resumed.resume(State::from_bytes(&through.state().to_bytes()).unwrap());
+        resumed.resume(State::from_bytes(&through.state().to_bytes()).unwrap()).unwrap();
         let mut destroyed = false;
         for _ in 0..400 {
             through.step().unwrap();

@@ -49,6 +49,8 @@ fn impulses_are_exchanged_exactly() {
     );
     let fast = world.rows(0).positions[0];
     let made = world.model().couplings[0].energy_made(world.state(), fast, world.time());
+    let reported = &world.energy().made_by_coupling;
+    assert!(matches!(&reported[..], [(_, energy)] if *energy == made), "{reported:?} for {made}");
     // the delay feeds k H / 2 = 0.34 N s/m against a damping of 2: a sixth of what is dissipated at most
     assert!(made > 0.0 && made < start * 0.34 / 2.0, "energy made by the delay: {made} J of {start} J");
 }

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use sha2::Sha256;
 use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
@@ -12,10 +11,9 @@ use souple_models::solids::{
     FlatCell, RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
 };
 
+use super::boundary::constant_vector;
 use super::{Draft, shape};
-use crate::diagnostic::{Code, Log};
-use crate::source::Sources;
-use crate::spec::Spec;
+use crate::diagnostic::Code;
 use crate::spec::body::{Body, Damping, MassKind};
 use crate::spec::world::SystemSpec;
 
@@ -35,26 +33,20 @@ pub fn solid_name(body: &str) -> String {
 }
 
 /// Builds all meshes and gives out rows; `None` where one was refused.
-pub fn place<'a>(
-    spec: &'a Spec,
-    sources: &Sources,
-    hash: &mut Sha256,
-    warnings: &mut Vec<String>,
-    log: &Log,
-) -> Option<Vec<Placed<'a>>> {
+pub fn place(draft: &mut Draft) -> Option<()> {
+    let spec = draft.spec;
     let mut next_row = vec![0; spec.systems.len()];
-    let mut placed = Vec::with_capacity(spec.bodies.len());
     // every mesh is looked at, so that each refused one is reported
     for body in &spec.bodies {
-        let Some(shape) = shape::build(body, sources, hash, log) else { continue };
+        let Some(shape) = shape::build(body, draft) else { continue };
         let Some(system) = spec.systems.iter().position(|system| system.name == body.system) else {
             continue;
         };
-        warnings.extend(shape.warnings);
+        draft.warnings.extend(shape.warnings);
         let first = next_row[system];
         next_row[system] += shape.mesh.points.len();
         let rows = first..next_row[system];
-        placed.push(Placed {
+        draft.bodies.push(Placed {
             spec: body,
             system,
             rows,
@@ -62,7 +54,7 @@ pub fn place<'a>(
             point_numbers: shape.point_numbers,
         });
     }
-    (placed.len() == spec.bodies.len() && log.is_empty()).then_some(placed)
+    (draft.bodies.len() == spec.bodies.len() && draft.log.is_empty()).then_some(())
 }
 
 /// A system with masses, elastic forces, gravity and damping of its bodies.
@@ -136,10 +128,16 @@ fn add_outer_forces(
     forces: &mut Vec<Box<dyn Force>>,
 ) {
     let world = &draft.spec.world;
-    if world.gravity != Vec3::ZERO {
-        match Gravity::new("gravity", world.gravity, mass, kinematics) {
-            Ok(gravity) => forces.push(Box::new(gravity)),
-            Err(error) => draft.log.add(Code::OutOfRange, &world.site, error.to_string(), "finite numbers"),
+    if let Some(formulas) = &world.gravity {
+        match constant_vector(formulas) {
+            None => forces.push(Box::new(Gravity::varying("gravity", formulas.clone(), mass, kinematics))),
+            Some(Vec3::ZERO) => {}
+            Some(constant) => match Gravity::new("gravity", constant, mass, kinematics) {
+                Ok(gravity) => forces.push(Box::new(gravity)),
+                Err(error) => {
+                    draft.log.add(Code::OutOfRange, &world.site, error.to_string(), "finite numbers")
+                }
+            },
         }
     }
     for body in draft.bodies.iter().filter(|body| body.system == index) {
@@ -196,7 +194,8 @@ pub fn point_areas(surface: &TriangleSurface) -> Vec<f64> {
 /// The materials of a body and the number of each cell's among them.
 fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>)> {
     let main = body.spec.material.as_ref()?;
-    let mut materials = vec![(main.entry.build)(&main.values)];
+    // tried when the scene was read
+    let mut materials = vec![(main.entry.build)(&main.values).ok()?];
     let mut material_of_cell = vec![0_u16; body.mesh.cell_count()];
     for part in &body.spec.regions {
         let (Some(region), Some(chosen)) = (&part.region, &part.material) else { continue };
@@ -208,7 +207,7 @@ fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>
                 return None;
             }
         };
-        materials.push((chosen.entry.build)(&chosen.values));
+        materials.push((chosen.entry.build)(&chosen.values).ok()?);
         for cell in draft.selector(body).cells(region) {
             material_of_cell[cell as usize] = number;
         }

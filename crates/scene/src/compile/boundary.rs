@@ -1,102 +1,34 @@
-//! Pins become constraints; loads and springs to ground become forces.
+//! Loads and springs to ground become forces.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use souple_engine::{Constraint, Force, Motion};
-use souple_math::{Mat3, Vec3};
+use souple_engine::{Force, Mass};
+use souple_formal::Formula;
+use souple_math::Vec3;
 use souple_models::loads::{
-    ForceField, FormulaVector, GroundSpring, GroundSprings, Interpolation, KeyFrames, LoadError, PointLoad,
+    ForceField, FormulaVector, GroundSpring, GroundSprings, LoadError, PointLoad, PressedFace, Pressure,
     UniformForce,
 };
+use souple_models::solids::lumped_mass;
 
 use super::Draft;
-use super::motion::AxisMotions;
-use crate::diagnostic::{Code, Log, Site};
-use crate::spec::boundary::{Distribution, Load, MotionSpec, Pin, Spring};
-
-/// What holds one point, axis by axis.
-#[derive(Clone, Debug, Default)]
-struct Hold {
-    held: [bool; 3],
-    motions: [Option<Arc<dyn Motion>>; 3],
-}
-
-/// All pins of all bodies. Where two hold the same point along the same axis, the later one does.
-pub fn add_pins(draft: &mut Draft) {
-    let mut holds: Vec<BTreeMap<u32, Hold>> = vec![BTreeMap::new(); draft.systems.len()];
-    for body in &draft.bodies {
-        for pin in &body.spec.pins {
-            let Some(region) = &pin.region else { continue };
-            let Some(motion) = motion_of(draft, pin) else { continue };
-            for point in draft.selector(body).points(region) {
-                let hold = holds[body.system].entry(body.rows.start as u32 + point).or_default();
-                for axis in (0..3).filter(|axis| pin.axes[*axis]) {
-                    hold.held[axis] = true;
-                    hold.motions[axis].clone_from(&motion);
-                }
-            }
-        }
-    }
-    let starts: Vec<Vec<Vec3>> = (0..draft.systems.len())
-        .map(|system| {
-            let bodies = draft.bodies.iter().filter(|body| body.system == system);
-            bodies.flat_map(|body| body.mesh.points.iter().copied()).collect()
-        })
-        .collect();
-    for ((system, holds), starts) in draft.systems.iter_mut().zip(holds).zip(starts) {
-        for (row, hold) in holds {
-            let free = hold.held.map(|is_held| if is_held { 0.0 } else { 1.0 });
-            let leads = hold.motions.iter().any(Option::is_some);
-            let motion = leads.then(|| Arc::new(AxisMotions(hold.motions)) as Arc<dyn Motion>);
-            let free = Mat3::from_diagonal(Vec3::from_array(free));
-            let block = system.kinematics.block_of(row);
-            system.constraints.push(Constraint { block, free, start: starts[row as usize], motion });
-        }
-    }
-}
-
-/// `Some(None)` where the pin stays, `None` where its motion was refused.
-fn motion_of(draft: &Draft, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
-    motion(draft.log, pin.motion.as_ref(), &pin.site)
-}
-
-/// `Some(None)` where no motion is written, `None` where it was refused.
-pub fn motion(log: &Log, spec: Option<&MotionSpec>, site: &Site) -> Option<Option<Arc<dyn Motion>>> {
-    let motion: Arc<dyn Motion> = match spec {
-        None => return Some(None),
-        Some(MotionSpec::Formula(formulas)) => Arc::new(FormulaVector::from_components(formulas.clone())),
-        Some(MotionSpec::KeyFrames { times, offsets, is_smooth }) => {
-            let interpolation = if *is_smooth { Interpolation::Smooth } else { Interpolation::Linear };
-            match KeyFrames::new(times.clone(), offsets.clone(), interpolation) {
-                Ok(frames) => Arc::new(frames),
-                Err(error) => {
-                    log.add(Code::OutOfRange, site, error.to_string(), "key frames in order");
-                    return None;
-                }
-            }
-        }
-    };
-    Some(Some(motion))
-}
+use super::bodies::Placed;
+use crate::diagnostic::{Code, Site};
+use crate::spec::boundary::{Distribution, Load, LoadKind, Spring};
+use crate::spec::region::Region;
 
 /// All loads and springs of all bodies.
 pub fn add_loads(draft: &mut Draft) {
     let mut added: Vec<(usize, Box<dyn Force>)> = Vec::new();
     for body in &draft.bodies {
-        let rows_of = |region: &Option<_>, distribution: Distribution| -> Vec<(u32, f64)> {
-            let Some(region) = region else { return Vec::new() };
-            let points = draft.selector(body).points(region);
-            let share = distribution.share(points.len());
-            points.into_iter().map(|point| (body.rows.start as u32 + point, share)).collect()
-        };
         for (index, load) in body.spec.loads.iter().enumerate() {
-            let rows = rows_of(&load.region, load.distribution);
-            let force = point_load(format!("{}.loads[{index}]", body.spec.name), load, rows);
+            let force = load_force(draft, body, format!("{}.loads[{index}]", body.spec.name), load);
             push(draft, body.system, force, &load.site, &mut added);
         }
         for (index, spring) in body.spec.springs.iter().enumerate() {
-            let rows = rows_of(&spring.region, spring.distribution);
+            let Some(region) = &spring.region else { continue };
+            let rows = point_shares(draft, body, region, spring.distribution);
             let name = format!("{}.springs[{index}]", body.spec.name);
             let anchor = |row: u32| body.mesh.points[row as usize - body.rows.start];
             let force = ground_springs(name, spring, &rows, anchor);
@@ -106,6 +38,29 @@ pub fn add_loads(draft: &mut Draft) {
     for (system, force) in added {
         draft.systems[system].forces.push(force);
     }
+}
+
+/// Whether formulas of place are finite at the start for all rows; where not, that is reported with the first such point.
+fn starts_finite(
+    draft: &Draft,
+    body: &Placed,
+    load: &Load,
+    value: impl Fn(Vec3) -> Vec3,
+    rows: impl IntoIterator<Item = u32>,
+) -> bool {
+    let faulty = rows.into_iter().find_map(|row| {
+        let point = row as usize - body.rows.start;
+        let force = value(body.mesh.points[point]);
+        (!force.is_finite()).then_some((point, force))
+    });
+    let Some((point, force)) = faulty else { return true };
+    let (x, number) = (body.mesh.points[point], body.point_numbers[point]);
+    let message = format!(
+        "the load on point {number}, at ({}, {}, {}), is ({}, {}, {}) at t = 0",
+        x.x, x.y, x.z, force.x, force.y, force.z
+    );
+    draft.log.add(Code::NotFinite, &load.site, message, "formulas that are finite at the start");
+    false
 }
 
 /// What a region or formula left out has been reported already.
@@ -119,23 +74,103 @@ fn push(draft: &Draft, system: usize, built: Built, site: &Site, added: &mut Vec
     }
 }
 
-fn point_load(name: String, load: &Load, rows: Vec<(u32, f64)>) -> Built {
-    let formulas = load.force.as_ref()?;
-    if rows.is_empty() {
+fn load_force(draft: &Draft, body: &Placed, name: String, load: &Load) -> Built {
+    let region = load.region.as_ref()?;
+    match load.kind.as_ref()? {
+        LoadKind::Force(force, distribution) => {
+            let shares = point_shares(draft, body, region, *distribution);
+            point_load(draft, body, load, name, force, shares)
+        }
+        LoadKind::Traction(traction) => {
+            point_load(draft, body, load, name, traction, area_shares(draft, body, region))
+        }
+        LoadKind::BodyForce(force) => {
+            point_load(draft, body, load, name, force, volume_shares(draft, body, region))
+        }
+        LoadKind::Pressure(pressure) => {
+            let faces = faces_of(draft, body, region);
+            let pressed: Vec<PressedFace> = faces.iter().filter_map(|face| PressedFace::new(face)).collect();
+            let value = |x: Vec3| Vec3::X * pressure.evaluate(&[x.x, x.y, x.z, 0.0]);
+            if pressed.is_empty() || !starts_finite(draft, body, load, value, faces.into_iter().flatten()) {
+                return None;
+            }
+            Some(Pressure::new(name, pressed, pressure.clone()).map(|force| Box::new(force) as _))
+        }
+    }
+}
+
+/// A load of each row's share times the field.
+fn point_load(
+    draft: &Draft,
+    body: &Placed,
+    load: &Load,
+    name: String,
+    formulas: &[Formula; 3],
+    rows: Vec<(u32, f64)>,
+) -> Built {
+    let field = FormulaVector::from_components(formulas.clone());
+    let points = rows.iter().map(|(row, _)| *row);
+    if rows.is_empty() || !starts_finite(draft, body, load, |x| field.value(x, 0.0), points) {
         return None;
     }
-    let variables = crate::spec::boundary::LOAD_VARIABLES.len();
-    let is_constant =
-        formulas.iter().all(|formula| !(0..variables).any(|variable| formula.depends_on(variable)));
-    let field: Arc<dyn ForceField> = if is_constant {
-        let nowhere = vec![0.0; variables];
-        Arc::new(UniformForce(Vec3::from_array(
-            [0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&nowhere)),
-        )))
-    } else {
-        Arc::new(FormulaVector::from_components(formulas.clone()))
+    let field: Arc<dyn ForceField> = match constant_vector(formulas) {
+        Some(force) => Arc::new(UniformForce(force)),
+        None => Arc::new(field),
     };
     Some(PointLoad::new(name, rows, field).map(|force| Box::new(force) as _))
+}
+
+/// The value of formulas that depend on nothing.
+pub fn constant_vector(formulas: &[Formula; 3]) -> Option<Vec3> {
+    let values = |formula: &Formula| vec![0.0; formula.variables().len()];
+    let depends =
+        |formula: &Formula| (0..formula.variables().len()).any(|variable| formula.depends_on(variable));
+    (!formulas.iter().any(depends)).then(|| {
+        Vec3::from_array([0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&values(&formulas[axis]))))
+    })
+}
+
+/// Rows of the points of a region, each with its share.
+fn point_shares(
+    draft: &Draft,
+    body: &Placed,
+    region: &Region,
+    distribution: Distribution,
+) -> Vec<(u32, f64)> {
+    let points = draft.selector(body).points(region);
+    let share = distribution.share(points.len());
+    points.into_iter().map(|point| (body.rows.start as u32 + point, share)).collect()
+}
+
+/// Rows of the faces of a region, corners in order.
+fn faces_of(draft: &Draft, body: &Placed, region: &Region) -> Vec<Vec<u32>> {
+    let first = body.rows.start as u32;
+    let faces = draft.selector(body).faces(region);
+    faces.into_iter().map(|face| face.into_iter().map(|point| first + point).collect()).collect()
+}
+
+/// Rows of the faces of a region with `∫ N_a dA` over the rest shape [m²].
+fn area_shares(draft: &Draft, body: &Placed, region: &Region) -> Vec<(u32, f64)> {
+    let mut areas: BTreeMap<u32, f64> = BTreeMap::new();
+    for face in draft.selector(body).faces(region) {
+        let corners: Vec<Vec3> = face.iter().map(|point| body.mesh.points[*point as usize]).collect();
+        for (point, share) in face.iter().zip(souple_mesh::face_node_areas(&corners)) {
+            *areas.entry(body.rows.start as u32 + point).or_default() += share;
+        }
+    }
+    areas.into_iter().collect()
+}
+
+/// Rows of the cells of a region with `∫ N_a dV` over the rest shape [m³].
+fn volume_shares(draft: &Draft, body: &Placed, region: &Region) -> Vec<(u32, f64)> {
+    let cells = draft.selector(body).cells(region);
+    let inside = |cell: usize| if cells.binary_search(&(cell as u32)).is_ok() { 1.0 } else { 0.0 };
+    // the lumped mass at density 1
+    let mut volumes = Mass::new(body.mesh.points.len());
+    lumped_mass(&body.mesh, 0, &inside, &mut volumes);
+    let first = body.rows.start as u32;
+    let shares = volumes.diagonal.iter().zip(first..).map(|(volume, row)| (row, *volume));
+    shares.filter(|(_, volume)| *volume != 0.0).collect()
 }
 
 fn ground_springs(name: String, spring: &Spring, rows: &[(u32, f64)], anchor: impl Fn(u32) -> Vec3) -> Built {

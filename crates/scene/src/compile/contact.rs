@@ -3,16 +3,19 @@
 use std::path::Path;
 
 use souple_engine::Force;
+use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
 use souple_models::contact::{
-    ContactLaw, ContactPoint, ContactSurface, ShapeContact, ShapeMotion, SurfaceContact, penalty_stiffness,
+    ContactLaw, ContactPoint, ContactSurface, ShapeContact, SurfaceContact, penalty_stiffness,
 };
-use souple_models::materials::Lame;
+use souple_models::loads::RigidMotion;
 
+use super::Draft;
 use super::bodies::Placed;
-use super::{Draft, boundary};
+use super::doubts::youngs_modulus;
+use super::freedom::{Joint, touching_joints};
+use super::motion::motion;
 use crate::diagnostic::Code;
-use crate::source::Sources;
 use crate::spec::contact::{Against, Contact, ShapeSpec};
 
 /// A body's points that touch, with the areas around them.
@@ -23,8 +26,9 @@ struct Touching {
 }
 
 /// All contacts.
-pub fn add(draft: &mut Draft, sources: &Sources) {
+pub fn add(draft: &mut Draft) {
     let mut added: Vec<(usize, Box<dyn Force>)> = Vec::new();
+    let mut joints = Vec::new();
     for contact in &draft.spec.contacts {
         let Some(body) = draft.body(&contact.body) else { continue };
         let Some(touching) = touching(draft, body, contact) else { continue };
@@ -34,8 +38,11 @@ pub fn add(draft: &mut Draft, sources: &Sources) {
                 .shapes
                 .iter()
                 .find(|shape| shape.name == *name)
-                .and_then(|shape| against_shape(draft, contact, shape, touching, body, sources))
-                .map(|force| Box::new(force) as _),
+                .and_then(|shape| against_shape(draft, contact, shape, touching, body))
+                .map(|(force, held)| {
+                    joints.extend(held);
+                    Box::new(force) as _
+                }),
             Some(Against::Body(name)) => draft
                 .body(name)
                 .and_then(|other| against_body(draft, contact, touching, [body, other]))
@@ -44,6 +51,7 @@ pub fn add(draft: &mut Draft, sources: &Sources) {
         };
         added.extend(force.map(|force| (body.system, force)));
     }
+    draft.joints.extend(joints);
     for (system, force) in added {
         draft.systems[system].forces.push(force);
     }
@@ -82,7 +90,8 @@ fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching>
 
 fn law(body: &Placed, contact: &Contact, mean_area: f64) -> ContactLaw {
     let stiffness = contact.stiffness.unwrap_or_else(|| {
-        let material = body.spec.material.as_ref().map(|chosen| (chosen.entry.build)(&chosen.values));
+        let material =
+            body.spec.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok());
         let modulus = material.map_or(0.0, |material| youngs_modulus(&material.small_strain));
         // the material behind a point resists over about the width of an element
         penalty_stiffness(modulus, mean_area, mean_area.sqrt())
@@ -96,22 +105,23 @@ fn law(body: &Placed, contact: &Contact, mean_area: f64) -> ContactLaw {
     }
 }
 
-/// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].
-fn youngs_modulus(lame: &Lame) -> f64 {
-    lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu)
-}
-
 fn against_shape(
     draft: &Draft,
     contact: &Contact,
     shape: &ShapeSpec,
     touching: Touching,
     body: &Placed,
-    sources: &Sources,
-) -> Option<ShapeContact> {
+) -> Option<(ShapeContact, Vec<Joint>)> {
     let chosen = shape.shape.as_ref()?;
-    let folder = &sources.get(chosen.site.place.source).folder;
-    let built = (chosen.entry.build)(&chosen.values, &|file| read_surface(&folder.join(file)));
+    let source = chosen.site.place.source;
+    let open = |file: &str| {
+        let path = draft.sources.get(source).folder.join(file);
+        draft
+            .sources
+            .open(source, file)
+            .map_err(|error| format!("`{}` cannot be read: {error}", path.display()))
+    };
+    let built = (chosen.entry.build)(&chosen.values, &|file| read_surface(&open(file)?));
     let built = match built {
         Ok(built) => built,
         Err(error) => {
@@ -119,15 +129,28 @@ fn against_shape(
             return None;
         }
     };
-    let motion = |spec| boundary::motion(draft.log, spec, &shape.site);
-    let motion = ShapeMotion {
-        translation: motion(shape.motion.as_ref())?,
-        rotation: motion(shape.rotation.as_ref())?,
+    let led = |spec| motion(draft.log, spec, &shape.site);
+    let motion = RigidMotion {
+        translation: led(shape.motion.as_ref())?,
+        rotation: led(shape.rotation.as_ref())?,
         pivot: shape.pivot,
     };
+    let pose = motion.pose(0.0);
+    let parts = [pose.origin, pose.velocity, pose.angular_velocity, pose.turn * Vec3::X];
+    if parts.iter().any(|vector| !vector.is_finite()) {
+        let message = format!("the motion of shape `{}` is not finite at t = 0", shape.name);
+        draft.log.add(
+            Code::NotFinite,
+            &shape.site,
+            message,
+            "formulas that are finite with their derivative by t",
+        );
+        return None;
+    }
     let law = law(body, contact, touching.mean_area);
+    let joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
     match ShapeContact::new(contact.name.clone(), touching.points, built, motion, law) {
-        Ok(force) => Some(force),
+        Ok(force) => Some((force, joints)),
         Err(error) => {
             draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
             None

@@ -1,19 +1,28 @@
 //! What joins bodies: attachments within a system, coupling springs between systems.
 
 use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
+use souple_math::Vec3;
 use souple_mesh::CellLocator;
 use souple_models::loads::{Attachments, Combination, Link as LoadLink};
 
 use super::Draft;
 use super::bodies::Placed;
+use super::freedom::Joint;
 use crate::diagnostic::Code;
 use crate::spec::interaction::Link;
 
 /// Distance, relative to the body's size, under which a link counts as of no length: rounding of coordinates.
 const TOUCHING: f64 = 1e-12;
 
+/// What a link joins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Between {
+    BodiesOfOneSystem,
+    Systems,
+}
+
 /// The two bodies of a link; `None` where they do not fit, which is reported.
-fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, is_coupling: bool) -> Option<[&'d Placed<'a>; 2]> {
+fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, between: Between) -> Option<[&'d Placed<'a>; 2]> {
     let find = |name: &str| draft.bodies.iter().find(|body| body.spec.name == name);
     let (from, to) = (find(&link.from)?, find(&link.to)?);
     let name = |body: &Placed| draft.spec.systems[body.system].name.clone();
@@ -22,7 +31,7 @@ fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, is_coupling: bool) -> Option<
         draft.log.add(Code::Conflict, &link.to_site, message, "another body");
         return None;
     }
-    if !is_coupling && from.system != to.system {
+    if between == Between::BodiesOfOneSystem && from.system != to.system {
         let (a, b) = (name(from), name(to));
         let message = format!(
             "`{}` steps in system `{a}` and `{}` in `{b}`: attached bodies step together",
@@ -36,7 +45,7 @@ fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, is_coupling: bool) -> Option<
         );
         return None;
     }
-    if is_coupling && from.system == to.system {
+    if between == Between::Systems && from.system == to.system {
         let message = format!("`{}` and `{}` are both in system `{}`", link.from, link.to, name(from));
         draft.log.add(
             Code::Conflict,
@@ -51,17 +60,18 @@ fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, is_coupling: bool) -> Option<
 
 /// Springs from points of one body to the places of another that they touch or are nearest to.
 pub fn attach(draft: &mut Draft) {
-    let mut added = Vec::new();
+    let (mut added, mut joints) = (Vec::new(), Vec::new());
     for (index, link) in draft.spec.attachments.iter().enumerate() {
-        let Some([from, to]) = ends(draft, link, false) else { continue };
+        let Some([from, to]) = ends(draft, link, Between::BodiesOfOneSystem) else { continue };
         let Some(region) = &link.region else { continue };
         let locator = CellLocator::new(&to.mesh);
-        let links: Vec<LoadLink> = draft
+        let (links, held): (Vec<LoadLink>, Vec<Joint>) = draft
             .selector(from)
             .points(region)
             .into_iter()
             .filter_map(|point| attachment(&locator, link, point, from, to))
-            .collect();
+            .unzip();
+        joints.extend(held);
         if links.is_empty() {
             let message = format!("no point of `{}` is within reach of `{}`", link.from, link.to);
             draft.log.add(
@@ -77,39 +87,48 @@ pub fn attach(draft: &mut Draft) {
             Err(error) => draft.log.add(Code::OutOfRange, &link.site, error.to_string(), "finite numbers"),
         }
     }
+    draft.joints.extend(joints);
     for (system, force) in added {
         draft.systems[system].forces.push(Box::new(force));
     }
 }
 
+/// The spring of a point, and what it hinders; `None` beyond reach.
 fn attachment(
     locator: &CellLocator,
     link: &Link,
     point: u32,
     from: &Placed,
     to: &Placed,
-) -> Option<LoadLink> {
+) -> Option<(LoadLink, Joint)> {
     let position = from.mesh.points[point as usize];
     let location = locator.carrier(position).filter(|location| location.distance <= link.reach)?;
     let cell = to.mesh.cell(location.cell)?;
     let first = to.rows.start as u32;
     let weights = location.weights();
-    let rows = cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| (first + node, *weight)).collect();
+    let rows: Vec<(u32, f64)> =
+        cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| (first + node, *weight)).collect();
     let carried =
         cell.nodes.iter().zip(weights.iter()).map(|(node, weight)| to.mesh.points[*node as usize] * *weight);
-    let distance = (position - carried.sum()).length();
+    let apart: Vec3 = position - carried.sum();
+    let distance = apart.length();
     let is_touching = distance <= TOUCHING * to.mesh.bounds().diagonal();
     let rest_length = if is_touching { 0.0 } else { distance };
-    let a = Combination::row(from.rows.start as u32 + point);
+    let row = from.rows.start as u32 + point;
+    let ends = [(row, 1.0)].into_iter().chain(rows.iter().map(|(row, weight)| (*row, -weight))).collect();
+    // a spring at its rest length resists along itself only, one without length in all directions
+    let direction = if is_touching { None } else { apart.try_normalised() };
+    let joint = Joint { system: from.system, ends, direction };
+    let a = Combination::row(row);
     // weights of a cell's shape functions are finite and not empty
-    Some(LoadLink { a, b: Combination::new(rows).ok()?, rest_length })
+    Some((LoadLink { a, b: Combination::new(rows).ok()?, rest_length }, joint))
 }
 
 /// Coupling springs from points of one body to the nearest points of a body in another system.
 pub fn couple(draft: &mut Draft) {
-    let mut springs = Vec::new();
+    let (mut springs, mut joints) = (Vec::new(), Vec::new());
     for (index, link) in draft.spec.couplings.iter().enumerate() {
-        let Some([from, to]) = ends(draft, link, true) else { continue };
+        let Some([from, to]) = ends(draft, link, Between::Systems) else { continue };
         let Some(region) = &link.region else { continue };
         for point in draft.selector(from).points(region) {
             let position = from.mesh.points[point as usize];
@@ -118,6 +137,12 @@ pub fn couple(draft: &mut Draft) {
             let Some(nearest) = nearest else { continue };
             let ends =
                 [(from.system, from.rows.start as u32 + point), (to.system, to.rows.start as u32 + nearest)];
+            // the other system is the ground to each: it is somewhere at every step
+            joints.extend(ends.map(|(system, row)| Joint {
+                system,
+                ends: vec![(row, 1.0)],
+                direction: None,
+            }));
             let steps = |end: (usize, u32)| draft.spec.systems[end.0].steps_per_period;
             let [fast, slow] = if steps(ends[0]) >= steps(ends[1]) { ends } else { [ends[1], ends[0]] };
             springs.push(CouplingSpring {
@@ -132,6 +157,7 @@ pub fn couple(draft: &mut Draft) {
             });
         }
     }
+    draft.joints.extend(joints);
     let period = draft.spec.world.period;
     // one line for many springs of one coupling that say the same
     let forecast = springs.iter().find_map(|spring| spring.forecast(period));

@@ -3,8 +3,12 @@
 mod bodies;
 mod boundary;
 mod contact;
+mod doubts;
+mod freedom;
 mod links;
+mod memory;
 mod motion;
+mod pins;
 mod selection;
 mod shape;
 
@@ -12,10 +16,10 @@ pub(crate) use bodies::solid_name;
 
 use std::collections::BTreeSet;
 
-use sha2::{Digest, Sha256};
 use souple_engine::{Model, State, System};
 
 use crate::diagnostic::{Code, Log, Site};
+use crate::inputs::Inputs;
 use crate::measure::ProbeInfo;
 use crate::scene::{BodyInfo, Scene};
 use crate::source::Sources;
@@ -23,11 +27,13 @@ use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
 
 use bodies::Placed;
+use freedom::Joint;
 use selection::Selector;
 
 /// What is being put together: the bodies with their places, and one draft for each system.
 pub(crate) struct Draft<'a> {
     pub spec: &'a Spec,
+    pub sources: &'a Sources,
     pub log: &'a Log,
     /// In the order of the specification.
     pub bodies: Vec<Placed<'a>>,
@@ -35,11 +41,20 @@ pub(crate) struct Draft<'a> {
     pub model: Model,
     pub state: State,
     pub warnings: Vec<String>,
+    /// What hinders rigid motions besides pins.
+    pub joints: Vec<Joint>,
 }
 
 impl Draft<'_> {
     pub fn body(&self, name: &str) -> Option<&Placed<'_>> {
         self.bodies.iter().find(|body| body.spec.name == name)
+    }
+
+    /// A key and where it is written, for messages about two places.
+    pub fn place(&self, site: &Site) -> String {
+        let file = &self.sources.get(site.place.source).name;
+        let (line, _) = self.sources.line_column(site.place);
+        format!("`{}` ({file}:{line})", site.path)
     }
 
     /// What selects the points and cells of a body.
@@ -58,26 +73,39 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     if !log.is_empty() {
         return None;
     }
-    let mut hash = Sha256::new();
-    for source in sources.iter() {
-        hash.update((source.text.len() as u64).to_le_bytes());
-        hash.update(&source.text);
+    memory::check_specified(spec, sources, log);
+    if !log.is_empty() {
+        return None;
     }
-    let mut warnings = Vec::new();
-    let bodies = bodies::place(spec, sources, &mut hash, &mut warnings, log)?;
-    let model = Model { period: spec.world.period, ..Model::default() };
-    let mut draft =
-        Draft { spec, log, bodies, systems: Vec::new(), model, state: State::default(), warnings };
+    let mut draft = Draft {
+        spec,
+        sources,
+        log,
+        bodies: Vec::new(),
+        systems: Vec::new(),
+        model: Model { period: spec.world.period, ..Model::default() },
+        state: State::default(),
+        warnings: Vec::new(),
+        joints: Vec::new(),
+    };
+    bodies::place(&mut draft)?;
+    memory::check_placed(spec, &draft.bodies, log);
+    if !log.is_empty() {
+        return None;
+    }
     for (index, system) in spec.systems.iter().enumerate() {
         let system = bodies::system(&draft, index, system)?;
         draft.systems.push(system);
     }
     boundary::add_loads(&mut draft);
-    boundary::add_pins(&mut draft);
-    contact::add(&mut draft, sources);
+    pins::add(&mut draft);
+    contact::add(&mut draft);
     links::attach(&mut draft);
     links::couple(&mut draft);
     check_force_names(&draft);
+    pins::warn_of_idle(&mut draft);
+    doubts::warn(&mut draft);
+    freedom::check(&mut draft);
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
     if !log.is_empty() {
@@ -93,7 +121,6 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     }
     let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
     model.systems = systems;
-    let scene_sha256 = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
     let bodies =
         bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
     Some(Scene {
@@ -106,7 +133,9 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         probes,
         expects: spec.expects.clone(),
         run: spec.run,
-        scene_sha256,
+        picture: spec.picture_view(),
+        scene_sha256: sources.fingerprint(),
+        inputs: Inputs::default(),
         warnings,
     })
 }

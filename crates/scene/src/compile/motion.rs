@@ -1,9 +1,39 @@
-//! A motion of its own for each axis, where several pins lead one point.
+//! Prescribed motions: from key frames and formulas, and one for each axis where several pins lead one point.
 
 use std::sync::Arc;
 
 use souple_engine::Motion;
 use souple_math::Vec3;
+use souple_models::loads::{FormulaVector, Interpolation, KeyFrames, RigidMotion};
+
+use crate::diagnostic::{Code, Log, Site};
+use crate::spec::boundary::{MotionSpec, Pin};
+
+/// `Some(None)` where no motion is written, `None` where it was refused.
+pub fn motion(log: &Log, spec: Option<&MotionSpec>, site: &Site) -> Option<Option<Arc<dyn Motion>>> {
+    let motion: Arc<dyn Motion> = match spec {
+        None => return Some(None),
+        Some(MotionSpec::Formula(formulas)) => Arc::new(FormulaVector::from_components(formulas.clone())),
+        Some(MotionSpec::KeyFrames { times, offsets, is_smooth }) => {
+            let interpolation = if *is_smooth { Interpolation::Smooth } else { Interpolation::Linear };
+            match KeyFrames::new(times.clone(), offsets.clone(), interpolation) {
+                Ok(frames) => Arc::new(frames),
+                Err(error) => {
+                    log.add(Code::OutOfRange, site, error.to_string(), "key frames in order");
+                    return None;
+                }
+            }
+        }
+    };
+    Some(Some(motion))
+}
+
+/// How a pin leads its points: `Some(None)` where they stay, `None` where a motion was refused.
+pub fn motion_of_pin(log: &Log, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
+    let translation = motion(log, pin.motion.as_ref(), &pin.site)?;
+    let Some(rotation) = motion(log, pin.rotation.as_ref(), &pin.site)? else { return Some(translation) };
+    Some(Some(Arc::new(RigidMotion { translation, rotation: Some(rotation), pivot: pin.pivot })))
+}
 
 /// `None`: the axis stays where it started.
 #[derive(Clone, Debug, Default)]

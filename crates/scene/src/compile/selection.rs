@@ -1,5 +1,7 @@
 //! Which points and cells of a mesh a region holds.
 
+use std::collections::HashSet;
+
 use souple_math::Vec3;
 use souple_mesh::Mesh;
 
@@ -37,6 +39,43 @@ impl Selector<'_> {
             self.refuse_empty(region, "cell", &centres);
         }
         found
+    }
+
+    /// Faces of the boundary of which all corners are in a region, as points in order with the normal outward; a
+    /// group of facets holds just its facets. A region without one is refused.
+    pub fn faces(&self, region: &Region) -> Vec<Vec<u32>> {
+        let Some(mask) = self.point_mask(region) else { return Vec::new() };
+        let listed = self.facets_of_group(region);
+        let mut faces = Vec::new();
+        let mut centres = Vec::new();
+        for boundary in self.mesh.faces().boundary {
+            let Some(cell) = self.mesh.cell(boundary.cell) else { continue };
+            let face: Vec<u32> = cell.face_nodes(boundary.face.into()).1.collect();
+            let is_inside = match &listed {
+                Some(facets) => facets.contains(&ascending(&face)),
+                None => face.iter().all(|point| mask[*point as usize]),
+            };
+            if is_inside {
+                faces.push(face);
+            } else {
+                let sum: Vec3 = face.iter().map(|point| self.mesh.points[*point as usize]).sum();
+                centres.push(sum * (1.0 / face.len() as f64));
+            }
+        }
+        if faces.is_empty() {
+            self.refuse_empty(region, "face", &centres);
+        }
+        faces
+    }
+
+    /// Points of each facet of the group that a region names; `None` where it names none with facets.
+    fn facets_of_group(&self, region: &Region) -> Option<HashSet<Vec<u32>>> {
+        let RegionKind::Group(name) = &region.kind else { return None };
+        let facets = &self.mesh.groups.get(name)?.facets;
+        let listed = |facet: &usize| facets.binary_search(&(*facet as u32)).is_ok();
+        let views = self.mesh.facets().enumerate().filter(|(facet, _)| listed(facet));
+        let corners: HashSet<Vec<u32>> = views.map(|(_, view)| ascending(view.nodes)).collect();
+        (!corners.is_empty()).then_some(corners)
     }
 
     fn refuse_empty(&self, region: &Region, what: &str, positions: &[Vec3]) {
@@ -106,10 +145,11 @@ impl Selector<'_> {
                 of_cells(listed, &mut mask);
             }
             RegionKind::Union(parts) => {
-                return self.combined(parts, |part| self.point_mask(part), points.len(), false);
+                return combined(parts, |part| self.point_mask(part), mask, |a, b| a || b);
             }
             RegionKind::Intersection(parts) => {
-                return self.combined(parts, |part| self.point_mask(part), points.len(), true);
+                mask.fill(true);
+                return combined(parts, |part| self.point_mask(part), mask, |a, b| a && b);
             }
             RegionKind::Not(part) => {
                 return Some(self.point_mask(part)?.iter().map(|inside| !inside).collect());
@@ -140,10 +180,11 @@ impl Selector<'_> {
                 nearest(centres, *target).into_iter().for_each(|cell| mask[cell] = true)
             }
             RegionKind::Union(parts) => {
-                return self.combined(parts, |part| self.cell_mask(part, centres), centres.len(), false);
+                return combined(parts, |part| self.cell_mask(part, centres), mask, |a, b| a || b);
             }
             RegionKind::Intersection(parts) => {
-                return self.combined(parts, |part| self.cell_mask(part, centres), centres.len(), true);
+                mask.fill(true);
+                return combined(parts, |part| self.cell_mask(part, centres), mask, |a, b| a && b);
             }
             RegionKind::Not(part) => {
                 return Some(self.cell_mask(part, centres)?.iter().map(|inside| !inside).collect());
@@ -156,24 +197,6 @@ impl Selector<'_> {
     /// Cells of which all nodes are in a mask.
     fn cells_within(&self, points: &[bool]) -> Vec<bool> {
         self.mesh.cells().map(|cell| cell.nodes.iter().all(|node| points[*node as usize])).collect()
-    }
-
-    /// All parts are looked at, so that each refused one is reported.
-    fn combined(
-        &self,
-        parts: &[Region],
-        mask_of: impl Fn(&Region) -> Option<Vec<bool>>,
-        count: usize,
-        is_intersection: bool,
-    ) -> Option<Vec<bool>> {
-        let masks: Vec<Option<Vec<bool>>> = parts.iter().map(mask_of).collect();
-        let masks: Vec<Vec<bool>> = masks.into_iter().collect::<Option<_>>()?;
-        let in_mask = |index: usize| move |mask: &Vec<bool>| mask[index];
-        let holds = |index: usize| match is_intersection {
-            true => masks.iter().all(in_mask(index)),
-            false => masks.iter().any(in_mask(index)),
-        };
-        Some((0..count).map(holds).collect())
     }
 
     fn group(&self, name: &str, site: &Site) -> Option<&souple_mesh::Group> {
@@ -208,6 +231,26 @@ impl Selector<'_> {
         self.log.add(Code::OutOfRange, site, message, format!("numbers of {what}s of the mesh"));
         None
     }
+}
+
+fn ascending(points: &[u32]) -> Vec<u32> {
+    let mut points = points.to_vec();
+    points.sort_unstable();
+    points
+}
+
+/// The masks of all parts joined one after the other to `start`. All parts are looked at, so that each refused one is
+/// reported.
+fn combined(
+    parts: &[Region],
+    mask_of: impl Fn(&Region) -> Option<Vec<bool>>,
+    start: Vec<bool>,
+    join: fn(bool, bool) -> bool,
+) -> Option<Vec<bool>> {
+    let masks: Vec<Option<Vec<bool>>> = parts.iter().map(mask_of).collect();
+    masks.into_iter().try_fold(start, |joined, mask| {
+        Some(joined.into_iter().zip(mask?).map(|(joined, inside)| join(joined, inside)).collect())
+    })
 }
 
 fn indices(mask: &[bool]) -> Vec<u32> {

@@ -1,13 +1,13 @@
 //! From a mesh specification to a mesh that has passed every check, placed where the body starts.
 
-use std::path::PathBuf;
+use souple_mesh::fill::{FillError, fill_surface, surface_of};
+use souple_mesh::repair::RepairLimits;
+use souple_mesh::{Conformity, Mesh, MeshError, Repairs};
 
-use sha2::{Digest, Sha256};
-use souple_mesh::{Mesh, MeshError};
-
-use crate::diagnostic::{Code, Log};
-use crate::source::Sources;
-use crate::spec::body::{Body, MeshSpec};
+use super::Draft;
+use crate::diagnostic::{Code, Site};
+use crate::spec::body::Body;
+use crate::spec::mesh::MeshSpec;
 
 /// The rest shape of a body.
 pub struct Shape {
@@ -18,51 +18,56 @@ pub struct Shape {
 }
 
 /// The mesh of a body; `None` where it was refused.
-pub fn build(body: &Body, sources: &Sources, hash: &mut Sha256, log: &Log) -> Option<Shape> {
+pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
     let spec = body.mesh.as_ref()?;
-    let site = spec.site();
+    let (site, log) = (spec.site(), draft.log);
     let refuse = |message: String, expected: &str| {
         log.add(Code::Mesh, site, message, expected);
         None
     };
     let mut warnings = Vec::new();
-    let mut mesh = match spec {
-        MeshSpec::Generated(chosen) => match (chosen.entry.build)(&chosen.values) {
-            Ok(mesh) => mesh,
-            Err(error @ MeshError::TooManyCells { .. }) => {
-                log.add(Code::TooLarge, site, error.to_string(), "fewer cells");
-                return None;
-            }
-            Err(error) => return refuse(error.to_string(), "a mesh that can be made"),
-        },
-        MeshSpec::File { file, scale, .. } => {
-            let path: PathBuf = sources.get(site.place.source).folder.join(file);
-            if !path.exists() {
-                log.add(
-                    Code::NotFound,
-                    site,
-                    format!("there is no file `{}`", path.display()),
-                    "an existing mesh file",
-                );
-                return None;
-            }
-            if let Ok(bytes) = std::fs::read(&path) {
-                hash.update(&bytes);
-            }
-            let (mut mesh, notes) = match souple_io::read_mesh(&path) {
-                Ok(read) => read,
-                Err(error) => return refuse(error.to_string(), "a complete mesh of volume cells"),
-            };
-            warnings.extend(notes.into_iter().map(|note| format!("{file}: {note}")));
-            mesh.points.iter_mut().for_each(|point| *point = *point * *scale);
-            mesh
+    let built = match spec {
+        MeshSpec::Generated(chosen) => (chosen.entry.build.mesh)(&chosen.values),
+        MeshSpec::Shape { shape, options } => {
+            (shape.entry.build)(&shape.values).and_then(|body| options.fill_body(&body))
         }
+        MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, &mut warnings)?),
+        MeshSpec::Filled { file, scale, options, .. } => {
+            let mesh = read(draft, spec.site(), file, *scale, &mut warnings)?;
+            let surface = surface_of(&mesh).ok_or(MeshError::NoCells);
+            surface.and_then(|surface| fill_surface(&surface, RepairLimits::default(), options)).map(
+                |filled| {
+                    warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
+                    filled.mesh
+                },
+            )
+        }
+    };
+    let mut mesh = match built {
+        Ok(mesh) => mesh,
+        Err(error @ (MeshError::TooManyCells { .. } | MeshError::Fill(FillError::TooManyPoints { .. }))) => {
+            log.add(Code::TooLarge, site, error.to_string(), "fewer cells");
+            return None;
+        }
+        Err(error) => return refuse(error.to_string(), "a mesh that can be made"),
     };
     let repairs = match mesh.validate() {
         Ok(repairs) => repairs,
         Err(error) => return refuse(error.to_string(), "a mesh that can be computed on"),
     };
-    warnings.extend(repairs.messages().into_iter().map(|message| format!("body `{}`: {message}", body.name)));
+    let said = |message: String| format!("body `{}`: {message}", body.name);
+    warnings.extend(repairs.messages().into_iter().map(said));
+    if let MeshSpec::File { .. } = spec {
+        // what the generators make conforms by their own tests
+        let found = mesh.conformity();
+        if let Some(message) = overlap(&found, &repairs) {
+            return refuse(
+                message,
+                "cells on both sides of each face: a point moved through a face is moved back",
+            );
+        }
+        warnings.extend(found.messages(&mesh).into_iter().map(said));
+    }
     drop_facets_of_loose_points(&mut mesh);
     // points without mass would fall through every law: they go, and the others keep their numbers in the scene
     let point_numbers = mesh.remove_loose_points();
@@ -74,6 +79,50 @@ pub fn build(body: &Body, sources: &Sources, hash: &mut Sha256, log: &Log) -> Op
         );
     }
     Some(Shape { mesh, point_numbers, warnings })
+}
+
+/// The mesh of a file; `None` where it was refused.
+fn read(draft: &Draft, site: &Site, file: &str, scale: f64, warnings: &mut Vec<String>) -> Option<Mesh> {
+    let path = match draft.sources.open(site.place.source, file) {
+        Ok(path) => path,
+        Err(error) => {
+            let path = draft.sources.get(site.place.source).folder.join(file);
+            let (code, message) = match error.kind() {
+                std::io::ErrorKind::NotFound => {
+                    (Code::NotFound, format!("there is no file `{}`", path.display()))
+                }
+                _ => (Code::Unreadable, format!("`{}` cannot be read: {error}", path.display())),
+            };
+            draft.log.add(code, site, message, "an existing mesh file");
+            return None;
+        }
+    };
+    match souple_io::read_mesh(&path) {
+        Ok((mut mesh, notes)) => {
+            warnings.extend(notes.into_iter().map(|note| format!("{file}: {note}")));
+            mesh.points.iter_mut().for_each(|point| *point = *point * scale);
+            Some(mesh)
+        }
+        Err(error) => {
+            draft.log.add(Code::Mesh, site, error.to_string(), "a complete mesh");
+            None
+        }
+    }
+}
+
+/// Cells that lie on the same side of a common face, in words; of the two, the one that was rewound was inverted.
+fn overlap(found: &Conformity, repairs: &Repairs) -> Option<String> {
+    let &[a, b] = found.overlapping.first()?;
+    let was_inverted = |cell: u32| repairs.rewound_cells.binary_search(&cell).is_ok();
+    let which = match (was_inverted(a), was_inverted(b)) {
+        (true, false) => format!("; cells[{a}] is inverted"),
+        (false, true) => format!("; cells[{b}] is inverted"),
+        _ => String::new(),
+    };
+    let count = found.overlapping.len();
+    Some(format!(
+        "cells[{a}] and cells[{b}] overlap: both lie on the same side of their common face{which} ({count} such pairs)"
+    ))
 }
 
 /// Facets on points that no cell uses would keep those points: all facets go then, and their groups keep the

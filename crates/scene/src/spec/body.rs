@@ -1,36 +1,19 @@
 //! Bodies: shape, material, damping, where they start, what holds and loads them.
 
 use souple_math::Vec3;
-use souple_mesh::GENERATORS;
 use souple_models::materials;
 use souple_models::solids::Quadrature;
 use souple_table::{Range, Value};
 
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
+use super::mesh::{MESH, MeshSpec};
 use super::region::{Region, direction};
 use crate::diagnostic::{Code, Site};
-use crate::document::Content;
 use crate::keys::{EntryShape, Key, Keys, Need, Shape, outlines};
-use crate::reader::{Chosen, Reader, choose};
-
-pub(crate) static MESH_FILE: Keys = Keys::new(
-    "mesh_file",
-    "a mesh from a file",
-    &[
-        Key::new("file", Shape::Text, "relative to the scene file that names it").required(),
-        Key::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0)),
-    ],
-);
-
-const MESH: EntryShape = EntryShape {
-    tag: "generate",
-    kind: "mesh generator",
-    outlines: || outlines(&GENERATORS),
-    instead: Some(&MESH_FILE),
-};
+use crate::reader::{Chosen, Reader};
 
 pub(crate) const MATERIAL: EntryShape =
-    EntryShape { tag: "name", kind: "material", outlines: || outlines(&materials::TABLE), instead: None };
+    EntryShape { tag: "name", kind: "material", outlines: || outlines(&materials::TABLE), instead: &[] };
 
 pub(crate) static DAMPING: Keys = Keys::new(
     "damping",
@@ -123,21 +106,6 @@ pub struct Body {
     pub site: Site,
 }
 
-/// Where a body's rest shape comes from.
-pub enum MeshSpec {
-    Generated(Chosen<souple_mesh::Build>),
-    File { file: String, scale: f64, site: Site },
-}
-
-impl MeshSpec {
-    pub fn site(&self) -> &Site {
-        match self {
-            Self::Generated(chosen) => &chosen.site,
-            Self::File { site, .. } => site,
-        }
-    }
-}
-
 /// A part of another material.
 pub struct BodyRegion {
     pub name: String,
@@ -206,12 +174,12 @@ impl Body {
         let region = |(name, part): (String, Reader)| BodyRegion {
             name,
             region: Region::read(&part, "region"),
-            material: part.entry("material", &materials::TABLE),
+            material: read_material(&part),
         };
         Self {
             name,
-            mesh: read_mesh(reader),
-            material: reader.entry("material", &materials::TABLE),
+            mesh: MeshSpec::read(reader),
+            material: read_material(reader),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
             quadrature: if reader.choice("quadrature") == "full" {
@@ -233,21 +201,23 @@ impl Body {
     }
 }
 
-/// `{ generate = "bar", … }`, `{ file = "bar.msh" }`, or the file alone.
-fn read_mesh(reader: &Reader) -> Option<MeshSpec> {
-    let reading = reader.reading("mesh")?;
-    let site = reading.site();
-    match &reading.node.content {
-        Content::Text(file) => Some(MeshSpec::File { file: file.clone(), scale: 1.0, site }),
-        Content::Table(table) if table.get("file").is_some() && table.get("generate").is_none() => {
-            let table = Reader::open(&reading, &MESH_FILE)?;
-            let site = table.site_of("file");
-            Some(MeshSpec::File { file: table.maybe_text("file")?, scale: table.number("scale"), site })
+/// The material, built once on trial: a law as text may be wrong where its table is right.
+fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
+    let chosen = reader.entry("material", &materials::TABLE)?;
+    let Err(error) = (chosen.entry.build)(&chosen.values) else { return Some(chosen) };
+    let (mut site, mut node) = (chosen.site.clone(), reader.reading("material").map(|reading| reading.node));
+    for key in error.path() {
+        site.path = format!("{}.{key}", site.path);
+        node = node.and_then(|node| node.as_table()?.get(key));
+        if let Some(node) = node {
+            site.place = node.place;
         }
-        Content::Table(table) if table.get("generate").is_none() => {
-            let expected = "{ generate = \"bar\", … } or { file = \"…\" }";
-            reading.refuse(Code::MissingKey, "the mesh says neither `generate` nor `file`", expected)
-        }
-        _ => choose(&reading, &MESH, &GENERATORS, &[], &BODY).map(MeshSpec::Generated),
     }
+    reader.log().add(
+        Code::BadFormula,
+        &site,
+        error.to_string(),
+        "a hyperelastic law, see `souple describe hyperelastic`",
+    );
+    None
 }

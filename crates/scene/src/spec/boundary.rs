@@ -33,6 +33,12 @@ pub(crate) static PIN: Keys = Keys::new(
         Key::new("region", Shape::Region, "which points").required(),
         Key::new("axes", Shape::Axes, "the directions held; all where left out"),
         Key::new("motion", Shape::Table(&MOTION), "how they are led"),
+        Key::new(
+            "rotation",
+            Shape::Table(&MOTION),
+            "how they are turned about the pivot, before the motion: rotation vector, in radians",
+        ),
+        Key::vector("pivot", "m", "where they turn").or(Value::Vector([0.0; 3])),
     ],
 );
 
@@ -40,18 +46,34 @@ const DISTRIBUTION: Shape = Shape::Choice(&["total", "each"]);
 
 pub(crate) static LOAD: Keys = Keys::new(
     "load",
-    "a force on points",
+    "a `force` on points, a `traction` or `pressure` on faces, or a `body_force` in cells: one of them",
     &[
-        Key::new("region", Shape::Region, "which points").required(),
-        Key::new("force", Shape::VectorFormula(LOAD_VARIABLES), "numbers, or formulas of time and place")
-            .in_unit("N")
-            .required(),
+        Key::new("region", Shape::Region, "which points, faces of the surface, or cells").required(),
+        Key::new(
+            "force",
+            Shape::VectorFormula(LOAD_VARIABLES),
+            "on points: numbers, or formulas of time and of where the point is",
+        )
+        .in_unit("N"),
         Key::new(
             "distribution",
             DISTRIBUTION,
-            "`total`: shared by the points equally; `each`: on every point",
+            "of a `force`: `total` is shared by the points equally, `each` acts on every point; total where left out",
+        ),
+        Key::new(
+            "traction",
+            Shape::VectorFormula(LOAD_VARIABLES),
+            "force per area of the rest shape, which keeps its direction",
         )
-        .or(Value::Text("total")),
+        .in_unit("Pa"),
+        Key::new(
+            "pressure",
+            Shape::Formula(LOAD_VARIABLES),
+            "on the faces as they move and turn; positive pushes into the body",
+        )
+        .in_unit("Pa"),
+        Key::new("body_force", Shape::VectorFormula(LOAD_VARIABLES), "force per volume of the rest shape")
+            .in_unit("N/m^3"),
     ],
 );
 
@@ -78,6 +100,10 @@ pub struct Pin {
     /// The directions held.
     pub axes: [bool; 3],
     pub motion: Option<MotionSpec>,
+    /// Rotation vector about the pivot [rad].
+    pub rotation: Option<MotionSpec>,
+    /// [m]
+    pub pivot: Vec3,
     pub site: Site,
 }
 
@@ -100,15 +126,30 @@ pub enum Distribution {
     Each,
 }
 
-/// A force on points.
+/// A load on a part of a body.
 #[derive(Clone, Debug)]
 pub struct Load {
     pub region: Option<Region>,
-    /// Of [`LOAD_VARIABLES`] [N].
-    pub force: Option<[Formula; 3]>,
-    pub distribution: Distribution,
+    /// `None` where it was refused.
+    pub kind: Option<LoadKind>,
     pub site: Site,
 }
+
+/// What a load is, in formulas of [`LOAD_VARIABLES`].
+#[derive(Clone, Debug)]
+pub enum LoadKind {
+    /// On points [N].
+    Force([Formula; 3], Distribution),
+    /// Per area of the rest shape [Pa].
+    Traction([Formula; 3]),
+    /// On the faces as they are now, positive inward [Pa].
+    Pressure(Formula),
+    /// Per volume of the rest shape [N/m³].
+    BodyForce([Formula; 3]),
+}
+
+/// The keys of [`LOAD`] of which one says what the load is.
+const LOAD_KINDS: [&str; 4] = ["force", "traction", "pressure", "body_force"];
 
 /// Springs to ground.
 #[derive(Clone, Debug)]
@@ -124,9 +165,15 @@ pub struct Spring {
 
 impl Pin {
     pub(crate) fn read(reader: &Reader) -> Self {
-        let motion = reader.table("motion").and_then(|table| MotionSpec::read(&table));
-        let (region, axes) = (Region::read(reader, "region"), reader.axes("axes"));
-        Self { region, axes, motion, site: reader.site() }
+        let motion = |key| reader.table(key).and_then(|table| MotionSpec::read(&table));
+        Self {
+            region: Region::read(reader, "region"),
+            axes: reader.axes("axes"),
+            motion: motion("motion"),
+            rotation: motion("rotation"),
+            pivot: reader.vector("pivot"),
+            site: reader.site(),
+        }
     }
 }
 
@@ -177,11 +224,37 @@ impl Distribution {
 
 impl Load {
     pub(crate) fn read(reader: &Reader) -> Self {
-        Self {
-            region: Region::read(reader, "region"),
-            force: reader.maybe_vector_formula("force"),
-            distribution: Distribution::read(reader),
-            site: reader.site(),
+        Self { region: Region::read(reader, "region"), kind: LoadKind::read(reader), site: reader.site() }
+    }
+}
+
+impl LoadKind {
+    fn read(reader: &Reader) -> Option<Self> {
+        let refuse = |message: String, expected: &str| {
+            reader.log().add(Code::Conflict, &reader.site(), message, expected);
+            None
+        };
+        let expected = format!("one of {}", LOAD_KINDS.join(", "));
+        let written = reader.written(&LOAD_KINDS);
+        let &[kind] = written.as_slice() else {
+            return match written.as_slice() {
+                [] => refuse("a load does not say what acts".to_owned(), &expected),
+                several => refuse(format!("a load has {} at once", several.join(" and ")), &expected),
+            };
+        };
+        if kind != "force" && reader.has("distribution") {
+            return refuse(
+                format!("a {kind} is not distributed over points"),
+                "`distribution` beside a `force`",
+            );
+        }
+        match kind {
+            "force" => {
+                reader.maybe_vector_formula(kind).map(|force| Self::Force(force, Distribution::read(reader)))
+            }
+            "traction" => reader.maybe_vector_formula(kind).map(Self::Traction),
+            "pressure" => reader.maybe_formula(kind).map(Self::Pressure),
+            _ => reader.maybe_vector_formula(kind).map(Self::BodyForce),
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
 const SHAPE_ENTRY: EntryShape =
-    EntryShape { tag: "name", kind: "shape", outlines: || outlines(&SHAPES), instead: None };
+    EntryShape { tag: "name", kind: "shape", outlines: || outlines(&SHAPES), instead: &[] };
 
 pub(crate) static SHAPE: Keys = Keys::new(
     "shape",

@@ -50,15 +50,20 @@ pub struct Link {
 }
 
 impl Link {
-    pub(crate) fn read(reader: &Reader, can_reach: bool) -> Self {
-        let reach = if can_reach { reader.maybe_number("reach") } else { None };
+    pub(crate) fn attachment(reader: &Reader) -> Self {
+        let reach = reader.maybe_number("reach").unwrap_or(f64::INFINITY);
+        Self { reach, ..Self::coupling(reader) }
+    }
+
+    /// Couplings reach any distance.
+    pub(crate) fn coupling(reader: &Reader) -> Self {
         Self {
             from: reader.text("from"),
             region: Region::read(reader, "region"),
             to: reader.text("to"),
             stiffness: reader.number("stiffness"),
             damping: reader.number("damping"),
-            reach: reach.unwrap_or(f64::INFINITY),
+            reach: f64::INFINITY,
             site: reader.site(),
             from_site: reader.site_of("from"),
             to_site: reader.site_of("to"),

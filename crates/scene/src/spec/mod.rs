@@ -3,11 +3,16 @@
 pub mod body;
 pub mod boundary;
 pub mod contact;
+pub mod expect;
 pub mod interaction;
+pub mod mesh;
+pub mod picture;
 pub mod probe;
+pub mod quantity;
 pub mod region;
 pub mod world;
 
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_table::Range;
 
@@ -16,12 +21,14 @@ use crate::document::{Content, Node, Table};
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
 use crate::source::Place;
-use crate::values::Reading;
+use crate::values::{Reading, quoted};
 
 use body::{BODY, Body};
 use contact::{Against, CONTACT, Contact, SHAPE, ShapeSpec};
+use expect::{EXPECT, Expect};
 use interaction::{ATTACHMENT, COUPLING, Link};
-use probe::{EXPECT, Expect, PROBE, Probe};
+use picture::{PICTURE, PictureSpec, PictureView};
+use probe::{PROBE, Probe};
 use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD, WorldSpec};
 
 /// The version of the format that this crate reads.
@@ -48,6 +55,7 @@ pub(crate) static SCENE: Keys = Keys::new(
         Key::new("probes", Shape::Named(&PROBE), "what is measured"),
         Key::new("expect", Shape::Tables(&EXPECT), "what the probes must read"),
         Key::new("run", Shape::Table(&RUN), "what a run does unless told otherwise"),
+        Key::new("picture", Shape::Table(&PICTURE), "from where pictures are seen"),
     ],
 );
 
@@ -67,6 +75,7 @@ pub struct Spec {
     pub probes: Vec<Probe>,
     pub expects: Vec<Expect>,
     pub run: RunSpec,
+    pub picture: PictureSpec,
 }
 
 impl Spec {
@@ -94,9 +103,6 @@ impl Spec {
         if !reader.has("systems") {
             systems.push(SystemSpec::default_system(Site { path: "systems".to_owned(), ..reader.site() }));
         }
-        let links = |key: &str, can_reach: bool| -> Vec<Link> {
-            reader.tables(key).iter().map(|link| Link::read(link, can_reach)).collect()
-        };
         let mut spec = Self {
             title: reader.text("title"),
             description: reader.text("description"),
@@ -109,8 +115,11 @@ impl Spec {
                 .map(|(name, shape)| ShapeSpec::read(name, &shape))
                 .collect(),
             contacts: contacts(&reader),
-            attachments: links("attachments", true),
-            couplings: links("couplings", false),
+            attachments: reader.tables("attachments").iter().map(Link::attachment).collect(),
+            couplings: reader.tables("couplings").iter().map(Link::coupling).collect(),
+            picture: reader
+                .table("picture")
+                .map_or_else(PictureSpec::default, |picture| PictureSpec::read(&picture)),
             run: reader.table("run").map_or(empty.run, |run| RunSpec::read(&run)),
             systems,
             probes,
@@ -118,6 +127,7 @@ impl Spec {
         };
         spec.choose_systems();
         spec.check_names(log);
+        spec.check_file_names(log);
         spec.check_times(log);
         spec
     }
@@ -128,7 +138,7 @@ impl Spec {
             title: String::new(),
             description: String::new(),
             shows: Vec::new(),
-            world: WorldSpec { period: f64::NAN, gravity: Vec3::ZERO, site },
+            world: WorldSpec { period: f64::NAN, gravity: None, site },
             systems: Vec::new(),
             bodies: Vec::new(),
             shapes: Vec::new(),
@@ -138,6 +148,7 @@ impl Spec {
             probes: Vec::new(),
             expects: Vec::new(),
             run: RunSpec::default(),
+            picture: PictureSpec::default(),
         }
     }
 
@@ -192,6 +203,30 @@ impl Spec {
         }
     }
 
+    /// Bodies and probes give their names to files, which must stay in the folder of a run.
+    fn check_file_names(&self, log: &Log) {
+        let bodies = self.bodies.iter().map(|body| ("body", &body.name, &body.site));
+        let probes = self.probes.iter().map(|probe| ("probe", &probe.name, &probe.site));
+        for (kind, name, site) in bodies.chain(probes) {
+            if let Some(why) = unfit_for_files(name) {
+                let message = format!("the {kind} `{}` cannot name a file: {why}", quoted(name));
+                let expected = format!(
+                    "a name of 1 to {LONGEST_NAME} bytes without control characters and {}, not begun by a dot",
+                    NOT_IN_FILE_NAMES.iter().collect::<String>()
+                );
+                log.add(Code::BadName, site, message, expected);
+            }
+        }
+    }
+
+    /// From where pictures of the scene are seen.
+    pub fn picture_view(&self) -> PictureView {
+        let at_start = |gravity: &[Formula; 3]| {
+            Vec3::from_array([0, 1, 2].map(|axis: usize| gravity[axis].evaluate(&[0.0])))
+        };
+        self.picture.view(self.world.gravity.as_ref().map_or(Vec3::ZERO, at_start))
+    }
+
     fn check_times(&self, log: &Log) {
         let periods = self.run.duration / self.world.period;
         if periods > PERIODS_MAX {
@@ -204,6 +239,26 @@ impl Spec {
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)
     }
+}
+
+/// Longest name of a body or probe [bytes]: file systems take 255, with what is put behind it.
+const LONGEST_NAME: usize = 100;
+/// Characters that some file system does not take.
+const NOT_IN_FILE_NAMES: [char; 9] = ['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
+
+/// Why a name cannot be that of a file.
+fn unfit_for_files(name: &str) -> Option<String> {
+    if name.trim().is_empty() {
+        return Some("it is empty".to_owned());
+    }
+    if name.len() > LONGEST_NAME {
+        return Some(format!("it has {} bytes", name.len()));
+    }
+    if name.starts_with('.') {
+        return Some("it begins with a dot".to_owned());
+    }
+    let bad = name.chars().find(|c| c.is_control() || NOT_IN_FILE_NAMES.contains(c))?;
+    Some(format!("it has a {bad:?}"))
 }
 
 fn contacts(reader: &Reader) -> Vec<Contact> {

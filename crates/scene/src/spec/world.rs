@@ -1,7 +1,8 @@
 //! The world, its systems, and what a run does by default.
 
 use souple_engine::steppers::{self, BuildStepper};
-use souple_math::Vec3;
+use souple_formal::Formula;
+use souple_models::loads::TIME_VARIABLES;
 use souple_table::{Range, Value};
 
 use crate::diagnostic::Site;
@@ -24,13 +25,17 @@ pub(crate) static WORLD: Keys = Keys::new(
             "all systems meet at the ends of periods; frames and probes too",
         )
         .required(),
-        Key::vector("gravity", "m/s^2", "acceleration of everything that has mass")
-            .or(Value::Vector([0.0; 3])),
+        Key::new(
+            "gravity",
+            Shape::VectorFormula(&TIME_VARIABLES),
+            "acceleration of everything that has mass: numbers, or formulas of time; none where left out",
+        )
+        .in_unit("m/s^2"),
     ],
 );
 
 const STEPPER: EntryShape =
-    EntryShape { tag: "name", kind: "stepper", outlines: || outlines(&steppers::TABLE), instead: None };
+    EntryShape { tag: "name", kind: "stepper", outlines: || outlines(&steppers::TABLE), instead: &[] };
 
 pub(crate) static SYSTEM: Keys = Keys {
     name: "system",
@@ -59,8 +64,8 @@ pub(crate) static RUN: Keys = Keys::new(
 pub struct WorldSpec {
     /// [s]
     pub period: f64,
-    /// [m/s²]
-    pub gravity: Vec3,
+    /// Of the time; `None`: there is none [m/s²].
+    pub gravity: Option<[Formula; 3]>,
     pub site: Site,
 }
 
@@ -83,10 +88,16 @@ pub struct RunSpec {
 
 /// The system where none is written.
 pub const DEFAULT_SYSTEM: &str = "main";
+/// How it steps.
+pub const DEFAULT_STEPPER: &str = "backward_euler";
 
 impl WorldSpec {
     pub(crate) fn read(reader: &Reader) -> Self {
-        Self { period: reader.number("period"), gravity: reader.vector("gravity"), site: reader.site() }
+        Self {
+            period: reader.number("period"),
+            gravity: reader.maybe_vector_formula("gravity"),
+            site: reader.site(),
+        }
     }
 }
 
@@ -105,7 +116,7 @@ impl SystemSpec {
     /// # Panics
     /// If the stepper's table lacks it: a bug.
     pub(crate) fn default_system(site: Site) -> Self {
-        let entry = steppers::TABLE.find("backward_euler").expect("the default stepper is in its table");
+        let entry = steppers::TABLE.find(DEFAULT_STEPPER).expect("the default stepper is in its table");
         let values = entry.values(souple_table::Values::new()).expect("the default stepper needs no values");
         let stepper = Some(Chosen { entry, values, site: site.clone() });
         Self { name: DEFAULT_SYSTEM.to_owned(), stepper, steps_per_period: 1, site }

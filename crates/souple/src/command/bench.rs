@@ -1,7 +1,7 @@
 //! `souple bench`: speed with its error beside it.
 
 use serde_json::Value;
-use souple_verify::bench::{BENCHES, Figure, benches};
+use souple_verify::bench::{BENCHES, Effort, Figure, benches};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line};
 
@@ -33,8 +33,9 @@ pub fn bench(arguments: &Arguments) -> Result<End, Refusal> {
         return Ok(End::Done);
     }
     let mut figures: Vec<Figure> = Vec::new();
+    let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     for bench in chosen {
-        let measured = (bench.run)(arguments.quick)
+        let measured = (bench.run)(effort)
             .map_err(|error| Refusal::work("bench", format!("{}: {error}", bench.name)))?;
         if !arguments.json {
             measured.iter().for_each(print_line);

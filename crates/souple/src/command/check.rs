@@ -43,34 +43,38 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     }
     warnings.extend(souple_run::forecast_warnings(&mut world));
     let counts = souple_run::counts(&world, &bodies);
-    let steps = duration / period;
+    let periods = souple_run::periods_in(duration, period)?;
+    warnings.extend(periods.warning);
+    let steps = periods.count;
     // the cost of one step is measured on this scene, the state being thrown away
     let clock = Instant::now();
     let trial = world.step();
     let seconds_per_step = clock.elapsed().as_secs_f64();
-    if let Err(error) = &trial {
-        warnings.push(format!("the first step is refused: {error}"));
-    }
+    let errors: Vec<_> = trial.err().map(|error| first_step_refused(arguments, &error)).into_iter().collect();
     let document = json!({
         "scene": scene_path(&arguments.scene).display().to_string(),
         "title": title,
-        "valid": true,
+        "valid": errors.is_empty(),
+        "errors": errors,
         "counts": counts,
         "systems": systems,
         "probes": probes,
         "steps": steps,
         "forecast": {
             "seconds_per_step": seconds_per_step,
-            "wall_seconds": seconds_per_step * steps,
+            "wall_seconds": seconds_per_step * steps as f64,
             "bytes": world.bytes(),
         },
         "warnings": warnings,
     });
     if arguments.json {
         print_json(&document);
-        return Ok(End::Done);
+        return Ok(end_of(&errors));
     }
-    print_line(format_args!("{title}: valid"));
+    print_line(format_args!(
+        "{title}: {}",
+        if errors.is_empty() { "valid" } else { "its first step is refused" }
+    ));
     for (name, count) in &counts {
         print_line(format_args!("  {count:>9} {name}"));
     }
@@ -86,13 +90,34 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         ));
     }
     print_line(format_args!(
-        "  about {:.2} ms per step, {:.1} s for {steps:.0} steps, {:.1} MB of forces and matrices",
+        "  about {:.2} ms per step, {:.1} s for {steps} steps, {:.1} MB of forces and matrices",
         1e3 * seconds_per_step,
-        seconds_per_step * steps,
+        seconds_per_step * steps as f64,
         world.bytes() as f64 * 1e-6
     ));
     for warning in &warnings {
         print_note(format_args!("warning: {warning}"));
     }
-    Ok(End::Done)
+    for error in &errors {
+        print_note(format_args!("error: {}", error["message"].as_str().unwrap_or_default()));
+    }
+    Ok(end_of(&errors))
+}
+
+/// A scene whose first step is refused is read and built, and yet no scene that can be run.
+fn first_step_refused(arguments: &Arguments, error: &souple_engine::WorldError) -> serde_json::Value {
+    json!({
+        "code": "first_step",
+        "file": scene_path(&arguments.scene).display().to_string(),
+        "line": 1,
+        "column": 1,
+        "path": "",
+        "value": "",
+        "expected": "a scene whose first step can be made: finite forces, bodies that are held, steps short enough",
+        "message": format!("the first step is refused: {error}"),
+    })
+}
+
+fn end_of(errors: &[serde_json::Value]) -> End {
+    if errors.is_empty() { End::Done } else { End::Failed }
 }

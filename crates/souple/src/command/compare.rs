@@ -1,17 +1,24 @@
 //! `souple compare`: two results field by field.
+//!
+//! Without a tolerance the differences are told and the status is 0. With one, a field that differs by more, or that
+//! only one of the two has, ends with status 1.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use souple_engine::State;
 
-use super::{End, Refusal, print_json, print_line};
+use super::{End, Refusal, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A snapshot, or a file with fields (VTU, VTK)
     a: PathBuf,
     b: PathBuf,
+    /// Largest relative difference of a field (norm of the difference over norm of the first) that is accepted: beyond
+    /// it, or where a field is in one result only, the status is 1; 0 wants equal numbers
+    #[arg(long, value_name = "RELATIVE", value_parser = parse_tolerance)]
+    tolerance: Option<f64>,
     #[arg(long)]
     pub json: bool,
 }
@@ -35,9 +42,24 @@ pub fn compare(arguments: &Arguments) -> Result<End, Refusal> {
     for field in b.iter().filter(|field| !a.iter().any(|other| other.name == field.name)) {
         rows.push(json!({"field": field.name, "only_in": arguments.b.display().to_string()}));
     }
+    let mut differing = Vec::new();
+    if let Some(tolerance) = arguments.tolerance {
+        for row in &mut rows {
+            let is_within = row["relative"].as_f64().is_some_and(|relative| relative <= tolerance);
+            row["within_tolerance"] = json!(is_within);
+            if !is_within {
+                differing.push(row["field"].as_str().unwrap_or_default().to_owned());
+            }
+        }
+    }
+    let end = if differing.is_empty() { End::Done } else { End::Failed };
+    if let (End::Failed, Some(tolerance)) = (&end, arguments.tolerance) {
+        let fields = differing.join(", ");
+        print_note(format_args!("the results differ by more than {tolerance:e} in {fields}"));
+    }
     if arguments.json {
         print_json(&Value::Array(rows));
-        return Ok(End::Done);
+        return Ok(end);
     }
     for row in &rows {
         let name = row["field"].as_str().unwrap_or_default();
@@ -51,7 +73,12 @@ pub fn compare(arguments: &Arguments) -> Result<End, Refusal> {
             None => print_line(format_args!("{name}: {}", row)),
         }
     }
-    Ok(End::Done)
+    Ok(end)
+}
+
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "a number such as 1e-9 is wanted".to_owned())?;
+    if number >= 0.0 && number.is_finite() { Ok(number) } else { Err("it must be 0 or above".to_owned()) }
 }
 
 /// Largest and root-mean-square difference, and the Euclidean norm of it relative to that of the first.

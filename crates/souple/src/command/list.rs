@@ -1,14 +1,18 @@
 //! `souple list` and `souple describe`: what there is, from the tables.
 
 use serde_json::{Value, json};
-use souple_table::{Entry, Parameter, Table};
+use souple_engine::linear;
+use souple_table::{Entry, Kind, Parameter, Table};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct ListArguments {
-    /// materials, elements, steppers, solvers, preconditioners, generators, shapes, formats
-    kind: String,
+    /// materials, elements, steppers, solvers, preconditioners, generators, bodies, shapes, formats, quantities, functions,
+    /// units, colour_maps
+    ///
+    /// The kinds themselves if left out.
+    kind: Option<String>,
     #[arg(long)]
     pub json: bool,
 }
@@ -24,8 +28,8 @@ pub struct DescribeArguments {
 /// An entry of any table, its constructor forgotten.
 struct Page {
     kind: &'static str,
-    name: &'static str,
-    summary: &'static str,
+    name: String,
+    summary: String,
     source: &'static str,
     parameters: &'static [Parameter],
 }
@@ -33,12 +37,50 @@ struct Page {
 fn pages_of<B>(table: &'static Table<B>) -> Vec<Page> {
     let page = |entry: &&'static Entry<B>| Page {
         kind: table.kind,
-        name: entry.name,
-        summary: entry.summary,
+        name: entry.name.to_owned(),
+        summary: entry.summary.to_owned(),
         source: entry.source,
         parameters: entry.parameters,
     };
     table.entries.iter().map(page).collect()
+}
+
+/// Those entries of a table that a parameter of scenes lets choose.
+fn pages_chosen_by<B>(parameter: &Parameter, table: &'static Table<B>) -> Vec<Page> {
+    let Kind::Choice(choices) = parameter.kind else { return pages_of(table) };
+    pages_of(table).into_iter().filter(|page| choices.contains(&page.name.as_str())).collect()
+}
+
+/// What formulas may call, and the constants they may name.
+fn functions() -> Vec<Page> {
+    let page = |name: &str, summary: String| Page {
+        kind: "function",
+        name: name.to_owned(),
+        summary,
+        source: "",
+        parameters: &[],
+    };
+    let functions = souple_formal::FUNCTIONS
+        .iter()
+        .map(|entry| page(entry.name, format!("{}: {}", entry.usage, entry.summary)));
+    let constants =
+        souple_formal::CONSTANTS.iter().map(|(name, value)| page(name, format!("the constant {value}")));
+    functions.chain(constants).collect()
+}
+
+/// Units, with the prefixes they take.
+fn units() -> Vec<Page> {
+    let page = |entry: souple_formal::UnitEntry| Page {
+        kind: "unit",
+        name: entry.symbol.to_owned(),
+        summary: match entry.prefixes.join(" ") {
+            none if none.is_empty() => entry.meaning,
+            prefixes => format!("{}; prefixes {prefixes}", entry.meaning),
+        },
+        source: "",
+        parameters: &[],
+    };
+    souple_formal::units().map(page).collect()
 }
 
 /// Every table, under the plural that `list` takes.
@@ -47,18 +89,30 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("materials", pages_of(&souple_models::materials::TABLE)),
         ("elements", pages_of(&souple_mesh::ELEMENTS)),
         ("steppers", pages_of(&souple_engine::steppers::TABLE)),
-        ("solvers", pages_of(&souple_solve::solvers::TABLE)),
-        ("preconditioners", pages_of(&souple_solve::precondition::TABLE)),
+        ("solvers", pages_chosen_by(&linear::SOLVER, &souple_solve::solvers::TABLE)),
+        ("preconditioners", pages_chosen_by(&linear::PRECONDITIONER, &souple_solve::precondition::TABLE)),
         ("generators", pages_of(&souple_mesh::GENERATORS)),
+        ("bodies", pages_of(&souple_mesh::implicit::SHAPES)),
         ("shapes", pages_of(&souple_models::contact::SHAPES)),
         ("formats", pages_of(&souple_io::FORMATS)),
+        ("quantities", pages_of(&souple_scene::spec::quantity::QUANTITIES)),
+        ("functions", functions()),
+        ("units", units()),
+        ("colour_maps", pages_of(&souple_io::picture::COLOUR_MAPS)),
     ]
 }
 
 pub fn list(arguments: &ListArguments) -> Result<End, Refusal> {
     let tables = tables();
     let kinds: Vec<&str> = tables.iter().map(|(plural, _)| *plural).collect();
-    let wanted = arguments.kind.as_str();
+    let Some(wanted) = arguments.kind.as_deref() else {
+        if arguments.json {
+            print_json(&json!(kinds));
+        } else {
+            kinds.iter().for_each(print_line);
+        }
+        return Ok(End::Done);
+    };
     let found = tables
         .iter()
         .find(|(plural, pages)| *plural == wanted || pages.iter().any(|page| page.kind == wanted));
@@ -75,7 +129,7 @@ pub fn list(arguments: &ListArguments) -> Result<End, Refusal> {
         print_json(&Value::Array(pages.iter().map(to_json).collect()));
         return Ok(End::Done);
     }
-    let width = pages.iter().map(|page| page.name.len()).max().unwrap_or(0);
+    let width = pages.iter().map(|page| page.name.chars().count()).max().unwrap_or(0);
     for page in pages {
         print_line(format_args!("{:width$}  {}", page.name, page.summary));
     }
@@ -87,7 +141,7 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     let pages: Vec<&Page> = tables.iter().flat_map(|(_, pages)| pages).collect();
     let found: Vec<&&Page> = pages.iter().filter(|page| page.name == arguments.name).collect();
     if found.is_empty() {
-        let hint = did_you_mean(&arguments.name, pages.iter().map(|page| page.name));
+        let hint = did_you_mean(&arguments.name, pages.iter().map(|page| page.name.as_str()));
         let message = format!("nothing is called `{}`{hint}", arguments.name);
         return Err(Refusal::request(
             "unknown_name",
@@ -103,7 +157,9 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     for page in found {
         print_line(format_args!("{} ({})", page.name, page.kind));
         print_line(format_args!("  {}", page.summary));
-        print_line(format_args!("  source: {}", page.source));
+        if !page.source.is_empty() {
+            print_line(format_args!("  source: {}", page.source));
+        }
         for parameter in page.parameters {
             let default = parameter.default.map(|value| format!(", default {value}")).unwrap_or_default();
             print_line(format_args!("  {}: {}", parameter.name, parameter.summary));

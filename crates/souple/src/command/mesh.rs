@@ -1,10 +1,14 @@
-//! `souple mesh`: generate, convert, quality.
+//! `souple mesh`: generate, fill, simplify, convert, quality.
+
+mod fill;
+mod parameters;
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value as Json, json};
-use souple_mesh::Mesh;
-use souple_table::{Kind, Value, Values};
+use souple_mesh::repair::diagnose;
+use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
+use souple_table::Parameter;
 
 use super::{End, Refusal, print_json, print_line};
 
@@ -16,24 +20,43 @@ pub struct Arguments {
 
 #[derive(clap::Subcommand)]
 enum Action {
-    /// Makes a mesh: `souple mesh generate bar out.msh size=1,0.1,0.1 cells=30,3,3 element=tet4`
+    /// Makes a mesh: `souple mesh generate bar out.msh size=1,10cm,10cm cells=30,3,3 element=tet4`
     Generate {
         /// A name that `souple list generators` prints
         generator: String,
         out: PathBuf,
-        /// NAME=VALUE; vectors as three numbers with commas
+        /// NAME=VALUE; vectors as three numbers with commas; with units as in scenes: `radius=5cm`, `"radius=5 cm"`
         parameters: Vec<String>,
         #[arg(long)]
         json: bool,
     },
-    /// Reads one format and writes another, by extension
+    /// Fills a surface or a shape: `souple mesh fill liver out.msh size=0.005`, `souple mesh fill organ.stl out.msh count=10000`
+    Fill {
+        /// A surface file, or a name that `souple list bodies` prints
+        input: String,
+        out: PathBuf,
+        /// NAME=VALUE: size, count, growth, largest, size_inside, element, scale, and those of the shape
+        parameters: Vec<String>,
+        #[arg(long)]
+        json: bool,
+    },
+    /// Makes a surface of fewer triangles: `souple mesh simplify organ.stl out.obj distance=0.001`
+    Simplify {
+        input: PathBuf,
+        out: PathBuf,
+        /// NAME=VALUE: distance (largest, m), triangles (least number)
+        parameters: Vec<String>,
+        #[arg(long)]
+        json: bool,
+    },
+    /// Reads one format and writes another, by extension; tells what the written file holds
     Convert {
         input: PathBuf,
         out: PathBuf,
         #[arg(long)]
         json: bool,
     },
-    /// Measures volume, quality and conformity, and says what is wrong
+    /// Measures volume, quality and conformity, of surfaces whether they are closed, and says what is wrong
     Quality {
         input: PathBuf,
         #[arg(long)]
@@ -44,9 +67,11 @@ enum Action {
 impl Arguments {
     pub fn wants_json(&self) -> bool {
         match &self.action {
-            Action::Generate { json, .. } | Action::Convert { json, .. } | Action::Quality { json, .. } => {
-                *json
-            }
+            Action::Generate { json, .. }
+            | Action::Fill { json, .. }
+            | Action::Simplify { json, .. }
+            | Action::Convert { json, .. }
+            | Action::Quality { json, .. } => *json,
         }
     }
 }
@@ -58,13 +83,36 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             write(&out, &mesh)?;
             report(&mesh, &[], json)
         }
-        Action::Convert { input, out, json } => {
-            let (mesh, notes) = read(&input)?;
+        Action::Fill { input, out, parameters, json } => {
+            let (mesh, notes) = fill::fill(&input, &parameters)?;
             write(&out, &mesh)?;
             report(&mesh, &notes, json)
         }
+        Action::Simplify { input, out, parameters, json } => {
+            let (mesh, notes) = fill::simplified(&input, &parameters)?;
+            write(&out, &mesh)?;
+            report(&mesh, &notes, json)
+        }
+        Action::Convert { input, out, json } => {
+            let (mesh, mut notes) = read(&input)?;
+            write(&out, &mesh)?;
+            // a format may hold less than what was read: what was written is told
+            notes.extend(souple_io::losses(&out, &souple_io::Output::new(&mesh))?);
+            let written = match souple_io::read_mesh(&out) {
+                Ok((written, _)) => written,
+                // a format that is only written
+                Err(souple_io::IoError::Unsupported { .. }) => mesh,
+                Err(error) => return Err(error.into()),
+            };
+            report(&written, &notes, json)
+        }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
+            // a surface is measured as one; cells, or nothing at all, are validated
+            if let (0, Some(surface)) = (mesh.cell_count(), mesh.facet_surface()) {
+                report_surface(&mesh, &surface, &notes, json);
+                return Ok(End::Done);
+            }
             let repairs = mesh.validate();
             let refuse = |error: souple_mesh::MeshError| {
                 Refusal::request(
@@ -80,26 +128,12 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
     }
 }
 
-fn generate(name: &str, parameters: &[String]) -> Result<Mesh, Refusal> {
+fn generate(name: &str, texts: &[String]) -> Result<Mesh, Refusal> {
     let entry = souple_mesh::GENERATORS
         .find(name)
         .map_err(|error| Refusal::request("unknown_generator", name, "a generator", error.to_string()))?;
-    let mut values = Values::new();
-    for text in parameters {
-        let refuse =
-            |message: &str| Refusal::request("parameter", text, "NAME=VALUE", format!("`{text}`: {message}"));
-        let (key, value) = text.split_once('=').ok_or_else(|| refuse("there is no `=`"))?;
-        let kind =
-            entry.parameters.iter().find(|parameter| parameter.name == key).map(|parameter| parameter.kind);
-        let numbers: Option<Vec<f64>> = value.split(',').map(|number| number.trim().parse().ok()).collect();
-        let value = match (kind, numbers.as_deref()) {
-            (Some(Kind::Integer), Some([number])) if number.fract() == 0.0 => Value::Integer(*number as i64),
-            (Some(Kind::Vector), Some([x, y, z])) => Value::Vector([*x, *y, *z]),
-            (Some(Kind::Number), Some([number])) => Value::Number(*number),
-            _ => Value::Text(value),
-        };
-        values.set(key.to_owned(), value);
-    }
+    let known: Vec<&Parameter> = entry.parameters.iter().collect();
+    let values = parameters::values(texts, &known)?;
     souple_mesh::generate(name, values).map_err(|error| {
         Refusal::request("generate", name, "parameters that `souple describe` prints", error.to_string())
     })
@@ -116,15 +150,14 @@ fn write(path: &Path, mesh: &Mesh) -> Result<(), Refusal> {
 fn report(mesh: &Mesh, notes: &[String], as_json: bool) -> Result<End, Refusal> {
     let conforming = mesh.faces().conforming().err().map(|error| error.to_string());
     let quality = mesh.quality();
-    let smallest =
-        |pick: fn(&souple_mesh::CellQuality) -> f64| quality.iter().map(pick).fold(f64::INFINITY, f64::min);
     let bounds = mesh.bounds();
     let kinds: serde_json::Map<String, Json> = mesh
         .blocks
         .iter()
         .map(|block| (block.kind.name().to_owned(), json!(mesh.count_of(block.kind))))
         .collect();
-    let document = json!({
+    let smallest = quality.iter().map(|cell| cell.scaled_jacobian).fold(f64::INFINITY, f64::min);
+    let mut document = json!({
         "points": mesh.points.len(),
         "cells": kinds,
         "facets": mesh.facet_count(),
@@ -132,17 +165,97 @@ fn report(mesh: &Mesh, notes: &[String], as_json: bool) -> Result<End, Refusal> 
         "components": mesh.components().1,
         "volume": mesh.volume(),
         "bounds": [bounds.low.to_array(), bounds.high.to_array()],
-        "smallest_scaled_jacobian": (!quality.is_empty()).then(|| smallest(|cell| cell.scaled_jacobian)),
+        "smallest_scaled_jacobian": (!quality.is_empty()).then_some(smallest),
         "conforming": conforming.is_none(),
         "problem": conforming,
         "notes": notes,
     });
+    if !quality.is_empty() {
+        document["quality"] = shapes(mesh, &quality);
+    }
+    print(&document, as_json);
+    Ok(End::Done)
+}
+
+fn print(document: &Json, as_json: bool) {
     if as_json {
-        print_json(&document);
-    } else if let Json::Object(entries) = &document {
+        print_json(document);
+    } else if let Json::Object(entries) = document {
         for (name, value) in entries {
             print_line(format_args!("{name}: {value}"));
         }
     }
-    Ok(End::Done)
+}
+
+/// Triangles without cells: their shapes, and whether they enclose a volume.
+fn report_surface(mesh: &Mesh, surface: &TriangleSurface, notes: &[String], as_json: bool) {
+    let quality = surface.quality();
+    let least = |pick: fn(&TriangleQuality) -> f64| quality.iter().map(pick).fold(f64::INFINITY, f64::min);
+    let greatest = quality.iter().map(|triangle| triangle.largest_angle).fold(0.0, f64::max);
+    let flat = quality.iter().filter(|triangle| triangle.area == 0.0).count();
+    let open = surface.check_closed().err().map(|error| error.to_string());
+    let bounds = surface.bounds();
+    let document = json!({
+        "points": mesh.points.len(),
+        "facets": mesh.facet_count(),
+        "triangles": surface.triangles.len(),
+        "groups": mesh.groups.keys().collect::<Vec<_>>(),
+        "area": surface.area(),
+        "bounds": [bounds.low.to_array(), bounds.high.to_array()],
+        "closed": open.is_none(),
+        // of an open surface there is none
+        "enclosed_volume": open.is_none().then(|| surface.enclosed_volume()),
+        "smallest_shape": least(|triangle| triangle.shape),
+        "smallest_angle_degrees": least(|triangle| triangle.smallest_angle).to_degrees(),
+        "largest_angle_degrees": greatest.to_degrees(),
+        "triangles_without_area": flat,
+        "problem": open,
+        "faults": faults(surface),
+        "notes": notes,
+    });
+    print(&document, as_json);
+}
+
+/// Bins of ten degrees from 0 to 180.
+const DIHEDRAL_BINS: usize = 18;
+
+/// Angles, slenderness and volumes of cells.
+fn shapes(mesh: &Mesh, quality: &[CellQuality]) -> Json {
+    let histogram =
+        |measure: fn(&CellQuality) -> f64| Histogram::of(&quality.iter().map(measure).collect::<Vec<_>>(), 1);
+    let (least, greatest) = (
+        histogram(|cell| cell.smallest_dihedral.to_degrees()),
+        histogram(|cell| cell.largest_dihedral.to_degrees()),
+    );
+    let aspect = histogram(|cell| cell.aspect_ratio);
+    let volume = histogram(|cell| cell.volume);
+    let worst = mesh.quality_summary(1).worst_cell;
+    json!({
+        "dihedral_degrees": {
+            "min": least.low,
+            "max": greatest.high,
+            "histogram_0_to_180": mesh.dihedral_histogram(DIHEDRAL_BINS),
+        },
+        "aspect_ratio": { "best": aspect.low, "worst": aspect.high, "mean": aspect.mean },
+        "cell_volume": { "min": volume.low, "max": volume.high, "mean": volume.mean },
+        "inverted_cells": quality.iter().filter(|cell| cell.volume <= 0.0).count(),
+        "worst_cell": worst,
+    })
+}
+
+/// What is wrong with a surface.
+fn faults(surface: &TriangleSurface) -> Json {
+    let diagnosis = diagnose(surface);
+    json!({
+        "simple": diagnosis.is_simple(),
+        "components": diagnosis.component_count,
+        "open_edges": diagnosis.open_edges.len(),
+        "crowded_edges": diagnosis.crowded_edges.len(),
+        "misoriented_edges": diagnosis.misoriented_edges.len(),
+        "crossings": diagnosis.crossings.len(),
+        "duplicate_points": diagnosis.duplicate_points,
+        "flat_triangles": diagnosis.flat_triangles.len(),
+        "doubled_triangles": diagnosis.doubled_triangles.len(),
+        "messages": diagnosis.messages(),
+    })
 }

@@ -3,9 +3,11 @@
 mod bench;
 mod check;
 mod compare;
+mod derive;
 mod list;
 mod mesh;
 mod modes;
+mod render;
 mod replay;
 mod run;
 mod verify;
@@ -46,8 +48,12 @@ enum Command {
     Bench(bench::Arguments),
     /// Plays a recording again
     Replay(replay::Arguments),
+    /// Draws a scene or a run: picture, contact sheet, film, animated surfaces
+    Render(Box<render::Arguments>),
     /// Compares two results field by field
     Compare(compare::Arguments),
+    /// Derives a law on an element: stress, tangent, grouped constants, operation counts, code
+    Derive(derive::Arguments),
     /// Generates, converts and measures meshes
     Mesh(mesh::Arguments),
 }
@@ -74,6 +80,9 @@ pub struct Refusal {
     /// For people; the errors' messages where `None`.
     pub text: Option<String>,
 }
+
+/// Faults of a scene that are printed for people, whose screens end.
+const MOST_FAULTS: usize = 20;
 
 /// Exit status of a request that was wrong.
 const WRONG_REQUEST: u8 = 2;
@@ -140,7 +149,13 @@ impl From<souple_scene::Diagnostics> for Refusal {
             },
             _ => Vec::new(),
         };
-        Self { status: WRONG_REQUEST, errors, text: Some(diagnostics.to_string()) }
+        let shown: Vec<String> = diagnostics.0.iter().take(MOST_FAULTS).map(ToString::to_string).collect();
+        let mut text = shown.join("\n\n");
+        if diagnostics.0.len() > MOST_FAULTS {
+            let rest = diagnostics.0.len() - MOST_FAULTS;
+            text += &format!("\n\n… and {rest} more (all of them with --json)");
+        }
+        Self { status: WRONG_REQUEST, errors, text: Some(text) }
     }
 }
 
@@ -151,7 +166,10 @@ impl From<souple_io::IoError> for Refusal {
         let message = error.to_string();
         let (path, line, value, expected) = match error {
             IoError::Content { path, fault } => {
-                let line = if let Place::Line(line) = fault.place { json!(line) } else { Value::Null };
+                let line = match fault.place {
+                    Place::Line(line) | Place::PartLine { line, .. } => json!(line),
+                    Place::Byte(_) => Value::Null,
+                };
                 (path, line, fault.found, fault.expected)
             }
             IoError::Read { path, .. } => {
@@ -176,13 +194,26 @@ impl From<souple_io::IoError> for Refusal {
 
 impl From<souple_run::RunError> for Refusal {
     fn from(error: souple_run::RunError) -> Self {
-        use souple_run::RunError;
+        use souple_run::{OutputError, RunError};
         match &error {
             RunError::Snapshot(_)
             | RunError::Edit { .. }
             | RunError::TooManySteps { .. }
+            | RunError::NoStep { .. }
             | RunError::FileName { .. } => Self::request("run", "", "", error.to_string()),
-            RunError::Io(_) | RunError::Folder { .. } => Self::work("io", error.to_string()),
+            RunError::Output(output) => match output {
+                OutputError::Foreign { .. }
+                | OutputError::WouldLoseResults { .. }
+                | OutputError::List { .. } => Self::request(
+                    "output",
+                    "",
+                    "a folder of its own, or that of an earlier run",
+                    error.to_string(),
+                ),
+                OutputError::Folder { .. } | OutputError::NotRemoved { .. } | OutputError::Io(_) => {
+                    Self::work("io", error.to_string())
+                }
+            },
         }
     }
 }
@@ -205,7 +236,9 @@ pub fn execute(cli: Cli) -> ExitCode {
         Command::Verify(arguments) => (verify::verify(&arguments), arguments.json),
         Command::Bench(arguments) => (bench::bench(&arguments), arguments.json),
         Command::Replay(arguments) => (replay::replay(&arguments), arguments.json),
+        Command::Render(arguments) => (render::render(&arguments), arguments.json),
         Command::Compare(arguments) => (compare::compare(&arguments), arguments.json),
+        Command::Derive(arguments) => (derive::derive(&arguments), arguments.json),
         Command::Mesh(arguments) => {
             let as_json = arguments.wants_json();
             (mesh::mesh(arguments), as_json)

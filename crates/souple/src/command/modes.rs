@@ -1,7 +1,6 @@
 //! `souple modes`: natural frequencies of a scene about its first state.
 
 use serde_json::{Value, json};
-use souple_solve::modes::Settings;
 
 use super::{End, Refusal, print_json, print_line, read_scene};
 
@@ -45,29 +44,18 @@ pub fn modes(arguments: &Arguments) -> Result<End, Refusal> {
         ));
     }
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
-    let mut world = scene.model.start(scene.state);
-    let angular = std::f64::consts::TAU * arguments.near;
-    let settings = Settings { count: arguments.count, shift: angular * angular, ..Settings::default() };
-    let mut systems = Vec::new();
-    for index in 0..world.model().systems.len() {
-        let (name, found) = world.with_system(index, |system, state, around, ws| {
-            (system.name.clone(), souple_engine::modes::lowest(system, state, around, ws, &settings))
-        });
-        let modes = found.map_err(|error| Refusal::work("modes", format!("system `{name}`: {error}")))?;
-        // a frequency of an unstable direction, ω² < 0, is printed as negative
-        let hertz = |eigenvalue: &f64| eigenvalue.abs().sqrt().copysign(*eigenvalue) / std::f64::consts::TAU;
-        let mut frequencies: Vec<f64> = modes.eigenvalues.iter().map(hertz).collect();
-        frequencies.sort_by(f64::total_cmp);
-        let worst = modes.residuals.iter().copied().fold(0.0, f64::max);
-        systems.push(json!({"system": name, "hz": frequencies, "largest_residual": worst}));
-    }
+    let systems = souple_run::natural_frequencies(scene, arguments.count, arguments.near)
+        .map_err(|error| Refusal::work("modes", error.to_string()))?;
     if arguments.json {
-        print_json(&Value::Array(systems));
+        let document = systems.iter().map(|found| {
+            json!({"system": found.system, "hz": found.hertz, "largest_residual": found.largest_residual})
+        });
+        print_json(&document.collect::<Value>());
         return Ok(End::Done);
     }
-    for system in &systems {
-        print_line(format_args!("system {}", system["system"].as_str().unwrap_or_default()));
-        for (number, hertz) in system["hz"].as_array().into_iter().flatten().enumerate() {
+    for found in &systems {
+        print_line(format_args!("system {}", found.system));
+        for (number, hertz) in found.hertz.iter().enumerate() {
             print_line(format_args!("  {:>3}  {hertz} Hz", number + 1));
         }
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use souple_run::{Control, Options, Outcome, Progress, Status};
+use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status};
 use souple_scene::Scene;
 
 use super::{
@@ -17,21 +17,23 @@ use super::{
 pub struct Arguments {
     /// Scene file, or a folder with a scene.toml
     scene: String,
-    /// Folder for report, probes, frames and picture; made if missing
+    /// Folder for report, probes, frames and picture; made if missing. What an earlier run wrote there is replaced
     #[arg(long)]
     out: Option<PathBuf>,
-    /// World periods to step
+    /// World periods to step; by default, to the end of the scene's duration
     #[arg(long, conflicts_with = "duration")]
     steps: Option<u64>,
-    /// Time to simulate, as `2 s` or `500 ms`
+    /// Time to simulate, as `2 s` or `500 ms`; rounded to whole periods, with a warning
     #[arg(long)]
     duration: Option<String>,
-    /// Changes a value of the scene: `bodies.bar.material.youngs_modulus="20 MPa"`; may be repeated
+    /// Changes a value of the scene: `bodies.bar.material.youngs_modulus="20 MPa"`; may be repeated. Mesh files are
+    /// relative to the current folder
     #[arg(long = "set", value_name = "PATH=VALUE")]
     settings: Vec<String>,
     /// Worker threads; the results do not depend on it
     #[arg(long)]
     threads: Option<usize>,
+    /// Of the random generators; the scene's by default
     #[arg(long)]
     seed: Option<u64>,
     /// Frames of the series; the scene's number by default
@@ -43,12 +45,15 @@ pub struct Arguments {
     /// Steps between snapshots
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), requires = "out")]
     snapshot_every: Option<u64>,
-    /// Continues from a snapshot
+    /// Continues from a snapshot to the scene's end; --steps and --duration then count from the snapshot
     #[arg(long, value_name = "FILE")]
     resume: Option<PathBuf>,
     /// Writes a recording that `souple replay` repeats bit for bit, from the scene's start
     #[arg(long, value_name = "FILE", conflicts_with = "resume")]
     record: Option<PathBuf>,
+    /// Whether an expectation that fails ends with status 1; `strict` by default, `warn` where --set changes the scene
+    #[arg(long, value_enum)]
+    expect: Option<Strictness>,
     /// One JSON document (the report) on standard output
     #[arg(long)]
     pub json: bool,
@@ -57,7 +62,16 @@ pub struct Arguments {
     quiet: bool,
 }
 
-/// Set by the first Ctrl-C.
+/// What a failing expectation does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Strictness {
+    /// It ends the program with status 1
+    Strict,
+    /// It is said, and no more
+    Warn,
+}
+
+/// Set by the first Ctrl-C, or by the system's wish that the program ends (SIGTERM).
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
@@ -75,26 +89,43 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         ..Options::default()
     };
     if let Some(path) = &arguments.resume {
-        let state = souple_run::read_snapshot(path, &scene.scene_sha256);
-        let refuse = |error: souple_run::SnapshotFileError| {
-            Refusal::request(
-                "snapshot",
-                path.display().to_string(),
-                "a snapshot of this scene",
-                error.to_string(),
-            )
-        };
-        options.resume = Some(state.map_err(refuse)?);
+        options.resume = Some(read_resumed(path, &scene.scene_sha256)?);
     }
-    let mut outcome = play(scene, &options, arguments.quiet)?;
+    let outcome = play(scene, &options, arguments.quiet)?;
     if let Some(path) = &arguments.record {
-        outcome.recording.settings = arguments.settings.clone();
         outcome.recording.write(path).map_err(|error| Refusal::work("io", error.to_string()))?;
     }
-    conclude(&outcome, options.out.as_deref(), arguments.json, arguments.quiet)
+    // a scene that was changed may well behave otherwise than its author expects
+    let usual = if arguments.settings.is_empty() { Strictness::Strict } else { Strictness::Warn };
+    let manner = Manner {
+        out: options.out.as_deref(),
+        output: if arguments.json { Output::Json } else { Output::Lines },
+        quiet: arguments.quiet,
+        expect: arguments.expect.unwrap_or(usual),
+    };
+    Ok(conclude(&outcome, &manner))
 }
 
-/// Runs with progress, stopping cleanly at Ctrl-C.
+fn read_resumed(path: &Path, scene_sha256: &str) -> Result<souple_run::Snapshot, Refusal> {
+    let snapshot = souple_run::read_snapshot(path, scene_sha256).map_err(|error| {
+        Refusal::request(
+            "snapshot",
+            path.display().to_string(),
+            "a snapshot of this scene",
+            error.to_string(),
+        )
+    })?;
+    let (binary, isa) = (souple_run::binary(), souple_run::instruction_set());
+    if snapshot.binary != binary || snapshot.isa != isa {
+        print_note(format_args!(
+            "warning: the snapshot was written by {} on {}, this is {binary} on {isa}: the run may end with other bits than an unbroken one",
+            snapshot.binary, snapshot.isa
+        ));
+    }
+    Ok(snapshot)
+}
+
+/// Runs with progress, stopping cleanly at Ctrl-C and SIGTERM.
 pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Refusal> {
     // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
@@ -123,44 +154,71 @@ pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Ref
     Ok(outcome?)
 }
 
+/// Where the results of a run are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Output {
+    Json,
+    Lines,
+}
+
+/// How a run is told.
+pub struct Manner<'a> {
+    pub out: Option<&'a Path>,
+    pub output: Output,
+    pub quiet: bool,
+    pub expect: Strictness,
+}
+
 /// Prints what came out, and says how it ended.
-pub fn conclude(outcome: &Outcome, out: Option<&Path>, as_json: bool, quiet: bool) -> Result<End, Refusal> {
+pub fn conclude(outcome: &Outcome, manner: &Manner) -> End {
     let report = &outcome.report;
     for warning in &report.warnings {
         print_note(format_args!("warning: {warning}"));
     }
-    let failed = outcome.verdicts.iter().filter(|verdict| !verdict.pass).count();
-    for verdict in outcome.verdicts.iter().filter(|verdict| !verdict.pass) {
-        print_note(format_args!("not as expected: {}", verdict.message));
+    if let Some(failure) = &report.failure {
+        print_note(format_args!("error: {}", failure.message()));
     }
-    if as_json {
+    let verdicts = &report.expectations;
+    let of = |finding: Finding| verdicts.iter().filter(move |verdict| verdict.finding == finding);
+    let word =
+        if manner.expect == Strictness::Strict { "not as expected" } else { "warning: not as expected" };
+    of(Finding::Fails).for_each(|verdict| print_note(format_args!("{word}: {}", verdict.message())));
+    let is_left_open = of(Finding::NotJudged).next().is_some();
+    if manner.output == Output::Json {
         print_json(&report.to_json());
-    } else if !quiet {
-        print_line(format_args!(
-            "{}: {} steps, {:.4} s simulated in {:.2} s ({:.2} x real time)",
-            report.status.as_str(),
-            report.steps,
-            report.simulated_seconds,
-            report.wall_seconds,
-            report.real_time_factor()
-        ));
-        for probe in &report.probes {
-            print_line(format_args!("  {} = {:?} {}", probe.name, probe.last, probe.unit));
-        }
-        if let Some(out) = out {
-            print_line(format_args!("  {}", out.join("report.json").display()));
-            let picture = out.join("last.png");
-            if picture.is_file() {
-                print_line(format_args!("  {}", picture.display()));
-            }
-        }
+    } else if !manner.quiet {
+        print_summary(report, manner.out);
     }
-    Ok(match report.status {
+    if !verdicts.is_empty() && (is_left_open || !manner.quiet) {
+        let line = format!("expectations: {}", souple_run::summary(verdicts));
+        if manner.output == Output::Json || manner.quiet { print_note(line) } else { print_line(line) }
+    }
+    match report.status {
         Status::Interrupted => End::Interrupted,
         Status::Failed => End::Failed,
-        Status::Done if failed > 0 => End::Failed,
+        Status::Done if manner.expect == Strictness::Strict && of(Finding::Fails).next().is_some() => {
+            End::Failed
+        }
         Status::Done => End::Done,
-    })
+    }
+}
+
+fn print_summary(report: &Report, out: Option<&Path>) {
+    print_line(format_args!(
+        "{}: {} steps, {:.4} s simulated in {:.2} s ({:.2} x real time)",
+        report.status.as_str(),
+        report.steps,
+        report.simulated_seconds,
+        report.wall_seconds,
+        report.real_time_factor()
+    ));
+    for probe in &report.probes {
+        print_line(format_args!("  {} = {:?} {}", probe.name, probe.last, probe.unit));
+    }
+    let files = out.into_iter().flat_map(|out| [out.join("report.json"), out.join("last.png")]);
+    for file in files.filter(|file| file.is_file()) {
+        print_line(format_args!("  {}", file.display()));
+    }
 }
 
 fn parse_duration(text: &str) -> Result<f64, Refusal> {
@@ -191,7 +249,8 @@ pub fn run_default_scene() -> Result<End, Refusal> {
     let options =
         Options { out: Some(out.clone()), scene_name: "soft_block".to_owned(), ..Options::default() };
     let outcome = play(scene, &options, false)?;
-    let end = conclude(&outcome, Some(&out), false, false)?;
+    let manner = Manner { out: Some(&out), output: Output::Lines, quiet: false, expect: Strictness::Strict };
+    let end = conclude(&outcome, &manner);
     print_line("Try next:");
     print_line("  souple list materials");
     print_line("  souple check scenes/cantilever/scene.toml");

@@ -21,7 +21,7 @@ pub struct Arguments {
 
 pub fn verify(arguments: &Arguments) -> Result<End, Refusal> {
     let cases = souple_verify::cases(&arguments.ids).map_err(|unknown| {
-        let hint = did_you_mean(&unknown, souple_verify::CASES.iter().map(|case| case.id));
+        let hint = did_you_mean(&unknown, souple_verify::all().map(|case| case.id));
         let message = format!("there is no case `{unknown}`{hint}");
         Refusal::request("unknown_case", &unknown, "an id that `souple verify --list` prints", message)
     })?;

@@ -177,6 +177,8 @@ pub const REPORT_KEYS: &[&str] = &[
     "solver",
     "probes",
     "hashes",
+    "expectations",
+    "error",
     "warnings",
 ];
 

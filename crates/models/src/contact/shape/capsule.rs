@@ -3,7 +3,7 @@
 use souple_math::{Mat3, Vec3};
 use souple_table::{Parameter, Range};
 
-use super::{HOLLOW, Nearest, Shape, ShapeEntry, boxed, rounded};
+use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, boxed, rounded, rounded_surface};
 
 /// All points within a radius of a segment; a segment of no length is a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +34,10 @@ impl Shape for Capsule {
             (self.from + axis * place, axis.outer(axis))
         };
         Some(rounded(point, centre, self.radius, flat, axis.any_orthogonal()))
+    }
+
+    fn outline(&self) -> Option<Outline> {
+        Some(Outline::solid(rounded_surface(self.from, self.to, self.radius)))
     }
 }
 

@@ -4,7 +4,7 @@ use souple_math::{Mat3, Vec3};
 use souple_mesh::{MeshError, SignedDistance, TriangleSurface};
 use souple_table::Parameter;
 
-use super::{HOLLOW, Nearest, Shape, ShapeEntry, ShapeError, boxed};
+use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, ShapeError, boxed};
 
 /// Signed distance to a closed surface of triangles.
 #[derive(Clone, Debug)]
@@ -38,17 +38,21 @@ impl Shape for ClosedSurface {
         }
         // the nearest point follows over a face and along an edge, and stays at a corner
         let corners = self.distance.surface().corners(closest.triangle);
-        let away: Vec<usize> = (0..3).filter(|corner| closest.weights[*corner] == 0.0).collect();
-        let flat = match away.as_slice() {
-            [] => Mat3::IDENTITY - n.outer(n),
-            [one] => {
-                let along = (corners[(one + 1) % 3] - corners[(one + 2) % 3]).try_normalised();
-                along.map_or(Mat3::ZERO, |edge| edge.outer(edge))
-            }
+        let [a, b, c] = corners;
+        let along = |edge: Vec3| edge.try_normalised().map_or(Mat3::ZERO, |edge| edge.outer(edge));
+        let flat = match closest.weights.map(|weight| weight == 0.0) {
+            [false, false, false] => Mat3::IDENTITY - n.outer(n),
+            [true, false, false] => along(b - c),
+            [false, true, false] => along(c - a),
+            [false, false, true] => along(a - b),
             _ => Mat3::ZERO,
         };
         let curvature = (Mat3::IDENTITY - n.outer(n) - flat) * closest.distance.recip();
         Some(Nearest { distance: closest.distance, normal: n, curvature })
+    }
+
+    fn outline(&self) -> Option<Outline> {
+        Some(Outline::solid(self.distance.surface().clone()))
     }
 }
 

@@ -1,9 +1,10 @@
 //! A box along the axes.
 
 use souple_math::{Mat3, Vec3};
+use souple_mesh::TriangleSurface;
 use souple_table::{Parameter, Value};
 
-use super::{HOLLOW, Nearest, Shape, ShapeEntry, ShapeError, boxed, rounded};
+use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, ShapeError, boxed, rounded};
 
 /// Outside, edges and corners are round; inside, the nearest face pushes out, of equally near ones the first
 /// along x, y, z.
@@ -31,6 +32,18 @@ impl Shape for Cuboid {
         let flat = Mat3::from_diagonal(Vec3::from_array(beyond.map(|d| if d > 0.0 { 0.0 } else { 1.0 })));
         let on_surface = local.max_components(-self.half_size).min_components(self.half_size);
         Some(rounded(local, on_surface, 0.0, flat, Vec3::Z))
+    }
+
+    fn outline(&self) -> Option<Outline> {
+        let corner = |index: usize| {
+            let side = |axis: usize| if index >> axis & 1 == 0 { -1.0 } else { 1.0 };
+            self.centre + Vec3::from_array([0, 1, 2].map(|axis| side(axis) * self.half_size[axis]))
+        };
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        let surface =
+            TriangleSurface { points: (0..8).map(corner).collect(), triangles, ..TriangleSurface::default() };
+        Some(Outline::solid(surface))
     }
 }
 

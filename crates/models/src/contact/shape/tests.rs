@@ -85,6 +85,25 @@ fn degenerate_points() {
     assert_eq!(ball.nearest(Vec3::X * 3.0, f64::INFINITY).unwrap().distance, 2.0);
 }
 
+/// The outline of a bounded shape is closed, lies on it and faces out of the solid; only planes have none.
+#[test]
+fn outlines_lie_on_their_shapes() {
+    for shape in all() {
+        let Some(Outline { surface, bodies }) = shape.outline() else {
+            assert!(shape.as_plane().is_some(), "{shape:?}");
+            continue;
+        };
+        surface.check_closed().unwrap();
+        let size = surface.bounds().diagonal();
+        for point in &surface.points {
+            let distance = shape.nearest(*point, f64::INFINITY).unwrap().distance;
+            assert!(distance.abs() < 1e-14 * size, "{shape:?} at {point:?}: {distance}");
+        }
+        let volume = surface.enclosed_volume();
+        assert!(if bodies == Side::Outside { volume > 0.0 } else { volume < 0.0 }, "{shape:?}: {volume}");
+    }
+}
+
 #[test]
 fn bad_shapes_are_named() {
     let error = build("plane", Values::new().with("normal", Value::Vector([0.0; 3]))).unwrap_err();

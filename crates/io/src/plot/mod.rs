@@ -1,10 +1,12 @@
-//! Line plots as SVG: probes over time, errors over mesh sizes.
+//! Line plots as SVG and as PNG: probes over time, errors over mesh sizes.
 
-use std::fmt::Write as _;
+mod pen;
+
 use std::path::Path;
 
-use crate::picture::{labels, ticks};
+use crate::picture::{Anchor, Image, labels, ticks};
 use crate::{IoError, write_file};
+use pen::{PaintPen, Pen, SvgPen, Weight};
 
 /// One curve.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,9 +86,17 @@ impl Default for Plot {
 }
 
 /// Okabe & Ito 2008: told apart by all eyes.
-const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#444444"];
-const INK: &str = "#222831";
-const GRID: &str = "#e3e6eb";
+const COLOURS: [[u8; 3]; 7] = [
+    [0x00, 0x72, 0xb2],
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0xe6, 0x9f, 0x00],
+    [0x56, 0xb4, 0xe9],
+    [0x44, 0x44, 0x44],
+];
+const INK: [u8; 3] = [0x22, 0x28, 0x31];
+const GRID: [u8; 3] = [0xe3, 0xe6, 0xeb];
 const LETTER: f64 = 13.0;
 /// Share of the range left free above and below the curves.
 const HEADROOM: f64 = 0.05;
@@ -179,6 +189,26 @@ impl Plot {
     /// # Errors
     /// A curve whose `x` and `y` differ in length, a size that is not positive.
     pub fn to_svg(&self) -> Result<String, IoError> {
+        self.check()?;
+        let mut pen = SvgPen::new(self.size);
+        self.draw(&mut pen);
+        Ok(pen.finish())
+    }
+    /// The plot as pixels, `scale` of them along each unit of its size: 2 is fine enough for print.
+    ///
+    /// # Errors
+    /// Those of [`Plot::to_svg`]; a scale out of range.
+    pub fn to_image(&self, scale: f64) -> Result<Image, IoError> {
+        self.check()?;
+        if !(0.25..=8.0).contains(&scale) {
+            return Err(IoError::request("the scale of the plot", scale, "0.25 to 8"));
+        }
+        let mut pen = PaintPen::new(self.size, scale);
+        self.draw(&mut pen);
+        Ok(pen.finish())
+    }
+
+    fn check(&self) -> Result<(), IoError> {
         for (index, curve) in self.curves.iter().enumerate() {
             if curve.x.len() != curve.y.len() {
                 let expected = format!("{}, as of `x`", curve.x.len());
@@ -192,10 +222,10 @@ impl Plot {
         if let Some(side) = self.size.iter().find(|side| !(100.0..=20_000.0).contains(*side)) {
             return Err(IoError::request("a side of the plot", side, "100 to 20000 pixels"));
         }
-        Ok(self.draw())
+        Ok(())
     }
 
-    /// Writes the plot.
+    /// Writes the plot as SVG.
     ///
     /// # Errors
     /// Those of [`Plot::to_svg`]; the file cannot be written.
@@ -204,7 +234,7 @@ impl Plot {
         write_file(path, |out| out.write_all(text.as_bytes()))
     }
 
-    fn draw(&self) -> String {
+    fn draw(&self, pen: &mut dyn Pen) {
         let [width, height] = self.size;
         let named: Vec<(usize, &Curve)> =
             self.curves.iter().enumerate().filter(|(_, curve)| !curve.name.is_empty()).collect();
@@ -227,37 +257,27 @@ impl Plot {
         (x.from, x.to) = (left, right);
         (y.from, y.to) = (height - 58.0, top);
 
-        let mut svg = String::new();
-        // writing to a string cannot fail
-        let _ = writeln!(
-            svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"Helvetica, Arial, sans-serif\" \
-             font-size=\"{LETTER}\" fill=\"{INK}\">"
-        );
-        let _ = writeln!(svg, "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>");
         if !self.title.is_empty() {
-            text(&mut svg, [left, 28.0], "start", "font-size=\"17\" font-weight=\"600\"", &self.title);
+            pen.text([left, 28.0], Anchor::Left, Weight::Title, &self.title);
         }
         for (coordinate, label) in &x_ticks {
             let at = x.place(*coordinate);
-            line(&mut svg, [at, y.from], [at, y.to], GRID);
-            text(&mut svg, [at, y.from + 19.0], "middle", "", label);
+            pen.line(&[[at, y.from], [at, y.to]], 1.0, GRID);
+            pen.text([at, y.from + 19.0], Anchor::Middle, Weight::Plain, label);
         }
         for (coordinate, label) in &y_ticks {
             let at = y.place(*coordinate);
-            line(&mut svg, [x.from, at], [x.to, at], GRID);
-            text(&mut svg, [x.from - 8.0, at + 0.35 * LETTER], "end", "", label);
+            pen.line(&[[x.from, at], [x.to, at]], 1.0, GRID);
+            pen.text([x.from - 8.0, at + 0.35 * LETTER], Anchor::Right, Weight::Plain, label);
         }
-        line(&mut svg, [x.from, y.from], [x.to, y.from], INK);
-        line(&mut svg, [x.from, y.from], [x.from, y.to], INK);
-        text(&mut svg, [0.5 * (x.from + x.to), height - 14.0], "middle", "", &self.x.label());
+        pen.line(&[[x.from, y.from], [x.to, y.from]], 1.0, INK);
+        pen.line(&[[x.from, y.from], [x.from, y.to]], 1.0, INK);
+        pen.text([0.5 * (x.from + x.to), height - 14.0], Anchor::Middle, Weight::Plain, &self.x.label());
         let middle = 0.5 * (y.from + y.to);
-        let turned = format!("transform=\"rotate(-90 18 {middle:.2})\"");
-        text(&mut svg, [18.0, middle], "middle", &turned, &self.y.label());
+        pen.text([18.0, middle], Anchor::Middle, Weight::Upward, &self.y.label());
 
         for (index, curve) in self.curves.iter().enumerate() {
-            draw_curve(&mut svg, curve, COLOURS[index % COLOURS.len()], x, y);
+            draw_curve(pen, curve, COLOURS[index % COLOURS.len()], x, y);
         }
         for (row, (index, curve)) in named.iter().enumerate() {
             let at = y.to + 12.0 + 21.0 * row as f64;
@@ -265,38 +285,35 @@ impl Plot {
             let across =
                 Span { scale: Scale::Linear, low: 0.0, high: 1.0, from: x.to + 16.0, to: x.to + 40.0 };
             let flat = Span { low: -1.0, from: at, to: at, ..across };
-            draw_curve(&mut svg, &sample, COLOURS[index % COLOURS.len()], across, flat);
-            text(&mut svg, [x.to + 47.0, at + 0.35 * LETTER], "start", "", &curve.name);
+            draw_curve(pen, &sample, COLOURS[index % COLOURS.len()], across, flat);
+            pen.text([x.to + 47.0, at + 0.35 * LETTER], Anchor::Left, Weight::Plain, &curve.name);
         }
-        svg.push_str("</svg>\n");
-        svg
     }
 }
 
 /// Runs of finite points; what lies between them is left out, not joined.
-fn draw_curve(svg: &mut String, curve: &Curve, colour: &str, x: Span, y: Span) {
+fn draw_curve(pen: &mut dyn Pen, curve: &Curve, colour: [u8; 3], x: Span, y: Span) {
     let stride = curve.x.len().div_ceil(MOST_POINTS).max(1);
     let places: Vec<Option<[f64; 2]>> = thinned(curve, stride)
         .map(|(at, value)| Some([x.place(x.coordinate(at)?), y.place(y.coordinate(value)?)]))
         .collect();
     if curve.mark != Mark::Dots {
-        let dashes = if curve.mark == Mark::Dashes { " stroke-dasharray=\"6 4\"" } else { "" };
         for run in places.split(Option::is_none).filter(|run| run.len() > 1) {
-            let points: Vec<String> = run.iter().flatten().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
-            let _ = writeln!(
-                svg,
-                "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" \
-                 stroke-linejoin=\"round\"{dashes}/>",
-                points.join(" ")
-            );
+            let points: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
+            if curve.mark == Mark::Dashes {
+                pen.dashes(&points, CURVE, colour);
+            } else {
+                pen.line(&points, CURVE, colour);
+            }
         }
     }
     if matches!(curve.mark, Mark::Dots | Mark::DottedLine) {
-        for [x, y] in places.iter().flatten() {
-            let _ = writeln!(svg, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"3.2\" fill=\"{colour}\"/>");
-        }
+        places.iter().flatten().for_each(|place| pen.dot(*place, 3.2, colour));
     }
 }
+
+/// Width of a curve.
+const CURVE: f64 = 1.8;
 
 /// Least and greatest value of each `2 stride` points in their order: peaks stay. All points for a stride of one.
 fn thinned(curve: &Curve, stride: usize) -> Box<dyn Iterator<Item = (f64, f64)> + '_> {
@@ -311,18 +328,6 @@ fn thinned(curve: &Curve, stride: usize) -> Box<dyn Iterator<Item = (f64, f64)> 
         let high = (0..values.len()).max_by(by_value).unwrap_or(0);
         [low.min(high), low.max(high)].map(|place| (curve.x[index * window + place], values[place]))
     }))
-}
-
-fn line(svg: &mut String, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], colour: &str) {
-    let _ = writeln!(
-        svg,
-        "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{colour}\" stroke-width=\"1\"/>"
-    );
-}
-
-fn text(svg: &mut String, [x, y]: [f64; 2], anchor: &str, more: &str, content: &str) {
-    let content = crate::vtk::escape(content);
-    let _ = writeln!(svg, "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\" {more}>{content}</text>");
 }
 
 #[cfg(test)]
@@ -340,7 +345,7 @@ mod tests {
         let (x, y) = (Axis::new("time", "s"), Axis::new("displacement", "m"));
         let plot = Plot { title: "Probe".into(), x, y, curves: vec![sine(), sine()], ..Plot::default() };
         let svg = plot.to_svg().unwrap();
-        assert_eq!(svg.matches("<polyline").count(), 4, "two curves, two samples in the legend");
+        assert_eq!(svg.matches("stroke-width=\"1.8\"").count(), 4, "two curves, two samples in the legend");
         for part in
             [">time [s]<", ">displacement [m]<", ">Probe<", "tip &amp; &lt;root&gt;", ">0.5<", ">−0.5<"]
         {
@@ -360,11 +365,30 @@ mod tests {
         assert_eq!(narrow.ticks(4).len(), 4);
     }
 
+    /// The same plot as pixels: a curve along the top of the range is drawn in its colour where the axes say.
+    #[test]
+    fn pixels_follow_the_axes() {
+        let curve = Curve::new("", vec![0.0, 1.0], vec![1.0, 1.0]);
+        let floor = Curve { mark: Mark::Dots, ..Curve::new("", vec![0.0, 1.0], vec![0.0, 0.0]) };
+        let plot = Plot { curves: vec![curve, floor], y: Axis::new("µ [10⁻³]", ""), ..Plot::default() };
+        let image = plot.to_image(2.0).unwrap();
+        assert_eq!((image.width, image.height), (1600, 960));
+        let rows: Vec<usize> =
+            (0..image.height).filter(|row| image.pixels[row * image.width + 900] == COLOURS[0]).collect();
+        // from the top of the plot, 20, to its foot, 422, with headroom of 0.05 of the range above and below
+        let expected = 2.0 * (20.0 + (422.0 - 20.0) * 0.05 / 1.1);
+        assert!(
+            !rows.is_empty() && rows.iter().all(|row| (*row as f64 - expected).abs() < 3.0),
+            "{rows:?} {expected}"
+        );
+        assert!(plot.to_image(f64::NAN).is_err());
+    }
+
     #[test]
     fn gaps_are_not_joined_and_peaks_survive_thinning() {
         let gap = Curve::new("", vec![0.0, 1.0, 2.0, 3.0, 4.0], vec![1.0, 2.0, f64::NAN, 2.0, 1.0]);
         let svg = Plot { curves: vec![gap], ..Plot::default() }.to_svg().unwrap();
-        assert_eq!(svg.matches("<polyline").count(), 2);
+        assert_eq!(svg.matches("stroke-width=\"1.8\"").count(), 2);
         let mut y = vec![0.0; 100_001];
         y[77_777] = 5.0;
         let curve = Curve::new("", (0..y.len()).map(|index| index as f64).collect(), y);

@@ -1,22 +1,22 @@
-//! How a shape moves: carried by a prescribed motion and turned about a pivot.
+//! Rigid motion, of shapes and of the points that a pin leads: carried along and turned about a pivot.
 
 use std::sync::Arc;
 
 use souple_engine::Motion;
 use souple_math::{Mat3, Vec3, exponential};
 
-/// A rigid motion of a shape; at rest by default.
+/// A rigid motion; at rest by default.
 #[derive(Clone, Debug, Default)]
-pub struct ShapeMotion {
+pub struct RigidMotion {
     /// Offset of the pivot [m].
     pub translation: Option<Arc<dyn Motion>>,
     /// Rotation vector about the pivot [rad].
     pub rotation: Option<Arc<dyn Motion>>,
-    /// Where the shape turns, in the place where it is written [m].
+    /// Where it turns, in the place where it is written [m].
     pub pivot: Vec3,
 }
 
-/// Where a shape is and how it moves, at one time.
+/// Where something rigid is and how it moves, at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
     /// `world = origin + turn (shape - pivot)` [m].
@@ -29,7 +29,7 @@ pub struct Pose {
     pub angular_velocity: Vec3,
 }
 
-impl ShapeMotion {
+impl RigidMotion {
     pub fn pose(&self, time: f64) -> Pose {
         let pivot = self.pivot;
         let (offset, velocity) = prescribed(&self.translation, pivot, time);
@@ -39,11 +39,29 @@ impl ShapeMotion {
     }
 }
 
+/// The motion of a point that is carried along.
+impl Motion for RigidMotion {
+    fn offset(&self, start: Vec3, time: f64) -> Vec3 {
+        let pose = self.pose(time);
+        pose.to_world(start) - start
+    }
+
+    fn velocity(&self, start: Vec3, time: f64) -> Vec3 {
+        let pose = self.pose(time);
+        pose.velocity + pose.angular_velocity.cross(pose.turn * (start - pose.pivot))
+    }
+}
+
 fn prescribed(motion: &Option<Arc<dyn Motion>>, start: Vec3, time: f64) -> (Vec3, Vec3) {
     motion.as_ref().map_or((Vec3::ZERO, Vec3::ZERO), |m| (m.offset(start, time), m.velocity(start, time)))
 }
 
 impl Pose {
+    /// World position of a place of the shape.
+    pub fn to_world(&self, shape: Vec3) -> Vec3 {
+        self.origin + self.turn * (shape - self.pivot)
+    }
+
     pub fn to_shape(&self, world: Vec3) -> Vec3 {
         self.pivot + self.turn.transpose() * (world - self.origin)
     }
@@ -64,6 +82,11 @@ impl Pose {
 
     pub fn direction_to_world(&self, shape: Vec3) -> Vec3 {
         self.turn * shape
+    }
+
+    /// A map of directions in the shape's place as one of directions in the world.
+    pub fn tensor_to_world(&self, shape: &Mat3) -> Mat3 {
+        self.turn * shape.mul_transpose(&self.turn)
     }
 }
 

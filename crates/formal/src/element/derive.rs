@@ -1,0 +1,317 @@
+//! The derivation itself.
+
+use std::collections::HashMap;
+
+use super::{Cut, ElementData, Fragment, RestMap};
+use crate::graph::{Expr, Graph, Grouped, Node, Operations, Shape, WithoutFormula};
+use crate::law::EnergyLaw;
+
+/// Expressions of an element under one law.
+#[derive(Clone, Debug)]
+pub struct Derived {
+    pub graph: Graph,
+    /// `<law>` is not known here: `<element><cut>`, to be put behind the name of a law.
+    pub name: String,
+    pub cut: Cut,
+    /// Rest positions, by node and direction.
+    pub rest: Vec<Vec<Expr>>,
+    /// Displacements.
+    pub displacements: Vec<Vec<Expr>>,
+    /// What the differential is multiplied with.
+    pub variations: Vec<Vec<Expr>>,
+    /// Material constants of one number.
+    pub parameters: Vec<Expr>,
+    pub energies: Vec<ElementExpressions>,
+    pub forces: Vec<ElementExpressions>,
+    pub differentials: Vec<ElementExpressions>,
+}
+
+/// One fragment: an addend of the energy (one expression), or of the forces or differentials (by node and direction).
+#[derive(Clone, Debug)]
+pub struct ElementExpressions {
+    pub fragment: Fragment,
+    /// In rest positions, material constants and displacements.
+    pub raw: Vec<Expr>,
+    pub grouped: Grouped,
+}
+
+impl ElementExpressions {
+    /// Operations per evaluation, and once.
+    pub fn operations(&self, graph: &Graph) -> (Operations, Operations) {
+        let definitions: Vec<Expr> =
+            self.grouped.constants.iter().map(|(_, definition)| *definition).collect();
+        (graph.operations(&self.grouped.varying, |_| false), graph.operations(&definitions, |_| false))
+    }
+}
+
+/// `ω Ψ` and its derivatives for one term of the law, `ω` being a symbol.
+struct Term {
+    energy: Expr,
+    stress: Expr,
+    differential: Expr,
+}
+
+/// What a sample adds: expressions of numbers.
+struct AtSample {
+    /// By term.
+    energies: Vec<Expr>,
+    /// `f` by term, node and direction.
+    forces: Vec<Vec<Expr>>,
+    /// `δf` by term, then by node and direction of what varies (all of them where not cut), then by node and direction.
+    differentials: Vec<Vec<Vec<Expr>>>,
+}
+
+/// Name of the weight `ω` while a law is differentiated.
+const WEIGHT: &str = "omega";
+
+pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
+    let mut graph = law.graph.clone();
+    let axes = ["x", "y", "z"];
+    let mut symbols = |letter: &str| -> Vec<Vec<Expr>> {
+        (0..element.node_count)
+            .map(|node| {
+                let of_axis = |axis: &&str| graph.symbol(&format!("{letter}{node}{axis}"), Shape::Scalar);
+                axes[..element.dimension].iter().map(of_axis).collect()
+            })
+            .collect()
+    };
+    let (rest, displacements, variations) = (symbols("P"), symbols("U"), symbols("V"));
+    let parameters = law
+        .parameters
+        .iter()
+        .filter(|(_, parameter)| parameter.numbers().len() == 1)
+        .map(|(name, _)| graph.symbol(name, Shape::Scalar))
+        .collect();
+    let terms = terms(&mut graph, law);
+    let cut_variations = cut.has(super::Axis::Nodes) || cut.has(super::Axis::Dimension);
+    let mut samples = Vec::with_capacity(element.samples.len());
+    for sample in 0..element.samples.len() {
+        let mut at = Placing { graph: &mut graph, element, law, sample, rest: &rest };
+        samples.push(at.expressions(&terms, &displacements, &variations, cut_variations)?);
+    }
+    let variables: Vec<Expr> = displacements.iter().chain(&variations).flatten().copied().collect();
+    let counts = (terms.len(), samples.len());
+    let all_terms = |fragment: Fragment| fragment.term.map_or(0..counts.0, |term| term..term + 1);
+    let of_samples = |fragment: Fragment| fragment.sample.map_or(0..counts.1, |sample| sample..sample + 1);
+    let width = element.node_count * element.dimension;
+    let (mut energies, mut forces, mut differentials) = (Vec::new(), Vec::new(), Vec::new());
+    let finish =
+        |graph: &mut Graph, fragment, addends: Vec<Vec<Expr>>, list: &mut Vec<ElementExpressions>| {
+            let raw: Vec<Expr> = (0..addends[0].len())
+                .map(|index| {
+                    let addends: Vec<Expr> = addends.iter().map(|addend| addend[index]).collect();
+                    graph.sum(&addends)
+                })
+                .collect();
+            let grouped = graph.group_constants(&raw, &variables);
+            list.push(ElementExpressions { fragment, raw, grouped });
+        };
+    for fragment in Fragment::of_forces(cut, counts.0, counts.1) {
+        let pairs: Vec<(usize, usize)> =
+            of_samples(fragment).flat_map(|q| all_terms(fragment).map(move |t| (q, t))).collect();
+        let of_energy = pairs.iter().map(|(q, t)| vec![samples[*q].energies[*t]]).collect();
+        finish(&mut graph, fragment, of_energy, &mut energies);
+        let of_forces = pairs.iter().map(|(q, t)| samples[*q].forces[*t].clone()).collect();
+        finish(&mut graph, fragment, of_forces, &mut forces);
+    }
+    for fragment in Fragment::of_differentials(cut, counts, (element.node_count, element.dimension)) {
+        let mut addends = Vec::new();
+        for (q, t) in of_samples(fragment).flat_map(|q| all_terms(fragment).map(move |t| (q, t))) {
+            if !cut_variations {
+                addends.push(samples[q].differentials[t][0].clone());
+                continue;
+            }
+            for varied in 0..width {
+                let (node, direction) = (varied / element.dimension, varied % element.dimension);
+                if fragment.node.is_none_or(|wanted| wanted == node)
+                    && fragment.direction.is_none_or(|wanted| wanted == direction)
+                {
+                    addends.push(samples[q].differentials[t][varied].clone());
+                }
+            }
+        }
+        finish(&mut graph, fragment, addends, &mut differentials);
+    }
+    let name = format!("{}{cut}", element.name);
+    Ok(Derived {
+        graph,
+        name,
+        cut,
+        rest,
+        displacements,
+        variations,
+        parameters,
+        energies,
+        forces,
+        differentials,
+    })
+}
+
+/// The terms of the energy times `ω`. The weight is multiplied in before differentiation, so that it meets the
+/// material constants and is grouped with them.
+fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
+    let weight = graph.symbol(WEIGHT, Shape::Scalar);
+    let terms: Vec<Expr> = match graph.node(law.energy) {
+        Node::Sum(terms) => terms.to_vec(),
+        _ => vec![law.energy],
+    };
+    let seeds = HashMap::from([(law.deformation, law.variation)]);
+    let mut list = Vec::new();
+    for term in terms {
+        // an offset makes no force
+        if graph.value(term).is_some() {
+            continue;
+        }
+        let energy = graph.product(&[weight, term]);
+        let stress = graph.gradient(energy, law.deformation);
+        let differential = graph.differential(stress, &seeds);
+        list.push(Term { energy, stress, differential });
+    }
+    list
+}
+
+/// The expressions at one sample.
+struct Placing<'a> {
+    graph: &'a mut Graph,
+    element: &'a ElementData,
+    law: &'a EnergyLaw,
+    sample: usize,
+    rest: &'a [Vec<Expr>],
+}
+
+impl Placing<'_> {
+    fn expressions(
+        &mut self,
+        terms: &[Term],
+        displacements: &[Vec<Expr>],
+        variations: &[Vec<Expr>],
+        cut_variations: bool,
+    ) -> Result<AtSample, WithoutFormula> {
+        let dimension = self.element.dimension;
+        let (inverse, determinant) = self.rest_map();
+        let weight = self.graph.times_number(self.element.samples[self.sample].weight, determinant);
+        let mut deformation = self.gradient(displacements, &inverse);
+        let one = self.graph.number(1.0);
+        for diagonal in [0, 4, 8] {
+            deformation[diagonal] = self.graph.sum(&[deformation[diagonal], one]);
+        }
+        let symbol = self.graph.symbol(WEIGHT, Shape::Scalar);
+        let mut given = HashMap::from([(symbol, vec![weight]), (self.law.deformation, deformation)]);
+        let mut at = AtSample { energies: Vec::new(), forces: Vec::new(), differentials: Vec::new() };
+        let every: Vec<Option<(usize, usize)>> = if cut_variations {
+            (0..displacements.len()).flat_map(|n| (0..dimension).map(move |k| Some((n, k)))).collect()
+        } else {
+            vec![None]
+        };
+        for term in terms {
+            at.energies.push(self.graph.components(term.energy, &given)?[0]);
+            let stress = self.graph.components(term.stress, &given)?;
+            at.forces.push(self.spread(&stress, &inverse));
+            let mut of_term = Vec::new();
+            for varied in &every {
+                let zero = self.graph.number(0.0);
+                let masked: Vec<Vec<Expr>> = variations
+                    .iter()
+                    .enumerate()
+                    .map(|(node, of_node)| {
+                        let keep = |k: usize| varied.is_none_or(|wanted| wanted == (node, k));
+                        of_node.iter().enumerate().map(|(k, v)| if keep(k) { *v } else { zero }).collect()
+                    })
+                    .collect();
+                let variation = self.gradient(&masked, &inverse);
+                given.insert(self.law.variation, variation);
+                let differential = self.graph.components(term.differential, &given)?;
+                of_term.push(self.spread(&differential, &inverse));
+            }
+            at.differentials.push(of_term);
+        }
+        Ok(at)
+    }
+
+    /// `X_ξ⁻¹`, by columns, and `det X_ξ`.
+    fn rest_map(&mut self) -> (Vec<Expr>, Expr) {
+        let (zero, one) = (self.graph.number(0.0), self.graph.number(1.0));
+        let dimension = self.element.dimension;
+        if let RestMap::Box { low, high } = self.element.map {
+            let mut inverse = vec![zero; 9];
+            let mut edges = Vec::new();
+            for axis in 0..3 {
+                inverse[4 * axis] = one;
+                if axis < dimension {
+                    let edge = self.graph.subtract(self.rest[high][axis], self.rest[low][axis]);
+                    let half = self.graph.times_number(0.5, edge);
+                    inverse[4 * axis] = self.graph.power_number(half, -1.0);
+                    edges.push(half);
+                }
+            }
+            return (inverse, self.graph.product(&edges));
+        }
+        let mut jacobian = self.reference_gradient(self.rest);
+        if dimension == 2 {
+            jacobian[8] = one;
+        }
+        let packed = self.graph.pack(&jacobian);
+        let inverse = self.graph.inverse(packed);
+        let determinant = self.graph.determinant(packed);
+        let components = |graph: &mut Graph, expr| graph.components(expr, &HashMap::new());
+        // an inverse and a determinant have formulas
+        let inverse = components(self.graph, inverse).unwrap_or_default();
+        let determinant = components(self.graph, determinant).unwrap_or_default();
+        (inverse, determinant[0])
+    }
+
+    /// `Σ values_n ⊗ ∂N_n/∂ξ`, by columns.
+    fn reference_gradient(&mut self, values: &[Vec<Expr>]) -> Vec<Expr> {
+        let gradients = &self.element.samples[self.sample].gradients;
+        (0..9)
+            .map(|index| {
+                let (row, column) = (index % 3, index / 3);
+                let terms: Vec<Expr> = values
+                    .iter()
+                    .zip(gradients)
+                    .filter(|(value, gradient)| row < value.len() && gradient[column] != 0.0)
+                    .map(|(value, gradient)| self.graph.times_number(gradient[column], value[row]))
+                    .collect();
+                self.graph.sum(&terms)
+            })
+            .collect()
+    }
+
+    /// `∂(values)/∂X`, by columns.
+    fn gradient(&mut self, values: &[Vec<Expr>], inverse: &[Expr]) -> Vec<Expr> {
+        let reference = self.reference_gradient(values);
+        (0..9)
+            .map(|index| {
+                let (row, column) = (index % 3, index / 3);
+                let products: Vec<Expr> = (0..3)
+                    .map(|k| self.graph.product(&[reference[3 * k + row], inverse[3 * column + k]]))
+                    .collect();
+                self.graph.sum(&products)
+            })
+            .collect()
+    }
+
+    /// `f_n = -P X_ξ⁻ᵀ ∂N_n/∂ξ`, by node and direction; the weight is in `P` already.
+    fn spread(&mut self, stress: &[Expr], inverse: &[Expr]) -> Vec<Expr> {
+        let dimension = self.element.dimension;
+        let mut in_reference = Vec::with_capacity(9);
+        for index in 0..9 {
+            let (row, column) = (index % 3, index / 3);
+            // (P X_ξ⁻ᵀ)(row, column) = Σ P(row, k) X_ξ⁻¹(column, k)
+            let products: Vec<Expr> =
+                (0..3).map(|k| self.graph.product(&[stress[3 * k + row], inverse[3 * k + column]])).collect();
+            in_reference.push(self.graph.sum(&products));
+        }
+        let gradients = &self.element.samples[self.sample].gradients;
+        let mut forces = Vec::with_capacity(self.element.node_count * dimension);
+        for gradient in gradients {
+            for row in 0..dimension {
+                let terms: Vec<Expr> = (0..dimension)
+                    .map(|a| self.graph.times_number(-gradient[a], in_reference[3 * a + row]))
+                    .collect();
+                forces.push(self.graph.sum(&terms));
+            }
+        }
+        forces
+    }
+}

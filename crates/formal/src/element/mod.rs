@@ -1,0 +1,52 @@
+//! Laws on elements: energy, forces and force differentials of an element, written out.
+//!
+//! From data alone (shape gradients and weights at the samples, and a law) the expressions of the tensor-mass method are
+//! made (Faure 2014): `F = I + U_ξ X_ξ⁻¹`, `W = Σ ω Ψ(F)`, `f_n = -∂W/∂U_n`, `δf = (∂f/∂U) V`. What depends on rest
+//! positions and material only is grouped into constants. A [`Cut`] splits the expressions into addends.
+
+mod cut;
+mod derive;
+
+pub use cut::{Axis, Cut, Fragment, Sort};
+pub use derive::{Derived, ElementExpressions};
+
+use crate::graph::WithoutFormula;
+
+/// What is known of an element.
+#[derive(Clone, Debug)]
+pub struct ElementData {
+    pub name: String,
+    /// 2 (plane strain, unit thickness) or 3.
+    pub dimension: usize,
+    pub node_count: usize,
+    pub samples: Vec<Sample>,
+    pub map: RestMap,
+}
+
+/// One point of the rule of quadrature.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    pub weight: f64,
+    /// `∂N_n/∂ξ` of each node.
+    pub gradients: Vec<[f64; 3]>,
+}
+
+/// How reference coordinates become rest positions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RestMap {
+    /// By the shape functions.
+    Nodes,
+    /// A box along the axes of the world, between these two nodes; reference coordinates run from -1 to 1.
+    Box { low: usize, high: usize },
+}
+
+impl ElementData {
+    /// # Errors
+    /// The law needs principal stretches.
+    pub fn derive(&self, law: &crate::law::EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
+        derive::derive(self, law, cut)
+    }
+}
+
+#[cfg(test)]
+mod tests;

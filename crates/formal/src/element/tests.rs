@@ -1,0 +1,173 @@
+//! Counts of the source, forces against energies, cuts against the whole.
+
+use std::collections::HashMap;
+
+use super::*;
+use crate::graph::{Expr, Graph};
+use crate::law::{EnergyLaw, LawParameter, LawText};
+
+fn law(energy: &str) -> EnergyLaw {
+    let number = |name: &str, value| (name.to_owned(), LawParameter::Number { value, dimension: None });
+    let parameters = vec![number("lambda", 5.0), number("mu", 3.0)];
+    EnergyLaw::compile(&LawText { energy: energy.to_owned(), definitions: Vec::new(), parameters }).unwrap()
+}
+
+const HOOKE: &str = "lambda/2*tr(eps)^2 + mu*dot(eps, eps)";
+const STVK: &str = "lambda/2*tr(E)^2 + mu*dot(E, E)";
+const NEO_HOOKEAN: &str = "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2";
+
+fn triangle() -> ElementData {
+    let gradients = vec![[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let samples = vec![Sample { weight: 0.5, gradients }];
+    ElementData { name: "Triangle".into(), dimension: 2, node_count: 3, samples, map: RestMap::Nodes }
+}
+
+fn tetrahedron() -> ElementData {
+    let gradients = vec![[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let samples = vec![Sample { weight: 1.0 / 6.0, gradients }];
+    ElementData { name: "Tetra".into(), dimension: 3, node_count: 4, samples, map: RestMap::Nodes }
+}
+
+/// Quadrilateral of 2×2 Gauss points.
+fn quadrilateral(map: RestMap) -> ElementData {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let g = 1.0 / 3f64.sqrt();
+    let samples = corners.map(|[x, y]| Sample {
+        weight: 1.0,
+        gradients: corners
+            .map(|[a, b]| [0.25 * a * (1.0 + b * y * g), 0.25 * b * (1.0 + a * x * g), 0.0])
+            .to_vec(),
+    });
+    ElementData { name: "Quad".into(), dimension: 2, node_count: 4, samples: samples.to_vec(), map }
+}
+
+/// Values of expressions for rest positions, displacements and variations without symmetry.
+fn values(graph: &Graph, roots: &[Expr], moved: Option<(usize, usize, f64)>) -> Vec<f64> {
+    let unit = [[0.0, 0.0, 0.0], [1.1, 0.1, 0.0], [0.9, 1.2, 0.1], [0.05, 0.95, 1.0]];
+    let mut known: HashMap<String, f64> = HashMap::from([("lambda".to_owned(), 5.0), ("mu".to_owned(), 3.0)]);
+    for (node, rest) in unit.iter().enumerate() {
+        for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+            let wave = |phase: f64| 0.1 * (2.0 * node as f64 + 3.0 * axis as f64 + phase).sin();
+            // triangles and tetrahedra take other nodes of the same quadrilateral
+            known.insert(format!("P{node}{name}"), rest[axis]);
+            known.insert(format!("U{node}{name}"), wave(0.3));
+            known.insert(format!("V{node}{name}"), wave(1.7));
+        }
+    }
+    if let Some((node, axis, by)) = moved {
+        *known.get_mut(&format!("U{node}{}", ["x", "y", "z"][axis])).unwrap() += by;
+    }
+    let known: HashMap<String, [f64; 1]> = known.into_iter().map(|(name, value)| (name, [value])).collect();
+    let evaluation = graph.evaluate(roots, |symbol| &known[&symbol.name][..]);
+    roots.iter().map(|root| evaluation.scalar(*root)).collect()
+}
+
+fn sum_of(fragments: &[ElementExpressions], graph: &Graph, moved: Option<(usize, usize, f64)>) -> Vec<f64> {
+    let mut sum = vec![0.0; fragments[0].raw.len()];
+    for fragment in fragments {
+        for (sum, value) in sum.iter_mut().zip(values(graph, &fragment.raw, moved)) {
+            *sum += value;
+        }
+    }
+    sum
+}
+
+fn counts(element: &ElementData, energy: &str, cut: Cut) -> Vec<usize> {
+    let derived = element.derive(&law(energy), cut).unwrap();
+    derived.energies.iter().map(|fragment| fragment.grouped.constants.len()).collect()
+}
+
+/// Tables 3.4 to 3.7: 6 constants of a triangle and 11 of a tetrahedron under both laws; cut by the terms of the law
+/// 5 and 10 in each fragment.
+#[test]
+fn counts_of_the_source() {
+    for energy in [HOOKE, STVK] {
+        assert_eq!(counts(&triangle(), energy, Cut::NONE), [6]);
+        assert_eq!(counts(&tetrahedron(), energy, Cut::NONE), [11]);
+        assert_eq!(counts(&triangle(), energy, Cut::ALL), [5, 5]);
+        assert_eq!(counts(&tetrahedron(), energy, Cut::ALL), [10, 10]);
+    }
+    // an axis-aligned rectangle needs its two edges and two factors, whatever the number of samples
+    assert_eq!(counts(&quadrilateral(RestMap::Box { low: 0, high: 2 }), STVK, Cut::NONE), [4]);
+    // any law needs no more than its moduli in place of these two
+    assert_eq!(counts(&tetrahedron(), NEO_HOOKEAN, Cut::NONE), [11]);
+}
+
+/// `f = -∂W/∂U` and `δf = (∂f/∂U) V`, against differences.
+#[test]
+fn forces_are_slopes() {
+    let h = 1e-5;
+    for element in [triangle(), tetrahedron(), quadrilateral(RestMap::Nodes)] {
+        for energy in [HOOKE, STVK, NEO_HOOKEAN] {
+            let derived = element.derive(&law(energy), Cut::NONE).unwrap();
+            let graph = &derived.graph;
+            let forces = sum_of(&derived.forces, graph, None);
+            let differentials = sum_of(&derived.differentials, graph, None);
+            let variations: Vec<Expr> = derived.variations.iter().flatten().copied().collect();
+            let variations = values(graph, &variations, None);
+            let mut numeric = vec![0.0; forces.len()];
+            for (index, variation) in variations.iter().enumerate() {
+                let place = (index / element.dimension, index % element.dimension);
+                let at = |by: f64| Some((place.0, place.1, by));
+                let energy = |by| sum_of(&derived.energies, graph, at(by))[0];
+                let slope = (energy(h) - energy(-h)) / (2.0 * h);
+                // h² of third derivatives of some tens
+                assert!((slope + forces[index]).abs() < 1e-7, "{}: {slope} {}", element.name, forces[index]);
+                let (plus, minus) =
+                    (sum_of(&derived.forces, graph, at(h)), sum_of(&derived.forces, graph, at(-h)));
+                for (sum, (a, b)) in numeric.iter_mut().zip(plus.iter().zip(&minus)) {
+                    *sum += variation * (a - b) / (2.0 * h);
+                }
+            }
+            for (numeric, derived) in numeric.iter().zip(&differentials) {
+                assert!((numeric - derived).abs() < 1e-7, "{}: {numeric} {derived}", element.name);
+            }
+        }
+    }
+}
+
+/// All sixteen cuts: names, numbers of fragments, and fragments that add up to the whole.
+#[test]
+fn fragments_add_up() {
+    let element = quadrilateral(RestMap::Nodes);
+    let law = law(STVK);
+    let whole = element.derive(&law, Cut::NONE).unwrap();
+    let (forces, differentials) =
+        (sum_of(&whole.forces, &whole.graph, None), sum_of(&whole.differentials, &whole.graph, None));
+    let mut names = Vec::new();
+    for cut in Cut::every() {
+        let derived = element.derive(&law, cut).unwrap();
+        let count = |axis: Axis, pieces: usize| if cut.has(axis) { pieces } else { 1 };
+        let of_forces = count(Axis::Law, 2) * count(Axis::Gauss, 4);
+        assert_eq!(derived.forces.len(), of_forces);
+        assert_eq!(
+            derived.differentials.len(),
+            of_forces * count(Axis::Nodes, 4) * count(Axis::Dimension, 2)
+        );
+        for (whole, fragments) in [(&forces, &derived.forces), (&differentials, &derived.differentials)] {
+            let sum = sum_of(fragments, &derived.graph, None);
+            let scale = whole.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            assert!(whole.iter().zip(&sum).all(|(a, b)| (a - b).abs() <= 1e-12 * scale), "{cut}");
+        }
+        // every fragment has its own constants: cutting never needs fewer
+        let constants =
+            |list: &[ElementExpressions]| -> usize { list.iter().map(|f| f.grouped.constants.len()).sum() };
+        assert!(constants(&derived.forces) >= constants(&whole.forces), "{cut}");
+        assert_eq!(Cut::from_name(&cut.to_string()), Some(cut));
+        names.push(cut.to_string());
+    }
+    for name in ["DecoupageNon", "DecoupageTout", "DecoupageLN", "DecoupageG"] {
+        assert!(names.iter().any(|known| known == name), "{name}");
+    }
+    assert_eq!(Cut::from_name("X"), None);
+}
+
+/// The examples of the source.
+#[test]
+fn fragments_have_the_names_of_the_source() {
+    let cut = Cut::of(&[Axis::Law, Axis::Nodes]);
+    let name = Sort::Differential.constants_name(&format!("HookeHexa8I{cut}"), 4);
+    assert_eq!(name, "ECR_dFHookeHexa8IDecoupageLN4");
+    let name = Sort::Force.expression_name(&format!("HookeTriangle{}", Cut::NONE), 0, 0, 0);
+    assert_eq!(name, "FHookeTriangleDecoupageNon0_0x");
+}

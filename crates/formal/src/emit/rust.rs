@@ -1,0 +1,62 @@
+//! Rust, in double precision.
+
+use super::text::sign_of;
+use super::{Binding, Style, Written};
+use crate::Function;
+use crate::function::FUNCTIONS;
+use crate::graph::Comparison;
+
+/// See the module.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rust;
+
+impl Style for Rust {
+    fn number(&self, value: f64) -> String {
+        format!("{value:?}")
+    }
+
+    fn symbol(&self, name: &str) -> String {
+        super::element::indexed(name)
+    }
+
+    fn quotient(&self, above: &Written, below: &Written) -> Written {
+        quotient(above, below)
+    }
+
+    fn power(&self, base: &Written, exponent: f64) -> Written {
+        if exponent == 0.5 {
+            return Written::atom(format!("f64::sqrt({})", base.text));
+        }
+        Written::atom(format!("f64::powf({}, {exponent:?})", base.text))
+    }
+
+    fn power_of(&self, base: &Written, exponent: &Written) -> Written {
+        Written::atom(format!("f64::powf({}, {})", base.text, exponent.text))
+    }
+
+    fn function(&self, function: Function, argument: &Written) -> Written {
+        let name = FUNCTIONS.iter().find(|entry| entry.function == function).map_or("?", |entry| entry.name);
+        Written::atom(format!("f64::{name}({})", argument.text))
+    }
+
+    fn select(&self, (comparison, a, b): (Comparison, &str, &str), value: &str, otherwise: &str) -> Written {
+        Written::atom(format!("(if {a} {} {b} {{ {value} }} else {{ {otherwise} }})", sign_of(comparison)))
+    }
+
+    fn definition(&self, name: &str, value: &str) -> String {
+        format!("let {name} = {value};")
+    }
+
+    fn powers_are_products(&self) -> bool {
+        true
+    }
+}
+
+/// `a / b`, with what binds less in parentheses.
+pub(super) fn quotient(above: &Written, below: &Written) -> Written {
+    let within = |written: &Written, weakest: Binding| {
+        if written.binding < weakest { format!("({})", written.text) } else { written.text.clone() }
+    };
+    let text = format!("{} / {}", within(above, Binding::Product), within(below, Binding::Power));
+    Written { text, binding: Binding::Product }
+}

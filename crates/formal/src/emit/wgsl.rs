@@ -1,0 +1,71 @@
+//! WGSL, the shading language of WebGPU, in single precision.
+
+use super::text::sign_of;
+use super::{Style, Written};
+use crate::Function;
+use crate::graph::Comparison;
+
+/// See the module.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wgsl;
+
+impl Style for Wgsl {
+    fn number(&self, value: f64) -> String {
+        // the nearest number of single precision, so that no literal is out of its range
+        format!("{:?}", value as f32)
+    }
+
+    fn symbol(&self, name: &str) -> String {
+        super::element::indexed(name)
+    }
+
+    fn quotient(&self, above: &Written, below: &Written) -> Written {
+        super::rust::quotient(above, below)
+    }
+
+    fn power(&self, base: &Written, exponent: f64) -> Written {
+        if exponent == 0.5 {
+            return Written::atom(format!("sqrt({})", base.text));
+        }
+        Written::atom(format!("pow({}, {})", base.text, self.number(exponent)))
+    }
+
+    fn power_of(&self, base: &Written, exponent: &Written) -> Written {
+        Written::atom(format!("pow({}, {})", base.text, exponent.text))
+    }
+
+    fn function(&self, function: Function, argument: &Written) -> Written {
+        let x = &argument.text;
+        Written::atom(match function {
+            Function::Ln => format!("log({x})"),
+            Function::Log10 => format!("(log({x}) * 0.43429448)"),
+            Function::Cbrt => format!("(sign({x}) * pow(abs({x}), 0.33333334))"),
+            Function::Sin => format!("sin({x})"),
+            Function::Cos => format!("cos({x})"),
+            Function::Tan => format!("tan({x})"),
+            Function::Asin => format!("asin({x})"),
+            Function::Acos => format!("acos({x})"),
+            Function::Atan => format!("atan({x})"),
+            Function::Sinh => format!("sinh({x})"),
+            Function::Cosh => format!("cosh({x})"),
+            Function::Tanh => format!("tanh({x})"),
+            Function::Exp => format!("exp({x})"),
+            Function::Sign => format!("sign({x})"),
+            Function::Floor => format!("floor({x})"),
+            Function::Ceil => format!("ceil({x})"),
+            _ => format!("abs({x})"),
+        })
+    }
+
+    fn select(&self, (comparison, a, b): (Comparison, &str, &str), value: &str, otherwise: &str) -> Written {
+        Written::atom(format!("select({otherwise}, {value}, {a} {} {b})", sign_of(comparison)))
+    }
+
+    fn definition(&self, name: &str, value: &str) -> String {
+        format!("let {name} = {value};")
+    }
+
+    fn powers_are_products(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,142 @@
+//! Grouped constants: what can be computed once per element instead of once per step.
+//!
+//! An expression that depends on no variable is a constant. The largest ones are taken out and numbered, the constant
+//! terms of a sum and the constant factors of a product together (Faure 2014, algorithm 6). Equal constants are one
+//! constant wherever they stand, for equal expressions are one expression. Plain numbers stay in the code.
+
+use std::collections::HashMap;
+
+use super::{Expr, Graph, Node, Shape};
+
+/// Expressions split into grouped constants and what varies.
+#[derive(Clone, Debug)]
+pub struct Grouped {
+    /// `D_0`, `D_1`, …: the symbol that stands for the constant, and its expression; later ones may use earlier ones.
+    pub constants: Vec<(Expr, Expr)>,
+    /// The expressions in the symbols of the constants and the variables.
+    pub varying: Vec<Expr>,
+}
+
+/// Name of the symbol of a grouped constant.
+pub(crate) fn constant_name(index: usize) -> String {
+    format!("D_{index}")
+}
+
+struct Extraction<'a> {
+    graph: &'a mut Graph,
+    varies: Vec<bool>,
+    constants: Vec<(Expr, Expr)>,
+    symbols: HashMap<Expr, Expr>,
+}
+
+impl Graph {
+    /// Splits expressions of numbers; what depends on none of `variables` is constant.
+    pub fn group_constants(&mut self, roots: &[Expr], variables: &[Expr]) -> Grouped {
+        let varies = self.depends(roots, variables);
+        let reachable = self.reachable(roots);
+        let mut extraction =
+            Extraction { graph: self, varies, constants: Vec::new(), symbols: HashMap::new() };
+        let mut made: HashMap<Expr, Expr> = HashMap::new();
+        for expr in reachable {
+            if extraction.varies[expr.index()] {
+                let new = extraction.rewrite(expr, &made);
+                made.insert(expr, new);
+            }
+        }
+        let varying = roots.iter().map(|root| match made.get(root) {
+            Some(new) => *new,
+            None => extraction.constant(*root),
+        });
+        let varying = varying.collect();
+        let constants = extraction.constants;
+        let constants = self.nest(constants);
+        Grouped { constants, varying }
+    }
+
+    /// Writes constants with the earlier ones they contain.
+    fn nest(&mut self, constants: Vec<(Expr, Expr)>) -> Vec<(Expr, Expr)> {
+        let mut symbols: HashMap<Expr, Expr> = HashMap::new();
+        let mut nested = Vec::with_capacity(constants.len());
+        for (symbol, expr) in constants {
+            let definition = if symbols.is_empty() { expr } else { self.substitute(expr, &symbols) };
+            nested.push((symbol, definition));
+            symbols.insert(expr, symbol);
+        }
+        nested
+    }
+}
+
+impl Extraction<'_> {
+    /// The symbol of a constant; numbers stand for themselves.
+    fn constant(&mut self, expr: Expr) -> Expr {
+        if self.graph.value(expr).is_some() {
+            return expr;
+        }
+        if let Some(symbol) = self.symbols.get(&expr) {
+            return *symbol;
+        }
+        let symbol = self.graph.symbol(&constant_name(self.constants.len()), Shape::Scalar);
+        self.constants.push((symbol, expr));
+        self.symbols.insert(expr, symbol);
+        symbol
+    }
+
+    /// The factors as whole powers of constants that are there already, where all of them are: their product is not
+    /// worth a place in memory.
+    fn extracted(&mut self, factors: &[Expr]) -> Option<Vec<Expr>> {
+        let mut known = Vec::with_capacity(factors.len());
+        for factor in factors {
+            let (base, power) = match *self.graph.node(*factor) {
+                Node::Power(base, exponent) => match self.graph.value(exponent) {
+                    Some(n) if n.fract() == 0.0 => (self.graph.power_number(base, n.signum()), n.abs()),
+                    _ => (*factor, 1.0),
+                },
+                _ => (*factor, 1.0),
+            };
+            let symbol = *self.symbols.get(&base)?;
+            known.push(self.graph.power_number(symbol, power));
+        }
+        Some(known)
+    }
+
+    fn rewrite(&mut self, expr: Expr, made: &HashMap<Expr, Expr>) -> Expr {
+        let node = self.graph.node(expr).clone();
+        let constants: Vec<Expr> = node.operands().filter(|operand| !self.varies[operand.index()]).collect();
+        let plain = |graph: &Graph, operand: &Expr| graph.value(*operand).is_some();
+        let (numbers, grouped): (Vec<Expr>, Vec<Expr>) =
+            constants.into_iter().partition(|operand| plain(self.graph, operand));
+        let varying = |operands: &[Expr]| -> Vec<Expr> {
+            operands.iter().filter_map(|operand| made.get(operand).copied()).collect()
+        };
+        match node {
+            Node::Sum(terms) if !grouped.is_empty() => {
+                let constant = self.graph.sum(&grouped);
+                let mut sum = varying(&terms);
+                sum.push(self.constant(constant));
+                sum.extend(numbers);
+                self.graph.sum(&sum)
+            }
+            Node::Product(factors) if !grouped.is_empty() => {
+                let mut product = varying(&factors);
+                match self.extracted(&grouped) {
+                    Some(known) => product.extend(known),
+                    None => {
+                        let constant = self.graph.product(&grouped);
+                        product.push(self.constant(constant));
+                    }
+                }
+                product.extend(numbers);
+                self.graph.product(&product)
+            }
+            _ => {
+                let mut known: HashMap<Expr, Expr> =
+                    node.operands().filter_map(|key| Some((key, *made.get(&key)?))).collect();
+                for operand in grouped.into_iter().chain(numbers) {
+                    let constant = self.constant(operand);
+                    known.insert(operand, constant);
+                }
+                self.graph.rebuild(expr, &|operand| known.get(&operand).copied().unwrap_or(operand))
+            }
+        }
+    }
+}

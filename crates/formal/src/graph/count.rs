@@ -1,0 +1,118 @@
+//! How much work expressions are.
+
+use super::{Expr, Graph, Node};
+use crate::Function;
+
+/// Operations of one evaluation in which every different expression is computed once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    pub additions: usize,
+    pub multiplications: usize,
+    pub divisions: usize,
+    /// Roots, powers that are not whole, transcendental functions.
+    pub functions: usize,
+    pub comparisons: usize,
+}
+
+impl Operations {
+    pub fn total(&self) -> usize {
+        self.additions + self.multiplications + self.divisions + self.functions + self.comparisons
+    }
+}
+
+impl std::ops::Add for Operations {
+    type Output = Self;
+
+    fn add(mut self, other: Self) -> Self {
+        self.additions += other.additions;
+        self.multiplications += other.multiplications;
+        self.divisions += other.divisions;
+        self.functions += other.functions;
+        self.comparisons += other.comparisons;
+        self
+    }
+}
+
+impl Graph {
+    /// Operations to evaluate `roots` together; expressions for which `known` holds are at hand already.
+    ///
+    /// A sign is free, and a whole power is counted as squarings and products.
+    pub fn operations(&self, roots: &[Expr], known: impl Fn(Expr) -> bool) -> Operations {
+        let mut wanted = vec![false; roots.iter().max().map_or(0, |last| last.index() + 1)];
+        roots.iter().for_each(|root| wanted[root.index()] = true);
+        let mut total = Operations::default();
+        for index in (0..wanted.len()).rev() {
+            let expr = Expr(index as u32);
+            if wanted[index] && !known(expr) {
+                total = total + self.operations_of(expr);
+                self.node(expr).operands().for_each(|operand| wanted[operand.index()] = true);
+            }
+        }
+        total
+    }
+
+    fn operations_of(&self, expr: Expr) -> Operations {
+        let of =
+            |additions, multiplications| Operations { additions, multiplications, ..Operations::default() };
+        let len = self.shape(expr).len();
+        match self.node(expr) {
+            Node::Number(_)
+            | Node::Symbol(_)
+            | Node::Zero(_)
+            | Node::Identity
+            | Node::Transpose(_)
+            | Node::Entry(..)
+            | Node::Pack(_) => Operations::default(),
+            Node::Sum(terms) => of(len * (terms.len() - 1), 0),
+            Node::Product(factors) => {
+                let divisions = factors.iter().filter(|factor| self.is_reciprocal(**factor)).count();
+                let signs = factors.iter().filter(|factor| self.value(**factor) == Some(-1.0)).count();
+                // the division takes the place of a product
+                let products = factors.len() - 1 - signs;
+                of(0, products.saturating_sub(divisions))
+            }
+            Node::Power(_, exponent) => self.operations_of_power(*exponent),
+            Node::Function(Function::Abs, _) => Operations::default(),
+            Node::Function(..) => Operations { functions: 1, ..Operations::default() },
+            Node::Compare(..) | Node::Select(..) => Operations { comparisons: 1, ..Operations::default() },
+            Node::Scale(factor, _) => of(0, if self.value(*factor) == Some(-1.0) { 0 } else { len }),
+            Node::Multiply(..) => of(18, 27),
+            Node::Apply(..) => of(6, 9),
+            Node::Dot(a, _) => of(self.shape(*a).len() - 1, self.shape(*a).len()),
+            Node::Trace(_) => of(2, 0),
+            Node::Determinant(_) => of(5, 9),
+            Node::Cofactor(_) => of(9, 18),
+            Node::Cross(..) => of(27, 36),
+            Node::Outer(..) => of(0, 9),
+            // about what the iterations take
+            Node::Decompose(_) => Operations {
+                additions: 300,
+                multiplications: 400,
+                divisions: 20,
+                functions: 20,
+                comparisons: 0,
+            },
+            Node::Compose(..) => of(18, 36),
+            Node::StretchRates(..) => of(24, 36),
+            Node::ComposeDifferential(_) => {
+                Operations { additions: 90, multiplications: 126, divisions: 6, functions: 0, comparisons: 3 }
+            }
+        }
+    }
+
+    fn is_reciprocal(&self, expr: Expr) -> bool {
+        matches!(self.node(expr), Node::Power(_, exponent) if self.value(*exponent).is_some_and(|value| value < 0.0))
+    }
+
+    fn operations_of_power(&self, exponent: Expr) -> Operations {
+        match self.value(exponent) {
+            Some(value) if value.fract() == 0.0 && value.abs() <= 64.0 => {
+                let whole = value.abs() as u32;
+                let products = (whole.ilog2() + whole.count_ones() - 1) as usize;
+                let divisions = usize::from(value < 0.0);
+                Operations { multiplications: products, divisions, ..Operations::default() }
+            }
+            _ => Operations { functions: 1, ..Operations::default() },
+        }
+    }
+}

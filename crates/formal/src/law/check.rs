@@ -1,0 +1,346 @@
+//! Trying a law before it is used: at rest, under rotations, and where it is legal but doubtful.
+
+#![allow(non_snake_case)]
+
+use std::collections::HashMap;
+
+use souple_math::{Mat3, Vec3, eigen_symmetric, exponential};
+
+use super::read::Read;
+use super::{DEFORMATION, EnergyLaw, LawError, LawProblem, Strain};
+use crate::graph::{Evaluation, Expr, Node};
+use crate::{Function, Span};
+
+/// Stress at rest beside the stiffness: what rounding of a hundred operations leaves, far below any physics.
+const STRESS_AT_REST: f64 = 1e-9;
+/// Relative change of energy under rotation that rounding may make.
+const ROTATION_TOLERANCE: f64 = 1e-9;
+
+pub(super) fn check(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
+    if law.graph.depends(&[law.energy], &[law.deformation])[law.energy.index()] {
+        value_at_rest(law, read)?;
+        slope_at_rest(law, read)?;
+        order_of_stretches(law, read)?;
+        objectivity(law, read)?;
+        doubts(law);
+        return Ok(());
+    }
+    Err(whole(LawProblem::NoDeformation))
+}
+
+fn whole(problem: LawProblem) -> LawError {
+    LawError { part: "energy".to_owned(), span: None, problem }
+}
+
+/// The problem at the place where `expr`, or the first thing around it, is written.
+fn at(read: &Read, expr: Expr, problem: LawProblem) -> LawError {
+    match read.origins.get(&expr) {
+        Some((part, span)) => LawError { part: part.clone(), span: Some(*span), problem },
+        None => whole(problem),
+    }
+}
+
+impl EnergyLaw {
+    /// Evaluates expressions of the law at a deformation and a variation of it.
+    pub fn evaluate(&self, roots: &[Expr], F: &Mat3, dF: &Mat3) -> Evaluation {
+        let (F, dF) = (entries(F), entries(dF));
+        self.graph.evaluate(roots, |symbol| match symbol.name.as_str() {
+            DEFORMATION => &F[..],
+            super::VARIATION => &dF[..],
+            name => self.parameter(name).map_or(&[0.0; 9][..], |parameter| parameter.numbers()),
+        })
+    }
+
+    /// `Ψ(F)` [J/m³].
+    pub fn energy_at(&self, F: &Mat3) -> f64 {
+        self.evaluate(&[self.energy], F, &Mat3::ZERO).scalar(self.energy)
+    }
+
+    /// `P(F)` [Pa].
+    pub fn stress_at(&self, F: &Mat3) -> Mat3 {
+        self.evaluate(&[self.stress], F, &Mat3::ZERO).matrix(self.stress)
+    }
+
+    /// `∂P/∂F : δF` [Pa].
+    pub fn differential_at(&self, F: &Mat3, dF: &Mat3) -> Mat3 {
+        self.evaluate(&[self.differential], F, dF).matrix(self.differential)
+    }
+}
+
+fn entries(matrix: &Mat3) -> [f64; 9] {
+    let mut out = [0.0; 9];
+    for (three, column) in out.chunks_exact_mut(3).zip(matrix.columns) {
+        three.copy_from_slice(&column.to_array());
+    }
+    out
+}
+
+fn identity() -> Mat3 {
+    Mat3::identity(1.0)
+}
+
+/// The energy has a value at rest, which becomes zero; an offset has no physics.
+fn value_at_rest(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
+    let values = law.evaluate(&[law.energy], &identity(), &Mat3::ZERO);
+    for expr in law.graph.reachable(&[law.energy]) {
+        if let Some(bad) = values.of(expr).iter().find(|number| !number.is_finite()) {
+            let reason = reason(law, &values, expr, *bad);
+            // the innermost part that was written: parts of it that the reader made itself have no place
+            let named = law.graph.reachable(&[law.energy]).into_iter().find(|outer| {
+                read.origins.contains_key(outer)
+                    && *outer >= expr
+                    && law.graph.depends(&[*outer], &[expr])[outer.index()]
+            });
+            return Err(at(read, named.unwrap_or(expr), LawProblem::NoValueAtRest { reason }));
+        }
+    }
+    let offset = values.scalar(law.energy);
+    if offset != 0.0 {
+        let minus = law.graph.number(-offset);
+        law.energy = law.graph.sum(&[law.energy, minus]);
+    }
+    Ok(())
+}
+
+fn reason(law: &EnergyLaw, values: &Evaluation, expr: Expr, bad: f64) -> String {
+    match law.graph.node(expr) {
+        Node::Power(base, exponent) if values.scalar(*base) == 0.0 && values.scalar(*exponent) < 0.0 => {
+            "a division by zero".to_owned()
+        }
+        Node::Power(base, _) if values.scalar(*base) < 0.0 => {
+            format!("a power of {} that is not whole", values.scalar(*base))
+        }
+        Node::Function(function, argument) => {
+            format!("{} of {}", format!("{function:?}").to_lowercase(), values.scalar(*argument))
+        }
+        _ if bad.is_nan() => "it is not defined".to_owned(),
+        _ => format!("it is {bad}"),
+    }
+}
+
+/// The stress is zero at rest and has no corner there; remembers the stiffness.
+fn slope_at_rest(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
+    let rest = law.stress_at(&identity());
+    if !rest.is_finite() {
+        return Err(corner(law, read));
+    }
+    for b in 0..9 {
+        let dF = unit(b);
+        let column = entries(&law.differential_at(&identity(), &dF));
+        for (a, number) in column.into_iter().enumerate() {
+            law.stiffness[9 * a + b] = number;
+        }
+    }
+    // differences stand in where only the second derivative has no value at rest itself
+    let size = |matrix: &Mat3| matrix.largest_entry();
+    let shifted = |h: f64, direction: &Mat3| law.stress_at(&(identity() + *direction * h));
+    let scale = directions().iter().map(|d| size(&(shifted(1e-3, d) - rest)) / 1e-3).fold(0.0, f64::max);
+    if !(size(&rest) <= STRESS_AT_REST * scale.max(f64::MIN_POSITIVE)) {
+        // a corner such as that of |J - 1| shows as stress at rest from one side only
+        if let Some(expr) = corner_at_rest(law) {
+            return Err(at(read, expr, LawProblem::CornerAtRest));
+        }
+        let P = rest;
+        let stress = format!(
+            "[{:.4e}, {:.4e}, {:.4e}] Pa on the diagonal, {:.4e} Pa at most beside it",
+            P.columns[0].x,
+            P.columns[1].y,
+            P.columns[2].z,
+            (0..9).filter(|i| i % 4 != 0).map(|i| entries(&P)[i].abs()).fold(0.0, f64::max)
+        );
+        let span = Some(Span::new(0, 0));
+        let span = read
+            .origins
+            .values()
+            .filter(|(part, _)| part == "energy")
+            .map(|(_, s)| *s)
+            .reduce(wider)
+            .or(span);
+        return Err(LawError {
+            part: "energy".to_owned(),
+            span,
+            problem: LawProblem::StressAtRest { stress },
+        });
+    }
+    for direction in directions() {
+        for sign in [1.0, -1.0] {
+            let (near, far) = (shifted(sign * 1e-7, &direction), shifted(sign * 2e-7, &direction));
+            // a smooth stress halves with the distance; one that jumps stays
+            let jumps = size(&near) > 0.75 * size(&far) && size(&near) > 1e-3 * scale * 1e-3;
+            if jumps || !near.is_finite() {
+                return Err(corner(law, read));
+            }
+        }
+    }
+    if law.stiffness.iter().any(|number| !number.is_finite()) {
+        return Err(corner(law, read));
+    }
+    Ok(())
+}
+
+fn corner(law: &EnergyLaw, read: &Read) -> LawError {
+    let problem = LawProblem::CornerAtRest;
+    match corner_at_rest(law) {
+        Some(expr) => at(read, expr, problem),
+        None => whole(problem),
+    }
+}
+
+fn wider(a: Span, b: Span) -> Span {
+    Span::new(a.start.min(b.start), a.end.max(b.end))
+}
+
+fn unit(entry: usize) -> Mat3 {
+    let mut columns = [[0.0; 3]; 3];
+    columns[entry / 3][entry % 3] = 1.0;
+    let [a, b, c] = columns.map(Vec3::from_array);
+    Mat3::from_columns(a, b, c)
+}
+
+/// The first part that has a corner where its operands are at rest.
+fn corner_at_rest(law: &EnergyLaw) -> Option<Expr> {
+    let values = law.evaluate(&[law.energy], &identity(), &Mat3::ZERO);
+    let depends = law.graph.depends(&[law.energy], &[law.deformation]);
+    let corner = |expr: &Expr| match law.graph.node(*expr) {
+        Node::Power(base, exponent) => values.scalar(*base) == 0.0 && values.scalar(*exponent) < 2.0,
+        Node::Function(Function::Abs | Function::Sign | Function::Cbrt, a) => values.scalar(*a) == 0.0,
+        Node::Function(Function::Asin | Function::Acos, a) => values.scalar(*a).abs() == 1.0,
+        Node::Function(Function::Floor | Function::Ceil, a) => values.scalar(*a).fract() == 0.0,
+        Node::Select(condition, _, _) => match law.graph.node(*condition) {
+            Node::Compare(_, a, b) => values.scalar(*a) == values.scalar(*b),
+            _ => false,
+        },
+        _ => false,
+    };
+    law.graph.reachable(&[law.energy]).into_iter().filter(|expr| depends[expr.index()]).find(corner)
+}
+
+/// Deformations of all kinds, the same in every run.
+fn directions() -> Vec<Mat3> {
+    let rows = [
+        [0.3, -0.1, 0.2, 0.15, -0.25, 0.05, -0.2, 0.1, 0.35],
+        [-0.3, 0.2, 0.1, -0.05, 0.15, 0.3, 0.25, -0.15, -0.1],
+        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.6, 0.0, 0.0, 0.0, 0.6, 0.0, 0.0, 0.0, 0.6],
+    ];
+    rows.iter()
+        .map(|row| {
+            let column = |i: usize| Vec3::new(row[3 * i], row[3 * i + 1], row[3 * i + 2]);
+            Mat3::from_columns(column(0), column(1), column(2))
+        })
+        .collect()
+}
+
+/// Moderate deformations that keep their volume positive.
+fn deformations() -> Vec<Mat3> {
+    directions().into_iter().flat_map(|d| [identity() + d * 0.2, identity() + d * -0.15]).collect()
+}
+
+fn objectivity(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
+    if law.strain == Strain::Small {
+        let warning =
+            "small strain (`eps`) takes rotations for strain: bodies that turn swell; E or C do not";
+        law.warnings.push(warning.to_owned());
+        return Ok(());
+    }
+    for F in deformations() {
+        let before = law.energy_at(&F);
+        let scale = before.abs().max(law.stiffness.iter().fold(0.0, |a: f64, b| a.max(b.abs())) * 1e-3);
+        for turn in [Vec3::new(0.4, -1.1, 0.8), Vec3::new(2.0, 0.5, -0.3)] {
+            let after = law.energy_at(&(exponential(turn) * F));
+            if (after - before).abs() > ROTATION_TOLERANCE * scale {
+                let problem = LawProblem::NotObjective { before, after };
+                return Err(at(read, spoiler(law, read, &F, turn).unwrap_or(law.energy), problem));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The smallest written number that the rotation changes.
+fn spoiler(law: &EnergyLaw, read: &Read, F: &Mat3, turn: Vec3) -> Option<Expr> {
+    let before = law.evaluate(&[law.energy], F, &Mat3::ZERO);
+    let after = law.evaluate(&[law.energy], &(exponential(turn) * *F), &Mat3::ZERO);
+    law.graph.reachable(&[law.energy]).into_iter().find(|expr| {
+        let (a, b) = (before.of(*expr), after.of(*expr));
+        a.len() == 1
+            && read.origins.contains_key(expr)
+            && (a[0] - b[0]).abs() > 1e-9 * (a[0].abs() + b[0].abs())
+    })
+}
+
+/// The energy is the same in any order of the stretches.
+fn order_of_stretches(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
+    let decomposition = law.graph.decompose(law.deformation);
+    let stretches = [0, 1, 2].map(|index| law.graph.stretch(decomposition, index));
+    let uses = law.graph.depends(&[law.energy], &stretches)[law.energy.index()];
+    if !uses {
+        return Ok(());
+    }
+    for (i, j) in [(0, 1), (1, 2)] {
+        let swap = HashMap::from([(stretches[i], stretches[j]), (stretches[j], stretches[i])]);
+        let swapped = law.graph.substitute(law.energy, &swap);
+        let values = law.evaluate(&[law.energy, swapped], &deformations()[0], &Mat3::ZERO);
+        let (a, b) = (values.scalar(law.energy), values.scalar(swapped));
+        if (a - b).abs() > 1e-9 * (a.abs() + b.abs()) {
+            let used = stretches.into_iter().find(|stretch| read.origins.contains_key(stretch));
+            return Err(at(read, used.unwrap_or(law.energy), LawProblem::OrderOfStretches));
+        }
+    }
+    Ok(())
+}
+
+/// What is legal physics and often not what was meant.
+fn doubts(law: &mut EnergyLaw) {
+    let mut doubts = Vec::new();
+    let largest = law.stiffness.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let (shear, volume) = (least_shear(law), bulk(law));
+    if volume < -1e-9 * largest || shear < -1e-9 * largest {
+        doubts.push("at rest the stiffness is negative: the body leaves its rest shape by itself");
+    } else if volume <= 1e-9 * largest {
+        doubts.push("nothing resists a change of volume at rest");
+    } else if shear <= 1e-9 * largest {
+        doubts.push("some shear or stretch meets no resistance at rest");
+    }
+    let along = |s: f64| {
+        law.energy_at(&Mat3::from_columns(Vec3::new(s, 0.0, 0.0), unit(4).columns[1], unit(8).columns[2]))
+    };
+    if !along(-0.5).is_finite() {
+        doubts.push("inverted elements have no energy: a step that inverts one is refused");
+    } else if along(-1.0).abs() < 1e-9 * largest {
+        doubts.push("an element turned inside out is at rest too: nothing turns it back");
+    } else if along(1e-9) < 2.0 * largest {
+        doubts.push("an element can be crushed flat at little cost");
+    }
+    law.warnings.extend(doubts.into_iter().map(str::to_owned));
+}
+
+/// A third of the mean stress per relative change of volume at rest, times three [Pa].
+fn bulk(law: &EnergyLaw) -> f64 {
+    let diagonal = [0, 4, 8];
+    diagonal.iter().flat_map(|a| diagonal.iter().map(move |b| law.stiffness[9 * a + b])).sum::<f64>() / 9.0
+}
+
+/// The least stiffness at rest against shears and stretches without change of volume [Pa].
+fn least_shear(law: &EnergyLaw) -> f64 {
+    // two bases of three of the five-dimensional space: their least eigenvalues bound that of laws with symmetry axes
+    let s = 0.5f64.sqrt();
+    let shears = [(3, 1), (6, 2), (7, 5)].map(|(a, b)| (unit(a) + unit(b)) * s);
+    let stretches = [(0, 4), (4, 8), (8, 0)].map(|(a, b)| (unit(a) - unit(b)) * s);
+    let least = |basis: &[Mat3; 3]| {
+        let row = |i: usize| {
+            let numbers = [0, 1, 2].map(|j| contract(law, &basis[i], &basis[j]));
+            Vec3::from_array(numbers)
+        };
+        eigen_symmetric(&Mat3::from_columns(row(0), row(1), row(2))).values
+    };
+    // the three stretches sum to zero: one eigenvalue of theirs is zero by construction, the next one counts
+    let (of_shears, of_stretches) = (least(&shears), least(&stretches));
+    of_shears.z.min(if of_stretches.z.abs() < of_stretches.y.abs() { of_stretches.y } else { of_stretches.z })
+}
+
+fn contract(law: &EnergyLaw, a: &Mat3, b: &Mat3) -> f64 {
+    let (a, b) = (entries(a), entries(b));
+    (0..81).map(|i| a[i / 9] * law.stiffness[i] * b[i % 9]).sum()
+}

@@ -1,0 +1,83 @@
+//! Why a text is no law.
+
+use std::fmt;
+
+use crate::law::Word;
+use crate::{ParseError, Span};
+
+/// What is wrong with a law, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawError {
+    /// `energy`, or the name of the definition or parameter.
+    pub part: String,
+    /// The place in the text of that part.
+    pub span: Option<Span>,
+    pub problem: LawProblem,
+}
+
+/// What is wrong with a law.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LawProblem {
+    #[error("{0}")]
+    Syntax(#[from] ParseError),
+    #[error("a law of {nodes} parts is too large; at most {limit} are accepted")]
+    TooLarge { nodes: usize, limit: usize },
+    #[error("there is no `{name}`{}; there are the parameters and definitions of this law{}, and {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .own, Word::list())]
+    UnknownName { name: String, nearest: Option<String>, own: String },
+    #[error("there is no function `{name}`{}; there are {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .known.join(", "))]
+    UnknownFunction { name: String, nearest: Option<String>, known: Vec<&'static str> },
+    #[error("`{name}` has a meaning in every law ({meaning}); choose another name")]
+    ReservedName { name: String, meaning: String },
+    #[error("`{name}` is no name; a letter followed by letters, digits and `_` is accepted")]
+    BadName { name: String },
+    #[error("`{name}` is given twice")]
+    GivenTwice { name: String },
+    #[error("the definitions need each other: {}; none of them can be computed first", .cycle.join(" -> "))]
+    Recursion { cycle: Vec<String> },
+    #[error("this is {found}, where {wanted} is wanted")]
+    WrongShape { found: String, wanted: String },
+    #[error("`{name}` was given {found} argument(s); write `{usage}`")]
+    WrongArgumentCount { name: String, found: usize, usage: String },
+    #[error("this is {found}, where {wanted} is wanted")]
+    WrongUnit { found: String, wanted: String },
+    #[error("the parameter must be a finite number or a direction [x, y, z] that is not zero")]
+    BadParameter,
+    #[error("at rest (F = I) this has no finite value: {reason}")]
+    NoValueAtRest { reason: String },
+    #[error(
+        "at rest (F = I) this has a corner: the stress jumps there; a smooth form such as a square is accepted"
+    )]
+    CornerAtRest,
+    #[error(
+        "at rest (F = I) the stress is {stress}, and must be zero: terms that grow linearly must balance, as `- mu*log(J)` balances `mu/2*(I1 - 3)`"
+    )]
+    StressAtRest { stress: String },
+    #[error(
+        "a rotation changes the energy from {before:.6e} to {after:.6e}: write it with C, E, J or invariants of C, or with `eps` where small strain is meant"
+    )]
+    NotObjective { before: f64, after: f64 },
+    #[error(
+        "the energy changes with the order of the principal stretches l1, l2, l3; write the same for each of them, as in `l1^a + l2^a + l3^a`"
+    )]
+    OrderOfStretches,
+    #[error("the energy does not change with the deformation: no F, C, E, eps, J, I1, … is in it")]
+    NoDeformation,
+}
+
+impl fmt::Display for LawError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.part, self.problem)
+    }
+}
+
+impl std::error::Error for LawError {}
+
+impl LawError {
+    /// The message, and under it the place in `text`, which is the text of [`Self::part`].
+    pub fn explained(&self, text: &str) -> String {
+        match self.span {
+            Some(span) if !text.is_empty() => format!("{self}\n{}", span.underline(text)),
+            _ => self.to_string(),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Hyperelastic laws as text: an energy density of the deformation gradient, from which stress and tangent are derived.
+//!
+//! The text is read into a [`Graph`] with what the law language knows beside numbers (`C`, `I1`, `J`, fibre
+//! directions, …, see [`vocabulary`]), with units checked on the way; then `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF` are derived.
+//! Before a law is handed out it has been tried: a value, no stress and a slope at rest, objectivity.
+
+mod check;
+mod error;
+mod read;
+mod vocabulary;
+
+pub use error::{LawError, LawProblem};
+pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};
+
+use crate::Dimension;
+use crate::graph::{Expr, Graph, Shape};
+
+/// A law as written.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LawText {
+    /// `Ψ`, energy per volume of the rest shape [J/m³ = Pa].
+    pub energy: String,
+    /// Names for parts of the energy, in any order.
+    pub definitions: Vec<(String, String)>,
+    pub parameters: Vec<(String, LawParameter)>,
+}
+
+/// A material constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LawParameter {
+    /// In SI units; a number without unit is taken as it is wanted.
+    Number { value: f64, dimension: Option<Dimension> },
+    /// A direction in the rest shape, of length one.
+    Direction([f64; 3]),
+}
+
+impl LawParameter {
+    pub(crate) fn numbers(&self) -> &[f64] {
+        match self {
+            Self::Number { value, .. } => std::slice::from_ref(value),
+            Self::Direction(direction) => direction,
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        match self {
+            Self::Number { .. } => Shape::Scalar,
+            Self::Direction(_) => Shape::Vector,
+        }
+    }
+}
+
+/// Which strain a law sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strain {
+    /// A rotation changes no energy.
+    Finite,
+    /// The law is written with `eps`: a rotation counts as strain.
+    Small,
+}
+
+/// A law with its derivatives.
+#[derive(Clone, Debug)]
+pub struct EnergyLaw {
+    pub graph: Graph,
+    /// The deformation gradient, a symbol.
+    pub deformation: Expr,
+    /// Its differential, a symbol.
+    pub variation: Expr,
+    /// `Ψ`, zero at rest.
+    pub energy: Expr,
+    /// `P = ∂Ψ/∂F`.
+    pub stress: Expr,
+    /// `δP = ∂P/∂F : δF`.
+    pub differential: Expr,
+    pub parameters: Vec<(String, LawParameter)>,
+    pub strain: Strain,
+    /// What is legal and doubtful.
+    pub warnings: Vec<String>,
+    /// `∂P/∂F` at rest, entry `9 a + b` for the entries `a` of `P` and `b` of `F`, both by columns [Pa].
+    pub stiffness: Box<[f64; 81]>,
+}
+
+/// Names of the symbols that stand for the deformation.
+pub(crate) const DEFORMATION: &str = "F";
+pub(crate) const VARIATION: &str = "dF";
+
+impl EnergyLaw {
+    /// Reads, derives and tries a law.
+    ///
+    /// # Errors
+    /// The part, the place and what would be accepted: syntax, unknown names, wrong units, an energy that is no number,
+    /// definitions that need each other, no value or slope at rest, stress at rest, an energy that rotations change.
+    pub fn compile(text: &LawText) -> Result<Self, LawError> {
+        let mut read = read::read(text)?;
+        let deformation = read.graph.symbol(DEFORMATION, Shape::Matrix);
+        let variation = read.graph.symbol(VARIATION, Shape::Matrix);
+        let stress = read.graph.gradient(read.energy, deformation);
+        let differential =
+            read.graph.differential(stress, &std::collections::HashMap::from([(deformation, variation)]));
+        let mut law = Self {
+            deformation,
+            variation,
+            energy: read.energy,
+            stress,
+            differential,
+            parameters: text.parameters.clone(),
+            strain: if read.uses_small_strain { Strain::Small } else { Strain::Finite },
+            warnings: std::mem::take(&mut read.warnings),
+            stiffness: Box::new([0.0; 81]),
+            graph: std::mem::take(&mut read.graph),
+        };
+        check::check(&mut law, &read)?;
+        Ok(law)
+    }
+
+    /// The numbers of a parameter.
+    pub fn parameter(&self, name: &str) -> Option<&LawParameter> {
+        self.parameters.iter().find(|(known, _)| known == name).map(|(_, parameter)| parameter)
+    }
+}
+
+#[cfg(test)]
+mod tests;

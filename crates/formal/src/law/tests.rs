@@ -1,0 +1,191 @@
+//! Laws against closed forms, derivatives against differences, and what bad laws are told.
+
+#![allow(non_snake_case)]
+
+use souple_math::{Mat3, Vec3, exponential};
+
+use super::*;
+use crate::Span;
+
+const PRESSURE: Option<Dimension> = Some(Dimension::new(1, -1, -2));
+
+fn number(name: &str, value: f64, dimension: Option<Dimension>) -> (String, LawParameter) {
+    (name.to_owned(), LawParameter::Number { value, dimension })
+}
+
+/// A law with moduli `mu`, `lambda` … in pascals.
+fn text(energy: &str, moduli: &[(&str, f64)]) -> LawText {
+    let parameters = moduli.iter().map(|(name, value)| number(name, *value, PRESSURE)).collect();
+    LawText { energy: energy.to_owned(), definitions: Vec::new(), parameters }
+}
+
+fn law(energy: &str, moduli: &[(&str, f64)]) -> EnergyLaw {
+    EnergyLaw::compile(&text(energy, moduli)).unwrap_or_else(|error| panic!("{}", error.explained(energy)))
+}
+
+fn samples() -> Vec<Mat3> {
+    let base =
+        Mat3::from_columns(Vec3::new(1.2, 0.1, -0.2), Vec3::new(-0.15, 0.9, 0.3), Vec3::new(0.05, -0.1, 1.1));
+    vec![base, exponential(Vec3::new(0.7, -0.4, 1.0)) * base, Mat3::identity(1.0) * 1.1, Mat3::identity(1.0)]
+}
+
+/// Laws of every kind of term, with the same moduli.
+fn laws() -> Vec<EnergyLaw> {
+    let moduli = [("mu", 3.0), ("lambda", 5.0), ("c1", 0.4)];
+    let mut all: Vec<EnergyLaw> = [
+        "mu*dot(eps, eps) + lambda/2*tr(eps)^2",
+        "mu*dot(E, E) + lambda/2*tr(E)^2 + 0*c1",
+        "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2",
+        "mu/2*(I1_bar - 3) + c1*(I2_bar - 3) + lambda/2*(J - 1)^2",
+        "mu/2*(I1_bar - 3) + c1*(I1_bar - 3)^2 + lambda/2*(J - 1)^2",
+        "mu*(l1^2.5 + l2^2.5 + l3^2.5 - 3) - 2.5*mu*ln(J) + lambda/2*(J - 1)^2",
+        "mu*(exp(dot(E, E)) - 1) + lambda*tr(inv(C) - I)^2 + c1*dot(dev(E), dev(E)) + c1*det(E)",
+        "mu*(F11^2 + F21^2 + F31^2 + F12^2 + F22^2 + F32^2 + F13^2 + F23^2 + F33^2 - 3)/2 - mu*ln(J) + lambda*(C11 + C22 - 2)^2",
+    ]
+    .iter()
+    .map(|energy| law(energy, &moduli))
+    .collect();
+    let mut fibres =
+        text("mu/2*(I1 - 3) - mu*ln(J) + lambda*max(I4(a) - 1, 0)^3 + c1*(I5(a) - I4(a))^2", &moduli);
+    fibres.parameters.push(("a".into(), LawParameter::Direction([0.6, 0.8, 0.0])));
+    all.push(EnergyLaw::compile(&fibres).unwrap());
+    all
+}
+
+/// `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF` against central differences, also with equal stretches.
+#[test]
+fn derivatives_are_differences() {
+    let dF =
+        Mat3::from_columns(Vec3::new(0.3, -0.2, 0.5), Vec3::new(0.1, 0.7, -0.4), Vec3::new(-0.6, 0.2, 0.1));
+    let h = 1e-5;
+    for law in laws() {
+        for F in samples() {
+            let (plus, minus) = (F + dF * h, F - dF * h);
+            let slope = (law.energy_at(&plus) - law.energy_at(&minus)) / (2.0 * h);
+            let power = law.stress_at(&F).dot(&dF);
+            // h² of third derivatives of order ten, and 1e-16 Ψ/h
+            assert!((slope - power).abs() < 1e-8, "{slope} {power}");
+            let numeric = (law.stress_at(&plus) - law.stress_at(&minus)) * (0.5 / h);
+            let difference = (numeric - law.differential_at(&F, &dF)).largest_entry();
+            // a fibre that just begins to bear has a third derivative that jumps by 100 there
+            let tolerance =
+                if law.parameter("a").is_some() && F == Mat3::identity(1.0) { 2e-3 } else { 3e-8 };
+            assert!(difference < tolerance, "{difference:e}");
+        }
+    }
+}
+
+#[test]
+fn neo_hookean_is_the_textbooks() {
+    let (mu, lambda) = (3.0, 5.0);
+    let law = law("mu/2*(I1-3) - mu*log(J) + lambda/2*log(J)^2", &[("mu", mu), ("lambda", lambda)]);
+    for F in samples() {
+        let J = F.determinant();
+        // P = μ F + (λ ln J - μ) F⁻ᵀ
+        let P = F * mu + F.cofactor() * ((lambda * J.ln() - mu) / J);
+        assert!((law.stress_at(&F) - P).largest_entry() < 1e-14 * 30.0);
+    }
+    assert!(law.warnings.iter().any(|warning| warning.contains("inverted")), "{:?}", law.warnings);
+    // the derived stress is as short as by hand: cofactor, determinant, two matrices
+    let count = law.graph.reachable(&[law.stress]).len();
+    assert!(count <= 16, "{count} expressions");
+}
+
+/// What is written with entries becomes the same expressions as what is written with tensors.
+#[test]
+fn small_strain_moduli() {
+    let law = law("mu*dot(E, E) + lambda/2*tr(E)^2", &[("mu", 3.0), ("lambda", 5.0)]);
+    assert!((law.stiffness[0] - 11.0).abs() < 1e-14 && (law.stiffness[4] - 5.0).abs() < 1e-14);
+    assert!((law.stiffness[9 + 1] - 3.0).abs() < 1e-14 && (law.stiffness[9 + 3] - 3.0).abs() < 1e-14);
+}
+
+#[track_caller]
+fn refused(text: &LawText) -> LawError {
+    match EnergyLaw::compile(text) {
+        Ok(_) => panic!("accepted: {}", text.energy),
+        Err(error) => error,
+    }
+}
+
+/// The message and the characters that are marked.
+#[test]
+fn bad_laws_are_told_where_and_why() {
+    let cases: &[(&str, &str, &str)] = &[
+        ("mu/2*(I1 - 3", "", "wanted"),
+        ("mu/2*(I1 - 3) + nu", "nu", "did you mean `mu`"),
+        ("mu/2*(I1 - 3) - mu*lnn(J)", "lnn", "did you mean `ln`"),
+        ("mu/2*(I1 - 3) + J - 1", "J", "pure number"),
+        ("I1 - 3", "I1 - 3", "energy per volume"),
+        ("mu*E", "mu*E", "a number, the energy density"),
+        ("mu*E + mu", "mu", "3x3 tensor"),
+        ("mu*exp(mu)", "mu", "pure number"),
+        ("mu*(I1 - 3)", "mu*(I1 - 3)", "the stress is"),
+        ("mu*F12^2", "F12", "a rotation changes"),
+        ("mu*abs(J - 1)", "abs(J - 1)", "corner"),
+        ("mu*sqrt(I1 - 3)", "sqrt(I1 - 3)", "corner"),
+        ("mu*max(J - 1, 0)", "max(J - 1, 0)", "corner"),
+        ("mu/(J - 1)", "mu/(J - 1)", "division by zero"),
+        ("mu*ln(J - 1)", "ln(J - 1)", "ln of 0"),
+        ("mu*(l1 - 1)^2", "l1", "order of the principal stretches"),
+        ("mu*3", "", "does not change"),
+        ("mu*(C*[1, 0])", "[1, 0]", "three numbers"),
+        ("mu*tr(J)", "J", "3x3 tensor"),
+        ("mu*I4(C)", "C", "a vector"),
+        ("mu*dot(C)", "dot(C)", "dot(A, B)"),
+        ("mu*J > mu", "mu*J > mu", "truth value"),
+    ];
+    for (energy, marked, message) in cases {
+        let error = refused(&text(energy, &[("mu", 2.0)]));
+        let said = error.to_string();
+        assert!(said.contains(message), "{energy}: {said}");
+        let place = error.span.map_or("", |span| span.of(energy));
+        assert!(marked.is_empty() || place == *marked, "{energy}: marked `{place}`: {said}");
+        assert_eq!(error.part, "energy");
+    }
+}
+
+#[test]
+fn bad_parts_are_told() {
+    let mut cyclic = text("mu*a", &[("mu", 1.0)]);
+    cyclic.definitions =
+        [("a", "b + 1"), ("b", "2*c"), ("c", "a^2")].map(|(n, t)| (n.to_owned(), t.to_owned())).to_vec();
+    let error = refused(&cyclic);
+    assert_eq!(
+        error.problem,
+        LawProblem::Recursion { cycle: ["a", "b", "c", "a"].map(str::to_owned).to_vec() }
+    );
+    assert_eq!((error.part.as_str(), error.span), ("c", Some(Span::new(0, 1))));
+    for (name, wanted) in
+        [("J", "ratio of volumes"), ("C12", "entry (1, 2)"), ("sin", "sine"), ("2a", "no name")]
+    {
+        let error = refused(&text("mu*(J-1)^2", &[("mu", 1.0), (name, 1.0)]));
+        assert!(error.to_string().contains(wanted), "{error}");
+    }
+    assert!(refused(&text("mu*(J-1)^2", &[("mu", 1.0), ("mu", 2.0)])).to_string().contains("twice"));
+    assert!(refused(&text("mu*(J-1)^2", &[("mu", f64::NAN)])).to_string().contains("finite"));
+}
+
+/// Ten megabytes, deep nesting and long products are answered at once.
+#[test]
+fn monstrous_laws_are_refused() {
+    for energy in [
+        "mu*(J-1)^2 + ".repeat(800_000) + "0",
+        "(".repeat(100_000) + "mu",
+        (0..5000).map(|i| format!("(J + {i})*")).collect::<String>() + "mu",
+        "mu*9^9^9^9^9*(J - 1)^2".to_owned(),
+    ] {
+        let error = refused(&text(&energy, &[("mu", 1.0)]));
+        assert!(error.to_string().len() < 400, "{}", error.to_string().len());
+    }
+}
+
+#[test]
+fn doubts_are_said() {
+    let doubt = |energy: &str| law(energy, &[("mu", 1.0), ("k", 1.0)]).warnings.join("; ");
+    assert!(doubt("mu*dot(dev(E), dev(E)) + 0*k").contains("change of volume"));
+    assert!(doubt("k*(J - 1)^2").contains("`mu` is used nowhere"));
+    assert!(doubt("k*(J - 1)^2 + 0*mu").contains("shear"));
+    assert!(doubt("mu*dot(E, E) - 2*k*tr(E)^2").contains("negative"));
+    assert!(doubt("mu*dot(eps, eps) + k*tr(eps)^2").contains("eps"));
+    assert!(doubt("mu*dot(E, E) + k*tr(E)^2").contains("inside out"));
+}

@@ -1,0 +1,417 @@
+//! From the graph to instructions on values.
+
+use std::collections::{HashMap, HashSet};
+
+use souple_math::Mat3;
+
+use super::Code;
+use crate::graph::{Evaluation, Expr, Graph, Node, Shape};
+use crate::law::EnergyLaw;
+
+/// A number, or the first of several, within a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Place {
+    pub value: usize,
+    pub offset: u32,
+}
+
+/// An instruction before its values have registers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    pub code: Code,
+    pub entries: u8,
+    pub out: Place,
+    pub operands: [Option<Place>; 5],
+}
+
+/// What the values of a tape hold.
+pub(super) struct Lowered {
+    /// Numbers of each value.
+    pub sizes: Vec<usize>,
+    /// Steps that need `F` only, then the others.
+    pub steps: [Vec<Step>; 2],
+    pub constants: Vec<(Place, f64)>,
+    pub deformation: Place,
+    pub variation: Place,
+    pub outputs: Vec<Place>,
+}
+
+struct Lowering<'a> {
+    graph: &'a Graph,
+    /// Values of what does not vary.
+    uniform: Evaluation,
+    varies: Vec<bool>,
+    needs_variation: Vec<bool>,
+    uses: HashMap<Expr, usize>,
+    reachable: HashSet<Expr>,
+    places: HashMap<Expr, Place>,
+    /// Powers of a base at hand, by exponents that are not whole.
+    powers: HashMap<Expr, Vec<(f64, Place)>>,
+    numbers: HashMap<u64, Place>,
+    out: Lowered,
+    /// Which list of steps is written to.
+    part: usize,
+}
+
+pub(super) fn lower(law: &EnergyLaw, outputs: &[Expr]) -> Lowered {
+    let graph = &law.graph;
+    let varies = graph.depends(outputs, &[law.deformation, law.variation]);
+    let reachable = graph.reachable(outputs);
+    let fixed: Vec<Expr> = reachable.iter().copied().filter(|expr| !varies[expr.index()]).collect();
+    let mut uses: HashMap<Expr, usize> = HashMap::new();
+    for operand in
+        reachable.iter().flat_map(|expr| graph.node(*expr).operands()).chain(outputs.iter().copied())
+    {
+        *uses.entry(operand).or_insert(0) += 1;
+    }
+    let (deformation, variation) = (Place { value: 0, offset: 0 }, Place { value: 1, offset: 0 });
+    let mut lowering = Lowering {
+        graph,
+        uniform: law.evaluate(&fixed, &Mat3::identity(1.0), &Mat3::ZERO),
+        needs_variation: graph.depends(outputs, &[law.variation]),
+        varies,
+        uses,
+        reachable: reachable.into_iter().collect(),
+        places: HashMap::from([(law.deformation, deformation), (law.variation, variation)]),
+        powers: HashMap::new(),
+        numbers: HashMap::new(),
+        out: Lowered {
+            sizes: vec![9, 9],
+            steps: [Vec::new(), Vec::new()],
+            constants: Vec::new(),
+            deformation,
+            variation,
+            outputs: Vec::new(),
+        },
+        part: 0,
+    };
+    for output in outputs {
+        let place = lowering.place(*output);
+        lowering.out.outputs.push(place);
+    }
+    lowering.out
+}
+
+impl Lowering<'_> {
+    fn new_value(&mut self, size: usize) -> Place {
+        self.out.sizes.push(size);
+        Place { value: self.out.sizes.len() - 1, offset: 0 }
+    }
+
+    fn number(&mut self, value: f64) -> Place {
+        if let Some(place) = self.numbers.get(&value.to_bits()) {
+            return *place;
+        }
+        let place = self.new_value(1);
+        self.out.constants.push((place, value));
+        self.numbers.insert(value.to_bits(), place);
+        place
+    }
+
+    /// The number of an expression that does not vary.
+    fn fixed_number(&self, expr: Expr) -> Option<f64> {
+        (!self.varies[expr.index()] && self.graph.shape(expr) == Shape::Scalar)
+            .then(|| self.uniform.scalar(expr))
+    }
+
+    fn emit(&mut self, code: Code, entries: usize, size: usize, operands: &[Place]) -> Place {
+        let out = self.new_value(size);
+        self.emit_to(code, entries, out, operands);
+        out
+    }
+
+    fn emit_to(&mut self, code: Code, entries: usize, out: Place, operands: &[Place]) {
+        let mut all = [None; 5];
+        for (slot, operand) in all.iter_mut().zip(operands) {
+            *slot = Some(*operand);
+        }
+        let step = Step { code, entries: entries as u8, out, operands: all };
+        self.out.steps[self.part].push(step);
+    }
+
+    /// Where the numbers of an expression are, computed if they are not yet.
+    fn place(&mut self, expr: Expr) -> Place {
+        if let Some(place) = self.places.get(&expr) {
+            return *place;
+        }
+        let place = if self.varies[expr.index()] {
+            let outer = self.part;
+            self.part = usize::from(self.needs_variation[expr.index()]);
+            let place = self.compute(expr);
+            self.part = outer;
+            place
+        } else if let Some(value) = self.fixed_number(expr) {
+            self.number(value)
+        } else {
+            let numbers = self.uniform.of(expr).to_vec();
+            let place = self.new_value(numbers.len());
+            for (offset, value) in numbers.into_iter().enumerate() {
+                self.out.constants.push((Place { offset: offset as u32, ..place }, value));
+            }
+            place
+        };
+        self.places.insert(expr, place);
+        place
+    }
+
+    fn compute(&mut self, expr: Expr) -> Place {
+        let len = self.graph.shape(expr).len();
+        match self.graph.node(expr).clone() {
+            Node::Number(_) | Node::Symbol(_) | Node::Zero(_) | Node::Identity => {
+                unreachable!("symbols have their places, and the others do not vary")
+            }
+            Node::Sum(terms) if len == 1 => self.sum(&terms),
+            Node::Sum(terms) => self.tensor_sum(&terms, len),
+            Node::Product(_) => {
+                let (a, b, divides) = self.product(expr);
+                let code = if divides { Code::Divide } else { Code::Multiply };
+                self.emit(code, 1, 1, &[a, b])
+            }
+            Node::Power(base, exponent) => self.power(base, exponent),
+            Node::Function(function, a) => {
+                let a = self.place(a);
+                self.emit(Code::Call(function), 1, 1, &[a])
+            }
+            Node::Compare(comparison, a, b) => self.emit_of(Code::Compare(comparison), 1, 1, &[a, b]),
+            Node::Select(a, b, c) => self.emit_of(Code::Select, 1, 1, &[a, b, c]),
+            Node::Scale(factor, tensor) => self.emit_of(Code::Scale, len, len, &[factor, tensor]),
+            Node::Multiply(a, b) => self.multiply(a, b),
+            Node::Apply(matrix, vector) => match *self.graph.node(matrix) {
+                Node::Transpose(inner) => self.emit_of(Code::TransposeApply, 3, 3, &[inner, vector]),
+                _ => self.emit_of(Code::Apply, 3, 3, &[matrix, vector]),
+            },
+            Node::Transpose(a) => self.emit_of(Code::Transpose, 9, 9, &[a]),
+            Node::Dot(a, b) => self.emit_of(Code::Dot, self.graph.shape(a).len(), 1, &[a, b]),
+            Node::Trace(a) => self.emit_of(Code::Trace, 9, 1, &[a]),
+            Node::Determinant(a) => {
+                // the first columns of A and cof A give the determinant, where the cofactor is wanted anyway
+                let cofactor =
+                    self.reachable.iter().copied().find(|expr| *self.graph.node(*expr) == Node::Cofactor(a));
+                match cofactor {
+                    Some(cofactor) => self.emit_of(Code::Dot, 3, 1, &[a, cofactor]),
+                    None => self.emit_of(Code::Determinant, 9, 1, &[a]),
+                }
+            }
+            Node::Cofactor(a) => self.emit_of(Code::Cofactor, 9, 9, &[a]),
+            Node::Cross(a, b) => self.emit_of(Code::Cross, 9, 9, &[a, b]),
+            Node::Outer(a, b) => self.emit_of(Code::Outer, 9, 9, &[a, b]),
+            Node::Entry(tensor, index) => {
+                let place = self.place(tensor);
+                Place { offset: place.offset + u32::from(index), ..place }
+            }
+            Node::Pack(entries) => {
+                let places: Vec<Place> = entries.iter().map(|entry| self.place(*entry)).collect();
+                let out = self.new_value(len);
+                for (offset, place) in places.into_iter().enumerate() {
+                    self.emit_to(Code::Copy, 1, Place { offset: offset as u32, ..out }, &[place]);
+                }
+                out
+            }
+            Node::Decompose(a) => self.emit_of(Code::Decompose, 21, 21, &[a]),
+            Node::Compose(d, g) => self.emit_of(Code::Compose, 9, 9, &[d, g]),
+            Node::StretchRates(d, a) => self.emit_of(Code::StretchRates, 3, 3, &[d, a]),
+            Node::ComposeDifferential(list) => self.emit_of(Code::ComposeDifferential, 9, 9, &list[..]),
+        }
+    }
+
+    fn emit_of(&mut self, code: Code, entries: usize, size: usize, operands: &[Expr]) -> Place {
+        let places: Vec<Place> = operands.iter().map(|operand| self.place(*operand)).collect();
+        self.emit(code, entries, size, &places)
+    }
+
+    fn multiply(&mut self, a: Expr, b: Expr) -> Place {
+        match (self.graph.node(a).clone(), self.graph.node(b).clone()) {
+            (Node::Transpose(inner), _) if inner == b => self.emit_of(Code::Gram, 9, 9, &[b]),
+            (Node::Transpose(inner), _) => self.emit_of(Code::TransposeProduct, 9, 9, &[inner, b]),
+            (_, Node::Transpose(inner)) => self.emit_of(Code::ProductTranspose, 9, 9, &[a, inner]),
+            _ => self.emit_of(Code::Product, 9, 9, &[a, b]),
+        }
+    }
+
+    /// The two operands of the last operation of a product, and whether it divides.
+    fn product(&mut self, expr: Expr) -> (Place, Place, bool) {
+        let Node::Product(factors) = self.graph.node(expr).clone() else { unreachable!("a product") };
+        let mut constant = 1.0;
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for factor in factors {
+            if let Some(value) = self.fixed_number(factor) {
+                constant *= value;
+                continue;
+            }
+            match *self.graph.node(factor) {
+                // a quotient costs one division, a power of -1 and a product both
+                Node::Power(base, exponent) if self.fixed_number(exponent) == Some(-1.0) => {
+                    below.push(self.place(base));
+                }
+                _ => above.push(self.place(factor)),
+            }
+        }
+        if constant != 1.0 || above.is_empty() {
+            above.insert(0, self.number(constant));
+        }
+        if below.is_empty() {
+            let last = above.pop().unwrap_or_else(|| unreachable!("a product has two factors"));
+            let first = self.multiply_all(&above);
+            return (first, last, false);
+        }
+        (self.multiply_all(&above), self.multiply_all(&below), true)
+    }
+
+    fn multiply_all(&mut self, factors: &[Place]) -> Place {
+        let mut product = factors[0];
+        for factor in &factors[1..] {
+            product = self.emit(Code::Multiply, 1, 1, &[product, *factor]);
+        }
+        product
+    }
+
+    fn sum(&mut self, terms: &[Expr]) -> Place {
+        let mut constant = 0.0;
+        let mut sum: Option<Place> = None;
+        let mut fused = Vec::new();
+        for term in terms {
+            if let Some(value) = self.fixed_number(*term) {
+                constant += value;
+                continue;
+            }
+            let alone = self.uses.get(term) == Some(&1) && !self.places.contains_key(term);
+            if alone
+                && matches!(self.graph.node(*term), Node::Product(_))
+                && usize::from(self.needs_variation[term.index()]) == self.part
+            {
+                match self.product(*term) {
+                    (a, b, false) => fused.push((a, b)),
+                    (a, b, true) => {
+                        let quotient = self.emit(Code::Divide, 1, 1, &[a, b]);
+                        sum = Some(self.plus(sum, quotient));
+                    }
+                }
+            } else {
+                let place = self.place(*term);
+                sum = Some(self.plus(sum, place));
+            }
+        }
+        if constant != 0.0 {
+            let constant = self.number(constant);
+            sum = Some(self.plus(sum, constant));
+        }
+        for (a, b) in fused {
+            sum = Some(match sum {
+                Some(sum) => self.emit(Code::MultiplyAdd, 1, 1, &[a, b, sum]),
+                None => self.emit(Code::Multiply, 1, 1, &[a, b]),
+            });
+        }
+        sum.unwrap_or_else(|| unreachable!("a sum that varies has a term that does"))
+    }
+
+    fn plus(&mut self, sum: Option<Place>, term: Place) -> Place {
+        match sum {
+            Some(sum) => self.emit(Code::Add, 1, 1, &[sum, term]),
+            None => term,
+        }
+    }
+
+    fn tensor_sum(&mut self, terms: &[Expr], len: usize) -> Place {
+        let identity = |expr: Expr| *self.graph.node(expr) == Node::Identity;
+        let (mut scaled, mut plain, mut diagonal) = (Vec::new(), Vec::new(), Vec::new());
+        for term in terms {
+            match *self.graph.node(*term) {
+                Node::Identity => diagonal.push(None),
+                Node::Scale(factor, tensor) if identity(tensor) => diagonal.push(Some(factor)),
+                Node::Scale(factor, tensor)
+                    if self.varies[term.index()]
+                        && self.uses.get(term) == Some(&1)
+                        && usize::from(self.needs_variation[term.index()]) == self.part
+                        && !self.places.contains_key(term) =>
+                {
+                    scaled.push((factor, tensor));
+                }
+                _ => plain.push(*term),
+            }
+        }
+        let mut sum: Option<Place> = None;
+        for term in plain {
+            let place = self.place(term);
+            sum = Some(match sum {
+                Some(sum) => self.emit(Code::Add, len, len, &[sum, place]),
+                None => place,
+            });
+        }
+        let mut scaled: Vec<(Place, Place)> =
+            scaled.into_iter().map(|(factor, tensor)| (self.place(factor), self.place(tensor))).collect();
+        if sum.is_none() && scaled.len() >= 2 {
+            let ((s, a), (t, b)) = (scaled.remove(0), scaled.remove(0));
+            sum = Some(self.emit(Code::Combine, len, len, &[s, a, t, b]));
+        }
+        for (factor, tensor) in scaled {
+            sum = Some(match sum {
+                Some(sum) => self.emit(Code::ScaleAdd, len, len, &[factor, tensor, sum]),
+                None => self.emit(Code::Scale, len, len, &[factor, tensor]),
+            });
+        }
+        for factor in diagonal {
+            let factor = match factor {
+                Some(factor) => self.place(factor),
+                None => self.number(1.0),
+            };
+            let before = match sum {
+                Some(sum) => sum,
+                None => unreachable!("multiples of the identity are one term"),
+            };
+            sum = Some(self.emit(Code::PlusDiagonal, 9, 9, &[before, factor]));
+        }
+        sum.unwrap_or_else(|| unreachable!("a sum has terms"))
+    }
+
+    fn power(&mut self, base: Expr, exponent: Expr) -> Place {
+        let Some(value) = self.fixed_number(exponent) else {
+            return self.emit_of(Code::Power, 1, 1, &[base, exponent]);
+        };
+        let at = self.place(base);
+        if value.fract() == 0.0 && value.abs() <= 64.0 {
+            let power = self.whole_power(at, value.abs() as u8);
+            return if value < 0.0 { self.reciprocal(power) } else { power };
+        }
+        // powers of one base that differ by whole exponents cost one transcendental function
+        let known = self.powers.get(&base).and_then(|known| {
+            known
+                .iter()
+                .copied()
+                .find(|(known, _)| (value - known).fract() == 0.0 && (value - known).abs() <= 4.0)
+        });
+        let place = match known {
+            Some((known, place)) => {
+                let power = self.whole_power(at, (value - known).abs() as u8);
+                let code = if value < known { Code::Divide } else { Code::Multiply };
+                self.emit(code, 1, 1, &[place, power])
+            }
+            _ if value == 0.5 => self.emit(Code::SquareRoot, 1, 1, &[at]),
+            _ if value == -0.5 => {
+                let root = self.emit(Code::SquareRoot, 1, 1, &[at]);
+                self.reciprocal(root)
+            }
+            _ => {
+                let exponent = self.number(value);
+                self.emit(Code::Power, 1, 1, &[at, exponent])
+            }
+        };
+        // what is computed with a variation cannot serve what is computed before it
+        if self.part == 0 {
+            self.powers.entry(base).or_default().push((value, place));
+        }
+        place
+    }
+
+    fn whole_power(&mut self, base: Place, exponent: u8) -> Place {
+        match exponent {
+            1 => base,
+            2 => self.emit(Code::Multiply, 1, 1, &[base, base]),
+            _ => self.emit(Code::WholePower(exponent), 1, 1, &[base]),
+        }
+    }
+
+    fn reciprocal(&mut self, place: Place) -> Place {
+        let one = self.number(1.0);
+        self.emit(Code::Divide, 1, 1, &[one, place])
+    }
+}

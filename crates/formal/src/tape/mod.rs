@@ -1,0 +1,149 @@
+//! Laws compiled for many lanes at once, at run time.
+//!
+//! A [`Tape`] is a list of instructions on whole tensors (`cofactor`, `A Bᵀ`, `s A + t B`, …). Each instruction runs over a
+//! batch of [`BATCH`] lanes before the next one is looked at, so the cost of choosing it is shared by all of them, and the
+//! registers of a batch stay in the first-level cache. What does not vary with the deformation is computed once, when
+//! the tape is made: the grouped constants of the law.
+
+mod lower;
+mod machine;
+mod registers;
+
+use crate::Function;
+use crate::graph::{Comparison, Expr};
+use crate::law::EnergyLaw;
+
+/// Lanes of one run.
+pub const BATCH: usize = 64;
+
+/// What an instruction does with its operands `a`, `b`, `c`, `d`, each one number or several in a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Code {
+    /// Entry by entry.
+    Copy,
+    Add,
+    /// `a b` of numbers.
+    Multiply,
+    /// `a b + c` of numbers.
+    MultiplyAdd,
+    Divide,
+    /// `a bⁿ⁻¹ …`: a whole power from 2 on.
+    WholePower(u8),
+    SquareRoot,
+    Power,
+    Call(Function),
+    Compare(Comparison),
+    Select,
+    /// `a` times the entries of `b`.
+    Scale,
+    /// `a b + c`, entry by entry for one number `a`.
+    ScaleAdd,
+    /// `a b + c d`, entry by entry for numbers `a`, `c`.
+    Combine,
+    /// The matrix `a + b I`.
+    PlusDiagonal,
+    Product,
+    /// `aᵀ b`.
+    TransposeProduct,
+    /// `a bᵀ`.
+    ProductTranspose,
+    /// `aᵀ a`.
+    Gram,
+    Transpose,
+    /// Sum of products of entries.
+    Dot,
+    Trace,
+    Determinant,
+    Cofactor,
+    Cross,
+    Outer,
+    Apply,
+    TransposeApply,
+    Decompose,
+    Compose,
+    StretchRates,
+    /// Of a decomposition, and of `g`, `δg`, `k`, `δF` packed behind each other as `b`, `c`, `d` and the entries behind `d`.
+    ComposeDifferential,
+}
+
+/// Registers of one instruction, by their first number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instruction {
+    pub code: Code,
+    /// Entries of what is worked on entry by entry.
+    pub entries: u8,
+    pub out: u32,
+    pub operands: [u32; 5],
+}
+
+/// A compiled law: some of its expressions as functions of `F`, or of `F` and `δF`.
+#[derive(Clone, Debug)]
+pub struct Tape {
+    instructions: Vec<Instruction>,
+    /// Instructions before it need `F` only.
+    split: usize,
+    registers: usize,
+    constants: Vec<(u32, f64)>,
+    deformation: u32,
+    variation: u32,
+    outputs: Vec<u32>,
+}
+
+/// Which instructions are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    All,
+    /// What needs `F` only.
+    Deformation,
+    /// The rest, for another `δF` at the same `F`.
+    Variation,
+}
+
+impl Tape {
+    /// Compiles expressions of a law for its parameters.
+    pub fn compile(law: &EnergyLaw, outputs: &[Expr]) -> Self {
+        registers::assign(lower::lower(law, outputs))
+    }
+
+    /// Numbers that the memory of a run must hold, [`BATCH`] for each register.
+    pub fn memory_len(&self) -> usize {
+        self.registers * BATCH
+    }
+
+    /// How many instructions there are.
+    pub fn len(&self) -> usize {
+        self.instructions.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.instructions.is_empty()
+    }
+
+    /// Where the lanes of entry `entry` of `F` start, by columns.
+    pub fn deformation(&self, entry: usize) -> usize {
+        (self.deformation as usize + entry) * BATCH
+    }
+
+    /// Where the lanes of entry `entry` of `δF` start.
+    pub fn variation(&self, entry: usize) -> usize {
+        (self.variation as usize + entry) * BATCH
+    }
+
+    /// Where the lanes of number `entry` of an output start.
+    pub fn output(&self, output: usize, entry: usize) -> usize {
+        (self.outputs[output] as usize + entry) * BATCH
+    }
+
+    /// Writes the constants, once before the runs on a memory.
+    ///
+    /// # Panics
+    /// If the memory is shorter than [`Self::memory_len`].
+    pub fn prepare(&self, memory: &mut [f64]) {
+        for (register, value) in &self.constants {
+            memory[*register as usize * BATCH..][..BATCH].fill(*value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,88 @@
+//! Tapes against the plain reading of the graph.
+
+#![allow(non_snake_case)]
+
+use souple_math::{Mat3, Vec3};
+
+use super::*;
+use crate::law::{LawParameter, LawText};
+
+fn compiled(energy: &str) -> EnergyLaw {
+    let number = |name: &str, value| (name.to_owned(), LawParameter::Number { value, dimension: None });
+    let mut parameters = vec![number("mu", 3.0), number("k", 5.0), number("p", 2.5)];
+    parameters.push(("a".to_owned(), LawParameter::Direction([0.6, 0.0, 0.8])));
+    let text = LawText { energy: energy.to_owned(), definitions: Vec::new(), parameters };
+    EnergyLaw::compile(&text).unwrap_or_else(|error| panic!("{}", error.explained(energy)))
+}
+
+const LAWS: &[&str] = &[
+    "mu/2*(I1-3) - mu*log(J) + k/2*log(J)^2",
+    "mu*dot(E, E) + k/2*tr(E)^2",
+    "mu*dot(eps, eps) + k/2*tr(eps)^2",
+    "mu/2*(I1_bar - 3) + k*(I2_bar - 3)^2 + k/2*(J - 1)^2 + mu*(I1_bar - 3)^3",
+    "mu/p*(l1^p + l2^p + l3^p - 3) - mu*ln(J) + k/2*(J - 1)^2",
+    "mu/2*(I1 - 3) - mu*ln(J) + k*(exp(p*max(I4(a) - 1, 0)^2) - 1) + k*dot(dev(C), B)*0 + mu*dot(inv(C) - I, E)^2",
+    "mu*tr(C^3 - 3*C)^2 + mu*(det(2*C - I) - 1)^4 + k*sinh(E12)^2 + if(J < 0.9, (0.9 - J)^3, 0)*mu + mu*sqrt(I1)*(J-1)^2",
+];
+
+fn put(memory: &mut [f64], at: impl Fn(usize) -> usize, lane: usize, matrix: &Mat3) {
+    for entry in 0..9 {
+        memory[at(entry) + lane] = matrix.columns[entry / 3].to_array()[entry % 3];
+    }
+}
+
+/// Every lane gives what the graph gives, in one pass and in two, for full and for partly filled batches.
+#[test]
+fn lanes_agree_with_the_graph() {
+    let wave = |lane: usize, phase: f64| {
+        let number = |i: usize| 0.2 * (1.3 * lane as f64 + 0.7 * i as f64 + phase).sin();
+        let column = |c: usize| Vec3::new(number(3 * c), number(3 * c + 1), number(3 * c + 2));
+        Mat3::from_columns(column(0), column(1), column(2))
+    };
+    for energy in LAWS {
+        let law = compiled(energy);
+        let outputs = [law.energy, law.stress, law.differential];
+        let tape = Tape::compile(&law, &outputs);
+        for lanes in [BATCH, 8, 3] {
+            let mut memory = vec![0.0; tape.memory_len()];
+            tape.prepare(&mut memory);
+            for lane in 0..BATCH {
+                put(
+                    &mut memory,
+                    |entry| tape.deformation(entry),
+                    lane,
+                    &(Mat3::identity(1.0) + wave(lane, 0.0)),
+                );
+                put(&mut memory, |entry| tape.variation(entry), lane, &wave(lane, 2.0));
+            }
+            tape.run_here(Part::Deformation, lanes, &mut memory);
+            // twice: the second part leaves what it needs of the first
+            tape.run_here(Part::Variation, lanes, &mut memory);
+            tape.run_here(Part::Variation, lanes, &mut memory);
+            for lane in 0..lanes {
+                let (F, dF) = (Mat3::identity(1.0) + wave(lane, 0.0), wave(lane, 2.0));
+                let values = law.evaluate(&outputs, &F, &dF);
+                for (index, output) in outputs.iter().enumerate() {
+                    let scale = values.of(*output).iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+                    for (entry, expected) in values.of(*output).iter().enumerate() {
+                        let found = memory[tape.output(index, entry) + lane];
+                        // a hundred roundings in another order; quotients of near stretches lose four digits more
+                        assert!((found - expected).abs() <= 1e-11 * scale, "{energy}: {found} {expected}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The neo-Hookean stress takes the instructions one would write by hand.
+#[test]
+fn tapes_are_short() {
+    let law = compiled(LAWS[0]);
+    let tape = Tape::compile(&law, &[law.stress]);
+    // cofactor, determinant, logarithm, three numbers, combination of two matrices
+    assert!(tape.len() <= 8, "{:#?}", tape.instructions);
+    let law = compiled(LAWS[1]);
+    let tape = Tape::compile(&law, &[law.stress]);
+    assert!(tape.len() <= 9, "{:#?}", tape.instructions);
+}

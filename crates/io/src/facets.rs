@@ -1,0 +1,148 @@
+//! What surface formats have in common: what they write of a mesh, and how they read polygons.
+
+use souple_math::Vec3;
+use souple_mesh::{ElementKind, Mesh};
+
+use crate::cursor::Cursor;
+use crate::dataset::Output;
+use crate::error::Fault;
+
+/// Where the facets of a [`SurfacePart`] came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// The facets of the mesh, in their order.
+    Facets,
+    /// The boundary of its cells.
+    Boundary,
+}
+
+impl Origin {
+    /// For the comment at the head of a file.
+    pub fn remark(self) -> &'static str {
+        match self {
+            Self::Facets => "",
+            Self::Boundary => ": the boundary of the cells",
+        }
+    }
+}
+
+/// A triangle or a quadrilateral.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Facet {
+    corners: [u32; 4],
+    count: u8,
+}
+
+impl Facet {
+    fn new(nodes: &[u32]) -> Self {
+        let mut corners = [0; 4];
+        corners[..nodes.len()].copy_from_slice(nodes);
+        Self { corners, count: nodes.len() as u8 }
+    }
+
+    pub fn corners(&self) -> &[u32] {
+        &self.corners[..usize::from(self.count)]
+    }
+
+    /// As triangles around the first corner.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.corners().windows(2).skip(1).map(|pair| [self.corners[0], pair[0], pair[1]])
+    }
+}
+
+/// A surface with points of its own.
+#[derive(Clone, Debug)]
+pub(crate) struct SurfacePart {
+    pub positions: Vec<Vec3>,
+    /// Point of the mesh that each point is.
+    pub points: Vec<u32>,
+    pub facets: Vec<Facet>,
+    pub origin: Origin,
+}
+
+impl SurfacePart {
+    /// A mesh of facets alone keeps all its points; of one with cells those that the surface uses are kept, in
+    /// ascending order.
+    pub fn of(output: &Output<'_>) -> Self {
+        let mesh = output.mesh;
+        let (mut facets, origin): (Vec<Facet>, _) = if mesh.facet_count() > 0 {
+            (mesh.facets().map(|facet| Facet::new(facet.nodes)).collect(), Origin::Facets)
+        } else {
+            let boundary = mesh.boundary_surface();
+            let own = |corner: u32| boundary.mesh_points[corner as usize];
+            let triangles = boundary.triangles.iter();
+            (triangles.map(|corners| Facet::new(&corners.map(own))).collect(), Origin::Boundary)
+        };
+        let points: Vec<u32> = if mesh.cell_count() == 0 {
+            (0..mesh.points.len() as u32).collect()
+        } else {
+            let mut used: Vec<u32> = facets.iter().flat_map(Facet::corners).copied().collect();
+            used.sort_unstable();
+            used.dedup();
+            used
+        };
+        let mut number = vec![0; mesh.points.len()];
+        for (new, old) in points.iter().enumerate() {
+            number[*old as usize] = new as u32;
+        }
+        for facet in &mut facets {
+            let count = usize::from(facet.count);
+            facet.corners[..count].iter_mut().for_each(|corner| *corner = number[*corner as usize]);
+        }
+        let positions = points.iter().map(|point| output.positions()[*point as usize]).collect();
+        Self { positions, points, facets, origin }
+    }
+}
+
+/// Puts polygons of any number of corners among the facets of a mesh.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Polygons {
+    cut: usize,
+    degenerate: usize,
+}
+
+impl Polygons {
+    /// A triangle, a quadrilateral, or triangles around the first corner; none where corners repeat.
+    pub fn push(&mut self, mesh: &mut Mesh, corners: &[u32]) {
+        let repeated = |corners: &[u32]| (1..corners.len()).any(|k| corners[..k].contains(&corners[k]));
+        match corners {
+            [_, _, _] | [_, _, _, _] if repeated(corners) => self.degenerate += 1,
+            [_, _, _] => mesh.push_facet(ElementKind::Tri3, corners),
+            [_, _, _, _] => mesh.push_facet(ElementKind::Quad4, corners),
+            [start, others @ ..] => {
+                self.cut += 1;
+                for pair in others.windows(2).filter(|pair| !pair.contains(start) && pair[0] != pair[1]) {
+                    mesh.push_facet(ElementKind::Tri3, &[*start, pair[0], pair[1]]);
+                }
+            }
+            [] => {}
+        }
+    }
+
+    /// What was not taken as it stands.
+    pub fn notes(self) -> Vec<String> {
+        let told = [
+            (self.cut, "polygons of more than four corners were cut into triangles"),
+            (self.degenerate, "facets with repeated corners were left out"),
+        ];
+        told.into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| format!("{count} {what}"))
+            .collect()
+    }
+}
+
+/// Refuses facets of points that are not there, and a surface without facets.
+pub(crate) fn check_facets(cursor: &Cursor<'_>, mesh: &Mesh) -> Result<(), Fault> {
+    let count = mesh.points.len();
+    for (facet, view) in mesh.facets().enumerate() {
+        if let Some(corner) = view.nodes.iter().find(|corner| **corner as usize >= count) {
+            let expected = format!("the number of a point: below {count}");
+            return Err(cursor.fault(format!("a corner of facet {facet}"), corner.to_string(), expected));
+        }
+    }
+    if mesh.facet_blocks.is_empty() {
+        return Err(cursor.fault("the number of facets", "0", "1 or more"));
+    }
+    Ok(())
+}

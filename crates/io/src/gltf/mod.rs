@@ -1,0 +1,285 @@
+//! glTF 2.0, binary (`.glb`): surfaces for the web, Blender and three.js; write only.
+//!
+//! A moving surface is one mesh with a morph target for each frame after the first, displacements of positions and of
+//! normals, and an animation of the weights that lets exactly one frame show at its time and blends between. All
+//! programs that play morph targets play it; numbers are of 4 bytes.
+
+mod buffer;
+
+use std::io::Write;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use souple_math::Vec3;
+use souple_mesh::vertex_normals;
+use souple_table::Entry;
+
+use crate::dataset::Output;
+use crate::facets::SurfacePart;
+use crate::format::{Format, WriteError};
+use crate::holds::{Digits, Holds};
+use crate::picture::{Colour, Paint};
+use crate::{IoError, write_file};
+use buffer::{Buffer, Target};
+
+pub(crate) static GLTF: Entry<Format> = Entry {
+    name: "gltf",
+    summary: "glTF 2.0 binary surface for the web, Blender and three.js; write only",
+    source: "Khronos Group, glTF 2.0 Specification, 2021",
+    parameters: &[],
+    build: Format {
+        extensions: &["glb"],
+        parts: &[],
+        recognises: |bytes| bytes.starts_with(MAGIC),
+        read: None,
+        write: Some(write_mesh),
+        holds: Holds { digits: Digits::Single, ..Holds::BARE },
+    },
+};
+
+const MAGIC: &[u8; 4] = b"glTF";
+
+/// A surface that moves, or stands where it has one frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MovingSurface {
+    pub name: String,
+    /// Corners, counterclockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Positions [m] of all points, frame after frame.
+    pub frames: Vec<Vec<Vec3>>,
+    pub colour: Colour,
+    /// A colour for each point, in place of one for all; or none.
+    pub point_colours: Vec<Colour>,
+}
+
+/// Surfaces over common times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Animation {
+    pub surfaces: Vec<MovingSurface>,
+    /// Time of each frame [s], increasing.
+    pub times: Vec<f64>,
+    /// What is up in the positions; glTF has `y` up, and the scene is turned so.
+    pub up: Vec3,
+}
+
+/// Most frames of a file: the weights alone are frames times frames.
+const MOST_FRAMES: usize = 4096;
+
+impl Animation {
+    /// The file as bytes.
+    ///
+    /// # Errors
+    /// Frames of different lengths, times that do not increase, corners that do not exist, numbers that are not
+    /// finite, more frames than can be played.
+    pub fn to_glb(&self) -> Result<Vec<u8>, IoError> {
+        self.check()?;
+        let mut buffer = Buffer::default();
+        let (mut meshes, mut nodes, mut materials, mut channels, mut samplers) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (index, surface) in self.surfaces.iter().enumerate() {
+            materials.push(material(surface));
+            meshes.push(mesh(surface, index, &mut buffer));
+            nodes.push(json!({"name": surface.name, "mesh": index}));
+        }
+        let first = |frames: usize| self.times[..frames].iter().map(|time| (time - self.times[0]) as f32);
+        let moving: Vec<(usize, usize)> = self
+            .surfaces
+            .iter()
+            .enumerate()
+            .filter(|(_, surface)| surface.frames.len() > 1)
+            .map(|(index, surface)| (index, surface.frames.len()))
+            .collect();
+        if let Some((_, frames)) = moving.first() {
+            let times = first(*frames).collect::<Vec<f32>>();
+            let input = buffer.scalars(&times, Target::None);
+            for (node, frames) in moving {
+                let targets = frames - 1;
+                let mut weights = vec![0.0; frames * targets];
+                for frame in 1..frames {
+                    weights[frame * targets + frame - 1] = 1.0;
+                }
+                let output = buffer.scalars(&weights, Target::None);
+                channels.push(json!({
+                    "sampler": samplers.len(), "target": {"node": node, "path": "weights"},
+                }));
+                samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
+            }
+        }
+        let children: Vec<usize> = (0..nodes.len()).collect();
+        let root = nodes.len();
+        nodes.push(json!({"name": "souple", "children": children, "rotation": rotation_to_y(self.up)}));
+        let mut document = json!({
+            "asset": {"version": "2.0", "generator": "Souple"},
+            "scene": 0,
+            "scenes": [{"nodes": [root]}],
+            "nodes": nodes,
+            "meshes": meshes,
+            "materials": materials,
+            "accessors": buffer.accessors,
+            "bufferViews": buffer.views,
+            "buffers": [{"byteLength": buffer.bytes.len()}],
+        });
+        if !channels.is_empty() {
+            document["animations"] = json!([{"name": "run", "channels": channels, "samplers": samplers}]);
+        }
+        Ok(container(&document, &buffer.bytes))
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// Those of [`Animation::to_glb`]; the file cannot be written.
+    pub fn write_glb(&self, path: &Path) -> Result<(), IoError> {
+        let bytes = self.to_glb()?;
+        write_file(path, |out| out.write_all(&bytes))
+    }
+
+    fn check(&self) -> Result<(), IoError> {
+        let refuse = |subject: String, value: String, expected: String| {
+            Err(IoError::Request { subject, value, expected })
+        };
+        if !(1..=MOST_FRAMES).contains(&self.times.len()) {
+            let found = self.times.len().to_string();
+            return refuse("the number of frames".to_owned(), found, format!("1 to {MOST_FRAMES}"));
+        }
+        if let Some(pair) = self.times.windows(2).find(|pair| !(pair[0] < pair[1] && pair[1].is_finite())) {
+            return refuse(
+                "the time of a frame".to_owned(),
+                format!("{:?}", pair[1]),
+                format!("more than {:?}", pair[0]),
+            );
+        }
+        if self.surfaces.is_empty() {
+            return refuse("the number of surfaces".to_owned(), "0".to_owned(), "1 or more".to_owned());
+        }
+        for (index, surface) in self.surfaces.iter().enumerate() {
+            let of = |what: &str| format!("{what} of surfaces[{index}]");
+            let frames = surface.frames.len();
+            if frames != 1 && frames != self.times.len() {
+                let expected = format!("1, or {}, one for each time", self.times.len());
+                return refuse(of("the number of frames"), frames.to_string(), expected);
+            }
+            let count = surface.frames[0].len();
+            if let Some(frame) = surface.frames.iter().find(|frame| frame.len() != count) {
+                let expected = format!("{count}, as of the first frame");
+                return refuse(of("the number of points of a frame"), frame.len().to_string(), expected);
+            }
+            if surface.triangles.is_empty() {
+                return refuse(of("the number of triangles"), "0".to_owned(), "1 or more".to_owned());
+            }
+            if let Some(corner) = surface.triangles.iter().flatten().find(|corner| **corner as usize >= count)
+            {
+                return refuse(of("a corner"), corner.to_string(), format!("a number below {count}"));
+            }
+            if !surface.point_colours.is_empty() && surface.point_colours.len() != count {
+                let found = surface.point_colours.len().to_string();
+                return refuse(of("the number of colours"), found, format!("{count}, one for each point"));
+            }
+            let fits = |x: &Vec3| x.to_array().iter().all(|c| c.abs() <= f64::from(f32::MAX));
+            if let Some(position) = surface.frames.iter().flatten().find(|position| !fits(position)) {
+                let found = format!("{:?}", position.to_array());
+                return refuse(of("a position"), found, "finite numbers of 4 bytes".to_owned());
+            }
+        }
+        Ok(())
+    }
+}
+
+fn mesh(surface: &MovingSurface, material: usize, buffer: &mut Buffer) -> Value {
+    let rest = &surface.frames[0];
+    let rest_normals = unit_normals(rest, &surface.triangles);
+    let indices = buffer.indices(surface.triangles.as_flattened());
+    let mut attributes = json!({
+        "POSITION": buffer.vectors(rest.iter().copied(), Target::Vertices),
+        "NORMAL": buffer.vectors(rest_normals.iter().copied(), Target::Vertices),
+    });
+    if !surface.point_colours.is_empty() {
+        attributes["COLOR_0"] = json!(buffer.colours(&surface.point_colours));
+    }
+    let mut primitive =
+        json!({"attributes": attributes, "indices": indices, "material": material, "mode": 4});
+    let mut mesh = json!({"name": surface.name});
+    if surface.frames.len() > 1 {
+        let mut targets = Vec::new();
+        for frame in &surface.frames[1..] {
+            let normals = unit_normals(frame, &surface.triangles);
+            let difference = |(now, then): (&Vec3, &Vec3)| *now - *then;
+            targets.push(json!({
+                "POSITION": buffer.vectors(frame.iter().zip(rest).map(difference), Target::Vertices),
+                "NORMAL": buffer.vectors(normals.iter().zip(&rest_normals).map(difference), Target::Vertices),
+            }));
+        }
+        mesh["weights"] = json!(vec![0.0; targets.len()]);
+        let names: Vec<String> = (1..=targets.len()).map(|frame| format!("frame {frame}")).collect();
+        mesh["extras"] = json!({"targetNames": names});
+        primitive["targets"] = json!(targets);
+    }
+    mesh["primitives"] = json!([primitive]);
+    mesh
+}
+
+/// Points of no triangle have no normal; any unit vector will do.
+fn unit_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let normals = vertex_normals(positions, triangles).into_iter();
+    normals.map(|normal| normal.try_normalised().unwrap_or(Vec3::Y)).collect()
+}
+
+fn material(surface: &MovingSurface) -> Value {
+    let [r, g, b] = if surface.point_colours.is_empty() { surface.colour.0 } else { Colour::WHITE.0 };
+    json!({
+        "name": surface.name,
+        "doubleSided": true,
+        "pbrMetallicRoughness": {"baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.6},
+    })
+}
+
+/// Quaternion `[x, y, z, w]` of the shortest turn that takes `up` to `y`.
+fn rotation_to_y(up: Vec3) -> [f64; 4] {
+    let Some(up) = up.try_normalised() else { return [0.0, 0.0, 0.0, 1.0] };
+    let axis = up.cross(Vec3::Y);
+    let w = 1.0 + up.y;
+    // straight down: half a turn about x
+    if w < 1e-9 {
+        return [1.0, 0.0, 0.0, 0.0];
+    }
+    let length = (axis.length_sq() + w * w).sqrt();
+    [axis.x / length, axis.y / length, axis.z / length, w / length]
+}
+
+/// Head, document and numbers as one file; lengths are multiples of four.
+fn container(document: &Value, numbers: &[u8]) -> Vec<u8> {
+    let mut text = document.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let padded = numbers.len().next_multiple_of(4);
+    let total = 12 + 8 + text.len() + 8 + padded;
+    let mut bytes = Vec::with_capacity(total);
+    let word = |bytes: &mut Vec<u8>, number: usize| bytes.extend((number as u32).to_le_bytes());
+    bytes.extend(MAGIC);
+    word(&mut bytes, 2);
+    word(&mut bytes, total);
+    word(&mut bytes, text.len());
+    bytes.extend(b"JSON");
+    bytes.extend(text);
+    word(&mut bytes, padded);
+    bytes.extend(b"BIN\0");
+    bytes.extend(numbers);
+    bytes.resize(total, 0);
+    bytes
+}
+
+fn write_mesh(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let part = SurfacePart::of(output);
+    let Paint::Plain(colour) = Paint::default() else { return Ok(()) };
+    let surface = MovingSurface {
+        name: "surface".to_owned(),
+        triangles: part.facets.iter().flat_map(|facet| facet.triangles()).collect(),
+        frames: vec![part.positions],
+        colour,
+        point_colours: Vec::new(),
+    };
+    let animation = Animation { surfaces: vec![surface], times: vec![0.0], up: Vec3::Y };
+    Ok(out.write_all(&animation.to_glb()?)?)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,225 @@
+//! Where title, legend and subject stand in a picture, and the writing of the first two.
+
+use super::camera::Frame;
+use super::image::{Anchor, Canvas};
+use super::legend::{labels, ticks};
+use super::lettering::text_width;
+use super::{Legend, Palette, Picture};
+
+/// All in pixels.
+pub(super) struct Layout {
+    pub frame: Frame,
+    /// Height of capitals of plain text.
+    letter: f64,
+    margin: f64,
+    /// The title in lines that fit, and the height of its capitals.
+    title: Vec<String>,
+    title_letter: f64,
+    subtitle: Vec<String>,
+    legend: Option<LegendBox>,
+}
+
+/// The colour bar with its writing.
+struct LegendBox {
+    /// Of the bar.
+    left: f64,
+    right: f64,
+    top: f64,
+    bottom: f64,
+    ticks: Vec<(f64, String)>,
+    title: Vec<String>,
+    /// Left border of everything of it.
+    edge: f64,
+}
+
+/// Lines of a title that does not fit in one.
+const MOST_LINES: usize = 3;
+
+impl Layout {
+    pub fn of(picture: &Picture, range: (f64, f64)) -> Self {
+        let [width, height] = picture.size.map(|side| side as f64);
+        let letter = (0.0165 * height.min(0.8 * width)).max(8.0);
+        let margin = 0.045 * width.min(height);
+        let room = width - 2.0 * margin;
+        // a title that is a little too long is set smaller, one that is much too long in lines
+        let wanted = 1.45 * letter;
+        let title_letter =
+            (wanted * room / text_width(&picture.title, wanted).max(1.0)).clamp(0.75 * wanted, wanted);
+        let title = wrapped(&picture.title, title_letter, room, MOST_LINES);
+        let subtitle = wrapped(&picture.subtitle, letter, room, MOST_LINES);
+        let legend =
+            picture.legend.as_ref().map(|legend| LegendBox::of(legend, range, picture.size, letter, margin));
+        let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
+        // room for the shade around the place of contact
+        let shade = if picture.ground.is_some() { 0.07 * height } else { 0.0 };
+        let right =
+            legend.as_ref().map_or(width - margin, |legend| legend.edge - 1.2 * letter).max(0.5 * width);
+        let top = (margin + above).min(0.4 * height);
+        Self {
+            frame: Frame { left: margin, top, right, bottom: (height - margin - shade).max(top + 1.0) },
+            letter,
+            margin,
+            title,
+            title_letter,
+            subtitle,
+            legend,
+        }
+    }
+
+    pub fn write(&self, picture: &Picture, palette: &Palette, canvas: &mut Canvas) {
+        let mut baseline = self.margin + 0.8 * self.title_letter;
+        for line in &self.title {
+            canvas.text(line, [self.margin, baseline], self.title_letter, Anchor::Left, palette.ink);
+            baseline += 1.65 * self.title_letter;
+        }
+        baseline += 0.2 * self.letter;
+        for line in &self.subtitle {
+            let background = palette.background(baseline, canvas.height);
+            let ink = palette.ink.mixed(background, 0.25);
+            canvas.text(line, [self.margin, baseline], self.letter, Anchor::Left, ink);
+            baseline += 1.8 * self.letter;
+        }
+        if let Some(legend) = &self.legend {
+            legend.write(picture, self.letter, palette, canvas);
+        }
+    }
+}
+
+impl LegendBox {
+    fn of(legend: &Legend, (low, high): (f64, f64), size: [usize; 2], letter: f64, margin: f64) -> Self {
+        let [width, height] = size.map(|side| side as f64);
+        let (top, bottom) = (0.29 * height, 0.71 * height);
+        let values = ticks(low, high, 5);
+        let names = labels(&values);
+        let widest = names.iter().map(|name| text_width(name, letter)).fold(0.0, f64::max);
+        let ticks = values
+            .iter()
+            .map(|value| bottom - (value - low) / (high - low) * (bottom - top))
+            .zip(names)
+            .collect();
+        let title = if legend.unit.is_empty() {
+            legend.title.clone()
+        } else {
+            format!("{} [{}]", legend.title, legend.unit)
+        };
+        let bar = 1.4 * letter;
+        let body = bar + 0.95 * letter + widest;
+        let title = wrapped(&title, letter, body.max(0.24 * width), MOST_LINES);
+        let head = title.iter().map(|line| text_width(line, letter)).fold(0.0, f64::max);
+        let edge = width - margin - body.max(head);
+        // under the middle of its title
+        let left = edge + 0.5 * (body.max(head) - body);
+        Self { left, right: left + bar, top, bottom, ticks, title, edge }
+    }
+
+    fn write(&self, picture: &Picture, letter: f64, palette: &Palette, canvas: &mut Canvas) {
+        let whole = |value: f64| value.max(0.0) as usize;
+        let (left, right) = (whole(self.left), whole(self.right));
+        let (top, bottom) = (whole(self.top), whole(self.bottom));
+        // only a camera that someone placed may have put the subject here
+        if picture.view.eye.is_some() {
+            self.write_panel(letter, palette, canvas);
+        }
+        canvas.fill(left.saturating_sub(1)..right + 1, top.saturating_sub(1)..bottom + 1, palette.ink, 0.8);
+        for row in top..bottom {
+            let share = 1.0 - (row - top) as f64 / ((bottom - top).max(2) as f64 - 1.0);
+            canvas.fill(left..right, row..row + 1, picture.colours.colour(share), 1.0);
+        }
+        for (y, label) in &self.ticks {
+            canvas.line(&[[self.right + 1.0, *y], [self.right + 0.45 * letter, *y]], 1.2, palette.ink);
+            canvas.text(
+                label,
+                [self.right + 0.95 * letter, y + 0.5 * letter],
+                letter,
+                Anchor::Left,
+                palette.ink,
+            );
+        }
+        let middle = 0.5 * (self.edge + canvas.width as f64 - 0.045 * canvas.width.min(canvas.height) as f64);
+        for (index, line) in self.title.iter().rev().enumerate() {
+            let y = self.top - 1.4 * letter - 1.6 * letter * index as f64;
+            canvas.text(line, [middle, y], letter, Anchor::Middle, palette.ink);
+        }
+    }
+
+    /// A veil of the background between the legend and what reaches under it.
+    fn write_panel(&self, letter: f64, palette: &Palette, canvas: &mut Canvas) {
+        let whole = |value: f64| value.max(0.0) as usize;
+        let top = self.top - (1.4 + 1.6 * self.title.len() as f64) * letter;
+        for row in whole(top)..whole(self.bottom + 1.2 * letter).min(canvas.height) {
+            let background = palette.background(row as f64, canvas.height);
+            canvas.fill(whole(self.edge - 0.8 * letter)..canvas.width, row..row + 1, background, 0.7);
+        }
+    }
+}
+
+/// A text in lines no wider than `room` where its words allow it; the last of at most `most` lines ends in an
+/// ellipsis if words are left.
+fn wrapped(text: &str, letter: f64, room: f64, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), letter) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    let is_cut = lines.len() > most;
+    lines.truncate(most);
+    // cut words that are wider than the room, too
+    for (index, line) in lines.iter_mut().enumerate() {
+        let ends = is_cut && index + 1 == most;
+        if !ends && text_width(line, letter) <= room {
+            continue;
+        }
+        let mut short: String = line.clone();
+        while !short.is_empty() && text_width(&format!("{short}…"), letter) > room {
+            short.pop();
+        }
+        *line = format!("{}…", short.trim_end());
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No line is wider than the room; all words are there where lines are left, an ellipsis where not.
+    #[test]
+    fn long_titles_are_wrapped() {
+        let title =
+            "A rubber bar twisted by three quarters of a turn, clamped at one end, with a very long name";
+        let lines = wrapped(title, 10.0, 300.0, 9);
+        assert!(lines.len() > 2 && lines.iter().all(|line| text_width(line, 10.0) <= 300.0));
+        assert_eq!(lines.join(" "), title);
+        let cut = wrapped(title, 10.0, 300.0, 2);
+        assert!(cut.len() == 2 && cut[1].ends_with('…') && text_width(&cut[1], 10.0) <= 300.0);
+        assert!(text_width(&wrapped("incomprehensibilities", 10.0, 60.0, 2)[0], 10.0) <= 60.0);
+        assert!(wrapped("", 10.0, 60.0, 2).is_empty());
+    }
+
+    /// However wide its numbers and its title: the legend is within the picture and the subject beside it.
+    #[test]
+    fn the_subject_stands_beside_the_legend() {
+        for (title, high, size) in [
+            ("von Mises stress", 3.5e-7, [1280, 800]),
+            ("s", 1.0, [300, 900]),
+            ("a very long name of a quantity", 99_999.0, [640, 400]),
+        ] {
+            let legend = Legend { title: title.to_owned(), unit: "Pa".to_owned(), range: None };
+            let picture = Picture { size, legend: Some(legend), ..Picture::default() };
+            let layout = Layout::of(&picture, (-high, high));
+            let legend = layout.legend.as_ref().unwrap();
+            let widest =
+                legend.ticks.iter().map(|tick| text_width(&tick.1, layout.letter)).fold(0.0, f64::max);
+            assert!(legend.right + 0.95 * layout.letter + widest <= size[0] as f64);
+            assert!(
+                legend.edge <= legend.left
+                    && (layout.frame.right < legend.edge || layout.frame.right <= 0.5 * size[0] as f64)
+            );
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! Surfaces of meshes: the boundary, the cells one by one, what a cut leaves.
+
+use std::collections::HashMap;
+
+use souple_math::Vec3;
+use souple_mesh::{Cell, Mesh};
+
+use super::surface::{Paint, Surface};
+
+/// A place between two points of a mesh: `x = (1 - share) x_from + share x_to`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    pub from: u32,
+    pub to: u32,
+    pub share: f64,
+}
+
+impl Between {
+    fn at(point: u32) -> Self {
+        Self { from: point, to: point, share: 0.0 }
+    }
+
+    fn of<T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(&self, values: &[T]) -> T {
+        let from = values[self.from as usize];
+        // a point of the mesh keeps its bits
+        if self.from == self.to {
+            from
+        } else {
+            from * (1.0 - self.share) + values[self.to as usize] * self.share
+        }
+    }
+}
+
+/// A half-space that is cut away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cut {
+    /// A point of the plane [m].
+    pub point: Vec3,
+    /// Towards what is cut away; of any length.
+    pub normal: Vec3,
+}
+
+/// A surface made of a mesh, with the points and cells that it came from.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshSurface {
+    pub surface: Surface,
+    /// Where on the mesh each point is.
+    pub points: Vec<Between>,
+    /// Cell (for a mesh without cells: facet) that each triangle bounds.
+    pub cells: Vec<u32>,
+}
+
+impl MeshSurface {
+    /// The boundary of a mesh, or its facets if it has no cells; quadrilaterals keep their four edges.
+    pub fn of(mesh: &Mesh) -> Self {
+        let mut of = Self::default();
+        let mut numbers = HashMap::new();
+        if mesh.cell_count() == 0 {
+            for (facet, view) in mesh.facets().enumerate() {
+                of.push(mesh, view.nodes, facet as u32, &mut numbers);
+            }
+            return of;
+        }
+        let boundary = mesh.faces().boundary;
+        let mut faces = boundary.iter().peekable();
+        for (cell, view) in mesh.cells().enumerate() {
+            while let Some(face) = faces.next_if(|face| face.cell as usize == cell) {
+                let nodes: Vec<u32> = view.face_nodes(face.face.into()).1.collect();
+                of.push(mesh, &nodes, face.cell, &mut numbers);
+            }
+        }
+        of
+    }
+
+    /// All faces of all cells, each cell with points of its own, to be moved apart by [`MeshSurface::explode`].
+    pub fn of_cells(mesh: &Mesh) -> Self {
+        let mut of = Self::default();
+        for (cell, view) in mesh.cells().enumerate() {
+            let mut numbers = HashMap::new();
+            for face in 0..view.kind.faces().len() {
+                let nodes: Vec<u32> = view.face_nodes(face).1.collect();
+                of.push(mesh, &nodes, cell as u32, &mut numbers);
+            }
+        }
+        of
+    }
+
+    /// The boundary of what a cut leaves of a mesh whose points stand at `positions`, the section with it.
+    pub fn cut(mesh: &Mesh, positions: &[Vec3], cut: Cut) -> Self {
+        let normal = cut.normal.try_normalised().unwrap_or(Vec3::Z);
+        let heights: Vec<f64> = positions.iter().map(|x| (*x - cut.point).dot(normal)).collect();
+        let whole = Self::of(mesh);
+        let mut clipper = Clipper { heights: &heights, left: Self::default(), numbers: HashMap::new() };
+        for (triangle, corners) in whole.surface.triangles.iter().enumerate() {
+            let corners = corners.map(|corner| whole.points[corner as usize].from);
+            clipper.clip(corners, whole.surface.edges[triangle], whole.cells[triangle]);
+        }
+        for (cell, view) in mesh.cells().enumerate() {
+            let above = |node: &u32| heights[*node as usize] > 0.0;
+            if view.nodes.iter().any(above) && !view.nodes.iter().all(above) {
+                clipper.section(positions, normal, &view, cell as u32);
+            }
+        }
+        let mut left = clipper.left;
+        left.move_to(positions);
+        left
+    }
+
+    /// Moves the cells of [`MeshSurface::of_cells`] apart: each away from the middle of all by `amount` times its
+    /// distance.
+    pub fn explode(&mut self, amount: f64) {
+        let mut middles: HashMap<u32, (Vec3, f64)> = HashMap::new();
+        let mut cell_of = vec![0; self.surface.points.len()];
+        for (corners, cell) in self.surface.triangles.iter().zip(&self.cells) {
+            corners.iter().for_each(|corner| cell_of[*corner as usize] = *cell);
+        }
+        for (point, cell) in self.surface.points.iter().zip(&cell_of) {
+            let (sum, count) = middles.entry(*cell).or_insert((Vec3::ZERO, 0.0));
+            (*sum, *count) = (*sum + *point, *count + 1.0);
+        }
+        let all: Vec3 = self.surface.points.iter().copied().sum::<Vec3>()
+            * (1.0 / self.surface.points.len().max(1) as f64);
+        for (point, cell) in self.surface.points.iter_mut().zip(&cell_of) {
+            let (sum, count) = middles[cell];
+            *point += (sum * (1.0 / count) - all) * amount;
+        }
+    }
+
+    /// A polygon as triangles around its first corner.
+    fn push(&mut self, mesh: &Mesh, nodes: &[u32], cell: u32, numbers: &mut HashMap<u32, u32>) {
+        let corners: Vec<u32> = nodes
+            .iter()
+            .map(|node| {
+                *numbers.entry(*node).or_insert_with(|| {
+                    self.points.push(Between::at(*node));
+                    self.surface.points.push(mesh.points[*node as usize]);
+                    self.points.len() as u32 - 1
+                })
+            })
+            .collect();
+        for k in 1..corners.len().saturating_sub(1) {
+            self.surface.triangles.push([corners[0], corners[k], corners[k + 1]]);
+            self.surface.edges.push([k == 1, true, k + 2 == corners.len()]);
+            self.cells.push(cell);
+        }
+    }
+
+    /// Moves the points to positions of all points of the mesh [m].
+    pub fn move_to(&mut self, positions: &[Vec3]) {
+        for (point, source) in self.surface.points.iter_mut().zip(&self.points) {
+            *point = source.of(positions);
+        }
+    }
+
+    /// Paints by a value for each point of the mesh.
+    pub fn paint_points(&mut self, values: &[f64]) {
+        self.surface.paint = Paint::PointScalar(self.points.iter().map(|point| point.of(values)).collect());
+    }
+
+    /// Paints by a value for each cell of the mesh.
+    pub fn paint_cells(&mut self, values: &[f64]) {
+        self.surface.paint =
+            Paint::TriangleScalar(self.cells.iter().map(|cell| values[*cell as usize]).collect());
+    }
+}
+
+/// Makes what lies at or below height zero.
+struct Clipper<'a> {
+    /// Of each point of the mesh over the plane [m].
+    heights: &'a [f64],
+    left: MeshSurface,
+    /// Points made so far, by the two points of the mesh they lie between.
+    numbers: HashMap<[u32; 2], u32>,
+}
+
+impl Clipper<'_> {
+    fn is_left(&self, point: u32) -> bool {
+        self.heights[point as usize] <= 0.0
+    }
+
+    /// A point of the mesh, or where the edge between two of them meets the plane.
+    fn point(&mut self, from: u32, to: u32) -> u32 {
+        let key = [from.min(to), from.max(to)];
+        *self.numbers.entry(key).or_insert_with(|| {
+            let [from, to] = key;
+            let (a, b) = (self.heights[from as usize], self.heights[to as usize]);
+            let share = if from == to { 0.0 } else { a / (a - b) };
+            self.left.points.push(Between { from, to, share });
+            // positions follow by `move_to`
+            self.left.surface.points.push(Vec3::ZERO);
+            self.left.points.len() as u32 - 1
+        })
+    }
+
+    /// What of a triangle lies below, its edges kept and none drawn along the plane.
+    fn clip(&mut self, corners: [u32; 3], edges: [bool; 3], cell: u32) {
+        let (mut polygon, mut drawn) = (Vec::with_capacity(4), Vec::with_capacity(4));
+        for k in 0..3 {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            match (self.is_left(a), self.is_left(b)) {
+                (true, true) => {
+                    polygon.push(self.point(a, a));
+                    drawn.push(edges[k]);
+                }
+                (true, false) => {
+                    polygon.extend([self.point(a, a), self.point(a, b)]);
+                    drawn.extend([edges[k], true]);
+                }
+                (false, true) => {
+                    polygon.push(self.point(a, b));
+                    drawn.push(edges[k]);
+                }
+                (false, false) => {}
+            }
+        }
+        self.push(&polygon, &drawn, cell);
+    }
+
+    /// The section of a cell, as those of the tetrahedra between its first node and the faces opposite to it.
+    fn section(&mut self, positions: &[Vec3], normal: Vec3, cell: &Cell<'_>, number: u32) {
+        let apex = cell.nodes[0];
+        for face in 0..cell.kind.faces().len() {
+            let nodes: Vec<u32> = cell.face_nodes(face).1.collect();
+            if nodes.contains(&apex) {
+                continue;
+            }
+            for pair in nodes.windows(2).skip(1) {
+                self.section_tetrahedron(positions, normal, [apex, nodes[0], pair[0], pair[1]], number);
+            }
+        }
+    }
+
+    fn section_tetrahedron(&mut self, positions: &[Vec3], normal: Vec3, nodes: [u32; 4], cell: u32) {
+        let (below, above): (Vec<u32>, Vec<u32>) = nodes.iter().partition(|node| self.is_left(**node));
+        // around: from each point below to each above, so that neighbours share a point of the tetrahedron
+        let around: Vec<[u32; 2]> = match (below.as_slice(), above.as_slice()) {
+            ([a], [x, y, z]) => vec![[*a, *x], [*a, *y], [*a, *z]],
+            ([a, b, c], [x]) => vec![[*a, *x], [*b, *x], [*c, *x]],
+            ([a, b], [x, y]) => vec![[*a, *x], [*b, *x], [*b, *y], [*a, *y]],
+            _ => return,
+        };
+        let mut polygon: Vec<u32> = around.iter().map(|[from, to]| self.point(*from, *to)).collect();
+        let corners: Vec<Vec3> =
+            polygon.iter().map(|point| self.left.points[*point as usize].of(positions)).collect();
+        // outward is towards what was cut away
+        if (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(normal) < 0.0 {
+            polygon.reverse();
+        }
+        let hidden = vec![false; polygon.len()];
+        self.push(&polygon, &hidden, cell);
+    }
+
+    /// A convex polygon as triangles around its first corner; `drawn`: its edges from each corner to the next.
+    fn push(&mut self, polygon: &[u32], drawn: &[bool], cell: u32) {
+        for k in 1..polygon.len().saturating_sub(1) {
+            let last = k + 2 == polygon.len();
+            self.left.surface.triangles.push([polygon[0], polygon[k], polygon[k + 1]]);
+            self.left.surface.edges.push([k == 1 && drawn[0], drawn[k], last && drawn[k + 1]]);
+            self.left.cells.push(cell);
+        }
+    }
+}

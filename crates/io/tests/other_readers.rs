@@ -1,0 +1,93 @@
+//! What we write is read by others: Python's `meshio` and `vtk`, the readers of ParaView.
+//!
+//! Runs where `SOUPLE_PYTHON` names a Python that has them; elsewhere says so and passes.
+
+use std::path::Path;
+use std::process::Command;
+
+use souple_io::{FORMATS, Field, Output, Series, write_dataset_as};
+use souple_math::Vec3;
+use souple_mesh::{ElementKind, Mesh};
+
+fn tetrahedra() -> Mesh {
+    let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
+    let mut mesh = Mesh { points: points.map(Vec3::from_array).to_vec(), ..Mesh::default() };
+    mesh.push_cell(ElementKind::Tet4, &[0, 1, 2, 3]);
+    mesh.push_cell(ElementKind::Tet4, &[1, 2, 3, 4]);
+    mesh
+}
+
+/// Reads every file it is given and prints `name points cells`.
+const SCRIPT: &str = r#"
+import sys
+import meshio
+import vtk
+
+VTK_READERS = {
+    "vtu": vtk.vtkXMLUnstructuredGridReader, "vtk": vtk.vtkUnstructuredGridReader, "ply": vtk.vtkPLYReader,
+    "obj": vtk.vtkOBJReader, "stl": vtk.vtkSTLReader, "glb": vtk.vtkGLTFReader,
+}
+for path in sys.argv[1:]:
+    extension = path.rsplit(".", 1)[1]
+    if extension in VTK_READERS:
+        reader = VTK_READERS[extension]()
+        reader.SetFileName(path)
+        reader.Update()
+        data = reader.GetOutput()
+        if extension == "glb":
+            while data.IsA("vtkMultiBlockDataSet"):
+                data = data.GetBlock(0)
+        print(path, data.GetNumberOfPoints(), data.GetNumberOfCells())
+    else:
+        mesh = meshio.read(path)
+        print(path, len(mesh.points), sum(len(block.data) for block in mesh.cells))
+"#;
+
+#[test]
+fn other_programs_read_what_we_write() {
+    let Some(python) = std::env::var_os("SOUPLE_PYTHON") else {
+        println!("SOUPLE_PYTHON is not set: not checked");
+        return;
+    };
+    let folder = std::env::temp_dir().join(format!("souple-io-others-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder of temporary files");
+    let mesh = tetrahedra();
+    let fields = [Field::new("speed", 1, vec![0.0, 1.0, 2.0, 3.0, 4.0])];
+    let mut files = Vec::new();
+    for entry in FORMATS.entries {
+        // TetGen and Gmsh have several names of one extension each
+        let extension = match entry.name {
+            "tetgen" => "ele",
+            "gmsh_2" | "gmsh_binary" => "msh",
+            "ply_text" => "ply",
+            "stl_text" => "stl",
+            _ => entry.build.extensions[0],
+        };
+        let path = folder.join(format!("{}.{extension}", entry.name));
+        let fields: &[Field] = if entry.name.starts_with("gmsh") { &[] } else { &fields };
+        let output = Output { point_fields: fields, ..Output::new(&mesh) };
+        write_dataset_as(entry.name, &path, &output).expect("the file is written");
+        // the boundary of two tetrahedra that share a face: six triangles of five points
+        let cells = if entry.build.holds.is_surface() { 6 } else { 2 };
+        files.push((path, cells));
+    }
+    let mut series = Series::new(&folder, "series");
+    series.push(0.0, &Output::new(&mesh)).expect("a frame");
+    files.push((folder.join("series_0000.vtu"), 2));
+    let output = Command::new(python).arg("-c").arg(SCRIPT).args(files.iter().map(|file| &file.0)).output();
+    let output = output.expect("the Python of SOUPLE_PYTHON runs");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
+    for (path, cells) in &files {
+        let line = text.lines().find(|line| line.starts_with(&path.display().to_string()));
+        let numbers: Vec<usize> =
+            line.unwrap_or_default().split_whitespace().skip(1).filter_map(|n| n.parse().ok()).collect();
+        assert_eq!(numbers, [5, *cells], "{}\n{text}", name(path));
+    }
+    // what cannot be removed from a folder of temporary files does no harm
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,261 @@
+//! Hexahedra inside, tetrahedra at the surface, pyramids between.
+//!
+//! Cubes of the lattice with all corners inside or on the surface become hexahedra. On each of their faces towards a
+//! cube that does not stands a pyramid with its apex in that cube's centre, whose sides are those of the lattice's
+//! tetrahedra: the mesh is conforming. A pyramid with its apex outside is cut off like the tetrahedra beside it, and
+//! what is left is cut into cells around its middle. Cubes of which a cell would be too flat, because corners have
+//! moved onto the surface, are filled with tetrahedra after all.
+
+use std::collections::HashMap;
+
+use souple_math::Vec3;
+
+use super::lattice::{Background, Lattice, Place, Side};
+use super::stencil::Stencils;
+use super::warp::{self, Warped};
+use crate::implicit::Shape;
+use crate::quality::scaled_jacobian;
+use crate::{CellBlock, ElementKind, Mesh};
+
+/// Least scaled Jacobian of hexahedra and pyramids, and of the tetrahedra in cut-off pyramids.
+const LEAST_JACOBIAN: f64 = 0.15;
+const LEAST_JACOBIAN_CUT: f64 = 0.04;
+
+/// Corners of a cube in the order of a hexahedron.
+const CORNERS: [[u32; 3]; 8] =
+    [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+
+/// Faces of a hexahedron, around the outward normal, with the step to the cube across.
+const FACES: [([usize; 4], [i64; 3]); 6] = [
+    ([0, 3, 2, 1], [0, 0, -1]),
+    ([4, 5, 6, 7], [0, 0, 1]),
+    ([0, 1, 5, 4], [0, -1, 0]),
+    ([2, 3, 7, 6], [0, 1, 0]),
+    ([1, 2, 6, 5], [1, 0, 0]),
+    ([0, 4, 7, 3], [-1, 0, 0]),
+];
+
+/// Cells between a face of a hexahedron and the tetrahedra beyond it.
+#[derive(Default)]
+struct Transition {
+    pyramids: Vec<[u32; 5]>,
+    tets: Vec<[u32; 4]>,
+    /// A new point in the middle, which has the number that follows all others.
+    middle: Option<Vec3>,
+}
+
+struct Filling<'a> {
+    lattice: &'a Lattice,
+    background: &'a Background,
+    warped: &'a Warped,
+    stencils: Stencils<'a>,
+    numbers: HashMap<Place, u32>,
+    is_hex: Vec<bool>,
+    /// Points beyond those of lattice and cuts.
+    middles: Vec<Vec3>,
+}
+
+/// The mesh of a shape on a uniform lattice.
+pub(super) fn hex_dominant(lattice: &Lattice, shape: &dyn Shape) -> Mesh {
+    let mut background = lattice.background();
+    let warped = warp::warp(&mut background, shape);
+    let numbers =
+        background.places.iter().enumerate().map(|(number, place)| (*place, number as u32)).collect();
+    let mut filling = Filling {
+        lattice,
+        background: &background,
+        warped: &warped,
+        stencils: Stencils::new(&background, &warped),
+        numbers,
+        is_hex: vec![false; lattice.counts.iter().product()],
+        middles: Vec::new(),
+    };
+    filling.choose();
+    filling.mesh()
+}
+
+impl Filling<'_> {
+    fn corners(&self, cube: [usize; 3]) -> Option<[u32; 8]> {
+        let mut corners = [0; 8];
+        for (slot, corner) in corners.iter_mut().zip(CORNERS) {
+            let place = [0, 1, 2].map(|axis| 2 * (cube[axis] as u32 + corner[axis]));
+            *slot = *self.numbers.get(&place)?;
+        }
+        Some(corners)
+    }
+
+    fn centre(&self, cube: [usize; 3]) -> Option<u32> {
+        self.numbers.get(&cube.map(|index| 2 * index as u32 + 1)).copied()
+    }
+
+    fn side(&self, node: u32) -> Side {
+        self.warped.sides[node as usize]
+    }
+
+    fn position(&self, node: u32) -> Vec3 {
+        let known = self.background.points.len() + self.warped.cuts.len();
+        match (node as usize).checked_sub(known) {
+            Some(middle) => self.middles[middle],
+            None => self.stencils.position(node),
+        }
+    }
+
+    fn jacobian(&self, kind: ElementKind, nodes: &[u32]) -> f64 {
+        let positions: Vec<Vec3> = nodes.iter().map(|node| self.position(*node)).collect();
+        scaled_jacobian(kind, &positions)
+    }
+
+    /// Decides which cubes are hexahedra: all that can be, less those with a bad cell on one of their faces, until
+    /// there are none. Deciding against a cube may put a pyramid on its neighbours, so it is looked at these again.
+    fn choose(&mut self) {
+        for cube in self.lattice.cubes() {
+            let (Some(corners), Some(centre)) = (self.corners(cube), self.centre(cube)) else { continue };
+            let is_inside = corners.iter().all(|node| self.side(*node) != Side::Outside)
+                && self.side(centre) == Side::Inside;
+            let index = self.lattice.cube(cube);
+            self.is_hex[index] = is_inside && self.jacobian(ElementKind::Hex8, &corners) > LEAST_JACOBIAN;
+        }
+        loop {
+            let bad: Vec<usize> = self
+                .hexes()
+                .filter(|(cube, corners)| {
+                    self.open_faces(*cube, *corners).any(|(face, apex)| !self.is_good(face, apex))
+                })
+                .map(|(cube, _)| self.lattice.cube(cube))
+                .collect();
+            if bad.is_empty() {
+                return;
+            }
+            bad.into_iter().for_each(|cube| self.is_hex[cube] = false);
+        }
+    }
+
+    fn hexes(&self) -> impl Iterator<Item = ([usize; 3], [u32; 8])> {
+        self.lattice
+            .cubes()
+            .filter(|cube| self.is_hex[self.lattice.cube(*cube)])
+            .filter_map(|cube| Some((cube, self.corners(cube)?)))
+    }
+
+    /// Faces of a hexahedron towards cubes that are none, with the centres of these.
+    fn open_faces(
+        &self,
+        cube: [usize; 3],
+        corners: [u32; 8],
+    ) -> impl Iterator<Item = ([u32; 4], Option<u32>)> {
+        FACES.into_iter().filter_map(move |(face, step)| {
+            let across = self.lattice.beside(cube, step)?;
+            (!self.is_hex[self.lattice.cube(across)])
+                .then(|| (face.map(|corner| corners[corner]), self.centre(across)))
+        })
+    }
+
+    fn is_good(&self, face: [u32; 4], apex: Option<u32>) -> bool {
+        let Some(apex) = apex else { return false };
+        let Transition { pyramids, tets, middle } = self.transition(face, apex);
+        let next = (self.background.points.len() + self.warped.cuts.len() + self.middles.len()) as u32;
+        let position = |node: &u32| match middle {
+            Some(middle) if *node == next => middle,
+            _ => self.position(*node),
+        };
+        let jacobian = |kind: ElementKind, nodes: &[u32]| {
+            scaled_jacobian(kind, &nodes.iter().map(position).collect::<Vec<_>>())
+        };
+        let least = if middle.is_some() { LEAST_JACOBIAN_CUT } else { LEAST_JACOBIAN };
+        pyramids.iter().all(|nodes| jacobian(ElementKind::Pyramid5, nodes) > least)
+            && tets.iter().all(|nodes| jacobian(ElementKind::Tet4, nodes) > least)
+    }
+
+    /// The cells on a face, whose normal points to the apex.
+    fn transition(&self, face: [u32; 4], apex: u32) -> Transition {
+        let mut transition = Transition::default();
+        let inside = face.iter().filter(|node| self.side(**node) == Side::Inside).count();
+        if self.side(apex) != Side::Outside {
+            if inside > 0 || self.side(apex) == Side::Inside {
+                transition.pyramids.push([face[0], face[1], face[2], face[3], apex]);
+            }
+            return transition;
+        }
+        // edges from corners inside to the apex are cut; corners on the surface are their own cuts
+        let top = face.map(|node| match self.side(node) {
+            Side::Inside => self.stencils.cut(node, apex),
+            _ => node,
+        });
+        match inside {
+            0 => {}
+            1 => {
+                let lifted =
+                    top.iter().zip(&face).find(|(cut, node)| cut != node).map_or(apex, |(cut, _)| *cut);
+                transition.pyramids.push([face[0], face[1], face[2], face[3], lifted]);
+            }
+            _ => {
+                let mut nodes: Vec<u32> = face.iter().chain(&top).copied().collect();
+                nodes.sort_unstable();
+                nodes.dedup();
+                let sum: Vec3 = nodes.iter().map(|node| self.position(*node)).sum();
+                transition.middle = Some(sum / nodes.len() as f64);
+                let known = self.background.points.len() + self.warped.cuts.len() + self.middles.len();
+                let middle = known as u32;
+                transition.pyramids.push([face[0], face[1], face[2], face[3], middle]);
+                for triangle in self.sides(face, top, apex).into_iter().chain(top_triangles(top)) {
+                    let [a, b, c] = triangle;
+                    transition.tets.push([a, c, b, middle]);
+                }
+            }
+        }
+        transition
+    }
+
+    /// Triangles of the sides of a cut-off pyramid, outward.
+    fn sides(&self, face: [u32; 4], top: [u32; 4], apex: u32) -> Vec<[u32; 3]> {
+        let mut triangles = Vec::with_capacity(8);
+        for i in 0..4 {
+            let j = (i + 1) % 4;
+            let (a, b, above_a, above_b) = (face[i], face[j], top[i], top[j]);
+            match (a != above_a, b != above_b) {
+                (true, true) if self.stencils.diagonal_starts_at_first(a, b, apex) => {
+                    triangles.extend([[a, b, above_b], [a, above_b, above_a]]);
+                }
+                (true, true) => triangles.extend([[a, b, above_a], [b, above_b, above_a]]),
+                (true, false) => triangles.push([a, b, above_a]),
+                (false, true) => triangles.push([a, b, above_b]),
+                (false, false) => {}
+            }
+        }
+        triangles
+    }
+
+    fn mesh(mut self) -> Mesh {
+        let mut hexes = CellBlock::new(ElementKind::Hex8);
+        let mut pyramids = CellBlock::new(ElementKind::Pyramid5);
+        let mut transitions = CellBlock::new(ElementKind::Tet4);
+        for (cube, corners) in self.hexes().collect::<Vec<_>>() {
+            hexes.nodes.extend(corners);
+            let faces: Vec<_> = self.open_faces(cube, corners).collect();
+            for (face, apex) in faces.into_iter().filter_map(|(face, apex)| Some((face, apex?))) {
+                let transition = self.transition(face, apex);
+                pyramids.nodes.extend(transition.pyramids.as_flattened());
+                transitions.nodes.extend(transition.tets.as_flattened());
+                self.middles.extend(transition.middle);
+            }
+        }
+        // tetrahedra with their centres in cubes that are no hexahedra
+        let is_hex_centre = |node: &u32| {
+            let place = self.background.places[*node as usize];
+            !place[0].is_multiple_of(2) && self.is_hex[self.lattice.cube(place.map(|c| (c / 2) as usize))]
+        };
+        let left = self.background.tets.iter().filter(|tet| !tet.iter().any(is_hex_centre));
+        left.for_each(|tet| self.stencils.fill(*tet));
+        let mut tets = CellBlock { kind: ElementKind::Tet4, nodes: self.stencils.tets.into_flattened() };
+        tets.nodes.extend(transitions.nodes);
+        let cuts = self.warped.cuts.iter().map(|cut| cut.position);
+        let points = self.background.points.iter().copied().chain(cuts).chain(self.middles).collect();
+        let blocks = [hexes, pyramids, tets].into_iter().filter(|block| !block.is_empty()).collect();
+        Mesh { points, blocks, ..Mesh::default() }
+    }
+}
+
+/// The end of a cut-off pyramid, outward.
+fn top_triangles([a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}

@@ -1,0 +1,234 @@
+use souple_table::{Value, Values};
+
+use super::*;
+use crate::implicit::{self, Solid};
+
+fn ball(radius: f64) -> Solid {
+    Solid::sphere(Vec3::new(0.01, -0.02, 0.03), radius)
+}
+
+fn angles(mesh: &Mesh) -> [f64; 2] {
+    let quality = mesh.quality();
+    let least = quality.iter().map(|cell| cell.smallest_dihedral).fold(f64::INFINITY, f64::min);
+    let greatest = quality.iter().map(|cell| cell.largest_dihedral).fold(0.0, f64::max);
+    [least, greatest].map(f64::to_degrees)
+}
+
+/// Conforming, nothing inverted, nothing overlapping: cells add up to what the boundary encloses.
+fn assert_sound(mesh: &mut Mesh) {
+    mesh.faces().conforming().unwrap();
+    let repairs = mesh.validate().unwrap();
+    assert!(repairs.rewound_cells.is_empty() && repairs.loose_points.is_empty());
+    let boundary = mesh.boundary_surface();
+    boundary.check_closed().unwrap();
+    let (inside, enclosed) = (mesh.volume(), boundary.enclosed_volume());
+    // rounding of a sum over all cells; quadrilaterals on the boundary are curved, and cut in two here
+    let curved = if mesh.count_of(ElementKind::Hex8) > 0 { 2e-4 } else { 0.0 };
+    let bound = f64::EPSILON * mesh.cell_count() as f64 + curved;
+    assert!((inside - enclosed).abs() < bound * inside, "{inside} {enclosed}");
+}
+
+/// The proven bounds hold for many shapes that lie to the lattice in every way.
+#[test]
+fn angles_of_uniform_fillings() {
+    let mut worst = [180.0_f64, 0.0];
+    for shift in 0..12 {
+        let t = f64::from(shift) * 0.083;
+        let turn = Vec3::new(1.0 + t, 2.3 * t, -0.7);
+        let long = Solid::turned_ellipsoid(Vec3::new(t, t * t, 0.3), Vec3::new(0.5 + t, 0.41, 0.3), turn);
+        let ring = Solid::Torus {
+            centre: Vec3::new(0.3 * t, 0.2, t),
+            axis: turn.try_normalised().unwrap(),
+            ring: 0.6,
+            tube: 0.23 + 0.1 * t,
+        };
+        for shape in [long, ring] {
+            let mut mesh = fill(&shape, &Size::uniform(0.17), Cells::Tetrahedra, &[]).unwrap();
+            assert_sound(&mut mesh);
+            let [least, greatest] = angles(&mesh);
+            worst = [worst[0].min(least), worst[1].max(greatest)];
+        }
+    }
+    assert!(worst[0] > 10.7 && worst[1] < 164.8, "{worst:?}");
+}
+
+/// Random signs: the surface cuts edges anywhere, which no smooth shape does.
+#[test]
+fn angles_of_wild_fillings() {
+    struct Noise;
+    impl Shape for Noise {
+        fn value(&self, p: Vec3) -> f64 {
+            let wave = |k: f64, a: f64| {
+                libm::sin(k * p.x + a) * libm::sin(k * 1.1 * p.y + 2.0 * a) * libm::sin(k * 0.9 * p.z)
+            };
+            let out = p.length() - 2.2;
+            out.max(wave(7.3, 0.4) + 0.8 * wave(11.9, 1.7) + 0.6 * wave(23.0, 0.1))
+        }
+        fn bounds(&self) -> crate::BoundingBox {
+            crate::BoundingBox::of([Vec3::ZERO]).grown(2.3)
+        }
+    }
+    let mut mesh = fill(&Noise, &Size::uniform(0.2), Cells::Tetrahedra, &[]).unwrap();
+    assert_sound(&mut mesh);
+    let [least, greatest] = angles(&mesh);
+    assert!(least > 10.7 && greatest < 164.8, "{least} {greatest}");
+}
+
+/// Volume and surface of a ball converge with the square of the size.
+#[test]
+fn a_ball_converges() {
+    let exact = 4.0 / 3.0 * std::f64::consts::PI;
+    let error = |size: f64| {
+        let mesh = fill(&ball(1.0), &Size::uniform(size), Cells::Tetrahedra, &[]).unwrap();
+        (mesh.volume() / exact - 1.0).abs()
+    };
+    let (coarse, fine) = (error(0.3), error(0.15));
+    let rate = (coarse / fine).log2();
+    assert!((1.7..2.5).contains(&rate), "{coarse} {fine}: {rate}");
+}
+
+/// Graded fillings are as well shaped as uniform ones, with fewer cells.
+#[test]
+fn graded_fillings() {
+    let uniform = fill(&ball(1.0), &Size::uniform(0.07), Cells::Tetrahedra, &[]).unwrap();
+    let graded = Size { surface: 0.07, interior: Interior::Graded { growth: 0.6, largest: 0.6 } };
+    let fine = Vec3::new(0.3, 0.0, 0.0);
+    let field = Interior::Field { size: Box::new(move |x| 0.05 + 0.7 * (x - fine).length()), largest: 0.6 };
+    for size in [graded, Size { surface: 0.07, interior: field }] {
+        let mut mesh = fill(&ball(1.0), &size, Cells::Tetrahedra, &[]).unwrap();
+        assert_sound(&mut mesh);
+        // four cubes in fourteen from the surface to the centre stay small: two thirds of the volume
+        assert!(mesh.cell_count() < uniform.cell_count() * 4 / 5, "{}", mesh.cell_count());
+        let [least, greatest] = angles(&mesh);
+        assert!(least > 10.7 && greatest < 164.8, "{least} {greatest}");
+        // what does not touch the surface was not moved: halves, quarters, half pyramids
+        let on_surface = |node: &u32| mesh.groups["surface"].points.binary_search(node).is_ok();
+        let inner = mesh.cells().zip(mesh.quality()).filter(|(cell, _)| !cell.nodes.iter().any(on_surface));
+        for (_, cell) in inner {
+            assert!(cell.smallest_dihedral.to_degrees() > 45.0 - 1e-9, "{cell:?}");
+            assert!(cell.largest_dihedral.to_degrees() < 120.0 + 1e-9, "{cell:?}");
+        }
+        // the surface is that of the uniform filling
+        assert!(
+            (mesh.volume() - uniform.volume()).abs()
+                < f64::EPSILON * uniform.cell_count() as f64 * uniform.volume()
+        );
+    }
+}
+
+/// Every shape of the table is filled in one piece, with the volume of a finer filling, and its parts have cells.
+#[test]
+fn every_named_shape() {
+    for entry in implicit::SHAPES.entries.iter().filter(|entry| entry.name != "formula") {
+        let body = implicit::body(entry.name, Values::new()).unwrap();
+        let extent = body.shape.bounds().size().largest_component();
+        let parts: Vec<Part> =
+            body.parts.iter().map(|(name, shape)| Part { name, shape: &**shape }).collect();
+        let make =
+            |n: f64| fill(&*body.shape, &Size::uniform(extent / n), Cells::Tetrahedra, &parts).unwrap();
+        let (mut mesh, fine) = (make(20.0), make(30.0));
+        assert_sound(&mut mesh);
+        assert_eq!(mesh.components().1, 1, "{}", entry.name);
+        let difference = (mesh.volume() / fine.volume() - 1.0).abs();
+        assert!(difference < 0.03, "{}: {difference}", entry.name);
+        for (name, _) in &body.parts {
+            assert!(!mesh.groups[*name].cells.is_empty(), "{} has an empty {name}", entry.name);
+        }
+    }
+}
+
+/// A formula is a shape; what cannot be filled is refused with the place.
+#[test]
+fn formulas_and_refusals() {
+    let formula = |text: &'static str| {
+        let corner = |c: f64| Value::Vector([c; 3]);
+        let values = Values::new()
+            .with("formula", Value::Text(text))
+            .with("low", corner(-0.5))
+            .with("high", corner(0.5));
+        implicit::body("formula", values).map(|body| body.shape)
+    };
+    let size = Size::uniform(0.1);
+    let fill = |text: &'static str| fill(&*formula(text).unwrap(), &size, Cells::Tetrahedra, &[]);
+    let mesh = fill("x^2 + y^2 + 4*z^2 - 0.16").unwrap();
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * 0.4 * 0.4 * 0.2;
+    // chords of length s under curvature k sink by k s²/8, here over a third of the flat semi-axis
+    assert!((mesh.volume() / exact - 1.0).abs() < 0.05, "{}", mesh.volume() / exact);
+    assert!(matches!(fill("x - 10"), Err(FillError::BeyondBounds { .. })));
+    assert!(matches!(fill("x^2 + 1"), Err(FillError::Nothing { .. })));
+    assert!(matches!(fill("sqrt(x)"), Err(FillError::NotANumber { .. })));
+    assert!(formula("x + w").is_err());
+    for surface in [0.0, -1.0, f64::NAN, 1e-9] {
+        let error = super::fill(&ball(1.0), &Size::uniform(surface), Cells::Tetrahedra, &[]).unwrap_err();
+        assert!(matches!(error, FillError::Size { .. } | FillError::TooManyPoints { .. }), "{error}");
+    }
+}
+
+/// Hexahedra inside, tetrahedra at the surface, pyramids between: conforming, with positive Jacobians, and most of
+/// the volume in hexahedra.
+#[test]
+fn hex_dominant_fillings() {
+    for (name, count) in [("ellipsoid", 24.0), ("liver", 30.0), ("bunny", 24.0), ("torus", 30.0)] {
+        let body = implicit::body(name, Values::new()).unwrap();
+        let extent = body.shape.bounds().size().largest_component();
+        let mut mesh = fill(&*body.shape, &Size::uniform(extent / count), Cells::HexDominant, &[]).unwrap();
+        assert_sound(&mut mesh);
+        let volumes = mesh.cell_volumes();
+        let in_hexes: f64 =
+            mesh.cells().zip(&volumes).filter(|(c, _)| c.kind == ElementKind::Hex8).map(|(_, v)| v).sum();
+        let share = in_hexes / mesh.volume();
+        let worst = mesh.quality().iter().map(|cell| cell.scaled_jacobian).fold(1.0, f64::min);
+        let tets = fill(&*body.shape, &Size::uniform(extent / count), Cells::Tetrahedra, &[]).unwrap();
+        assert!(worst > 0.0, "{name}: {worst}");
+        assert!(share > 0.5, "{name}: {share} of {} cells", mesh.cell_count());
+        // another triangulation of nearly the same surface
+        let difference = (mesh.volume() / tets.volume() - 1.0).abs();
+        assert!(difference < 0.01, "{name}: {difference}");
+    }
+}
+
+/// Any number of threads gives the same points in the same order.
+#[test]
+fn threads_change_nothing() {
+    let body = implicit::body("liver", Values::new()).unwrap();
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fill(&*body.shape, &Size::uniform(0.012), Cells::Tetrahedra, &[]).unwrap())
+    };
+    assert!(with(1) == with(3));
+}
+
+/// A surface is filled like the shape that it came from; a hole too large to be closed changes little and is said.
+#[test]
+fn surfaces_are_filled() {
+    let values = Values::new().with("radius", Value::Number(1.0)).with("cells", Value::Integer(12));
+    let mut surface = crate::generate("sphere", values).unwrap().boundary_surface();
+    let options =
+        Options::from_values(&Values::new().with("size", Value::Number(0.2)).completed(PARAMETERS).unwrap())
+            .unwrap();
+    let whole = fill_surface(&surface, Default::default(), &options).unwrap();
+    assert!(whole.notes.is_empty());
+    assert!((whole.mesh.volume() / surface.enclosed_volume() - 1.0).abs() < 0.03);
+    let points = surface.points.clone();
+    surface.triangles.retain(|corners| corners.iter().any(|point| points[*point as usize].z < 0.8));
+    let open = fill_surface(&surface, Default::default(), &options).unwrap();
+    assert!(open.notes.iter().any(|note| note.contains("holes")), "{:?}", open.notes);
+    // the cap of height 0.2 has 2.8 % of the ball's volume
+    assert!((open.mesh.volume() / whole.mesh.volume() - 1.0).abs() < 0.06);
+}
+
+/// A wanted number of cells is met; size and count together, or neither, are refused.
+#[test]
+fn fillings_by_count() {
+    let options = |size: f64, count: i64| {
+        let values = Values::new().with("size", Value::Number(size)).with("count", Value::Integer(count));
+        Options::from_values(&values.completed(PARAMETERS).unwrap())
+    };
+    for count in [1000, 5000] {
+        let mesh = options(0.0, count).unwrap().fill(&ball(0.1), &[]).unwrap();
+        let ratio = mesh.cell_count() as f64 / count as f64;
+        // a ball of few cubes across gains a whole shell of them at once
+        assert!((ratio - 1.0).abs() < 0.25, "{ratio}");
+    }
+    assert!(options(0.1, 10).is_err() && options(0.0, 0).is_err());
+}

@@ -1,0 +1,143 @@
+//! Everything that is wrong with a surface, counted, with a first place for each.
+
+use std::collections::HashMap;
+
+use super::crossing::crossings;
+use super::{is_flat, joined_points};
+use crate::TriangleSurface;
+
+/// What is wrong with a surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Diagnosis {
+    /// Points at the place of another, exactly.
+    pub duplicate_points: usize,
+    /// Triangles without area.
+    pub flat_triangles: Vec<u32>,
+    /// Triangles with the corners of another.
+    pub doubled_triangles: Vec<u32>,
+    /// Edges of one triangle, by their points.
+    pub open_edges: Vec<[u32; 2]>,
+    /// Edges of three triangles or more.
+    pub crowded_edges: Vec<[u32; 2]>,
+    /// Edges along which two triangles run the same way.
+    pub misoriented_edges: Vec<[u32; 2]>,
+    /// Pairs of triangles that pass through each other.
+    pub crossings: Vec<[u32; 2]>,
+    /// Parts that share no point.
+    pub component_count: usize,
+    /// Whether the enclosed volume is negative.
+    pub is_inside_out: bool,
+}
+
+/// Looks at a whole surface.
+pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
+    let first_at = joined_points(&surface.points, 0.0);
+    let mut diagnosis = Diagnosis {
+        duplicate_points: first_at
+            .iter()
+            .enumerate()
+            .filter(|(point, first)| *point as u32 != **first)
+            .count(),
+        crossings: crossings(surface),
+        component_count: components(surface).1,
+        is_inside_out: surface.enclosed_volume() < 0.0,
+        ..Diagnosis::default()
+    };
+    let mut seen: HashMap<[u32; 3], u32> = HashMap::new();
+    for (triangle, corners) in surface.triangles.iter().enumerate() {
+        if is_flat(*corners, &surface.points) {
+            diagnosis.flat_triangles.push(triangle as u32);
+        }
+        let mut key = *corners;
+        key.sort_unstable();
+        if seen.insert(key, triangle as u32).is_some() {
+            diagnosis.doubled_triangles.push(triangle as u32);
+        }
+    }
+    for (edge, forward, backward) in surface.edge_uses() {
+        match (forward, backward) {
+            (1, 1) => {}
+            (1, 0) | (0, 1) => diagnosis.open_edges.push(edge),
+            (2, 0) | (0, 2) => diagnosis.misoriented_edges.push(edge),
+            _ => diagnosis.crowded_edges.push(edge),
+        }
+    }
+    diagnosis
+}
+
+impl Diagnosis {
+    /// Closed, oriented, without crossings: normals alone tell inside from outside.
+    pub fn is_simple(&self) -> bool {
+        self.is_closed() && self.flat_triangles.is_empty() && self.crossings.is_empty()
+    }
+
+    /// Whether every edge has two triangles of opposite direction.
+    pub fn is_closed(&self) -> bool {
+        self.open_edges.is_empty() && self.crowded_edges.is_empty() && self.misoriented_edges.is_empty()
+    }
+
+    /// One line for each kind of fault; empty for a surface in order.
+    pub fn messages(&self) -> Vec<String> {
+        let mut messages = Vec::new();
+        let mut say = |count: usize, what: &str, first: String| {
+            if count > 0 {
+                messages.push(format!("{count} {what}{first}"));
+            }
+        };
+        let edge = |list: &[[u32; 2]]| {
+            list.first().map(|[a, b]| format!(", the first between points {a} and {b}")).unwrap_or_default()
+        };
+        let triangle =
+            |list: &[u32]| list.first().map(|t| format!(", the first is triangles[{t}]")).unwrap_or_default();
+        say(self.duplicate_points, "points lie at the place of another", String::new());
+        say(self.flat_triangles.len(), "triangles have no area", triangle(&self.flat_triangles));
+        say(self.doubled_triangles.len(), "triangles repeat another", triangle(&self.doubled_triangles));
+        say(
+            self.open_edges.len(),
+            "edges have one triangle only: the surface has holes",
+            edge(&self.open_edges),
+        );
+        say(self.crowded_edges.len(), "edges have three triangles or more", edge(&self.crowded_edges));
+        say(
+            self.misoriented_edges.len(),
+            "edges lie between triangles of opposite orientation",
+            edge(&self.misoriented_edges),
+        );
+        let pair =
+            self.crossings.first().map(|[s, t]| format!(", the first are triangles[{s}] and triangles[{t}]"));
+        say(self.crossings.len(), "pairs of triangles pass through each other", pair.unwrap_or_default());
+        if self.component_count > 1 {
+            messages.push(format!("the surface has {} parts that share no point", self.component_count));
+        }
+        if self.is_inside_out {
+            messages.push("the surface is inside out".to_owned());
+        }
+        messages
+    }
+}
+
+/// The part of each triangle, parts numbered by their first triangle, and how many there are; triangles of a part
+/// are joined by shared points.
+pub(super) fn components(surface: &TriangleSurface) -> (Vec<u32>, usize) {
+    let mut parent: Vec<u32> = (0..surface.points.len() as u32).collect();
+    fn root(parent: &mut [u32], mut point: u32) -> u32 {
+        while parent[point as usize] != point {
+            parent[point as usize] = parent[parent[point as usize] as usize];
+            point = parent[point as usize];
+        }
+        point
+    }
+    for [a, b, c] in &surface.triangles {
+        for other in [*b, *c] {
+            let (p, q) = (root(&mut parent, *a), root(&mut parent, other));
+            parent[p.max(q) as usize] = p.min(q);
+        }
+    }
+    let mut number: HashMap<u32, u32> = HashMap::new();
+    let mut parts = Vec::with_capacity(surface.triangles.len());
+    for [a, ..] in &surface.triangles {
+        let next = number.len() as u32;
+        parts.push(*number.entry(root(&mut parent, *a)).or_insert(next));
+    }
+    (parts, number.len())
+}

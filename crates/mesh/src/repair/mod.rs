@@ -1,0 +1,139 @@
+//! Surfaces as found in the wild: what is wrong with them, and what can be mended without guessing.
+//!
+//! [`diagnose`] finds everything at once; [`repair`] welds points, drops triangles that are flat or doubled, turns
+//! triangles until neighbours agree and every outer part faces outward, and closes small holes. Crossings, sheets
+//! and large holes stay: a [`SurfaceShape`](crate::implicit::SurfaceShape) then decides by winding number.
+
+mod crossing;
+mod diagnose;
+mod holes;
+mod orient;
+
+use std::collections::HashMap;
+
+use souple_math::Vec3;
+
+use crate::TriangleSurface;
+
+pub use diagnose::{Diagnosis, diagnose};
+
+/// What [`repair`] may do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RepairLimits {
+    /// Points closer than this are one, relative to the diagonal of the surface's box.
+    pub weld: f64,
+    /// Holes whose box has a diagonal up to this are closed, relative to that of the surface's box.
+    pub hole: f64,
+}
+
+impl Default for RepairLimits {
+    /// Rounding of coordinates written with seven digits; holes of a tenth.
+    fn default() -> Self {
+        Self { weld: 1e-6, hole: 0.1 }
+    }
+}
+
+/// What [`repair`] did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SurfaceRepairs {
+    pub welded_points: usize,
+    pub flat_triangles: usize,
+    pub doubled_triangles: usize,
+    /// Triangles turned so that neighbours agree.
+    pub turned_triangles: usize,
+    /// Parts that were inside out as a whole.
+    pub turned_parts: usize,
+    pub closed_holes: usize,
+}
+
+impl SurfaceRepairs {
+    /// One line for each kind of repair; empty for a surface in order.
+    pub fn messages(&self) -> Vec<String> {
+        let counts = [
+            (self.welded_points, "points were welded to others at the same place"),
+            (self.flat_triangles, "triangles without area were dropped"),
+            (self.doubled_triangles, "triangles that repeat another were dropped"),
+            (self.turned_triangles, "triangles were turned to agree with their neighbours"),
+            (self.turned_parts, "parts were inside out and were turned"),
+            (self.closed_holes, "small holes were closed"),
+        ];
+        counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
+    }
+}
+
+/// The surface mended as far as that is safe, and what was done.
+pub fn repair(surface: &TriangleSurface, limits: RepairLimits) -> (TriangleSurface, SurfaceRepairs) {
+    let mut repairs = SurfaceRepairs::default();
+    let diagonal = surface.bounds().diagonal();
+    let mut mended = weld(surface, limits.weld * diagonal, &mut repairs);
+    orient::agree(&mut mended, &mut repairs);
+    holes::close(&mut mended, limits.hole * diagonal, &mut repairs);
+    orient::face_outward(&mut mended, &mut repairs);
+    (mended, repairs)
+}
+
+/// Joins points, drops triangles that this makes flat or equal to another, drops points of no triangle.
+fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) -> TriangleSurface {
+    let number = joined_points(&surface.points, distance);
+    repairs.welded_points =
+        number.iter().enumerate().filter(|(point, first)| *point as u32 != **first).count();
+    let mut seen: HashMap<[u32; 3], ()> = HashMap::new();
+    let mut triangles = Vec::with_capacity(surface.triangles.len());
+    for corners in &surface.triangles {
+        let corners = corners.map(|point| number[point as usize]);
+        if is_flat(corners, &surface.points) {
+            repairs.flat_triangles += 1;
+            continue;
+        }
+        let mut key = corners;
+        key.sort_unstable();
+        if seen.insert(key, ()).is_some() {
+            repairs.doubled_triangles += 1;
+        } else {
+            triangles.push(corners);
+        }
+    }
+    let mut mended = TriangleSurface::from_mesh(&surface.points, &triangles, Vec::new());
+    mended.mesh_points.clear();
+    mended
+}
+
+/// Whether corners repeat or lie on one line, to rounding.
+fn is_flat(corners: [u32; 3], points: &[Vec3]) -> bool {
+    let [a, b, c] = corners;
+    if a == b || b == c || c == a {
+        return true;
+    }
+    let [a, b, c] = corners.map(|point| points[point as usize]);
+    let longest_sq = (b - a).length_sq().max((c - b).length_sq()).max((a - c).length_sq());
+    (b - a).cross(c - a).length() <= 1e-14 * longest_sq
+}
+
+/// The lowest number of the points within a distance, for each point; chains are not followed.
+fn joined_points(points: &[Vec3], distance: f64) -> Vec<u32> {
+    // cells of twice the distance: equal points are in one cell, close ones in touching cells
+    let cell = |point: Vec3| {
+        let inverse = if distance > 0.0 { 0.5 / distance } else { 0.0 };
+        (point * inverse).to_array().map(|c| c.floor() as i64)
+    };
+    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut number: Vec<u32> = Vec::with_capacity(points.len());
+    for (index, point) in points.iter().enumerate() {
+        let home = cell(*point);
+        let mut first = index as u32;
+        for step in 0..27_i64 {
+            let beside = [home[0] + step % 3 - 1, home[1] + step / 3 % 3 - 1, home[2] + step / 9 - 1];
+            let near = grid.get(&beside).into_iter().flatten();
+            let close = near.copied().filter(|other| (points[*other as usize] - *point).length() <= distance);
+            first = close.fold(first, u32::min);
+        }
+        number.push(first);
+        if first == index as u32 {
+            grid.entry(home).or_default().push(first);
+        }
+    }
+    number
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,108 @@
+use souple_table::{Value, Values};
+
+use super::*;
+
+fn unit_cube(cells: f64) -> TriangleSurface {
+    let values = Values::new()
+        .with("size", Value::Vector([1.0; 3]))
+        .with("cells", Value::Vector([cells; 3]))
+        .with("element", Value::Text("hex8"));
+    crate::generate("box", values).unwrap().boundary_surface()
+}
+
+fn assert_cube(surface: &TriangleSurface) {
+    let diagnosis = diagnose(surface);
+    assert!(diagnosis.is_simple(), "{:?}", diagnosis.messages());
+    assert_volume(surface, 1.0);
+}
+
+/// To the rounding of a sum over triangles of volumes below one.
+fn assert_volume(surface: &TriangleSurface, expected: f64) {
+    let bound = f64::EPSILON * surface.triangles.len() as f64;
+    assert!((surface.enclosed_volume() - expected).abs() < bound, "{}", surface.enclosed_volume());
+}
+
+#[test]
+fn a_good_surface_is_left_alone() {
+    let cube = unit_cube(2.0);
+    assert_eq!(diagnose(&cube), Diagnosis { component_count: 1, ..Diagnosis::default() });
+    let (mended, repairs) = repair(&cube, RepairLimits::default());
+    assert_eq!(repairs, SurfaceRepairs::default());
+    assert_eq!(mended.triangles, cube.triangles);
+}
+
+/// Triangles with corners of their own, some turned, one doubled, one flat, one missing: all mended, all said.
+#[test]
+fn everything_at_once() {
+    let cube = unit_cube(3.0);
+    let mut points = Vec::new();
+    let mut triangles = Vec::new();
+    for triangle in 1..cube.triangles.len() as u32 {
+        let start = points.len() as u32;
+        points.extend(cube.corners(triangle));
+        let mut corners = [start, start + 1, start + 2];
+        if triangle % 3 == 0 {
+            corners.swap(0, 1);
+        }
+        triangles.push(corners);
+    }
+    triangles.push([0, 1, 2]);
+    points.extend([Vec3::ZERO, Vec3::X, Vec3::X * 0.5]);
+    let last = points.len() as u32;
+    triangles.push([last - 3, last - 2, last - 1]);
+    let broken = TriangleSurface::new(points, triangles).unwrap();
+    let diagnosis = diagnose(&broken);
+    assert!(!diagnosis.is_simple() && diagnosis.component_count > 100);
+    assert_eq!((diagnosis.flat_triangles.len(), diagnosis.doubled_triangles.len()), (1, 1));
+    let (mended, repairs) = repair(&broken, RepairLimits { hole: 0.5, ..RepairLimits::default() });
+    assert_cube(&mended);
+    assert_eq!((repairs.flat_triangles, repairs.doubled_triangles, repairs.closed_holes), (1, 1, 1));
+    assert_eq!(repairs.turned_triangles, 35);
+    assert_eq!(repairs.messages().len(), 5);
+}
+
+#[test]
+fn large_holes_stay_and_are_said() {
+    let mut cube = unit_cube(2.0);
+    cube.triangles.retain(|corners| corners.iter().any(|point| cube.points[*point as usize].x < 1.0));
+    let (mended, repairs) = repair(&cube, RepairLimits::default());
+    assert_eq!(repairs.closed_holes, 0);
+    let diagnosis = diagnose(&mended);
+    assert_eq!(diagnosis.open_edges.len(), 8);
+    assert!(diagnosis.messages()[0].contains("holes"));
+}
+
+/// A part that is inside out is turned; a hollow within it stays a hollow.
+#[test]
+fn parts_face_outward_and_hollows_stay() {
+    let mut surface = unit_cube(2.0);
+    let inner = surface.clone();
+    let shift = surface.points.len() as u32;
+    surface.points.extend(inner.points.iter().map(|p| *p * 0.5 + Vec3::new(0.25, 0.25, 0.25)));
+    surface.triangles.extend(inner.triangles.iter().map(|[a, b, c]| [a + shift, c + shift, b + shift]));
+    let volume = 1.0 - 0.125;
+    assert_volume(&surface, volume);
+    let mut inverted = surface.clone();
+    inverted.triangles.iter_mut().for_each(|corners| corners.swap(0, 1));
+    assert!(diagnose(&inverted).is_inside_out);
+    for (given, turned) in [(surface, 0), (inverted, 2)] {
+        let (mended, repairs) = repair(&given, RepairLimits::default());
+        assert_volume(&mended, volume);
+        assert_eq!(repairs.turned_parts, turned);
+    }
+}
+
+/// Two cubes shifted into each other cross; cubes side by side do not.
+#[test]
+fn crossings_are_found() {
+    for (shift, expected) in [(Vec3::new(0.31, 0.27, 0.23), true), (Vec3::X * 1.5, false)] {
+        let mut surface = unit_cube(1.0);
+        let other = surface.clone();
+        let count = surface.points.len() as u32;
+        surface.points.extend(other.points.iter().map(|p| *p + shift));
+        surface.triangles.extend(other.triangles.iter().map(|corners| corners.map(|point| point + count)));
+        let diagnosis = diagnose(&surface);
+        assert_eq!(!diagnosis.crossings.is_empty(), expected);
+        assert_eq!(diagnosis.component_count, 2);
+    }
+}

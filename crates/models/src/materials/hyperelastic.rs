@@ -1,0 +1,190 @@
+//! Hyperelasticity written as text in the scene: any energy density, derived and compiled when the scene is read.
+//!
+//! For laws that have no file here, and for trying one before it gets a file. A step takes somewhat longer than with a law
+//! compiled ahead. Outside the range where its formula has a value (`log(J)` of inverted elements) such a law has none:
+//! the step is refused. The compiled laws are continued there on purpose.
+
+use std::sync::Arc;
+
+use souple_formal::law::{EnergyLaw, LawError, LawParameter, LawText};
+use souple_formal::tape::Tape;
+use souple_formal::{Expression, NodeKind, UnaryOperator, parse_quantity};
+use souple_table::{Entry, Parameter, Range, Value};
+
+use super::{Build, Lame, Material, MaterialLaw, PARAMETERS_MAX};
+
+pub(super) const ENTRY: Entry<Build> = Entry {
+    name: "hyperelastic",
+    summary: "any law as text: an energy density of F, C, E, J, I1, I2, I1_bar, l1, I4(a), …; stress and tangent are \
+              derived, units, rest state and objectivity checked when the scene is read",
+    source: "Korelc 2002, Multi-language and multi-environment generation of nonlinear finite element codes; Faure 2014",
+    parameters: &[
+        Parameter::text(
+            "energy",
+            "Ψ, energy per rest volume, such as \"mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2\"",
+        ),
+        Parameter::texts(
+            "parameters",
+            "material constants of the energy, such as { mu = \"1 MPa\", fibre = [1, 0, 0] }",
+        )
+        .or(Value::Texts(&[])),
+        Parameter::texts(
+            "definitions",
+            "names for parts of the energy, such as { Q = \"b*(I4(fibre) - 1)^2\" }",
+        )
+        .or(Value::Texts(&[])),
+        Parameter::number("density", "kg/m³", Range::POSITIVE, "ρ: mass per volume of the rest shape"),
+    ],
+    build: |values| {
+        let text = law_text(values.text("energy"), values.texts("parameters"), values.texts("definitions"))?;
+        let law = TextLaw::compile(text)?;
+        let small_strain = law.small_strain();
+        Ok(Material {
+            law: MaterialLaw::Text(Arc::new(law)),
+            parameters: [0.0; PARAMETERS_MAX],
+            small_strain,
+            density: values.number("density"),
+        })
+    },
+};
+
+/// Why the values of a material make none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{message}")]
+pub struct MaterialError {
+    path: Vec<String>,
+    message: String,
+}
+
+impl MaterialError {
+    /// Keys that lead from the material to what is wrong: `["parameters", "mu"]`.
+    pub fn path(&self) -> &[String] {
+        &self.path
+    }
+}
+
+/// A law as text with its compiled forms.
+#[derive(Debug)]
+pub struct TextLaw {
+    text: LawText,
+    law: EnergyLaw,
+    energy: Tape,
+    stress: Tape,
+    differential: Tape,
+}
+
+/// The same text with the same parameters.
+impl PartialEq for TextLaw {
+    fn eq(&self, other: &Self) -> bool {
+        // most comparisons are of a law with itself, cell after cell
+        std::ptr::eq(self, other) || self.text == other.text
+    }
+}
+
+/// The law that an energy, parameters and definitions as written stand for.
+///
+/// # Errors
+/// A parameter is no number, quantity or direction.
+pub fn law_text(
+    energy: &str,
+    parameters: &[(String, String)],
+    definitions: &[(String, String)],
+) -> Result<LawText, MaterialError> {
+    let mut read = Vec::with_capacity(parameters.len());
+    for (name, text) in parameters {
+        let parameter = match direction(text) {
+            Some(direction) => LawParameter::Direction(direction),
+            None => {
+                let quantity = parse_quantity(text).map_err(|error| MaterialError {
+                    path: vec!["parameters".to_owned(), name.clone()],
+                    message: format!("`{name}`: {error}"),
+                })?;
+                // a bare number is taken in the unit that is wanted
+                let bare = text.trim().parse::<f64>().is_ok();
+                LawParameter::Number {
+                    value: quantity.value,
+                    dimension: (!bare).then_some(quantity.dimension),
+                }
+            }
+        };
+        read.push((name.clone(), parameter));
+    }
+    Ok(LawText { energy: energy.to_owned(), definitions: definitions.to_vec(), parameters: read })
+}
+
+/// `[x, y, z]`, made one long.
+fn direction(text: &str) -> Option<[f64; 3]> {
+    let expression = Expression::parse(text).ok()?;
+    let NodeKind::Vector(components) = &expression.node(expression.root()).kind else { return None };
+    let number = |id| match &expression.node(id).kind {
+        NodeKind::Number(number) => Some(*number),
+        NodeKind::Unary { operator: UnaryOperator::Negate, operand } => {
+            match expression.node(*operand).kind {
+                NodeKind::Number(number) => Some(-number),
+                _ => None,
+            }
+        }
+        _ => None,
+    };
+    let [x, y, z] = <[_; 3]>::try_from(components.as_slice()).ok()?;
+    let vector = [number(x)?, number(y)?, number(z)?];
+    let length = vector.iter().map(|number| number * number).sum::<f64>().sqrt();
+    // the zero vector goes on, to be refused with its name
+    Some(if length > 0.0 { vector.map(|number| number / length) } else { vector })
+}
+
+impl TextLaw {
+    /// # Errors
+    /// As [`EnergyLaw::compile`], with the place marked.
+    pub fn compile(text: LawText) -> Result<Self, MaterialError> {
+        let law = EnergyLaw::compile(&text).map_err(|error| told(&text, &error))?;
+        let tape = |output| Tape::compile(&law, &[output]);
+        let (energy, stress, differential) = (tape(law.energy), tape(law.stress), tape(law.differential));
+        Ok(Self { text, law, energy, stress, differential })
+    }
+
+    pub fn law(&self) -> &EnergyLaw {
+        &self.law
+    }
+
+    /// `F` to `Ψ`.
+    pub(crate) fn energy(&self) -> &Tape {
+        &self.energy
+    }
+
+    /// `F` to `P`.
+    pub(crate) fn stress(&self) -> &Tape {
+        &self.stress
+    }
+
+    /// `F`, `δF` to `δP`.
+    pub(crate) fn differential(&self) -> &Tape {
+        &self.differential
+    }
+
+    /// Moduli at rest: of an anisotropic law the mean shear modulus, and the stiffest longitudinal one.
+    fn small_strain(&self) -> Lame {
+        let entry = |a: usize, b: usize| self.law.stiffness[9 * a + b];
+        // entries (0,1), (1,2), (2,0) of F lie at 3, 7, 2
+        let mu = (entry(3, 3) + entry(7, 7) + entry(2, 2)) / 3.0;
+        let longitudinal = [0, 4, 8].map(|a| entry(a, a)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        Lame { mu, lambda: longitudinal - 2.0 * mu }
+    }
+}
+
+/// The error with the path of its part and the characters marked.
+fn told(text: &LawText, error: &LawError) -> MaterialError {
+    let known = |list: &[&String]| list.contains(&&error.part);
+    let definitions: Vec<&String> = text.definitions.iter().map(|(name, _)| name).collect();
+    let parameters: Vec<&String> = text.parameters.iter().map(|(name, _)| name).collect();
+    let (path, written) = if known(&definitions) {
+        let written =
+            text.definitions.iter().find(|(name, _)| *name == error.part).map(|(_, text)| text.as_str());
+        (vec!["definitions".to_owned(), error.part.clone()], written)
+    } else if known(&parameters) {
+        (vec!["parameters".to_owned(), error.part.clone()], None)
+    } else {
+        (vec!["energy".to_owned()], Some(text.energy.as_str()))
+    };
+    MaterialError { path, message: error.explained(written.unwrap_or_default()) }
+}

@@ -1,0 +1,345 @@
+//! A step allocates nothing once its buffers are there: counted by the allocator itself, on one thread.
+//!
+//! Solved by conjugate gradients and BiCGSTAB with block Jacobi, which are all ours. Not counted: sparse factors, whose
+//! library allocates as it likes, and steps in which what touches changes, which make the matrix anew.
+
+use std::alloc::{GlobalAlloc, Layout, System as Heap};
+use std::cell::Cell;
+use std::sync::Arc;
+
+use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
+use souple_engine::{Constraint, Force, Kinematics, Mass, Model, State, Stepper, System, UnknownKind, World};
+use souple_math::Vec3;
+use souple_mesh::Mesh;
+use souple_models::contact::{
+    ContactLaw, ContactPoint, ContactSurface, SHAPES, ShapeContact, SurfaceContact,
+};
+use souple_models::loads::{
+    Attachments, Combination, Drag, FormulaVector, Gravity, GroundSpring, GroundSprings, Link, MassDamping,
+    PointLoad, RigidMotion,
+};
+use souple_models::materials;
+use souple_models::solids::{
+    RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
+};
+use souple_table::{Value, Values};
+
+/// Counts what the thread at hand asks of the heap.
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+// SAFETY: all is passed on to the system's allocator; the count is a thread's own number without a destructor.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        // SAFETY: the caller's promises are passed on
+        unsafe { Heap.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above
+        unsafe { Heap.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        // SAFETY: as above
+        unsafe { Heap.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of `steps` steps after `warm_up` ones, on one thread.
+fn allocations(make: impl FnOnce() -> World + Send, warm_up: u32, steps: u32) -> u64 {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        let mut world = make();
+        (0..warm_up).for_each(|step| world.step().unwrap_or_else(|error| panic!("step {step}: {error}")));
+        let before = COUNT.get();
+        (0..steps).for_each(|step| world.step().unwrap_or_else(|error| panic!("step {step}: {error}")));
+        COUNT.get() - before
+    })
+}
+
+fn stepper(name: &str, given: &[(&'static str, Value<'_>)]) -> Box<dyn Stepper> {
+    let entry = souple_engine::steppers::TABLE.find(name).unwrap();
+    let values = given.iter().fold(Values::new(), |values, (name, value)| values.with(*name, *value));
+    (entry.build)(&entry.values(values).unwrap())
+}
+
+fn mesh(cells: [f64; 3], element: &'static str) -> Mesh {
+    let values = Values::new()
+        .with("size", Value::Vector([0.6, 0.3, 0.3]))
+        .with("cells", Value::Vector(cells))
+        .with("element", Value::Text(element));
+    souple_mesh::generate("bar", values).unwrap()
+}
+
+/// Which mass rows have.
+#[derive(Clone, Copy, PartialEq)]
+enum Inertia {
+    Lumped,
+    Consistent,
+}
+
+/// A block of rubber, clamped at `x = 0`, with everything that may act on it.
+struct Block {
+    element: &'static str,
+    inertia: Inertia,
+    /// Damping by rates of strain makes the tangent general.
+    viscosity: f64,
+}
+
+impl Block {
+    fn system(&self, stepper: Box<dyn Stepper>) -> (System, Vec<Vec3>) {
+        let mesh = mesh([6.0, 3.0, 3.0], self.element);
+        let entry = materials::TABLE.find("neo_hookean").unwrap();
+        let values = Values::new()
+            .with("youngs_modulus", Value::Number(2e4))
+            .with("poissons_ratio", Value::Number(0.3))
+            .with("density", Value::Number(1000.0));
+        let materials = [(entry.build)(&entry.values(values).unwrap()).unwrap()];
+        let material_of_cell = vec![0; mesh.cell_count()];
+        let description = |name: &str| SolidDescription {
+            name: name.into(),
+            mesh: &mesh,
+            first_row: 0,
+            materials: &materials,
+            material_of_cell: &material_of_cell,
+            quadrature: Default::default(),
+        };
+        let mut kinematics = Kinematics::default();
+        kinematics.add_unknowns(UnknownKind::Point, mesh.points.len());
+        let mut mass = Mass::new(mesh.points.len());
+        match self.inertia {
+            Inertia::Lumped => lumped_mass(&mesh, 0, &|_| 1000.0, &mut mass),
+            Inertia::Consistent => consistent_mass(&mesh, 0, &|_| 1000.0, &mut mass),
+        }
+        mass.seal();
+        let last = mesh.points.len() as u32 - 1;
+        let end = mesh.points[last as usize];
+        let load = Arc::new(FormulaVector::compile("[1, sin(t), -2]").unwrap());
+        let tie = Link { a: Combination::row(last), b: Combination::row(last - 1), rest_length: 0.05 };
+        let spring = GroundSpring { row: last, share: 1.0, anchor: end };
+        let mut forces: Vec<Box<dyn Force>> = vec![
+            Box::new(SolidForce::new(&description("solid")).unwrap()),
+            Box::new(RayleighDamping::new(&description("rayleigh"), 1e-3).unwrap()),
+            Box::new(Gravity::new("gravity", Vec3::Y * -9.81, &mass, &kinematics).unwrap()),
+            Box::new(MassDamping::new("damping", mass.clone(), 0.5).unwrap()),
+            Box::new(Drag::new("drag", vec![(last, 1.0)], 0.1).unwrap()),
+            Box::new(PointLoad::new("load", vec![(last, 0.1)], load).unwrap()),
+            Box::new(GroundSprings::new("ground", vec![spring], 5.0, 0.0).unwrap()),
+            Box::new(Attachments::new("tie", vec![tie], 5.0, 0.0).unwrap()),
+        ];
+        if self.viscosity > 0.0 {
+            forces.push(Box::new(Viscosity::new(&description("viscosity"), self.viscosity).unwrap()));
+        }
+        let clamped = mesh.points.iter().enumerate().filter(|(_, point)| point.x == 0.0);
+        let constraints = clamped.map(|(row, start)| Constraint::pin(row as u32, *start)).collect();
+        let system = System {
+            name: "main".into(),
+            kinematics,
+            mass,
+            forces,
+            constraints,
+            stepper,
+            steps_per_period: 1,
+        };
+        (system, mesh.points)
+    }
+
+    fn world(&self, stepper: Box<dyn Stepper>, period: f64) -> World {
+        start(self.system(stepper), period)
+    }
+}
+
+fn start((system, q): (System, Vec<Vec3>), period: f64) -> World {
+    let state = State { systems: vec![system.initial_state(q)], ..State::default() };
+    Model { period, systems: vec![system], ..Model::default() }.start(state)
+}
+
+const PLAIN: Block = Block { element: "tet4", inertia: Inertia::Lumped, viscosity: 0.0 };
+
+/// Explicit steps: lumped mass, several elements and dampings.
+#[test]
+fn explicit_steps() {
+    for name in ["explicit_euler", "symplectic_euler", "verlet", "rk4"] {
+        for element in ["tet4", "mixed"] {
+            let block = Block { element, viscosity: 5.0, ..PLAIN };
+            let count = allocations(|| block.world(stepper(name, &[]), 1e-4), 3, 20);
+            assert_eq!(count, 0, "{name} on {element}");
+        }
+    }
+}
+
+/// A consistent mass is solved with every step.
+#[test]
+fn explicit_steps_with_a_consistent_mass() {
+    let block = Block { inertia: Inertia::Consistent, ..PLAIN };
+    assert_eq!(allocations(|| block.world(stepper("symplectic_euler", &[]), 1e-4), 3, 10), 0);
+}
+
+/// A frame that turns has inertia of its own.
+#[test]
+fn explicit_steps_of_a_rigid_frame() {
+    let make = || {
+        let mut kinematics = Kinematics::default();
+        kinematics.add_unknowns(UnknownKind::RigidFrame, 1);
+        let mut mass = Mass::new(4);
+        mass.diagonal.copy_from_slice(&[2.0, 0.5, 0.4, 0.3]);
+        let gravity = Gravity::new("gravity", Vec3::Y, &mass, &kinematics).unwrap();
+        let system = System {
+            name: "main".into(),
+            kinematics,
+            mass,
+            forces: vec![Box::new(gravity)],
+            constraints: vec![],
+            stepper: stepper("rk4", &[]),
+            steps_per_period: 1,
+        };
+        let mut state = system.initial_state(vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+        state.v[1] = Vec3::new(0.3, 2.0, -1.0);
+        let state = State { systems: vec![state], ..State::default() };
+        Model { period: 1e-3, systems: vec![system], ..Model::default() }.start(state)
+    };
+    assert_eq!(allocations(make, 3, 20), 0);
+}
+
+/// Implicit steps with a stored matrix and without, solved by conjugate gradients.
+#[test]
+fn implicit_steps() {
+    let text = |value| Value::Text(value);
+    let krylov = [("solver", text("cg")), ("preconditioner", text("block_jacobi"))];
+    for newton in ["one", "full"] {
+        for matrix_free in [false, true] {
+            let given =
+                [&krylov[..], &[("newton", text(newton)), ("matrix_free", Value::Boolean(matrix_free))]]
+                    .concat();
+            let make = || PLAIN.world(stepper("backward_euler", &given), 5e-3);
+            assert_eq!(allocations(make, 3, 5), 0, "newton = {newton}, matrix_free = {matrix_free}");
+        }
+    }
+}
+
+/// Equilibrium under a load that changes from step to step.
+#[test]
+fn static_steps() {
+    let given = [("solver", Value::Text("cg")), ("preconditioner", Value::Text("block_jacobi"))];
+    let make = || {
+        let (mut system, q) = PLAIN.system(stepper("static", &given));
+        // dampers have no place in statics
+        system.forces.retain(|force| !force.declaration().velocity_terms);
+        start((system, q), 0.1)
+    };
+    assert_eq!(allocations(make, 3, 5), 0);
+}
+
+const LAW: ContactLaw = ContactLaw {
+    stiffness: 200.0,
+    damping: 0.2,
+    friction: 0.4,
+    tangential_stiffness: 100.0,
+    thickness: 0.01,
+};
+
+/// A block pressed on a closed surface, and two blocks on each other.
+fn pressed(stepper: Box<dyn Stepper>, period: f64) -> World {
+    let (system, low) = PLAIN.system(stepper);
+    let mesh = mesh([6.0, 3.0, 3.0], "tet4");
+    let surface = mesh.boundary_surface();
+    let count = low.len();
+    let above: Vec<Vec3> = low.iter().map(|point| *point + Vec3::new(0.03, 0.3, 0.02)).collect();
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, 2 * count);
+    let mut mass = Mass::new(2 * count);
+    mass.diagonal.fill(0.2);
+    let side = |first: u32| {
+        let mut moved = surface.clone();
+        let from = if first == 0 { &low } else { &above };
+        moved.points = surface.mesh_points.iter().map(|point| from[*point as usize]).collect();
+        let rows: Vec<u32> = surface.mesh_points.iter().map(|point| first + point).collect();
+        ContactSurface { surface: moved, shares: vec![1.0; rows.len()], rows }
+    };
+    let held = |first: u32| {
+        // nodes of a body hold together by springs to where they stand
+        let from = if first == 0 { &low } else { &above };
+        from.iter()
+            .enumerate()
+            .map(|(i, anchor)| GroundSpring { row: first + i as u32, share: 1.0, anchor: *anchor })
+            .collect::<Vec<_>>()
+    };
+    let points = low
+        .iter()
+        .enumerate()
+        .filter(|(_, point)| point.y == 0.0)
+        .map(|(row, start)| ContactPoint { row: row as u32, share: 1.0, start: *start })
+        .collect();
+    let source = |_: &str| {
+        let values = Values::new()
+            .with("size", Value::Vector([2.0; 3]))
+            .with("cells", Value::Vector([2.0; 3]))
+            .with("element", Value::Text("tet4"));
+        let mut box_surface = souple_mesh::generate("box", values).unwrap().boundary_surface();
+        box_surface.points.iter_mut().for_each(|point| *point -= Vec3::new(1.0, 2.0, 1.0));
+        Ok(box_surface)
+    };
+    let entry = SHAPES.find("closed_surface").unwrap();
+    let values = entry.values(Values::new().with("surface", Value::Text("ground"))).unwrap();
+    let ground = (entry.build)(&values, &source).unwrap();
+    let forces: Vec<Box<dyn Force>> = vec![
+        Box::new(GroundSprings::new("low", held(0), 20.0, 0.5).unwrap()),
+        Box::new(GroundSprings::new("high", held(count as u32), 20.0, 0.5).unwrap()),
+        Box::new(Gravity::new("gravity", Vec3::Y * -2.0, &mass, &kinematics).unwrap()),
+        Box::new(ShapeContact::new("ground", points, ground, RigidMotion::default(), LAW).unwrap()),
+        Box::new(SurfaceContact::new("pair", side(0), side(count as u32), LAW, 0.1).unwrap()),
+    ];
+    let system = System { kinematics, mass, forces, constraints: vec![], ..system };
+    start((system, [low, above].concat()), period)
+}
+
+/// Pairs of a contact are searched, merged and felt every step; their lists have grown before.
+#[test]
+fn steps_in_contact() {
+    let solver = [
+        ("solver", Value::Text("bicgstab")),
+        ("preconditioner", Value::Text("block_jacobi")),
+        ("newton", Value::Text("full")),
+    ];
+    let symplectic = || pressed(stepper("symplectic_euler", &[]), 1e-3);
+    assert_eq!(allocations(symplectic, 300, 50), 0, "explicit");
+    let euler = || pressed(stepper("backward_euler", &solver), 1e-2);
+    assert_eq!(allocations(euler, 60, 5), 0, "implicit");
+}
+
+/// Two systems of different steps exchange impulses every period.
+#[test]
+fn coupled_steps() {
+    let make = || {
+        let (mut fast, fast_q) = PLAIN.system(stepper("symplectic_euler", &[]));
+        let (mut slow, slow_q) = PLAIN.system(stepper("verlet", &[]));
+        let end = fast_q.len() as u32 - 1;
+        let spring = CouplingSpring {
+            name: "tie".into(),
+            fast_system: 0,
+            fast_row: end,
+            slow_system: 1,
+            slow_row: end,
+            stiffness: 2.0,
+            damping: 0.1,
+            driven: 0,
+        };
+        fast.forces.push(spring.fast_end());
+        slow.forces.push(spring.slow_end());
+        fast.steps_per_period = 5;
+        let systems = vec![fast.initial_state(fast_q), slow.initial_state(slow_q)];
+        let state = State { systems, driven: vec![0.0; DRIVEN_LEN], ..State::default() };
+        Model { period: 2e-4, systems: vec![fast, slow], couplings: vec![spring], ..Model::default() }
+            .start(state)
+    };
+    assert_eq!(allocations(make, 3, 10), 0);
+}

@@ -1,0 +1,182 @@
+//! Written laws against closed forms, and the counts of the source on its elements.
+
+#![allow(non_snake_case)]
+
+use souple_formal::element::{Axis, Cut};
+use souple_formal::law::{EnergyLaw, LawParameter};
+use souple_math::{Mat3, Vec3};
+use souple_mesh::ElementKind;
+use souple_models::derive::{MapKind, element_data, source_constant_count, source_law_name, source_name};
+use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
+
+/// Principal stretches.
+type Stretches = [f64; 3];
+
+fn diagonal([a, b, c]: Stretches) -> Mat3 {
+    Mat3::from_columns(Vec3::new(a, 0.0, 0.0), Vec3::new(0.0, b, 0.0), Vec3::new(0.0, 0.0, c))
+}
+
+/// `J σ_i = λ_i ∂Ψ/∂λ_i` of a decoupled law: the deviator of `λ̄_i ∂Ψ_iso/∂λ̄_i`, and `J U'(J)`.
+fn decoupled(isochoric: [f64; 3], J: f64, volumetric: f64) -> [f64; 3] {
+    let mean = isochoric.iter().sum::<f64>() / 3.0;
+    isochoric.map(|part| part - mean + J * volumetric)
+}
+
+/// Kirchhoff stress `λ_i P_i` by hand.
+fn by_hand(name: &str, p: &dyn Fn(&str) -> f64, s: Stretches) -> [f64; 3] {
+    let J = s[0] * s[1] * s[2];
+    let bar = s.map(|s| s * J.powf(-1.0 / 3.0));
+    let squares = bar.map(|s| s * s);
+    let I1_bar: f64 = squares.iter().sum();
+    let bulk = |J: f64| p("k") * (J - 1.0);
+    let green = s.map(|s| 0.5 * (s * s - 1.0));
+    let trace: f64 = green.iter().sum();
+    match name {
+        "linear" => {
+            let dilation: f64 = s.iter().sum::<f64>() - 3.0;
+            s.map(|s| s * (p("lambda") * dilation + 2.0 * p("mu") * (s - 1.0)))
+        }
+        "st_venant_kirchhoff" => {
+            std::array::from_fn(|i| s[i] * s[i] * (p("lambda") * trace + 2.0 * p("mu") * green[i]))
+        }
+        "neo_hookean" => s.map(|s| p("mu") * (s * s - 1.0) + p("lambda") * J.ln()),
+        "mooney_rivlin" => {
+            // λ̄ ∂/∂λ̄ of Σλ̄² is 2λ̄², of Σλ̄⁻² is -2λ̄⁻²
+            decoupled(squares.map(|q| 2.0 * p("c10") * q - 2.0 * p("c01") / q), J, bulk(J))
+        }
+        "yeoh" => {
+            let x = I1_bar - 3.0;
+            let slope = p("c1") + 2.0 * p("c2") * x + 3.0 * p("c3") * x * x;
+            decoupled(squares.map(|q| 2.0 * slope * q), J, bulk(J))
+        }
+        "ogden" => {
+            let part = |s: f64| p("mu1") * s.powf(p("a1")) + p("mu2") * s.powf(p("a2"));
+            decoupled(bar.map(part), J, bulk(J))
+        }
+        "fung" => {
+            let squares: f64 = green.iter().map(|e| e * e).sum();
+            let factor = p("c") * p("b") * (p("b") * squares).exp();
+            std::array::from_fn(|i| s[i] * s[i] * factor * green[i] + J * bulk(J))
+        }
+        "holzapfel_gasser_ogden" => {
+            // both families have the squares of the same components, in the plane of the first two axes
+            let length_sq = 0.8746f64.powi(2) + 0.4848f64.powi(2);
+            let along = [0.8746f64.powi(2) / length_sq, 0.4848f64.powi(2) / length_sq, 0.0];
+            let I4: f64 = along.iter().zip(squares).map(|(a, q)| a * q).sum();
+            let e = (I4 - 1.0).max(0.0);
+            let fibres = 2.0 * p("k1") * e * (p("k2") * e * e).exp();
+            decoupled(std::array::from_fn(|i| squares[i] * (p("c") + 2.0 * fibres * along[i])), J, bulk(J))
+        }
+        other => panic!("no closed form of `{other}`"),
+    }
+}
+
+fn compiled(law: &WrittenLaw) -> EnergyLaw {
+    let text = law.text().unwrap();
+    EnergyLaw::compile(&text).unwrap_or_else(|error| panic!("{}: {}", law.name, error.explained(law.energy)))
+}
+
+/// Every written law against its closed form, in uniaxial and equibiaxial stretch with free lateral stretch found
+/// by bisection, and in triaxial stretch.
+#[test]
+fn written_laws_are_the_closed_forms() {
+    for law in WRITTEN_LAWS {
+        let compiled = compiled(law);
+        let p = |name: &str| match compiled.parameter(name) {
+            Some(LawParameter::Number { value, .. }) => *value,
+            other => panic!("{name}: {other:?}"),
+        };
+        let scale = compiled.stiffness.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        for stretch in [0.7, 0.95, 1.1, 1.35] {
+            let uniaxial = |lateral: f64| [stretch, lateral, lateral];
+            let equibiaxial = |lateral: f64| [stretch, stretch, lateral];
+            for state in [&uniaxial as &dyn Fn(f64) -> Stretches, &equibiaxial] {
+                // the free direction bears nothing; isotropic laws have the same stress in both free directions
+                let (mut low, mut high) = (0.3, 3.0);
+                for _ in 0..80 {
+                    let middle = 0.5 * (low + high);
+                    let stress = by_hand(law.name, &p, state(middle))[2];
+                    if stress < 0.0 { low = middle } else { high = middle }
+                }
+                let s = state(low);
+                let P = compiled.stress_at(&diagonal(s));
+                let expected = by_hand(law.name, &p, s);
+                for i in 0..3 {
+                    let found = P.columns[i].to_array()[i] * s[i];
+                    let error = (found - expected[i]).abs() / scale;
+                    assert!(error < 1e-8, "{}: {s:?}: {found} {}", law.name, expected[i]);
+                }
+                let shear = (0..9).filter(|i| i % 4 != 0).map(|i| P.columns[i / 3].to_array()[i % 3].abs());
+                assert!(shear.fold(0.0, f64::max) < 1e-8 * scale, "{}", law.name);
+            }
+        }
+    }
+}
+
+/// Moduli at rest that the literature gives: `2 (c10 + c01)`, `2 c1`, `Σ μ_p α_p / 2`, `c b / 2`.
+#[test]
+fn moduli_at_rest() {
+    let shear = |name: &str| compiled(WrittenLaw::find(name).unwrap()).stiffness[9 * 3 + 3];
+    for (name, expected) in [
+        ("linear", 10e3),
+        ("neo_hookean", 10e3),
+        ("mooney_rivlin", 10e3),
+        ("yeoh", 10e3),
+        ("ogden", 0.5 * (6e3 * 1.8 + 1e3 * 2.5)),
+        ("fung", 0.5 * 10e3 * 4.0),
+    ] {
+        assert!((shear(name) - expected).abs() < 1e-9 * expected, "{name}: {} {expected}", shear(name));
+    }
+}
+
+/// Tables 3.4 to 3.7 of the source: at most its counts, and those that the theory of grouped constants gives when plain
+/// numbers stay in the code: the inverse maps of all samples, and one factor for each term of the law and sample.
+#[test]
+fn grouped_constants_of_the_tables() {
+    for (kind, map, expected) in [
+        (ElementKind::Tri3, MapKind::General, 6),
+        (ElementKind::Tet4, MapKind::General, 11),
+        (ElementKind::Hex8, MapKind::Box, 5),
+        (ElementKind::Prism6, MapKind::General, 66),
+        (ElementKind::Pyramid5, MapKind::General, 55),
+    ] {
+        // as in the source: one sample in simplices, six in prisms, five in pyramids, eight in hexahedra
+        let rule = if kind == ElementKind::Tri3 { &kind.rules()[0] } else { kind.default_rule() };
+        let element = element_data(kind, rule, map).unwrap();
+        for name in ["linear", "st_venant_kirchhoff"] {
+            let derived = element.derive(&compiled(WrittenLaw::find(name).unwrap()), Cut::NONE).unwrap();
+            let count = derived.energies[0].grouped.constants.len();
+            assert_eq!(count, expected, "{kind} under {name}");
+            assert!(count <= source_constant_count(kind, map).unwrap());
+        }
+        let whole = element
+            .derive(&compiled(WrittenLaw::find("linear").unwrap()), Cut::of(&[Axis::Law, Axis::Gauss]))
+            .unwrap();
+        let cut: usize = whole.energies.iter().map(|fragment| fragment.grouped.constants.len()).sum();
+        assert!(cut >= expected, "{kind}");
+    }
+}
+
+/// 27 samples of a hexahedron, two terms: 54 fragments of forces.
+#[test]
+fn fragments_of_the_largest_association() {
+    let kind = ElementKind::Hex8;
+    let rule = kind.rules().iter().find(|rule| rule.points.len() == 27).unwrap();
+    let element = element_data(kind, rule, MapKind::Box).unwrap();
+    let derived = element
+        .derive(
+            &compiled(WrittenLaw::find("st_venant_kirchhoff").unwrap()),
+            Cut::of(&[Axis::Law, Axis::Gauss]),
+        )
+        .unwrap();
+    assert_eq!((derived.forces.len(), derived.differentials.len()), (54, 54));
+    assert_eq!(derived.name, "Hexa8IDecoupageLG");
+}
+
+#[test]
+fn names_of_the_source() {
+    assert_eq!(source_law_name("linear") + source_name(ElementKind::Hex8), "HookeHexa8I");
+    assert_eq!(source_law_name("st_venant_kirchhoff"), "SaintVenant");
+    assert_eq!(source_law_name("mooney_rivlin"), "MooneyRivlin");
+    assert!(element_data(ElementKind::Tet4, ElementKind::Tet4.default_rule(), MapKind::Box).is_err());
+}

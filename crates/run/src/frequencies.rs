@@ -1,0 +1,55 @@
+//! Natural frequencies of a scene about its first state.
+
+use std::f64::consts::TAU;
+
+use souple_scene::Scene;
+use souple_solve::SolveError;
+use souple_solve::modes::Settings;
+
+/// Natural frequencies of a system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NaturalFrequencies {
+    pub system: String,
+    /// Rising [Hz]; an unstable direction, `ω² < 0`, has a negative one.
+    pub hertz: Vec<f64>,
+    /// See [`souple_solve::modes::Modes::residuals`].
+    pub largest_residual: f64,
+}
+
+/// Frequencies of a system that cannot be had.
+#[derive(Debug, thiserror::Error)]
+#[error("system `{system}`: {source}")]
+pub struct FrequencyError {
+    pub system: String,
+    pub source: SolveError,
+}
+
+/// The `count` natural frequencies of each system nearest to `near` [Hz], about the scene's first state.
+///
+/// # Errors
+/// A system has fewer, or its stiffness cannot be factorised: a body that is free to move needs a `near` that is not
+/// zero.
+pub fn natural_frequencies(
+    scene: Scene,
+    count: usize,
+    near: f64,
+) -> Result<Vec<NaturalFrequencies>, FrequencyError> {
+    let mut world = scene.model.start(scene.state);
+    let settings = Settings { count, shift: (TAU * near).powi(2), ..Settings::default() };
+    let systems = world.model().systems.len();
+    let of_system = |index| {
+        let (system, found) = world.with_system(index, |system, state, around, ws| {
+            (system.name.clone(), souple_engine::modes::lowest(system, state, around, ws, &settings))
+        });
+        let modes = match found {
+            Ok(modes) => modes,
+            Err(source) => return Err(FrequencyError { system, source }),
+        };
+        let hertz = |eigenvalue: &f64| eigenvalue.abs().sqrt().copysign(*eigenvalue) / TAU;
+        let mut hertz: Vec<f64> = modes.eigenvalues.iter().map(hertz).collect();
+        hertz.sort_by(f64::total_cmp);
+        let largest_residual = modes.residuals.iter().copied().fold(0.0, f64::max);
+        Ok(NaturalFrequencies { system, hertz, largest_residual })
+    };
+    (0..systems).map(of_system).collect()
+}

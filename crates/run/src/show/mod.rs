@@ -1,0 +1,165 @@
+//! A run to look at: bodies moment by moment and what they touch, and the pictures and animations made of it.
+//!
+//! A [`Show`] is read from the frames of a run's folder; [`Figure`] says how it is drawn.
+
+mod figure;
+mod film;
+mod quantity;
+mod stage;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use souple_engine::World;
+use souple_io::{Dataset, Field, IoError, read_dataset, read_series};
+use souple_math::Vec3;
+use souple_mesh::{BoundingBox, Mesh};
+use souple_scene::BodyInfo;
+
+pub use figure::{Arrows, Figure};
+pub use film::{FilmError, write_film};
+pub use stage::Stage;
+
+/// All bodies at one time.
+#[derive(Clone, Debug)]
+pub struct Moment {
+    /// [s]
+    pub time: f64,
+    pub bodies: Vec<BodyMoment>,
+}
+
+/// One body at one time.
+#[derive(Clone, Debug)]
+pub struct BodyMoment {
+    pub name: String,
+    pub mesh: Arc<Mesh>,
+    /// [m]
+    pub positions: Vec<Vec3>,
+    pub point_fields: Vec<Field>,
+    pub cell_fields: Vec<Field>,
+}
+
+/// A run's moments on their stage.
+#[derive(Clone, Debug)]
+pub struct Show {
+    pub stage: Stage,
+    pub moments: Vec<Moment>,
+}
+
+/// What cannot be shown.
+#[derive(Debug, thiserror::Error)]
+pub enum ShowError {
+    #[error(transparent)]
+    Io(#[from] IoError),
+    #[error("{}: {found}; expected the folder of a run with its series in `frames`", .folder.display())]
+    NoFrames { folder: PathBuf, found: String },
+    #[error("no body has the field `{name}`; expected {expected}")]
+    UnknownField { name: String, expected: String },
+    #[error("the {what} is {value}; expected {expected}")]
+    Request { what: &'static str, value: String, expected: String },
+}
+
+impl Show {
+    /// The frames of a run's folder.
+    ///
+    /// # Errors
+    /// There are none, their times differ from body to body, or a file cannot be read.
+    pub fn of_run(folder: &Path, stage: Stage) -> Result<Self, ShowError> {
+        let no_frames = |found: String| Err(ShowError::NoFrames { folder: folder.to_owned(), found });
+        let frames = folder.join("frames");
+        let Ok(entries) = std::fs::read_dir(&frames) else {
+            return no_frames("there is no folder `frames` that can be read".to_owned());
+        };
+        let mut lists: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        lists.retain(|path| path.extension().is_some_and(|extension| extension == "pvd"));
+        lists.sort();
+        let mut moments: Vec<Moment> = Vec::new();
+        for list in &lists {
+            let name = list.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let series = read_series(list)?;
+            if moments.is_empty() {
+                moments = series.iter().map(|(time, _)| Moment { time: *time, bodies: Vec::new() }).collect();
+            }
+            if !series.iter().map(|frame| frame.0).eq(moments.iter().map(|moment| moment.time)) {
+                return no_frames(format!("the times of `{name}` are not those of the body before it"));
+            }
+            let mut mesh: Option<Arc<Mesh>> = None;
+            for ((_, path), moment) in series.iter().zip(&mut moments) {
+                let body = BodyMoment::of_file(&name, path, mesh.as_ref())?;
+                mesh = Some(Arc::clone(&body.mesh));
+                moment.bodies.push(body);
+            }
+        }
+        if moments.is_empty() {
+            return no_frames("there is no series (`.pvd`) in `frames`".to_owned());
+        }
+        Ok(Self { stage, moments })
+    }
+
+    /// At most `count` moments, evenly chosen, the first and the last among them.
+    #[must_use]
+    pub fn thinned(mut self, count: usize) -> Self {
+        let all = self.moments.len();
+        let wanted = count.clamp(1, all.max(1));
+        if wanted < all {
+            let last = |index: usize| if wanted == 1 { all - 1 } else { index * (all - 1) / (wanted - 1) };
+            let kept: Vec<usize> = (0..wanted).map(last).collect();
+            let mut index = 0;
+            self.moments.retain(|_| {
+                index += 1;
+                kept.binary_search(&(index - 1)).is_ok()
+            });
+        }
+        self
+    }
+
+    /// The moment nearest to a time [s]; the last for none.
+    pub fn at(&self, time: Option<f64>) -> Option<&Moment> {
+        let Some(time) = time else { return self.moments.last() };
+        self.moments.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
+    }
+
+    /// Of all bodies at all moments.
+    pub fn bounds(&self) -> BoundingBox {
+        let positions =
+            self.moments.iter().flat_map(|moment| &moment.bodies).flat_map(|body| &body.positions);
+        BoundingBox::of(positions.copied().filter(|x| x.is_finite()))
+    }
+}
+
+impl Moment {
+    /// The present state of a world.
+    pub fn of_world(world: &World, bodies: &[BodyInfo]) -> Self {
+        let body = |info: &BodyInfo| {
+            let (point_fields, cell_fields) = crate::frames::fields(world, info);
+            BodyMoment {
+                name: info.name.clone(),
+                mesh: Arc::new(info.mesh.clone()),
+                positions: world.rows(info.system).positions[info.rows.clone()].to_vec(),
+                point_fields,
+                cell_fields,
+            }
+        };
+        Self { time: world.time(), bodies: bodies.iter().map(body).collect() }
+    }
+}
+
+impl BodyMoment {
+    /// `known`: the mesh of a frame before, taken again where the cells are the same.
+    fn of_file(name: &str, path: &Path, known: Option<&Arc<Mesh>>) -> Result<Self, IoError> {
+        let Dataset { mesh, point_fields, cell_fields, .. } = read_dataset(path)?;
+        let positions = mesh.points.clone();
+        let mesh = match known {
+            Some(known) if known.blocks == mesh.blocks && known.points.len() == mesh.points.len() => {
+                Arc::clone(known)
+            }
+            _ => Arc::new(mesh),
+        };
+        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields })
+    }
+
+    /// Whether it can be drawn.
+    fn is_finite(&self) -> bool {
+        self.positions.iter().all(|x| x.is_finite())
+    }
+}

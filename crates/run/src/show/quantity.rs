@@ -1,0 +1,108 @@
+//! Numbers to colour by: a field, its magnitude or one component, brought to the points.
+
+use souple_io::Field;
+
+use super::{BodyMoment, Moment, ShowError};
+
+/// Names of the components of vectors and of symmetric tensors.
+const VECTOR: [&str; 3] = ["x", "y", "z"];
+const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+/// What is shown by colours: `von_mises`, `displacement` (its magnitude), `displacement.y`, `stress.xx`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Quantity<'a> {
+    field: &'a str,
+    component: Option<&'a str>,
+}
+
+impl<'a> Quantity<'a> {
+    pub fn parse(name: &'a str) -> Self {
+        match name.split_once('.') {
+            Some((field, component)) => Self { field, component: Some(component) },
+            None => Self { field: name, component: None },
+        }
+    }
+
+    /// For a legend: `displacement, y`.
+    pub fn title(&self) -> String {
+        let name = match self.field {
+            "von_mises" => "von Mises stress".to_owned(),
+            field => field.replace('_', " "),
+        };
+        match self.component {
+            Some(component) => format!("{name}, {component}"),
+            None => name,
+        }
+    }
+
+    pub fn unit(&self) -> &'static str {
+        match self.field {
+            "displacement" => "m",
+            "velocity" => "m/s",
+            "stress" | "von_mises" => "Pa",
+            "strain_energy_density" => "J/m³",
+            _ => "",
+        }
+    }
+
+    /// A value for each point of a body; `None` where it has no such field.
+    pub fn at_points(&self, body: &BodyMoment) -> Option<Vec<f64>> {
+        if let Some(field) = body.point_fields.iter().find(|field| field.name == self.field) {
+            return self.scalars(field);
+        }
+        let field = body.cell_fields.iter().find(|field| field.name == self.field)?;
+        let cells = self.scalars(field)?;
+        let mut sums = vec![(0.0, 0.0); body.positions.len()];
+        for (cell, value) in body.mesh.cells().zip(&cells) {
+            for node in cell.nodes {
+                let (sum, count) = &mut sums[*node as usize];
+                *sum += value;
+                *count += 1.0;
+            }
+        }
+        Some(sums.into_iter().map(|(sum, count)| sum / count).collect())
+    }
+
+    fn scalars(&self, field: &Field) -> Option<Vec<f64>> {
+        let n = field.components;
+        let tuples = field.values.chunks_exact(n.max(1));
+        match self.component {
+            None if n == 1 => Some(field.values.clone()),
+            None => Some(tuples.map(|tuple| tuple.iter().map(|c| c * c).sum::<f64>().sqrt()).collect()),
+            Some(name) => {
+                let names: &[&str] = match n {
+                    3 => &VECTOR,
+                    6 => &TENSOR,
+                    _ => return None,
+                };
+                let component = names.iter().position(|known| *known == name)?;
+                Some(tuples.map(|tuple| tuple[component]).collect())
+            }
+        }
+    }
+
+    /// Refuses a quantity that no body has.
+    pub fn check(&self, moment: &Moment) -> Result<(), ShowError> {
+        if moment.bodies.iter().any(|body| self.at_points(body).is_some()) {
+            return Ok(());
+        }
+        let mut known: Vec<String> = Vec::new();
+        for field in moment.bodies.iter().flat_map(|body| body.point_fields.iter().chain(&body.cell_fields)) {
+            let name = match field.components {
+                3 => format!("{} (.x, .y, .z)", field.name),
+                6 => format!("{} (.xx, .yy, …)", field.name),
+                _ => field.name.clone(),
+            };
+            if !known.contains(&name) {
+                known.push(name);
+            }
+        }
+        let name = match self.component {
+            Some(component) => format!("{}.{component}", self.field),
+            None => self.field.to_owned(),
+        };
+        let expected =
+            if known.is_empty() { "none".to_owned() } else { format!("one of {}, none", known.join(", ")) };
+        Err(ShowError::UnknownField { name, expected })
+    }
+}

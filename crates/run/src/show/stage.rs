@@ -1,0 +1,146 @@
+//! What stands around the bodies of a scene: shapes that they touch, and which way is up.
+
+use std::path::Path;
+
+use souple_engine::Model;
+use souple_engine::obstacle::{Form, Obstacle, Side};
+use souple_io::picture::{Colour, EdgeStyle, Faces, Ground, Paint, Surface};
+use souple_math::Vec3;
+use souple_mesh::BoundingBox;
+use souple_scene::Scene;
+use souple_scene::spec::picture::{PictureSpec, PictureView};
+
+/// The surroundings of a scene.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    pub title: String,
+    /// From where the scene is seen, and what is up.
+    pub view: PictureView,
+    obstacles: Vec<Obstacle>,
+}
+
+impl Default for Stage {
+    /// Nothing stands around; `y` is up.
+    fn default() -> Self {
+        let view = PictureSpec::default().view(Vec3::ZERO);
+        Self { title: String::new(), view, obstacles: Vec::new() }
+    }
+}
+
+impl Stage {
+    pub fn of(scene: &Scene) -> Self {
+        Self { title: scene.title.clone(), ..Self::of_model(&scene.model, scene.picture) }
+    }
+
+    /// Without a title.
+    pub fn of_model(model: &Model, view: PictureView) -> Self {
+        let forces = model.systems.iter().flat_map(|system| &system.forces);
+        let mut obstacles: Vec<Obstacle> = Vec::new();
+        for obstacle in forces.filter_map(|force| force.obstacle()) {
+            // several bodies may touch one shape
+            if !obstacles.iter().any(|known| known.form == obstacle.form) {
+                obstacles.push(obstacle);
+            }
+        }
+        Self { title: String::new(), view, obstacles }
+    }
+
+    /// The stage of the scene that a run's report names; the default, and why, where it cannot be had.
+    pub fn of_report(folder: &Path) -> (Self, Option<String>) {
+        let path = folder.join("report.json");
+        let report = std::fs::read_to_string(&path).ok();
+        let report: Option<serde_json::Value> = report.and_then(|text| serde_json::from_str(&text).ok());
+        let Some(report) = report else {
+            return (Self::default(), Some(format!("{} cannot be read", path.display())));
+        };
+        let title = report["title"].as_str().unwrap_or_default().to_owned();
+        let bare = Self { title, ..Self::default() };
+        let name = report["scene"].as_str().unwrap_or_default();
+        match souple_scene::read_file(Path::new(name), &[]) {
+            Ok(scene) if report["scene_sha256"] == scene.scene_sha256.as_str() => (Self::of(&scene), None),
+            Ok(_) => (bare, Some(format!("the scene `{name}` is not as it was run: shapes are not drawn"))),
+            Err(_) => (bare, Some(format!("the scene `{name}` cannot be read: shapes are not drawn"))),
+        }
+    }
+
+    /// The plane that is most level, if any is.
+    pub(super) fn ground(&self, time: f64) -> Option<Ground> {
+        let planes = self.planes(time).filter(|(_, normal)| normal.dot(self.view.up) > LEVEL);
+        let best = planes.max_by(|a, b| a.1.dot(self.view.up).total_cmp(&b.1.dot(self.view.up)));
+        best.map(|(point, normal)| Ground { point, normal })
+    }
+
+    fn planes(&self, time: f64) -> impl Iterator<Item = (Vec3, Vec3)> + '_ {
+        self.obstacles.iter().filter_map(move |obstacle| match obstacle.form {
+            Form::Plane { point, normal } => {
+                Some((obstacle.place(point, time), obstacle.direction(point, normal, time)))
+            }
+            Form::Surface { .. } => None,
+        })
+    }
+
+    /// Everything but the ground: bounded shapes, and of other planes the part around the bodies.
+    pub(super) fn surfaces(&self, time: f64, bodies: BoundingBox) -> Vec<Surface> {
+        let ground = self.ground(time);
+        let walls = self
+            .planes(time)
+            .filter(|(point, normal)| Some(Ground { point: *point, normal: *normal }) != ground);
+        let walls = walls.map(|(point, normal)| wall(point, normal, bodies));
+        let bounded = self.obstacles.iter().filter_map(|obstacle| match &obstacle.form {
+            Form::Plane { .. } => None,
+            Form::Surface { triangles, bodies, .. } => Some(Surface {
+                points: points_of(obstacle, time),
+                triangles: triangles.clone(),
+                paint: hard(),
+                edge_style: EdgeStyle::Hidden,
+                faces: if *bodies == Side::Inside { Faces::Front } else { Faces::Both },
+                ..Surface::default()
+            }),
+        });
+        walls.chain(bounded).collect()
+    }
+
+    /// Bounds of the bounded shapes that are not much larger than the bodies.
+    pub(super) fn bounds(&self, time: f64, bodies: BoundingBox) -> Option<BoundingBox> {
+        let boxes = self.obstacles.iter().filter_map(|obstacle| {
+            let bounds = BoundingBox::of(points_of(obstacle, time).into_iter());
+            let is_bounded = matches!(obstacle.form, Form::Surface { .. });
+            (is_bounded && bounds.diagonal() < MUCH_LARGER * bodies.diagonal()).then_some(bounds)
+        });
+        boxes.reduce(BoundingBox::union)
+    }
+}
+
+/// Cosine of 45 degrees: steeper planes are walls.
+const LEVEL: f64 = 0.7;
+const MUCH_LARGER: f64 = 4.0;
+
+/// The colour of what does not deform.
+fn hard() -> Paint {
+    Paint::Plain(Colour::from_screen([150, 158, 170]))
+}
+
+/// Where the points of a bounded shape are at a time; a plane has none.
+fn points_of(obstacle: &Obstacle, time: f64) -> Vec<Vec3> {
+    match &obstacle.form {
+        Form::Plane { .. } => Vec::new(),
+        Form::Surface { points, .. } => points.iter().map(|point| obstacle.place(*point, time)).collect(),
+    }
+}
+
+/// A square of a plane, beside the middle of the bodies.
+fn wall(point: Vec3, normal: Vec3, bodies: BoundingBox) -> Surface {
+    let centre = bodies.centre();
+    let centre = centre - normal * normal.dot(centre - point);
+    let first = normal.any_orthogonal();
+    let half = 0.6 * bodies.diagonal();
+    let corner = |a: f64, b: f64| centre + (first * a + normal.cross(first) * b) * half;
+    Surface {
+        points: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        // pale: a wall is scenery, and letters may stand before it
+        paint: Paint::Plain(Colour::from_screen([226, 229, 235])),
+        faces: Faces::Front,
+        ..Surface::default()
+    }
+}

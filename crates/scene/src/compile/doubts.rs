@@ -1,0 +1,76 @@
+//! What is no fault but hardly meant: magnitudes that look like a slip of units, materials that lock.
+
+use souple_models::materials::{Lame, Material};
+
+use super::Draft;
+use crate::diagnostic::Site;
+use crate::spec::body::Body;
+
+/// Young's moduli of matter [Pa]: the softest gels have tens of pascals, diamond 1.2·10¹².
+const MODULI: [f64; 2] = [20.0, 2e12];
+/// Densities of matter [kg/m³]: aerogels have a few, osmium 22 600.
+const DENSITIES: [f64; 2] = [1.0, 3e4];
+/// Sizes of bodies [m].
+const SIZES: [f64; 2] = [1e-5, 500.0];
+/// `λ/μ` beyond which elements with linear shape functions are markedly too stiff: they have fewer freedoms than
+/// their cells have volumes to keep. `ν = 0.475` gives 19 (Hughes 2000, §4.2).
+const LOCKING: f64 = 19.0;
+
+/// Adds warnings on all bodies.
+pub fn warn(draft: &mut Draft) {
+    let mut warnings = Vec::new();
+    for body in &draft.bodies {
+        let size = body.mesh.bounds().diagonal();
+        if !within(size, SIZES) {
+            let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
+            let hint =
+                if size > SIZES[1] { "did you mean mm (`scale = 0.001`)?" } else { "is the scale right?" };
+            let place = draft.place(site);
+            warnings.push(format!("{place}: body `{}` is {size:.3e} m across: {hint}", body.spec.name));
+        }
+        for (site, material) in materials(body.spec) {
+            warnings.extend(of_material(&material).map(|doubt| format!("{}: {doubt}", draft.place(site))));
+        }
+    }
+    draft.warnings.extend(warnings);
+}
+
+fn within(value: f64, [low, high]: [f64; 2]) -> bool {
+    (low..=high).contains(&value)
+}
+
+/// The materials of a body and where they are written.
+fn materials(body: &Body) -> Vec<(&Site, Material)> {
+    let parts = body.regions.iter().map(|part| &part.material);
+    let chosen = [&body.material].into_iter().chain(parts).flatten();
+    // what cannot be built was refused where it was read
+    chosen.filter_map(|chosen| Some((&chosen.site, (chosen.entry.build)(&chosen.values).ok()?))).collect()
+}
+
+fn of_material(material: &Material) -> impl Iterator<Item = String> {
+    let (density, modulus) = (material.density, youngs_modulus(&material.small_strain));
+    let ratio = material.small_strain.lambda / material.small_strain.mu;
+    let modulus_doubt = (!within(modulus, MODULI)).then(|| {
+        let hint = if modulus < MODULI[0] { "did you mean kPa or MPa?" } else { "did you mean Pa or kPa?" };
+        format!("Young's modulus is {modulus:.3e} Pa: {hint}")
+    });
+    let density_doubt = (!within(density, DENSITIES)).then(|| {
+        let hint = if density < DENSITIES[0] { "did you mean g/cm^3?" } else { "did you mean kg/m^3?" };
+        format!("the density is {density:.3e} kg/m³: {hint}")
+    });
+    let locking = (ratio > LOCKING).then(|| {
+        // ν = λ / (2 (λ + μ))
+        let poisson = 0.5 * ratio / (ratio + 1.0);
+        format!(
+            "Poisson's ratio is {poisson:.4}: linear elements lock when nearly incompressible, the body will be too \
+             stiff; take at most 0.475, or hexahedra and a finer mesh, and compare"
+        )
+    });
+    let of_law = material.warnings().iter().map(|doubt| format!("the law: {doubt}"));
+    [modulus_doubt, density_doubt, locking].into_iter().flatten().chain(of_law)
+}
+
+/// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].
+pub fn youngs_modulus(lame: &Lame) -> f64 {
+    lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu)
+}

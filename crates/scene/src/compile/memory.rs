@@ -1,0 +1,192 @@
+//! Whether a scene fits into the memory of the machine: asked before anything large is made, since a system that runs
+//! out of memory ends the program without a word.
+//!
+//! The estimate counts what every scene of that size needs, and no more: it refuses what cannot fit, and lets pass
+//! what may. Contacts, factors of direct solvers and pictures come on top.
+
+use souple_mesh::MeshSize;
+
+use super::bodies::Placed;
+use crate::diagnostic::{Code, Log, Site};
+use crate::source::Sources;
+use crate::spec::Spec;
+use crate::spec::mesh::MeshSpec;
+
+/// Vectors of three numbers that a point has: configuration and velocity of two states, four of rows, twelve of
+/// steppers, rest positions of two meshes.
+const VECTORS_OF_POINT: u64 = 22;
+/// The same of implicit steppers: forces, residuals and directions of Newton's method and of its solver.
+const VECTORS_OF_IMPLICIT_POINT: u64 = 12;
+const VECTOR: u64 = 24;
+/// Blocks in a row of the matrix, at least: a point of a regular mesh of tetrahedra and its fourteen neighbours.
+const BLOCKS_OF_ROW: u64 = 15;
+/// A block of 3×3 numbers with its column; once in the matrix, once in what preconditions it.
+const BLOCK: u64 = 2 * (72 + 4);
+/// What a tetrahedron, the smallest cell, has: nodes in two meshes, gradients, volume and law, places and forces of
+/// its corners.
+const CELL: u64 = 250;
+
+/// What a body needs.
+struct Needs<'a> {
+    body: &'a str,
+    site: &'a Site,
+    bytes: u64,
+    /// How large it is, in words.
+    size: String,
+}
+
+/// Whether the stepper of a body stores a matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Matrix {
+    Stored,
+    None,
+}
+
+/// Refuses generated meshes, and files, that cannot fit, before they are made.
+pub fn check_specified(spec: &Spec, sources: &Sources, log: &Log) {
+    let needs = spec.bodies.iter().filter_map(|body| {
+        let mesh = body.mesh.as_ref()?;
+        let (bytes, size) = match mesh {
+            MeshSpec::Generated(chosen) => {
+                let size = (chosen.entry.build.size)(&chosen.values).ok()?;
+                (bytes_of(size, matrix_of(spec, &body.system)), counts(size))
+            }
+            // no more is known of a file than that it is read as a whole
+            MeshSpec::File { file, site, .. } | MeshSpec::Filled { file, site, .. } => {
+                let path = sources.place_of(site.place.source, file);
+                let bytes = std::fs::metadata(path).ok()?.len();
+                (bytes, format!("a file of {}", gigabytes(bytes)))
+            }
+            // fillings bound the number of their points by themselves, and are counted when they are made
+            MeshSpec::Shape { .. } => return None,
+        };
+        Some(Needs { body: &body.name, site: mesh.site(), bytes, size })
+    });
+    check(&needs.collect::<Vec<_>>(), available(), log);
+}
+
+/// The same when all is known of the meshes, before forces and matrices are made.
+pub fn check_placed(spec: &Spec, bodies: &[Placed], log: &Log) {
+    let needs = bodies.iter().map(|body| {
+        let mesh = &body.mesh;
+        let size = MeshSize { points: mesh.points.len() as u64, cells: mesh.cell_count() as u64 };
+        Needs {
+            body: &body.spec.name,
+            site: body.spec.mesh.as_ref().map_or(&body.spec.site, MeshSpec::site),
+            bytes: bytes_of(size, matrix_of(spec, &body.spec.system)),
+            size: counts(size),
+        }
+    });
+    check(&needs.collect::<Vec<_>>(), available(), log);
+}
+
+/// What a body of that size needs at least [bytes].
+fn bytes_of(size: MeshSize, matrix: Matrix) -> u64 {
+    let of_point = match matrix {
+        Matrix::None => VECTORS_OF_POINT * VECTOR,
+        Matrix::Stored => (VECTORS_OF_POINT + VECTORS_OF_IMPLICIT_POINT) * VECTOR + BLOCKS_OF_ROW * BLOCK,
+    };
+    size.points * of_point + size.cells * CELL
+}
+
+fn counts(size: MeshSize) -> String {
+    format!("{} points and about {} cells", size.points, size.cells)
+}
+
+fn check(needs: &[Needs], available: Option<u64>, log: &Log) {
+    let total: u64 = needs.iter().map(|needs| needs.bytes).sum();
+    let (Some(largest), Some(available)) = (needs.iter().max_by_key(|needs| needs.bytes), available) else {
+        return;
+    };
+    if total <= available {
+        return;
+    }
+    let message = format!(
+        "the scene needs at least {} of memory, and {} are available on this machine; the largest body is `{}`: {}",
+        gigabytes(total),
+        gigabytes(available),
+        largest.body,
+        largest.size
+    );
+    log.add(
+        Code::TooLarge,
+        largest.site,
+        message,
+        "fewer cells, or an explicit stepper, which stores no matrix",
+    );
+}
+
+fn gigabytes(bytes: u64) -> String {
+    format!("{:.1} GB", bytes as f64 * 1e-9)
+}
+
+/// Implicit steppers store a matrix, unless they are told to do without.
+fn matrix_of(spec: &Spec, system: &str) -> Matrix {
+    let stepper = spec.systems.iter().find(|candidate| candidate.name == system);
+    let stepper = stepper.and_then(|system| system.stepper.as_ref());
+    match stepper.and_then(|chosen| chosen.values.get("matrix_free")) {
+        Some(souple_table::Value::Boolean(false)) => Matrix::Stored,
+        _ => Matrix::None,
+    }
+}
+
+/// Bytes that can be had: what the system says is available, or what is left to the group the process is in, if
+/// less; `None` where the system does not tell.
+fn available() -> Option<u64> {
+    let text = |path: &str| std::fs::read_to_string(path).ok();
+    let system = text("/proc/meminfo").and_then(|meminfo| {
+        Some(1024 * (entry(&meminfo, "MemAvailable:")? + entry(&meminfo, "SwapFree:").unwrap_or(0)))
+    })?;
+    let group = || {
+        let most: u64 = text("/sys/fs/cgroup/memory.max")?.trim().parse().ok()?;
+        let used: u64 = text("/sys/fs/cgroup/memory.current")?.trim().parse().ok()?;
+        // files held in memory are given up when it is needed
+        let cached = text("/sys/fs/cgroup/memory.stat").and_then(|stat| entry(&stat, "inactive_file"));
+        Some(most.saturating_sub(used.saturating_sub(cached.unwrap_or(0))))
+    };
+    Some(group().map_or(system, |group| group.min(system)))
+}
+
+/// The number behind a word at the start of a line.
+fn entry(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find(|line| line.split_whitespace().next() == Some(name))?;
+    line.split_whitespace().nth(1)?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::Source;
+
+    /// What fits passes; what does not is refused with both figures and the largest body.
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let site = Site::default();
+        let needs = |body, points, matrix| {
+            let size = MeshSize { points, cells: 5 * points };
+            Needs { body, site: &site, bytes: bytes_of(size, matrix), size: counts(size) }
+        };
+        let explicit = needs("small", 1000, Matrix::None);
+        assert_eq!(explicit.bytes, 1000 * 22 * 24 + 5000 * 250);
+        let scene = [explicit, needs("large", 10_000_000, Matrix::Stored)];
+        let faults = |available| {
+            let log = Log::default();
+            check(&scene, available, &log);
+            let mut sources = Sources::default();
+            sources.add(Source { name: "x".into(), folder: "".into(), text: String::new() });
+            log.into_diagnostics(&sources).0
+        };
+        assert!(faults(None).is_empty() && faults(Some(1 << 40)).is_empty());
+        let refused = faults(Some(8_000_000_000));
+        assert_eq!((refused.len(), refused[0].code), (1, Code::TooLarge));
+        for words in ["needs at least 43.5 GB", "8.0 GB are available", "`large`", "10000000 points"] {
+            assert!(refused[0].message.contains(words), "{}", refused[0].message);
+        }
+    }
+
+    #[test]
+    fn entries_are_found_by_their_whole_name() {
+        let text = "MemFree: 5 kB\nMemAvailable:  7 kB\n";
+        assert_eq!((entry(text, "MemAvailable:"), entry(text, "Mem")), (Some(7), None));
+    }
+}

@@ -1,0 +1,214 @@
+//! Pins become constraints. Two pins may hold one point, along different axes or at the same place; where they want
+//! different places along one axis, the scene contradicts itself and is refused.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use souple_engine::{Constraint, Motion};
+use souple_math::{Mat3, Vec3};
+
+use super::Draft;
+use super::bodies::Placed;
+use super::motion::{AxisMotions, motion_of_pin};
+use crate::diagnostic::Code;
+use crate::spec::boundary::{MotionSpec, Pin};
+
+/// What holds one point, axis by axis.
+#[derive(Clone, Debug, Default)]
+struct Hold {
+    by: [Option<Led>; 3],
+}
+
+/// A pin of the body, by its number, and how it leads.
+#[derive(Clone, Debug)]
+struct Led {
+    pin: usize,
+    motion: Option<Arc<dyn Motion>>,
+}
+
+impl Led {
+    fn offset(&self, start: Vec3, time: f64) -> Vec3 {
+        self.motion.as_ref().map_or(Vec3::ZERO, |motion| motion.offset(start, time))
+    }
+}
+
+/// Times at which two motions of one point are compared, beside those of their key frames.
+const SAMPLES: usize = 16;
+/// Parts of the run at which they lie: multiples of the golden ratio, which no period divides.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Targets count as equal up to this, relative to each other or to the body's size: rounding of formulas.
+const SAME: f64 = 1e-9;
+
+/// All pins of all bodies.
+pub fn add(draft: &mut Draft) {
+    let mut added: Vec<(usize, Constraint)> = Vec::new();
+    for body in &draft.bodies {
+        let system = &draft.systems[body.system];
+        for (point, hold) in holds(draft, body) {
+            let start = body.mesh.points[point as usize];
+            let free = [0, 1, 2].map(|axis: usize| if hold.by[axis].is_some() { 0.0 } else { 1.0 });
+            let motions = hold.by.map(|led| led.and_then(|led| led.motion));
+            let leads = motions.iter().any(Option::is_some);
+            let motion = leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>);
+            let block = system.kinematics.block_of(body.rows.start as u32 + point);
+            let free = Mat3::from_diagonal(Vec3::from_array(free));
+            added.push((body.system, Constraint { block, free, start, motion }));
+        }
+    }
+    for (system, constraint) in added {
+        draft.systems[system].constraints.push(constraint);
+    }
+}
+
+/// What holds the points of a body; contradictions and motions that are not finite are reported.
+fn holds(draft: &Draft, body: &Placed) -> BTreeMap<u32, Hold> {
+    let mut holds: BTreeMap<u32, Hold> = BTreeMap::new();
+    let mut contradicting = BTreeSet::new();
+    for (index, pin) in body.spec.pins.iter().enumerate() {
+        let Some(region) = &pin.region else { continue };
+        let Some(motion) = motion_of_pin(draft.log, pin) else { continue };
+        let points = draft.selector(body).points(region);
+        if let Some(motion) = &motion
+            && !starts_finite(draft, body, pin, motion.as_ref(), &points)
+        {
+            continue;
+        }
+        let led = Led { pin: index, motion };
+        for point in points {
+            let hold = holds.entry(point).or_default();
+            for axis in (0..3).filter(|axis| pin.axes[*axis]) {
+                match &hold.by[axis] {
+                    None => hold.by[axis] = Some(led.clone()),
+                    Some(earlier) if !contradicting.contains(&(earlier.pin, index)) => {
+                        if let Some(message) = contradiction(draft, body, [earlier, &led], point, axis) {
+                            contradicting.insert((earlier.pin, index));
+                            let expected = "one target for each axis of a point: other regions, or `axes`";
+                            draft.log.add(Code::Conflict, &pin.site, message, expected);
+                        }
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+    }
+    holds
+}
+
+/// Where two pins want a point at different places along an axis, in words.
+fn contradiction(draft: &Draft, body: &Placed, leds: [&Led; 2], point: u32, axis: usize) -> Option<String> {
+    let start = body.mesh.points[point as usize];
+    let size = body.mesh.bounds().diagonal();
+    let pins = leds.map(|led| &body.spec.pins[led.pin]);
+    let sampled = (0..SAMPLES).map(|sample| (sample as f64 * GOLDEN).fract() * draft.spec.run.duration);
+    let times = pins.into_iter().flat_map(key_times).chain(sampled);
+    for time in times {
+        let [a, b] = leds.map(|led| led.offset(start, time)[axis]);
+        if (a - b).abs() > SAME * f64::max(f64::max(a.abs(), b.abs()), size) {
+            let name = ["x", "y", "z"][axis];
+            let number = body.point_numbers[point as usize];
+            let other = draft.place(&pins[0].site);
+            return Some(format!(
+                "this pin and {other} hold point {number} of body `{}`, at ({}, {}, {}), and want it at different \
+                 places along {name}: {a} m and {b} m from its start at t = {time} s",
+                body.spec.name, start.x, start.y, start.z
+            ));
+        }
+    }
+    None
+}
+
+fn key_times(pin: &Pin) -> impl Iterator<Item = f64> + '_ {
+    let of = |motion: &MotionSpec| match motion {
+        MotionSpec::KeyFrames { times, .. } => times.clone(),
+        MotionSpec::Formula(_) => Vec::new(),
+    };
+    [&pin.motion, &pin.rotation].into_iter().flatten().flat_map(of)
+}
+
+/// Whether a motion gives finite offsets and velocities at the start; where not, that is reported.
+fn starts_finite(draft: &Draft, body: &Placed, pin: &Pin, motion: &dyn Motion, points: &[u32]) -> bool {
+    for &point in points {
+        let start = body.mesh.points[point as usize];
+        let held = |vector: Vec3| (0..3).filter(|axis| pin.axes[*axis]).all(|axis| vector[axis].is_finite());
+        let faulty = [("offset", motion.offset(start, 0.0)), ("velocity", motion.velocity(start, 0.0))]
+            .into_iter()
+            .find(|(_, vector)| !held(*vector));
+        if let Some((what, value)) = faulty {
+            let number = body.point_numbers[point as usize];
+            let message = format!(
+                "the {what} of point {number}, at ({}, {}, {}), is ({}, {}, {}) at t = 0",
+                start.x, start.y, start.z, value.x, value.y, value.z
+            );
+            let expected = "formulas that are finite with their derivative by t";
+            draft.log.add(Code::NotFinite, &pin.site, message, expected);
+            return false;
+        }
+    }
+    true
+}
+
+/// Says of attachments and loads that act on held points only, and so do nothing but change reactions.
+pub fn warn_of_idle(draft: &mut Draft) {
+    let mut warnings = Vec::new();
+    for body in &draft.bodies {
+        let held = held_points(draft, body);
+        for load in &body.spec.loads {
+            let Some(region) = &load.region else { continue };
+            let points = draft.selector(body).points(region);
+            if !points.is_empty() && points.iter().all(|point| held[*point as usize]) {
+                let place = draft.place(&load.site);
+                warnings.push(format!(
+                    "{place}: all points of this load are pinned along all axes: it moves nothing"
+                ));
+            }
+        }
+    }
+    for link in &draft.spec.attachments {
+        let (Some(from), Some(to), Some(region)) =
+            (draft.body(&link.from), draft.body(&link.to), &link.region)
+        else {
+            continue;
+        };
+        let (held, held_there) = (held_points(draft, from), held_points(draft, to));
+        let locator = souple_mesh::CellLocator::new(&to.mesh);
+        let is_idle = |point: &u32| {
+            let carrier = locator.carrier(from.mesh.points[*point as usize]);
+            let cell = carrier.and_then(|carrier| to.mesh.cell(carrier.cell));
+            held[*point as usize]
+                && cell.is_some_and(|cell| cell.nodes.iter().all(|node| held_there[*node as usize]))
+        };
+        let points = draft.selector(from).points(region);
+        let idle: Vec<u32> = points.iter().copied().filter(is_idle).collect();
+        if let Some(first) = idle.first() {
+            let pins = |body: &Placed| -> String {
+                body.spec.pins.first().map_or_else(String::new, |pin| draft.place(&pin.site))
+            };
+            warnings.push(format!(
+                "{}: {} of {} attached points are pinned, and so is what they are attached to, the first is point \
+                 {} of body `{}`: these springs move nothing (pins: {} and {})",
+                draft.place(&link.site),
+                idle.len(),
+                points.len(),
+                from.point_numbers[*first as usize],
+                link.from,
+                pins(from),
+                pins(to),
+            ));
+        }
+    }
+    draft.warnings.extend(warnings);
+}
+
+/// Per point of a body: whether it is held along all axes.
+fn held_points(draft: &Draft, body: &Placed) -> Vec<bool> {
+    let system = &draft.systems[body.system];
+    let mut held = vec![false; body.mesh.points.len()];
+    for constraint in system.constraints.iter().filter(|constraint| constraint.free == Mat3::ZERO) {
+        if let Some(row) = system.kinematics.point_block_row(constraint.block)
+            && body.rows.contains(&(row as usize))
+        {
+            held[row as usize - body.rows.start] = true;
+        }
+    }
+    held
+}

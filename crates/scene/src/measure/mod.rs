@@ -1,0 +1,221 @@
+//! Probes at work: a quantity read off a running world.
+//!
+//! Each subject of the table of quantities has a file that measures it.
+
+mod body;
+mod cells;
+mod contact;
+mod points;
+mod reaction;
+
+use souple_engine::World;
+use souple_math::Vec3;
+
+use crate::compile::{Draft, solid_name};
+use crate::spec::probe::{Component, Probe};
+use crate::spec::quantity::{
+    BodyQuantity, CellQuantity, Momentum, PointQuantity, Rank, Reduction, Subject, WorldQuantity,
+};
+
+/// A probe that knows where to read.
+#[derive(Clone, Debug)]
+pub struct ProbeInfo {
+    pub name: String,
+    /// SI unit of its values.
+    pub unit: &'static str,
+    /// The quantity's name.
+    pub quantity: &'static str,
+    rank: Rank,
+    component: Option<Component>,
+    reduction: Reduction,
+    target: Target,
+}
+
+/// What is read, and where.
+#[derive(Clone, Debug)]
+enum Target {
+    World(WorldQuantity),
+    /// Momentum of the world; angular momentum is about a place [m].
+    WorldMomentum(Momentum, Vec3),
+    Points(PointQuantity, Part),
+    Body(BodyQuantity, Part),
+    BodyMomentum(Momentum, Part),
+    Cells(CellQuantity, CellPart),
+}
+
+/// Points of a body.
+#[derive(Clone, Debug)]
+struct Part {
+    system: usize,
+    /// Among the rows of the system.
+    rows: Vec<u32>,
+    /// Where the rows started [m].
+    starts: Vec<Vec3>,
+    /// All rows of the body, for its centre of mass.
+    whole: std::ops::Range<usize>,
+    /// Only this contact.
+    contact: Option<String>,
+    /// The place that moments are taken about [m]; the body's centre of mass where `None`.
+    about: Option<Vec3>,
+}
+
+/// Cells of the solid of this name.
+#[derive(Clone, Debug)]
+struct CellPart {
+    system: usize,
+    solid: String,
+    cells: Vec<u32>,
+}
+
+/// What a probe reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measurement {
+    Number(f64),
+    Vector(Vec3),
+}
+
+/// A quantity at each point of a part.
+enum PointValues {
+    Numbers(Vec<f64>),
+    Vectors(Vec<Vec3>),
+}
+
+impl Measurement {
+    /// One number, or three.
+    pub fn numbers(&self) -> Vec<f64> {
+        match self {
+            Self::Number(number) => vec![*number],
+            Self::Vector(vector) => vector.to_array().to_vec(),
+        }
+    }
+}
+
+impl ProbeInfo {
+    /// `None` where the body or region was refused.
+    pub(crate) fn compile(probe: &Probe, draft: &Draft) -> Option<Self> {
+        let target = match (probe.quantity.build.subject, &probe.body) {
+            (Subject::World(quantity), _) => Target::World(quantity),
+            (Subject::BodyOrWorld(momentum), None) => {
+                Target::WorldMomentum(momentum, probe.about.unwrap_or(Vec3::ZERO))
+            }
+            (Subject::BodyOrWorld(momentum), Some(_)) => Target::BodyMomentum(momentum, part(probe, draft)?),
+            (Subject::Points(quantity), _) => Target::Points(quantity, part(probe, draft)?),
+            (Subject::Body(quantity), _) => Target::Body(quantity, part(probe, draft)?),
+            (Subject::Cells(quantity), _) => Target::Cells(quantity, cell_part(probe, draft)?),
+        };
+        Some(Self {
+            name: probe.name.clone(),
+            unit: probe.quantity.build.unit,
+            quantity: probe.quantity.name,
+            rank: probe.rank(),
+            component: probe.component,
+            reduction: probe.reduction,
+            target,
+        })
+    }
+
+    /// Whether its values are vectors.
+    pub fn gives_vector(&self) -> bool {
+        self.rank == Rank::Vector
+    }
+
+    /// The quantity at the committed state.
+    pub fn measure(&self, world: &mut World) -> Measurement {
+        match &self.target {
+            Target::World(quantity) => Measurement::Number(of_world(*quantity, world)),
+            Target::WorldMomentum(momentum, about) => {
+                let (linear, angular) = world.momentum();
+                self.vector(match momentum {
+                    Momentum::Linear => linear,
+                    Momentum::Angular => angular - about.cross(linear),
+                })
+            }
+            Target::BodyMomentum(momentum, part) => self.vector(body::momentum(*momentum, part, world)),
+            Target::Body(quantity, part) => match body::measure(*quantity, part, world) {
+                Measurement::Vector(vector) => self.vector(vector),
+                number => number,
+            },
+            Target::Points(quantity, part) => self.reduce_points(&points::measure(*quantity, part, world)),
+            Target::Cells(quantity, part) => {
+                let (numbers, volumes) = cells::measure(*quantity, part, world);
+                Measurement::Number(reduced(&numbers, &volumes, self.reduction))
+            }
+        }
+    }
+
+    fn vector(&self, vector: Vec3) -> Measurement {
+        match self.component {
+            Some(component) => Measurement::Number(component.of(vector)),
+            None => Measurement::Vector(vector),
+        }
+    }
+
+    fn reduce_points(&self, values: &PointValues) -> Measurement {
+        let reduce = |numbers: &[f64]| {
+            Measurement::Number(reduced(numbers, &vec![1.0; numbers.len()], self.reduction))
+        };
+        match (values, self.component) {
+            (PointValues::Numbers(numbers), _) => reduce(numbers),
+            (PointValues::Vectors(vectors), Some(component)) => {
+                let numbers: Vec<f64> = vectors.iter().map(|vector| component.of(*vector)).collect();
+                reduce(&numbers)
+            }
+            (PointValues::Vectors(vectors), None) => {
+                let sum: Vec3 = vectors.iter().copied().sum();
+                let divisor = if self.reduction == Reduction::Mean { vectors.len() as f64 } else { 1.0 };
+                Measurement::Vector(sum / divisor)
+            }
+        }
+    }
+}
+
+/// The points that a probe is of.
+fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
+    let body = draft.body(probe.body.as_deref()?)?;
+    let points: Vec<u32> = match &probe.region {
+        Some(region) => draft.selector(body).points(region),
+        None => (0..body.mesh.points.len() as u32).collect(),
+    };
+    Some(Part {
+        system: body.system,
+        rows: points.iter().map(|point| body.rows.start as u32 + point).collect(),
+        starts: points.iter().map(|point| body.mesh.points[*point as usize]).collect(),
+        whole: body.rows.clone(),
+        contact: probe.contact.clone(),
+        about: probe.about,
+    })
+}
+
+/// The cells that a probe is of.
+fn cell_part(probe: &Probe, draft: &Draft) -> Option<CellPart> {
+    let body = draft.body(probe.body.as_deref()?)?;
+    let cells = match &probe.region {
+        Some(region) => draft.selector(body).cells(region),
+        None => (0..body.mesh.cell_count() as u32).collect(),
+    };
+    Some(CellPart { system: body.system, solid: solid_name(&body.spec.name), cells })
+}
+
+fn of_world(quantity: WorldQuantity, world: &mut World) -> f64 {
+    match quantity {
+        WorldQuantity::TotalEnergy => world.energy().total(),
+        WorldQuantity::KineticEnergy => world.energy().kinetic,
+        WorldQuantity::StoredEnergy => world.energy().by_force.iter().map(|(_, energy)| energy.stored).sum(),
+        WorldQuantity::DissipatedEnergy => {
+            world.energy().by_force.iter().map(|(_, energy)| energy.dissipated).sum()
+        }
+        WorldQuantity::Time => world.time(),
+    }
+}
+
+fn reduced(numbers: &[f64], weights: &[f64], reduction: Reduction) -> f64 {
+    match reduction {
+        Reduction::Sum => numbers.iter().sum(),
+        Reduction::Min => numbers.iter().copied().fold(f64::INFINITY, f64::min),
+        Reduction::Max => numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        Reduction::Mean => {
+            let total: f64 = weights.iter().sum();
+            numbers.iter().zip(weights).map(|(number, weight)| number * weight).sum::<f64>() / total
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! What pins do to the points they hold.
+//!
+//! Newton's law of a held point, along the held directions: `M a = f + r`, so the reaction is `r = M a − f` with the
+//! sum `f` of all other forces. It is the force of the pin *on the body*: under gravity a pinned body feels a reaction
+//! that points up. The acceleration `a` of held points is that of their prescribed motion; a consistent mass couples
+//! them to their free neighbours, whose accelerations follow from the same law. Where a stepper knows no inertia,
+//! `r = −f`.
+
+use souple_engine::{System, World};
+use souple_math::Vec3;
+
+use super::Part;
+
+/// Tolerance of the accelerations of free points, relative: far below what a probe is read to. A consistent mass is
+/// as well conditioned as its elements are shaped, so this takes tens of iterations.
+const TOLERANCE: f64 = 1e-12;
+const MOST_ITERATIONS: usize = 500;
+
+/// Reactions at the rows of a part; zero at those that nothing holds [N].
+pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
+    let timestep = world.model().timestep(part.system);
+    world.with_system(part.system, |system: &System, state, around, ws| {
+        system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
+        let force = &ws.row_force;
+        // r = M a − f
+        let mut balance: Vec<Vec3> = force.iter().map(|f| -*f).collect();
+        if system.stepper.has_inertia() {
+            let accelerations = accelerations(system, force, ws.rows.time, timestep);
+            system.mass.add_product(&accelerations, &mut balance);
+        }
+        let mut reactions = vec![Vec3::ZERO; balance.len()];
+        for constraint in &system.constraints {
+            if let Some(row) = system.kinematics.point_block_row(constraint.block) {
+                reactions[row as usize] = constraint.constrained() * balance[row as usize];
+            }
+        }
+        part.rows.iter().map(|row| reactions[*row as usize]).collect()
+    })
+}
+
+/// Accelerations of all rows: prescribed along held directions, free ones only where held ones need them.
+fn accelerations(system: &System, force: &[Vec3], time: f64, timestep: f64) -> Vec<Vec3> {
+    let mut a = vec![Vec3::ZERO; force.len()];
+    for constraint in &system.constraints {
+        if let (Some(row), Some(_)) =
+            (system.kinematics.point_block_row(constraint.block), &constraint.motion)
+        {
+            // the mean over a step: finite also where key frames make the velocity jump
+            let half = 0.5 * timestep;
+            let change = constraint.velocity(time + half) - constraint.velocity((time - half).max(0.0));
+            let over = time + half - (time - half).max(0.0);
+            a[row as usize] = constraint.constrained() * change / over;
+        }
+    }
+    if !system.mass.is_lumped() {
+        add_free_accelerations(system, force, &mut a);
+    }
+    a
+}
+
+/// Solves `M_ff a_f = f_f − M_fc a_c` by conjugate gradients, preconditioned by the diagonal.
+fn add_free_accelerations(system: &System, force: &[Vec3], a: &mut [Vec3]) {
+    let product = |x: &[Vec3]| {
+        let mut out = vec![Vec3::ZERO; x.len()];
+        system.mass.add_product(x, &mut out);
+        system.project_free_rows(&mut out);
+        out
+    };
+    let dot = |x: &[Vec3], y: &[Vec3]| x.iter().zip(y).map(|(x, y)| x.dot(*y)).sum::<f64>();
+    let preconditioned = |r: &[Vec3]| -> Vec<Vec3> {
+        r.iter().zip(&system.mass.diagonal).map(|(r, mass)| *r / *mass).collect()
+    };
+    let mut residual: Vec<Vec3> = force.iter().zip(product(a)).map(|(f, inertia)| *f - inertia).collect();
+    system.project_free_rows(&mut residual);
+    let mut z = preconditioned(&residual);
+    let mut direction = z.clone();
+    let mut rz = dot(&residual, &z);
+    let enough = TOLERANCE * TOLERANCE * rz;
+    for _ in 0..MOST_ITERATIONS {
+        if rz.is_nan() || rz <= enough {
+            break;
+        }
+        let image = product(&direction);
+        let alpha = rz / dot(&direction, &image);
+        for index in 0..a.len() {
+            a[index] += direction[index] * alpha;
+            residual[index] -= image[index] * alpha;
+        }
+        z = preconditioned(&residual);
+        let next = dot(&residual, &z);
+        let beta = next / rz;
+        rz = next;
+        for (d, z) in direction.iter_mut().zip(&z) {
+            *d = *z + *d * beta;
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Where a body's rest shape comes from: a generator, a file, a shape that is filled.
+
+use souple_mesh::fill::{Options, PARAMETERS};
+use souple_mesh::implicit::{BuildBody, SHAPES};
+use souple_mesh::{Build, GENERATORS};
+use souple_table::{Kind, Parameter, Range, Value, Values};
+
+use super::body::BODY;
+use crate::diagnostic::{Code, Site};
+use crate::document::Content;
+use crate::keys::{EntryShape, Key, Keys, Need, Others, Shape, outlines};
+use crate::reader::{Chosen, Reader, choose};
+use crate::values::Reading;
+
+const SCALE: Key =
+    Key::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0));
+
+static MESH_FILE: Keys = Keys::new(
+    "mesh_file",
+    "a mesh from a file",
+    &[Key::new("file", Shape::Text, "relative to the scene file that names it").required(), SCALE],
+);
+
+const BODY_SHAPE: EntryShape =
+    EntryShape { tag: "name", kind: "body shape", outlines: || outlines(&SHAPES), instead: &[] };
+
+static MESH_SHAPE: Keys = Keys {
+    name: "mesh_shape",
+    summary: "a shape filled with cells; the shape's own parameters stand beside",
+    keys: &[
+        Key::new("shape", Shape::Entry(BODY_SHAPE), "what is filled").required(),
+        filling(0),
+        filling(1),
+        filling(2),
+        filling(3),
+        filling(4),
+        filling(5),
+    ],
+    others: Others::ParametersOf("shape"),
+};
+
+static MESH_FILL: Keys = Keys::new(
+    "mesh_fill",
+    "what a surface encloses, filled with cells",
+    &[
+        Key::new("fill", Shape::Text, "a surface, relative to the scene file that names it").required(),
+        SCALE,
+        filling(0),
+        filling(1),
+        filling(2),
+        filling(3),
+        filling(4),
+        filling(5),
+    ],
+);
+
+/// A parameter of fillings as a key.
+const fn filling(index: usize) -> Key {
+    let Parameter { name, summary, kind, unit, range, default } = PARAMETERS[index];
+    let shape = match kind {
+        Kind::Number => Shape::Number,
+        Kind::Integer => Shape::Integer,
+        Kind::Boolean => Shape::Boolean,
+        Kind::Vector => Shape::Vector,
+        Kind::Text => Shape::Text,
+        Kind::Choice(choices) => Shape::Choice(choices),
+        Kind::Texts => Shape::Values,
+    };
+    let need = match default {
+        Some(value) => Need::Default(value),
+        None => Need::Required,
+    };
+    Key { name, summary, shape, unit, range, need }
+}
+
+pub(crate) const MESH: EntryShape = EntryShape {
+    tag: "generate",
+    kind: "mesh generator",
+    outlines: || outlines(&GENERATORS),
+    instead: &[&MESH_FILE, &MESH_SHAPE, &MESH_FILL],
+};
+
+/// Where a body's rest shape comes from.
+pub enum MeshSpec {
+    Generated(Chosen<Build>),
+    File {
+        file: String,
+        scale: f64,
+        site: Site,
+    },
+    /// A shape known by name, or a formula.
+    Shape {
+        shape: Chosen<BuildBody>,
+        options: Options,
+    },
+    /// What the surface of a file encloses.
+    Filled {
+        file: String,
+        scale: f64,
+        options: Options,
+        site: Site,
+    },
+}
+
+impl MeshSpec {
+    pub fn site(&self) -> &Site {
+        match self {
+            Self::Generated(chosen) => &chosen.site,
+            Self::Shape { shape, .. } => &shape.site,
+            Self::File { site, .. } | Self::Filled { site, .. } => site,
+        }
+    }
+
+    /// `{ generate = "bar", … }`, `{ file = "bar.msh" }`, `{ shape = "liver", … }`, `{ fill = "liver.stl", … }`, or
+    /// the file alone.
+    pub(crate) fn read(reader: &Reader) -> Option<Self> {
+        let reading = reader.reading("mesh")?;
+        let site = reading.site();
+        let Content::Table(table) = &reading.node.content else {
+            return match &reading.node.content {
+                Content::Text(file) => Some(Self::File { file: file.clone(), scale: 1.0, site }),
+                _ => choose(&reading, &MESH, &GENERATORS, &[], &BODY).map(Self::Generated),
+            };
+        };
+        let tags = ["generate", "file", "shape", "fill"];
+        let written: Vec<&str> = tags.into_iter().filter(|tag| table.get(tag).is_some()).collect();
+        match written[..] {
+            ["generate"] => choose(&reading, &MESH, &GENERATORS, &[], &BODY).map(Self::Generated),
+            ["file"] => {
+                let table = Reader::open(&reading, &MESH_FILE)?;
+                let site = table.site_of("file");
+                Some(Self::File { file: table.maybe_text("file")?, scale: table.number("scale"), site })
+            }
+            ["shape"] => {
+                let table = Reader::open(&reading, &MESH_SHAPE)?;
+                let options = read_options(&table, &reading);
+                let shape = table.entry("shape", &SHAPES)?;
+                Some(Self::Shape { shape, options: options? })
+            }
+            ["fill"] => {
+                let table = Reader::open(&reading, &MESH_FILL)?;
+                let (site, options) = (table.site_of("fill"), read_options(&table, &reading)?);
+                let (file, scale) = (table.maybe_text("fill")?, table.number("scale"));
+                Some(Self::Filled { file, scale, options, site })
+            }
+            _ => {
+                let says = if written.is_empty() { "none".to_owned() } else { written.join(" and ") };
+                let message = format!("a mesh says one of {}, this one says {says}", tags.join(", "));
+                let expected = "{ generate = \"bar\", … }, { file = \"…\" }, { shape = \"liver\", … } or \
+                                { fill = \"…\", … }";
+                reading.refuse(Code::MissingKey, message, expected)
+            }
+        }
+    }
+}
+
+fn read_options(table: &Reader, whole: &Reading) -> Option<Options> {
+    let mut values = Values::new();
+    let mut is_good = true;
+    for parameter in PARAMETERS {
+        if let Some(reading) = table.reading(parameter.name) {
+            is_good &= reading.parameter(parameter, &mut values).is_some();
+        }
+    }
+    if !is_good {
+        return None;
+    }
+    let options =
+        values.completed(PARAMETERS).map_err(Into::into).and_then(|values| Options::from_values(&values));
+    let refuse = |error: souple_mesh::MeshError| {
+        whole.refuse(Code::OutOfRange, error.to_string(), "such as size = \"5 mm\" or count = 10000")
+    };
+    options.map_or_else(refuse, Some)
+}

@@ -1,0 +1,327 @@
+//! What can be measured: the table of quantities.
+//!
+//! Adding one is an entry of [`QUANTITIES`] and a line where its [`Subject`] is measured (`crate::measure`).
+
+use souple_table::{Entry, Table};
+
+/// What a quantity is: its unit, whether it is a vector, how the values of a region become one, what it is of.
+#[derive(Clone, Copy, Debug)]
+pub struct Quantity {
+    /// SI unit of its values.
+    pub unit: &'static str,
+    pub rank: Rank,
+    /// How the values of a region become one unless the probe says otherwise.
+    pub reduction: Reduction,
+    pub subject: Subject,
+}
+
+/// An entry of [`QUANTITIES`].
+pub type QuantityEntry = Entry<Quantity>;
+
+/// Whether a value is one number or three.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rank {
+    Number,
+    Vector,
+}
+
+/// How many values become one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reduction {
+    /// Arithmetic over points, by volume over cells.
+    Mean,
+    Sum,
+    Min,
+    Max,
+}
+
+/// What a quantity is measured on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A value at every point of a region.
+    Points(PointQuantity),
+    /// A value in every cell of a region.
+    Cells(CellQuantity),
+    /// One value of the matter of a region.
+    Body(BodyQuantity),
+    /// One value of a body's region, or of the world where no body is named.
+    BodyOrWorld(Momentum),
+    World(WorldQuantity),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointQuantity {
+    Displacement,
+    Position,
+    Velocity,
+    Reaction,
+    Torque,
+    ContactForce,
+    NormalForce,
+    FrictionForce,
+    ContactTorque,
+    Penetration,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellQuantity {
+    VonMises,
+    Pressure,
+    MaxPrincipalStress,
+    MinPrincipalStress,
+    MaxPrincipalStretch,
+    MinPrincipalStretch,
+    StrainEnergy,
+    StrainEnergyDensity,
+    Volume,
+    VolumeRatio,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyQuantity {
+    Mass,
+    CentreOfMass,
+    KineticEnergy,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Momentum {
+    Linear,
+    Angular,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorldQuantity {
+    TotalEnergy,
+    KineticEnergy,
+    StoredEnergy,
+    DissipatedEnergy,
+    Time,
+}
+
+impl Quantity {
+    const fn of(unit: &'static str, rank: Rank, reduction: Reduction, subject: Subject) -> Self {
+        Self { unit, rank, reduction, subject }
+    }
+
+    /// Whether it is a moment, taken about a place.
+    pub fn is_moment(&self) -> bool {
+        matches!(
+            self.subject,
+            Subject::Points(PointQuantity::Torque | PointQuantity::ContactTorque)
+                | Subject::BodyOrWorld(Momentum::Angular)
+        )
+    }
+
+    /// Whether it is of contacts, of which a probe may choose one.
+    pub fn is_of_contact(&self) -> bool {
+        matches!(
+            self.subject,
+            Subject::Points(
+                PointQuantity::ContactForce
+                    | PointQuantity::NormalForce
+                    | PointQuantity::FrictionForce
+                    | PointQuantity::ContactTorque
+                    | PointQuantity::Penetration
+            )
+        )
+    }
+}
+
+const KINEMATICS: &str = "kinematics of points";
+const CONTACT: &str = "Wriggers 2006, §5";
+const STRESS: &str = "Bonet & Wood 2008, §5";
+const MECHANICS: &str = "balance of momentum";
+
+const fn entry(
+    name: &'static str,
+    summary: &'static str,
+    source: &'static str,
+    build: Quantity,
+) -> QuantityEntry {
+    QuantityEntry { name, summary, source, parameters: &[], build }
+}
+
+const fn points(unit: &'static str, rank: Rank, reduction: Reduction, quantity: PointQuantity) -> Quantity {
+    Quantity::of(unit, rank, reduction, Subject::Points(quantity))
+}
+
+const fn cells(unit: &'static str, reduction: Reduction, quantity: CellQuantity) -> Quantity {
+    Quantity::of(unit, Rank::Number, reduction, Subject::Cells(quantity))
+}
+
+const fn world(unit: &'static str, quantity: WorldQuantity) -> Quantity {
+    Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::World(quantity))
+}
+
+use Rank::{Number, Vector};
+use Reduction::{Max, Mean, Min, Sum};
+
+const ENTRIES: &[&QuantityEntry] = &[
+    &entry(
+        "displacement",
+        "from where the points started",
+        KINEMATICS,
+        points("m", Vector, Mean, PointQuantity::Displacement),
+    ),
+    &entry(
+        "position",
+        "where the points are",
+        KINEMATICS,
+        points("m", Vector, Mean, PointQuantity::Position),
+    ),
+    &entry("velocity", "of the points", KINEMATICS, points("m/s", Vector, Mean, PointQuantity::Velocity)),
+    &entry(
+        "reaction",
+        "force of pins on the body, along the directions they hold: mass times prescribed acceleration, less all other forces",
+        MECHANICS,
+        points("N", Vector, Sum, PointQuantity::Reaction),
+    ),
+    &entry(
+        "torque",
+        "moment of the reactions on the body, about the key `about` or its centre of mass",
+        MECHANICS,
+        points("N m", Vector, Sum, PointQuantity::Torque),
+    ),
+    &entry(
+        "contact_force",
+        "force of contacts on the points",
+        CONTACT,
+        points("N", Vector, Sum, PointQuantity::ContactForce),
+    ),
+    &entry(
+        "contact_force.normal",
+        "the part of the contact force along the normal: pressure, damping",
+        CONTACT,
+        points("N", Vector, Sum, PointQuantity::NormalForce),
+    ),
+    &entry(
+        "contact_force.tangential",
+        "the part of the contact force along the surface: friction",
+        CONTACT,
+        points("N", Vector, Sum, PointQuantity::FrictionForce),
+    ),
+    &entry(
+        "contact_torque",
+        "moment of the contact forces on the body, about the key `about` or its centre of mass",
+        CONTACT,
+        points("N m", Vector, Sum, PointQuantity::ContactTorque),
+    ),
+    &entry(
+        "penetration",
+        "how deep points are in what they touch, thickness included; zero where they do not",
+        CONTACT,
+        points("m", Number, Max, PointQuantity::Penetration),
+    ),
+    &entry(
+        "von_mises",
+        "√(3/2 s:s) of the deviator of the Cauchy stress",
+        STRESS,
+        cells("Pa", Max, CellQuantity::VonMises),
+    ),
+    &entry(
+        "pressure",
+        "minus a third of the trace of the Cauchy stress: positive under compression",
+        STRESS,
+        cells("Pa", Mean, CellQuantity::Pressure),
+    ),
+    &entry(
+        "max_principal_stress",
+        "the greatest principal Cauchy stress, tension positive",
+        STRESS,
+        cells("Pa", Max, CellQuantity::MaxPrincipalStress),
+    ),
+    &entry(
+        "min_principal_stress",
+        "the least principal Cauchy stress, compression negative",
+        STRESS,
+        cells("Pa", Min, CellQuantity::MinPrincipalStress),
+    ),
+    &entry(
+        "max_principal_stretch",
+        "the greatest principal stretch: length over rest length",
+        STRESS,
+        cells("", Max, CellQuantity::MaxPrincipalStretch),
+    ),
+    &entry(
+        "min_principal_stretch",
+        "the least principal stretch: length over rest length",
+        STRESS,
+        cells("", Min, CellQuantity::MinPrincipalStretch),
+    ),
+    &entry("strain_energy", "stored by the material", STRESS, cells("J", Sum, CellQuantity::StrainEnergy)),
+    &entry(
+        "strain_energy_density",
+        "stored by the material, per rest volume",
+        STRESS,
+        cells("J/m^3", Max, CellQuantity::StrainEnergyDensity),
+    ),
+    &entry("volume", "as it stands", KINEMATICS, cells("m^3", Sum, CellQuantity::Volume)),
+    &entry(
+        "volume_ratio",
+        "volume over rest volume of each cell",
+        KINEMATICS,
+        cells("", Mean, CellQuantity::VolumeRatio),
+    ),
+    &entry(
+        "mass",
+        "of the points",
+        MECHANICS,
+        Quantity::of("kg", Number, Sum, Subject::Body(BodyQuantity::Mass)),
+    ),
+    &entry(
+        "centre_of_mass",
+        "of the points",
+        MECHANICS,
+        Quantity::of("m", Vector, Mean, Subject::Body(BodyQuantity::CentreOfMass)),
+    ),
+    &entry(
+        "kinetic_energy",
+        "of the points",
+        MECHANICS,
+        Quantity::of("J", Number, Sum, Subject::Body(BodyQuantity::KineticEnergy)),
+    ),
+    &entry(
+        "momentum",
+        "of the body, or of the world where no body is named",
+        MECHANICS,
+        Quantity::of("kg m/s", Vector, Sum, Subject::BodyOrWorld(Momentum::Linear)),
+    ),
+    &entry(
+        "angular_momentum",
+        "of the body about its centre of mass, or of the world about the origin, or about the key `about`",
+        MECHANICS,
+        Quantity::of("kg m^2/s", Vector, Sum, Subject::BodyOrWorld(Momentum::Angular)),
+    ),
+    &entry(
+        "energy.total",
+        "kinetic and stored, of the world",
+        MECHANICS,
+        world("J", WorldQuantity::TotalEnergy),
+    ),
+    &entry("energy.kinetic", "of the world", MECHANICS, world("J", WorldQuantity::KineticEnergy)),
+    &entry("energy.stored", "by all forces of the world", MECHANICS, world("J", WorldQuantity::StoredEnergy)),
+    &entry(
+        "energy.dissipated",
+        "since the start, by the forces that keep account of it",
+        MECHANICS,
+        world("J", WorldQuantity::DissipatedEnergy),
+    ),
+    &entry("time", "simulated", KINEMATICS, world("s", WorldQuantity::Time)),
+];
+
+/// All quantities.
+pub static QUANTITIES: Table<Quantity> = Table { kind: "quantity", entries: ENTRIES };
+
+/// Their names, for the key that chooses one.
+pub(crate) const NAMES: &[&str] = &names();
+
+const fn names() -> [&'static str; ENTRIES.len()] {
+    let mut names = [""; ENTRIES.len()];
+    let mut index = 0;
+    while index < names.len() {
+        names[index] = ENTRIES[index].name;
+        index += 1;
+    }
+    names
+}

@@ -1,0 +1,155 @@
+//! What a scene is warned of, and contradictions that it is refused for with both places.
+
+use std::path::Path;
+
+use souple_scene::read_text;
+
+const BAR: &str = r#"format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "backward_euler"
+[bodies.bar]
+mesh = { generate = "bar", size = [1, 0.1, 0.1], cells = [4, 1, 1], element = "hex8" }
+material = { name = "neo_hookean", youngs_modulus = "10 MPa", poissons_ratio = 0.3, density = 1000 }
+[[bodies.bar.pins]]
+region = "x_min"
+"#;
+
+fn warnings(text: &str) -> Vec<String> {
+    read_text("scene.toml", text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}")).warnings
+}
+
+#[track_caller]
+fn assert_refused(text: &str, words: &[&str]) {
+    match read_text("scene.toml", text, Path::new("."), &[]) {
+        Ok(scene) => panic!("accepted with {:?}", scene.warnings),
+        Err(errors) => {
+            let said = errors.to_string();
+            assert!(words.iter().all(|word| said.contains(word)), "wanted {words:?} in\n{said}");
+        }
+    }
+}
+
+/// Magnitudes that look like a slip of units, and ratios at which linear elements lock; usual ones say nothing.
+#[test]
+fn unusual_magnitudes_are_told() {
+    assert_eq!(warnings(BAR), Vec::<String>::new());
+    for (from, to, words) in [
+        ("10 MPa", "10 Pa", "did you mean kPa or MPa?"),
+        ("10 MPa", "1e15 Pa", "did you mean Pa or kPa?"),
+        ("density = 1000", "density = 1e-3", "did you mean g/cm^3?"),
+        ("density = 1000", "density = 1e6", "did you mean kg/m^3?"),
+        ("poissons_ratio = 0.3", "poissons_ratio = 0.49", "lock"),
+        ("size = [1, 0.1, 0.1]", "size = [1000, 100, 100]", "did you mean mm"),
+        ("size = [1, 0.1, 0.1]", "size = [1e-6, 1e-7, 1e-7]", "is the scale right?"),
+    ] {
+        let said = warnings(&BAR.replace(from, to));
+        let is_told = said.iter().any(|warning| warning.contains(words) && warning.contains("scene.toml:"));
+        assert!(is_told, "{to}: {said:?}");
+    }
+}
+
+/// Two pins of one point with different targets; the same target twice, or other axes, contradict nothing.
+#[test]
+fn contradicting_pins_are_refused() {
+    let with = |pin: &str| format!("{BAR}[[bodies.bar.pins]]\n{pin}\n");
+    let both = ["bodies.bar.pins[1]", "`bodies.bar.pins[0]` (scene.toml:"];
+    let led = "motion = { times = [0, 1], offsets = [[0, 0, 0], [0.1, 0, 0]] }";
+    assert_refused(&with(&format!("region = \"x_min\"\n{led}")), &both);
+    assert_refused(&with("region = \"x_min\"\nmotion = { formula = [0, \"t\", 0] }"), &both);
+    for pin in [
+        "region = \"x_min\"".to_owned(),
+        "region = \"x_min\"\nmotion = { formula = [0, \"0 * t\", 0] }".to_owned(),
+        format!("region = \"x_min\"\naxes = \"yz\"\n{led}"),
+        format!("region = \"x_max\"\n{led}"),
+    ] {
+        assert_eq!(warnings(&with(&pin)), Vec::<String>::new(), "{pin}");
+    }
+}
+
+/// Loads on pinned points and attachments between pinned bodies move nothing, which is said.
+#[test]
+fn idle_loads_and_attachments_are_told() {
+    let load = format!("{BAR}[[bodies.bar.loads]]\nregion = \"x_min\"\nforce = [1, 0, 0]\n");
+    assert!(warnings(&load)[0].contains("moves nothing"));
+    let second =
+        BAR[BAR.find("[bodies.bar]").expect("a body")..].replace("bar]", "other]").replace("bar.", "other.");
+    let second = second.replace("density = 1000 }", "density = 1000 }\ntranslate = [0, 0.1, 0]");
+    let attached = format!(
+        "{BAR}{second}[[attachments]]\nfrom = \"other\"\nregion = \"x_min\"\nto = \"bar\"\nstiffness = 100\n"
+    );
+    let moving = warnings(&attached);
+    assert!(moving.is_empty(), "{moving:?}");
+    let pinned = attached.replace("region = \"x_min\"\n[", "region = { all = true }\n[");
+    let said = warnings(&pinned);
+    assert!(
+        said.iter().any(|w| w.contains("these springs move nothing") && w.contains("bodies.other.pins[0]")),
+        "{said:?}"
+    );
+}
+
+/// Formulas that are not finite at the start are refused with the point; a root has no finite slope at zero.
+#[test]
+fn formulas_must_be_finite_at_the_start() {
+    let load =
+        |force: &str| format!("{BAR}[[bodies.bar.loads]]\nregion = \"x_max\"\nforce = [{force}, 0, 0]\n");
+    assert_refused(&load("\"1 / t\""), &["the force on point", "at t = 0"]);
+    assert_refused(&load("\"ln(-x)\""), &["at (1, "]);
+    assert!(warnings(&load("\"1 / (1 + t)\"")).is_empty());
+    let led = BAR.to_owned() + "motion = { formula = [\"sqrt(t)\", 0, 0] }\n";
+    assert_refused(&led, &["the velocity of point"]);
+}
+
+/// A static body needs six rigid motions held: pins on a face do, on an edge they leave a turn, on a point three.
+#[test]
+fn free_static_bodies_are_refused() {
+    let with = |pins: &str| {
+        BAR.replace("\"backward_euler\"", "\"static\"")
+            .replace("[[bodies.bar.pins]]\nregion = \"x_min\"\n", pins)
+    };
+    let pin = |region: &str| with(&format!("[[bodies.bar.pins]]\nregion = {region}\n"));
+    assert!(warnings(&pin("\"x_min\"")).is_empty());
+    assert_refused(&with(""), &["6 of 6 rigid motions", "3 shifts and 3 turns"]);
+    assert_refused(&pin("{ points = [0] }"), &["3 of 6", "0 shifts and 3 turns"]);
+    assert_refused(&pin("{ box = [[-1, -1, -1], [0, 0, 1]] }"), &["1 of 6", "0 shifts and 1 turns"]);
+    assert_refused(&(pin("\"x_min\"") + "axes = \"x\"\n"), &["3 of 6", "2 shifts and 1 turns"]);
+    let sprung = with("[[bodies.bar.springs]]\nregion = \"x_min\"\nstiffness = 10\n");
+    assert!(warnings(&sprung).is_empty());
+    // a floor that is touched holds what stands on it; one that is not may come to
+    let floor = |height: f64, friction: f64| {
+        with("")
+            + &format!(
+                "[shapes.floor]\nshape = {{ name = \"plane\", point = [0, {height}, 0] }}\n[[contacts]]\nbody = \"bar\"\nshape = \"floor\"\nfriction = {friction}\n"
+            )
+    };
+    assert!(warnings(&floor(0.0, 0.5)).is_empty());
+    assert!(warnings(&floor(0.0, 0.0))[0].contains("3 of 6"));
+    assert!(warnings(&floor(-1.0, 0.5))[0].contains("unless a contact holds it"));
+}
+
+/// A body attached to a held one is held by it: by springs without length at three points off a line.
+#[test]
+fn attachments_hold_static_bodies() {
+    let second = BAR[BAR.find("[bodies.bar]").expect("a body")..BAR.find("[[bodies").expect("pins")]
+        .replace("bar]", "other]")
+        .replace("density = 1000 }", "density = 1000 }\ntranslate = [0, 0.1, 0]");
+    let text = |region: &str| {
+        let joined =
+            format!("[[attachments]]\nfrom = \"other\"\nregion = {region}\nto = \"bar\"\nstiffness = 100\n");
+        BAR.replace("\"backward_euler\"", "\"static\"") + &second + &joined
+    };
+    assert!(warnings(&text("\"y_min\"")).is_empty());
+    assert_refused(&text("{ points = [0] }"), &["body `bar` and body `other`", "3 of 12"]);
+}
+
+/// Names that cannot be those of files are refused by body and by probe.
+#[test]
+fn names_of_files() {
+    for name in ["../x", "", " ", "a/b", "a\\\\b", ".x", "a\\u0001b", "a:b", &"x".repeat(101)] {
+        assert_refused(&BAR.replace("bodies.bar", &format!("bodies.\"{name}\"")), &["cannot name a file"]);
+        let probe = format!("{BAR}[probes.\"{name}\"]\nbody = \"bar\"\nquantity = \"position\"\n");
+        assert_refused(&probe, &["cannot name a file"]);
+    }
+    assert!(warnings(&BAR.replace("bodies.bar", "bodies.\"größer 2-b_c\"")).is_empty());
+}

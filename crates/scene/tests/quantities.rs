@@ -1,0 +1,183 @@
+//! Quantities of probes against answers known by hand.
+
+use std::path::Path;
+
+use souple_engine::World;
+use souple_math::Vec3;
+use souple_scene::spec::quantity::QUANTITIES;
+use souple_scene::{Measurement, ProbeInfo, read_text};
+
+const CUBE: &str = r#"
+format = 1
+[world]
+period = "1 ms"
+gravity = [0, -10, 0]
+[bodies.cube]
+mesh = { generate = "box", size = [1, 1, 1], cells = [2, 2, 2], element = "hex8" }
+material = { name = "neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
+"#;
+
+fn start(text: &str) -> (World, Vec<ProbeInfo>) {
+    let scene =
+        read_text("scene.toml", text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    (scene.model.start(scene.state), scene.probes)
+}
+
+fn value(world: &mut World, probes: &[ProbeInfo], name: &str) -> Vec3 {
+    let probe = probes.iter().find(|probe| probe.name == name).unwrap_or_else(|| panic!("no probe {name}"));
+    match probe.measure(world) {
+        Measurement::Vector(vector) => vector,
+        Measurement::Number(number) => Vec3::new(number, 0.0, 0.0),
+    }
+}
+
+fn probe(name: &str, quantity: &str, more: &str) -> String {
+    format!("[probes.{name}]\nbody = \"cube\"\nquantity = \"{quantity}\"\n{more}\n")
+}
+
+/// A body led as a whole by `½ a t²` upward: the reaction is `m (a − g)`, whatever the mass matrix; to the tolerance of
+/// the solve for the consistent one, and the rounding of velocities over a step of 1 ms (10⁻¹⁶/10⁻³ relative).
+#[test]
+fn reactions_bear_weight_and_inertia() {
+    for mass in ["lumped", "consistent"] {
+        let led =
+            "[[bodies.cube.pins]]\nregion = { all = true }\nmotion = { formula = [0, \"1.5 * t^2\", 0] }\n";
+        let text = format!("{CUBE}mass = \"{mass}\"\n{led}{}", probe("hold", "reaction", ""));
+        let (mut world, probes) = start(&text);
+        for _ in 0..3 {
+            world.step().expect("a step");
+        }
+        let hold = value(&mut world, &probes, "hold");
+        assert!((hold - Vec3::new(0.0, 13_000.0, 0.0)).length() < 1e-6, "{mass}: {hold:?}");
+    }
+}
+
+/// A cube held at one side alone, before anything moved: the pins feel the weight of what they hold, and a consistent
+/// mass hands them the inertia of the free neighbours too, so that the sum is that of the whole row of masses.
+#[test]
+fn held_points_feel_their_neighbours() {
+    let text = format!(
+        "{CUBE}mass = \"consistent\"\n[[bodies.cube.pins]]\nregion = \"y_max\"\n{}",
+        probe("hold", "reaction", "")
+    );
+    let (mut world, probes) = start(&text);
+    let hold = value(&mut world, &probes, "hold");
+    // M a = f + r with a = 0 at pins: 0 < r < weight, for the free part falls and pulls no more than its mass
+    assert!(hold.y > 0.0 && hold.y < 10_000.0 && hold.x.abs() + hold.z.abs() < 1e-9 * 10_000.0, "{hold:?}");
+}
+
+/// A cube that lies on a floor by `d`: each of nine points is pressed by `k d` times its share, so the sum is `9 k d`;
+/// nothing is tangential, and moments about two places differ by the lever between them.
+#[test]
+fn contacts_press_by_their_depth() {
+    let (stiffness, depth) = (1e5, 1e-3);
+    let contact = format!(
+        "translate = [0, -{depth}, 0]\n[shapes.floor]\nshape = {{ name = \"plane\" }}\n[[contacts]]\nname = \"stand\"\n\
+         body = \"cube\"\nshape = \"floor\"\nregion = \"y_min\"\nstiffness = {stiffness}\nfriction = 0.5\n"
+    );
+    let text = format!(
+        "{CUBE}{contact}{}{}{}{}{}",
+        probe("normal", "contact_force.normal", "contact = \"stand\""),
+        probe("tangential", "contact_force.tangential", ""),
+        probe("depth", "penetration", ""),
+        probe("own", "contact_torque", ""),
+        probe("about", "contact_torque", "about = [0, 0, 0]"),
+    );
+    let (mut world, probes) = start(&text);
+    let total = 9.0 * stiffness * depth;
+    let rounding = 1e-12 * total;
+    let normal = value(&mut world, &probes, "normal");
+    assert!((normal - Vec3::new(0.0, total, 0.0)).length() < rounding, "{normal:?}");
+    assert!(value(&mut world, &probes, "tangential").length() < rounding);
+    assert!((value(&mut world, &probes, "depth").x - depth).abs() < 1e-15);
+    // the moments about two places differ by the lever between them: the centre of mass and the origin
+    let (own, about) = (value(&mut world, &probes, "own"), value(&mut world, &probes, "about"));
+    let lever = Vec3::new(0.5, 0.5 - depth, 0.5);
+    assert!((about - own - lever.cross(normal)).length() < rounding, "{own:?} {about:?}");
+}
+
+/// A cube that turns about z through its centre at `ω`: its angular momentum is `I ω` about its centre and the same
+/// about any place, since its momentum is zero; moving at `v` besides, `m c × v` is added about the origin.
+#[test]
+fn momenta_of_a_spinning_cube() {
+    let moving = "velocity = [0, 2, 0]\nangular_velocity = [0, 0, 3]\n";
+    let probes = [
+        probe("mass", "mass", ""),
+        probe("centre", "centre_of_mass", ""),
+        probe("linear", "momentum", ""),
+        probe("spin", "angular_momentum", ""),
+        probe("orbit", "angular_momentum", "about = [0, 0, 0]"),
+        "[probes.world]\nquantity = \"angular_momentum\"\n".to_owned(),
+        "[probes.elsewhere]\nquantity = \"angular_momentum\"\nabout = [0.5, 0.5, 0.5]\n".to_owned(),
+    ];
+    let (mut world, probes) = start(&format!("{CUBE}{moving}{}", probes.concat()));
+    let mut read = |name: &str| value(&mut world, &probes, name);
+    let close = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-9, "{a:?} {b:?}");
+    close(read("mass"), Vec3::new(1000.0, 0.0, 0.0));
+    close(read("centre"), Vec3::new(0.5, 0.5, 0.5));
+    close(read("linear"), Vec3::new(0.0, 2000.0, 0.0));
+    // lumped: points at 0, ½, 1 with weights ¼, ½, ¼ in each direction, so Σ m (x−½)² = m/8 and I = m/4
+    let spin = Vec3::new(0.0, 0.0, 1000.0 / 4.0 * 3.0);
+    close(read("spin"), spin);
+    close(read("elsewhere"), spin);
+    let orbit = spin + Vec3::new(0.5, 0.5, 0.5).cross(Vec3::new(0.0, 2000.0, 0.0));
+    close(read("orbit"), orbit);
+    close(read("world"), orbit);
+}
+
+/// A body turned as a whole by its pins about an axis through the origin and then stopped: the torque is that of the
+/// weight, `−c × m g`, about the origin, and none about its centre of mass.
+#[test]
+fn torques_bear_the_weight() {
+    let held = "[[bodies.cube.pins]]\nregion = { all = true }\n";
+    let text = format!(
+        "{CUBE}{held}{}{}",
+        probe("own", "torque", ""),
+        probe("about", "torque", "about = [0, 0, 0]")
+    );
+    let (mut world, probes) = start(&text);
+    let weight = 10_000.0;
+    assert!(value(&mut world, &probes, "own").length() < 1e-10 * weight);
+    let about = value(&mut world, &probes, "about");
+    let expected = Vec3::new(0.5, 0.5, 0.5).cross(Vec3::new(0.0, weight, 0.0));
+    assert!((about - expected).length() < 1e-10 * weight, "{about:?}");
+}
+
+/// A bar stretched by its pins to `F = diag(1.2, 1, 1)`: stretches, volume ratio and their places among the principal
+/// values; `linear` gives the stress `σ = λ tr ε + 2 μ ε`.
+#[test]
+fn stretched_cells() {
+    let text = CUBE.replace("neo_hookean", "linear")
+        + "[[bodies.cube.pins]]\nregion = { all = true }\nmotion = { formula = [\"0.2 * x\", 0, 0] }\n"
+        + &["max_principal_stretch", "min_principal_stretch", "volume_ratio", "max_principal_stress"]
+            .map(|quantity| probe(quantity, quantity, ""))
+            .concat()
+        + &probe("min_principal_stress", "min_principal_stress", "reduce = \"max\"");
+    let (mut world, probes) = start(&text);
+    let mut read = |name: &str| value(&mut world, &probes, name).x;
+    assert!((read("max_principal_stretch") - 1.2).abs() < 1e-12);
+    assert!((read("min_principal_stretch") - 1.0).abs() < 1e-12);
+    assert!((read("volume_ratio") - 1.2).abs() < 1e-12);
+    assert!(read("max_principal_stress") > read("min_principal_stress"));
+}
+
+/// Every quantity of the table can be measured, and gives what its rank says; none is not finite at rest.
+#[test]
+fn every_quantity_is_measured() {
+    for entry in QUANTITIES.entries {
+        let body = "[probes.q]\nbody = \"cube\"\n";
+        let alone = "[probes.q]\n";
+        let head =
+            if read_text("s", &format!("{CUBE}{alone}quantity = \"{}\"\n", entry.name), Path::new("."), &[])
+                .is_ok()
+            {
+                alone
+            } else {
+                body
+            };
+        let (mut world, probes) = start(&format!("{CUBE}{head}quantity = \"{}\"\n", entry.name));
+        let measured = probes[0].measure(&mut world);
+        assert!(measured.numbers().iter().all(|number| number.is_finite()), "{}: {measured:?}", entry.name);
+        assert_eq!(matches!(measured, Measurement::Vector(_)), probes[0].gives_vector(), "{}", entry.name);
+    }
+}

@@ -1,0 +1,100 @@
+//! `souple mesh fill` and `souple mesh simplify`.
+
+use std::path::Path;
+
+use souple_mesh::fill::{Options, PARAMETERS, fill_surface, surface_of};
+use souple_mesh::implicit::SHAPES;
+use souple_mesh::repair::{RepairLimits, repair};
+use souple_mesh::simplify::{Goal, simplify};
+use souple_mesh::{ElementKind, Mesh, MeshError, TriangleSurface};
+use souple_table::{Parameter, Range, Value, Values, nearest};
+
+use super::{parameters, read};
+use crate::command::Refusal;
+
+const SCALE: Parameter =
+    Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0));
+
+/// Fills a file's surface, or a shape known by name.
+pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
+    let refuse = |error: MeshError| {
+        let message = format!("`{input}` cannot be filled: {error}");
+        Refusal::request("fill", input, "a shape that has an inside, and cells that fit in it", message)
+    };
+    let shape = SHAPES.entries.iter().copied().find(|entry| entry.name == input);
+    if shape.is_none() && !Path::new(input).exists() {
+        let hint = nearest(input, SHAPES.names()).map(|near| format!(" (did you mean `{near}`?)"));
+        let message = format!("`{input}` is neither a file nor a shape{}", hint.unwrap_or_default());
+        let expected = format!("a surface file, or one of {}", SHAPES.names().collect::<Vec<_>>().join(", "));
+        return Err(Refusal::request("unknown_shape", input, expected, message));
+    }
+    let own: &[Parameter] = shape.map_or(&[SCALE], |entry| entry.parameters);
+    let known: Vec<&Parameter> = PARAMETERS.iter().chain(own).collect();
+    let (filling, others) = parameters::split(parameters::values(texts, &known)?, PARAMETERS);
+    let options = filling.completed(PARAMETERS).map_err(MeshError::from);
+    let options = options.and_then(|values| Options::from_values(&values)).map_err(refuse)?;
+    if let Some(entry) = shape {
+        let body = entry.values(others).map_err(MeshError::from).and_then(|values| (entry.build)(&values));
+        let mesh = body.and_then(|body| options.fill_body(&body)).map_err(refuse)?;
+        return Ok((mesh, Vec::new()));
+    }
+    let scale = others.completed(&[SCALE]).map_err(|error| refuse(error.into()))?.number("scale");
+    let (mut mesh, mut notes) = read(Path::new(input))?;
+    mesh.points.iter_mut().for_each(|point| *point = *point * scale);
+    let surface = surface_of(&mesh).ok_or(MeshError::NoCells).map_err(refuse)?;
+    let filled = fill_surface(&surface, RepairLimits::default(), &options).map_err(refuse)?;
+    notes.extend(filled.notes);
+    Ok((filled.mesh, notes))
+}
+
+const SIMPLIFY: &[Parameter] = &[
+    Parameter::number(
+        "distance",
+        "m",
+        Range::NOT_NEGATIVE,
+        "largest distance from the given surface; 0: by count",
+    )
+    .or(Value::Number(0.0)),
+    Parameter::integer("triangles", Range::NOT_NEGATIVE, "least number of triangles").or(Value::Integer(0)),
+];
+
+/// A surface of fewer triangles, and what was done.
+pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
+    let name = input.display().to_string();
+    let refuse = |error: MeshError| {
+        let message = format!("`{name}` cannot be simplified: {error}");
+        Refusal::request("simplify", name.clone(), "distance=LENGTH or triangles=COUNT", message)
+    };
+    let known: Vec<&Parameter> = SIMPLIFY.iter().collect();
+    let values: Values = parameters::values(texts, &known)?;
+    let values = values.completed(SIMPLIFY).map_err(|error| refuse(error.into()))?;
+    let (distance, triangles) = (values.number("distance"), values.integer("triangles") as usize);
+    let goal = match (distance > 0.0, triangles > 0) {
+        (false, false) => {
+            let value = "missing".to_owned();
+            let expected = "a largest distance above 0 [m], or a number of `triangles`".to_owned();
+            return Err(refuse(MeshError::Parameter { name: "distance", value, expected }));
+        }
+        (true, _) => Goal { distance, triangles },
+        (false, true) => Goal { distance: f64::INFINITY, triangles },
+    };
+    let (mesh, mut notes) = read(input)?;
+    let surface = surface_of(&mesh).ok_or(MeshError::NoCells).map_err(refuse)?;
+    let (mended, repairs) = repair(&surface, RepairLimits { hole: 0.0, ..RepairLimits::default() });
+    notes.extend(repairs.messages());
+    let simple = simplify(&mended, goal).map_err(refuse)?;
+    notes.push(format!(
+        "{} of {} triangles are left, within {:.3e} m of the given surface",
+        simple.surface.triangles.len(),
+        surface.triangles.len(),
+        simple.distance
+    ));
+    Ok((mesh_of(&simple.surface), notes))
+}
+
+/// A mesh of facets alone.
+fn mesh_of(surface: &TriangleSurface) -> Mesh {
+    let mut mesh = Mesh { points: surface.points.clone(), ..Mesh::default() };
+    surface.triangles.iter().for_each(|corners| mesh.push_facet(ElementKind::Tri3, corners));
+    mesh
+}

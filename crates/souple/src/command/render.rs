@@ -1,0 +1,387 @@
+//! `souple render`: pictures, contact sheets, films and animated surfaces of a scene or of a run's folder.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use serde_json::json;
+use souple_io::picture::{
+    COLOUR_MAPS, Cut, EdgeStyle, Image, Picture, Theme, View, write_animated_png, write_gif,
+};
+use souple_math::Vec3;
+use souple_run::Options;
+use souple_run::show::{Arrows, Figure, FilmError, Show, ShowError, Stage, write_film};
+use souple_scene::spec::picture::PictureSpec;
+
+use super::run::play;
+use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path, use_threads};
+
+#[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
+pub struct Arguments {
+    /// Scene file or folder with a scene.toml, which is run; or the folder of a run, whose frames are shown
+    source: PathBuf,
+    /// .png: one picture or a sheet; .gif, .apng, .mp4: a film; .glb: the moving surfaces
+    #[arg(long)]
+    out: PathBuf,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = list::<2>, allow_hyphen_values = true)]
+    size: Option<[f64; 2]>,
+    /// Moment to show [s], to the nearest frame; the last by default
+    #[arg(long, conflicts_with = "sheet")]
+    time: Option<f64>,
+    /// Several moments in one picture
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100))]
+    sheet: Option<u64>,
+    /// Most frames of a film
+    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=4096))]
+    frames: u64,
+    /// Frames of a film per second; in real time if left out
+    #[arg(long)]
+    per_second: Option<f64>,
+    /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, …, `none`
+    #[arg(long, default_value = "von_mises")]
+    colour: String,
+    /// sequential, diverging, grey
+    #[arg(long, default_value = "sequential")]
+    map: String,
+    /// Values of the first and the last colour
+    #[arg(long, value_name = "LOW,HIGH", value_parser = list::<2>, allow_hyphen_values = true)]
+    range: Option<[f64; 2]>,
+    /// Cuts away what lies beyond the plane n · x = d
+    #[arg(long, value_name = "NX,NY,NZ,D", value_parser = list::<4>, allow_hyphen_values = true)]
+    cut: Option<[f64; 4]>,
+    /// Moves cells apart, by this part of their distance from the middle
+    #[arg(long, default_value_t = 0.0, conflicts_with = "cut")]
+    explode: f64,
+    /// Arrows of a vector field: `displacement`, `velocity`
+    #[arg(long, value_name = "FIELD")]
+    arrows: Option<String>,
+    /// Metres of arrow for each unit of the field; fitted if left out
+    #[arg(long, requires = "arrows")]
+    arrow_scale: Option<f64>,
+    /// Edges of the mesh: drawn, hidden, wireframe
+    #[arg(long, default_value = "drawn")]
+    edges: String,
+    /// From the eye towards the bodies, everything in the picture; the scene's if left out
+    #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
+    direction: Option<[f64; 3]>,
+    /// Where the eye is [m]
+    #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true, requires = "look_at", conflicts_with = "direction")]
+    position: Option<[f64; 3]>,
+    /// What is in the middle [m]
+    #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true, requires = "position")]
+    look_at: Option<[f64; 3]>,
+    /// What is up in the picture; the scene's if left out
+    #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
+    up: Option<[f64; 3]>,
+    /// Angle between the upper and the lower border [deg]
+    #[arg(long, default_value_t = 28.65)]
+    field_of_view: f64,
+    /// In place of the scene's; "" for none
+    #[arg(long)]
+    title: Option<String>,
+    #[arg(long)]
+    dark: bool,
+    /// A PNG of at most 255 colours, a third of the size
+    #[arg(long)]
+    compact: bool,
+    /// Samples along each side of a pixel
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=8))]
+    samples: u64,
+    /// Changes a value of the scene, as with `souple run`
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    settings: Vec<String>,
+    #[arg(long)]
+    threads: Option<usize>,
+    #[arg(long)]
+    pub json: bool,
+    /// No progress
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// `N` finite numbers with commas.
+fn list<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    numbers
+        .filter(|numbers| numbers.iter().all(|number| number.is_finite()))
+        .and_then(|numbers| numbers.try_into().ok())
+        .ok_or_else(|| format!("expected {N} numbers with commas, as {}", vec!["1"; N].join(",")))
+}
+
+/// What a file's name asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Picture,
+    Gif,
+    AnimatedPng,
+    Film,
+    Surfaces,
+}
+
+const KINDS: [(&str, Kind); 5] = [
+    ("png", Kind::Picture),
+    ("gif", Kind::Gif),
+    ("apng", Kind::AnimatedPng),
+    ("mp4", Kind::Film),
+    ("glb", Kind::Surfaces),
+];
+
+impl From<ShowError> for Refusal {
+    fn from(error: ShowError) -> Self {
+        match error {
+            ShowError::Io(error) => error.into(),
+            ShowError::UnknownField { ref name, ref expected } => Self::request(
+                "field",
+                name.clone(),
+                expected.clone(),
+                format!("no body has the field `{name}`"),
+            ),
+            ref other => Self::request("render", "", "", other.to_string()),
+        }
+    }
+}
+
+pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
+    use_threads(arguments.threads)?;
+    let kind = kind_of(&arguments.out)?;
+    let figure = figure(arguments)?;
+    let (show, notes) = show(arguments, kind)?;
+    let view = view(arguments, &show.stage)?;
+    let figure = Figure { view: Some(view), ..figure };
+    let out = arguments.out.as_path();
+    let mut count = 1;
+    match kind {
+        Kind::Surfaces => {
+            let show = show.thinned(arguments.frames as usize);
+            count = show.moments.len();
+            figure.animation(&show)?.write_glb(out)?;
+        }
+        Kind::Picture if arguments.sheet.is_some() => {
+            let show = show.thinned(arguments.sheet.unwrap_or(1) as usize);
+            count = show.moments.len();
+            let images = images(&figure.pictures(&show)?)?;
+            write_picture(arguments, &Image::sheet(&images, columns(count)))?;
+        }
+        Kind::Picture => {
+            let moment =
+                show.at(arguments.time).ok_or_else(|| Refusal::work("render", "the run has no frame"))?;
+            write_picture(arguments, &figure.picture(&show, moment)?.render()?)?;
+        }
+        Kind::Gif | Kind::AnimatedPng | Kind::Film => {
+            let show = show.thinned(arguments.frames as usize);
+            count = show.moments.len();
+            let images = images(&figure.pictures(&show)?)?;
+            write_moving(kind, out, &images, seconds_per_frame(arguments, &show)?)?;
+        }
+    }
+    notes.iter().for_each(print_note);
+    if arguments.json {
+        print_json(&json!({"out": out.display().to_string(), "moments": count, "notes": notes}));
+    } else if !arguments.quiet {
+        print_line(out.display());
+    }
+    Ok(End::Done)
+}
+
+fn kind_of(out: &Path) -> Result<Kind, Refusal> {
+    let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    KINDS.iter().find(|(name, _)| *name == extension).map(|(_, kind)| *kind).ok_or_else(|| {
+        let message = format!("{}: nothing is rendered to `.{extension}`", out.display());
+        Refusal::request("extension", extension, ".png, .gif, .apng, .mp4 or .glb", message)
+    })
+}
+
+/// A run's folder as it is; a scene after a run into a folder that is removed again.
+fn show(arguments: &Arguments, kind: Kind) -> Result<(Show, Vec<String>), Refusal> {
+    let source = &arguments.source;
+    let is_run = source.join("frames").is_dir() || source.join("report.json").is_file();
+    if is_run {
+        let (stage, note) = Stage::of_report(source);
+        return Ok((Show::of_run(source, stage)?, note.into_iter().collect()));
+    }
+    let path = source.display().to_string();
+    let scene = read_scene(&path, &arguments.settings)?;
+    let stage = Stage::of(&scene);
+    let folder = Scratch::new()?;
+    let wanted = match kind {
+        Kind::Picture => arguments.sheet.unwrap_or(if arguments.time.is_some() { 200 } else { 1 }),
+        _ => arguments.frames,
+    };
+    let options = Options {
+        out: Some(folder.0.clone()),
+        frames: Some(wanted),
+        scene_name: scene_path(&path).display().to_string(),
+        ..Options::default()
+    };
+    let outcome = play(scene, &options, arguments.quiet)?;
+    let mut notes = outcome.report.warnings.clone();
+    if outcome.report.status != souple_run::Status::Done {
+        notes.push(format!("the run is {}: what it came to is shown", outcome.report.status.as_str()));
+        notes.extend(outcome.report.failure.iter().map(|failure| failure.message()));
+    }
+    Ok((Show::of_run(&folder.0, stage)?, notes))
+}
+
+/// A folder that is removed when dropped.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new() -> Result<Self, Refusal> {
+        let path = std::env::temp_dir().join(format!("souple_render_{}", std::process::id()));
+        std::fs::create_dir_all(&path).map_err(|error| {
+            Refusal::work("io", format!("the folder {} cannot be made: {error}", path.display()))
+        })?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // what cannot be removed from the folder of temporary files does no harm
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn figure(arguments: &Arguments) -> Result<Figure, Refusal> {
+    let map = COLOUR_MAPS
+        .find(&arguments.map)
+        .map_err(|error| Refusal::request("map", arguments.map.clone(), "", error.to_string()))?;
+    let edges = match arguments.edges.as_str() {
+        "drawn" => EdgeStyle::Drawn,
+        "hidden" => EdgeStyle::Hidden,
+        "wireframe" => EdgeStyle::Wireframe,
+        other => {
+            return Err(Refusal::request(
+                "edges",
+                other,
+                "drawn, hidden or wireframe",
+                format!("edges cannot be `{other}`"),
+            ));
+        }
+    };
+    if let Some([low, high]) = arguments.range
+        && low >= high
+    {
+        let message = format!("the range {low} to {high} is empty");
+        return Err(Refusal::request(
+            "range",
+            format!("{low},{high}"),
+            "two numbers, the lower one first",
+            message,
+        ));
+    }
+    if !(0.0..=100.0).contains(&arguments.explode) {
+        let message = format!("cells cannot be moved apart by {}", arguments.explode);
+        return Err(Refusal::request("explode", arguments.explode.to_string(), "0 to 100", message));
+    }
+    let size =
+        arguments.size.unwrap_or(if arguments.sheet.is_some() { [640.0, 480.0] } else { [1280.0, 800.0] });
+    let cut = arguments.cut.map(|[x, y, z, d]| {
+        let normal = Vec3::new(x, y, z);
+        Cut { point: normal * (d / normal.length_sq().max(f64::MIN_POSITIVE)), normal }
+    });
+    if cut.is_some_and(|cut| cut.normal.length_sq() == 0.0) {
+        let message = "the normal of the cut is zero".to_owned();
+        return Err(Refusal::request("cut", "0,0,0", "a normal that is not zero, and d", message));
+    }
+    Ok(Figure {
+        // what is no size of a picture is refused where it is drawn
+        size: size.map(|side| side.round().clamp(0.0, 1e9) as usize),
+        samples_per_pixel: arguments.samples as usize,
+        theme: if arguments.dark { Theme::Dark } else { Theme::Light },
+        title: arguments.title.clone(),
+        view: None,
+        colour_by: (arguments.colour != "none").then(|| arguments.colour.clone()),
+        colours: map.build,
+        range: arguments.range.map(|[low, high]| (low, high)),
+        cut,
+        explode: arguments.explode,
+        arrows: arguments
+            .arrows
+            .as_ref()
+            .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
+        edges,
+    })
+}
+
+fn view(arguments: &Arguments, stage: &Stage) -> Result<View, Refusal> {
+    let unit = |name: &str, vector: Vec3| {
+        vector.try_normalised().ok_or_else(|| {
+            let message = format!("the {name} of the view is zero");
+            Refusal::request(name, "0,0,0", "a vector that is not zero", message)
+        })
+    };
+    let [direction, eye, look_at, up] =
+        [arguments.direction, arguments.position, arguments.look_at, arguments.up]
+            .map(|given| given.map(Vec3::from_array));
+    let direction = eye.zip(look_at).map_or(direction, |(eye, look_at)| Some(look_at - eye));
+    let asked = PictureSpec {
+        direction: direction.map(|direction| unit("direction", direction)).transpose()?,
+        up: up.map(|up| unit("up", up)).transpose()?,
+    };
+    let seen = match asked {
+        PictureSpec { direction: None, up: None } => stage.view,
+        // without an `up` of its own, the scene's
+        _ => asked.view(-stage.view.up),
+    };
+    let mut view = View { eye, ..View::along(seen.direction, seen.up) };
+    if !(1.0..=140.0).contains(&arguments.field_of_view) {
+        let message = format!("the field of view is {} degrees", arguments.field_of_view);
+        return Err(Refusal::request(
+            "field_of_view",
+            arguments.field_of_view.to_string(),
+            "1 to 140",
+            message,
+        ));
+    }
+    view.field_of_view = arguments.field_of_view.to_radians();
+    Ok(view)
+}
+
+/// Pictures drawn side by side on all threads.
+fn images(pictures: &[Picture]) -> Result<Vec<Image>, Refusal> {
+    Ok(pictures.par_iter().map(Picture::render).collect::<Result<Vec<_>, _>>()?)
+}
+
+fn write_picture(arguments: &Arguments, image: &Image) -> Result<(), Refusal> {
+    let out = &arguments.out;
+    let written = if arguments.compact { image.write_compact_png(out) } else { image.write_png(out) };
+    Ok(written?)
+}
+
+/// Columns of a sheet that is about as wide as high.
+fn columns(count: usize) -> usize {
+    (1..=count).find(|columns| columns * columns >= count).unwrap_or(1)
+}
+
+/// [s]
+fn seconds_per_frame(arguments: &Arguments, show: &Show) -> Result<f64, Refusal> {
+    if let Some(per_second) = arguments.per_second {
+        if !(0.1..=100.0).contains(&per_second) {
+            let message = format!("a film of {per_second} frames per second cannot be played");
+            return Err(Refusal::request("per_second", per_second.to_string(), "0.1 to 100", message));
+        }
+        return Ok(1.0 / per_second);
+    }
+    let times: Vec<f64> = show.moments.iter().map(|moment| moment.time).collect();
+    let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+    // what programs can play
+    Ok((span / (times.len().max(2) - 1) as f64).clamp(0.02, 1.0))
+}
+
+fn write_moving(kind: Kind, out: &Path, images: &[Image], seconds: f64) -> Result<(), Refusal> {
+    match kind {
+        Kind::Gif => Ok(write_gif(out, images, seconds)?),
+        Kind::Film => write_film(out, images, 1.0 / seconds).map_err(|error| match error {
+            FilmError::Odd { width, height } => Refusal::request(
+                "size",
+                format!("{width},{height}"),
+                "even numbers of pixels",
+                error.to_string(),
+            ),
+            _ => Refusal::work("film", error.to_string()),
+        }),
+        _ => Ok(write_animated_png(out, images, seconds)?),
+    }
+}

@@ -1,0 +1,176 @@
+//! `souple render`: every kind of file, from scenes and from runs, and requests that cannot be met.
+
+mod common;
+
+use common::{Answer, CUBE, Folder, assert_errors, souple_in};
+
+fn render(folder: &Folder, source: &str, out: &str, more: &[&str]) -> Answer {
+    let call = ["render", source, "--out", out, "--size", "96,64", "--samples", "1", "--json"];
+    souple_in(folder.path(), call.iter().chain(more))
+}
+
+/// Width and height of a PNG.
+fn size_of(folder: &Folder, file: &str) -> [u32; 2] {
+    let bytes = std::fs::read(folder.path().join(file)).expect("a picture");
+    assert_eq!(&bytes[1..4], b"PNG");
+    [16, 20].map(|at| u32::from_be_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]))
+}
+
+/// The cube with everything around it that a body may touch: each shape, and a container.
+fn with_shapes() -> String {
+    let mut scene = CUBE.to_owned();
+    for (index, shape) in [
+        "name = \"plane\", point = [0, -1, 0]",
+        "name = \"plane\", point = [-3, 0, 0], normal = [1, 0, 0]",
+        "name = \"sphere\", radius = 0.3, centre = [2, 0, 0]",
+        "name = \"capsule\", radius = 0.2, from = [0, 0, 2], to = [1, 0, 2]",
+        "name = \"box\", size = [0.5, 0.5, 0.5], centre = [0, 0, -2]",
+        "name = \"box\", size = [9, 9, 9], hollow = true",
+    ]
+    .iter()
+    .enumerate()
+    {
+        scene += &format!(
+            "[shapes.s{index}]\nshape = {{ {shape} }}\n[[contacts]]\nbody = \"cube\"\nshape = \"s{index}\"\n"
+        );
+    }
+    scene
+}
+
+/// The same pixels from the scene as from the folder of its run; each option changes the picture.
+#[test]
+fn pictures_of_scenes_and_runs() {
+    let folder = Folder::new("render");
+    folder.write("scene.toml", with_shapes());
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    render(&folder, "scene.toml", "scene.png", &[]).ends(0);
+    let answer = render(&folder, "run", "run.png", &[]).ends(0).json();
+    assert_eq!((&answer["moments"], &answer["notes"]), (&1.into(), &serde_json::json!([])));
+    let read = |file: &str| std::fs::read(folder.path().join(file)).expect("a picture");
+    assert_eq!(read("scene.png"), read("run.png"));
+    assert_eq!(size_of(&folder, "run.png"), [96, 64]);
+    let mut seen = vec![read("run.png")];
+    for (index, more) in [
+        &["--time", "0"][..],
+        &["--colour", "displacement.y", "--map", "diverging"],
+        &["--colour", "none"],
+        &["--colour", "velocity", "--map", "grey", "--range", "0,2"],
+        &["--cut", "0,0,1,0.4"],
+        &["--explode", "0.5"],
+        &["--arrows", "velocity"],
+        &["--arrows", "velocity", "--arrow-scale", "0.1"],
+        &["--edges", "wireframe"],
+        &["--edges", "hidden"],
+        &["--direction", "1,-1,0"],
+        &["--direction", "-1,-1,0"],
+        &["--position", "3,3,3", "--look-at", "0,0,0"],
+        &["--up", "0,0,1"],
+        &["--field-of-view", "60"],
+        &["--dark"],
+        &["--compact"],
+        &["--title", "Längs der Achse: σ ≈ 10⁻³, a title that is much longer than the picture is wide"],
+    ]
+    .iter()
+    .enumerate()
+    {
+        let file = format!("option{index}.png");
+        render(&folder, "run", &file, more).ends(0);
+        let picture = read(&file);
+        assert!(!seen.contains(&picture), "{more:?} changes nothing");
+        seen.push(picture);
+    }
+}
+
+#[test]
+fn sheets_films_and_surfaces() {
+    let folder = Folder::new("films");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    let answer = render(&folder, "run", "sheet.png", &["--sheet", "4"]).ends(0).json();
+    assert_eq!(answer["moments"], 4);
+    assert_eq!(size_of(&folder, "sheet.png"), [192, 128]);
+    for (file, start) in [("a.gif", &b"GIF89a"[..]), ("a.apng", b"\x89PNG"), ("a.glb", b"glTF")] {
+        let answer = render(&folder, "run", file, &["--frames", "3"]).ends(0).json();
+        assert_eq!(answer["moments"], 3, "{file}");
+        assert!(std::fs::read(folder.path().join(file)).expect("a file").starts_with(start), "{file}");
+    }
+    // the machine may have no ffmpeg: then that is said, and what is made without it
+    let film = render(&folder, "run", "a.mp4", &[]);
+    match film.status {
+        Some(0) => assert!(folder.path().join("a.mp4").is_file()),
+        _ => assert!(film.status == Some(1) && film.stderr.contains("ffmpeg"), "{film:#?}"),
+    }
+    assert!(folder.files().iter().all(|file| !file.contains(".part")));
+}
+
+/// A run whose scene has been moved is drawn without its shapes, and that is said.
+#[test]
+fn a_run_without_its_scene() {
+    let folder = Folder::new("orphan");
+    folder.write("scene.toml", with_shapes());
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    folder.write("scene.toml", CUBE);
+    let answer = render(&folder, "run", "a.png", &[]).ends(0).json();
+    assert!(answer["notes"].to_string().contains("not as it was run"), "{answer:#}");
+    std::fs::remove_file(folder.path().join("scene.toml")).expect("the scene");
+    let answer = render(&folder, "run", "a.png", &[]).ends(0).json();
+    assert!(answer["notes"].to_string().contains("cannot be read"), "{answer:#}");
+}
+
+#[test]
+fn faulty_requests() {
+    let folder = Folder::new("render_faults");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    std::fs::create_dir_all(folder.path().join("empty/frames")).expect("a folder");
+    std::fs::create_dir_all(folder.path().join("bad/frames")).expect("a folder");
+    folder.write(
+        "bad/frames/cube.pvd",
+        "<VTKFile><Collection><DataSet timestep=\"nan\" file=\"x.vtu\"/></Collection></VTKFile>",
+    );
+    std::fs::create_dir_all(folder.path().join("lost/frames")).expect("a folder");
+    folder.write(
+        "lost/frames/cube.pvd",
+        "<VTKFile><Collection><DataSet timestep=\"0\" file=\"x.vtu\"/></Collection></VTKFile>",
+    );
+    let before = folder.files();
+    for (source, out, more, words) in [
+        ("run", "a.bmp", &[][..], ".png, .gif, .apng, .mp4 or .glb"),
+        ("run", "a", &[], "nothing is rendered to"),
+        ("nowhere", "a.png", &[], "nowhere"),
+        ("empty", "a.png", &[], "there is no series"),
+        ("bad", "a.png", &[], "the time of a frame is \"nan\""),
+        ("lost", "a.png", &[], "x.vtu"),
+        ("run", "a.png", &["--colour", "temperature"], "no body has the field `temperature`"),
+        ("run", "a.png", &["--colour", "velocity.w"], "velocity (.x, .y, .z)"),
+        ("run", "a.png", &["--arrows", "von_mises"], "a vector of each point: displacement, velocity"),
+        ("run", "a.png", &["--map", "sequental"], "did you mean `sequential`"),
+        ("run", "a.png", &["--edges", "dotted"], "drawn, hidden or wireframe"),
+        ("run", "a.png", &["--range", "2,1"], "the lower one first"),
+        ("run", "a.png", &["--range", "2"], "expected 2 numbers with commas"),
+        ("run", "a.png", &["--cut", "0,0,0,1"], "a normal that is not zero"),
+        ("run", "a.png", &["--cut", "0,0,nan,1"], "expected 4 numbers"),
+        ("run", "a.png", &["--explode", "-1"], "0 to 100"),
+        ("run", "a.png", &["--direction", "0,0,0"], "a vector that is not zero"),
+        ("run", "a.png", &["--position", "1,1,1"], "--look-at"),
+        ("run", "a.png", &["--position", "1,1,1", "--look-at", "1,1,1"], "the direction of the view is zero"),
+        ("run", "a.png", &["--up", "0,0,0"], "the up of the view is zero"),
+        ("run", "a.png", &["--field-of-view", "180"], "1 to 140"),
+        ("run", "a.png", &["--samples", "0"], "--samples"),
+        ("run", "a.png", &["--sheet", "0"], "--sheet"),
+        ("run", "a.gif", &["--per-second", "0"], "0.1 to 100"),
+        ("scene.toml", "a.png", &["--set", "bodies.cube.material.density=0"], "density"),
+    ] {
+        let answer = render(&folder, source, out, more);
+        assert_eq!(answer.status, Some(2), "{source} {out} {more:?}: {answer:#?}");
+        assert!(answer.stderr.contains(words), "`{words}`: {answer:#?}");
+        assert_errors(&answer.json());
+    }
+    for size in ["0,0", "99999,10", "-5,10"] {
+        let call = ["render", "run", "--out", "a.png", "--size", size, "--json"];
+        let answer = souple_in(folder.path(), call);
+        assert_eq!(answer.status, Some(2), "{answer:#?}");
+        assert!(answer.stderr.contains("1 to 16384 pixels"), "{answer:#?}");
+    }
+    assert_eq!(folder.files(), before);
+}

@@ -1,0 +1,144 @@
+//! The smaller commands: meshes, lists, comparisons.
+
+mod common;
+
+use common::{CUBE, Folder, souple};
+use serde_json::Value;
+
+fn names(kind: &str) -> Vec<String> {
+    let list = souple(["list", kind, "--json"]).ends(0).json();
+    let entries = list.as_array().expect("a list").iter();
+    entries.map(|entry| entry["name"].as_str().expect("a name").to_owned()).collect()
+}
+
+/// What is listed can be written in a scene: every stepper, solver, preconditioner and material of the tables.
+#[test]
+fn listed_names_are_accepted() {
+    let folder = Folder::new("listed");
+    let scene = folder.write("cube.toml", CUBE);
+    for (kind, key) in [
+        ("steppers", "systems.main.stepper"),
+        ("solvers", "systems.main.solver"),
+        ("preconditioners", "systems.main.preconditioner"),
+        ("materials", "bodies.cube.material.name"),
+        ("elements", "bodies.cube.mesh.element"),
+    ] {
+        let flat = ["tri3", "quad4"];
+        for name in names(kind).iter().filter(|name| !flat.contains(&name.as_str())) {
+            // `static` refuses bodies that are not held, by its own words
+            let answer = souple(["check", &scene, "--set", &format!("{key}={name}")]);
+            let is_refused = answer.stderr.contains("unknown") || answer.stderr.contains("there is no");
+            assert!(!is_refused, "{kind} {name}: {answer:#?}");
+        }
+    }
+    for quantity in names("quantities") {
+        let answer = souple(["check", &scene, "--set", &format!("probes.place.quantity={quantity}")]);
+        assert!(!answer.stderr.contains("there is no choice"), "{quantity}: {answer:#?}");
+    }
+}
+
+/// What is listed as function or unit can be used.
+#[test]
+fn listed_functions_and_units_work() {
+    let functions = names("functions");
+    assert!(functions.contains(&"smoothstep".to_owned()) && functions.contains(&"pi".to_owned()));
+    for unit in names("units") {
+        assert!(souple::formal::parse_unit(&unit).is_ok(), "{unit}");
+    }
+    assert!(souple(["list", "units"]).ends(0).stdout.contains("Pa"));
+    souple(["describe", "smoothstep"]).ends(0);
+}
+
+/// Lengths with units, as in scenes; a wrong unit is told.
+#[test]
+fn meshes_are_generated_with_units() {
+    let folder = Folder::new("units");
+    let make = |size: &str| {
+        souple(["mesh", "generate", "box", &folder.at("box.msh"), size, "cells=2,2,2", "--json"])
+    };
+    let volume = |size: &str| make(size).ends(0).json()["volume"].as_f64().expect("a volume");
+    for size in ["size=1,0.1,0.2", "size=100cm,10 cm,200 mm", "size=[1, 0.1, 20 cm]"] {
+        assert!((volume(size) - 0.02).abs() < 1e-15, "{size}");
+    }
+    let answer = make("size=1 kg,1,1").ends(2);
+    assert!(answer.stderr.contains("kg"), "{answer:#?}");
+}
+
+/// Surfaces have a quality too: closed or not, with the worst triangle.
+#[test]
+fn surfaces_are_measured() {
+    let folder = Folder::new("surfaces");
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    let closed = folder.write("closed.obj", format!("{corners}f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"));
+    let measured = souple(["mesh", "quality", &closed, "--json"]).ends(0).json();
+    assert_eq!((&measured["closed"], &measured["triangles"]), (&true.into(), &4.into()));
+    let number = |key: &str| measured[key].as_f64().unwrap_or(f64::NAN);
+    assert!((number("enclosed_volume") - 1.0 / 6.0).abs() < 1e-15, "{measured:#}");
+    assert!((number("smallest_angle_degrees") - 45.0).abs() < 1e-12, "{measured:#}");
+    let open = folder.write("open.obj", format!("{corners}f 1 3 2\nf 1 2 4\nf 1 4 3\n"));
+    let measured = souple(["mesh", "quality", &open, "--json"]).ends(0).json();
+    assert_eq!((&measured["closed"], &measured["enclosed_volume"]), (&false.into(), &Value::Null));
+    assert!(measured["problem"].is_string());
+}
+
+/// A conversion tells what the written file holds, and what was lost.
+#[test]
+fn conversions_count_what_was_written() {
+    let folder = Folder::new("conversions");
+    let (mesh, surface) = (folder.at("box.msh"), folder.at("box.stl"));
+    souple(["mesh", "generate", "box", &mesh, "size=1,1,1", "cells=1,1,1", "element=hex8"]).ends(0);
+    let told = souple(["mesh", "convert", &mesh, &surface, "--json"]).ends(0).json();
+    let again = souple(["mesh", "convert", &surface, &folder.at("again.stl"), "--json"]).ends(0).json();
+    assert_eq!((&told["cells"], &told["facets"]), (&again["cells"], &again["facets"]));
+    assert!(told["notes"].to_string().contains("does not keep 1 cells"), "{told:#}");
+    // glTF is only written: what was read is told
+    let told = souple(["mesh", "convert", &mesh, &folder.at("box.glb"), "--json"]).ends(0).json();
+    assert_eq!(told["cells"], serde_json::json!({"hex8": 1}));
+}
+
+/// Without a tolerance a comparison tells; with one it judges.
+#[test]
+fn comparisons_judge_by_a_tolerance() {
+    let folder = Folder::new("tolerance");
+    let scene = folder.write("cube.toml", CUBE);
+    souple(["run", &scene, "--quiet", "--frames", "1", "--out", &folder.at("out")]).ends(0);
+    let (first, last) = (folder.at("out/frames/cube_0000.vtu"), folder.at("out/frames/cube_0001.vtu"));
+    souple(["compare", &first, &last]).ends(0);
+    souple(["compare", &last, &last, "--tolerance", "0"]).ends(0);
+    let answer = souple(["compare", &first, &last, "--tolerance", "1e-6", "--json"]).ends(1);
+    let rows = answer.json();
+    let row =
+        rows.as_array().expect("rows").iter().find(|row| row["field"] == "positions").expect("positions");
+    assert_eq!(row["within_tolerance"], false);
+    assert!(answer.stderr.contains("differ by more than 1e-6 in positions"), "{answer:#?}");
+    souple(["compare", &first, &last, "--tolerance", "-1"]).ends(2);
+}
+
+/// The page of the command line names every command, every option of `run`, `replay` and `compare`, every kind of list
+/// and every key of the report.
+#[test]
+fn the_page_of_the_command_line_is_complete() {
+    let page = include_str!("../../../docs/command-line.md");
+    let mut missing = Vec::new();
+    let mut want = |word: String| {
+        if !page.contains(&word) {
+            missing.push(word);
+        }
+    };
+    let help = souple(["--help"]).ends(0).stdout;
+    let (_, commands) = help.split_once("Commands:").expect("a list of commands");
+    for line in commands.lines().skip(1).take_while(|line| !line.trim().is_empty()) {
+        want(format!("`{}", line.split_whitespace().next().unwrap_or_default()));
+    }
+    for command in ["run", "replay", "compare", "modes"] {
+        let help = souple([command, "--help"]).ends(0).stdout;
+        let options = help.split_whitespace().filter(|word| word.starts_with("--"));
+        let options = options.map(|word| word.trim_matches(|c: char| !c.is_alphanumeric() && c != '-'));
+        options.filter(|option| *option != "--help").for_each(|option| want(option.to_owned()));
+    }
+    let kinds = souple(["list", "nothing", "--json"]).ends(2).json();
+    let kinds = kinds["errors"][0]["expected"].as_str().expect("kinds").replace("one of ", "");
+    kinds.split(", ").for_each(|kind| want(format!("`{kind}`")));
+    common::REPORT_KEYS.iter().for_each(|key| want(format!("`{key}`")));
+    assert!(missing.is_empty(), "docs/command-line.md does not name {missing:?}");
+}

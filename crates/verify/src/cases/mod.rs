@@ -1,0 +1,65 @@
+//! The cases: one file and one line in [`TABLES`] for each subject.
+
+mod bar;
+mod cantilever_orders;
+mod cantilevers;
+mod contact;
+mod energy;
+mod explicit;
+mod filling;
+mod frequencies;
+mod implicit;
+mod motion;
+mod patch;
+mod soft_cube;
+mod stepper_orders;
+mod thick_sphere;
+mod traction;
+
+use crate::Case;
+
+/// Every case, subject by subject, in order of cost within a subject.
+pub const TABLES: &[&[Case]] = &[
+    patch::CASES,
+    traction::CASES,
+    thick_sphere::CASES,
+    filling::CASES,
+    cantilevers::CASES,
+    cantilever_orders::CASES,
+    frequencies::CASES,
+    motion::CASES,
+    stepper_orders::CASES,
+    energy::CASES,
+    explicit::CASES,
+    implicit::CASES,
+    soft_cube::CASES,
+    soft_cube::IMPLICIT_STEPS,
+    contact::CASES,
+];
+
+/// Every case.
+pub fn all() -> impl Iterator<Item = &'static Case> {
+    TABLES.iter().copied().flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use crate::scenes;
+
+    /// Ids are not doubled, every scene is there, and orders have runs that get finer.
+    #[test]
+    fn cases_are_sound() {
+        let mut ids = HashSet::new();
+        for case in super::all() {
+            assert!(ids.insert(case.id), "{} stands there twice", case.id);
+            assert!(scenes::text(case.scene).is_some(), "{} is of no scene", case.id);
+            assert!(!case.what.is_empty() && case.reference.is_finite(), "{} says too little", case.id);
+            if let Some(refinement) = case.refinement {
+                assert!(refinement.runs.len() >= 2, "{} has no two runs", case.id);
+                assert!(refinement.runs.is_sorted_by(|a, b| a.size > b.size), "{} does not refine", case.id);
+            }
+        }
+    }
+}

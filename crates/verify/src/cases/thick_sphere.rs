@@ -1,0 +1,49 @@
+//! Lamé's thick sphere: a hollow ball under pressure from inside.
+//!
+//! `u(r) = p a³ / (E (b³ - a³)) ((1 - 2ν) r + (1 + ν) b³ / (2 r²))`, here with `a = 1 m`, `b = 2 m`, `p = 1 kPa`, `E = 1 MPa`, `ν = 0.3`. The pressure
+//! follows the faces; at strains of 1e-3 that changes the answer by as much.
+
+use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
+
+const INNER: f64 = 8.0e-4;
+
+/// So small a pressure that the faces stay: the answer changes by its strain, 1e-6.
+const GENTLE: &str = r#"parameters.pressure="1 Pa""#;
+
+const HALVED: Refinement = Refinement {
+    size_of: "cell [m]",
+    runs: &[
+        Variant { size: 0.25, settings: &["parameters.cells=4", "parameters.layers=4"] },
+        Variant { size: 0.125, settings: &["parameters.cells=8", "parameters.layers=8"] },
+        Variant { size: 0.0625, settings: &["parameters.cells=16", "parameters.layers=16"] },
+    ],
+    limit: Limit::Known(1e-3 * INNER),
+};
+
+const SPHERE: Case = Case {
+    id: "",
+    capabilities: &["FAU-7"],
+    what: "",
+    scene: "thick_sphere",
+    settings: &[GENTLE],
+    reading: Reading::component("inner", 0),
+    refinement: Some(HALVED),
+    reference: 2.0,
+    tolerance: Tolerance::Absolute(0.2),
+    source: "Lamé 1852; Timoshenko & Goodier 1970, §136",
+    mutation: "bodies.ball.material.poissons_ratio=0.31",
+};
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "thick_sphere_order_hex8",
+        what: "order of the inner radius' error under inner pressure, hex8",
+        ..SPHERE
+    },
+    Case {
+        id: "thick_sphere_order_prism6",
+        what: "the same, prism6",
+        settings: &[GENTLE, r#"parameters.element="prism6""#],
+        ..SPHERE
+    },
+];

@@ -1,0 +1,97 @@
+//! EXP-14 of the solids' specification: Young's modulus and Poisson's ratio from the traction of a bar.
+//!
+//! The state is uniform, so that every mesh gives the same: with the strain `e = 0.05` and the section `A = 0.04 m²`, Hooke's law
+//! pulls with `E A e`; St. Venant–Kirchhoff's with `E A (1 + e)(e + e²/2)`, which is 1.07625 of that, as its stress is uniaxial
+//! in Green's strain; and a bar kept from narrowing one way with `E A e / (1 - ν²)`.
+
+use crate::{Case, Reading, Tolerance};
+
+const PULL: Case = Case {
+    id: "",
+    capabilities: &["FAU-72", "FAU-7"],
+    what: "",
+    scene: "traction",
+    settings: &[],
+    reading: Reading::component("pull", 0),
+    refinement: None,
+    reference: 2000.0,
+    // Newton's method stops at 1e-9 of the greatest force at a node
+    tolerance: Tolerance::Relative(1e-8),
+    source: "uniform strain; the specification allows 1e-3",
+    mutation: r#"bodies.bar.mesh.size=[1.2, 0.2, 0.2002]"#,
+};
+
+const SIDE: Case = Case {
+    reading: Reading::component("side", 1),
+    mutation: "bodies.bar.material.poissons_ratio=0.2001",
+    ..PULL
+};
+
+const ST_VENANT_KIRCHHOFF: &[&str] = &[r#"bodies.bar.material.name="st_venant_kirchhoff""#];
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "traction_hooke_1mpa",
+        what: "pull of the stretched bar, Hooke's law, E = 1 MPa, hex8",
+        ..PULL
+    },
+    Case {
+        id: "traction_hooke_2mpa",
+        what: "the same, 2 MPa, tet4, cells half as large",
+        settings: &[
+            r#"bodies.bar.material.youngs_modulus="2 MPa""#,
+            r#"bodies.bar.mesh.element="tet4""#,
+            "bodies.bar.mesh.cells=[24, 4, 4]",
+        ],
+        reference: 4000.0,
+        ..PULL
+    },
+    Case {
+        id: "traction_hooke_3mpa",
+        what: "the same, 3 MPa, prism6, six cells",
+        settings: &[
+            r#"bodies.bar.material.youngs_modulus="3 MPa""#,
+            r#"bodies.bar.mesh.element="prism6""#,
+            "bodies.bar.mesh.cells=[6, 1, 1]",
+        ],
+        reference: 6000.0,
+        ..PULL
+    },
+    Case {
+        id: "traction_hooke_pyramid5",
+        what: "the same, 1 MPa, pyramid5",
+        settings: &[r#"bodies.bar.mesh.element="pyramid5""#],
+        ..PULL
+    },
+    Case {
+        id: "traction_plane_strain",
+        what: "pull where the bar cannot narrow one way",
+        settings: &[r#"bodies.bar.pins[3].region={ union = [{ group = "z_min" }, { group = "z_max" }] }"#],
+        // 1 / (1 - 0.2²)
+        reference: 2000.0 / 0.96,
+        ..PULL
+    },
+    Case {
+        id: "traction_stvk",
+        capabilities: &["FAU-72", "FAU-8"],
+        what: "pull of the stretched bar, st_venant_kirchhoff",
+        settings: ST_VENANT_KIRCHHOFF,
+        reference: 2000.0 * 1.076_25,
+        ..PULL
+    },
+    Case {
+        id: "traction_hooke_side",
+        what: "how far its side comes in, Hooke's law",
+        reference: -0.002,
+        ..SIDE
+    },
+    Case {
+        id: "traction_stvk_side",
+        capabilities: &["FAU-72", "FAU-8"],
+        what: "the same, st_venant_kirchhoff",
+        settings: ST_VENANT_KIRCHHOFF,
+        // 0.2 m (√(1 - 2 ν E) - 1) with the strain E = e + e²/2
+        reference: -0.002_060_615_338_937_665_7,
+        ..SIDE
+    },
+];

@@ -1,0 +1,149 @@
+//! What is read of a scene: a probe of a run, a natural frequency, the highest frequency.
+
+use std::path::Path;
+
+use souple_run::{Control, Options, Status, Trace};
+use souple_scene::Scene;
+
+use crate::scenes;
+
+/// What is read of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// A number of a run, as `report.json` has it.
+    Probe(Observation),
+    /// A natural frequency [Hz] of the first system, the lowest being number 1, as `souple modes` prints it.
+    NaturalFrequency(usize),
+    /// The highest angular frequency [rad/s] of the first system, as `souple check --json` forecasts it.
+    HighestFrequency,
+}
+
+/// A number of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Observation {
+    pub probe: &'static str,
+    /// Component of a vector.
+    pub component: Option<usize>,
+    pub statistic: Statistic,
+    /// World periods to step; the scene's duration where `None`.
+    pub steps: Option<u64>,
+}
+
+/// What is taken of a probe's values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Statistic {
+    Last,
+    Min,
+    Max,
+    /// The greatest less the least.
+    Span,
+}
+
+impl Reading {
+    /// The last value of a probe that gives a number, at the scene's end.
+    pub const fn last(probe: &'static str) -> Self {
+        Self::Probe(Observation { probe, component: None, statistic: Statistic::Last, steps: None })
+    }
+
+    /// The last value of a vector's component.
+    pub const fn component(probe: &'static str, component: usize) -> Self {
+        Self::Probe(Observation {
+            probe,
+            component: Some(component),
+            statistic: Statistic::Last,
+            steps: None,
+        })
+    }
+
+    /// The same after so many world periods.
+    pub const fn after(self, steps: u64) -> Self {
+        match self {
+            Self::Probe(observation) => Self::Probe(Observation { steps: Some(steps), ..observation }),
+            other => other,
+        }
+    }
+
+    /// Another statistic of the same.
+    pub const fn taking(self, statistic: Statistic) -> Self {
+        match self {
+            Self::Probe(observation) => Self::Probe(Observation { statistic, ..observation }),
+            other => other,
+        }
+    }
+
+    /// What is read, in a word.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Probe(observation) => observation.probe.to_owned(),
+            Self::NaturalFrequency(number) => format!("natural frequency {number}"),
+            Self::HighestFrequency => "highest frequency".to_owned(),
+        }
+    }
+
+    /// The command line that gives the same number.
+    pub fn command(&self, scene: &str, settings: &[&str]) -> String {
+        let (verb, end) = match self {
+            Self::Probe(Observation { steps, .. }) => {
+                ("run", steps.map(|steps| format!(" --steps {steps}")).unwrap_or_default())
+            }
+            Self::NaturalFrequency(number) => ("modes", format!(" --count {number}")),
+            Self::HighestFrequency => ("check", " --json".to_owned()),
+        };
+        let settings: String = settings.iter().map(|setting| format!(" --set '{setting}'")).collect();
+        format!("souple {verb} scenes/{scene}{settings}{end}")
+    }
+
+    /// The number and its unit.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub(crate) fn read(&self, name: &str, settings: &[String]) -> Result<(f64, &'static str), String> {
+        let text = scenes::text(name).ok_or_else(|| format!("there is no scene `{name}`"))?;
+        let scene = souple_scene::read_text(name, text, Path::new("."), settings)
+            .map_err(|diagnostics| diagnostics.to_string())?;
+        match self {
+            Self::Probe(observation) => observation.read(name, scene),
+            Self::NaturalFrequency(number) => {
+                let systems = souple_run::natural_frequencies(scene, *number, 0.0)
+                    .map_err(|error| error.to_string())?;
+                let hertz = systems.first().and_then(|system| system.hertz.get(number.checked_sub(1)?));
+                Ok((*hertz.ok_or("the scene has no such frequency")?, "Hz"))
+            }
+            Self::HighestFrequency => {
+                let mut world = scene.model.start(scene.state);
+                let forecast = world.with_system(0, |system, state, around, ws| {
+                    souple_engine::stability::forecast(system, state, around, ws)
+                });
+                Ok((forecast.highest_frequency, "rad/s"))
+            }
+        }
+    }
+}
+
+impl Observation {
+    fn read(&self, name: &str, scene: Scene) -> Result<(f64, &'static str), String> {
+        let options = Options { steps: self.steps, scene_name: name.to_owned(), ..Options::default() };
+        let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue)
+            .map_err(|error| error.to_string())?;
+        if outcome.report.status != Status::Done {
+            return Err(outcome.report.warnings.join("; "));
+        }
+        let trace = outcome.traces.iter().find(|trace| trace.name == self.probe);
+        let trace = trace.ok_or_else(|| format!("the scene has no probe `{}`", self.probe))?;
+        let value = self.statistic.of(trace, self.component.unwrap_or(0));
+        Ok((value.ok_or("the probe has no such component")?, trace.unit))
+    }
+}
+
+impl Statistic {
+    fn of(self, trace: &Trace, component: usize) -> Option<f64> {
+        let summary = trace.summary();
+        let of = |values: &[f64]| values.get(component).copied();
+        match self {
+            Self::Last => of(&summary.last),
+            Self::Min => of(&summary.min),
+            Self::Max => of(&summary.max),
+            Self::Span => Some(of(&summary.max)? - of(&summary.min)?),
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! What a case gave.
+
+use std::fmt;
+
+use serde_json::{Value, json};
+
+use crate::case::Case;
+
+/// What a case gave.
+#[derive(Clone, Debug)]
+pub struct Row {
+    pub case: Case,
+    pub measured: f64,
+    pub unit: &'static str,
+    pub pass: bool,
+    pub seconds: f64,
+    /// One, or one for each size.
+    pub runs: Vec<RunOfRow>,
+    /// Why there is no number.
+    pub problem: Option<String>,
+}
+
+/// One run of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOfRow {
+    /// Where runs get finer: size of the cells or of the step.
+    pub size: Option<f64>,
+    pub value: f64,
+    /// Distance from the limit.
+    pub error: Option<f64>,
+    /// The command line that gives the value.
+    pub command: String,
+}
+
+impl Row {
+    pub fn to_json(&self) -> Value {
+        let mut row = self.case.to_json();
+        row["measured"] = json!(self.measured);
+        row["unit"] = json!(self.unit);
+        row["pass"] = json!(self.pass);
+        row["seconds"] = json!(self.seconds);
+        if self.case.refinement.is_some() {
+            row["runs"] = self.runs.iter().map(RunOfRow::to_json).collect();
+        }
+        if let Some(problem) = &self.problem {
+            row["problem"] = json!(problem);
+        }
+        row
+    }
+}
+
+impl RunOfRow {
+    fn to_json(&self) -> Value {
+        json!({"size": self.size, "value": self.value, "error": self.error, "command": self.command})
+    }
+}
+
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.pass { "ok  " } else { "FAIL" };
+        write!(f, "{verdict} {:34} ", self.case.id)?;
+        if let Some(problem) = &self.problem {
+            return write!(f, "{problem}");
+        }
+        if self.case.refinement.is_some() {
+            write!(f, "order {:.3} for {} ", self.measured, self.case.reference)?;
+        } else {
+            write!(f, "{:.10e} for {:.10e} {} ", self.measured, self.case.reference, self.unit)?;
+        }
+        write!(
+            f,
+            "(off by {:.1e}, {:.1e} allowed) in {:.2} s",
+            (self.measured - self.case.reference).abs(),
+            self.case.tolerance.absolute(self.case.reference),
+            self.seconds
+        )?;
+        if self.case.refinement.is_some() {
+            for run in &self.runs {
+                write!(f, "\n       {:.10e}", run.value)?;
+                if let Some(error) = run.error {
+                    write!(f, " (error {error:.3e})")?;
+                }
+                write!(f, "  {}", run.command)?;
+            }
+        }
+        Ok(())
+    }
+}
