@@ -4,7 +4,9 @@ use souple_math::Vec3;
 
 use crate::constraint::Constraint;
 use crate::force::ParameterError;
-use crate::state::State;
+use crate::hand::{Grip, GripError, Hand, check_place, hand_name};
+use crate::state::{State, SystemState};
+use crate::system::System;
 use crate::world::Model;
 
 /// One change.
@@ -21,6 +23,12 @@ pub enum Edit {
     Unpin { system: usize, block: u32 },
     /// Gives a velocity block a velocity [m/s or rad/s].
     SetVelocity { system: usize, block: u32, velocity: Vec3 },
+    /// Takes hold of points (see [`Hand`]); a hand that held something lets go of it.
+    Grab { system: usize, hand: u32, grip: Grip },
+    /// Leads a hand to a place [m].
+    MoveHand { system: usize, hand: u32, place: Vec3 },
+    /// Lets go.
+    Release { system: usize, hand: u32 },
 }
 
 /// An edit and the period before which it was made.
@@ -43,6 +51,12 @@ pub enum EditError {
     NotFinite { velocity: [f64; 3] },
     #[error("a pin at {position:?} is not at a finite place")]
     PinNotFinite { position: [f64; 3] },
+    #[error("hand {hand} holds nothing in system `{system}`; it must grab first")]
+    NoHand { system: String, hand: u32 },
+    #[error("`{stepper}` cannot step system `{system}` with this: {why}")]
+    Refused { system: String, stepper: &'static str, why: String },
+    #[error(transparent)]
+    Grip(#[from] GripError),
     #[error(transparent)]
     Parameter(#[from] ParameterError),
 }
@@ -54,7 +68,10 @@ impl Edit {
             | Self::Pin { system, .. }
             | Self::PinAt { system, .. }
             | Self::Unpin { system, .. }
-            | Self::SetVelocity { system, .. } => *system,
+            | Self::SetVelocity { system, .. }
+            | Self::Grab { system, .. }
+            | Self::MoveHand { system, .. }
+            | Self::Release { system, .. } => *system,
         }
     }
 
@@ -116,7 +133,52 @@ impl Edit {
                 }
                 state.v[*block as usize] = *velocity;
             }
+            Self::Grab { hand, grip, .. } => grab(system, state, *hand, grip)?,
+            Self::MoveHand { hand, place, .. } => {
+                check_place("place", *place)?;
+                let force = find_hand(system, *hand)?;
+                let moved =
+                    system.forces[force].as_any().downcast_ref().map(|held: &Hand| held.with_place(*place));
+                if let Some(moved) = moved {
+                    system.forces[force] = Box::new(moved);
+                }
+            }
+            Self::Release { hand, .. } => {
+                let force = find_hand(system, *hand)?;
+                release(system, state, force);
+            }
         }
         Ok(())
     }
+}
+
+/// Adds the force of a hand. Hands come after all other forces: those keep their numbers, which pairs hold.
+fn grab(system: &mut System, state: &mut SystemState, hand: u32, grip: &Grip) -> Result<(), EditError> {
+    grip.check(system.kinematics.row_count())?;
+    let held = find_hand(system, hand).ok();
+    system.forces.push(Box::new(Hand::new(hand, grip.clone())));
+    if let Some(why) = system.stepper.refuses(system) {
+        system.forces.pop();
+        let (system, stepper) = (system.name.clone(), system.stepper.name());
+        return Err(EditError::Refused { system, stepper, why });
+    }
+    state.memory.push(0.0);
+    if let Some(held) = held {
+        release(system, state, held);
+    }
+    Ok(())
+}
+
+/// Takes a force away, with its memory.
+fn release(system: &mut System, state: &mut SystemState, force: usize) {
+    let range = system.memory_range(force);
+    state.memory.drain(range);
+    system.forces.remove(force);
+}
+
+/// The number of the force of a hand.
+fn find_hand(system: &System, hand: u32) -> Result<usize, EditError> {
+    let name = hand_name(hand);
+    let found = system.forces.iter().rposition(|force| force.name() == name);
+    found.ok_or_else(|| EditError::NoHand { system: system.name.clone(), hand })
 }

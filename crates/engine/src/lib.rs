@@ -7,6 +7,7 @@ pub mod constraint;
 pub mod coupling;
 pub mod edit;
 pub mod force;
+pub mod hand;
 pub mod hash;
 pub mod implicit;
 pub mod inertia;
@@ -29,6 +30,7 @@ pub use force::{
     CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, ParameterError, Scratch,
     TangentWeights,
 };
+pub use hand::{Grip, Hand, Held};
 pub use hash::Fingerprint;
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
 pub use mass::Mass;

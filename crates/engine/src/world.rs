@@ -204,6 +204,7 @@ impl World {
     pub fn edit(&mut self, edit: Edit) -> Result<(), EditError> {
         let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
+        self.fit_scratches();
         self.log.push(Command { period: self.state.period, edit });
         self.place_all_rows();
         Ok(())
@@ -218,8 +219,18 @@ impl World {
         for command in &log {
             self.model.apply(&mut self.state, &command.edit)?;
         }
+        self.fit_scratches();
         self.log = log;
         Ok(self.resume(state)?)
+    }
+
+    /// A scratch for each force. Only hands come and go, after all other forces, and theirs hold nothing.
+    fn fit_scratches(&mut self) {
+        for (system, ws) in self.model.systems.iter().zip(&mut self.workspace.systems) {
+            ws.scratches.truncate(system.forces.len());
+            let first_new = ws.scratches.len();
+            ws.scratches.extend(system.forces[first_new..].iter().map(|force| force.new_scratch()));
+        }
     }
 
     /// Continues from another state of the same model.

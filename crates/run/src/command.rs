@@ -1,7 +1,7 @@
 //! Commands as text, in recordings and snapshots.
 
 use serde_json::{Value, json};
-use souple_engine::{Command, Edit};
+use souple_engine::{Command, Edit, Grip, Held};
 use souple_math::Vec3;
 
 /// A command as it stands in recordings and snapshots.
@@ -18,6 +18,18 @@ pub fn command_to_json(command: &Command) -> Value {
         Edit::SetVelocity { system, block, velocity } => {
             json!({"kind": "set_velocity", "system": system, "block": block, "velocity": velocity.to_array()})
         }
+        Edit::Grab { system, hand, grip } => {
+            let held = |held: &Held| json!([held.row, held.share, held.offset.to_array()]);
+            let Grip { points, place, stiffness, damping } = grip;
+            json!({
+                "kind": "grab", "system": system, "hand": hand, "place": place.to_array(),
+                "stiffness": stiffness, "damping": damping, "points": points.iter().map(held).collect::<Vec<_>>(),
+            })
+        }
+        Edit::MoveHand { system, hand, place } => {
+            json!({"kind": "move_hand", "system": system, "hand": hand, "place": place.to_array()})
+        }
+        Edit::Release { system, hand } => json!({"kind": "release", "system": system, "hand": hand}),
     };
     json!({"period": command.period, "edit": edit})
 }
@@ -33,28 +45,49 @@ pub fn command_from_json(value: &Value) -> Result<Command, String> {
         edit[key].as_str().map(str::to_owned).ok_or_else(|| format!("a command has no text `{key}`"))
     };
     let system = count(edit, "system")? as usize;
-    let block =
-        || count(edit, "block").and_then(|block| u32::try_from(block).map_err(|error| error.to_string()));
-    let vector = |key: &str| {
-        let number = |i: usize| {
-            edit[key][i].as_f64().ok_or_else(|| format!("`{key}` of a command is not three numbers"))
-        };
-        Ok::<_, String>(Vec3::new(number(0)?, number(1)?, number(2)?))
+    let index = |key: &str| {
+        count(edit, key).and_then(|index| u32::try_from(index).map_err(|error| error.to_string()))
     };
+    let block = || index("block");
+    let vector = |key: &str| vector_of(&edit[key], key);
+    let number = |key: &str| edit[key].as_f64().ok_or_else(|| format!("a command has no number `{key}`"));
     let edit = match edit["kind"].as_str() {
         Some("set_parameter") => Edit::SetParameter {
             system,
             force: text("force")?,
             parameter: text("parameter")?,
-            value: edit["value"].as_f64().ok_or("a command has no number `value`")?,
+            value: number("value")?,
         },
         Some("pin") => Edit::Pin { system, block: block()? },
         Some("unpin") => Edit::Unpin { system, block: block()? },
         Some("pin_at") => Edit::PinAt { system, block: block()?, position: vector("position")? },
         Some("set_velocity") => Edit::SetVelocity { system, block: block()?, velocity: vector("velocity")? },
+        Some("grab") => {
+            let points = edit["points"].as_array().ok_or("a command has no list `points`")?;
+            let points = points.iter().map(held_from_json).collect::<Result<_, String>>()?;
+            let (stiffness, damping) = (number("stiffness")?, number("damping")?);
+            let grip = Grip { points, place: vector("place")?, stiffness, damping };
+            Edit::Grab { system, hand: index("hand")?, grip }
+        }
+        Some("move_hand") => Edit::MoveHand { system, hand: index("hand")?, place: vector("place")? },
+        Some("release") => Edit::Release { system, hand: index("hand")? },
         other => return Err(format!("there is no command of kind {other:?}")),
     };
     Ok(Command { period: count(value, "period")?, edit })
+}
+
+fn vector_of(value: &Value, key: &str) -> Result<Vec3, String> {
+    let number =
+        |i: usize| value[i].as_f64().ok_or_else(|| format!("`{key}` of a command is not three numbers"));
+    Ok(Vec3::new(number(0)?, number(1)?, number(2)?))
+}
+
+/// `[row, share, offset]`.
+fn held_from_json(value: &Value) -> Result<Held, String> {
+    let wrong = || "a point of a command is not `[row, share, offset]`".to_owned();
+    let row = value[0].as_u64().and_then(|row| u32::try_from(row).ok()).ok_or_else(wrong)?;
+    let share = value[1].as_f64().ok_or_else(wrong)?;
+    Ok(Held { row, share, offset: vector_of(&value[2], "offset")? })
 }
 
 #[cfg(test)]
@@ -70,6 +103,18 @@ mod tests {
             Edit::PinAt { system: 0, block: 7, position: Vec3::new(1.0 / 3.0, 5e-324, -8.41e21) },
             Edit::Unpin { system: 0, block: 7 },
             Edit::SetVelocity { system: 0, block: 2, velocity: Vec3::new(0.1, -2.0, 3e-7) },
+            Edit::Grab {
+                system: 0,
+                hand: 3,
+                grip: Grip::on(
+                    &[4, 1],
+                    &[Vec3::X, Vec3::new(0.1, 0.7, -1.0 / 3.0), Vec3::Y, Vec3::Z, Vec3::Y],
+                    0.3,
+                    1e-3,
+                ),
+            },
+            Edit::MoveHand { system: 0, hand: 3, place: Vec3::new(0.1, -2.0, 3e-7) },
+            Edit::Release { system: 0, hand: 3 },
         ];
         for edit in edits {
             let command = Command { period: 12, edit };

@@ -14,14 +14,16 @@ mod output;
 mod picture;
 mod recording;
 mod report;
+mod session;
 pub mod show;
 mod snapshot_file;
 mod trace;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use souple_engine::{Model, ResumeError, State, StepReport, World};
+use souple_engine::World;
 use souple_scene::{BodyInfo, ProbeInfo, Scene};
 
 pub use command::{command_from_json, command_to_json};
@@ -33,6 +35,7 @@ pub use machine::{binary, instruction_set, peak_bytes};
 pub use output::{MANIFEST, OutputError};
 pub use recording::{Divergence, Hashed, Recording, RecordingError};
 pub use report::{AroundSteps, Report, Status, counts};
+pub use session::{Change, ChangeError, Session};
 pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
 pub use trace::{Trace, write_csv};
 
@@ -57,6 +60,10 @@ pub struct Options {
     pub resume: Option<Snapshot>,
     /// Commands to re-execute, in order of their periods; those before the snapshot that is resumed are skipped.
     pub commands: Vec<souple_engine::Command>,
+    /// Changes of the scene to make along the way, in order of their periods.
+    pub changes: Vec<Change>,
+    /// Where the files of the scene are, if not where it says.
+    pub places: BTreeMap<PathBuf, PathBuf>,
     /// How the scene is called in the report.
     pub scene_name: String,
     pub seed: Option<u64>,
@@ -85,6 +92,8 @@ pub enum RunError {
     Snapshot(#[from] souple_engine::SnapshotError),
     #[error("command before period {period}: {error}")]
     Edit { period: u64, error: souple_engine::EditError },
+    #[error("change before period {period}: {error}")]
+    Change { period: u64, error: ChangeError },
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(
@@ -123,111 +132,81 @@ pub fn run(
     options: &Options,
     watch: &mut dyn FnMut(&Progress) -> Control,
 ) -> Result<Outcome, RunError> {
-    let Scene { title, model, state, bodies, probes, expects, run: defaults, picture: view, .. } = scene;
-    let (scene_sha256, mut warnings) = (scene.scene_sha256, scene.warnings);
-    let period = model.period;
-    let mut world = start(model, state, options)?;
-    let first_step = world.state().period;
-    let periods = duration::periods_of(options, defaults.duration, period, world.state())?;
+    let (duration, frame_count) = (scene.run.duration, options.frames.unwrap_or(scene.run.frames));
+    let (expects, view) = (scene.expects.clone(), scene.picture);
+    let mut session = Session::start(scene, options)?;
+    let (first_step, period) = (session.first_step, session.world.model().period);
+    let periods = duration::periods_of(options, duration, period, session.world.state())?;
     let steps = periods.count;
-    warnings.extend(periods.warning);
-    warnings.extend(forecast_warnings(&mut world));
-    let resumed_seed = options.resume.as_ref().map(|snapshot| snapshot.seed);
-    let seed = options.seed.or(resumed_seed).unwrap_or(defaults.seed);
-    let frame_count = options.frames.unwrap_or(defaults.frames);
-    let mut folder = output_folder(options, &bodies, &probes, first_step)?;
-    let mut traces: Vec<Trace> = probes.iter().map(Trace::new).collect();
-    let mut frames = frames::Frames::open(folder.as_ref(), &bodies, frame_count, steps)?;
-    let mut recording = Recording::new(&options.scene_name, &scene_sha256, scene.inputs, seed);
+    session.warnings.extend(periods.warning);
+    session.forecast();
+    let mut folder = output_folder(options, &session.bodies, &session.probes, first_step)?;
+    let mut traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
+    let mut frames = frames::Frames::open(folder.as_ref(), &session.bodies, frame_count, steps)?;
     let mut status = Status::Done;
-    let mut failure = None;
-    let mut solver = StepReport::default();
-    let mut around = AroundSteps::default();
-    let energy_at_start = world.energy();
-    let momentum_at_start = world.momentum();
-    let mut commands = commands_left(options, &world).peekable();
-    let clock = Instant::now();
-    timed(&mut around.measure, || measure(&probes, &mut traces, &mut world));
-    recording.push_hash(&world);
-    frames.write(folder.as_mut(), &world, &bodies, 0)?;
+    let mut commands = commands_left(options, &session.world).peekable();
+    let mut changes = options.changes.iter().peekable();
+    session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+    frames.write(folder.as_mut(), &session.world, &session.bodies, 0)?;
     for step in 1..=steps {
-        while let Some(command) = commands.next_if(|command| command.period <= world.state().period) {
-            let error = |error| RunError::Edit { period: command.period, error };
-            world.edit(command.edit.clone()).map_err(error)?;
+        let now = session.world.state().period;
+        while let Some(change) = changes.next_if(|change| change.period <= now) {
+            let error = |error| RunError::Change { period: change.period, error };
+            session.change(&change.setting).map_err(error)?;
         }
-        if let Err(error) = world.step() {
-            (status, failure) = (Status::Failed, Some(Failure::of(error, &world, &bodies)));
+        while let Some(command) = commands.next_if(|command| command.period <= now) {
+            let error = |error| RunError::Edit { period: command.period, error };
+            session.edit(command.edit.clone()).map_err(error)?;
+        }
+        if !session.step() {
+            status = Status::Failed;
             break;
         }
-        solver.merge(world.last_report());
-        timed(&mut around.measure, || measure(&probes, &mut traces, &mut world));
+        session.measure(&mut |probe, time, value| traces[probe].push(time, value));
         let last = step == steps;
         let write_clock = Instant::now();
         if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
-            recording.push_hash(&world);
+            session.push_hash();
         }
-        frames.write(folder.as_mut(), &world, &bodies, step)?;
-        let wall_seconds = clock.elapsed().as_secs_f64();
+        frames.write(folder.as_mut(), &session.world, &session.bodies, step)?;
+        let wall_seconds = session.clock.elapsed().as_secs_f64();
         let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
         let stops = watch(&progress) == Control::Stop && !last;
         if let (Some(every), Some(folder)) = (options.snapshot_every, &mut folder)
             && (last || stops || step.is_multiple_of(every))
         {
-            let path = folder.claim(&snapshot_name(world.state().period))?;
-            write_snapshot(&path, &scene_sha256, seed, world.state(), world.log())
-                .map_err(OutputError::from)?;
+            let path = folder.claim(&snapshot_name(session.world.state().period))?;
+            session.write_snapshot(&path).map_err(OutputError::from)?;
         }
-        around.write += write_clock.elapsed().as_secs_f64();
+        session.around.write += write_clock.elapsed().as_secs_f64();
         if stops {
             status = Status::Interrupted;
-            recording.push_hash(&world);
+            session.push_hash();
             break;
         }
     }
-    recording.finish(&world);
-    frames.close(folder.as_mut(), &world, &bodies)?;
+    frames.close(folder.as_mut(), &session.world, &session.bodies)?;
     let span = expect::Span {
-        scene_end: defaults.duration,
+        scene_end: duration,
         period,
         status,
-        measured: (first_step as f64 * period, world.time()),
+        measured: (first_step as f64 * period, session.world.time()),
     };
     let report = Report {
-        status,
-        title,
-        scene: options.scene_name.clone(),
-        scene_sha256,
-        seed,
-        threads: rayon::current_num_threads(),
-        first_step,
-        steps: world.state().period - first_step,
-        simulated_seconds: (world.state().period - first_step) as f64 * period,
-        wall_seconds: clock.elapsed().as_secs_f64(),
-        counts: counts(&world, &bodies),
-        stages: world.stages(),
-        around,
-        energy: (energy_at_start, world.energy()),
-        momentum: (momentum_at_start, world.momentum()),
-        solver,
-        peak_bytes: peak_bytes(),
-        solver_bytes: world.bytes(),
         probes: traces.iter().map(Trace::summary).collect(),
-        hashes: recording
-            .hashes
-            .iter()
-            .map(|hashed| (hashed.period, hashed.fingerprint.hash.clone()))
-            .collect(),
         expectations: expects.iter().map(|expect| Verdict::of(expect, &traces, &span)).collect(),
-        failure,
-        warnings,
+        ..session.report(status)
     };
     if let Some(folder) = &mut folder {
         // numbers first: a picture that cannot be written must not cost the report
         report::write_all(folder, &report, &traces)?;
         picture::write_plots(folder, &traces)?;
         let path = folder.claim(PICTURE)?;
-        picture::write_picture(&path, &report.title, view, &world, &bodies).map_err(OutputError::from)?;
+        picture::write_picture(&path, &report.title, view, &session.world, &session.bodies)
+            .map_err(OutputError::from)?;
     }
+    let recording = session.recording();
+    let Session { world, bodies, .. } = session;
     Ok(Outcome { report, traces, recording, world, bodies })
 }
 
@@ -241,24 +220,6 @@ fn snapshot_name(period: u64) -> String {
 /// The period of a snapshot by its name.
 fn snapshot_period(name: &str) -> Option<u64> {
     name.strip_prefix("snapshot_")?.strip_suffix(".souple")?.parse().ok()
-}
-
-/// Adds the wall seconds of some work.
-fn timed(seconds: &mut f64, work: impl FnOnce()) {
-    let clock = Instant::now();
-    work();
-    *seconds += clock.elapsed().as_secs_f64();
-}
-
-fn start(model: Model, state: State, options: &Options) -> Result<World, RunError> {
-    let Some(snapshot) = &options.resume else { return Ok(model.start(state)) };
-    let mut world = model.start(state);
-    let period = snapshot.state.period;
-    world.resume_edited(snapshot.state.clone(), snapshot.commands.clone()).map_err(|error| match error {
-        ResumeError::Edit(error) => RunError::Edit { period, error },
-        ResumeError::State(error) => error.into(),
-    })?;
-    Ok(world)
 }
 
 /// Commands that the world has not seen: those after its state, and those at its state's period that came later
@@ -310,13 +271,6 @@ fn check_file_names<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>
         }
     }
     Ok(())
-}
-
-fn measure(probes: &[ProbeInfo], traces: &mut [Trace], world: &mut World) {
-    let time = world.time();
-    for (probe, trace) in probes.iter().zip(traces) {
-        trace.push(time, probe.measure(world));
-    }
 }
 
 /// What stands against stability before the first step.

@@ -13,6 +13,7 @@ use souple_scene::inputs::{InputFile, InputText, Inputs, sha256};
 
 use crate::command::{command_from_json, command_to_json};
 use crate::machine::{binary, instruction_set};
+use crate::session::Change;
 
 /// What is needed to repeat a run bit for bit, and to see whether it was.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +31,8 @@ pub struct Recording {
     /// Periods stepped.
     pub steps: u64,
     pub commands: Vec<Command>,
+    /// Values of the scene set along the way.
+    pub changes: Vec<Change>,
     pub hashes: Vec<Hashed>,
     /// Where each of the files in `inputs` was, when it was recorded: several ways to name the same place.
     places: Vec<Vec<PathBuf>>,
@@ -175,6 +178,7 @@ impl Recording {
             "texts": self.inputs.texts.iter().map(text).collect::<Vec<_>>(),
             "files": self.inputs.files.iter().map(file).collect::<Vec<_>>(),
             "commands": self.commands.iter().map(command_to_json).collect::<Vec<_>>(),
+            "changes": self.changes.iter().map(change_to_json).collect::<Vec<_>>(),
             "hashes": hashes,
         });
         souple_io::write_file(path, |out| writeln!(out, "{document:#}"))
@@ -239,6 +243,7 @@ impl Recording {
             seed: number("seed")?,
             steps: number("steps")?,
             commands: list(&document, "commands")?.iter().map(command_from_json).collect::<Result<_, _>>()?,
+            changes: list(&document, "changes")?.iter().map(change_from_json).collect::<Result<_, _>>()?,
             hashes: list(&document, "hashes")?
                 .iter()
                 .map(hashed_from_json)
@@ -249,8 +254,8 @@ impl Recording {
     }
 }
 
-/// Version of the layout; the first had no texts.
-const VERSION: u64 = 2;
+/// Version of the layout; the first had no texts, the second no changes.
+const VERSION: u64 = 3;
 
 fn string(entry: &Value, key: &str) -> Result<String, String> {
     let value = entry[key].as_str().map(str::to_owned);
@@ -259,6 +264,15 @@ fn string(entry: &Value, key: &str) -> Result<String, String> {
 
 fn list<'a>(entry: &'a Value, key: &str) -> Result<&'a Vec<Value>, String> {
     entry[key].as_array().ok_or_else(|| format!("`{key}` is missing or not a list"))
+}
+
+fn change_to_json(change: &Change) -> Value {
+    json!({"period": change.period, "setting": change.setting})
+}
+
+fn change_from_json(entry: &Value) -> Result<Change, String> {
+    let period = entry["period"].as_u64().ok_or("a change has no count `period`")?;
+    Ok(Change { period, setting: string(entry, "setting")? })
 }
 
 fn hashed_to_json(hashed: &Hashed) -> Value {

@@ -4,6 +4,7 @@
 //! compiles it to a [`Scene`] ready to run. Whatever is wrong is collected in [`Diagnostics`], each with its place,
 //! what was read and what would be accepted.
 
+mod adjust;
 mod compile;
 pub mod diagnostic;
 mod document;
@@ -20,6 +21,7 @@ pub mod source;
 pub mod spec;
 mod values;
 
+pub use adjust::Adjustable;
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{Measurement, ProbeInfo};
 pub use scene::{BodyInfo, Scene, read_again, read_file, read_spec, read_text};

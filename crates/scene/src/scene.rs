@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use souple_engine::{Model, State};
 use souple_mesh::{Mesh, TriangleSurface};
 
+use crate::adjust::Adjustable;
 use crate::compile::compile;
 use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
@@ -31,6 +32,8 @@ pub struct Scene {
     pub bodies: Vec<BodyInfo>,
     pub probes: Vec<ProbeInfo>,
     pub expects: Vec<Expect>,
+    /// Values that may be set while it runs.
+    pub adjustables: Vec<Adjustable>,
     pub run: RunSpec,
     pub picture: PictureView,
     /// Of all it was made from: texts with what they include, overrides, mesh and surface files.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use souple_engine::{Force, Kinematics, Mass, Motion, ParameterError, UnknownKind};
+use souple_engine::{Force, Grip, Hand, Kinematics, Mass, Motion, ParameterError, UnknownKind};
 use souple_formal::Formula;
 use souple_math::Vec3;
 
@@ -66,8 +66,11 @@ fn table() -> Vec<(&'static str, Box<dyn Force>)> {
             Box::new(GroundSprings::new("ground", springs, 40.0, damping).unwrap()),
         ));
         all.push((
-            name("grab", "damped grab"),
-            Box::new(Grab::new("grab", link(0.0).a, Vec3::Y, 25.0, damping).unwrap()),
+            name("hand", "damped hand"),
+            Box::new(Hand::new(
+                0,
+                Grip { place: Vec3::Y, ..Grip::on(&[1, 4], &velocities(), 25.0, damping) },
+            )),
         ));
         for (rest_length, plain, damped) in [
             (0.0, "attachment", "damped attachment"),
@@ -275,11 +278,14 @@ fn bad_numbers_are_named() {
     let error = Drag::new("drag", vec![(0, -1.0)], 1.0).unwrap_err();
     assert_eq!(error.to_string(), "`rows[0].share` is -1, but must be a finite number of at least 0");
     assert!(matches!(Combination::new(vec![]), Err(LoadError::Empty { field: "rows", .. })));
-    let mut grab = Grab::new("grab", Combination::row(0), Vec3::ZERO, 1.0, 0.0).unwrap();
-    grab.set_parameter("target_x", 2.0).unwrap();
-    assert_eq!(grab.target(), Vec3::new(2.0, 0.0, 0.0));
-    assert!(matches!(grab.set_parameter("stiffness", -1.0), Err(ParameterError::Unfit { .. })));
-    assert!(matches!(grab.set_parameter("target", 1.0), Err(ParameterError::Unknown { .. })));
+    let shares = vec![(0, 1.0)];
+    let mut drag = Drag::new("drag", shares, 1.0).unwrap();
+    let Editable { name, value, .. } = drag.editable()[0].clone();
+    assert_eq!(value, 1.0);
+    drag.set_parameter(name, 2.0).unwrap();
+    assert_eq!(drag.editable()[0].value, 2.0);
+    assert!(matches!(drag.set_parameter(name, -1.0), Err(ParameterError::Unfit { .. })));
+    assert!(matches!(drag.set_parameter("target", 1.0), Err(ParameterError::Unknown { .. })));
     let wrong = Gravity::new("gravity", Vec3::new(f64::NAN, 0.0, 0.0), &Mass::new(0), &Kinematics::default());
     assert!(wrong.is_err());
 }

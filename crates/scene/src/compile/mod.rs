@@ -13,6 +13,7 @@ mod selection;
 mod shape;
 
 pub(crate) use bodies::solid_name;
+pub(crate) use boundary::constant_vector;
 
 use std::collections::BTreeSet;
 
@@ -132,6 +133,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         state,
         probes,
         expects: spec.expects.clone(),
+        adjustables: spec.adjustables(),
         run: spec.run,
         picture: spec.picture_view(),
         scene_sha256: sources.fingerprint(),

@@ -198,6 +198,7 @@ impl From<souple_run::RunError> for Refusal {
         match &error {
             RunError::Snapshot(_)
             | RunError::Edit { .. }
+            | RunError::Change { .. }
             | RunError::TooManySteps { .. }
             | RunError::NoStep { .. }
             | RunError::FileName { .. } => Self::request("run", "", "", error.to_string()),

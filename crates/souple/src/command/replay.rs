@@ -35,7 +35,7 @@ pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
     };
     let recording = Recording::read(&arguments.recording).map_err(|error| refuse(&error))?;
     let places = recording.locate_files(&arguments.recording).map_err(|error| refuse(&error))?;
-    let scene = souple_scene::read_again(&recording.inputs, places)?;
+    let scene = souple_scene::read_again(&recording.inputs, places.clone())?;
     if scene.scene_sha256 != recording.scene_sha256 {
         let message = format!(
             "the scene within `{name}` is not the one it was made of: SHA-256 {}, recorded {}; the recording was changed, record the run anew",
@@ -50,6 +50,8 @@ pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
         frames: arguments.out.is_none().then_some(0),
         hash_every: hash_distance(&recording),
         commands: recording.commands.clone(),
+        changes: recording.changes.clone(),
+        places,
         scene_name: recording.scene.clone(),
         seed: Some(recording.seed),
         ..Options::default()

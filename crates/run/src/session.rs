@@ -1,0 +1,225 @@
+//! A world being run: stepped, measured, edited and reported, by [`crate::run`] from end to end or by a person live.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use souple_engine::{Edit, EditError, ResumeError, StepReport, World};
+use souple_io::IoError;
+use souple_scene::{Adjustable, BodyInfo, Diagnostics, Measurement, ProbeInfo, Scene, inputs::Inputs};
+
+use crate::failure::Failure;
+use crate::machine::peak_bytes;
+use crate::recording::Recording;
+use crate::report::{AroundSteps, Report, Status, counts};
+use crate::snapshot_file::write_snapshot;
+use crate::{Options, RunError, forecast_warnings};
+
+/// A world with what is measured of it, and all that a recording and a report of it need.
+pub struct Session {
+    pub title: String,
+    pub scene_name: String,
+    /// Of the scene as it is now, changes included.
+    pub scene_sha256: String,
+    pub world: World,
+    pub bodies: Vec<BodyInfo>,
+    pub probes: Vec<ProbeInfo>,
+    /// Values of the scene that may be set, see [`Session::change`].
+    pub adjustables: Vec<Adjustable>,
+    pub warnings: Vec<String>,
+    /// Why the last step was refused.
+    pub failure: Option<Failure>,
+    pub first_step: u64,
+    pub(crate) around: AroundSteps,
+    pub(crate) clock: Instant,
+    seed: u64,
+    recording: Recording,
+    places: BTreeMap<PathBuf, PathBuf>,
+    solver: StepReport,
+    energy_at_start: souple_engine::EnergyReport,
+    momentum_at_start: (souple_math::Vec3, souple_math::Vec3),
+}
+
+/// A value of the scene set while it runs: the scene is read again with it, and goes on from where it stood.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Change {
+    /// The period before which it was made; edits of the same period come after it.
+    pub period: u64,
+    /// `path=value`
+    pub setting: String,
+}
+
+/// Why a value was not set.
+#[derive(Debug, thiserror::Error)]
+pub enum ChangeError {
+    #[error("{0}")]
+    Scene(Diagnostics),
+    #[error("`{setting}` makes another world, which cannot go on from where this one stands: {error}")]
+    OtherWorld { setting: String, error: ResumeError },
+}
+
+impl Session {
+    /// # Errors
+    /// The snapshot or the commands to go on from do not fit the scene.
+    pub fn start(scene: Scene, options: &Options) -> Result<Self, RunError> {
+        let Scene { title, model, state, bodies, probes, adjustables, .. } = scene;
+        let Scene { scene_sha256, inputs, warnings, run, .. } = scene;
+        let mut world = model.start(state);
+        if let Some(snapshot) = &options.resume {
+            let period = snapshot.state.period;
+            let resumed = world.resume_edited(snapshot.state.clone(), snapshot.commands.clone());
+            resumed.map_err(|error| match error {
+                ResumeError::Edit(error) => RunError::Edit { period, error },
+                ResumeError::State(error) => error.into(),
+            })?;
+        }
+        let resumed_seed = options.resume.as_ref().map(|snapshot| snapshot.seed);
+        let seed = options.seed.or(resumed_seed).unwrap_or(run.seed);
+        let mut recording = Recording::new(&options.scene_name, &scene_sha256, inputs, seed);
+        recording.push_hash(&world);
+        Ok(Self {
+            title,
+            scene_name: options.scene_name.clone(),
+            scene_sha256,
+            first_step: world.state().period,
+            energy_at_start: world.energy(),
+            momentum_at_start: world.momentum(),
+            world,
+            bodies,
+            probes,
+            adjustables,
+            warnings,
+            failure: None,
+            around: AroundSteps::default(),
+            clock: Instant::now(),
+            seed,
+            recording,
+            places: options.places.clone(),
+            solver: StepReport::default(),
+        })
+    }
+
+    /// Warns of what stands against stability; the wall clock starts anew after it.
+    pub fn forecast(&mut self) {
+        self.warnings.extend(forecast_warnings(&mut self.world));
+        self.clock = Instant::now();
+    }
+
+    /// Steps a period; `false` where the step was refused, which [`Session::failure`] tells.
+    pub fn step(&mut self) -> bool {
+        match self.world.step() {
+            Ok(()) => self.solver.merge(self.world.last_report()),
+            Err(error) => self.failure = Some(Failure::of(error, &self.world, &self.bodies)),
+        }
+        self.failure.is_none()
+    }
+
+    /// Reads all probes: their number, the time, the value.
+    pub fn measure(&mut self, take: &mut dyn FnMut(usize, f64, Measurement)) {
+        let clock = Instant::now();
+        let time = self.world.time();
+        for (index, probe) in self.probes.iter().enumerate() {
+            take(index, time, probe.measure(&mut self.world));
+        }
+        self.around.measure += clock.elapsed().as_secs_f64();
+    }
+
+    /// Makes an edit, recorded.
+    ///
+    /// # Errors
+    /// See [`World::edit`].
+    pub fn edit(&mut self, edit: Edit) -> Result<(), EditError> {
+        self.world.edit(edit)
+    }
+
+    /// What the scene is read from, with the changes made so far.
+    pub fn inputs(&self) -> Inputs {
+        let mut inputs = self.recording.inputs.clone();
+        inputs.settings.extend(self.recording.changes.iter().map(|change| change.setting.clone()));
+        inputs
+    }
+
+    /// Where the files of the scene are, if not where it says.
+    pub fn places(&self) -> &BTreeMap<PathBuf, PathBuf> {
+        &self.places
+    }
+
+    /// Sets a value of the scene, recorded.
+    ///
+    /// # Errors
+    /// The value does not fit, or makes another world; this one stays as it was.
+    pub fn change(&mut self, setting: &str) -> Result<(), ChangeError> {
+        let mut inputs = self.inputs();
+        inputs.settings.push(setting.to_owned());
+        let scene = souple_scene::read_again(&inputs, self.places.clone()).map_err(ChangeError::Scene)?;
+        self.take_over(scene, setting)
+    }
+
+    /// Goes on with a scene that was read from [`Session::inputs`] and one more setting.
+    ///
+    /// # Errors
+    /// It makes another world; this one stays as it was.
+    pub fn take_over(&mut self, scene: Scene, setting: &str) -> Result<(), ChangeError> {
+        let mut world = scene.model.start(scene.state);
+        let (state, log) = (self.world.state().clone(), self.world.log().to_vec());
+        let other = |error| ChangeError::OtherWorld { setting: setting.to_owned(), error };
+        world.resume_edited(state, log).map_err(other)?;
+        let period = world.state().period;
+        self.recording.changes.push(Change { period, setting: setting.to_owned() });
+        (self.world, self.bodies, self.probes) = (world, scene.bodies, scene.probes);
+        self.adjustables = scene.adjustables;
+        self.scene_sha256 = scene.scene_sha256;
+        Ok(())
+    }
+
+    /// Notes the state's hash in the recording.
+    pub fn push_hash(&mut self) {
+        self.recording.push_hash(&self.world);
+    }
+
+    /// The recording up to now.
+    pub fn recording(&self) -> Recording {
+        let mut recording = self.recording.clone();
+        recording.push_hash(&self.world);
+        recording.finish(&self.world);
+        recording
+    }
+
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write_snapshot(&self, path: &Path) -> Result<(), IoError> {
+        write_snapshot(path, &self.scene_sha256, self.seed, self.world.state(), self.world.log())
+    }
+
+    /// The report up to now, without probes and expectations.
+    pub fn report(&mut self, status: Status) -> Report {
+        let period = self.world.model().period;
+        let steps = self.world.state().period - self.first_step;
+        let hashes = self.recording().hashes;
+        Report {
+            status,
+            title: self.title.clone(),
+            scene: self.scene_name.clone(),
+            scene_sha256: self.scene_sha256.clone(),
+            seed: self.seed,
+            threads: rayon::current_num_threads(),
+            first_step: self.first_step,
+            steps,
+            simulated_seconds: steps as f64 * period,
+            wall_seconds: self.clock.elapsed().as_secs_f64(),
+            counts: counts(&self.world, &self.bodies),
+            stages: self.world.stages(),
+            around: self.around,
+            energy: (self.energy_at_start.clone(), self.world.energy()),
+            momentum: (self.momentum_at_start, self.world.momentum()),
+            solver: self.solver.clone(),
+            peak_bytes: peak_bytes(),
+            solver_bytes: self.world.bytes(),
+            probes: Vec::new(),
+            hashes: hashes.into_iter().map(|hashed| (hashed.period, hashed.fingerprint.hash)).collect(),
+            expectations: Vec::new(),
+            failure: self.failure.clone(),
+            warnings: self.warnings.clone(),
+        }
+    }
+}
