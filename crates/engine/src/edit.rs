@@ -1,5 +1,7 @@
 //! Changes made while a world runs: recorded commands between steps, so that replay repeats them.
 
+use std::ops::Range;
+
 use souple_math::Vec3;
 
 use crate::constraint::Constraint;
@@ -23,6 +25,8 @@ pub enum Edit {
     Unpin { system: usize, block: u32 },
     /// Gives a velocity block a velocity [m/s or rad/s].
     SetVelocity { system: usize, block: u32, velocity: Vec3 },
+    /// Adds a velocity to that of some velocity blocks [m/s or rad/s].
+    Push { system: usize, blocks: Range<u32>, velocity: Vec3 },
     /// Takes hold of points (see [`Hand`]); a hand that held something lets go of it.
     Grab { system: usize, hand: u32, grip: Grip },
     /// Leads a hand to a place [m].
@@ -69,6 +73,7 @@ impl Edit {
             | Self::PinAt { system, .. }
             | Self::Unpin { system, .. }
             | Self::SetVelocity { system, .. }
+            | Self::Push { system, .. }
             | Self::Grab { system, .. }
             | Self::MoveHand { system, .. }
             | Self::Release { system, .. } => *system,
@@ -88,6 +93,7 @@ impl Edit {
     pub(crate) fn apply(&self, model: &mut Model, state: &mut State) -> Result<(), EditError> {
         let (index, count) = (self.system(), model.systems.len());
         let system = model.systems.get_mut(index).ok_or(EditError::NoSystem { system: index, count })?;
+        let time = state.period as f64 * model.period;
         let state = &mut state.systems[index];
         let check_block = |block: u32| {
             let count = state.v.len();
@@ -132,6 +138,16 @@ impl Edit {
                     return Err(EditError::NotFinite { velocity: velocity.to_array() });
                 }
                 state.v[*block as usize] = *velocity;
+            }
+            Self::Push { blocks, velocity, .. } => {
+                check_block(blocks.end.saturating_sub(1))?;
+                if !velocity.is_finite() {
+                    return Err(EditError::NotFinite { velocity: velocity.to_array() });
+                }
+                let pushed = blocks.start.min(blocks.end) as usize..blocks.end as usize;
+                state.v[pushed].iter_mut().for_each(|v| *v += *velocity);
+                // what is held stays
+                system.impose_constraints(&mut state.q, &mut state.v, time, 1.0);
             }
             Self::Grab { hand, grip, .. } => grab(system, state, *hand, grip)?,
             Self::MoveHand { hand, place, .. } => {

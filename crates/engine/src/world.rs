@@ -205,7 +205,15 @@ impl World {
         let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
         self.fit_scratches();
-        self.log.push(Command { period: self.state.period, edit });
+        let period = self.state.period;
+        match (self.log.last_mut(), &edit) {
+            // of the places that a hand passes within a period the last one counts
+            (
+                Some(Command { period: last, edit: Edit::MoveHand { system: s, hand: h, place: to } }),
+                Edit::MoveHand { system, hand, place },
+            ) if (*last, *s, *h) == (period, *system, *hand) => *to = *place,
+            _ => self.log.push(Command { period, edit }),
+        }
         self.place_all_rows();
         Ok(())
     }

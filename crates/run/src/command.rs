@@ -18,6 +18,10 @@ pub fn command_to_json(command: &Command) -> Value {
         Edit::SetVelocity { system, block, velocity } => {
             json!({"kind": "set_velocity", "system": system, "block": block, "velocity": velocity.to_array()})
         }
+        Edit::Push { system, blocks, velocity } => json!({
+            "kind": "push", "system": system, "first": blocks.start, "end": blocks.end,
+            "velocity": velocity.to_array(),
+        }),
         Edit::Grab { system, hand, grip } => {
             let held = |held: &Held| json!([held.row, held.share, held.offset.to_array()]);
             let Grip { points, place, stiffness, damping } = grip;
@@ -62,6 +66,9 @@ pub fn command_from_json(value: &Value) -> Result<Command, String> {
         Some("unpin") => Edit::Unpin { system, block: block()? },
         Some("pin_at") => Edit::PinAt { system, block: block()?, position: vector("position")? },
         Some("set_velocity") => Edit::SetVelocity { system, block: block()?, velocity: vector("velocity")? },
+        Some("push") => {
+            Edit::Push { system, blocks: index("first")?..index("end")?, velocity: vector("velocity")? }
+        }
         Some("grab") => {
             let points = edit["points"].as_array().ok_or("a command has no list `points`")?;
             let points = points.iter().map(held_from_json).collect::<Result<_, String>>()?;
@@ -113,6 +120,7 @@ mod tests {
                     1e-3,
                 ),
             },
+            Edit::Push { system: 0, blocks: 2..7, velocity: Vec3::new(0.1, -2.0, 3e-7) },
             Edit::MoveHand { system: 0, hand: 3, place: Vec3::new(0.1, -2.0, 3e-7) },
             Edit::Release { system: 0, hand: 3 },
         ];

@@ -162,11 +162,16 @@ impl Recording {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), IoError> {
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let document = self.to_json(path.parent().unwrap_or(Path::new("")));
+        souple_io::write_file(path, |out| writeln!(out, "{document:#}"))
+    }
+
+    /// The recording as it stands in a file of a folder.
+    pub fn to_json(&self, folder: &Path) -> Value {
         let hashes: Vec<Value> = self.hashes.iter().map(hashed_to_json).collect();
         let text = |text: &InputText| json!({"name": text.name, "folder": text.folder, "text": text.text});
         let file = |file: &InputFile| json!({"path": file.path, "sha256": file.sha256, "places": places_of(&file.path, folder)});
-        let document = json!({
+        json!({
             "souple_recording": VERSION,
             "scene": self.scene,
             "scene_sha256": self.scene_sha256,
@@ -180,8 +185,7 @@ impl Recording {
             "commands": self.commands.iter().map(command_to_json).collect::<Vec<_>>(),
             "changes": self.changes.iter().map(change_to_json).collect::<Vec<_>>(),
             "hashes": hashes,
-        });
-        souple_io::write_file(path, |out| writeln!(out, "{document:#}"))
+        })
     }
 
     /// # Errors

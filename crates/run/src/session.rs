@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::machine::peak_bytes;
 use crate::recording::Recording;
 use crate::report::{AroundSteps, Report, Status, counts};
-use crate::snapshot_file::write_snapshot;
+use crate::snapshot_file::{snapshot_bytes, write_snapshot};
 use crate::{Options, RunError, forecast_warnings};
 
 /// A world with what is measured of it, and all that a recording and a report of it need.
@@ -183,6 +183,11 @@ impl Session {
         recording.push_hash(&self.world);
         recording.finish(&self.world);
         recording
+    }
+
+    /// The state as a file to go on from holds it.
+    pub fn snapshot(&self) -> Vec<u8> {
+        snapshot_bytes(&self.scene_sha256, self.seed, self.world.state(), self.world.log())
     }
 
     /// # Errors

@@ -43,6 +43,21 @@ pub enum SnapshotFileError {
 /// Version of the first line; another one is refused.
 const HEADER: &str = "souple snapshot 2 ";
 
+/// The content of a snapshot.
+pub fn snapshot_bytes(scene_sha256: &str, seed: u64, state: &State, commands: &[Command]) -> Vec<u8> {
+    let header = json!({
+        "scene_sha256": scene_sha256,
+        "state": state.hash(),
+        "seed": seed,
+        "binary": binary(),
+        "isa": instruction_set(),
+        "commands": commands.iter().map(command_to_json).collect::<Vec<_>>(),
+    });
+    let mut bytes = format!("{HEADER}{header}\n").into_bytes();
+    bytes.extend(state.to_bytes());
+    bytes
+}
+
 /// # Errors
 /// The file cannot be written.
 pub fn write_snapshot(
@@ -52,18 +67,8 @@ pub fn write_snapshot(
     state: &State,
     commands: &[Command],
 ) -> Result<(), IoError> {
-    let header = json!({
-        "scene_sha256": scene_sha256,
-        "state": state.hash(),
-        "seed": seed,
-        "binary": binary(),
-        "isa": instruction_set(),
-        "commands": commands.iter().map(command_to_json).collect::<Vec<_>>(),
-    });
-    souple_io::write_file(path, |out| {
-        writeln!(out, "{HEADER}{header}")?;
-        out.write_all(&state.to_bytes())
-    })
+    let bytes = snapshot_bytes(scene_sha256, seed, state, commands);
+    souple_io::write_file(path, |out| out.write_all(&bytes))
 }
 
 /// # Errors

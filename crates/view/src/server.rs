@@ -1,0 +1,198 @@
+//! The listener: who comes in, and what is at which path.
+
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::time::Duration;
+
+use souple_scene::Scene;
+
+use crate::catalogue::Catalogue;
+use crate::guard::Guard;
+use crate::http::{Rejection, Request, Response};
+use crate::hub::Hub;
+use crate::session::{Answer, Input, Question, Start};
+use crate::{page, socket};
+
+/// Connections at a time; more are turned away, so that threads and memory stay bounded.
+const CONNECTIONS_MAX: usize = 96;
+/// Requests that may wait for the world.
+const INPUTS_MAX: usize = 1024;
+/// How long the world may take to answer a download.
+const ANSWER_PATIENCE: Duration = Duration::from_secs(20);
+
+/// What a viewer is asked for.
+pub struct Options {
+    pub host: IpAddr,
+    /// 0 picks one.
+    pub port: u16,
+    /// How the scene is called in reports and in the command that reproduces the run.
+    pub scene_name: String,
+    /// Other scenes to choose from.
+    pub catalogue: Catalogue,
+}
+
+/// Why there is no viewer.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewError {
+    #[error("{address} cannot be listened on: {error}; take another --port, or --port 0 for any free one")]
+    Bind { address: SocketAddr, error: std::io::Error },
+    #[error("the system gives no random numbers for a token: {0}")]
+    Token(getrandom::Error),
+    #[error("the system gives no thread: {0}")]
+    Thread(std::io::Error),
+}
+
+/// A world that pages look at.
+pub struct Viewer {
+    address: String,
+    inputs: SyncSender<Input>,
+}
+
+struct Server {
+    guard: Guard,
+    hub: Arc<Hub>,
+    inputs: SyncSender<Input>,
+    connections: AtomicUsize,
+}
+
+impl Viewer {
+    /// Listens, and starts the world; it waits for its first page.
+    ///
+    /// # Errors
+    /// See [`ViewError`].
+    pub fn open(scene: Scene, options: Options) -> Result<Self, ViewError> {
+        let wanted = SocketAddr::new(options.host, options.port);
+        let bind = |error| ViewError::Bind { address: wanted, error };
+        let listener = TcpListener::bind(wanted).map_err(bind)?;
+        let guard = Guard::new(listener.local_addr().map_err(bind)?).map_err(ViewError::Token)?;
+        let address = guard.address();
+        let (hub, (inputs, inbox)) = (Arc::new(Hub::default()), sync_channel(INPUTS_MAX));
+        let start = Start {
+            scene,
+            name: options.scene_name,
+            catalogue: options.catalogue,
+            hub: Arc::clone(&hub),
+            inputs: inputs.clone(),
+            inbox,
+        };
+        let thread = |name: &str| std::thread::Builder::new().name(name.to_owned());
+        thread("world").spawn(move || start.run()).map_err(ViewError::Thread)?;
+        let server =
+            Arc::new(Server { guard, hub, inputs: inputs.clone(), connections: AtomicUsize::new(0) });
+        thread("listener").spawn(move || server.listen(&listener)).map_err(ViewError::Thread)?;
+        Ok(Self { address, inputs })
+    }
+
+    /// Where a person finds the page.
+    pub fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// Ends the world.
+    pub fn close(self) {
+        let _ = self.inputs.send(Input::Stop);
+    }
+}
+
+impl Server {
+    fn listen(self: &Arc<Self>, listener: &TcpListener) {
+        for stream in listener.incoming() {
+            // a connection that broke before it was taken is none
+            let Ok(mut stream) = stream else { continue };
+            if self.connections.fetch_add(1, Ordering::Relaxed) >= CONNECTIONS_MAX {
+                self.connections.fetch_sub(1, Ordering::Relaxed);
+                let _ = stream.set_write_timeout(Some(Duration::from_millis(100)));
+                let _ = Rejection::new(503, "too many connections; close some pages").send(&mut stream);
+                continue;
+            }
+            let server = Arc::clone(self);
+            let spawned = std::thread::Builder::new().name("client".to_owned()).spawn(move || {
+                let _counted = Counted(&server.connections);
+                server.serve(stream);
+            });
+            if spawned.is_err() {
+                self.connections.fetch_sub(1, Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// Whatever goes wrong on a connection ends that connection, and nothing else.
+    fn serve(&self, mut stream: TcpStream) {
+        let request = match Request::read(&mut stream) {
+            Ok(Some(request)) => request,
+            Ok(None) => return,
+            Err(rejection) => {
+                let _ = rejection.send(&mut stream);
+                return;
+            }
+        };
+        if request.path == "/socket" {
+            let checked = self.guard.check_site(&request).and_then(|()| self.guard.check_token(&request));
+            match checked.and_then(|()| socket::accept(&request)) {
+                Ok(answer) => {
+                    use std::io::Write;
+                    if stream.write_all(answer.as_bytes()).is_ok() {
+                        let _ = socket::serve(stream, request.rest, &self.hub, &self.inputs);
+                    }
+                }
+                Err(rejection) => {
+                    let _ = rejection.send(&mut stream);
+                }
+            }
+            return;
+        }
+        match self.answer(&request) {
+            Ok(answer) => {
+                let response = Response {
+                    status: 200,
+                    kind: &answer.kind,
+                    content: &answer.content,
+                    save_as: answer.save_as.as_deref(),
+                };
+                let _ = response.send(&mut stream, &request.method);
+            }
+            Err(rejection) => {
+                let _ = rejection.send(&mut stream);
+            }
+        }
+    }
+
+    fn answer(&self, request: &Request) -> Result<Answer, Rejection> {
+        if !matches!(request.method.as_str(), "GET" | "HEAD") {
+            return Err(Rejection::new(
+                405,
+                format!("`{}` is not understood; GET and HEAD are", request.method),
+            ));
+        }
+        self.guard.check_site(request)?;
+        if let Some(file) = page::file(&request.path) {
+            // the page itself is no secret
+            return Ok(Answer::new(file.kind, file.content.to_vec()));
+        }
+        self.guard.check_token(request)?;
+        if request.path == "/health" {
+            let mut health = self.hub.health();
+            health["pages"] = self.hub.page_count().into();
+            return Ok(Answer::json(&health));
+        }
+        let Some(question) = Question::of_path(&request.path) else {
+            let known = "/, /health, /report, /recording, /snapshot, /socket";
+            return Err(Rejection::new(404, format!("there is no `{}`; there are {known}", request.path)));
+        };
+        let (answer, answered) = sync_channel(1);
+        let gone = || Rejection::new(503, "the world does not answer");
+        self.inputs.send(Input::Asked(question, answer)).map_err(|_| gone())?;
+        answered.recv_timeout(ANSWER_PATIENCE).map_err(|_| gone())?
+    }
+}
+
+/// A connection while it lasts.
+struct Counted<'a>(&'a AtomicUsize);
+
+impl Drop for Counted<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,126 @@
+//! Scenes are read beside the world, which steps on meanwhile.
+
+use std::collections::VecDeque;
+use std::sync::mpsc::SyncSender;
+
+use souple_run::Session;
+use souple_scene::Scene;
+
+use super::Input;
+use crate::catalogue::Catalogue;
+use crate::hub::PageId;
+
+/// What a scene is read for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// To begin anew, with the values that were set.
+    Reset,
+    /// To begin another of the catalogue.
+    Load(String),
+    LoadText {
+        name: String,
+        text: String,
+    },
+    /// To go on with one value changed: `path=value`.
+    Set(String),
+}
+
+impl Purpose {
+    /// The wish that it comes from.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Reset => "reset",
+            Self::Load(_) | Self::LoadText { .. } => "load",
+            Self::Set(_) => "set",
+        }
+    }
+
+    /// Two of the same kind, of which the later one counts.
+    fn replaces(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Set(new), Self::Set(old)) => {
+                new.split_once('=').map(|p| p.0) == old.split_once('=').map(|p| p.0)
+            }
+            (Self::Set(_), _) | (_, Self::Set(_)) => false,
+            _ => true,
+        }
+    }
+}
+
+/// A scene that was read, or what is wrong with it.
+pub struct Compiled {
+    pub page: PageId,
+    pub purpose: Purpose,
+    pub scene: Result<Scene, String>,
+}
+
+/// Reads one scene at a time, in order.
+pub struct Compiler {
+    inputs: SyncSender<Input>,
+    busy: Option<Purpose>,
+    waiting: VecDeque<(PageId, Purpose)>,
+}
+
+impl Compiler {
+    pub fn new(inputs: SyncSender<Input>) -> Self {
+        Self { inputs, busy: None, waiting: VecDeque::new() }
+    }
+
+    /// What is being done, for the page.
+    pub fn busy_with(&self) -> Option<&'static str> {
+        self.busy.as_ref().map(Purpose::name)
+    }
+
+    pub fn ask(&mut self, page: PageId, purpose: Purpose, session: &Session, catalogue: &Catalogue) {
+        self.waiting.retain(|(_, waiting)| !purpose.replaces(waiting));
+        self.waiting.push_back((page, purpose));
+        if self.busy.is_none() {
+            self.next(session, catalogue);
+        }
+    }
+
+    /// The one before is done: begins the next, if any waits.
+    pub fn next(&mut self, session: &Session, catalogue: &Catalogue) {
+        self.busy = None;
+        let Some((page, purpose)) = self.waiting.pop_front() else { return };
+        let (inputs, places) = (self.inputs.clone(), session.places().clone());
+        let mut texts = session.inputs();
+        let path = match &purpose {
+            Purpose::Load(name) => catalogue.find(name).map(std::path::Path::to_owned),
+            Purpose::Set(setting) => {
+                texts.settings.push(setting.clone());
+                None
+            }
+            Purpose::Reset | Purpose::LoadText { .. } => None,
+        };
+        self.busy = Some(purpose.clone());
+        let work = move || {
+            let scene = match (&purpose, path) {
+                (Purpose::LoadText { name, text }, _) => {
+                    souple_scene::read_text(name, text, std::path::Path::new(""), &[])
+                }
+                (_, Some(path)) => souple_scene::read_file(&path, &[]),
+                _ => souple_scene::read_again(&texts, places),
+            };
+            let scene = scene.map_err(|diagnostics| in_words(&diagnostics));
+            // the world may have ended
+            let _ = inputs.send(Input::Compiled(Box::new(Compiled { page, purpose, scene })));
+        };
+        if std::thread::Builder::new().name("reader".to_owned()).spawn(work).is_err() {
+            self.busy = None;
+        }
+    }
+}
+
+/// The first fault, and what would be accepted in its place.
+fn in_words(diagnostics: &souple_scene::Diagnostics) -> String {
+    let Some(first) = diagnostics.0.first() else { return diagnostics.to_string() };
+    let place = if first.path.is_empty() { String::new() } else { format!("{}: ", first.path) };
+    let expected =
+        if first.expected.is_empty() { String::new() } else { format!("; expected {}", first.expected) };
+    let more = match diagnostics.0.len() {
+        1 => String::new(),
+        count => format!(" (and {} more)", count - 1),
+    };
+    format!("{place}{}{expected}{more}", first.message)
+}

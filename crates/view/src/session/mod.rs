@@ -1,0 +1,370 @@
+//! The thread of the world: steps in real time, does what pages wish, says what they are to know.
+
+mod compile;
+mod hands;
+mod pace;
+mod question;
+mod stage;
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use souple_scene::Scene;
+
+pub use question::{Answer, Question};
+
+use crate::catalogue::Catalogue;
+use crate::http::Rejection;
+use crate::hub::{Hub, PageId};
+use crate::protocol::{Wish, document, refusal};
+use compile::{Compiled, Compiler, Purpose};
+use pace::Pace;
+use stage::Stage;
+
+/// What reaches the world from outside.
+pub enum Input {
+    Joined(PageId),
+    Left(PageId),
+    Said(PageId, Wish),
+    Asked(Question, SyncSender<Result<Answer, Rejection>>),
+    Compiled(Box<Compiled>),
+    Stop,
+}
+
+/// What the world starts from.
+pub struct Start {
+    pub scene: Scene,
+    pub name: String,
+    pub catalogue: Catalogue,
+    pub hub: Arc<Hub>,
+    pub inputs: SyncSender<Input>,
+    pub inbox: Receiver<Input>,
+}
+
+/// Pictures a second, at most.
+const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 60);
+/// How often the state of affairs is noted for `/health` and for pages, at least.
+const NOTE: Duration = Duration::from_millis(500);
+
+/// What the world is doing.
+#[derive(Clone, Debug, PartialEq)]
+enum Mode {
+    /// For its first page.
+    Waiting,
+    Playing,
+    Paused,
+    /// A step was refused; says which and why.
+    Failed(String),
+}
+
+impl Mode {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Playing => "playing",
+            Self::Paused => "paused",
+            Self::Failed(_) => "failed",
+        }
+    }
+}
+
+/// The world and its surroundings.
+struct Live {
+    hub: Arc<Hub>,
+    catalogue: Catalogue,
+    compiler: Compiler,
+    stage: Stage,
+    mode: Mode,
+    pace: Pace,
+    /// Whether pages have not seen the world as it stands.
+    is_changed: bool,
+    next_frame: Instant,
+    next_note: Instant,
+}
+
+/// Whether the thread goes on.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Course {
+    On,
+    Ends,
+}
+
+impl Start {
+    /// The world until it is told to stop.
+    pub fn run(self) {
+        let Self { scene, name, catalogue, hub, inputs, inbox } = self;
+        let stage = match Stage::new(scene, name, 0, &hub) {
+            Ok(stage) => stage,
+            Err(message) => {
+                hub.set_health(json!({"status": "failed", "message": message}));
+                return;
+            }
+        };
+        let now = Instant::now();
+        let mut live = Live {
+            hub,
+            catalogue,
+            compiler: Compiler::new(inputs),
+            stage,
+            mode: Mode::Waiting,
+            pace: Pace::new(now),
+            is_changed: true,
+            next_frame: now,
+            next_note: now,
+        };
+        live.note();
+        live.run(&inbox);
+    }
+}
+
+impl Live {
+    fn run(&mut self, inbox: &Receiver<Input>) {
+        loop {
+            loop {
+                match inbox.try_recv() {
+                    Ok(input) => {
+                        if self.take(input) == Course::Ends {
+                            return;
+                        }
+                    }
+                    Err(TryRecvError::Empty) => break,
+                    Err(TryRecvError::Disconnected) => return,
+                }
+            }
+            let mut now = Instant::now();
+            let is_due = self.mode == Mode::Playing && self.pace.due(self.stage.next_time()) <= now;
+            if is_due {
+                self.step();
+                now = Instant::now();
+            }
+            if self.is_changed && now >= self.next_frame {
+                self.show(now);
+            }
+            if now >= self.next_note {
+                self.next_note = now + NOTE;
+                self.note();
+            }
+            if is_due {
+                continue;
+            }
+            match inbox.recv_timeout(self.patience(now)) {
+                Ok(input) => {
+                    if self.take(input) == Course::Ends {
+                        return;
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    /// How long nothing is due.
+    fn patience(&self, now: Instant) -> Duration {
+        let mut next = self.next_note;
+        if self.mode == Mode::Playing {
+            next = next.min(self.pace.due(self.stage.next_time()));
+        }
+        if self.is_changed {
+            next = next.min(self.next_frame);
+        }
+        next.saturating_duration_since(now)
+    }
+
+    fn step(&mut self) {
+        self.is_changed = true;
+        let stepped = self.stage.step(&self.hub);
+        self.pace.stepped(Instant::now(), self.stage.time());
+        if let Err(message) = stepped {
+            self.set_mode(Mode::Failed(message));
+        }
+    }
+
+    fn show(&mut self, now: Instant) {
+        // a late picture does not hurry the next
+        self.next_frame = now + FRAME;
+        if self.hub.page_count() > 0 {
+            let factor = if self.mode == Mode::Playing { self.pace.factor(now) } else { 0.0 };
+            self.hub.show(&self.stage.frame(factor).into());
+            self.is_changed = false;
+        }
+    }
+
+    fn set_mode(&mut self, mode: Mode) {
+        if mode == Mode::Playing {
+            self.pace.start(Instant::now(), self.stage.time());
+        }
+        self.mode = mode;
+        self.note();
+        self.hub.tell_all(&document("status", self.status()));
+    }
+
+    fn status(&self) -> Value {
+        json!({
+            "mode": self.mode.name(),
+            "speed": self.pace.speed(),
+            "busy": self.compiler.busy_with(),
+            "message": match &self.mode { Mode::Failed(message) => Some(message), _ => None },
+        })
+    }
+
+    /// Leaves word for `/health`.
+    fn note(&self) {
+        let mut health = self.status();
+        health["status"] = "ok".into();
+        health["version"] = env!("CARGO_PKG_VERSION").into();
+        health["scene"] = self.stage.name().into();
+        health["time"] = self.stage.time().into();
+        self.hub.set_health(health);
+    }
+
+    fn take(&mut self, input: Input) -> Course {
+        match input {
+            Input::Joined(page) => self.welcome(page),
+            Input::Left(page) => {
+                self.stage.forget(page);
+                self.is_changed = true;
+            }
+            Input::Said(page, wish) => {
+                let about = about(&wish);
+                if let Err(message) = self.fulfil(page, wish) {
+                    self.hub.tell(page, refusal(about, &message));
+                }
+            }
+            Input::Asked(question, answer) => {
+                // who asked may have gone
+                let _ = answer.send(self.stage.answer(question));
+            }
+            Input::Compiled(compiled) => self.receive(*compiled),
+            Input::Stop => return Course::Ends,
+        }
+        Course::On
+    }
+
+    fn welcome(&mut self, page: PageId) {
+        let hello = json!({
+            "page": page,
+            "version": env!("CARGO_PKG_VERSION"),
+            "colour_maps": stage::colour_maps(),
+            "scenes": self.catalogue.to_json(),
+        });
+        self.hub.tell(page, document("hello", hello));
+        self.stage.describe(&mut |message| self.hub.tell(page, message));
+        if self.mode == Mode::Waiting {
+            self.set_mode(Mode::Playing);
+        }
+        self.hub.tell(page, document("status", self.status()));
+        self.is_changed = true;
+    }
+
+    fn fulfil(&mut self, page: PageId, wish: Wish) -> Result<(), String> {
+        self.is_changed = true;
+        match wish {
+            Wish::Seen => {}
+            Wish::Play => match &self.mode {
+                Mode::Failed(message) => return Err(format!("{message}; reset the world first")),
+                _ => self.set_mode(Mode::Playing),
+            },
+            Wish::Pause => {
+                if !matches!(self.mode, Mode::Failed(_)) {
+                    self.set_mode(Mode::Paused);
+                }
+            }
+            Wish::Step => {
+                if let Mode::Failed(message) = &self.mode {
+                    return Err(format!("{message}; reset the world first"));
+                }
+                if self.mode != Mode::Paused {
+                    self.set_mode(Mode::Paused);
+                }
+                self.step();
+            }
+            Wish::Speed(speed) => {
+                self.pace.set_speed(speed, Instant::now(), self.stage.time());
+                self.hub.tell_all(&document("status", self.status()));
+            }
+            Wish::Reset => self.compile(page, Purpose::Reset),
+            Wish::Load(name) => {
+                if self.catalogue.find(&name).is_none() {
+                    let known: Vec<&str> = self.catalogue.names().collect();
+                    return Err(format!("there is no scene `{name}`; there are: {}", known.join(", ")));
+                }
+                self.compile(page, Purpose::Load(name));
+            }
+            Wish::LoadText { name, text } => self.compile(page, Purpose::LoadText { name, text }),
+            Wish::Set { path, value } => self.compile(page, Purpose::Set(format!("{path}={value}"))),
+            wish => self.stage.fulfil(page, wish, &self.hub)?,
+        }
+        Ok(())
+    }
+
+    fn compile(&mut self, page: PageId, purpose: Purpose) {
+        self.compiler.ask(page, purpose, self.stage.session(), &self.catalogue);
+        self.hub.tell_all(&document("status", self.status()));
+    }
+
+    /// A scene has been read: goes on with it, or says what is wrong with it.
+    fn receive(&mut self, compiled: Compiled) {
+        let (page, purpose) = (compiled.page, compiled.purpose.clone());
+        let about = purpose.name();
+        let result = match (compiled.scene, &purpose) {
+            (Err(message), _) => Err(message),
+            (Ok(scene), Purpose::Set(setting)) => self.stage.change(scene, setting, &self.hub),
+            (Ok(scene), _) => self.begin(scene, &purpose),
+        };
+        if let Err(message) = result {
+            self.hub.tell(page, refusal(about, &message));
+            // whoever wished sees the old value again
+            self.hub.tell_all(&self.stage.adjustables());
+        }
+        self.compiler.next(self.stage.session(), &self.catalogue);
+        self.is_changed = true;
+        self.note();
+        self.hub.tell_all(&document("status", self.status()));
+    }
+
+    /// Another world, or this one anew.
+    fn begin(&mut self, scene: Scene, purpose: &Purpose) -> Result<(), String> {
+        let name = match purpose {
+            Purpose::Load(name) => match self.catalogue.find(name) {
+                Some(path) => path.display().to_string(),
+                None => name.clone(),
+            },
+            Purpose::LoadText { name, .. } => name.clone(),
+            Purpose::Reset | Purpose::Set(_) => self.stage.name().to_owned(),
+        };
+        let stage = Stage::new(scene, name, self.stage.number() + 1, &self.hub)?;
+        let chosen = self.stage.chosen_fields();
+        self.stage = stage;
+        self.stage.choose_fields(chosen);
+        self.stage.describe(&mut |message| self.hub.tell_all(&message));
+        if matches!(self.mode, Mode::Failed(_)) {
+            self.mode = Mode::Playing;
+        }
+        self.pace.start(Instant::now(), self.stage.time());
+        Ok(())
+    }
+}
+
+/// What a wish is about, for refusals.
+fn about(wish: &Wish) -> &'static str {
+    match wish {
+        Wish::Seen => "seen",
+        Wish::Play => "play",
+        Wish::Pause => "pause",
+        Wish::Step => "step",
+        Wish::Reset => "reset",
+        Wish::Speed(_) => "speed",
+        Wish::Load(_) | Wish::LoadText { .. } => "load",
+        Wish::Set { .. } => "set",
+        Wish::Colour(_) => "colour",
+        Wish::Grab { .. } => "grab",
+        Wish::Move { .. } => "move",
+        Wish::Release(_) => "release",
+        Wish::Pin { .. } => "pin",
+        Wish::Unpin { .. } => "unpin",
+        Wish::Throw { .. } => "throw",
+    }
+}

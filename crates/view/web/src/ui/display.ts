@@ -1,0 +1,105 @@
+// How the world is drawn: what colours it, edges, a cut, light or dark.
+
+import type { ColourMap, FieldInfo } from "../protocol";
+import { label } from "../format";
+import type { Cut } from "../view/picture";
+import type { Style } from "../view/body";
+import { element, panel, remember, remembered } from "./dom";
+
+export interface Look {
+  field: string | null;
+  map: string;
+  style: Style;
+  cut: Cut | null;
+  strength: number;
+}
+
+const STYLES: [Style, string][] = [
+  ["smooth", "Smooth"],
+  ["edges", "With edges"],
+  ["wireframe", "Wireframe"],
+];
+const AXES: [string, string][] = [
+  ["none", "No cut"],
+  ["0", "Across x"],
+  ["1", "Across y"],
+  ["2", "Across z"],
+];
+
+export class Display {
+  readonly root: HTMLElement;
+  readonly look: Look = { field: null, map: "sequential", style: "smooth", cut: null, strength: 1 };
+  private readonly field = element("select", { id: "field" });
+  private readonly map = element("select", { id: "map" });
+  private readonly style = element("select", { id: "style" });
+  private readonly axis = element("select", { id: "cut" });
+  private readonly place = element("input", { type: "range", min: 0, max: 1, step: 0.005, value: 0.5, "aria-label": "Place of the cut" });
+  private readonly strength = element("input", { type: "range", id: "strength", min: -1.5, max: 1.5, step: 0.05, value: 0 });
+
+  constructor(
+    private readonly changed: () => void,
+    actions: { fit: () => void; theme: () => void },
+  ) {
+    const options = (select: HTMLSelectElement, entries: [string, string][]) =>
+      select.append(...entries.map(([value, text]) => element("option", { value }, text)));
+    options(this.style, STYLES);
+    options(this.axis, AXES);
+    for (const control of [this.field, this.map, this.style, this.axis]) {
+      control.addEventListener("change", () => this.read());
+    }
+    for (const control of [this.place, this.strength]) control.addEventListener("input", () => this.read());
+    const row = (text: string, control: HTMLElement) =>
+      element("label", { class: "row" }, element("span", {}, text), control);
+    this.root = panel(
+      "Display",
+      true,
+      row("Colour", this.field),
+      row("Colour map", this.map),
+      row("Surface", this.style),
+      row("Cut", this.axis),
+      element("div", { class: "row" }, this.place),
+      row("Hand's strength", this.strength),
+      element(
+        "div",
+        { class: "buttons" },
+        element("button", { click: actions.fit, title: "Shows all bodies (F)" }, "Fit view"),
+        element("button", { click: actions.theme, title: "Light or dark" }, "Light / dark"),
+      ),
+    );
+    this.place.hidden = true;
+  }
+
+  setMaps(maps: ColourMap[]): void {
+    this.map.replaceChildren(...maps.map((map) => element("option", { value: map.name, title: map.summary }, label(map.name))));
+    this.map.value = this.look.map;
+  }
+
+  setFields(fields: FieldInfo[]): void {
+    const entry = ({ name, summary, unit }: FieldInfo) =>
+      element("option", { value: name, title: `${summary} [${unit || "1"}]` }, label(name));
+    this.field.replaceChildren(element("option", { value: "" }, "Material"), ...fields.map(entry));
+    const wanted = remembered("field") ?? "";
+    this.field.value = fields.some((field) => field.name === wanted) ? wanted : "";
+    this.read();
+  }
+
+  /** The next style of surfaces. */
+  nextStyle(): void {
+    const at = STYLES.findIndex(([style]) => style === this.look.style);
+    this.style.value = STYLES[(at + 1) % STYLES.length]![0];
+    this.read();
+  }
+
+  private read(): void {
+    const { look } = this;
+    look.field = this.field.value || null;
+    look.map = this.map.value || "sequential";
+    look.style = this.style.value as Style;
+    look.strength = 10 ** Number(this.strength.value);
+    const axis = this.axis.value;
+    this.place.hidden = axis === "none";
+    look.cut = axis === "none" ? null : { axis: Number(axis) as 0 | 1 | 2, place: Number(this.place.value) };
+    remember("field", this.field.value);
+    this.changed();
+  }
+}

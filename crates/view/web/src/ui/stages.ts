@@ -1,0 +1,68 @@
+// Where the time of a step goes.
+
+import { number } from "../format";
+import type { Frame, SceneInfo } from "../protocol";
+import { element } from "./dom";
+
+const STAGES: [string, string][] = [
+  ["contacts", "#8d6bb8"],
+  ["forces", "#3d6fd8"],
+  ["matrix", "#3f8f8f"],
+  ["solve", "#d0863f"],
+  ["rest", "#8a93a0"],
+];
+/** Weight of a new picture in what is shown: digits that flicker are not read. */
+const NEW = 0.06;
+
+export class Stages {
+  readonly root: HTMLElement;
+  private readonly counts = element("span", { class: "counts" });
+  private readonly total = element("span", { class: "total" });
+  private readonly bar = element("span", { class: "stagebar" });
+  private readonly parts: HTMLElement[];
+  private readonly iterations = element("span");
+  private readonly rate = element("span", { title: "Pictures drawn each second" });
+  private mean: number[] | null = null;
+  private lastText = 0;
+  private pictures = 0;
+  private since = performance.now();
+
+  constructor() {
+    this.parts = STAGES.map(([name, colour]) => element("i", { title: name, style: `background:${colour}` }));
+    this.bar.append(...this.parts);
+    this.root = element("div", { class: "stages" }, this.counts, this.total, this.bar, this.iterations, this.rate);
+  }
+
+  begin(info: SceneInfo): void {
+    this.mean = null;
+    const cells = info.bodies.reduce((sum, body) => sum + body.cells, 0);
+    const points = info.bodies.reduce((sum, body) => sum + body.points, 0);
+    this.counts.textContent = `${points.toLocaleString()} points, ${cells.toLocaleString()} cells`;
+  }
+
+  show(frame: Frame): void {
+    this.pictures += 1;
+    const now = [...frame.stages, ...frame.iterations];
+    const { mean } = this;
+    if (!mean) this.mean = now;
+    else now.forEach((value, index) => (mean[index]! += NEW * (value - mean[index]!)));
+    const clock = performance.now();
+    if (clock - this.lastText < 250) return;
+    this.lastText = clock;
+    const [contacts = 0, forces = 0, matrix = 0, solve = 0, rest = 0, newton = 0, linear = 0] = this.mean ?? now;
+    const stages = [contacts, forces, matrix, solve, rest];
+    const total = stages.reduce((sum, stage) => sum + stage, 0);
+    this.total.textContent = `${number(total)} ms a step`;
+    stages.forEach((stage, index) => {
+      const part = this.parts[index]!;
+      part.style.flexGrow = String(stage);
+      part.title = `${STAGES[index]![0]}: ${number(stage)} ms`;
+    });
+    this.iterations.textContent = linear > 0 ? `${number(newton)} Newton, ${number(linear)} linear iterations` : "";
+    if (clock - this.since > 1000) {
+      this.rate.textContent = `${Math.round((1000 * this.pictures) / (clock - this.since))} pictures/s`;
+      this.since = clock;
+      this.pictures = 0;
+    }
+  }
+}

@@ -1,0 +1,200 @@
+// A soft body on the screen: its surface as it stands, smooth, in one colour or coloured by a field.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DynamicDrawUsage,
+  Group,
+  InstancedMesh,
+  LineBasicMaterial,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  MeshPhysicalMaterial,
+  MeshStandardMaterial,
+  SphereGeometry,
+  Vector3,
+} from "three";
+import type { Plane } from "three";
+import type { BodyFrame, Surface } from "../protocol";
+import { smoothNormals } from "./normals";
+import { BODY_COLOURS, paint } from "./palette";
+import type { Range } from "./palette";
+
+/** How surfaces are drawn. */
+export type Style = "smooth" | "edges" | "wireframe";
+
+const PIN_COLOUR = 0x3d6fd8;
+
+export class Body {
+  readonly group = new Group();
+  readonly mesh: Mesh<BufferGeometry, MeshPhysicalMaterial>;
+  readonly positions: Float32Array;
+  readonly normals: Float32Array;
+  private readonly colours: BufferAttribute;
+  private readonly edges: LineSegments<BufferGeometry, LineBasicMaterial>;
+  private readonly triangles: Uint32Array;
+  private pins: InstancedMesh | null = null;
+  private pinned: number[] = [];
+
+  constructor(
+    readonly index: number,
+    surface: Surface,
+    private readonly size: number,
+  ) {
+    this.triangles = surface.triangles;
+    this.positions = Float32Array.from(surface.points);
+    this.normals = new Float32Array(this.positions.length);
+    const geometry = new BufferGeometry();
+    const moving = (numbers: Float32Array) => new BufferAttribute(numbers, 3).setUsage(DynamicDrawUsage);
+    geometry.setAttribute("position", moving(this.positions));
+    geometry.setAttribute("normal", moving(this.normals));
+    this.colours = moving(new Float32Array(this.positions.length));
+    geometry.setAttribute("color", this.colours);
+    geometry.setIndex(new BufferAttribute(this.triangles, 1));
+    const material = new MeshPhysicalMaterial({
+      color: BODY_COLOURS[index % BODY_COLOURS.length]!,
+      roughness: 0.5,
+      clearcoat: 0.3,
+      clearcoatRoughness: 0.4,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    this.mesh = new Mesh(geometry, material);
+    this.mesh.castShadow = true;
+    this.mesh.receiveShadow = true;
+    // it moves out of any box that was drawn about it once
+    this.mesh.frustumCulled = false;
+    const lines = new BufferGeometry();
+    lines.setAttribute("position", geometry.getAttribute("position"));
+    lines.setIndex(new BufferAttribute(edgesOf(this.triangles), 1));
+    this.edges = new LineSegments(lines, new LineBasicMaterial({ transparent: true, opacity: 0.35, color: 0x101418 }));
+    this.edges.frustumCulled = false;
+    this.edges.visible = false;
+    this.group.add(this.mesh, this.edges);
+    this.moved();
+  }
+
+  update(frame: BodyFrame): void {
+    if (frame.positions.length !== this.positions.length) return;
+    this.positions.set(frame.positions);
+    this.moved();
+  }
+
+  /** Colours by values; by its own colour for none. */
+  colourBy(values: Float32Array | undefined, range: Range, map: Float32Array): void {
+    const { material } = this.mesh;
+    if (material.vertexColors !== Boolean(values)) {
+      material.vertexColors = Boolean(values);
+      material.color.set(values ? 0xffffff : BODY_COLOURS[this.index % BODY_COLOURS.length]!);
+      // colours are read by the eye: less shine on them
+      material.clearcoat = values ? 0.1 : 0.3;
+      material.roughness = values ? 0.7 : 0.5;
+      material.needsUpdate = true;
+    }
+    if (values) {
+      paint(values, range, map, this.colours.array as Float32Array);
+      this.colours.needsUpdate = true;
+    }
+  }
+
+  setStyle(style: Style, dark: boolean): void {
+    this.mesh.material.colorWrite = style !== "wireframe";
+    this.mesh.material.depthWrite = style !== "wireframe";
+    this.mesh.castShadow = style !== "wireframe";
+    this.edges.visible = style !== "smooth";
+    this.edges.material.color.set(style === "wireframe" && dark ? 0xdfe6f0 : 0x101418);
+    this.edges.material.opacity = style === "wireframe" ? 0.6 : 0.3;
+  }
+
+  setCut(planes: Plane[]): void {
+    this.mesh.material.clippingPlanes = planes;
+    // the inside is seen then
+    this.mesh.material.side = planes.length > 0 ? 2 : 0;
+    this.mesh.material.needsUpdate = true;
+    this.edges.material.clippingPlanes = planes;
+  }
+
+  setPins(points: number[]): void {
+    this.pinned = points;
+    if (this.pins && this.pins.count !== points.length) {
+      this.group.remove(this.pins);
+      this.pins.dispose();
+      this.pins = null;
+    }
+    if (!this.pins && points.length > 0) {
+      const sphere = new SphereGeometry(this.size * 0.009, 10, 8);
+      this.pins = new InstancedMesh(sphere, new MeshStandardMaterial({ color: PIN_COLOUR, roughness: 0.5 }), points.length);
+      this.pins.frustumCulled = false;
+      this.group.add(this.pins);
+    }
+    this.placePins();
+  }
+
+  isPinned(point: number): boolean {
+    return this.pinned.includes(point);
+  }
+
+  /** Points within a distance of a place, on the side that a normal points to. */
+  pointsNear(place: Vector3, normal: Vector3, distance: number): number[] {
+    const near: [number, number][] = [];
+    const { positions, normals } = this;
+    for (let point = 0; point < positions.length / 3; point++) {
+      const at = 3 * point;
+      const dx = positions[at]! - place.x;
+      const dy = positions[at + 1]! - place.y;
+      const dz = positions[at + 2]! - place.z;
+      const distanceSq = dx * dx + dy * dy + dz * dz;
+      const facing = normals[at]! * normal.x + normals[at + 1]! * normal.y + normals[at + 2]! * normal.z;
+      if (distanceSq < distance * distance && facing > 0) near.push([distanceSq, point]);
+    }
+    near.sort((a, b) => a[0] - b[0]);
+    return near.slice(0, 400).map(([, point]) => point);
+  }
+
+  /** Makes the mesh ready to be met by a ray. */
+  prepareForRay(): void {
+    this.mesh.geometry.computeBoundingSphere();
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
+    this.mesh.material.dispose();
+    this.edges.geometry.dispose();
+    this.edges.material.dispose();
+    this.pins?.dispose();
+  }
+
+  private moved(): void {
+    smoothNormals(this.positions, this.triangles, this.normals);
+    const { geometry } = this.mesh;
+    geometry.getAttribute("position").needsUpdate = true;
+    geometry.getAttribute("normal").needsUpdate = true;
+    this.placePins();
+  }
+
+  private placePins(): void {
+    if (!this.pins) return;
+    const place = new Matrix4();
+    this.pinned.forEach((point, index) => {
+      const at = 3 * point;
+      place.makeTranslation(this.positions[at]!, this.positions[at + 1]!, this.positions[at + 2]!);
+      this.pins?.setMatrixAt(index, place);
+    });
+    this.pins.instanceMatrix.needsUpdate = true;
+  }
+}
+
+/** Each edge of a closed surface once: seen from one of its two triangles. */
+function edgesOf(triangles: Uint32Array): Uint32Array {
+  const edges: number[] = [];
+  for (let t = 0; t < triangles.length; t += 3) {
+    for (let k = 0; k < 3; k++) {
+      const a = triangles[t + k]!;
+      const b = triangles[t + ((k + 1) % 3)]!;
+      if (a < b) edges.push(a, b);
+    }
+  }
+  return Uint32Array.from(edges);
+}

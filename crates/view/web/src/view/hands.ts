@@ -1,0 +1,76 @@
+// Hands on the world: an arrow from what is held to where it is pulled, with the force in numbers.
+
+import { ArrowHelper, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3 } from "three";
+import type { Camera } from "three";
+import { quantity } from "../format";
+import type { HandShown } from "../protocol";
+
+const COLOUR = 0xf2a33a;
+
+interface Shown {
+  arrow: ArrowHelper;
+  grip: Mesh;
+  label: HTMLElement;
+  place: Vector3;
+}
+
+export class Hands {
+  readonly group = new Group();
+  private shown: Shown[] = [];
+
+  constructor(
+    private readonly labels: HTMLElement,
+    private readonly size: () => number,
+  ) {}
+
+  update(hands: HandShown[]): void {
+    while (this.shown.length > hands.length) this.drop();
+    while (this.shown.length < hands.length) this.add();
+    hands.forEach((hand, index) => {
+      const { arrow, grip, label, place } = this.shown[index]!;
+      const held = new Vector3().fromArray(hand.held);
+      place.fromArray(hand.place);
+      const pull = place.clone().sub(held);
+      const length = Math.max(pull.length(), 1e-9);
+      const head = Math.min(0.035 * this.size(), 0.6 * length);
+      arrow.position.copy(held);
+      arrow.setDirection(pull.divideScalar(length));
+      arrow.setLength(length, head, 0.55 * head);
+      grip.position.copy(held);
+      grip.scale.setScalar(this.size());
+      label.textContent = quantity(new Vector3().fromArray(hand.force).length(), "N");
+    });
+  }
+
+  /** Puts the numbers where the arrows end on the screen. */
+  placeLabels(camera: Camera, width: number, height: number): void {
+    for (const { label, place } of this.shown) {
+      const at = place.clone().project(camera);
+      label.style.transform = `translate(${((at.x + 1) / 2) * width + 12}px, ${((1 - at.y) / 2) * height - 10}px)`;
+    }
+  }
+
+  private add(): void {
+    const arrow = new ArrowHelper(new Vector3(1, 0, 0), new Vector3(), 1, COLOUR);
+    const grip = new Mesh(new SphereGeometry(0.012, 16, 12), new MeshBasicMaterial({ color: COLOUR }));
+    for (const thing of [arrow.line.material, arrow.cone.material, grip.material]) {
+      // a hand inside a body is seen through it
+      Object.assign(thing, { depthTest: false, transparent: true, toneMapped: false });
+    }
+    [arrow.line, arrow.cone, grip].forEach((thing) => (thing.renderOrder = 10));
+    const label = document.createElement("span");
+    label.className = "force";
+    this.labels.append(label);
+    this.group.add(arrow, grip);
+    this.shown.push({ arrow, grip, label, place: new Vector3() });
+  }
+
+  private drop(): void {
+    const last = this.shown.pop();
+    if (!last) return;
+    this.group.remove(last.arrow, last.grip);
+    last.arrow.dispose();
+    last.grip.geometry.dispose();
+    last.label.remove();
+  }
+}

@@ -1,0 +1,273 @@
+// The picture: camera, light, and all that is drawn in it.
+
+import {
+  Box3,
+  DirectionalLight,
+  HemisphereLight,
+  NeutralToneMapping,
+  PCFShadowMap,
+  PerspectiveCamera,
+  Plane,
+  PMREMGenerator,
+  Raycaster,
+  Scene,
+  SRGBColorSpace,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
+import type { Frame, SceneInfo, Surface } from "../protocol";
+import { Body } from "./body";
+import type { Style } from "./body";
+import { Hands } from "./hands";
+import { Obstacles } from "./obstacles";
+import { linearColours } from "./palette";
+import type { Range } from "./palette";
+
+/** Where a ray meets a body. */
+export interface Hit {
+  body: Body;
+  point: Vector3;
+  normal: Vector3;
+}
+
+export interface Cut {
+  axis: 0 | 1 | 2;
+  /** From 0, nothing is left, to 1, all is. */
+  place: number;
+}
+
+export class Picture {
+  readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
+  readonly controls: OrbitControls;
+  readonly canvas: HTMLCanvasElement;
+  bodies: Body[] = [];
+  /** Diagonal of all bodies at rest [m]. */
+  size = 1;
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly key = new DirectionalLight(0xfff4e6, 2.4);
+  private readonly sky = new HemisphereLight(0xeef4ff, 0x8a7f78, 0.7);
+  private readonly hands: Hands;
+  private readonly ray = new Raycaster();
+  private obstacles: Obstacles | null = null;
+  private bounds = new Box3();
+  private up = new Vector3(0, 1, 0);
+  private direction = new Vector3(-0.5, -0.45, -1);
+  private colours: Float32Array = new Float32Array(3 * 256);
+  private field = -1;
+  private style: Style = "smooth";
+  private dark = false;
+  private cut: Cut | null = null;
+  private readonly cutPlane = new Plane();
+  /** Of the values seen lately. */
+  range: Range = { low: 0, high: 1 };
+  private fixedRange = false;
+
+  constructor(
+    private readonly place: HTMLElement,
+    grab: (picture: Picture) => void,
+  ) {
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: "high-performance" });
+    const { renderer } = this;
+    renderer.outputColorSpace = SRGBColorSpace;
+    renderer.toneMapping = NeutralToneMapping;
+    renderer.toneMappingExposure = 1;
+    renderer.shadowMap.enabled = true;
+    renderer.shadowMap.type = PCFShadowMap;
+    renderer.localClippingEnabled = true;
+    this.canvas = renderer.domElement;
+    place.append(this.canvas);
+    const labels = document.createElement("div");
+    labels.className = "labels";
+    place.append(labels);
+    this.hands = new Hands(labels, () => this.size);
+    const environment = new PMREMGenerator(renderer);
+    this.scene.environment = environment.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.scene.environmentIntensity = 0.45;
+    environment.dispose();
+    this.key.castShadow = true;
+    this.key.shadow.mapSize.set(2048, 2048);
+    this.key.shadow.radius = 5;
+    this.key.shadow.bias = -4e-4;
+    this.key.shadow.normalBias = 0.01;
+    this.scene.add(this.key, this.key.target, this.sky, this.hands.group);
+    // the hand comes before the camera: what it takes hold of does not turn the view
+    grab(this);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+    new ResizeObserver(() => this.resize()).observe(place);
+    this.resize();
+  }
+
+  /** Another scene: bodies first among the surfaces, then obstacles. */
+  begin(info: SceneInfo, surfaces: Surface[]): void {
+    for (const body of this.bodies) {
+      this.scene.remove(body.group);
+      body.dispose();
+    }
+    if (this.obstacles) {
+      this.scene.remove(this.obstacles.group);
+      this.obstacles.dispose();
+    }
+    const ofBodies = surfaces.slice(0, info.bodies.length);
+    this.bounds = new Box3();
+    const point = new Vector3();
+    for (const { points } of ofBodies) {
+      for (let i = 0; i < points.length; i += 3) this.bounds.expandByPoint(point.fromArray(points, i));
+    }
+    this.size = Math.max(this.bounds.getSize(point).length(), 1e-6);
+    this.up.fromArray(info.up).normalize();
+    this.direction.fromArray(info.direction).normalize();
+    this.bodies = ofBodies.map((surface, index) => new Body(index, surface, this.size));
+    this.obstacles = new Obstacles(info.obstacles, surfaces.slice(info.bodies.length), this.up, this.bounds);
+    this.scene.add(this.obstacles.group);
+    this.bodies.forEach((body) => this.scene.add(body.group));
+    this.setStyle(this.style, this.dark);
+    this.setCut(this.cut);
+    this.light();
+  }
+
+  show(frame: Frame): void {
+    frame.bodies.forEach((body, index) => this.bodies[index]?.update(body));
+    this.obstacles?.move(frame.poses);
+    this.hands.update(frame.hands);
+    const values = frame.bodies.map((body) => body.fields.get(this.field));
+    this.follow(values);
+    frame.bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.range, this.colours));
+  }
+
+  setColours(field: number, map: Parameters<typeof linearColours>[0], fixed: Range | null): void {
+    if (field !== this.field) this.range = { low: Infinity, high: -Infinity };
+    this.field = field;
+    this.colours = linearColours(map);
+    this.fixedRange = fixed !== null;
+    if (fixed) this.range = fixed;
+  }
+
+  setStyle(style: Style, dark: boolean): void {
+    this.style = style;
+    this.dark = dark;
+    this.bodies.forEach((body) => body.setStyle(style, dark));
+  }
+
+  setCut(cut: Cut | null): void {
+    this.cut = cut;
+    if (cut) {
+      const normal = new Vector3().setComponent(cut.axis, -1);
+      const low = this.bounds.min.getComponent(cut.axis);
+      const high = this.bounds.max.getComponent(cut.axis);
+      this.cutPlane.set(normal, low + (high - low) * cut.place);
+    }
+    this.bodies.forEach((body) => body.setCut(cut ? [this.cutPlane] : []));
+  }
+
+  /** Looks at all bodies as they stand, from where the scene wants to be seen. */
+  fit(): void {
+    const bounds = new Box3();
+    const point = new Vector3();
+    for (const { positions } of this.bodies) {
+      for (let i = 0; i < positions.length; i += 3) bounds.expandByPoint(point.fromArray(positions, i));
+    }
+    const centre = bounds.getCenter(new Vector3());
+    const radius = Math.max(0.5 * bounds.getSize(point).length(), 1e-6);
+    const half = 0.5 * this.camera.fov * (Math.PI / 180);
+    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
+    const distance = (1.12 * radius) / Math.sin(narrow);
+    this.camera.up.copy(this.up);
+    this.camera.position.copy(centre).addScaledVector(this.direction, -distance);
+    this.camera.near = distance / 200;
+    this.camera.far = distance * 40;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(centre);
+    this.controls.update();
+  }
+
+  draw(): void {
+    this.controls.update();
+    this.renderer.render(this.scene, this.camera);
+    this.hands.placeLabels(this.camera, this.place.clientWidth, this.place.clientHeight);
+  }
+
+  /** The body under a place of the screen. */
+  hit(event: { clientX: number; clientY: number }): Hit | null {
+    this.aim(event);
+    this.bodies.forEach((body) => body.prepareForRay());
+    const meshes = this.bodies.map((body) => body.mesh);
+    const hits = this.ray.intersectObjects(meshes, false);
+    const met = hits.find((hit) => !this.cut || this.cutPlane.distanceToPoint(hit.point) >= 0);
+    const body = this.bodies.find((body) => body.mesh === met?.object);
+    if (!met || !body) return null;
+    return { body, point: met.point, normal: met.normal?.clone() ?? this.ray.ray.direction.clone().negate() };
+  }
+
+  /** The place above a plane through a point, across the view, that a place of the screen lies on. */
+  onPlane(event: { clientX: number; clientY: number }, point: Vector3): Vector3 | null {
+    this.aim(event);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), point);
+    return this.ray.ray.intersectPlane(plane, new Vector3());
+  }
+
+  /** The picture as a file. */
+  save(): Promise<Blob | null> {
+    this.draw();
+    return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));
+  }
+
+  private aim({ clientX, clientY }: { clientX: number; clientY: number }): void {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const at = new Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
+    this.ray.setFromCamera(at, this.camera);
+  }
+
+  /** Widens the range of colours at once, and lets it shrink slowly: a legend that jumps cannot be read. */
+  private follow(values: (Float32Array | undefined)[]): void {
+    if (this.fixedRange) return;
+    let low = Infinity;
+    let high = -Infinity;
+    for (const list of values) {
+      for (const value of list ?? []) {
+        if (value < low) low = value;
+        if (value > high) high = value;
+      }
+    }
+    if (low > high) return;
+    const { range } = this;
+    const ease = (old: number, now: number, widens: boolean) =>
+      widens || !Number.isFinite(old) ? now : old + 0.02 * (now - old);
+    range.low = ease(range.low, low, low < range.low);
+    range.high = ease(range.high, high, high > range.high);
+  }
+
+  /** The key light stands to the left above the camera's usual place, and its shadows cover all bodies. */
+  private light(): void {
+    const centre = this.bounds.getCenter(new Vector3());
+    const right = this.direction.clone().cross(this.up).normalize();
+    const towards = this.direction
+      .clone()
+      .multiplyScalar(-0.55)
+      .addScaledVector(right, -0.6)
+      .addScaledVector(this.up, 1.05)
+      .normalize();
+    this.key.position.copy(centre).addScaledVector(towards, 3 * this.size);
+    this.key.target.position.copy(centre);
+    this.sky.position.copy(this.up);
+    const { camera } = this.key.shadow;
+    const reach = 1.3 * this.size;
+    Object.assign(camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1 * this.size, far: 8 * this.size });
+    camera.updateProjectionMatrix();
+    this.key.shadow.normalBias = 0.004 * this.size;
+  }
+
+  private resize(): void {
+    const width = Math.max(this.place.clientWidth, 1);
+    const height = Math.max(this.place.clientHeight, 1);
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+  }
+}
