@@ -3,6 +3,7 @@
 //! A check is a line in [`STEPS`]; quick ones stand first. One of them alone: `cargo xtask test licences`. Pages that
 //! are made by the program are written by `cargo xtask gallery` and `cargo xtask reference`.
 
+mod browser;
 mod capabilities;
 mod cargo;
 mod failure;
@@ -56,6 +57,7 @@ const STEPS: &[Step] = &[
     Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
     Step { name: "reference", summary: "docs/reference is what the tables say", run: reference::check },
     Step { name: "snippets", summary: "every command and scene in README and docs/", run: snippets::check },
+    Step { name: "browser", summary: "the page in a headless Chromium", run: browser::check },
     Step { name: "verify", summary: "the validation cases of the released program", run: program::verify },
 ];
 

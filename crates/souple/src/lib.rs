@@ -30,3 +30,4 @@ pub use souple_scene as scene;
 pub use souple_solve as solve;
 pub use souple_table as table;
 pub use souple_verify as verify;
+pub use souple_view as view;

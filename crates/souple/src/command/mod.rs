@@ -11,6 +11,7 @@ mod render;
 mod replay;
 mod run;
 mod verify;
+mod view;
 
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -30,6 +31,8 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Shows a scene live in the browser: pull it, change it
+    View(view::Arguments),
     /// Runs a scene headless: report, probes, frames
     Run(run::Arguments),
     /// Validates a scene without running it: every error with its place, a forecast of stability and cost
@@ -225,6 +228,7 @@ pub fn execute(cli: Cli) -> ExitCode {
         return exit_code(run::run_default_scene(), false);
     };
     let (ended, as_json) = match command {
+        Command::View(arguments) => (view::view(&arguments), false),
         Command::Run(arguments) => (run::run(&arguments), arguments.json),
         Command::Check(arguments) => (check::check(&arguments), arguments.json),
         Command::Modes(arguments) => (modes::modes(&arguments), arguments.json),

@@ -1,0 +1,79 @@
+//! `souple view`: a scene live in the browser.
+
+use std::net::IpAddr;
+use std::path::Path;
+use std::sync::mpsc::channel;
+
+use souple_scene::Scene;
+use souple_view::{Catalogue, Options, ViewError, Viewer};
+
+use super::{End, Refusal, print_line, print_note, read_scene, scene_path, use_threads};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Scene file, or a folder with a scene.toml; the liver where left out
+    scene: Option<String>,
+    /// Changes a value of the scene: `bodies.liver.material.youngs_modulus="3 kPa"`; may be repeated
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    settings: Vec<String>,
+    /// Port of the page; 0 picks a free one
+    #[arg(long, default_value_t = 7878)]
+    port: u16,
+    /// Address to listen on; beyond this machine (0.0.0.0) a token is asked for, which is part of the address printed
+    #[arg(long, default_value = "127.0.0.1")]
+    host: IpAddr,
+    /// Worker threads; the results do not depend on it
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// The scene of `souple view` alone, as it is in the repository.
+const DEFAULT_SCENE: &str = include_str!("../../../../scenes/liver/scene.toml");
+/// Where other scenes are looked for, from the current folder.
+const SCENES: &str = "scenes";
+
+pub fn view(arguments: &Arguments) -> Result<End, Refusal> {
+    if let Some(problem) = souple_view::missing_page() {
+        return Err(Refusal::work("page", format!("this program was built without the page: {problem}")));
+    }
+    use_threads(arguments.threads)?;
+    let (scene, scene_name) = read(arguments)?;
+    for warning in &scene.warnings {
+        print_note(format_args!("warning: {warning}"));
+    }
+    let options = Options {
+        host: arguments.host,
+        port: arguments.port,
+        scene_name,
+        catalogue: Catalogue::of_folder(Path::new(SCENES)),
+    };
+    let viewer = Viewer::open(scene, options).map_err(refuse)?;
+    // the first line is the address
+    print_line(viewer.address());
+    print_note("open it in a browser; Ctrl-C ends");
+    let (stop, stopped) = channel();
+    // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
+    let _ = ctrlc::set_handler(move || {
+        let _ = stop.send(());
+    });
+    let _ = stopped.recv();
+    viewer.close();
+    Ok(End::Interrupted)
+}
+
+fn read(arguments: &Arguments) -> Result<(Scene, String), Refusal> {
+    if let Some(path) = &arguments.scene {
+        return Ok((read_scene(path, &arguments.settings)?, scene_path(path).display().to_string()));
+    }
+    let scene = souple_scene::read_text("liver", DEFAULT_SCENE, Path::new("."), &arguments.settings)?;
+    Ok((scene, "liver".to_owned()))
+}
+
+fn refuse(error: ViewError) -> Refusal {
+    match &error {
+        ViewError::Bind { address, .. } => {
+            Refusal::request("port", address.to_string(), "a free port", error.to_string())
+        }
+        ViewError::Token(_) | ViewError::Thread(_) => Refusal::work("view", error.to_string()),
+    }
+}

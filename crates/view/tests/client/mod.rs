@@ -1,0 +1,251 @@
+//! A world to talk to, and a page without a screen.
+
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, TcpStream};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use souple_view::{Catalogue, Options, Viewer};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Error, Message, WebSocket};
+
+const SCENE: &str = r#"
+    format = 1
+    title = "A bar"
+    [world]
+    period = "10 ms"
+    gravity = [0, -9.81, 0]
+    [bodies.bar]
+    mesh = { generate = "bar", size = [0.5, 0.1, 0.1], cells = [5, 1, 1], element = "hex8" }
+    material = { name = "stable_neo_hookean", youngs_modulus = "100 kPa", poissons_ratio = 0.3, density = 1000 }
+    [[bodies.bar.pins]]
+    region = { box = [[-1e-9, -1, -1], [1e-9, 1, 1]] }
+    [probes.tip]
+    body = "bar"
+    region = { nearest = [0.5, 0, 0] }
+    quantity = "displacement"
+"#;
+
+/// How long a test waits for what must come.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// A viewer of a small world.
+pub struct World {
+    viewer: Option<Viewer>,
+    host: String,
+}
+
+/// What a server answered.
+pub struct Reply {
+    pub status: u16,
+    pub body: String,
+}
+
+impl Reply {
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.body).unwrap_or_else(|error| panic!("{error}: {}", self.body))
+    }
+}
+
+impl World {
+    pub fn open() -> Self {
+        Self::open_with(&[])
+    }
+
+    pub fn open_with(settings: &[&str]) -> Self {
+        let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
+        let scene = souple_scene::read_text("bar", SCENE, Path::new("."), &settings).unwrap();
+        let options = Options {
+            host: Ipv4Addr::LOCALHOST.into(),
+            port: 0,
+            scene_name: "bar".to_owned(),
+            catalogue: Catalogue::default(),
+        };
+        let viewer = Viewer::open(scene, options).unwrap();
+        let host = viewer.address().trim_start_matches("http://").trim_end_matches('/').to_owned();
+        Self { viewer: Some(viewer), host }
+    }
+
+    pub fn host(&self) -> &str {
+        &self.host
+    }
+
+    pub fn get(&self, path: &str) -> Reply {
+        self.ask(&format!("GET {path} HTTP/1.1\r\nHost: {}\r\n\r\n", self.host))
+    }
+
+    /// Sends a request as it is.
+    pub fn ask(&self, request: &str) -> Reply {
+        let mut stream = TcpStream::connect(&self.host).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut text = String::new();
+        stream.read_to_string(&mut text).unwrap();
+        let (head, body) = text.split_once("\r\n\r\n").unwrap_or_else(|| panic!("no head: {text}"));
+        let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap();
+        Reply { status, body: body.to_owned() }
+    }
+
+    /// The simulated time [s].
+    pub fn time(&self) -> f64 {
+        self.get("/health").json()["time"].as_f64().unwrap()
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        if let Some(viewer) = self.viewer.take() {
+            viewer.close();
+        }
+    }
+}
+
+/// A page without a screen.
+pub struct Page {
+    socket: WebSocket<TcpStream>,
+    /// Documents not asked for yet.
+    documents: Vec<Value>,
+    /// Whether it says what it has seen.
+    pub answers: bool,
+}
+
+/// What a test looks at in a frame.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    pub number: u32,
+    pub time: f64,
+    pub hands: u32,
+    /// Of each body.
+    pub point_counts: Vec<u32>,
+}
+
+impl Frame {
+    fn parse(bytes: &[u8]) -> Option<Self> {
+        let u32_at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+        if bytes[0] != 2 {
+            return None;
+        }
+        let (hands, poses) = (u32_at(60), u32_at(64));
+        let mut at = 68 + 44 * hands as usize + 48 * poses as usize;
+        let mut point_counts = Vec::new();
+        for _ in 0..u16::from_le_bytes([bytes[2], bytes[3]]) {
+            let (points, fields) = (u32_at(at), u32_at(at + 4));
+            at += 8 + 12 * points as usize + fields as usize * (4 + 4 * points as usize);
+            point_counts.push(points);
+        }
+        assert_eq!(at, bytes.len(), "the frame has its length");
+        let time = f64::from_le_bytes(bytes[16..24].try_into().unwrap());
+        Some(Self { number: u32_at(24), time, hands, point_counts })
+    }
+}
+
+impl Page {
+    pub fn open(world: &World) -> Self {
+        Self::try_open(world, None, "souple.v1").unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    pub fn try_open(world: &World, origin: Option<&str>, protocol: &str) -> Result<Self, String> {
+        let mut request = format!("ws://{}/socket", world.host()).into_client_request().unwrap();
+        let headers = request.headers_mut();
+        headers.insert("Sec-WebSocket-Protocol", protocol.parse().unwrap());
+        if let Some(origin) = origin {
+            headers.insert("Origin", origin.parse().unwrap());
+        }
+        let stream = TcpStream::connect(world.host()).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        let (socket, _) = tungstenite::client::client(request, stream).map_err(|error| error.to_string())?;
+        Ok(Self { socket, documents: Vec::new(), answers: true })
+    }
+
+    pub fn wish(&mut self, wish: Value) {
+        self.text(&wish.to_string());
+    }
+
+    /// Sends a text; a server that has hung up is no fault of the test.
+    pub fn text(&mut self, text: &str) {
+        let _ = self.socket.send(Message::text(text));
+    }
+
+    pub fn binary(&mut self, bytes: &[u8]) {
+        let _ = self.socket.send(Message::binary(bytes.to_vec()));
+    }
+
+    /// Bytes under the protocol.
+    pub fn raw(&mut self, bytes: &[u8]) {
+        let _ = self.socket.get_mut().write_all(bytes);
+    }
+
+    pub fn is_closed(&mut self) -> bool {
+        loop {
+            match self.socket.read() {
+                Ok(_) => {}
+                Err(Error::Io(error)) => return error.kind() != std::io::ErrorKind::WouldBlock,
+                Err(_) => return true,
+            }
+        }
+    }
+
+    /// The next message: a document is kept, a frame is given.
+    fn read(&mut self) -> Option<Frame> {
+        match self.socket.read().unwrap_or_else(|error| panic!("the connection is lost: {error}")) {
+            Message::Text(text) => self.documents.push(serde_json::from_str(&text).unwrap()),
+            Message::Binary(bytes) => {
+                let frame = Frame::parse(&bytes)?;
+                if self.answers {
+                    self.wish(serde_json::json!({"do": "seen"}));
+                }
+                return Some(frame);
+            }
+            _ => {}
+        }
+        None
+    }
+
+    pub fn frame(&mut self) -> Frame {
+        self.frame_where(|_| true)
+    }
+
+    pub fn frame_where(&mut self, is_wanted: impl Fn(&Frame) -> bool) -> Frame {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            if let Some(frame) = self.read().filter(&is_wanted) {
+                return frame;
+            }
+            assert!(Instant::now() < deadline, "no such frame came");
+        }
+    }
+
+    /// Whether no frame comes for a while.
+    pub fn no_frame_for(&mut self, while_: Duration) -> bool {
+        self.socket.get_mut().set_read_timeout(Some(while_)).unwrap();
+        let silent = loop {
+            match self.socket.read() {
+                Ok(Message::Binary(bytes)) if bytes[0] == 2 => break false,
+                Ok(_) => {}
+                Err(Error::Io(_)) => break true,
+                Err(error) => panic!("{error}"),
+            }
+        };
+        self.socket.get_mut().set_read_timeout(Some(PATIENCE)).unwrap();
+        silent
+    }
+
+    /// The next document of a kind.
+    pub fn document(&mut self, kind: &str) -> Value {
+        self.document_where(kind, |_| true)
+    }
+
+    pub fn document_where(&mut self, kind: &str, is_wanted: impl Fn(&Value) -> bool) -> Value {
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let found =
+                self.documents.iter().position(|document| document["kind"] == kind && is_wanted(document));
+            if let Some(at) = found {
+                return self.documents.drain(..=at).next_back().unwrap();
+            }
+            assert!(Instant::now() < deadline, "no `{kind}` came: {:?}", self.documents);
+            self.read();
+        }
+    }
+}

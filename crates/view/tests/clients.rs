@@ -1,0 +1,224 @@
+//! Clients of all kinds: good ones see and move one world, bad ones are turned away, and nothing stops it.
+
+mod client;
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use client::{Page, World};
+use serde_json::json;
+
+/// The world goes on: its time passes.
+fn assert_alive(world: &World) {
+    let before = world.time();
+    let deadline = Instant::now() + Duration::from_secs(20);
+    while world.time() <= before {
+        assert!(Instant::now() < deadline, "the world stands still at {before} s");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn paths_and_sites() {
+    let world = World::open();
+    assert_eq!(world.get("/health").status, 200);
+    let report = world.get("/report").json();
+    assert_eq!(report["scene"], "bar");
+    assert!(report["counts"]["points"].as_u64() > Some(0));
+    let lost = world.get("/nothing");
+    assert_eq!(lost.status, 404);
+    assert!(lost.body.contains("/report"), "{}", lost.body);
+    let own = format!("Host: {}\r\n", world.host());
+    assert_eq!(world.ask(&format!("POST /health HTTP/1.1\r\n{own}\r\n")).status, 405);
+    assert_eq!(world.ask("GET /health HTTP/1.1\r\nHost: evil.example\r\n\r\n").status, 403);
+    let foreign = format!("GET /report HTTP/1.1\r\n{own}Origin: http://evil.example\r\n\r\n");
+    assert_eq!(world.ask(&foreign).status, 403);
+    assert_eq!(world.ask("\u{16}\u{3}\u{1}\r\n\r\n").status, 400);
+    assert_eq!(world.ask(&format!("GET /socket HTTP/1.1\r\n{own}\r\n")).status, 426);
+}
+
+/// Pages of other sites do not get a socket, whatever else they say.
+#[test]
+fn foreign_pages_stay_out() {
+    let world = World::open();
+    assert!(Page::try_open(&world, Some("http://evil.example"), "souple.v1").is_err());
+    assert!(Page::try_open(&world, None, "souple.v999").is_err());
+    assert!(Page::try_open(&world, Some(&format!("http://{}", world.host())), "souple.v1").is_ok());
+}
+
+/// All pages see the same scene, and what one of them changes.
+#[test]
+fn pages_share_a_world() {
+    let world = World::open();
+    let (mut one, mut two) = (Page::open(&world), Page::open(&world));
+    let scene = one.document("scene");
+    assert_eq!(scene, two.document("scene"));
+    assert_eq!(scene["bodies"][0]["name"], "bar");
+    let frame = one.frame();
+    assert_eq!(frame.point_counts, [scene["bodies"][0]["surface_points"].as_u64().unwrap() as u32]);
+    one.wish(json!({"do": "pause"}));
+    assert_eq!(two.document_where("status", |status| status["mode"] == "paused")["mode"], "paused");
+    let paused = world.time();
+    one.wish(json!({"do": "step"}));
+    let stepped = two.frame_where(|frame| frame.time > paused).time;
+    assert!((stepped - paused - 0.01).abs() < 1e-9 || stepped > paused, "{paused} {stepped}");
+}
+
+/// Garbage, giant messages and half a handshake end their own connection at most.
+#[test]
+fn nonsense_ends_only_itself() {
+    let world = World::open();
+    let mut good = Page::open(&world);
+    let mut page = Page::open(&world);
+    page.text("{}");
+    page.text("[1, 2");
+    page.binary(&[7; 1000]);
+    page.wish(json!({"do": "grab", "hand": 0, "body": 99, "points": [1], "strength": 1}));
+    let refused = page.document_where("refused", |refused| refused["about"] == "grab");
+    assert!(refused["message"].as_str().unwrap().contains("no body 99"), "{refused}");
+    let mut giant = Page::open(&world);
+    giant.text(&"x".repeat(3 << 20));
+    assert!(giant.is_closed(), "a message of 3 MiB was taken");
+    let mut raw = Page::open(&world);
+    raw.raw(&[0xff; 64]);
+    assert!(raw.is_closed(), "frames with reserved bits were taken");
+    let mut half = TcpStream::connect(world.host()).unwrap();
+    half.write_all(b"GET /socket HT").unwrap();
+    let mut chatter = Page::open(&world);
+    for _ in 0..100 {
+        chatter.text("nonsense");
+    }
+    assert!(chatter.is_closed(), "a hundred messages of nonsense were taken");
+    assert_alive(&world);
+    good.frame();
+}
+
+/// Of two hundred connections the last are told why they are turned away; when they are gone, all is as before.
+#[test]
+fn a_crowd_is_turned_away() {
+    let world = World::open();
+    let mut page = Page::open(&world);
+    let crowd: Vec<TcpStream> = (0..200).filter_map(|_| TcpStream::connect(world.host()).ok()).collect();
+    let mut turned_away = 0;
+    for mut stream in crowd {
+        stream.set_read_timeout(Some(Duration::from_millis(20))).unwrap();
+        let mut text = [0; 64];
+        let count = stream.read(&mut text).unwrap_or(0);
+        turned_away += usize::from(text[..count].starts_with(b"HTTP/1.1 503"));
+    }
+    assert!(turned_away >= 100, "{turned_away}");
+    page.frame();
+    assert_alive(&world);
+}
+
+/// A page that reads nothing, and one that never says what it has seen, hold up neither the world nor other pages.
+#[test]
+fn slow_pages_hold_up_nobody() {
+    let world = World::open();
+    let (_deaf, mut mute) = (Page::open(&world), Page::open(&world));
+    mute.answers = false;
+    let mut good = Page::open(&world);
+    let first = good.frame().number;
+    for _ in 0..30 {
+        good.frame();
+    }
+    assert!(good.frame().number >= first + 30);
+    // two frames under way, no third
+    let seen = (0..2).map(|_| mute.frame().number).collect::<Vec<_>>();
+    assert_eq!(seen.len(), 2);
+    assert!(mute.no_frame_for(Duration::from_millis(300)));
+    assert_alive(&world);
+}
+
+/// A wrong value is refused in words, a right one changes the world.
+#[test]
+fn values_are_set() {
+    let world = World::open();
+    let mut page = Page::open(&world);
+    let path = "bodies.bar.material.youngs_modulus";
+    page.wish(json!({"do": "set", "path": path, "value": "-3"}));
+    let refused = page.document_where("refused", |refused| refused["about"] == "set");
+    let message = refused["message"].as_str().unwrap();
+    assert!(message.contains("-3 is out of range") && message.contains("above 0"), "{message}");
+    page.wish(json!({"do": "set", "path": path, "value": "40 kPa"}));
+    let value = |document: &serde_json::Value| {
+        let all = document["adjustables"].as_array().unwrap().clone();
+        all.into_iter().find(|adjustable| adjustable["path"] == path).unwrap()["value"].clone()
+    };
+    page.document_where("adjustables", |document| value(document) == "40000");
+    page.wish(json!({"do": "set", "path": "world.period", "value": "\"nothing\""}));
+    page.document_where("refused", |refused| refused["about"] == "set");
+    assert_alive(&world);
+}
+
+/// What was done by hand, values set among it, is repeated bit for bit from the recording.
+#[test]
+fn a_live_session_is_replayed() {
+    let world = World::open();
+    let mut page = Page::open(&world);
+    page.document("scene");
+    page.wish(json!({"do": "grab", "hand": 0, "body": 0, "points": [0, 1, 2, 3], "strength": 2}));
+    let held = page.frame_where(|frame| frame.hands == 1);
+    page.wish(json!({"do": "move", "hand": 0, "offset": [0.0, 0.1, 0.05]}));
+    page.frame_where(|frame| frame.time > held.time + 0.2);
+    page.wish(json!({"do": "set", "path": "bodies.bar.material.youngs_modulus", "value": "60 kPa"}));
+    page.document("adjustables");
+    let set =
+        page.document_where("adjustables", |document| !document["settings"].as_array().unwrap().is_empty());
+    assert_eq!(set["settings"][0], "bodies.bar.material.youngs_modulus=60 kPa");
+    page.wish(json!({"do": "pin", "body": 0, "points": [5, 6]}));
+    page.wish(json!({"do": "throw", "body": 0, "velocity": [0, 1, 0]}));
+    page.document("pins");
+    let now = page.frame().time;
+    page.wish(json!({"do": "release", "hand": 0}));
+    page.frame_where(|frame| frame.hands == 0 && frame.time > now + 0.2);
+    page.wish(json!({"do": "pause"}));
+    page.document_where("status", |status| status["mode"] == "paused");
+
+    let path = std::env::temp_dir().join(format!("souple_live_{}.recording", std::process::id()));
+    std::fs::write(&path, world.get("/recording").body).unwrap();
+    let recording = souple_run::Recording::read(&path).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    assert!(recording.commands.len() >= 5, "{:?}", recording.commands);
+    assert_eq!(recording.changes.len(), 1);
+    let scene = souple_scene::read_again(&recording.inputs, Default::default()).unwrap();
+    let options = souple_run::Options {
+        steps: Some(recording.steps),
+        commands: recording.commands.clone(),
+        changes: recording.changes.clone(),
+        scene_name: recording.scene.clone(),
+        ..Default::default()
+    };
+    let outcome = souple_run::run(scene, &options, &mut |_| souple_run::Control::Continue).unwrap();
+    assert_eq!(recording.first_divergence(&outcome.recording), None);
+}
+
+/// A page that is gone lets go of what it held.
+#[test]
+fn hands_of_lost_pages_let_go() {
+    let world = World::open();
+    let mut page = Page::open(&world);
+    let mut other = Page::open(&world);
+    page.wish(json!({"do": "grab", "hand": 3, "body": 0, "points": [0, 1], "strength": 1}));
+    other.frame_where(|frame| frame.hands == 1);
+    drop(page);
+    other.frame_where(|frame| frame.hands == 0);
+}
+
+/// A world that cannot be stepped says so and stops; a reset begins it anew.
+#[test]
+fn a_world_that_fails_is_reported() {
+    let world = World::open_with(&[
+        "systems.main.stepper=\"symplectic_euler\"",
+        "bodies.bar.material.youngs_modulus=1e12",
+    ]);
+    let mut page = Page::open(&world);
+    let failed = page.document_where("status", |status| status["mode"] == "failed");
+    assert!(failed["message"].as_str().unwrap().contains("is refused"), "{failed}");
+    page.wish(json!({"do": "play"}));
+    let refused = page.document_where("refused", |refused| refused["about"] == "play");
+    assert!(refused["message"].as_str().unwrap().contains("reset"), "{refused}");
+    page.wish(json!({"do": "reset"}));
+    page.document_where("status", |status| status["mode"] == "playing");
+}
