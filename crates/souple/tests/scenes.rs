@@ -24,7 +24,8 @@ const WARNS: &[(&str, &str)] = &[("rubber_as_text", "inverted elements have no e
 
 /// The warnings of a scene are those that it is known for.
 fn assert_warnings(name: &str, warnings: &serde_json::Value) {
-    let said: Vec<&str> = warnings.as_array().into_iter().flatten().filter_map(|text| text.as_str()).collect();
+    let said: Vec<&str> =
+        warnings.as_array().into_iter().flatten().filter_map(|text| text.as_str()).collect();
     let known: Vec<&str> = WARNS.iter().filter(|(scene, _)| *scene == name).map(|(_, text)| *text).collect();
     let fits = said.len() == known.len() && said.iter().zip(&known).all(|(said, known)| said.contains(known));
     assert!(fits, "{name} warns {said:?}");
