@@ -91,6 +91,8 @@ impl SubAssign for Dual {
 }
 
 impl Real for Dual {
+    type Number = Self;
+
     fn splat(self, value: f64) -> Self {
         Self::constant(value)
     }
@@ -115,5 +117,14 @@ impl Real for Dual {
     }
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
         if self.value < other.value { if_less } else { otherwise }
+    }
+    fn numbers(&self) -> &[Self] {
+        std::slice::from_ref(self)
+    }
+    fn numbers_mut(&mut self) -> &mut [Self] {
+        std::slice::from_mut(self)
+    }
+    fn all_positive(self) -> bool {
+        self.value > 0.0
     }
 }
