@@ -32,8 +32,13 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// Natural logarithm; the same bits on every path of one number.
     fn ln(self) -> Self;
+    /// Exponential; the same bits on every path of one number.
+    fn exp(self) -> Self;
     /// `if_less` where `self < other`, else `otherwise`, lane by lane.
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self;
+
+    /// Whether this is zero, in every lane: what it multiplies need not be computed.
+    fn is_all_zero(self) -> bool;
 
     fn zero(self) -> Self {
         self.splat(0.0)
@@ -73,6 +78,14 @@ impl Real for f64 {
     #[inline(always)]
     fn ln(self) -> Self {
         libm::log(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        libm::exp(self)
+    }
+    #[inline(always)]
+    fn is_all_zero(self) -> bool {
+        self == 0.0
     }
     #[inline(always)]
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
