@@ -115,6 +115,13 @@ impl Real for Dual {
     fn ln(self) -> Self {
         Self::new(libm::log(self.value), self.derivative / self.value)
     }
+    fn exp(self) -> Self {
+        let value = libm::exp(self.value);
+        Self::new(value, self.derivative * value)
+    }
+    fn is_all_zero(self) -> bool {
+        self.value == 0.0 && self.derivative == 0.0
+    }
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
         if self.value < other.value { if_less } else { otherwise }
     }

@@ -150,6 +150,14 @@ impl<S: Simd> Real for Lanes<S> {
         self.map(libm::log)
     }
     #[inline(always)]
+    fn exp(self) -> Self {
+        self.map(libm::exp)
+    }
+    #[inline(always)]
+    fn is_all_zero(self) -> bool {
+        self.as_slice().iter().all(|number| *number == 0.0)
+    }
+    #[inline(always)]
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
         let mask = self.simd.less_than_f64s(self.values, other.values);
         Self { simd: self.simd, values: self.simd.select_f64s(mask, if_less.values, otherwise.values) }

@@ -35,6 +35,8 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// Natural logarithm; the same bits on every path of one number.
     fn ln(self) -> Self;
+    /// Exponential; the same bits on every path of one number.
+    fn exp(self) -> Self;
     /// `if_less` where `self < other`, else `otherwise`, lane by lane.
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self;
     /// The numbers side by side, to be looked at one by one.
@@ -42,6 +44,9 @@ pub trait Real:
     fn numbers_mut(&mut self) -> &mut [Self::Number];
     /// Whether every lane is above zero.
     fn all_positive(self) -> bool;
+
+    /// Whether this is zero, in every lane: what it multiplies need not be computed.
+    fn is_all_zero(self) -> bool;
 
     fn zero(self) -> Self {
         self.splat(0.0)
@@ -83,6 +88,14 @@ impl Real for f64 {
     #[inline(always)]
     fn ln(self) -> Self {
         libm::log(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        libm::exp(self)
+    }
+    #[inline(always)]
+    fn is_all_zero(self) -> bool {
+        self == 0.0
     }
     #[inline(always)]
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {

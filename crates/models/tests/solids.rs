@@ -1,6 +1,8 @@
 //! The battery for every law on every element, and the discrete answers of independent solvers.
 #![allow(non_snake_case)]
 
+mod common;
+
 use std::sync::Arc;
 
 use souple_engine::implicit::NewtonSettings;
@@ -30,12 +32,7 @@ fn bar(size: [f64; 3], cells: [f64; 3], element: &str) -> Mesh {
 }
 
 fn material(law: &str) -> Material {
-    let entry = materials::TABLE.find(law).unwrap();
-    let values = Values::new()
-        .with("youngs_modulus", Value::Number(1e7))
-        .with("poissons_ratio", Value::Number(0.3))
-        .with("density", Value::Number(1000.0));
-    (entry.build)(&entry.values(values).unwrap()).unwrap()
+    common::material_of(materials::TABLE.find(law).unwrap(), 1e7, 0.3)
 }
 
 /// A law as text.
@@ -325,7 +322,14 @@ fn damped_oscillations_account_for_their_energy() {
         |d: &SolidDescription| -> Box<dyn Force> { Box::new(RayleighDamping::new(d, 2e-3).unwrap()) };
     type Make<'a> = &'a dyn Fn(&SolidDescription) -> Box<dyn Force>;
     for (name, damping) in [("viscosity", &viscosity as Make), ("rayleigh", &rayleigh)] {
-        for (stepper, steps) in [("symplectic_euler", 400), ("rk4", 400), ("backward_euler", 40)] {
+        for (stepper, steps) in [
+            ("symplectic_euler", 400),
+            ("rk2", 400),
+            ("rk4", 400),
+            ("backward_euler", 40),
+            ("bdf2", 40),
+            ("newmark", 40),
+        ] {
             let (coarse, _) = unaccounted(damping, stepper, steps);
             let (fine, heat) = unaccounted(damping, stepper, 2 * steps);
             // long backward Euler steps take as much by themselves

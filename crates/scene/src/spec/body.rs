@@ -201,7 +201,8 @@ impl Body {
     }
 }
 
-/// The material, built once on trial: a law as text may be wrong where its table is right.
+/// The material, built once on trial: a law as text may be wrong where its table is right, and numbers that are each in their
+/// range may make no body together.
 fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
     let chosen = reader.entry("material", &materials::TABLE)?;
     let Err(error) = (chosen.entry.build)(&chosen.values) else { return Some(chosen) };
@@ -217,7 +218,7 @@ fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
         Code::BadFormula,
         &site,
         error.to_string(),
-        "a hyperelastic law, see `souple describe hyperelastic`",
+        format!("a law that holds, see `souple describe {}`", chosen.entry.name),
     );
     None
 }
