@@ -605,7 +605,8 @@ fn mooney_rivlin_is_ogden_of_two() {
 fn decoupled_laws_continue() {
     fn check<L: Law>(material: &Material) {
         let parameters = material.parameters_of::<L>();
-        let shrunk: [(f64, fn(f64) -> Vec3); 3] = [
+        type Shrink = fn(f64) -> Vec3;
+        let shrunk: [(f64, Shrink); 3] = [
             (0.05, |s| Vec3::new(1.0, 1.0, s)),
             (0.05, |s| Vec3::new(3.0, s, s)),
             (0.05_f64.cbrt(), |s| Vec3::new(s, s, s)),
