@@ -17,6 +17,7 @@ mod mesh;
 mod ordering;
 mod quadrature;
 mod quality;
+mod raise;
 pub mod repair;
 mod signed_distance;
 pub mod simplify;
@@ -28,7 +29,7 @@ mod winding;
 
 pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral, face_node_areas};
 pub use conformity::{Conformity, HangingPoint};
-pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodeValues};
+pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodeValues, Order};
 pub use error::MeshError;
 pub use generate::{Build, GENERATORS, MAX_CELLS, MeshSize, generate};
 pub use locate::{CellLocator, Location};
