@@ -5,7 +5,7 @@
 
 use souple_math::Vec3;
 
-use crate::{Cell, ElementKind, Mesh, MeshError, TriangleSurface};
+use crate::{Cell, ElementKind, Mesh, MeshError, Order, TriangleSurface};
 
 /// A face that belongs to one cell only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +107,7 @@ impl Mesh {
         let mut triangles = Vec::new();
         let mut cells = Vec::new();
         let mut push = |cell: u32, kind: ElementKind, nodes: &[u32]| {
-            for triangle in cut(kind, nodes) {
+            for triangle in facet_triangles(kind, nodes) {
                 triangles.push(triangle);
                 cells.push(cell);
             }
@@ -129,7 +129,7 @@ impl Mesh {
         let mut triangles = Vec::new();
         let mut facets = Vec::new();
         for (facet, view) in self.facets().enumerate() {
-            for triangle in cut(view.kind, view.nodes) {
+            for triangle in facet_triangles(view.kind, view.nodes) {
                 triangles.push(triangle);
                 facets.push(facet as u32);
             }
@@ -138,23 +138,26 @@ impl Mesh {
     }
 }
 
-/// `∫ N_a dA` over a face for each of its nodes [m²] (`∫ N_a dl` over a side [m]); they add up to its area. Negative
-/// shares are right: a traction on a face of six nodes pushes on its middles only.
-pub fn face_node_areas(kind: ElementKind, nodes: &[Vec3]) -> Vec<f64> {
-    let mut areas = vec![0.0; nodes.len()];
+/// `∫ N_a dA` over a face for each of its nodes [m²], over a side [m], over a cell [m³]; they add up to its measure.
+/// Negative shares are right: a traction on a face of eight nodes pulls its corners back.
+pub fn node_measures(kind: ElementKind, nodes: &[Vec3]) -> Vec<f64> {
+    let mut measures = vec![0.0; nodes.len()];
     // exact where the face is flat and straight; the area of a warped one is no polynomial
-    let rule = kind.rule_of_degree(3).unwrap_or_else(|| kind.default_rule());
+    let rule = match kind.order() {
+        Order::Linear => kind.rule_of_degree(3).unwrap_or_else(|| kind.default_rule()),
+        Order::Quadratic => kind.mass_rule(),
+    };
     for point in &rule.points {
-        let area = kind.jacobian(nodes, point.position).determinant() * point.weight;
+        let measure = kind.jacobian(nodes, point.position).determinant() * point.weight;
         let shape = kind.shape(point.position);
-        areas.iter_mut().zip(&*shape).for_each(|(total, share)| *total += area * share);
+        measures.iter_mut().zip(&*shape).for_each(|(total, share)| *total += measure * share);
     }
-    areas
+    measures
 }
 
 /// A face as triangles: a triangle or quadrilateral around its corner of lowest number; of a curved one, the corners
 /// cut off at the middles of the sides, and what is left between those.
-fn cut(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 3]> {
+pub fn facet_triangles(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 3]> {
     let (corners, middles) = nodes.split_at(kind.corner_count().min(nodes.len()));
     if kind.dimension() != 2 {
         return Vec::new();

@@ -27,7 +27,7 @@ mod tree;
 mod validate;
 mod winding;
 
-pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral, face_node_areas};
+pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral, facet_triangles, node_measures};
 pub use conformity::{Conformity, HangingPoint};
 pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, NodeValues, Order};
 pub use error::MeshError;
