@@ -133,9 +133,8 @@ impl Mesh {
 /// Corners of a face in its outward order from the lowest on; a triangle's fourth is beyond all points.
 fn around_face(cell: Cell<'_>, face: usize) -> [u32; 4] {
     let mut around = [u32::MAX; 4];
-    let (_, nodes) = cell.face_nodes(face);
     let mut count = 0;
-    for node in nodes {
+    for node in cell.face_corners(face) {
         around[count] = node;
         count += 1;
     }

@@ -112,6 +112,7 @@ impl Block {
             materials: &materials,
             material_of_cell: &material_of_cell,
             quadrature: Default::default(),
+            section: Default::default(),
         };
         let mut kinematics = Kinematics::default();
         kinematics.add_unknowns(UnknownKind::Point, mesh.points.len());

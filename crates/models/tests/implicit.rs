@@ -81,6 +81,7 @@ impl Block {
             materials: &[material],
             material_of_cell: &vec![0; mesh.cell_count()],
             quadrature: Default::default(),
+            section: Default::default(),
         };
         let solid = SolidForce::new(&description).unwrap();
         let mut kinematics = Kinematics::default();

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use souple_engine::{Force, Kinematics, Mass, Motion, ParameterError, UnknownKind};
 use souple_formal::Formula;
 use souple_math::Vec3;
+use souple_mesh::ElementKind;
 
 use super::battery::{Setting, assert_force, stepper, stepper_of, world};
 use super::*;
@@ -92,7 +93,10 @@ fn battery_of_every_load() {
 
 /// Faces of a pyramid of five rows, nothing planar or regular about it: a quadrilateral below, four triangles above it.
 fn pyramid() -> (Vec<PressedFace>, Vec<Vec3>) {
-    let face = |rows: &[u32]| PressedFace::new(rows).unwrap();
+    let face = |rows: &[u32]| {
+        let kind = if rows.len() == 3 { ElementKind::Tri3 } else { ElementKind::Quad4 };
+        PressedFace::new(kind, rows).unwrap()
+    };
     let faces =
         vec![face(&[0, 3, 2, 1]), face(&[0, 1, 4]), face(&[1, 2, 4]), face(&[2, 3, 4]), face(&[3, 0, 4])];
     let corners = [[0.0, 0.0, 0.1], [1.2, 0.1, 0.0], [1.0, 0.9, -0.2], [-0.1, 1.0, 0.0], [0.4, 0.5, 1.3]];

@@ -67,7 +67,7 @@ impl<K: Send + Sync> Elements<K> {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription, sorting: &impl Sorting<Kernel = K>) -> Result<Self, FlatCell> {
-        let SolidDescription { mesh, first_row, quadrature, .. } = description;
+        let SolidDescription { mesh, first_row, quadrature, section, .. } = description;
         let rows = *first_row..*first_row + mesh.points.len();
         let mut found = Vec::new();
         for (index, cell) in mesh.cells().enumerate() {
@@ -88,7 +88,12 @@ impl<K: Send + Sync> Elements<K> {
                 (cell.kind == kind && sorting.law_of(index) == law).then_some(index as u32)
             };
             let cells: Vec<u32> = mesh.cells().enumerate().filter_map(belongs).collect();
-            let body = layout::Body { mesh, first_row: *first_row, rule: quadrature.rule(kind) };
+            let body = layout::Body {
+                mesh,
+                first_row: *first_row,
+                rule: quadrature.rule(kind),
+                measure: section.measure(),
+            };
             let parameters_of = |cell: u32| sorting.parameters_of(cell as usize);
             let chunks = layout::chunks(&body, &cells, &parameters_of, elements.partial_count)?;
             elements.partial_count += chunks.iter().map(|chunk| chunk.rows.len()).sum::<usize>();

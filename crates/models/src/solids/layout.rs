@@ -104,6 +104,8 @@ pub struct Body<'a> {
     /// Row of the mesh's first point.
     pub first_row: usize,
     pub rule: &'a QuadratureRule,
+    /// What makes a volume of the measure of a cell: 1, a thickness, the area of a cross-section.
+    pub measure: f64,
 }
 
 /// Lays out `cells` (numbers, all of one kind) into chunks; `parameters_of` gives as many numbers for each.
@@ -152,7 +154,7 @@ fn lay_out<'p>(
     parameters_of: &dyn Fn(u32) -> &'p [f64],
     first_partial: usize,
 ) -> Result<Chunk, FlatCell> {
-    let Body { mesh, first_row, rule } = body;
+    let Body { mesh, first_row, rule, measure } = body;
     let kind = body.cell(members[0]).kind;
     let row = |node: &u32| node + *first_row as u32;
     let nodes = kind.node_count();
@@ -189,7 +191,7 @@ fn lay_out<'p>(
             let determinant = jacobian.determinant();
             let inverse = jacobian.try_inverse().filter(|inverse| determinant > 0.0 && inverse.is_finite());
             let inverse = inverse.ok_or(FlatCell { kind, cell, sample, determinant })?;
-            let volume = if slot < members.len() { determinant * point.weight } else { 0.0 };
+            let volume = if slot < members.len() { determinant * point.weight * measure } else { 0.0 };
             let at = (block * rule.points.len() + sample) * SAMPLE_LEN;
             for (i, number) in entries(&inverse).chain([volume]).enumerate() {
                 chunk.samples[at + i].0[lane] = number;

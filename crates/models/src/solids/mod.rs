@@ -1,4 +1,4 @@
-//! Solids: finite elements of any kind and law, mixed in one body.
+//! Solids: finite elements of any kind and law, mixed in one body; plane bodies, membranes and bars with them.
 
 mod assembly;
 mod elements;
@@ -10,7 +10,10 @@ mod mass;
 mod output;
 mod parallel;
 mod rayleigh;
+mod row_law;
 mod sample_law;
+mod section;
+mod section_kernel;
 mod staged;
 mod viscosity;
 mod viscous_kernel;
@@ -31,12 +34,15 @@ use elements::{Batch, Elements, Sorting};
 use geometry::{AnyElement, Tetrahedron};
 use kernel::{Kernel, LawKernel};
 use layout::Chunk;
+use row_law::{RowLaw, row_law};
 use sample_law::{Compiled, SampleLaw, Taped};
+use section_kernel::SectionKernel;
 use staged::Staged;
 
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass};
 pub use rayleigh::RayleighDamping;
+pub use section::{BuildSection, SECTIONS, Section};
 pub use viscosity::Viscosity;
 
 /// Elastic forces of a body.
@@ -48,6 +54,9 @@ pub struct SolidForce {
     material_of_cell: Vec<u16>,
     chunk_of_cell: Vec<u32>,
     quadrature: Quadrature,
+    section: Section,
+    /// The laws of the materials, for what is read off single cells.
+    row_laws: Vec<Box<dyn RowLaw>>,
 }
 
 /// Which rule of quadrature integrates the energy of an element.
@@ -80,6 +89,8 @@ pub struct SolidDescription<'a> {
     /// Index into `materials` for each cell.
     pub material_of_cell: &'a [u16],
     pub quadrature: Quadrature,
+    /// What its cells are sections of.
+    pub section: Section,
 }
 
 /// Partial sums and what assembles matrices, kept between calls.
@@ -124,6 +135,7 @@ impl LawVisitor for MakeKernel {
 struct ByLaw<'a> {
     materials: &'a [Material],
     material_of_cell: &'a [u16],
+    section: Section,
 }
 
 impl Sorting for ByLaw<'_> {
@@ -145,6 +157,10 @@ impl Sorting for ByLaw<'_> {
     }
 
     fn kernel(&self, kind: ElementKind, law: &MaterialLaw) -> Box<dyn Kernel> {
+        if self.section != Section::Solid {
+            let (law, nodes) = (row_law(law), kind.node_count());
+            return Box::new(SectionKernel { law, section: self.section, nodes });
+        }
         match law {
             MaterialLaw::Known(law) => law.visit(MakeKernel(kind)),
             MaterialLaw::Text(law) => staged(kind, Box::new(Taped(Arc::clone(law)))),
@@ -160,8 +176,9 @@ impl SolidForce {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        let SolidDescription { name, mesh, materials, material_of_cell, quadrature, .. } = description;
-        let elements = Elements::new(description, &ByLaw { materials, material_of_cell })?;
+        let SolidDescription { name, mesh, materials, material_of_cell, quadrature, section, .. } =
+            description;
+        let elements = Elements::new(description, &ByLaw { materials, material_of_cell, section: *section })?;
         Ok(Self {
             name: name.clone(),
             chunk_of_cell: elements.chunk_of_cell(mesh.cell_count()),
@@ -169,6 +186,8 @@ impl SolidForce {
             materials: materials.to_vec(),
             material_of_cell: material_of_cell.to_vec(),
             quadrature: *quadrature,
+            section: *section,
+            row_laws: materials.iter().map(|material| row_law(&material.law)).collect(),
         })
     }
 }
@@ -279,7 +298,7 @@ impl Force for SolidForce {
 impl SolidForce {
     /// Whether every law gives rotated bodies no stress.
     fn is_objective(&self) -> bool {
-        self.materials.iter().all(|material| material.law.is_objective())
+        self.section.follows_rotation() || self.materials.iter().all(|material| material.law.is_objective())
     }
 
     pub fn cell_count(&self) -> usize {

@@ -35,7 +35,8 @@ impl RayleighDamping {
             of_rest
         };
         let materials: Vec<Material> = description.materials.iter().map(linear).collect();
-        let sorting = ByLaw { materials: &materials, material_of_cell: description.material_of_cell };
+        let SolidDescription { material_of_cell, section, .. } = *description;
+        let sorting = ByLaw { materials: &materials, material_of_cell, section };
         let elements = Elements::new(description, &sorting)?;
         Ok(Self { name: description.name.clone(), elements, seconds })
     }

@@ -55,6 +55,7 @@ fn system(tolerance: f64) -> (System, Vec<Vec3>) {
         materials: &[material],
         material_of_cell: &[0; 5],
         quadrature: Default::default(),
+        section: Default::default(),
     };
     let force = SolidForce::new(&description).unwrap();
     let mut mass = Mass::new(kinematics.row_count());

@@ -63,6 +63,7 @@ impl Draft<'_> {
             body: &body.spec.name,
             mesh: &body.mesh,
             point_numbers: &body.point_numbers,
+            section: body.spec.section(),
             log: self.log,
         }
     }

@@ -4,6 +4,7 @@ mod bar;
 mod cantilever_orders;
 mod cantilevers;
 mod contact;
+mod elements;
 mod energy;
 mod explicit;
 mod filling;
@@ -26,6 +27,7 @@ pub const TABLES: &[&[Case]] = &[
     filling::CASES,
     cantilevers::CASES,
     cantilever_orders::CASES,
+    elements::CASES,
     frequencies::CASES,
     motion::CASES,
     stepper_orders::CASES,
