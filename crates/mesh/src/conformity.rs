@@ -259,9 +259,10 @@ mod tests {
         coarse.groups.clear();
         coarse.push_cell(ElementKind::Hex8, &nodes);
         coarse.remove_loose_points();
-        let found = beside(&coarse, &cube("hex8"), Vec3::X).conformity();
+        let mesh = beside(&coarse, &cube("hex8"), Vec3::X);
+        let found = mesh.conformity();
         assert_eq!((found.coincident.len(), found.hanging.len()), (4, 5), "{found:?}");
-        assert!(found.messages(&coarse).len() == 2);
+        assert_eq!(found.messages(&mesh).len(), 2);
     }
 
     /// A node pushed through the opposite face: rewinding makes the volume positive, the overlap stays and is found.

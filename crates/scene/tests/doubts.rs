@@ -94,7 +94,7 @@ fn idle_loads_and_attachments_are_told() {
 fn formulas_must_be_finite_at_the_start() {
     let load =
         |force: &str| format!("{BAR}[[bodies.bar.loads]]\nregion = \"x_max\"\nforce = [{force}, 0, 0]\n");
-    assert_refused(&load("\"1 / t\""), &["the force on point", "at t = 0"]);
+    assert_refused(&load("\"1 / t\""), &["the load on point", "at t = 0"]);
     assert_refused(&load("\"ln(-x)\""), &["at (1, "]);
     assert!(warnings(&load("\"1 / (1 + t)\"")).is_empty());
     let led = BAR.to_owned() + "motion = { formula = [\"sqrt(t)\", 0, 0] }\n";

@@ -441,7 +441,7 @@ fn faulty_requests() {
         (&["mesh", "generate", "box", "out", "size=1,1,1", "cells=1,1,1"], 2, "out"),
         (&["mesh", "generate", "box", "nowhere/out.msh", "size=1,1,1", "cells=1,1,1"], 1, "nowhere/out.msh"),
         (&["mesh", "convert", "cube.toml", "out.msh"], 2, "cube.toml"),
-        (&["list"], 2, "kind"),
+        (&["list", "rubber"], 2, "materials"),
         (&["describe", "nothing_like_it"], 2, "nothing_like_it"),
     ];
     let faults: Vec<Fault> = cases

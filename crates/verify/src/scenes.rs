@@ -12,6 +12,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("liver", include_str!("../../../scenes/liver/scene.toml")),
     ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
     ("patch", include_str!("../../../scenes/patch/scene.toml")),
+    ("rubber_as_text", include_str!("../../../scenes/rubber_as_text/scene.toml")),
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
     ("spinning_cube", include_str!("../../../scenes/spinning_cube/scene.toml")),
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),

@@ -6,10 +6,12 @@ use souple_math::{Lanes, Mat3, Vec3};
 use super::layout::{Chunk, LANES, SAMPLE_LEN};
 use crate::materials::Parameters;
 
-/// One register's worth of elements of `N` nodes: lanes `lane .. lane + S::F64_LANES` of a block.
+/// One register's worth of elements of at most `N` nodes: lanes `lane .. lane + S::F64_LANES` of a block.
 pub struct Group<'a, S: Simd, const N: usize> {
     pub simd: S,
     pub chunk: &'a Chunk,
+    /// Nodes of an element; arrays have room for `N`.
+    pub nodes: usize,
     pub samples: usize,
     pub block: usize,
     pub lane: usize,
@@ -19,7 +21,7 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     /// Chunk nodes of node `a` of the elements.
     #[inline(always)]
     fn locals(&self, a: usize) -> &'a [u16] {
-        let at = (self.block * N + a) * LANES + self.lane;
+        let at = (self.block * self.nodes + a) * LANES + self.lane;
         &self.chunk.connectivity[at..at + S::F64_LANES]
     }
 
@@ -28,7 +30,7 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     pub fn gather(&self, values: &[Vec3]) -> [Vec3<Lanes<S>>; N] {
         assert!(values.len() >= self.chunk.rows.len(), "one value for each node of the chunk");
         let mut out = self.zeros();
-        for a in 0..N {
+        for a in 0..self.nodes {
             let locals = self.locals(a);
             // SAFETY: the connectivity of a chunk holds indices below `rows.len()` only (`lay_out`)
             let value = |lane: usize| unsafe { *values.get_unchecked(locals[lane] as usize) };
@@ -70,7 +72,7 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     #[inline(always)]
     pub fn scatter(&self, values: &[Vec3<Lanes<S>>; N], sums: &mut [Vec3]) {
         assert!(sums.len() >= self.chunk.rows.len(), "one sum for each node of the chunk");
-        for a in 0..N {
+        for a in 0..self.nodes {
             let locals = self.locals(a);
             for lane in 0..S::F64_LANES {
                 // SAFETY: as in `gather`
@@ -122,7 +124,7 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     #[inline(always)]
     pub fn gradients(&self, inverse: &Mat3<Lanes<S>>, reference: &[Vec3]) -> [Vec3<Lanes<S>>; N] {
         let mut out = self.zeros();
-        for a in 0..N {
+        for a in 0..self.nodes {
             let g = reference[a];
             out[a] = inverse.transpose_apply(Vec3::new(
                 Lanes::constant(self.simd, g.x),
@@ -162,11 +164,12 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
 
 /// Runs `$body` for every [`Group`] of the blocks `$blocks` of a chunk, in element order.
 macro_rules! for_each_group {
-    ($simd:ident, $chunk:expr, $samples:expr, $blocks:expr, $N:ident, |$group:ident| $body:block) => {
+    ($simd:ident, $chunk:expr, $nodes:expr, $samples:expr, $blocks:expr, $N:expr, |$group:ident| $body:block) => {
         for block in $blocks {
             let mut lane = 0;
             while lane < LANES {
-                let $group = Group::<_, $N> { simd: $simd, chunk: $chunk, samples: $samples, block, lane };
+                let (simd, chunk, nodes, samples) = ($simd, $chunk, $nodes, $samples);
+                let $group = Group::<_, { $N }> { simd, chunk, nodes, samples, block, lane };
                 $body
                 lane += S::F64_LANES;
             }

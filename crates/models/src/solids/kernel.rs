@@ -1,4 +1,5 @@
-//! The loops over elements, one text for every law, element and width of register.
+//! The loops over elements with a law compiled in: what the linear tetrahedron runs, one text for every law and width of
+//! register. Other elements, and laws as text, run in stages: [`super::staged`].
 //!
 //! At a sample with `X_ξ⁻¹ = (∂X/∂ξ)⁻¹` and volume `V`: `F = x_ξ X_ξ⁻¹`, `H = V P(F) X_ξ⁻ᵀ`, and node `a` feels
 //! `-H ∂N_a/∂ξ`.
@@ -132,7 +133,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Forces<'_, L, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let x = group.gather(self.positions);
             let mut f = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
@@ -165,7 +166,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Differential<'_, L, G, N>
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
             let mut df = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
@@ -196,7 +197,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Energy<'_, L, G, N> {
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         let mut sum = 0.0;
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let x = group.gather(self.positions);
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
@@ -225,7 +226,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for QuadraticForm<'_, L, G, N
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         let mut sum = 0.0;
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
@@ -257,7 +258,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Blocks<'_, L, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
-        for_each_group!(simd, self.chunk, samples, self.block..self.block + 1, N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, self.block..self.block + 1, N, |group| {
             let x = group.gather(self.positions);
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {

@@ -67,6 +67,12 @@ impl Chunk {
         (Mat3::from_columns(column(0), column(1), column(2)), number(9))
     }
 
+    /// Volumes of the samples in row `row`, which counts samples block after block.
+    #[inline(always)]
+    pub fn volumes(&self, row: usize) -> &[f64; LANES] {
+        &self.samples[(row + 1) * SAMPLE_LEN - 1].0
+    }
+
     /// `[block][parameter][lane]`, flat.
     #[inline(always)]
     pub fn parameters(&self) -> &[f64] {

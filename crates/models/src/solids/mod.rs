@@ -10,7 +10,8 @@ mod mass;
 mod output;
 mod parallel;
 mod rayleigh;
-mod text_kernel;
+mod sample_law;
+mod staged;
 mod viscosity;
 mod viscous_kernel;
 
@@ -21,16 +22,17 @@ use std::sync::Arc;
 use souple_engine::state::Pair;
 use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, Mesh, QuadratureRule};
+use souple_mesh::{ElementKind, MAX_NODES, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
-use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters, TextLaw};
+use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters};
 use assembly::{Assembly, Symmetry};
 use elements::{Batch, Elements, Sorting};
-use geometry::{Nodes, Tetrahedron};
+use geometry::{AnyElement, Tetrahedron};
 use kernel::{Kernel, LawKernel};
 use layout::Chunk;
-use text_kernel::TextKernel;
+use sample_law::{Compiled, SampleLaw, Taped};
+use staged::Staged;
 
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass};
@@ -111,12 +113,9 @@ impl LawVisitor for MakeKernel {
     type Output = Box<dyn Kernel>;
 
     fn visit<L: Law>(self, _: L) -> Box<dyn Kernel> {
-        match self.0.node_count() {
-            4 => Box::new(LawKernel::<L, Tetrahedron, 4>::default()),
-            5 => Box::new(LawKernel::<L, Nodes<5>, 5>::default()),
-            6 => Box::new(LawKernel::<L, Nodes<6>, 6>::default()),
-            8 => Box::new(LawKernel::<L, Nodes<8>, 8>::default()),
-            other => unreachable!("no volume element has {other} nodes"),
+        match self.0 {
+            ElementKind::Tet4 => Box::new(LawKernel::<L, Tetrahedron, 4>::default()),
+            kind => staged(kind, Box::new(Compiled::<L>::default())),
         }
     }
 }
@@ -148,7 +147,7 @@ impl Sorting for ByLaw<'_> {
     fn kernel(&self, kind: ElementKind, law: &MaterialLaw) -> Box<dyn Kernel> {
         match law {
             MaterialLaw::Known(law) => law.visit(MakeKernel(kind)),
-            MaterialLaw::Text(law) => text_kernel(kind, law),
+            MaterialLaw::Text(law) => staged(kind, Box::new(Taped(Arc::clone(law)))),
         }
     }
 
@@ -184,13 +183,11 @@ impl LawVisitor for ParameterCount {
     }
 }
 
-fn text_kernel(kind: ElementKind, law: &Arc<TextLaw>) -> Box<dyn Kernel> {
-    match kind.node_count() {
-        4 => Box::new(TextKernel::<Tetrahedron, 4>::new(law)),
-        5 => Box::new(TextKernel::<Nodes<5>, 5>::new(law)),
-        6 => Box::new(TextKernel::<Nodes<6>, 6>::new(law)),
-        8 => Box::new(TextKernel::<Nodes<8>, 8>::new(law)),
-        other => unreachable!("no volume element has {other} nodes"),
+/// The kernel for a law that knows no elements.
+fn staged(kind: ElementKind, law: Box<dyn SampleLaw>) -> Box<dyn Kernel> {
+    match kind {
+        ElementKind::Tet4 => Box::new(Staged::<Tetrahedron, 4>::new(law, 4)),
+        _ => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, kind.node_count())),
     }
 }
 
