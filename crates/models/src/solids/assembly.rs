@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use souple_math::{Mat3, Vec3};
+use souple_math::{Mat3, Padded, Vec3};
 use souple_solve::{BlockMatrix, Pattern};
 
 use super::elements::{Batch, Elements};
@@ -100,7 +100,7 @@ impl Assembly {
         elements: &Elements<K>,
         inputs: [&[Vec3]; I],
         matrix: &mut BlockMatrix,
-        blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Vec3]; I], &mut [f64]) + Sync,
+        blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Padded]; I], &mut [f64]) + Sync,
     ) {
         self.update(elements, matrix.pattern());
         let mut sums = std::mem::take(&mut self.sums);
