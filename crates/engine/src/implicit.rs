@@ -63,10 +63,11 @@ pub struct ImplicitBuffers {
     direction: Vec<Vec3>,
     prescribed: Vec<Vec3>,
     rhs: Vec<Vec3>,
-    /// Accepted by Newton's method.
+    /// Accepted by Newton's method; empty where one solve does.
     q: Vec<Vec3>,
     q_trial: Vec<Vec3>,
     v_trial: Vec<Vec3>,
+    /// Empty where no force has velocity terms.
     at_rest: Vec<Vec3>,
     damping: Vec<Vec3>,
     operator: OperatorBuffers,
@@ -87,11 +88,11 @@ impl ImplicitBuffers {
             direction: blocks(),
             prescribed: blocks(),
             rhs: blocks(),
-            q: free_rows(),
+            q: Vec::new(),
             q_trial: free_rows(),
             v_trial: blocks(),
-            at_rest: rows(),
-            damping: rows(),
+            at_rest: Vec::new(),
+            damping: Vec::new(),
             operator: OperatorBuffers::new(system),
             newton: newton::Workspace::default(),
         }
@@ -380,7 +381,8 @@ impl ImplicitStep<'_> {
     ) {
         let system = self.system;
         let mut damping = std::mem::take(&mut buffers.damping);
-        buffers.at_rest.copy_from_slice(&ws.row_force);
+        damping.resize(ws.row_force.len(), Vec3::ZERO);
+        buffers.at_rest.clone_from(&ws.row_force);
         system.place_rows(&buffers.q_start, &buffers.v_start, self.end, &mut ws.rows);
         system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
         let weights = TangentWeights { position: 0.0, velocity: 1.0 };
@@ -405,7 +407,8 @@ impl ImplicitStep<'_> {
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        buffers.q.copy_from_slice(q);
+        buffers.q.clear();
+        buffers.q.extend_from_slice(q);
         let mut workspace = std::mem::take(&mut buffers.newton);
         let mut problem = ImplicitProblem {
             step: self,

@@ -123,13 +123,24 @@ impl<K: Send + Sync> Elements<K> {
         (batch, &batch.chunks[number - batch.first_chunk])
     }
 
-    /// Runs `work` on every chunk with its own rows of `inputs` and its part of the sums, then adds the sums to
+    /// Runs `work` on every chunk with its own rows of `inputs` and sums on them, then adds the sums to
     /// `out`; `partials` is scratch.
     pub fn add_sums<const I: usize>(
         &self,
         inputs: [&[Vec3]; I],
         partials: &mut Vec<Vec3>,
         out: &mut [Vec3],
+        work: impl Fn(&Batch<K>, &Chunk, [&[Padded]; I], &mut [Padded]) + Sync,
+    ) {
+        self.fill_partials(inputs, partials, work);
+        self.gather_partials(partials, &mut out[self.rows.clone()], |out, sum| *out += sum);
+    }
+
+    /// What `work` sums on every chunk's own rows.
+    pub fn fill_partials<const I: usize>(
+        &self,
+        inputs: [&[Vec3]; I],
+        partials: &mut Vec<Vec3>,
         work: impl Fn(&Batch<K>, &Chunk, [&[Padded]; I], &mut [Padded]) + Sync,
     ) {
         partials.resize(self.partial_count, Vec3::ZERO);
@@ -145,20 +156,28 @@ impl<K: Send + Sync> Elements<K> {
                 sums.iter_mut().zip(own).for_each(|(sum, own)| *sum = Vec3::from(*own));
             });
         });
-        let gather_rows = |(task, rows): (usize, &mut [Vec3])| {
+    }
+
+    /// Calls `add(out[row], Σ of its partial sums in chunk order)` for every row of the body.
+    pub fn gather_partials<T: Send>(
+        &self,
+        partials: &[Vec3],
+        out: &mut [T],
+        add: impl Fn(&mut T, Vec3) + Sync,
+    ) {
+        let gather_rows = |(task, rows): (usize, &mut [T])| {
             for (offset, row) in rows.iter_mut().enumerate() {
                 let mut sum = Vec3::ZERO;
                 for slot in self.gather.of(task * ROWS_PER_TASK + offset) {
                     sum += partials[*slot as usize];
                 }
-                *row += sum;
+                add(row, sum);
             }
         };
-        let rows = &mut out[self.rows.clone()];
-        if rows.len() >= 2 * ROWS_PER_TASK && rayon::current_num_threads() > 1 {
-            rows.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
+        if out.len() >= 2 * ROWS_PER_TASK && rayon::current_num_threads() > 1 {
+            out.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
         } else {
-            rows.chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
+            out.chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
         }
     }
 
