@@ -88,7 +88,7 @@ fn closed_form<R: Real>(F: &Mat3<R>) -> (Mat3<R>, R) {
         let slope = (trace * g - determinant * 2.0) * 4.0;
         let half_curvature = square * 6.0 - size * 2.0;
         step = value * slope / (slope * slope - value * half_curvature);
-        trace = trace - step;
+        trace -= step;
     }
     let kappa = (trace * trace - size) * 0.5;
     let zeta = kappa * trace - determinant;
