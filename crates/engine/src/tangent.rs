@@ -362,7 +362,7 @@ pub struct TangentOperator<'a> {
     buffers: Mutex<(&'a mut [Scratch], &'a mut OperatorBuffers)>,
 }
 
-/// Vectors of [`TangentOperator`], kept between steps.
+/// Vectors of [`TangentOperator`], kept between steps; those over rows only where rows are more than points.
 pub struct OperatorBuffers {
     free: Vec<Vec3>,
     row_positions: Vec<Vec3>,
@@ -373,7 +373,10 @@ pub struct OperatorBuffers {
 
 impl OperatorBuffers {
     pub fn new(system: &System) -> Self {
-        let rows = || vec![Vec3::ZERO; system.kinematics.row_count()];
+        let rows = || {
+            let count = if system.kinematics.is_trivial() { 0 } else { system.kinematics.row_count() };
+            vec![Vec3::ZERO; count]
+        };
         Self {
             free: vec![Vec3::ZERO; system.kinematics.block_count()],
             row_positions: rows(),
@@ -416,6 +419,9 @@ impl<'a> TangentOperator<'a> {
     ) {
         let (at, system) = (self.at, self.at.system);
         let kinematics = &system.kinematics;
+        if kinematics.is_trivial() {
+            return self.product_of_points(delta, out, scratches);
+        }
         let OperatorBuffers { row_positions, row_velocities, row_force, row_inertia, .. } = buffers;
         // δx = T δ,  δẋ = D δ
         kinematics.velocities_into(at.q, delta, row_positions);
@@ -454,6 +460,23 @@ impl<'a> TangentOperator<'a> {
                     }
                 }
             }
+        }
+    }
+}
+
+impl TangentOperator<'_> {
+    // M δ/h² - ∂f/∂x δ - (∂f/∂v) δ/h
+    fn product_of_points(&self, delta: &[Vec3], out: &mut [Vec3], scratches: &mut [Scratch]) {
+        let (at, system) = (self.at, self.at.system);
+        let rate = at.timestep.map_or(0.0, f64::recip);
+        out.fill(Vec3::ZERO);
+        if rate > 0.0 {
+            system.mass.add_scaled_product(rate * rate, delta, out);
+        }
+        let weights = TangentWeights { position: -1.0, velocity: -rate };
+        for (index, force) in system.forces.iter().enumerate() {
+            let view = at.system.view(index, at.rows, at.state, &at.around);
+            force.add_differential(&view, weights, delta, &mut scratches[index], out);
         }
     }
 }

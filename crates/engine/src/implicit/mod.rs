@@ -67,10 +67,11 @@ pub struct ImplicitBuffers {
     direction: Vec<Vec3>,
     prescribed: Vec<Vec3>,
     rhs: Vec<Vec3>,
-    /// Accepted by Newton's method.
+    /// Accepted by Newton's method; empty where one solve does.
     q: Vec<Vec3>,
     q_trial: Vec<Vec3>,
     v_trial: Vec<Vec3>,
+    /// Empty where no force has velocity terms.
     at_offset: Vec<Vec3>,
     damping: Vec<Vec3>,
     operator: OperatorBuffers,
@@ -94,11 +95,11 @@ impl ImplicitBuffers {
             direction: blocks(),
             prescribed: blocks(),
             rhs: blocks(),
-            q: free_rows(),
+            q: Vec::new(),
             q_trial: free_rows(),
             v_trial: blocks(),
-            at_offset: rows(),
-            damping: rows(),
+            at_offset: Vec::new(),
+            damping: Vec::new(),
             operator: OperatorBuffers::new(system),
             newton: iteration::Workspace::default(),
         }
@@ -390,7 +391,8 @@ impl ImplicitStep<'_> {
         let system = self.system;
         let mut damping = std::mem::take(&mut buffers.damping);
         let mut change = std::mem::take(&mut ws.row_scratch);
-        buffers.at_offset.copy_from_slice(&ws.row_force);
+        damping.resize(ws.row_force.len(), Vec3::ZERO);
+        buffers.at_offset.clone_from(&ws.row_force);
         change.copy_from_slice(&ws.rows.velocities);
         system.place_rows(&buffers.q_start, &buffers.v_start, self.end, &mut ws.rows);
         for (change, start) in change.iter_mut().zip(&ws.rows.velocities) {

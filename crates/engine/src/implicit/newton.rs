@@ -35,7 +35,8 @@ impl ImplicitStep<'_> {
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
         self.place_coasting(buffers);
-        buffers.q.copy_from_slice(q);
+        buffers.q.clear();
+        buffers.q.extend_from_slice(q);
         let mut workspace = std::mem::take(&mut buffers.newton);
         let mut problem = ImplicitProblem {
             step: self,

@@ -280,6 +280,21 @@ impl Force for Pressure {
         });
     }
 
+    // (K + Kᵀ)/2
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.for_blocks(at, |a, b, block| {
+            let half = block * (0.5 * weights.position);
+            add_block(matrix, a as usize, b as usize, &half);
+            add_block(matrix, b as usize, a as usize, &half.transpose());
+        });
+    }
+
     fn bytes(&self) -> usize {
         size_of_val(self.faces.as_slice())
     }

@@ -37,8 +37,9 @@ pub struct Chunk {
     pub connectivity: Vec<u16>,
     /// `[block][sample][SAMPLE_LEN][lane]`; lanes past the last element have no volume.
     samples: Vec<LaneBlock>,
-    /// `[block][parameter][lane]`.
+    /// `[block][parameter][lane]`, or of one block that stands for all where all elements have the same numbers.
     parameters: Vec<LaneBlock>,
+    has_one_material: bool,
     /// Where the chunk's nodes start among the partial sums.
     pub first_partial: usize,
 }
@@ -53,10 +54,10 @@ impl Chunk {
         (self.cells.len() - block).div_ceil(self.block_count()).min(LANES)
     }
 
-    /// `[block][sample][SAMPLE_LEN][lane]`, flat.
+    /// `[block][sample][SAMPLE_LEN]`.
     #[inline(always)]
-    pub fn samples(&self) -> &[f64] {
-        bytemuck::cast_slice(&self.samples)
+    pub fn samples(&self) -> &[LaneBlock] {
+        &self.samples
     }
 
     /// `X_ξ⁻¹` and the volume of the chunk's `slot`-th cell at a sample of `count`.
@@ -73,10 +74,11 @@ impl Chunk {
         &self.samples[(row + 1) * SAMPLE_LEN - 1].0
     }
 
-    /// `[block][parameter][lane]`, flat.
+    /// The `count` parameters of a block's elements.
     #[inline(always)]
-    pub fn parameters(&self) -> &[f64] {
-        bytemuck::cast_slice(&self.parameters)
+    pub fn parameters(&self, block: usize, count: usize) -> &[LaneBlock] {
+        let block = if self.has_one_material { 0 } else { block };
+        &self.parameters[block * count..(block + 1) * count]
     }
 
     pub fn bytes(&self) -> usize {
@@ -164,11 +166,14 @@ fn lay_out<'p>(
     rows.shrink_to_fit();
     let blocks = members.len().div_ceil(LANES);
     let parameter_count = parameters_of(members[0]).len();
+    let has_one_material = members.iter().all(|cell| parameters_of(*cell) == parameters_of(members[0]));
+    let parameter_blocks = if has_one_material { 1 } else { blocks };
     let mut chunk = Chunk {
         cells: members.to_vec(),
         connectivity: vec![0; blocks * nodes * LANES],
         samples: vec![LaneBlock::default(); blocks * rule.points.len() * SAMPLE_LEN],
-        parameters: vec![LaneBlock::default(); blocks * parameter_count],
+        parameters: vec![LaneBlock::default(); parameter_blocks * parameter_count],
+        has_one_material,
         rows,
         first_partial,
     };
@@ -182,8 +187,10 @@ fn lay_out<'p>(
                 chunk.rows.binary_search(&row(node)).unwrap_or_else(|_| unreachable!("collected above"));
             chunk.connectivity[(block * nodes + a) * LANES + lane] = local as u16;
         }
-        for (i, number) in parameters_of(cell).iter().enumerate() {
-            chunk.parameters[block * parameter_count + i].0[lane] = *number;
+        if block < parameter_blocks {
+            for (i, number) in parameters_of(cell).iter().enumerate() {
+                chunk.parameters[block * parameter_count + i].0[lane] = *number;
+            }
         }
         let corners = mesh.positions_into(cell_nodes, &mut corners);
         for (sample, point) in rule.points.iter().enumerate() {

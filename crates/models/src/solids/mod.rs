@@ -269,10 +269,16 @@ impl Force for SolidForce {
         if weights.position == 0.0 {
             return;
         }
-        let assembly = &mut SolidScratch::of(scratch).assembly;
-        assembly.add_blocks(&self.elements, [at.positions], matrix, |batch, chunk, blocks, [x], out| {
-            batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
-        });
+        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
+        assembly.add_blocks(
+            &self.elements,
+            [at.positions],
+            partials,
+            matrix,
+            |batch, chunk, blocks, [x], out| {
+                batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
+            },
+        );
     }
 
     fn bytes(&self) -> usize {

@@ -110,10 +110,16 @@ impl Force for RayleighDamping {
             return;
         }
         let scale = self.seconds * weights.velocity;
-        let assembly = &mut SolidScratch::of(scratch).assembly;
-        assembly.add_blocks(&self.elements, [at.positions], matrix, |batch, chunk, blocks, [x], out| {
-            batch.kernel.blocks(chunk, blocks, &batch.reference, x, scale, out);
-        });
+        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
+        assembly.add_blocks(
+            &self.elements,
+            [at.positions],
+            partials,
+            matrix,
+            |batch, chunk, blocks, [x], out| {
+                batch.kernel.blocks(chunk, blocks, &batch.reference, x, scale, out);
+            },
+        );
     }
 
     // heat: ∫ β vᵀ K₀ v dt

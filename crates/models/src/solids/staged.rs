@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 use souple_formal::tape::BATCH;
-use souple_math::{Lanes, Mat3, Vec3};
+use souple_math::{Lanes, Mat3, Padded, Vec3};
 
 use super::geometry::Geometry;
 use super::group::Group;
@@ -58,9 +58,9 @@ impl<G: Geometry, const N: usize> Staged<G, N> {
         &self,
         answer: Answer,
         (chunk, reference): (&Chunk, &[Vec3]),
-        [positions, delta]: [&[Vec3]; 2],
+        [positions, delta]: [&[Padded]; 2],
         scale: f64,
-        forces: &mut [Vec3],
+        forces: &mut [Padded],
     ) {
         let places = self.law.places(answer);
         self.with_memory(answer, |memory, _| {
@@ -95,7 +95,7 @@ fn runs(chunk: &Chunk, per_block: usize, blocks: Range<usize>) -> impl Iterator<
 }
 
 impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
-    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], forces: &mut [Vec3]) {
+    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded], forces: &mut [Padded]) {
         self.add_spread(Answer::Stress, (chunk, reference), [positions, &[]], 1.0, forces);
     }
 
@@ -103,15 +103,15 @@ impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
         &self,
         chunk: &Chunk,
         reference: &[Vec3],
-        positions: &[Vec3],
-        delta: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
         scale: f64,
-        forces: &mut [Vec3],
+        forces: &mut [Padded],
     ) {
         self.add_spread(Answer::Differential, (chunk, reference), [positions, delta], scale, forces);
     }
 
-    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3]) -> f64 {
+    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded]) -> f64 {
         let places = self.law.places(Answer::Energy);
         let mut sum = 0.0;
         self.with_memory(Answer::Energy, |memory, _| {
@@ -126,7 +126,13 @@ impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
     }
 
     // ∫ δP : δF dV
-    fn quadratic_form(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], delta: &[Vec3]) -> f64 {
+    fn quadratic_form(
+        &self,
+        chunk: &Chunk,
+        reference: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
+    ) -> f64 {
         let places = self.law.places(Answer::Differential);
         let mut sum = 0.0;
         self.with_memory(Answer::Differential, |memory, _| {
@@ -153,7 +159,7 @@ impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
         chunk: &Chunk,
         blocks: Range<usize>,
         reference: &[Vec3],
-        positions: &[Vec3],
+        positions: &[Padded],
         scale: f64,
         out: &mut [f64],
     ) {
@@ -194,7 +200,7 @@ struct Stage<'a, G, const N: usize> {
 
 impl<'a, G: Geometry, const N: usize> Stage<'a, G, N> {
     /// Writes `∂(values)/∂X` of every sample into the lanes that start at `at`.
-    fn gradients(&self, values: &[Vec3], at: usize, memory: &mut [f64]) {
+    fn gradients(&self, values: &[Padded], at: usize, memory: &mut [f64]) {
         Arch::new().dispatch(Gradients { stage: self, values, out: &mut memory[at..] });
     }
 
@@ -222,7 +228,7 @@ impl<'a, G: Geometry, const N: usize> Stage<'a, G, N> {
 
 struct Gradients<'a, G, const N: usize> {
     stage: &'a Stage<'a, G, N>,
-    values: &'a [Vec3],
+    values: &'a [Padded],
     out: &'a mut [f64],
 }
 
@@ -255,7 +261,7 @@ struct Spread<'a, G, const N: usize> {
     stage: Stage<'a, G, N>,
     stresses: &'a [f64],
     scale: f64,
-    forces: &'a mut [Vec3],
+    forces: &'a mut [Padded],
 }
 
 impl<G: Geometry, const N: usize> WithSimd for Spread<'_, G, N> {

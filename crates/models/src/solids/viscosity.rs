@@ -120,10 +120,11 @@ impl Force for Viscosity {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        let (assembly, inputs) = (&mut SolidScratch::of(scratch).assembly, [at.positions, at.velocities]);
+        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
         assembly.add_blocks(
             &self.elements,
-            inputs,
+            [at.positions, at.velocities],
+            partials,
             matrix,
             |batch, chunk, blocks, [positions, velocities], out| {
                 let flow = Flow { chunk, reference: &batch.reference, positions, velocities };

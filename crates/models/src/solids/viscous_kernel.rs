@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 use souple_engine::TangentWeights;
-use souple_math::{Mat3, Real, Vec3};
+use souple_math::{Mat3, Padded, Real, Vec3};
 
 use super::geometry::Geometry;
 use super::group::{Group, for_each_group};
@@ -21,16 +21,16 @@ pub struct Flow<'a> {
     /// `∂N_a/∂ξ`, sample after sample.
     pub reference: &'a [Vec3],
     /// Of the chunk's own nodes.
-    pub positions: &'a [Vec3],
-    pub velocities: &'a [Vec3],
+    pub positions: &'a [Padded],
+    pub velocities: &'a [Padded],
 }
 
 /// The loops on one element, behind a pointer so that a body may mix them.
 pub trait ViscousKernel: Send + Sync {
     /// `forces[n] += f_n` over the chunk's nodes.
-    fn forces(&self, flow: Flow, forces: &mut [Vec3]);
+    fn forces(&self, flow: Flow, forces: &mut [Padded]);
     /// `forces[n] += (a ∂f/∂x δ + b ∂f/∂v δ)_n` over the chunk's nodes.
-    fn differential(&self, flow: Flow, delta: &[Vec3], weights: TangentWeights, forces: &mut [Vec3]);
+    fn differential(&self, flow: Flow, delta: &[Padded], weights: TangentWeights, forces: &mut [Padded]);
     /// `∫ 2 η Ė:Ė dV` of the chunk [W].
     fn power(&self, flow: Flow) -> f64;
     /// `a ∂f_i/∂x_j + b ∂f_i/∂v_j` of the elements of some blocks of lanes, `[block][(i, j)][entry by columns][lane]`.
@@ -51,11 +51,11 @@ impl<G, const N: usize> StrainRate<G, N> {
 }
 
 impl<G: Geometry, const N: usize> ViscousKernel for StrainRate<G, N> {
-    fn forces(&self, flow: Flow, forces: &mut [Vec3]) {
+    fn forces(&self, flow: Flow, forces: &mut [Padded]) {
         Arch::new().dispatch(Forces::<G, N> { flow, forces, nodes: self.nodes, geometry: PhantomData });
     }
 
-    fn differential(&self, flow: Flow, delta: &[Vec3], weights: TangentWeights, forces: &mut [Vec3]) {
+    fn differential(&self, flow: Flow, delta: &[Padded], weights: TangentWeights, forces: &mut [Padded]) {
         Arch::new().dispatch(Differential::<G, N> {
             flow,
             delta,
@@ -105,7 +105,7 @@ fn stress_differential<R: Real>(
 
 struct Forces<'a, G, const N: usize> {
     flow: Flow<'a>,
-    forces: &'a mut [Vec3],
+    forces: &'a mut [Padded],
     nodes: usize,
     geometry: PhantomData<G>,
 }
@@ -138,9 +138,9 @@ impl<G: Geometry, const N: usize> WithSimd for Forces<'_, G, N> {
 
 struct Differential<'a, G, const N: usize> {
     flow: Flow<'a>,
-    delta: &'a [Vec3],
+    delta: &'a [Padded],
     weights: TangentWeights,
-    forces: &'a mut [Vec3],
+    forces: &'a mut [Padded],
     nodes: usize,
     geometry: PhantomData<G>,
 }
