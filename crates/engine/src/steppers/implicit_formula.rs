@@ -103,6 +103,9 @@ pub(super) struct Before<'a> {
     pub coasting: &'a mut [Vec3],
 }
 
+/// Writes what a formula makes of the state and of what it carries.
+pub(super) type Prepare<'a> = dyn Fn(&SystemState, Before) + 'a;
+
 impl Stride<'_> {
     /// The step of a formula whose `v₀` and `p` `prepare` writes; it is backward Euler's where nothing is prepared. Buffers
     /// hold the start of the step afterwards, and `p`.
@@ -113,7 +116,7 @@ impl Stride<'_> {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
-        prepare: Option<&dyn Fn(&SystemState, Before)>,
+        prepare: Option<&Prepare>,
     ) -> Result<StepReport, StepError> {
         let Self { system, around, start, timestep } = *self;
         let implicit = ImplicitStep {
