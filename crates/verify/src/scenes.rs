@@ -17,6 +17,8 @@ pub const SCENES: &[(&str, &str)] = &[
     ("patch", include_str!("../../../scenes/patch/scene.toml")),
     ("plate", include_str!("../../../scenes/plate/scene.toml")),
     ("rubber_as_text", include_str!("../../../scenes/rubber_as_text/scene.toml")),
+    ("rubber_pulled", include_str!("../../../scenes/rubber_pulled/scene.toml")),
+    ("rubber_spread", include_str!("../../../scenes/rubber_spread/scene.toml")),
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
     ("spinning_cube", include_str!("../../../scenes/spinning_cube/scene.toml")),
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),

@@ -103,8 +103,8 @@ pub(super) struct Before<'a> {
     pub coasting: &'a mut [Vec3],
 }
 
-/// What writes `v₀` and `p` from the state at the start of a step.
-pub(super) type Prepare<'a> = &'a dyn Fn(&SystemState, Before);
+/// Writes what a formula makes of the state and of what it carries.
+pub(super) type Prepare<'a> = dyn Fn(&SystemState, Before) + 'a;
 
 impl Stride<'_> {
     /// The step of a formula whose `v₀` and `p` `prepare` writes; it is backward Euler's where nothing is prepared. Buffers
@@ -116,7 +116,7 @@ impl Stride<'_> {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
-        prepare: Option<Prepare>,
+        prepare: Option<&Prepare>,
     ) -> Result<StepReport, StepError> {
         let Self { system, around, start, timestep } = *self;
         let implicit = ImplicitStep {

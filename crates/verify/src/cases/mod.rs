@@ -12,6 +12,7 @@ mod frequencies;
 mod implicit;
 mod motion;
 mod patch;
+mod rubber;
 mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
@@ -23,6 +24,7 @@ use crate::Case;
 pub const TABLES: &[&[Case]] = &[
     patch::CASES,
     traction::CASES,
+    rubber::CASES,
     thick_sphere::CASES,
     filling::CASES,
     cantilevers::CASES,
