@@ -465,15 +465,15 @@ impl<'a> TangentOperator<'a> {
 }
 
 impl TangentOperator<'_> {
-    // M δ/h² - ∂f/∂x δ - (∂f/∂v) δ/h
+    // a b M δ - ∂f/∂x δ - a (∂f/∂v) δ with the rates a of velocities and b of accelerations
     fn product_of_points(&self, delta: &[Vec3], out: &mut [Vec3], scratches: &mut [Scratch]) {
         let (at, system) = (self.at, self.at.system);
-        let rate = at.timestep.map_or(0.0, f64::recip);
         out.fill(Vec3::ZERO);
-        if rate > 0.0 {
-            system.mass.add_scaled_product(rate * rate, delta, out);
+        let inertia = at.rates.inertia();
+        if inertia > 0.0 {
+            system.mass.add_scaled_product(inertia, delta, out);
         }
-        let weights = TangentWeights { position: -1.0, velocity: -rate };
+        let weights = TangentWeights { position: -1.0, velocity: -at.rates.velocity };
         for (index, force) in system.forces.iter().enumerate() {
             let view = at.system.view(index, at.rows, at.state, &at.around);
             force.add_differential(&view, weights, delta, &mut scratches[index], out);

@@ -81,6 +81,12 @@ impl Chunk {
         &self.parameters[block * count..(block + 1) * count]
     }
 
+    /// All parameters of a block's elements.
+    pub fn all_parameters(&self, block: usize) -> &[LaneBlock] {
+        let blocks = if self.has_one_material { 1 } else { self.block_count() };
+        self.parameters(block, self.parameters.len() / blocks)
+    }
+
     pub fn bytes(&self) -> usize {
         4 * (self.cells.len() + self.rows.len())
             + 2 * self.connectivity.len()

@@ -7,7 +7,7 @@
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
-use souple_math::Vec3;
+use souple_math::{Padded, Vec3};
 use souple_mesh::MAX_NODES;
 
 use super::kernel::Kernel;
@@ -46,17 +46,16 @@ impl SectionKernel {
     ) -> impl Iterator<Item = Sample<'a>> + use<'a> {
         let (nodes, count) = (self.nodes, reference.len() / self.nodes);
         (0..count).map(move |sample| {
-            let start = (block * count + sample) * SAMPLE_LEN * LANES;
-            let (inverse, volume) = chunk.samples()[start..start + SAMPLE_LEN * LANES].split_at(9 * LANES);
+            let start = (block * count + sample) * SAMPLE_LEN;
+            let numbers: &[f64] = bytemuck::cast_slice(&chunk.samples()[start..start + SAMPLE_LEN]);
+            let (inverse, volume) = numbers.split_at(9 * LANES);
             Sample { inverse, volume, reference: &reference[sample * nodes..(sample + 1) * nodes] }
         })
     }
 
     /// The law's numbers for a block.
     fn parameters<'a>(&self, chunk: &'a Chunk, block: usize) -> &'a [f64] {
-        let all = chunk.parameters();
-        let per_block = all.len() / chunk.block_count();
-        &all[block * per_block..(block + 1) * per_block]
+        bytemuck::cast_slice(chunk.all_parameters(block))
     }
 
     fn locals<'a>(&self, chunk: &'a Chunk, block: usize) -> impl Iterator<Item = &'a [u16]> + use<'a> {
@@ -64,21 +63,22 @@ impl SectionKernel {
         chunk.connectivity[start..start + self.nodes * LANES].chunks_exact(LANES)
     }
 
-    fn gather(&self, chunk: &Chunk, block: usize, values: &[Vec3]) -> Nodal {
+    fn gather(&self, chunk: &Chunk, block: usize, values: &[Padded]) -> Nodal {
         let mut out = NONE;
         for (node, locals) in out.iter_mut().zip(self.locals(chunk, block)) {
             for (lane, local) in locals.iter().enumerate() {
-                let value = values[usize::from(*local)];
+                let value = Vec3::from(values[usize::from(*local)]);
                 (node[0][lane], node[1][lane], node[2][lane]) = (value.x, value.y, value.z);
             }
         }
         out
     }
 
-    fn scatter(&self, chunk: &Chunk, block: usize, values: &Nodal, sums: &mut [Vec3]) {
+    fn scatter(&self, chunk: &Chunk, block: usize, values: &Nodal, sums: &mut [Padded]) {
         for (node, locals) in values.iter().zip(self.locals(chunk, block)) {
             for (lane, local) in locals.iter().enumerate() {
-                sums[usize::from(*local)] += Vec3::new(node[0][lane], node[1][lane], node[2][lane]);
+                let sum = &mut sums[usize::from(*local)];
+                *sum = (Vec3::from(*sum) + Vec3::new(node[0][lane], node[1][lane], node[2][lane])).into();
             }
         }
     }
@@ -90,7 +90,7 @@ impl SectionKernel {
 }
 
 impl Kernel for SectionKernel {
-    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], forces: &mut [Vec3]) {
+    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded], forces: &mut [Padded]) {
         for block in 0..chunk.block_count() {
             let x = self.gather(chunk, block, positions);
             let (parameters, mut f) = (self.parameters(chunk, block), NONE);
@@ -106,10 +106,10 @@ impl Kernel for SectionKernel {
         &self,
         chunk: &Chunk,
         reference: &[Vec3],
-        positions: &[Vec3],
-        delta: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
         scale: f64,
-        forces: &mut [Vec3],
+        forces: &mut [Padded],
     ) {
         for block in 0..chunk.block_count() {
             let (x, dx) = (self.gather(chunk, block, positions), self.gather(chunk, block, delta));
@@ -123,7 +123,7 @@ impl Kernel for SectionKernel {
         }
     }
 
-    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3]) -> f64 {
+    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded]) -> f64 {
         let mut sum = 0.0;
         for block in 0..chunk.block_count() {
             let (x, parameters) = (self.gather(chunk, block, positions), self.parameters(chunk, block));
@@ -136,7 +136,13 @@ impl Kernel for SectionKernel {
         sum
     }
 
-    fn quadratic_form(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], delta: &[Vec3]) -> f64 {
+    fn quadratic_form(
+        &self,
+        chunk: &Chunk,
+        reference: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
+    ) -> f64 {
         let mut sum = 0.0;
         for block in 0..chunk.block_count() {
             let (x, dx) = (self.gather(chunk, block, positions), self.gather(chunk, block, delta));
@@ -160,7 +166,7 @@ impl Kernel for SectionKernel {
         chunk: &Chunk,
         blocks: Range<usize>,
         reference: &[Vec3],
-        positions: &[Vec3],
+        positions: &[Padded],
         scale: f64,
         out: &mut [f64],
     ) {
