@@ -51,26 +51,6 @@ pub(super) const CASES: &[Case] = &[
         ..INCLINE
     },
     Case {
-        id: "incline_slides_bdf2",
-        what: "the same by the second backward differentiation formula",
-        scene: "incline_slides",
-        settings: &[r#"systems.main.stepper.name="bdf2""#],
-        reference: 0.1025,
-        tolerance: Tolerance::Absolute(0.0218),
-        mutation: "contacts[0].friction=0.49",
-        ..INCLINE
-    },
-    Case {
-        id: "incline_slides_newmark",
-        what: "the same by Newmark's method, which damps nothing by itself",
-        scene: "incline_slides",
-        settings: &[r#"systems.main.stepper.name="newmark""#],
-        reference: 0.1025,
-        tolerance: Tolerance::Absolute(0.0218),
-        mutation: "contacts[0].friction=0.49",
-        ..INCLINE
-    },
-    Case {
         id: "collision_momentum",
         what: "momentum after two balls of 4 kg m/s each have collided",
         scene: "collision",
