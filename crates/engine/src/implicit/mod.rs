@@ -18,7 +18,7 @@ use souple_solve::newton as iteration;
 use souple_solve::reduce::norm;
 
 use crate::force::TangentWeights;
-use crate::linear::{Indefinite, LinearError, LinearSystem, Solved};
+use crate::linear::{Indefinite, LinearError, LinearSystem, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -145,6 +145,7 @@ enum Constrained {
 struct Wanted {
     constrained: Constrained,
     indefinite: Indefinite,
+    used_as: Use,
     /// As [`LinearSystem::tolerance`].
     tolerance: f64,
 }
@@ -327,6 +328,7 @@ impl ImplicitStep<'_> {
             reference: history::reference(&system.kinematics, &state.history),
             positions,
             indefinite: wanted.indefinite,
+            used_as: wanted.used_as,
             tolerance: wanted.tolerance,
         };
         let solved = linear.solve(linear_system, rhs, direction);
@@ -369,7 +371,8 @@ impl ImplicitStep<'_> {
         }
         let is_led = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
         let constrained = if is_led { Constrained::Led } else { Constrained::Still };
-        let wanted = Wanted { constrained, indefinite: Indefinite::Solve, tolerance: 0.0 };
+        let wanted =
+            Wanted { constrained, indefinite: Indefinite::Solve, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
         self.system.kinematics.retract(q, &buffers.direction);
         Ok(StepReport {

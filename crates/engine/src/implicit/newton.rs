@@ -7,7 +7,7 @@ use souple_solve::reduce::norm;
 
 use super::history::Lent;
 use super::{Constrained, ImplicitBuffers, ImplicitStep, NewtonSettings, Wanted};
-use crate::linear::{Indefinite, Solved};
+use crate::linear::{Indefinite, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::SystemWorkspace;
@@ -120,7 +120,7 @@ impl ImplicitProblem<'_, '_> {
 
     fn solve(&mut self, constrained: Constrained, tolerance: f64) -> Result<Solved, StepError> {
         let indefinite = if self.step.is_symmetric() { Indefinite::Descend } else { Indefinite::Solve };
-        let wanted = Wanted { constrained, indefinite, tolerance };
+        let wanted = Wanted { constrained, indefinite, used_as: Use::Direction, tolerance };
         let (solved, rounding) = self.step.solve(self.state, self.ws, self.buffers, wanted)?;
         // forces are sums of terms that cancel
         self.rounding = rounding.max(64.0 * f64::EPSILON * norm(&self.ws.row_force));

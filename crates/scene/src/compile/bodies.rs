@@ -252,7 +252,8 @@ fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>
     Some((materials, material_of_cell))
 }
 
-/// Rest positions and initial velocities; pinned points stand where their pins want them.
+/// Rest positions and initial velocities. Pinned points stand where their pins want them, but for steppers that look for
+/// equilibrium: those lead them there with all others, from rest.
 pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemState {
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
     let q: Vec<Vec3> = bodies().flat_map(|body| body.mesh.points.iter().copied()).collect();
@@ -264,6 +265,7 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
             state.v[row] = body.spec.velocity + body.spec.angular_velocity.cross(*x - centre);
         }
     }
-    system.impose_constraints(&mut state.q, &mut state.v, 0.0, 1.0);
+    let load = if system.stepper.has_inertia() { 1.0 } else { 0.0 };
+    system.impose_constraints(&mut state.q, &mut state.v, 0.0, load);
     state
 }

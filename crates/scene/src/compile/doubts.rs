@@ -1,5 +1,7 @@
 //! What is no fault but hardly meant: magnitudes that look like a slip of units, materials that lock.
 
+use souple_engine::System;
+use souple_engine::linear::Method;
 use souple_models::materials::{Lame, Material};
 
 use super::Draft;
@@ -68,6 +70,23 @@ fn of_material(material: &Material) -> impl Iterator<Item = String> {
     });
     let of_law = material.warnings().iter().map(|doubt| format!("the law: {doubt}"));
     [modulus_doubt, density_doubt, locking].into_iter().flatten().chain(of_law)
+}
+
+/// What is asked of a solver that another one will have to do.
+pub fn of_solver(system: &System) -> Option<String> {
+    let settings = system.stepper.solver_settings();
+    let needs_symmetry = matches!(settings.method, Method::Cg);
+    let general = system.forces.iter().find(|force| !force.declaration().symmetric_tangent);
+    if let (true, Some(force)) = (needs_symmetry, general) {
+        let name = force.name();
+        return Some(format!(
+            "`cg` solves symmetric systems, but the stiffness of `{name}` is not symmetric: `gmres` takes its place"
+        ));
+    }
+    let asked = settings.preconditioner;
+    let is_plain = ["auto", "block_jacobi"].contains(&asked);
+    (settings.matrix_free && !is_plain)
+        .then(|| format!("without a stored matrix there is no `{asked}`: `block_jacobi` takes its place"))
 }
 
 /// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].

@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Worker threads; the results do not depend on it
     #[arg(long)]
     threads: Option<usize>,
-    /// Of the random generators; the scene's by default
+    /// Recorded with the run, though nothing is random yet; the scene's by default
     #[arg(long)]
     seed: Option<u64>,
     /// Frames of the series; the scene's number by default
