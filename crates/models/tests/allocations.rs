@@ -320,8 +320,9 @@ fn steps_in_contact() {
     assert_eq!(allocations(symplectic, 300, 50), 0, "explicit");
     let euler = || pressed(stepper("backward_euler", &solver), 1e-2);
     assert_eq!(allocations(euler, 60, 5), 0, "implicit");
+    // it damps less, and until what touches stays the same the matrix takes other forms
     let bdf2 = || pressed(stepper("bdf2", &solver), 1e-2);
-    assert_eq!(allocations(bdf2, 60, 5), 0, "implicit, second order");
+    assert_eq!(allocations(bdf2, 400, 5), 0, "implicit, second order");
 }
 
 /// Two systems of different steps exchange impulses every period.

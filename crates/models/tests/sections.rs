@@ -2,6 +2,8 @@
 //! answers of small strain and of neo-Hookean rubber.
 #![allow(non_snake_case)]
 
+mod common;
+
 use souple_engine::{Configuration, Force, Scratch, TangentWeights};
 use souple_math::{Vec3, exponential};
 use souple_mesh::{ElementKind, Mesh};
@@ -13,12 +15,7 @@ const YOUNG: f64 = 1e6;
 const POISSON: f64 = 0.3;
 
 fn material(law: &str) -> Material {
-    let entry = materials::TABLE.find(law).unwrap();
-    let values = Values::new()
-        .with("youngs_modulus", Value::Number(YOUNG))
-        .with("poissons_ratio", Value::Number(POISSON))
-        .with("density", Value::Number(1000.0));
-    (entry.build)(&entry.values(values).unwrap()).unwrap()
+    common::material_of(materials::TABLE.find(law).unwrap(), YOUNG, POISSON)
 }
 
 /// A law as text.

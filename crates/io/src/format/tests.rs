@@ -105,7 +105,7 @@ fn quadratic_cells_come_back() {
 #[test]
 fn gmsh_order_of_middle_nodes() {
     let mesh = quadratic_mesh();
-    let text = String::from_utf8(written("gmsh2", &Output::new(&mesh))).unwrap();
+    let text = String::from_utf8(written("gmsh_2", &Output::new(&mesh))).unwrap();
     let rows: Vec<Vec<usize>> = text
         .lines()
         .filter_map(|line| {
