@@ -2,6 +2,7 @@
 
 use souple_engine::System;
 use souple_engine::linear::Method;
+use souple_mesh::Order;
 use souple_models::materials::{Lame, Material};
 
 use super::Draft;
@@ -30,8 +31,10 @@ pub fn warn(draft: &mut Draft) {
             let place = draft.place(site);
             warnings.push(format!("{place}: body `{}` is {size:.3e} m across: {hint}", body.spec.name));
         }
+        let is_linear = body.mesh.blocks.iter().any(|block| block.kind.order() == Order::Linear);
         for (site, material) in materials(body.spec) {
-            warnings.extend(of_material(&material).map(|doubt| format!("{}: {doubt}", draft.place(site))));
+            let doubts = of_material(&material, is_linear);
+            warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(site))));
         }
     }
     draft.warnings.extend(warnings);
@@ -49,7 +52,8 @@ fn materials(body: &Body) -> Vec<(&Site, Material)> {
     chosen.filter_map(|chosen| Some((&chosen.site, (chosen.entry.build)(&chosen.values).ok()?))).collect()
 }
 
-fn of_material(material: &Material) -> impl Iterator<Item = String> {
+/// `is_linear`: some of its elements have linear shape functions.
+fn of_material(material: &Material, is_linear: bool) -> impl Iterator<Item = String> {
     let (density, modulus) = (material.density, youngs_modulus(&material.small_strain));
     let ratio = material.small_strain.lambda / material.small_strain.mu;
     let modulus_doubt = (!within(modulus, MODULI)).then(|| {
@@ -60,7 +64,7 @@ fn of_material(material: &Material) -> impl Iterator<Item = String> {
         let hint = if density < DENSITIES[0] { "did you mean g/cm^3?" } else { "did you mean kg/m^3?" };
         format!("the density is {density:.3e} kg/m³: {hint}")
     });
-    let locking = (ratio > LOCKING).then(|| {
+    let locking = (is_linear && ratio > LOCKING).then(|| {
         // ν = λ / (2 (λ + μ))
         let poisson = 0.5 * ratio / (ratio + 1.0);
         format!(
