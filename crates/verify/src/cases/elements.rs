@@ -5,12 +5,11 @@
 //! `C h²`, quadratic ones `C h⁴`. Between the two finest meshes the next power, which is no more than the first at the
 //! coarser of the two, moves the order by `log₂ (1 + 1/4) / (1 + 1/16)` = 0.23 at most.
 
-use super::bar::{FULL_RULE, LINEAR, N1, N2, N3, ST_VENANT_KIRCHHOFF};
+use super::bar::{FULL_RULE, LINEAR, N1, N2, ST_VENANT_KIRCHHOFF};
 use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
 
 const TET10: &str = r#"bodies.bar.mesh.element="tet10""#;
 const HEX20: &str = r#"bodies.bar.mesh.element="hex20""#;
-const PRISM15: &str = r#"bodies.bar.mesh.element="prism15""#;
 
 const BAR: Case = Case {
     id: "",
@@ -124,16 +123,6 @@ pub(super) const CASES: &[Case] = &[
         settings: &[N1, HEX20, ST_VENANT_KIRCHHOFF, DEFAULT_RULE],
         reference: -0.14240015,
         ..CALCULIX
-    },
-    Case {
-        id: "cantilever_prism15_linear_n3",
-        what: "tip of the clamped bar, prism15, linear, n = 3",
-        settings: &[N3, PRISM15, LINEAR, DEFAULT_RULE],
-        reference: -0.14696694999999999,
-        // its rule of nine points is coarser than ours of eighteen
-        tolerance: Tolerance::Relative(2e-5),
-        source: "CalculiX, C3D15",
-        ..BAR
     },
     Case {
         id: "order_tet4_smooth_energy",

@@ -136,9 +136,9 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "energy_rk2",
         capabilities: &["DEB-34"],
-        what: "energy of the block after 100 steps of 50 ms: slowly grown",
-        settings: &[RK2, r#"world.period="50 ms""#],
-        reference: START * power(1.0 + power(z2(0.05), 2) / 4.0, 100),
+        what: "energy of the block after 100 steps of 8 ms: slowly grown",
+        settings: &[RK2, r#"world.period="8 ms""#],
+        reference: START * power(1.0 + power(z2(0.008), 2) / 4.0, 100),
         ..BLOCK
     },
     Case {
