@@ -59,6 +59,7 @@ const STEPS: &[Step] = &[
     Step { name: "snippets", summary: "every command and scene in README and docs/", run: snippets::check },
     Step { name: "browser", summary: "the page in a headless Chromium", run: browser::check },
     Step { name: "verify", summary: "the validation cases of the released program", run: program::verify },
+    Step { name: "mutations", summary: "every validation case fails where it must", run: program::mutations },
 ];
 
 fn main() -> ExitCode {

@@ -48,6 +48,11 @@ pub fn verify(tree: &Tree) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Runs all validation cases with the fault that each must find.
+pub fn mutations(tree: &Tree) -> Result<(), Failure> {
+    run(&mut souple(tree, &["verify", "--mutations"]), REMEDY)
+}
+
 /// A row that did not pass, in words.
 fn row_fault(row: &Value) -> Option<String> {
     if row["pass"] == Value::Bool(true) {

@@ -51,4 +51,14 @@ impl Constraint {
     pub fn velocity(&self, time: f64) -> Vec3 {
         self.motion.as_ref().map_or(Vec3::ZERO, |motion| motion.velocity(self.start, time))
     }
+
+    /// The mean acceleration over a step about `time` [m/s²]: of second order in the step, and finite also where key
+    /// frames make the velocity jump.
+    pub fn mean_acceleration(&self, time: f64, timestep: f64) -> Vec3 {
+        if self.motion.is_none() {
+            return Vec3::ZERO;
+        }
+        let (from, to) = ((time - 0.5 * timestep).max(0.0), time + 0.5 * timestep);
+        (self.velocity(to) - self.velocity(from)) / (to - from)
+    }
 }

@@ -3,6 +3,7 @@
 use souple_math::Vec3;
 use souple_solve::{BlockMatrix, reduce};
 
+use crate::constraint::Constraint;
 use crate::kinematics::UnknownKind;
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
@@ -21,6 +22,50 @@ pub fn accelerations_at(
     ws: &mut SystemWorkspace,
     out: &mut [Vec3],
 ) -> Result<StepReport, StepError> {
+    sum_forces(system, around, time, state, ws)?;
+    from_forces(system, state, ws, out)
+}
+
+/// The same with led components, whose acceleration over `timestep` about `time` is that of their motion, and which take
+/// along what a mass that couples points joins to them.
+///
+/// # Errors
+/// As [`accelerations_at`].
+pub fn led_accelerations_at(
+    system: &System,
+    around: &Surroundings,
+    (time, timestep): (f64, f64),
+    state: &SystemState,
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<StepReport, StepError> {
+    sum_forces(system, around, time, state, ws)?;
+    let led =
+        |constraint: &Constraint| constraint.constrained() * constraint.mean_acceleration(time, timestep);
+    // f - M a over what is led
+    ws.row_scratch.fill(Vec3::ZERO);
+    for constraint in &system.constraints {
+        if let Some(row) = system.kinematics.point_block_row(constraint.block) {
+            ws.row_scratch[row as usize] += led(constraint);
+        }
+    }
+    system.kinematics.derive_rows(&mut ws.row_scratch);
+    system.mass.add_scaled_product(-1.0, &ws.row_scratch, &mut ws.row_force);
+    let report = from_forces(system, state, ws, out)?;
+    for constraint in &system.constraints {
+        out[constraint.block as usize] += led(constraint);
+    }
+    Ok(report)
+}
+
+/// Sums forces over the rows placed at the state.
+fn sum_forces(
+    system: &System,
+    around: &Surroundings,
+    time: f64,
+    state: &SystemState,
+    ws: &mut SystemWorkspace,
+) -> Result<(), StepError> {
     system.place_rows(&state.q, &state.v, time, &mut ws.rows);
     let clock = std::time::Instant::now();
     system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
@@ -30,6 +75,16 @@ pub fn accelerations_at(
     {
         return Err(error);
     }
+    Ok(())
+}
+
+/// Solves for the accelerations of free components under the summed forces.
+fn from_forces(
+    system: &System,
+    state: &SystemState,
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<StepReport, StepError> {
     if system.kinematics.is_trivial() && system.mass.is_lumped() {
         // a = f / m
         let (forces, masses) = (&ws.row_force, &system.mass.diagonal);

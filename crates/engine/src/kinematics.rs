@@ -370,17 +370,18 @@ impl Kinematics {
     }
 
     /// `D` of a free row: the derivative of its velocity `T(q) v(q)` by the displacement of its block, where
-    /// `v = difference(q, q_start) / h` as a one-step implicit method has it.
-    pub fn velocity_map(&self, free_row: u32, q: &[Vec3], v: &[Vec3], timestep: f64) -> Mat3 {
+    /// `v = rate · difference(q, q_start)` as a one-step implicit method has it; on what only translates a constant may be
+    /// added to that.
+    pub fn velocity_map(&self, free_row: u32, q: &[Vec3], v: &[Vec3], rate: f64) -> Mat3 {
         let (block, carrier) = self.carriers[free_row as usize];
         match carrier {
-            Carrier::Translation => Mat3::IDENTITY * (1.0 / timestep),
+            Carrier::Translation => Mat3::IDENTITY * rate,
             Carrier::Rotation => {
-                // δ(ω × a) = ω × (δθ × a) + (J⁻¹ δθ / h) × a
+                // δ(ω × a) = ω × (δθ × a) + rate (J⁻¹ δθ) × a
                 let omega = v[block as usize];
                 let axis = q[free_row as usize].cross_matrix();
-                let inverse_jacobian = left_jacobian_inverse(omega * timestep);
-                -(omega.cross_matrix() * axis) - (axis * inverse_jacobian) * (1.0 / timestep)
+                let inverse_jacobian = left_jacobian_inverse(omega * (1.0 / rate));
+                -(omega.cross_matrix() * axis) - (axis * inverse_jacobian) * rate
             }
         }
     }
@@ -508,7 +509,7 @@ mod tests {
         let (q, v, _) = rows_at(&direction, 0.0);
         for row in 0..kinematics.free_row_count() {
             let numeric = (plus[row] - minus[row]) * (0.5 / step);
-            let map = kinematics.velocity_map(row as u32, &q, &v, h);
+            let map = kinematics.velocity_map(row as u32, &q, &v, 1.0 / h);
             let exact = map * direction[kinematics.block_of(row as u32) as usize];
             // central differences: step² times a third derivative of order 1/h, and rounding 1e-16/step
             assert!((numeric - exact).length() < 1e-7, "row {row}: {numeric:?} {exact:?}");

@@ -130,8 +130,19 @@ impl SolverSettings {
 const LU_BELOW: usize = 800;
 /// Multiples of the diagonal tried where a matrix is not positive definite.
 const SHIFTS: [f64; 7] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
-/// Residual at which a solve that rounding ended still counts; Newton's method judges what it is worth.
-const STAGNATED_AT_MOST: f64 = 0.1;
+/// Residual at which a solve that rounding ended still counts where Newton's method judges what it is worth.
+const STAGNATED_BUT_JUDGED: f64 = 0.1;
+/// Multiples of the wanted residual at which it still counts where nothing comes after it.
+const STAGNATED_AT_MOST: f64 = 100.0;
+
+/// What comes of a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// A direction of Newton's method, which judges it by what it does to residuals.
+    Direction,
+    /// It is taken as it is.
+    Answer,
+}
 
 /// What is wanted where the matrix turns out not to be positive definite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,10 +169,21 @@ pub struct LinearSystem<'a> {
     /// Places of the blocks now.
     pub positions: &'a [Vec3],
     pub indefinite: Indefinite,
+    pub used_as: Use,
     /// Wanted true relative residual where it may be looser than that of the settings: solutions of a symmetric
     /// matrix are directions of descent all the same, and along those of others the residual falls, at the rate
     /// `1 - tolerance`.
     pub tolerance: f64,
+}
+
+impl LinearSystem<'_> {
+    /// The residual at which rounding may end a solve to `tolerance` or the system's own.
+    fn stagnated_at_most(&self, tolerance: f64) -> f64 {
+        match self.used_as {
+            Use::Direction => STAGNATED_BUT_JUDGED,
+            Use::Answer => STAGNATED_AT_MOST * tolerance.max(self.tolerance),
+        }
+    }
 }
 
 /// What a solve did.
@@ -247,7 +269,7 @@ impl LinearSolver {
         let settings = SolverSettings { tolerance: 1e-13, max_iterations: 1000, ..SolverSettings::default() };
         let made = prepare(&mut self.mass, ("cg", "block_jacobi"), &settings, matrix, &[], None)?;
         x.fill(Vec3::ZERO);
-        Ok(judged(made.solver.solve(matrix, b, x))?)
+        Ok(judged(made.solver.solve(matrix, b, x), STAGNATED_AT_MOST * settings.tolerance)?)
     }
 
     fn solve_symmetric(
@@ -272,7 +294,10 @@ impl LinearSolver {
         )?;
         x.fill(Vec3::ZERO);
         made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
-        judged(made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x))
+        judged(
+            made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x),
+            system.stagnated_at_most(self.settings.tolerance),
+        )
     }
 
     fn solve_general(
@@ -306,7 +331,10 @@ impl LinearSolver {
             )?;
             x.fill(Vec3::ZERO);
             made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
-            judged(made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x))
+            judged(
+                made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x),
+                system.stagnated_at_most(self.settings.tolerance),
+            )
         };
         let attempted = attempt(name, preconditioner);
         match &attempted {
@@ -449,12 +477,15 @@ fn places(kinematics: &Kinematics, reference: &[f64]) -> (Vec<Vec3>, Option<Vec<
     (places, kinematics.has_frames().then_some(roles))
 }
 
-/// Counts a solve that only rounding ended.
-fn judged(solved: Result<souple_solve::krylov::Report, SolveError>) -> Result<Solved, SolveError> {
+/// Counts a solve that only rounding ended, where its residual is no more than `at_most`.
+fn judged(
+    solved: Result<souple_solve::krylov::Report, SolveError>,
+    at_most: f64,
+) -> Result<Solved, SolveError> {
     match solved {
         Ok(report) => Ok(Solved { iterations: report.iterations as u32, residual: report.relative_residual }),
         Err(SolveError::NotConverged { iterations, relative_residual, stop: Stop::Stagnated, .. })
-            if relative_residual <= STAGNATED_AT_MOST =>
+            if relative_residual <= at_most =>
         {
             Ok(Solved { iterations: iterations as u32, residual: relative_residual })
         }

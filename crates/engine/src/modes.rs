@@ -4,6 +4,7 @@ use souple_math::Vec3;
 use souple_solve::modes::{Mass as MassMatrix, Modes, Settings, lowest_modes};
 use souple_solve::{BlockMatrix, SolveError};
 
+use crate::implicit::Rates;
 use crate::inertia::add_generalised_mass;
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -30,7 +31,7 @@ pub fn lowest(
         rows,
         q: &state.q,
         v: &state.v,
-        timestep: None,
+        rates: Rates::STATIC,
         unbalanced: &balanced,
     };
     let stiffness = tangent.assemble(&at, scratches);

@@ -18,6 +18,9 @@ pub struct Forecast {
     pub longest_step: f64,
 }
 
+/// Growth of the fastest oscillation that is borne of methods without a stable step [1/s].
+const GROWTH: f64 = 0.1;
+
 /// Iterations of the power method: the Rayleigh quotient of a mesh's spectrum is then within a few percent.
 const ITERATIONS: usize = 40;
 
@@ -42,9 +45,11 @@ pub fn forecast(
     let longest_step = match system.stepper.stability() {
         Stability::Unconditional => f64::INFINITY,
         Stability::Limited(limit) => 0.95 * longest_step(highest_frequency / limit, highest_damping),
-        // growth exp(ω² h t / 2): a tenth over a second's worth of the fastest oscillation's e-folds
-        Stability::Growing if highest_frequency > 0.0 => 0.2 / (highest_frequency * highest_frequency),
-        Stability::Growing => f64::INFINITY,
+        // growth exp(factor ω^(power + 1) h^power t): a tenth a second, and what is damped still falls, h γ < 2
+        Stability::Growing { factor, power } => {
+            let slow = (GROWTH / (factor * highest_frequency.powi(power + 1))).powf(1.0 / f64::from(power));
+            slow.min(0.95 * longest_step(0.0, highest_damping))
+        }
     };
     Forecast { highest_frequency, highest_damping, longest_step }
 }

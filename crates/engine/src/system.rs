@@ -46,6 +46,8 @@ pub struct SystemWorkspace {
     /// A buffer for steppers in the size of the configuration, likewise.
     pub configuration: Vec<Vec3>,
     pub found_pairs: Vec<Pair>,
+    /// A buffer for steppers that may have to take pairs back.
+    pub pairs: Vec<Pair>,
     /// Rows at the last search of pairs; every step begins with one, so nothing of it outlives the step.
     searched: Vec<Vec3>,
     /// Memories and pairs while they are moved on.
@@ -90,7 +92,8 @@ impl SystemWorkspace {
         let scratches = system.forces.iter().zip(&self.scratches);
         buffers.map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
             + scratches.map(|(force, scratch)| force.scratch_bytes(scratch)).sum::<usize>()
-            + size_of::<Pair>() * (self.found_pairs.capacity() + self.before.pairs.capacity())
+            + size_of::<Pair>()
+                * (self.found_pairs.capacity() + self.pairs.capacity() + self.before.pairs.capacity())
             + 8 * self.before.memory.capacity()
             + self.tangent.bytes()
             + self.linear.bytes()
@@ -137,6 +140,7 @@ impl System {
             blocks: Default::default(),
             configuration: Vec::new(),
             found_pairs: Vec::new(),
+            pairs: Vec::new(),
             searched: Vec::new(),
             before: SystemState::default(),
             tangent: Tangent::default(),

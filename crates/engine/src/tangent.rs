@@ -1,11 +1,11 @@
 //! The matrix of an implicit step over velocity blocks, assembled from what forces say over rows.
 //!
 //! With rows `x(q)`, `δx = T δ`, row velocities `ẋ` with `δẋ = D δ`, and the unbalanced row force
-//! `g = M (ẋ - p)/h - f`, the residual is `r = Tᵀ g` and its derivative
+//! `g = b M (ẋ - p) - f`, the residual is `r = Tᵀ g` and its derivative
 //!
-//! `A = ∂(Tᵀ)g + Tᵀ (M D / h - ∂f/∂x T - ∂f/∂v D)`,
+//! `A = ∂(Tᵀ)g + Tᵀ (b M D - ∂f/∂x T - ∂f/∂v D)`,
 //!
-//! for points alone `M/h² - ∂f/∂x - (∂f/∂v)/h`. In statics `h` is infinite and the inertia absent.
+//! for points alone, `D = a`, `a b M - ∂f/∂x - a ∂f/∂v`, with the [`Rates`] `a` and `b`. In statics both are zero.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -13,6 +13,7 @@ use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
 
 use crate::force::{Force, Scratch, TangentWeights};
+use crate::implicit::Rates;
 use crate::kinematics::Kinematics;
 use crate::state::{Pair, SystemState};
 use crate::system::{Rows, Surroundings, System};
@@ -50,15 +51,17 @@ pub struct Linearisation<'a> {
     /// Configuration and velocity of the unknowns at the rows.
     pub q: &'a [Vec3],
     pub v: &'a [Vec3],
-    /// `None` in statics.
-    pub timestep: Option<f64>,
+    pub rates: Rates,
     /// `g` over rows.
     pub unbalanced: &'a [Vec3],
 }
 
 impl Linearisation<'_> {
     fn velocity_map(&self, free_row: u32) -> Mat3 {
-        self.timestep.map_or(Mat3::ZERO, |h| self.system.kinematics.velocity_map(free_row, self.q, self.v, h))
+        if !self.rates.has_velocity() {
+            return Mat3::ZERO;
+        }
+        self.system.kinematics.velocity_map(free_row, self.q, self.v, self.rates.velocity)
     }
 }
 
@@ -68,14 +71,14 @@ impl Tangent {
         let system = at.system;
         self.update_patterns(system, &at.state.pairs);
         let trivial = system.kinematics.is_trivial();
-        let rate = at.timestep.map_or(0.0, f64::recip);
         let mut rows = self.rows.take().unwrap_or_else(|| unreachable!("patterns were just made"));
         rows.set_zero();
-        let weights = TangentWeights { position: -1.0, velocity: if trivial { -rate } else { 0.0 } };
+        let weights =
+            TangentWeights { position: -1.0, velocity: if trivial { -at.rates.velocity } else { 0.0 } };
         add_row_blocks(at, weights, scratches, &mut rows);
         if trivial {
-            // A = M/h² - ∂f/∂x - (∂f/∂v)/h
-            add_mass(system, rate * rate, &mut rows);
+            // A = a b M - ∂f/∂x - a ∂f/∂v
+            add_mass(system, at.rates.inertia(), &mut rows);
             constrain(system, &mut rows);
             return self.rows.insert(rows);
         }
@@ -86,7 +89,7 @@ impl Tangent {
         let velocity_map = |row: u32| at.velocity_map(row);
         // -Tᵀ ∂f/∂x T
         transform_rows(kinematics, &rows, &mut blocks, &position_map, &position_map);
-        if at.timestep.is_some() && system.forces.iter().any(|force| force.declaration().velocity_terms) {
+        if at.rates.has_velocity() && system.forces.iter().any(|force| force.declaration().velocity_terms) {
             // -Tᵀ ∂f/∂v D
             let mut damping =
                 self.row_velocities.take().unwrap_or_else(|| BlockMatrix::zeros(rows.pattern().clone()));
@@ -95,7 +98,8 @@ impl Tangent {
             transform_rows(kinematics, &damping, &mut blocks, &position_map, &velocity_map);
             self.row_velocities = Some(damping);
         }
-        // Tᵀ M D / h
+        // b Tᵀ M D
+        let rate = at.rates.acceleration;
         for (row, mass) in system.mass.diagonal.iter().enumerate() {
             let scaled = |left: &Mat3, right: &Mat3| left.transpose_mul(right) * (mass * rate);
             add_congruent(kinematics, &mut blocks, (row, row), &position_map, &velocity_map, scaled);
@@ -134,8 +138,7 @@ impl Tangent {
             return Assembled { matrix: self.assemble(at, scratches), symmetric: None };
         }
         self.update_patterns(system, &at.state.pairs);
-        let rate = at.timestep.map_or(0.0, f64::recip);
-        let weights = TangentWeights { position: -1.0, velocity: -rate };
+        let weights = TangentWeights { position: -1.0, velocity: -at.rates.velocity };
         let mut matrix = self.rows.take().unwrap_or_else(|| unreachable!("patterns were just made"));
         matrix.set_zero();
         for (index, force) in system.forces.iter().enumerate() {
@@ -144,7 +147,7 @@ impl Tangent {
                 force.add_blocks(&view, weights, &mut scratches[index], &mut matrix);
             }
         }
-        add_mass(system, rate * rate, &mut matrix);
+        add_mass(system, at.rates.inertia(), &mut matrix);
         let known = self.symmetric.take().filter(|known| Arc::ptr_eq(known.pattern(), matrix.pattern()));
         let mut symmetric = known.unwrap_or_else(|| BlockMatrix::zeros(Arc::clone(matrix.pattern())));
         symmetric.values_mut().copy_from_slice(matrix.values());
@@ -172,9 +175,13 @@ impl Tangent {
             BlockMatrix::zeros(Arc::new(pattern.unwrap_or_else(|error| panic!("too many points: {error}"))))
         });
         diagonal.set_zero();
-        let rate = at.timestep.map_or(0.0, f64::recip);
-        add_row_blocks(at, TangentWeights { position: -1.0, velocity: -rate }, scratches, &mut diagonal);
-        add_mass(system, rate * rate, &mut diagonal);
+        add_row_blocks(
+            at,
+            TangentWeights { position: -1.0, velocity: -at.rates.velocity },
+            scratches,
+            &mut diagonal,
+        );
+        add_mass(system, at.rates.inertia(), &mut diagonal);
         constrain(system, &mut diagonal);
         self.diagonal.insert(diagonal)
     }
@@ -355,7 +362,7 @@ pub struct TangentOperator<'a> {
     buffers: Mutex<(&'a mut [Scratch], &'a mut OperatorBuffers)>,
 }
 
-/// Vectors of [`TangentOperator`], kept between steps.
+/// Vectors of [`TangentOperator`], kept between steps; those over rows only where rows are more than points.
 pub struct OperatorBuffers {
     free: Vec<Vec3>,
     row_positions: Vec<Vec3>,
@@ -366,7 +373,10 @@ pub struct OperatorBuffers {
 
 impl OperatorBuffers {
     pub fn new(system: &System) -> Self {
-        let rows = || vec![Vec3::ZERO; system.kinematics.row_count()];
+        let rows = || {
+            let count = if system.kinematics.is_trivial() { 0 } else { system.kinematics.row_count() };
+            vec![Vec3::ZERO; count]
+        };
         Self {
             free: vec![Vec3::ZERO; system.kinematics.block_count()],
             row_positions: rows(),
@@ -409,28 +419,32 @@ impl<'a> TangentOperator<'a> {
     ) {
         let (at, system) = (self.at, self.at.system);
         let kinematics = &system.kinematics;
+        if kinematics.is_trivial() {
+            return self.product_of_points(delta, out, scratches);
+        }
         let OperatorBuffers { row_positions, row_velocities, row_force, row_inertia, .. } = buffers;
         // δx = T δ,  δẋ = D δ
         kinematics.velocities_into(at.q, delta, row_positions);
         row_velocities.fill(Vec3::ZERO);
-        if at.timestep.is_some() {
+        if at.rates.has_velocity() {
             for (row, velocity) in row_velocities[..kinematics.free_row_count()].iter_mut().enumerate() {
                 *velocity = at.velocity_map(row as u32) * delta[kinematics.block_of(row as u32) as usize];
             }
             kinematics.derive_rows(row_velocities);
         }
-        // M δẋ / h - ∂f/∂x δx - ∂f/∂v δẋ
+        // b M δẋ - ∂f/∂x δx - ∂f/∂v δẋ
         row_force.fill(Vec3::ZERO);
         row_inertia.fill(Vec3::ZERO);
-        if let Some(h) = at.timestep {
+        if at.rates.has_inertia() {
+            let rate = at.rates.acceleration;
             system.mass.add_product(row_velocities, row_inertia);
-            row_force.iter_mut().zip(row_inertia.iter()).for_each(|(f, inertia)| *f += *inertia * (1.0 / h));
+            row_force.iter_mut().zip(row_inertia.iter()).for_each(|(f, inertia)| *f += *inertia * rate);
         }
         for (index, force) in system.forces.iter().enumerate() {
             let view = at.system.view(index, at.rows, at.state, &at.around);
             let position = TangentWeights { position: -1.0, velocity: 0.0 };
             force.add_differential(&view, position, row_positions, &mut scratches[index], row_force);
-            if at.timestep.is_some() && force.declaration().velocity_terms {
+            if at.rates.has_velocity() && force.declaration().velocity_terms {
                 let velocity = TangentWeights { position: 0.0, velocity: -1.0 };
                 force.add_differential(&view, velocity, row_velocities, &mut scratches[index], row_force);
             }
@@ -446,6 +460,23 @@ impl<'a> TangentOperator<'a> {
                     }
                 }
             }
+        }
+    }
+}
+
+impl TangentOperator<'_> {
+    // a b M δ - ∂f/∂x δ - a (∂f/∂v) δ with the rates a of velocities and b of accelerations
+    fn product_of_points(&self, delta: &[Vec3], out: &mut [Vec3], scratches: &mut [Scratch]) {
+        let (at, system) = (self.at, self.at.system);
+        out.fill(Vec3::ZERO);
+        let inertia = at.rates.inertia();
+        if inertia > 0.0 {
+            system.mass.add_scaled_product(inertia, delta, out);
+        }
+        let weights = TangentWeights { position: -1.0, velocity: -at.rates.velocity };
+        for (index, force) in system.forces.iter().enumerate() {
+            let view = at.system.view(index, at.rows, at.state, &at.around);
+            force.add_differential(&view, weights, delta, &mut scratches[index], out);
         }
     }
 }

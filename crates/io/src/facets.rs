@@ -1,7 +1,7 @@
 //! What surface formats have in common: what they write of a mesh, and how they read polygons.
 
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, Mesh};
+use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
 
 use crate::cursor::Cursor;
 use crate::dataset::Output;
@@ -40,6 +40,16 @@ impl Facet {
         Self { corners, count: nodes.len() as u8 }
     }
 
+    /// A facet as it stands, a curved one as triangles.
+    fn of(facet: Cell<'_>) -> Vec<Self> {
+        match facet.kind.order() {
+            Order::Linear => vec![Self::new(facet.nodes)],
+            Order::Quadratic => {
+                facet_triangles(facet.kind, facet.nodes).iter().map(|corners| Self::new(corners)).collect()
+            }
+        }
+    }
+
     pub fn corners(&self) -> &[u32] {
         &self.corners[..usize::from(self.count)]
     }
@@ -66,7 +76,7 @@ impl SurfacePart {
     pub fn of(output: &Output<'_>) -> Self {
         let mesh = output.mesh;
         let (mut facets, origin): (Vec<Facet>, _) = if mesh.facet_count() > 0 {
-            (mesh.facets().map(|facet| Facet::new(facet.nodes)).collect(), Origin::Facets)
+            (mesh.facets().flat_map(Facet::of).collect(), Origin::Facets)
         } else {
             let boundary = mesh.boundary_surface();
             let own = |corner: u32| boundary.mesh_points[corner as usize];

@@ -24,7 +24,7 @@ pub struct Format {
     /// File name extensions that stand for it, in lower case, without the dot.
     pub extensions: &'static [&'static str],
     /// Extensions of the files that one mesh is kept in, for formats of several; `read` and `write` then take
-    /// them joined (see [`crate::parts`]). Empty for formats of one file.
+    /// them joined (see `parts.rs`). Empty for formats of one file.
     pub parts: &'static [&'static str],
     /// Whether content begins like this format.
     pub recognises: fn(&[u8]) -> bool,

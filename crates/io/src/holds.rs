@@ -116,6 +116,11 @@ impl Holds {
             };
             lose(quadrilaterals(&mesh.facet_blocks), "quadrilaterals: each is cut into two triangles");
         }
+        if self.is_surface() {
+            let is_curved = |block: &&CellBlock| block.kind.order() == souple_mesh::Order::Quadratic;
+            let curved: usize = mesh.facet_blocks.iter().filter(is_curved).map(CellBlock::len).sum();
+            lose(curved, "curved facets: each is cut into triangles at the middles of its sides");
+        }
         let held = |group: &&souple_mesh::Group| match self.groups {
             HeldGroups::All => true,
             HeldGroups::None => false,

@@ -63,6 +63,13 @@ pub(crate) fn mixed_mesh() -> Mesh {
     mesh
 }
 
+/// The cells and facets of [`mixed_mesh`] raised to quadratic ones, middles of edges off the straight line.
+pub(crate) fn quadratic_mesh() -> Mesh {
+    let mut linear = mixed_mesh();
+    linear.groups.clear();
+    linear.raised(|[a, b]| (a + b) * 0.5 + Vec3::new(0.01, 1.0 / 300.0, -0.02))
+}
+
 /// Cut at every byte, and with bits of every byte flipped: an answer or a fault, never a panic, and what is
 /// read refers only to points that exist.
 pub(crate) fn survives_faults(name: &str, content: &[u8], read: impl Fn(&[u8]) -> Result<Dataset, Fault>) {

@@ -1,7 +1,7 @@
 //! Polar, singular-value and eigen-decompositions of 3×3 matrices.
 //!
-//! [`polar`] and [`svd`] run in SIMD lanes: a fixed number of operations, choices by selection. For
-//! finite input they never give NaN and always give proper rotations, for singular and inverted matrices too.
+//! [`polar`] and [`svd`] run in SIMD lanes; what comes out of a lane does not depend on its neighbours. For finite input they never give NaN and always give proper rotations, for singular and inverted
+//! matrices too.
 
 // F, S, R as in the equations
 #![allow(non_snake_case)]
@@ -11,12 +11,21 @@ use crate::{Mat3, Real, Vec3};
 /// Sweeps of one-sided Jacobi, which converges at least quadratically: orthogonal to rounding for every input.
 const SWEEPS: usize = 5;
 
-/// Sweeps for [`polar`]: one step of Newton's method takes what they leave below rounding. With three, one random
+/// Sweeps for [`iterated`]: one step of Newton's method takes what they leave below rounding. With three, one random
 /// matrix in a million keeps a skew part of 5e-15.
 const SWEEPS_BEFORE_NEWTON: usize = 4;
 
 /// Columns shorter than this beside a largest entry of one have no direction of their own (squared).
 const VANISHING_SQ: f64 = 1e-60;
+
+/// The least `(s₁ + s₂)(s₂ + s₃)(s₃ + s₁)` over `(s₁ + s₂ + s₃)³` of the signed singular values for which the closed form
+/// of [`polar`] is trusted; it is 0.3 at rest. Rounding grows with the inverse.
+const LEAST_TURNING_SHARE: f64 = 0.1;
+
+/// Steps of Halley's method for the trace of the stretch, and the last one's largest share of it: the error goes with
+/// its third power, and that of the rotation with the sixth.
+const TRACE_STEPS: usize = 3;
+const LARGEST_LAST_STEP: f64 = 1e-4;
 
 /// `F = R S` with a proper rotation `R` and a symmetric `S`.
 #[derive(Clone, Copy, Debug)]
@@ -50,9 +59,77 @@ pub struct Eigen {
 #[inline(always)]
 pub fn polar<R: Real>(F: &Mat3<R>) -> Polar<R> {
     let scaled = F.scaled(inverse_of_largest(F));
-    let (left, right) = singular_frames(&scaled, SWEEPS_BEFORE_NEWTON);
-    let rotation = polished(&left.mul_transpose(&right), &scaled);
+    let (mut rotation, trust) = closed_form(&scaled);
+    if !trust.all_positive() {
+        rotation = iterated_unless_trusted(&scaled, &trust, &rotation);
+    }
     Polar { rotation, stretch: rotation.transpose_mul(F).symmetric_part() }
+}
+
+/// The polar rotation of a matrix with entries of size one, and a number that is above zero where it is exact to rounding:
+/// not of matrices near a jump of the rotation.
+///
+/// `R = ((κ + |F|²) F + λ cof F - F FᵀF)/ζ` with `λ = tr S`, `κ = (λ² - |F|²)/2`, `ζ = κ λ - det F` (Markley 1993, Attitude
+/// Determination Using Vector Observations: A Fast Optimal Matrix Algorithm). `λ` is the largest root of
+/// `(λ² - |F|²)² - 8 λ det F - 4 |cof F|²`. An error of `λ` changes `R` by a factor that commutes with `S`, which making `R`
+/// orthonormal takes away to first order.
+#[inline(always)]
+fn closed_form<R: Real>(F: &Mat3<R>) -> (Mat3<R>, R) {
+    let (C, cofactor) = (F.gram(), F.cofactor());
+    let (size, area) = (C.trace(), cofactor.dot(&cofactor));
+    let determinant = F.columns[0].dot(cofactor.columns[0]);
+    // from above: s₁s₂ + s₂s₃ + s₃s₁ ≤ √3 |cof F|, equal at rest
+    let mut trace = ((area * 3.0).sqrt() * 2.0 + size).sqrt();
+    let mut step = trace;
+    for _ in 0..TRACE_STEPS {
+        let square = trace * trace;
+        let g = square - size;
+        let value = g.mul_add(g, (trace * determinant).mul_add(trace.splat(-8.0), area * -4.0));
+        let slope = (trace * g - determinant * 2.0) * 4.0;
+        let half_curvature = square * 6.0 - size * 2.0;
+        step = value * slope / (slope * slope - value * half_curvature);
+        trace -= step;
+    }
+    let kappa = (trace * trace - size) * 0.5;
+    let zeta = kappa * trace - determinant;
+    let inverse = zeta.one() / zeta;
+    let turned =
+        F.scaled((kappa + size) * inverse) + cofactor.scaled(trace * inverse) - (*F * C).scaled(inverse);
+    let trust =
+        (zeta - trace * trace * trace * LEAST_TURNING_SHARE).min(trace * LARGEST_LAST_STEP - step.abs());
+    (orthonormal(&turned), trust)
+}
+
+/// `rotation`, in lanes without trust that of the iteration. Number by number: what is rare should not grow every kernel.
+#[cold]
+#[inline(never)]
+fn iterated_unless_trusted<R: Real>(F: &Mat3<R>, trust: &R, rotation: &Mat3<R>) -> Mat3<R> {
+    let mut rotation = *rotation;
+    for (lane, trust) in trust.numbers().iter().enumerate() {
+        if trust.all_positive() {
+            continue;
+        }
+        let number = |x: R| x.numbers()[lane];
+        let alone = Mat3 { columns: F.columns.map(|u| Vec3::new(number(u.x), number(u.y), number(u.z))) };
+        for (column, iterated) in rotation.columns.iter_mut().zip(iterated(&alone).columns) {
+            column.x.numbers_mut()[lane] = iterated.x;
+            column.y.numbers_mut()[lane] = iterated.y;
+            column.z.numbers_mut()[lane] = iterated.z;
+        }
+    }
+    rotation
+}
+
+/// The polar rotation of a matrix with entries of size one, whatever they are.
+fn iterated<R: Real>(F: &Mat3<R>) -> Mat3<R> {
+    let (left, right) = singular_frames(F, SWEEPS_BEFORE_NEWTON);
+    polished(&left.mul_transpose(&right), F)
+}
+
+/// `R (3 I - RᵀR)/2`: squares the distance of `R` from the rotations.
+#[inline(always)]
+fn orthonormal<R: Real>(rotation: &Mat3<R>) -> Mat3<R> {
+    *rotation * (rotation.gram() * -0.5).plus_diagonal(rotation.columns[0].x.splat(1.5))
 }
 
 /// The singular-value decomposition with proper rotations.
@@ -103,8 +180,8 @@ fn polished<R: Real>(rotation: &Mat3<R>, F: &Mat3<R>) -> Mat3<R> {
     let scale = w.x.splat(2.0) / (w.length_sq() + 1.0);
     let skew = w.cross_matrix();
     let turned = *rotation + (*rotation * (skew + skew * skew)).scaled(scale);
-    // R (3 I - RᵀR) / 2: orthonormal again to rounding, the derivative too
-    turned * (turned.transpose_mul(&turned) * -0.5).plus_diagonal(w.x.splat(1.5))
+    // again to rounding, the derivative too
+    orthonormal(&turned)
 }
 
 /// `(U, V)` of the singular-value decomposition of `F`, whose largest entry is one (or which is zero).
@@ -273,227 +350,4 @@ pub fn project_psd(matrix: &Mat3) -> Mat3 {
 }
 
 #[cfg(test)]
-mod tests {
-    use pulp::{Arch, Simd, WithSimd};
-
-    use super::*;
-    use crate::{Dual, Lanes, exponential};
-
-    const EPSILON: f64 = f64::EPSILON;
-
-    /// Numbers between -1 and 1 from a fixed seed (Knuth's linear congruence).
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-        fn vector(&mut self) -> Vec3 {
-            Vec3::new(self.next(), self.next(), self.next())
-        }
-        fn matrix(&mut self) -> Mat3 {
-            Mat3::from_columns(self.vector(), self.vector(), self.vector())
-        }
-        fn rotation(&mut self) -> Mat3 {
-            exponential(self.vector() * 3.0)
-        }
-    }
-
-    /// Singular values, signed as ours: regular, close to each other, equal, inverted, nearly and wholly singular.
-    const SINGULAR_VALUES: [[f64; 3]; 18] = [
-        [1.0, 1.0, 1.0],
-        [1.1, 1.0, 0.9],
-        [1.0 + 1e-9, 1.0, 1.0 - 1e-9],
-        [1.0 + 1e-15, 1.0, 1.0],
-        [3.0, 0.5, 0.1],
-        [1.0, 1.0, -0.5],
-        [1.0, 0.8, -0.6],
-        [1.0, 1.0, -1.0],
-        [2.0, 1.0, -1.0 + 1e-9],
-        [1.0, 1.0, 0.0],
-        [1.0, 1.0, 1e-9],
-        [1.0, 1.0, -1e-9],
-        [1.0, 1e-6, 1e-12],
-        [1e6, 1.0, -1e-6],
-        [1.0, 1e-16, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1e-9, -1e-9],
-        [0.0, 0.0, 0.0],
-    ];
-
-    /// Random, aligned with the axes, and turned, at three scales.
-    fn examples() -> Vec<Mat3> {
-        let mut numbers = Numbers(1);
-        let mut examples: Vec<Mat3> = (0..2000).map(|_| numbers.matrix()).collect();
-        for [a, b, c] in SINGULAR_VALUES {
-            let diagonal = Mat3::from_diagonal(Vec3::new(a, b, c));
-            examples.extend([diagonal, Mat3::from_diagonal(Vec3::new(c, b, a))]);
-            for _ in 0..50 {
-                let turned = numbers.rotation() * diagonal * numbers.rotation().transpose();
-                examples.extend([turned, turned * 1e-200, turned * 1e200, diagonal * numbers.rotation()]);
-            }
-        }
-        examples
-    }
-
-    fn assert_rotation(R: &Mat3, of: &Mat3) {
-        let error = (R.transpose_mul(R) - Mat3::IDENTITY).largest_entry();
-        assert!(error <= 16.0 * EPSILON && R.determinant() > 0.0, "error {error:e}, {R:?} of {of:?}");
-    }
-
-    /// `R` is proper and `RᵀF` symmetric, to rounding of the largest entry, for every kind of matrix; of all proper
-    /// rotations `R` has the largest `tr(RᵀF)`: no sum of two eigenvalues of `S` is negative.
-    #[test]
-    fn polar_is_proper_and_symmetric() {
-        for F in examples() {
-            let Polar { rotation, stretch } = polar(&F);
-            assert_rotation(&rotation, &F);
-            let rounding = 16.0 * EPSILON * F.largest_entry();
-            let skew = rotation.transpose_mul(&F).axial_vector().largest_component();
-            assert!(skew <= rounding, "skew {skew:e} of {F:?}");
-            assert!((rotation * stretch - F).largest_entry() <= 2.0 * rounding, "{F:?}");
-            let values = eigen_symmetric(&(stretch * (1.0 / F.largest_entry().max(1e-300)))).values;
-            assert!(values.y + values.z >= -32.0 * EPSILON, "{values:?} of {F:?}");
-        }
-    }
-
-    /// `F = Q₁ D Q₂ᵀ` has the polar rotation `Q₁ Q₂ᵀ`; its condition is `s₁/(s₂ + s₃)`.
-    #[test]
-    fn polar_of_known_rotation() {
-        let mut numbers = Numbers(2);
-        for [a, b, c] in SINGULAR_VALUES.into_iter().filter(|[a, b, c]| b + c > 1e-6 * a) {
-            for _ in 0..200 {
-                let (left, right) = (numbers.rotation(), numbers.rotation());
-                let F = left * Mat3::from_diagonal(Vec3::new(a, b, c)).mul_transpose(&right);
-                let error = (polar(&F).rotation - left.mul_transpose(&right)).largest_entry();
-                assert!(error <= 16.0 * EPSILON * (1.0 + a / (b + c)), "error {error:e} of {a} {b} {c}");
-            }
-        }
-    }
-
-    /// `F = U diag(s) Vᵀ` with rotations, falling sizes and the sign of the determinant on the last.
-    #[test]
-    fn svd_rebuilds() {
-        for F in examples() {
-            let Svd { left, values, right } = svd(&F);
-            assert_rotation(&left, &F);
-            assert_rotation(&right, &F);
-            let scale = F.largest_entry();
-            let rebuilt = left * Mat3::from_diagonal(values).mul_transpose(&right);
-            assert!((rebuilt - F).largest_entry() <= 24.0 * EPSILON * scale, "{F:?}");
-            let slack = 8.0 * EPSILON * scale;
-            assert!(values.x >= values.y - slack && values.y >= values.z.abs() - slack && values.y >= -slack);
-        }
-    }
-
-    /// The derivative of the rotation in dual numbers is `R [ω]×`, `ω = H 2 axial(Rᵀ δF)`, at the identity too.
-    #[test]
-    fn polar_differentiates() {
-        let mut numbers = Numbers(3);
-        let examples = [[1.0, 1.0, 1.0], [1.2, 1.0, 0.7], [1.0, 0.9, -0.3], [1.0, 1.0, 0.0]];
-        for [a, b, c] in examples {
-            let diagonal = Mat3::from_diagonal(Vec3::new(a, b, c));
-            let turned = numbers.rotation() * diagonal.mul_transpose(&numbers.rotation());
-            for F in [diagonal, turned] {
-                let dF = numbers.matrix();
-                let Polar { rotation, stretch } = polar(&F);
-                let omega =
-                    turn_of_stretch(&stretch, 1e-12) * (rotation.transpose_mul(&dF).axial_vector() * 2.0);
-                let expected = rotation * omega.cross_matrix();
-
-                let dual = |column: usize, row: usize| Dual::new(F.entry(row, column), dF.entry(row, column));
-                let columns =
-                    [0, 1, 2].map(|column| Vec3::from_array([0, 1, 2].map(|row| dual(column, row))));
-                let measured =
-                    polar(&Mat3 { columns }).rotation.columns.map(|u| u.to_array().map(|x| x.derivative));
-                let measured = Mat3 { columns: measured.map(Vec3::from_array) };
-                assert!((measured - expected).largest_entry() < 1e-12, "{measured:?} for {expected:?}");
-            }
-        }
-    }
-
-    /// In lanes of any width: the scalar answer to rounding, which grows with the condition `s₁/(s₂ + s₃)`.
-    #[test]
-    fn lanes_agree_with_scalar() {
-        struct InLanes<'a>(&'a [Mat3]);
-        impl WithSimd for InLanes<'_> {
-            type Output = ();
-            #[inline(always)]
-            fn with_simd<S: Simd>(self, simd: S) {
-                for group in self.0.chunks_exact(S::F64_LANES) {
-                    let entry = |row, column| {
-                        let numbers: Vec<f64> = group.iter().map(|F| F.entry(row, column)).collect();
-                        Lanes::load(simd, &numbers)
-                    };
-                    let columns =
-                        [0, 1, 2].map(|column| Vec3::from_array([0, 1, 2].map(|row| entry(row, column))));
-                    let Polar { rotation, .. } = polar(&Mat3 { columns });
-                    let mut stored = vec![Mat3::ZERO; S::F64_LANES];
-                    for (column, row) in (0..9).map(|i| (i / 3, i % 3)) {
-                        let mut numbers = vec![0.0; S::F64_LANES];
-                        rotation.entry(row, column).store(&mut numbers);
-                        for (R, number) in stored.iter_mut().zip(&numbers) {
-                            R.columns[column][row] = *number;
-                        }
-                    }
-                    for (R, F) in stored.iter().zip(group) {
-                        assert_rotation(R, F);
-                        let Vec3 { x, y, z } = svd(F).values;
-                        if y + z > 1e-6 * x {
-                            let error = (*R - polar(F).rotation).largest_entry();
-                            assert!(
-                                error <= 16.0 * EPSILON * (1.0 + x / (y + z)),
-                                "error {error:e} of {F:?}"
-                            );
-                        }
-                    }
-                }
-            }
-        }
-        Arch::default().dispatch(InLanes(&examples()));
-        InLanes(&examples()).with_simd(pulp::Scalar::new());
-    }
-
-    /// `A = V diag Vᵀ`, falling, for random and repeated eigenvalues.
-    #[test]
-    fn eigen_rebuilds() {
-        let mut numbers = Numbers(4);
-        for i in 0..2000 {
-            let A = if i % 2 == 0 {
-                numbers.matrix().symmetric_part()
-            } else {
-                let ([a, b, c], Q) = (SINGULAR_VALUES[i % SINGULAR_VALUES.len()], numbers.rotation());
-                (Q * Mat3::from_diagonal(Vec3::new(a, b, c))).mul_transpose(&Q).symmetric_part()
-            };
-            let Eigen { values, vectors } = eigen_symmetric(&A);
-            assert_rotation(&vectors, &A);
-            let rebuilt = vectors * Mat3::from_diagonal(values).mul_transpose(&vectors);
-            assert!((rebuilt - A).largest_entry() <= 16.0 * EPSILON * A.largest_entry());
-            assert!(values.x >= values.y && values.y >= values.z);
-        }
-    }
-
-    /// The projection keeps the positive part of the spectrum and nothing else; semidefinite matrices stay as they are.
-    #[test]
-    fn projection_is_nearest() {
-        let mut numbers = Numbers(5);
-        for _ in 0..500 {
-            let Q = numbers.rotation();
-            let (values, with) = (numbers.vector(), |v: Vec3| (Q * Mat3::from_diagonal(v)).mul_transpose(&Q));
-            let positive = with(values.max_components(Vec3::ZERO));
-            let projected = project_psd(&with(values));
-            assert!((projected - positive).largest_entry() <= 16.0 * EPSILON);
-            assert!((project_psd(&positive) - positive).largest_entry() <= 16.0 * EPSILON);
-        }
-    }
-
-    /// Input that is not finite ends, without panic.
-    #[test]
-    fn not_finite_input_returns() {
-        for bad in [f64::NAN, f64::INFINITY] {
-            let F = Mat3::from_diagonal(Vec3::new(1.0, bad, 2.0));
-            let _ = (polar(&F), svd(&F), eigen_symmetric(&F), project_psd(&F));
-        }
-    }
-}
+mod tests;

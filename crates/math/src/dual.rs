@@ -91,6 +91,8 @@ impl SubAssign for Dual {
 }
 
 impl Real for Dual {
+    type Number = Self;
+
     fn splat(self, value: f64) -> Self {
         Self::constant(value)
     }
@@ -113,7 +115,23 @@ impl Real for Dual {
     fn ln(self) -> Self {
         Self::new(libm::log(self.value), self.derivative / self.value)
     }
+    fn exp(self) -> Self {
+        let value = libm::exp(self.value);
+        Self::new(value, self.derivative * value)
+    }
+    fn is_all_zero(self) -> bool {
+        self.value == 0.0 && self.derivative == 0.0
+    }
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
         if self.value < other.value { if_less } else { otherwise }
+    }
+    fn numbers(&self) -> &[Self] {
+        std::slice::from_ref(self)
+    }
+    fn numbers_mut(&mut self) -> &mut [Self] {
+        std::slice::from_mut(self)
+    }
+    fn all_positive(self) -> bool {
+        self.value > 0.0
     }
 }

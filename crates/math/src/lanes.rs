@@ -118,6 +118,8 @@ impl<S: Simd> SubAssign for Lanes<S> {
 }
 
 impl<S: Simd> Real for Lanes<S> {
+    type Number = f64;
+
     #[inline(always)]
     fn splat(self, value: f64) -> Self {
         Self::constant(self.simd, value)
@@ -148,8 +150,32 @@ impl<S: Simd> Real for Lanes<S> {
         self.map(libm::log)
     }
     #[inline(always)]
+    fn exp(self) -> Self {
+        self.map(libm::exp)
+    }
+    #[inline(always)]
+    fn is_all_zero(self) -> bool {
+        self.as_slice().iter().all(|number| *number == 0.0)
+    }
+    #[inline(always)]
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
         let mask = self.simd.less_than_f64s(self.values, other.values);
         Self { simd: self.simd, values: self.simd.select_f64s(mask, if_less.values, otherwise.values) }
+    }
+    #[inline(always)]
+    fn numbers(&self) -> &[f64] {
+        self.as_slice()
+    }
+    #[inline(always)]
+    fn numbers_mut(&mut self) -> &mut [f64] {
+        self.as_mut_slice()
+    }
+    #[inline(always)]
+    fn all_positive(self) -> bool {
+        let mut all = true;
+        for value in self.as_slice() {
+            all &= *value > 0.0;
+        }
+        all
     }
 }

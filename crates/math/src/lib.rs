@@ -7,6 +7,7 @@ mod decomposition;
 mod dual;
 mod lanes;
 mod matrix;
+mod padded;
 mod real;
 mod rotation;
 mod vector;
@@ -15,6 +16,7 @@ pub use decomposition::{Eigen, Polar, Svd, eigen_symmetric, polar, project_psd, 
 pub use dual::Dual;
 pub use lanes::Lanes;
 pub use matrix::Mat3;
+pub use padded::Padded;
 pub use real::Real;
 pub use rotation::{exponential, logarithm, orthonormalised};
 pub use vector::Vec3;

@@ -135,9 +135,21 @@ impl<R: Real> Mat3<R> {
     /// `Aᵀ B` without forming the transpose.
     #[inline(always)]
     pub fn transpose_mul(&self, other: &Self) -> Self {
-        let column =
-            |b: Vec3<R>| Vec3::new(self.columns[0].dot(b), self.columns[1].dot(b), self.columns[2].dot(b));
-        Self { columns: [column(other.columns[0]), column(other.columns[1]), column(other.columns[2])] }
+        let [a, b, c] = other.columns;
+        // no closure over the columns: in lanes it would not be compiled for the processor's instructions
+        Self { columns: [self.transpose_apply(a), self.transpose_apply(b), self.transpose_apply(c)] }
+    }
+
+    /// `Aᵀ A`, its six different dot products taken once.
+    #[inline(always)]
+    pub fn gram(&self) -> Self {
+        let [a, b, c] = self.columns;
+        let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
+        Self::from_columns(
+            Vec3::new(a.dot(a), ab, ca),
+            Vec3::new(ab, b.dot(b), bc),
+            Vec3::new(ca, bc, c.dot(c)),
+        )
     }
 
     /// `Aᵀ u` without forming the transpose.

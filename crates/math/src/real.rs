@@ -22,6 +22,9 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
+    /// One of the numbers side by side.
+    type Number: Real<Number = Self::Number>;
+
     /// The constant `value` in the lanes of `self`.
     fn splat(self, value: f64) -> Self;
     /// `self * a + b`, fused where the processor has the instruction.
@@ -32,8 +35,18 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// Natural logarithm; the same bits on every path of one number.
     fn ln(self) -> Self;
+    /// Exponential; the same bits on every path of one number.
+    fn exp(self) -> Self;
     /// `if_less` where `self < other`, else `otherwise`, lane by lane.
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self;
+    /// The numbers side by side, to be looked at one by one.
+    fn numbers(&self) -> &[Self::Number];
+    fn numbers_mut(&mut self) -> &mut [Self::Number];
+    /// Whether every lane is above zero.
+    fn all_positive(self) -> bool;
+
+    /// Whether this is zero, in every lane: what it multiplies need not be computed.
+    fn is_all_zero(self) -> bool;
 
     fn zero(self) -> Self {
         self.splat(0.0)
@@ -45,6 +58,8 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    type Number = Self;
+
     #[inline(always)]
     fn splat(self, value: f64) -> Self {
         value
@@ -75,7 +90,27 @@ impl Real for f64 {
         libm::log(self)
     }
     #[inline(always)]
+    fn exp(self) -> Self {
+        libm::exp(self)
+    }
+    #[inline(always)]
+    fn is_all_zero(self) -> bool {
+        self == 0.0
+    }
+    #[inline(always)]
     fn select_less(self, other: Self, if_less: Self, otherwise: Self) -> Self {
         if self < other { if_less } else { otherwise }
+    }
+    #[inline(always)]
+    fn numbers(&self) -> &[Self] {
+        std::slice::from_ref(self)
+    }
+    #[inline(always)]
+    fn numbers_mut(&mut self) -> &mut [Self] {
+        std::slice::from_mut(self)
+    }
+    #[inline(always)]
+    fn all_positive(self) -> bool {
+        self > 0.0
     }
 }

@@ -5,7 +5,7 @@
 
 use souple_math::Vec3;
 
-use crate::{Cell, ElementKind, Mesh, MeshError, TriangleSurface};
+use crate::{Cell, ElementKind, Mesh, MeshError, Order, TriangleSurface};
 
 /// A face that belongs to one cell only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +34,9 @@ pub struct FaceReport {
     pub split: Vec<SplitQuadrilateral>,
 }
 
-/// Points of a face ascending, padded.
-type Key = [u32; 4];
+/// Corners of a face ascending, padded, and its kind: faces of the same corners and of another order do not fit, for
+/// the middle nodes of one have nothing to follow on the other.
+type Key = ([u32; 4], ElementKind);
 const NO_POINT: u32 = u32::MAX;
 
 struct FaceUse {
@@ -72,7 +73,7 @@ impl Mesh {
                 [one] => single.push(one),
                 [a, b] => report.neighbours.push([a.cell, b.cell]),
                 many => {
-                    let nodes = many[0].key.iter().copied().filter(|node| *node != NO_POINT).collect();
+                    let nodes = many[0].key.0.iter().copied().filter(|node| *node != NO_POINT).collect();
                     report.overused.push((many.iter().map(|face| face.cell).collect(), nodes));
                 }
             }
@@ -95,20 +96,29 @@ impl Mesh {
         uses
     }
 
-    /// Points of a face in order, normal outward; none for a cell that is not in the mesh.
+    /// Corners of a face in order, normal outward; none for a cell that is not in the mesh.
     fn face_corners(&self, cell: u32, face: u8) -> Vec<u32> {
-        self.cell(cell).map_or_else(Vec::new, |cell| cell.face_nodes(face.into()).1.collect())
+        self.cell(cell).map_or_else(Vec::new, |cell| cell.face_corners(face.into()).collect())
     }
 
-    /// The boundary as triangles, oriented outward; quadrilaterals are cut at the corner of lowest number.
+    /// The boundary as triangles, oriented outward; of a mesh of surface cells, these cells; of edges, nothing.
+    /// Quadrilaterals are cut at the corner of lowest number, curved faces at the middles of their sides.
     pub fn boundary_surface(&self) -> TriangleSurface {
         let mut triangles = Vec::new();
         let mut cells = Vec::new();
-        for BoundaryFace { cell, face } in self.faces().boundary {
-            let corners = self.face_corners(cell, face);
-            for triangle in cut(&corners) {
+        let mut push = |cell: u32, kind: ElementKind, nodes: &[u32]| {
+            for triangle in facet_triangles(kind, nodes) {
                 triangles.push(triangle);
                 cells.push(cell);
+            }
+        };
+        if self.dimension() == 2 {
+            self.cells().enumerate().for_each(|(cell, view)| push(cell as u32, view.kind, view.nodes));
+        } else {
+            for BoundaryFace { cell, face } in self.faces().boundary {
+                let Some(view) = self.cell(cell) else { continue };
+                let (kind, nodes) = view.face_nodes(face.into());
+                push(cell, kind, &nodes.collect::<Vec<_>>());
             }
         }
         TriangleSurface::from_mesh(&self.points, &triangles, cells)
@@ -119,7 +129,7 @@ impl Mesh {
         let mut triangles = Vec::new();
         let mut facets = Vec::new();
         for (facet, view) in self.facets().enumerate() {
-            for triangle in cut(view.nodes) {
+            for triangle in facet_triangles(view.kind, view.nodes) {
                 triangles.push(triangle);
                 facets.push(facet as u32);
             }
@@ -128,24 +138,40 @@ impl Mesh {
     }
 }
 
-/// `∫ N_a dA` over a triangle or a bilinear quadrilateral for each of its corners [m²]; they add up to its area.
-pub fn face_node_areas(corners: &[Vec3]) -> Vec<f64> {
-    let kind = if corners.len() == 3 { ElementKind::Tri3 } else { ElementKind::Quad4 };
-    let mut areas = vec![0.0; corners.len()];
-    // exact where the face is flat; the area of a warped one is no polynomial
-    let rule = kind.rule_of_degree(3).unwrap_or_else(|| kind.default_rule());
+/// `∫ N_a dA` over a face for each of its nodes [m²], over a side [m], over a cell [m³]; they add up to its measure.
+/// Negative shares are right: a traction on a face of eight nodes pulls its corners back.
+pub fn node_measures(kind: ElementKind, nodes: &[Vec3]) -> Vec<f64> {
+    let mut measures = vec![0.0; nodes.len()];
+    // exact where the face is flat and straight; the area of a warped one is no polynomial
+    let rule = match kind.order() {
+        Order::Linear => kind.rule_of_degree(3).unwrap_or_else(|| kind.default_rule()),
+        Order::Quadratic => kind.mass_rule(),
+    };
     for point in &rule.points {
-        let (shape, gradients) = (kind.shape(point.position), kind.shape_gradients(point.position));
-        let tangent =
-            |axis: usize| -> Vec3 { corners.iter().zip(&*gradients).map(|(x, g)| *x * g[axis]).sum() };
-        let area = tangent(0).cross(tangent(1)).length() * point.weight;
-        areas.iter_mut().zip(&*shape).for_each(|(total, share)| *total += area * share);
+        let measure = kind.jacobian(nodes, point.position).determinant() * point.weight;
+        let shape = kind.shape(point.position);
+        measures.iter_mut().zip(&*shape).for_each(|(total, share)| *total += measure * share);
     }
-    areas
+    measures
+}
+
+/// A face as triangles: a triangle or quadrilateral around its corner of lowest number; of a curved one, the corners
+/// cut off at the middles of the sides, and what is left between those.
+pub fn facet_triangles(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 3]> {
+    let (corners, middles) = nodes.split_at(kind.corner_count().min(nodes.len()));
+    if kind.dimension() != 2 {
+        return Vec::new();
+    }
+    if middles.is_empty() {
+        return fan(corners).collect();
+    }
+    let n = corners.len();
+    let cut_off = (0..n).map(|k| [middles[(k + n - 1) % n], corners[k], middles[k]]);
+    cut_off.chain(fan(middles)).collect()
 }
 
 /// A polygon as triangles around its corner of lowest number.
-fn cut(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     let n = corners.len();
     let first = (0..n).min_by_key(|corner| corners[*corner]).unwrap_or(0);
     (1..n.saturating_sub(1))
@@ -153,13 +179,12 @@ fn cut(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
 }
 
 fn face_key(cell: Cell<'_>, face: usize) -> Key {
-    let (_, nodes) = cell.face_nodes(face);
     let mut key = [NO_POINT; 4];
-    for (slot, node) in key.iter_mut().zip(nodes) {
+    for (slot, node) in key.iter_mut().zip(cell.face_corners(face)) {
         *slot = node;
     }
     key.sort_unstable();
-    key
+    (key, cell.kind.faces()[face].kind)
 }
 
 /// Quadrilaterals of the boundary whose halves, along either diagonal, are triangles of the boundary.
@@ -167,10 +192,10 @@ fn split_quadrilaterals(mesh: &Mesh, single: &[&FaceUse]) -> Vec<SplitQuadrilate
     let find = |mut triangle: [u32; 3]| {
         triangle.sort_unstable();
         let key = [triangle[0], triangle[1], triangle[2], NO_POINT];
-        single.binary_search_by_key(&key, |face| face.key).ok().map(|at| single[at].cell)
+        single.binary_search_by_key(&key, |face| face.key.0).ok().map(|at| single[at].cell)
     };
     let mut split = Vec::new();
-    for quadrilateral in single.iter().filter(|face| face.key[3] != NO_POINT) {
+    for quadrilateral in single.iter().filter(|face| face.key.0[3] != NO_POINT) {
         let corners = mesh.face_corners(quadrilateral.cell, quadrilateral.face);
         let [a, b, c, d] = [corners[0], corners[1], corners[2], corners[3]];
         let halves = [[[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]];

@@ -133,9 +133,8 @@ impl Mesh {
 /// Corners of a face in its outward order from the lowest on; a triangle's fourth is beyond all points.
 fn around_face(cell: Cell<'_>, face: usize) -> [u32; 4] {
     let mut around = [u32::MAX; 4];
-    let (_, nodes) = cell.face_nodes(face);
     let mut count = 0;
-    for node in nodes {
+    for node in cell.face_corners(face) {
         around[count] = node;
         count += 1;
     }
@@ -259,9 +258,10 @@ mod tests {
         coarse.groups.clear();
         coarse.push_cell(ElementKind::Hex8, &nodes);
         coarse.remove_loose_points();
-        let found = beside(&coarse, &cube("hex8"), Vec3::X).conformity();
+        let mesh = beside(&coarse, &cube("hex8"), Vec3::X);
+        let found = mesh.conformity();
         assert_eq!((found.coincident.len(), found.hanging.len()), (4, 5), "{found:?}");
-        assert!(found.messages(&coarse).len() == 2);
+        assert_eq!(found.messages(&mesh).len(), 2);
     }
 
     /// A node pushed through the opposite face: rewinding makes the volume positive, the overlap stays and is found.

@@ -7,7 +7,7 @@ use crate::ElementKind;
 pub enum MeshError {
     #[error("the mesh has no points; expected at least one cell and its points")]
     NoPoints,
-    #[error("the mesh has no cells; expected at least one volume cell (tet4, hex8, prism6, pyramid5)")]
+    #[error("the mesh has no cells; expected at least one cell, such as tet4 or hex20")]
     NoCells,
     #[error("points[{point}] is ({}, {}, {}); expected finite coordinates", .position[0], .position[1], .position[2])]
     PointNotFinite { point: u32, position: [f64; 3] },
@@ -19,7 +19,7 @@ pub enum MeshError {
     MissingPoint { list: &'static str, cell: u32, kind: ElementKind, point: u32, point_count: usize },
     #[error("{list}[{cell}] ({kind}) has point {point} twice; expected {} different points", .kind.node_count())]
     DuplicateNode { list: &'static str, cell: u32, kind: ElementKind, point: u32 },
-    #[error("{list} has a block of {kind}; expected elements of dimension {dimension}")]
+    #[error("{list} has a block of {kind}; expected elements of dimension {dimension} only")]
     WrongDimension { list: &'static str, kind: ElementKind, dimension: usize },
     #[error(
         "cells[{cell}] ({kind}) is flat: volume {volume:e} m³ for a size of {size:e} m; expected a positive volume"

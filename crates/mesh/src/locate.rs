@@ -4,7 +4,9 @@
 
 use souple_math::Vec3;
 
-use crate::{Aabb, AabbTree, ElementKind, MAX_NODES, Mesh, TriangleSurface, closest_point_on_triangle};
+use crate::{
+    Aabb, AabbTree, ElementKind, MAX_NODES, Mesh, Order, TriangleSurface, closest_point_on_triangle,
+};
 
 /// A point carried by a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,12 +47,14 @@ pub struct CellLocator<'a> {
 impl<'a> CellLocator<'a> {
     /// For a mesh that has passed [`Mesh::validate`].
     pub fn new(mesh: &'a Mesh) -> Self {
-        let bounds = |nodes: &[u32]| {
+        let bounds = |kind: ElementKind, nodes: &[u32]| {
             let bounds = Aabb::of(nodes.iter().map(|node| mesh.points[*node as usize]));
-            // faces of hexahedra bulge, but never out of the box of their nodes; rounding does
-            bounds.grown(1e-9 * bounds.diagonal())
+            // faces of linear cells bulge, but never out of the box of their nodes; rounding does. A curved edge leaves it by
+            // an eighth of its extent at most, a face by twice that, as long as its determinant keeps its sign
+            let margin = if kind.order() == Order::Linear { 1e-9 } else { 0.25 };
+            bounds.grown(margin * bounds.diagonal())
         };
-        let boxes: Vec<Aabb> = mesh.cells().map(|cell| bounds(cell.nodes)).collect();
+        let boxes: Vec<Aabb> = mesh.cells().map(|cell| bounds(cell.kind, cell.nodes)).collect();
         let surface = mesh.boundary_surface();
         let triangle_boxes: Vec<Aabb> =
             (0..surface.triangles.len() as u32).map(|triangle| Aabb::of(surface.corners(triangle))).collect();

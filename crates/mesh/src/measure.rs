@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use crate::{Cell, MAX_NODES, Mesh};
+use crate::{Cell, ElementKind, MAX_NODES, Mesh, Order, QuadratureRule};
 
 /// An axis-aligned box around points [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,12 +72,13 @@ impl Mesh {
         BoundingBox::of(self.points.iter().copied())
     }
 
-    /// Volume of a cell [m³], exact: the Jacobian determinant is a polynomial that the default rule integrates
-    /// on hexahedra and prisms, and in the variables of the conical product on pyramids.
+    /// Volume of a cell [m³], area of a surface cell [m²], length of an edge [m]; exact for linear volumes, the
+    /// Jacobian determinant being a polynomial that the rule integrates on hexahedra and prisms, and in the variables
+    /// of the conical product on pyramids, and for quadratic ones with straight edges.
     pub fn cell_volume(&self, cell: Cell<'_>) -> f64 {
         let mut buffer = [Vec3::ZERO; MAX_NODES];
         let positions = self.positions_into(cell.nodes, &mut buffer);
-        let rule = cell.kind.default_rule();
+        let rule = volume_rule(cell.kind);
         rule.points.iter().map(|p| p.weight * cell.kind.jacobian(positions, p.position).determinant()).sum()
     }
 
@@ -98,7 +99,7 @@ impl Mesh {
         let mut buffer = [Vec3::ZERO; MAX_NODES];
         for cell in self.cells() {
             let positions = self.positions_into(cell.nodes, &mut buffer);
-            for point in &cell.kind.default_rule().points {
+            for point in &volume_rule(cell.kind).points {
                 let weight = point.weight * cell.kind.jacobian(positions, point.position).determinant();
                 moment += cell.kind.position(positions, point.position) * weight;
                 volume += weight;
@@ -141,6 +142,14 @@ impl Mesh {
         };
         let parts = self.cells().map(|cell| part_of(root(&mut parent, cell.nodes[0]))).collect();
         (parts, count as usize)
+    }
+}
+
+/// Curved cells have determinants of a higher degree than their strains.
+pub(crate) fn volume_rule(kind: ElementKind) -> &'static QuadratureRule {
+    match kind.order() {
+        Order::Linear => kind.default_rule(),
+        Order::Quadratic => kind.mass_rule(),
     }
 }
 

@@ -6,14 +6,14 @@ use souple_math::Vec3;
 
 use crate::ElementKind;
 
-/// A mesh of volume cells, of mixed kinds, with the facets of a surface and groups by name.
+/// A mesh of cells of one dimension, of mixed kinds, with the facets of a surface and groups by name.
 ///
 /// Cells are numbered over all blocks in order, facets likewise; these numbers are permanent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Rest positions [m].
     pub points: Vec<Vec3>,
-    /// Volume cells.
+    /// Volume cells; of a plane body or membrane, surface cells; of bars, edges.
     pub blocks: Vec<CellBlock>,
     /// Facets (triangles, quadrilaterals) as read from files; they carry groups and no volume.
     pub facet_blocks: Vec<CellBlock>,
@@ -69,6 +69,12 @@ impl Mesh {
     /// A mesh of one kind of cell, not yet validated.
     pub fn new(points: Vec<Vec3>, kind: ElementKind, nodes: Vec<u32>) -> Self {
         Self { points, blocks: vec![CellBlock { kind, nodes }], ..Self::default() }
+    }
+
+    /// Dimension of the cells: that of the first, for [`Mesh::validate`] refuses mixtures; 3 for a mesh without cells.
+    pub fn dimension(&self) -> usize {
+        let first = self.blocks.iter().find(|block| !block.is_empty());
+        first.map_or(3, |block| block.kind.dimension())
     }
 
     pub fn cell_count(&self) -> usize {

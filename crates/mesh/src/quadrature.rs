@@ -91,6 +91,10 @@ fn jacobi(n: usize, alpha: f64, x: f64) -> (f64, f64) {
     current
 }
 
+pub(crate) fn line(count: usize) -> Vec<QuadraturePoint> {
+    gauss_jacobi(count, 0).into_iter().map(|(x, weight)| point(x, 0.0, 0.0, weight)).collect()
+}
+
 pub(crate) fn quadrilateral(count: usize) -> Vec<QuadraturePoint> {
     let line = gauss_jacobi(count, 0);
     let row = |&(y, wy): &(f64, f64)| {
@@ -116,7 +120,7 @@ fn stacked(layer: &[QuadraturePoint], count: usize) -> Vec<QuadraturePoint> {
     gauss_jacobi(count, 0).into_iter().flat_map(|(z, wz)| at(z, wz)).collect()
 }
 
-/// Symmetric rules of 1, 3, 6 (Dunavant) and 7 points (Radon).
+/// Symmetric rules of 1, 3, 6, 16 (Dunavant) and 7 points (Radon).
 pub(crate) fn triangle(count: usize) -> Vec<QuadraturePoint> {
     let third = 1.0 / 3.0;
     // the orbit (a, a), (1-2a, a), (a, 1-2a)
@@ -138,7 +142,18 @@ pub(crate) fn triangle(count: usize) -> Vec<QuadraturePoint> {
             let b = orbit((6.0 - root) / 21.0, 0.5 * (155.0 - root) / 1200.0);
             [&[point(third, third, 0.0, 0.5 * 0.225)][..], &a, &b].concat()
         }
-        _ => unreachable!("triangles have rules of 1, 3, 6 and 7 points"),
+        16 => {
+            let a = orbit(0.459_292_588_292_723_1, 0.5 * 0.095_091_634_267_284_63);
+            let b = orbit(0.170_569_307_751_760_2, 0.5 * 0.103_217_370_534_718_25);
+            let c = orbit(0.050_547_228_317_030_98, 0.5 * 0.032_458_497_623_198_08);
+            // the orbit of three different coordinates
+            let (p, q, w) =
+                (0.263_112_829_634_638_1, 0.008_394_777_409_957_605, 0.5 * 0.027_230_314_174_434_99);
+            let r = 1.0 - p - q;
+            let six = [(p, q), (q, p), (q, r), (r, q), (r, p), (p, r)].map(|(x, y)| point(x, y, 0.0, w));
+            [&[point(third, third, 0.0, 0.5 * 0.144_315_607_677_787_17)][..], &a, &b, &c, &six].concat()
+        }
+        _ => unreachable!("triangles have rules of 1, 3, 6, 7 and 16 points"),
     }
 }
 

@@ -4,7 +4,8 @@
 
 use souple_math::Vec3;
 
-use crate::{Cell, ElementKind, MAX_NODES, Mesh};
+use crate::measure::volume_rule;
+use crate::{Cell, ElementKind, Face, MAX_NODES, Mesh, Order, QuadraturePoint};
 
 /// Shape of one cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,7 +15,9 @@ pub struct CellQuality {
     /// Longest edge × surface / volume, relative to the regular cell: 1 at best, ∞ for a flat cell.
     pub aspect_ratio: f64,
     /// Least determinant of the unit edge vectors at a corner, relative to the regular cell: 0 for a flat corner,
-    /// negative for an inverted one. Corners of three edges count, which leaves out the apex of a pyramid.
+    /// negative for an inverted one. Corners of three edges count, which leaves out the apex of a pyramid. On a
+    /// quadratic cell, times the least ratio, over its quadrature points, of its Jacobian determinant to that of the cell
+    /// of straight edges: 1 where no edge is bent, negative where bending turns the cell inside out.
     pub scaled_jacobian: f64,
     /// Least angle between two faces, inside the cell [rad].
     pub smallest_dihedral: f64,
@@ -69,15 +72,12 @@ impl Histogram {
 impl Mesh {
     /// Shapes of all cells, in their order.
     pub fn quality(&self) -> Vec<CellQuality> {
-        let regular = ElementKind::ALL.map(|kind| {
-            let nodes: Vec<Vec3> =
-                kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
-            (kind.dimension() == 3).then(|| Shape::of(kind, &nodes))
-        });
+        let regular: Vec<Shape> =
+            ElementKind::ALL.iter().map(|kind| Shape::of(*kind, &kind.regular())).collect();
         let mut buffer = [Vec3::ZERO; MAX_NODES];
         let relative = |cell: Cell<'_>| {
             let shape = Shape::of(cell.kind, self.positions_into(cell.nodes, &mut buffer));
-            let ideal = regular[cell.kind as usize].as_ref().unwrap_or(&shape);
+            let ideal = &regular[cell.kind as usize];
             CellQuality {
                 volume: self.cell_volume(cell),
                 aspect_ratio: shape.slenderness(self.cell_volume(cell)) / ideal.slenderness(ideal.volume),
@@ -96,7 +96,7 @@ impl Mesh {
         for cell in self.cells() {
             let positions = self.positions_into(cell.nodes, &mut buffer);
             let normals: Vec<Vec3> =
-                cell.kind.faces().iter().map(|face| area_vector(face.nodes, positions)).collect();
+                cell.kind.faces().iter().map(|face| area_vector(face, positions)).collect();
             for angle in edge_angles(cell.kind, &normals) {
                 let bin = angle / std::f64::consts::PI * counts.len() as f64;
                 let last = counts.len() - 1;
@@ -127,8 +127,7 @@ impl Mesh {
 
 /// Scaled Jacobian of one cell of given nodes, as in [`CellQuality`].
 pub(crate) fn scaled_jacobian(kind: ElementKind, positions: &[Vec3]) -> f64 {
-    let regular: Vec<Vec3> = kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
-    least_corner(kind, positions) / least_corner(kind, &regular)
+    least_corner(kind, positions) / least_corner(kind, &kind.regular())
 }
 
 /// Measures of a cell as it is.
@@ -146,8 +145,8 @@ impl Shape {
     fn of(kind: ElementKind, positions: &[Vec3]) -> Self {
         let along = |[a, b]: [u8; 2]| positions[usize::from(b)] - positions[usize::from(a)];
         let longest_edge = kind.edges().iter().map(|edge| along(*edge).length()).fold(0.0, f64::max);
-        let normals: Vec<Vec3> = kind.faces().iter().map(|face| area_vector(face.nodes, positions)).collect();
-        let rule = kind.default_rule();
+        let normals: Vec<Vec3> = kind.faces().iter().map(|face| area_vector(face, positions)).collect();
+        let rule = volume_rule(kind);
         Self {
             longest_edge,
             surface: normals.iter().map(|normal| normal.length()).sum(),
@@ -156,7 +155,7 @@ impl Shape {
                 .iter()
                 .map(|p| p.weight * kind.jacobian(positions, p.position).determinant())
                 .sum(),
-            corner: least_corner(kind, positions),
+            corner: least_corner(kind, positions) * bending(kind, positions),
             dihedrals: dihedrals(kind, &normals),
         }
     }
@@ -166,11 +165,25 @@ impl Shape {
     }
 }
 
-/// Area times outward normal of a face: half the sum of the cross products around it.
-fn area_vector(nodes: &[u8], positions: &[Vec3]) -> Vec3 {
+/// Area times outward normal of a face: half the sum of the cross products around its corners.
+fn area_vector(face: &Face, positions: &[Vec3]) -> Vec3 {
+    let nodes = &face.nodes[..face.kind.corner_count()];
     let at =
         |place: usize| positions[usize::from(nodes[place % nodes.len()])] - positions[usize::from(nodes[0])];
-    (1..nodes.len() - 1).map(|place| at(place).cross(at(place + 1)) * 0.5).sum()
+    (1..nodes.len().saturating_sub(1)).map(|place| at(place).cross(at(place + 1)) * 0.5).sum()
+}
+
+/// Least ratio of the Jacobian determinant to that of the cell of the same corners and straight edges.
+fn bending(kind: ElementKind, positions: &[Vec3]) -> f64 {
+    if kind.order() == Order::Linear {
+        return 1.0;
+    }
+    let (straight, corners) = (kind.corners(), &positions[..kind.corner_count()]);
+    let ratio = |point: &QuadraturePoint| {
+        kind.jacobian(positions, point.position).determinant()
+            / straight.jacobian(corners, point.position).determinant()
+    };
+    kind.full_rule().points.iter().map(ratio).fold(f64::INFINITY, f64::min)
 }
 
 /// The interior angle at each edge is `π` less the angle between the outward normals.
@@ -192,7 +205,7 @@ fn dihedrals(kind: ElementKind, normals: &[Vec3]) -> (f64, f64) {
 fn least_corner(kind: ElementKind, positions: &[Vec3]) -> f64 {
     let reference: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
     let mut least = f64::INFINITY;
-    for corner in 0..positions.len() as u8 {
+    for corner in 0..kind.corner_count() as u8 {
         let other_end = |edge: &[u8; 2]| match *edge {
             [a, b] if a == corner => Some(b),
             [a, b] if b == corner => Some(a),
@@ -224,9 +237,9 @@ mod tests {
             (ElementKind::Prism6, std::f64::consts::FRAC_PI_3),
             (ElementKind::Pyramid5, (1.0_f64 / 3.0).sqrt().acos()),
         ];
-        for (kind, smallest) in expected {
-            let points: Vec<Vec3> =
-                kind.element().regular.iter().map(|node| Vec3::from_array(*node)).collect();
+        let quadratic = expected.map(|(kind, smallest)| (kind.of_order(Order::Quadratic), smallest));
+        for (kind, smallest) in expected.into_iter().chain(quadratic) {
+            let points = kind.regular();
             for [a, b] in kind.edges() {
                 assert!(((points[usize::from(*a)] - points[usize::from(*b)]).length() - 1.0).abs() < 1e-15);
             }
@@ -235,6 +248,23 @@ mod tests {
             assert!((quality.aspect_ratio - 1.0).abs() < 1e-14, "{kind} {quality:?}");
             assert!((quality.scaled_jacobian - 1.0).abs() < 1e-14, "{kind} {quality:?}");
             assert!((quality.smallest_dihedral - smallest).abs() < 1e-14, "{kind} {quality:?}");
+        }
+    }
+
+    /// Pulling a middle node a quarter of the edge outward and more bends the cell until it turns inside out.
+    #[test]
+    fn bent_cells_lose_quality() {
+        for (shift, is_good) in [(0.0, true), (0.05, true), (0.6, false)] {
+            let mut points = ElementKind::Tet10.regular();
+            // the middle of the edge 01 is moved along that edge
+            points[4] += Vec3::X * shift;
+            let jacobian =
+                Mesh::new(points, ElementKind::Tet10, (0..10).collect()).quality()[0].scaled_jacobian;
+            assert_eq!(jacobian > 0.0, is_good, "{shift}: {jacobian}");
+            assert!(
+                jacobian < 1.0 + 1e-14 && (shift > 0.0) == (jacobian < 1.0 - 1e-3),
+                "{shift}: {jacobian}"
+            );
         }
     }
 

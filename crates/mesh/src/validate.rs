@@ -36,7 +36,7 @@ impl Repairs {
     }
 }
 
-/// A cell is flat below this volume, relative to the cube of its size: rounding of the coordinates then decides
+/// A cell is flat below this volume (area, length), relative to that power of its size: rounding of the coordinates then decides
 /// its sign.
 const FLAT: f64 = 1e-14;
 
@@ -59,7 +59,7 @@ impl Mesh {
             let position = self.points[point].to_array();
             return Err(MeshError::PointNotFinite { point: point as u32, position });
         }
-        check_blocks("cells", &self.blocks, 3, self.points.len())?;
+        check_blocks("cells", &self.blocks, self.dimension(), self.points.len())?;
         check_blocks("facets", &self.facet_blocks, 2, self.points.len())?;
         for (name, group) in &self.groups {
             self.check_group(name, group)?;
@@ -95,7 +95,7 @@ impl Mesh {
                     Orientation::Good => {}
                     Orientation::Inverted => {
                         let mut mirrored = [0; MAX_NODES];
-                        for (slot, node) in mirrored.iter_mut().zip(kind.element().mirrored) {
+                        for (slot, node) in mirrored.iter_mut().zip(kind.mirrored()) {
                             *slot = nodes[usize::from(*node)];
                         }
                         nodes.copy_from_slice(&mirrored[..nodes.len()]);
@@ -208,7 +208,7 @@ fn orientation(points: &[Vec3], cell: Cell<'_>) -> Orientation {
     let low = positions.iter().fold(positions[0], |low, p| low.min_components(*p));
     let high = positions.iter().fold(positions[0], |high, p| high.max_components(*p));
     let size = (high - low).length();
-    let negligible = FLAT * size * size * size;
+    let negligible = FLAT * size.powi(cell.kind.dimension() as i32);
     // coordinates so large that their cube overflows leave no volume that could be trusted either
     if volume.abs() <= negligible || !volume.is_finite() {
         Orientation::Flat { volume, size }
@@ -222,6 +222,12 @@ fn orientation(points: &[Vec3], cell: Cell<'_>) -> Orientation {
 }
 
 impl Cell<'_> {
+    /// Corners of face `face`, in order, normal outward.
+    pub fn face_corners(&self, face: usize) -> impl Iterator<Item = u32> + '_ {
+        let face = &self.kind.faces()[face];
+        face.nodes[..face.kind.corner_count()].iter().map(|node| self.nodes[usize::from(*node)])
+    }
+
     /// Node numbers of face `face`, in the order of the face's own element, normal outward.
     pub fn face_nodes(&self, face: usize) -> (ElementKind, impl Iterator<Item = u32> + '_) {
         let face = &self.kind.faces()[face];

@@ -19,7 +19,7 @@ fn single(kind: ElementKind) -> Mesh {
 }
 
 fn volumes() -> impl Iterator<Item = ElementKind> {
-    ElementKind::ALL.into_iter().filter(|kind| kind.dimension() == 3)
+    ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() == 3)
 }
 
 /// An inverted cell is rewound, is said, and has then its positive volume.
@@ -27,7 +27,7 @@ fn volumes() -> impl Iterator<Item = ElementKind> {
 fn wrong_winding_is_repaired() {
     for kind in volumes() {
         let mut mesh = single(kind);
-        let mirror = kind.element().mirrored;
+        let mirror = kind.mirrored();
         mesh.blocks[0].nodes = mirror.iter().map(|node| u32::from(*node)).collect();
         assert!(mesh.volume() < 0.0);
         let repairs = mesh.validate().unwrap();
@@ -95,7 +95,10 @@ fn faulty_lists_are_refused() {
     }
     let mut surface_only = good.clone();
     surface_only.blocks = vec![CellBlock { kind: ElementKind::Tri3, nodes: vec![0, 1, 2] }];
-    assert!(matches!(surface_only.validate(), Err(MeshError::WrongDimension { dimension: 3, .. })));
+    assert_eq!(surface_only.validate().unwrap().loose_points, [3]);
+    let mut of_both = good.clone();
+    of_both.push_cell(ElementKind::Tri3, &[0, 1, 2]);
+    assert!(matches!(of_both.validate(), Err(MeshError::WrongDimension { dimension: 3, .. })));
     let mut facet = good.clone();
     facet.push_facet(ElementKind::Tri3, &[0, 1, 7]);
     assert!(matches!(facet.validate(), Err(MeshError::MissingPoint { list: "facets", point: 7, .. })));

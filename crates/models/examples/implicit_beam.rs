@@ -58,6 +58,7 @@ impl Bar {
             materials: &[material],
             material_of_cell: &vec![0; mesh.cell_count()],
             quadrature: Default::default(),
+            section: Default::default(),
         };
         let solid = SolidForce::new(&description).unwrap();
         let mut kinematics = Kinematics::default();

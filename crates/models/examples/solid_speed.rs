@@ -47,6 +47,7 @@ fn main() {
             materials: &[material],
             material_of_cell: &material_of_cell,
             quadrature: Default::default(),
+            section: Default::default(),
         };
         let force = SolidForce::new(&description).unwrap();
         let mut kinematics = Kinematics::default();

@@ -66,6 +66,7 @@ fn solid(mesh: &Mesh, energy: &str) -> SolidForce {
         materials: &[material(energy)],
         material_of_cell: &vec![0; mesh.cell_count()],
         quadrature: Default::default(),
+        section: Default::default(),
     })
     .unwrap()
 }

@@ -112,6 +112,7 @@ impl Block {
             materials: &materials,
             material_of_cell: &material_of_cell,
             quadrature: Default::default(),
+            section: Default::default(),
         };
         let mut kinematics = Kinematics::default();
         kinematics.add_unknowns(UnknownKind::Point, mesh.points.len());
@@ -168,7 +169,7 @@ const PLAIN: Block = Block { element: "tet4", inertia: Inertia::Lumped, viscosit
 /// Explicit steps: lumped mass, several elements and dampings.
 #[test]
 fn explicit_steps() {
-    for name in ["explicit_euler", "symplectic_euler", "verlet", "rk4"] {
+    for name in ["explicit_euler", "symplectic_euler", "verlet", "rk2", "rk4"] {
         for element in ["tet4", "mixed"] {
             let block = Block { element, viscosity: 5.0, ..PLAIN };
             let count = allocations(|| block.world(stepper(name, &[]), 1e-4), 3, 20);
@@ -220,16 +221,21 @@ fn implicit_steps() {
             let given =
                 [&krylov[..], &[("newton", text(newton)), ("matrix_free", Value::Boolean(matrix_free))]]
                     .concat();
-            let make = || PLAIN.world(stepper("backward_euler", &given), 5e-3);
-            assert_eq!(allocations(make, 3, 5), 0, "newton = {newton}, matrix_free = {matrix_free}");
+            for name in ["backward_euler", "bdf2", "newmark"] {
+                let make = || PLAIN.world(stepper(name, &given), 5e-3);
+                let count = allocations(make, 3, 5);
+                assert_eq!(count, 0, "{name}, newton = {newton}, matrix_free = {matrix_free}");
+            }
         }
     }
 }
 
-/// Equilibrium under a load that changes from step to step.
+/// Equilibrium under a load that changes from step to step; with dampers on the way there.
 #[test]
 fn static_steps() {
     let given = [("solver", Value::Text("cg")), ("preconditioner", Value::Text("block_jacobi"))];
+    let creeping = || PLAIN.world(stepper("quasi_static", &given), 0.1);
+    assert_eq!(allocations(creeping, 3, 5), 0);
     let make = || {
         let (mut system, q) = PLAIN.system(stepper("static", &given));
         // dampers have no place in statics
@@ -314,6 +320,9 @@ fn steps_in_contact() {
     assert_eq!(allocations(symplectic, 300, 50), 0, "explicit");
     let euler = || pressed(stepper("backward_euler", &solver), 1e-2);
     assert_eq!(allocations(euler, 60, 5), 0, "implicit");
+    // it damps less, and until what touches stays the same the matrix takes other forms
+    let bdf2 = || pressed(stepper("bdf2", &solver), 1e-2);
+    assert_eq!(allocations(bdf2, 400, 5), 0, "implicit, second order");
 }
 
 /// Two systems of different steps exchange impulses every period.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use souple_engine::implicit::NewtonSettings;
 use souple_engine::linear::{Method, SolverSettings};
-use souple_engine::steppers::{BackwardEuler, NewtonMode, StaticEquilibrium};
+use souple_engine::steppers::{BackwardEuler, Bdf2, Newmark, NewtonMode, QuasiStatic, StaticEquilibrium};
 use souple_engine::{
     Constraint, Force, Kinematics, Mass, Model, Motion, State, Stepper, System, UnknownKind, World,
 };
@@ -81,6 +81,7 @@ impl Block {
             materials: &[material],
             material_of_cell: &vec![0; mesh.cell_count()],
             quadrature: Default::default(),
+            section: Default::default(),
         };
         let solid = SolidForce::new(&description).unwrap();
         let mut kinematics = Kinematics::default();
@@ -319,7 +320,18 @@ impl Motion for Lead {
 /// What is led arrives exactly where it is led, and the rest is in balance there.
 #[test]
 fn prescribed_motion_is_reached_exactly() {
-    let steppers = [euler(full(1e-9), solver(1e-8)), euler(NewtonMode::One, solver(1e-8)), statics(1e-8)];
+    let (newton, settings) = (full(1e-9), solver(1e-8));
+    let steppers: [Box<dyn Stepper>; 6] = [
+        euler(newton, settings.clone()),
+        euler(NewtonMode::One, settings.clone()),
+        Box::new(Bdf2 { newton, solver: settings.clone() }),
+        Box::new(Newmark { beta: 0.25, gamma: 0.5, newton, solver: settings.clone() }),
+        statics(1e-8),
+        Box::new(QuasiStatic {
+            newton: NewtonSettings { tolerance: 1e-8, max_iterations: 100 },
+            solver: settings,
+        }),
+    ];
     for stepper in steppers {
         let name = stepper.name();
         let bar = Block { motion: Some(Arc::new(Lead)), ..Block::bar("neo_hookean") };

@@ -1,6 +1,8 @@
 //! The battery for every law on every element, and the discrete answers of independent solvers.
 #![allow(non_snake_case)]
 
+mod common;
+
 use std::sync::Arc;
 
 use souple_engine::implicit::NewtonSettings;
@@ -14,12 +16,24 @@ use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::Mesh;
 use souple_models::materials::{self, AnyLaw, Material};
 use souple_models::solids::{
-    Quadrature, RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
+    Quadrature, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass,
+    lumped_mass,
 };
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
 
-const ELEMENTS: [&str; 5] = ["tet4", "hex8", "prism6", "pyramid5", "mixed"];
+const ELEMENTS: [&str; 10] = [
+    "tet4",
+    "hex8",
+    "prism6",
+    "pyramid5",
+    "mixed",
+    "tet10",
+    "hex20",
+    "prism15",
+    "pyramid13",
+    "mixed_quadratic",
+];
 
 fn bar(size: [f64; 3], cells: [f64; 3], element: &str) -> Mesh {
     let values = Values::new()
@@ -30,12 +44,7 @@ fn bar(size: [f64; 3], cells: [f64; 3], element: &str) -> Mesh {
 }
 
 fn material(law: &str) -> Material {
-    let entry = materials::TABLE.find(law).unwrap();
-    let values = Values::new()
-        .with("youngs_modulus", Value::Number(1e7))
-        .with("poissons_ratio", Value::Number(0.3))
-        .with("density", Value::Number(1000.0));
-    (entry.build)(&entry.values(values).unwrap()).unwrap()
+    common::material_of(materials::TABLE.find(law).unwrap(), 1e7, 0.3)
 }
 
 /// A law as text.
@@ -79,6 +88,7 @@ fn describe<'a>(mesh: &'a Mesh, materials: &'a [Material], of_cell: &'a [u16]) -
         materials,
         material_of_cell: of_cell,
         quadrature,
+        section: Section::Solid,
     }
 }
 
@@ -169,7 +179,7 @@ fn battery_of_every_law_on_every_element() {
     for (law, material) in all_materials() {
         for element in ELEMENTS {
             let name = format!("{law} on {element}");
-            let mesh = bar([1.0, 0.4, 0.3], [4.0, 2.0, 2.0], element);
+            let mesh = bar([1.0, 0.4, 0.3], [4.0, 2.0, 1.0], element);
             let (materials, of_cell) = ([material.clone()], vec![0; mesh.cell_count()]);
             let force = SolidForce::new(&describe(&mesh, &materials, &of_cell)).unwrap();
             let mut scratch = force.new_scratch();
@@ -218,6 +228,7 @@ fn texts_agree_with_compiled_laws() {
                 let results = [material(law), text(energy)].map(|material| {
                     let description = SolidDescription {
                         quadrature,
+                        section: Section::Solid,
                         ..describe(&mesh, std::slice::from_ref(&material), &of_cell)
                     };
                     let force = SolidForce::new(&description).unwrap();
@@ -325,7 +336,14 @@ fn damped_oscillations_account_for_their_energy() {
         |d: &SolidDescription| -> Box<dyn Force> { Box::new(RayleighDamping::new(d, 2e-3).unwrap()) };
     type Make<'a> = &'a dyn Fn(&SolidDescription) -> Box<dyn Force>;
     for (name, damping) in [("viscosity", &viscosity as Make), ("rayleigh", &rayleigh)] {
-        for (stepper, steps) in [("symplectic_euler", 400), ("rk4", 400), ("backward_euler", 40)] {
+        for (stepper, steps) in [
+            ("symplectic_euler", 400),
+            ("rk2", 400),
+            ("rk4", 400),
+            ("backward_euler", 40),
+            ("bdf2", 40),
+            ("newmark", 40),
+        ] {
             let (coarse, _) = unaccounted(damping, stepper, steps);
             let (fine, heat) = unaccounted(damping, stepper, 2 * steps);
             // long backward Euler steps take as much by themselves
@@ -338,7 +356,8 @@ fn damped_oscillations_account_for_their_energy() {
     }
 }
 
-/// Mass of every element: the total is ρ V, lumped and consistent, and a rigid translation has ½ M v².
+/// Mass of every element: the total is ρ V, lumped and consistent, and a rigid translation has ½ M v². Lumped masses are
+/// positive, at the corners of quadratic elements too.
 #[test]
 fn masses_add_up() {
     for element in ELEMENTS {
@@ -459,25 +478,50 @@ fn discrete_cantilevers_of_independent_codes() {
     }
 }
 
-/// An affine motion of the boundary is met inside by the very affine motion, whatever the mesh (patch test).
+/// A small smooth shift of the points inside the unit cube.
+fn distort(points: &mut [Vec3], amount: f64) {
+    for p in points.iter_mut().filter(|p| !on_cube(p)) {
+        let s = *p;
+        let shift = Vec3::new(
+            (7.0 * s.x + 3.0 * s.y + s.z).sin(),
+            (2.0 * s.x - 5.0 * s.y + 4.0 * s.z).sin(),
+            (s.x + s.y - 6.0 * s.z).sin(),
+        );
+        *p += shift * amount;
+    }
+}
+
+fn on_cube(p: &Vec3) -> bool {
+    p.to_array().iter().any(|c| c.abs() < 1e-9 || (c - 1.0).abs() < 1e-9)
+}
+
+/// An affine motion of the boundary is met inside by the very affine motion, whatever the mesh (patch test): with
+/// straight edges under the default rules, with curved ones under the full rules, which integrate the gradients of
+/// curved cells exactly.
 #[test]
 fn patch_test_is_exact() {
     let F = Mat3::from_rows([[1.1, 0.05, -0.02], [0.03, 0.95, 0.04], [-0.01, 0.02, 1.08]]);
+    let linear = ["tet4", "hex8", "prism6", "pyramid5", "mixed"].map(|element| (element, false, false));
+    let straight = linear.map(|(element, ..)| (element, true, false));
+    let curved = linear.map(|(element, ..)| (element, true, true));
     for law in AnyLaw::ALL {
-        for element in ELEMENTS {
-            let mut mesh = bar([1.0, 1.0, 1.0], [4.0, 4.0, 4.0], element);
-            let boundary = |p: &Vec3| p.to_array().iter().any(|c| c.abs() < 1e-9 || (c - 1.0).abs() < 1e-9);
-            for p in mesh.points.iter_mut().filter(|p| !boundary(p)) {
-                let s = *p;
-                let shift = Vec3::new(
-                    (7.0 * s.x + 3.0 * s.y + s.z).sin(),
-                    (2.0 * s.x - 5.0 * s.y + 4.0 * s.z).sin(),
-                    (s.x + s.y - 6.0 * s.z).sin(),
-                );
-                *p += shift * 0.02;
+        for (element, is_quadratic, is_curved) in linear.into_iter().chain(straight).chain(curved) {
+            // four cubes along x: `mixed` takes no fewer
+            let cells = if is_quadratic { [4.0, 2.0, 2.0] } else { [4.0, 4.0, 4.0] };
+            let mut mesh = bar([1.0, 1.0, 1.0], cells, element);
+            distort(&mut mesh.points, 0.02);
+            if is_quadratic {
+                mesh = mesh.raised(|[a, b]| (a + b) * 0.5);
             }
+            if is_curved {
+                distort(&mut mesh.points, 0.01);
+            }
+            let quadrature = if is_curved { Quadrature::Full } else { Quadrature::Default };
+            let element = mesh.blocks[0].kind.name();
+            let boundary = on_cube;
             let (materials, of_cell) = ([material(law.entry().name)], vec![0; mesh.cell_count()]);
-            let force = SolidForce::new(&describe(&mesh, &materials, &of_cell)).unwrap();
+            let description = SolidDescription { quadrature, ..describe(&mesh, &materials, &of_cell) };
+            let force = SolidForce::new(&description).unwrap();
             let mut kinematics = Kinematics::default();
             kinematics.add_unknowns(UnknownKind::Point, mesh.points.len());
             let held = |(i, p): (usize, &Vec3)| boundary(p).then(|| Constraint::pin(i as u32, F * *p));
@@ -500,6 +544,63 @@ fn patch_test_is_exact() {
             let error =
                 mesh.points.iter().zip(reached).map(|(p, q)| (F * *p - *q).length()).fold(0.0, f64::max);
             assert!(error < 1e-10, "{} on {element}: {error:e}", law.entry().name);
+        }
+    }
+}
+
+/// `∇φ` of the harmonic `φ = 0.05 eˣ cos 0.6y cos 0.8z`: a displacement in equilibrium without loads under the linear law.
+fn harmonic(p: Vec3) -> Vec3 {
+    let (e, (s6, c6), (s8, c8)) = (0.05 * p.x.exp(), (0.6 * p.y).sin_cos(), (0.8 * p.z).sin_cos());
+    Vec3::new(e * c6 * c8, -0.6 * e * s6 * c8, -0.8 * e * c6 * s8)
+}
+
+/// `√∫|u_h - u|² dV` on the unit cube of `n` cubes each way, its surface led by [`harmonic`].
+fn distance_from_harmonic(element: &str, n: f64) -> f64 {
+    let mesh = bar([1.0; 3], [n; 3], element);
+    let (materials, of_cell) = ([material("linear")], vec![0; mesh.cell_count()]);
+    let force = SolidForce::new(&describe(&mesh, &materials, &of_cell)).unwrap();
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, mesh.points.len());
+    let held = |(i, p): (usize, &Vec3)| on_cube(p).then(|| Constraint::pin(i as u32, *p + harmonic(*p)));
+    let solver = SolverSettings { tolerance: 1e-12, ..SolverSettings::default() };
+    let newton = NewtonSettings { tolerance: 1e-11, max_iterations: 20 };
+    let system = System {
+        name: "main".into(),
+        kinematics,
+        mass: Mass::new(mesh.points.len()),
+        forces: vec![Box::new(force)],
+        constraints: mesh.points.iter().enumerate().filter_map(held).collect(),
+        stepper: Box::new(StaticEquilibrium { load_steps: 1, newton, solver }),
+        steps_per_period: 1,
+    };
+    let state = State { systems: vec![system.initial_state(mesh.points.clone())], ..State::default() };
+    let mut world = Model { period: 1.0, systems: vec![system], ..Model::default() }.start(state);
+    world.step().unwrap();
+    let reached = &world.state().systems[0].q;
+    let mut sum = 0.0;
+    for cell in mesh.cells() {
+        let [rest, now] =
+            [&mesh.points, reached].map(|x| cell.nodes.iter().map(|n| x[*n as usize]).collect::<Vec<_>>());
+        for point in &cell.kind.full_rule().points {
+            let X = cell.kind.position(&rest, point.position);
+            let gap = cell.kind.position(&now, point.position) - X - harmonic(X);
+            sum += gap.length_sq() * point.weight * cell.kind.jacobian(&rest, point.position).determinant();
+        }
+    }
+    sum.sqrt()
+}
+
+/// Displacements converge in the mean square at the second order on linear elements and at the third on quadratic ones.
+#[test]
+fn displacements_converge_at_the_order_of_the_element() {
+    for (elements, order) in
+        [(["tet4", "hex8", "prism6", "pyramid5"], 2.0), (["tet10", "hex20", "prism15", "pyramid13"], 3.0)]
+    {
+        for element in elements {
+            let [coarse, fine] = [2.0, 4.0].map(|n| distance_from_harmonic(element, n));
+            let measured = (coarse / fine).log2();
+            // the next power is no more than the first on the coarse mesh: log₂ (1 + 1/2) / (1 + 1/4)
+            assert!((measured - order).abs() < 0.27, "{element}: {measured}, {coarse:e} {fine:e}");
         }
     }
 }

@@ -4,10 +4,11 @@
 
 use souple_formal::element::{Axis, Cut};
 use souple_formal::law::{EnergyLaw, LawParameter};
-use souple_math::{Mat3, Vec3};
+use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::ElementKind;
 use souple_models::derive::{MapKind, element_data, source_constant_count, source_law_name, source_name};
-use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
+use souple_models::materials::{TABLE, WRITTEN_LAWS, WrittenLaw};
+use souple_table::{Value, Values};
 
 /// Principal stretches.
 type Stretches = [f64; 3];
@@ -113,6 +114,40 @@ fn written_laws_are_the_closed_forms() {
     }
 }
 
+/// The laws of the table that are also written as text are the same function: energy, stress and tangent.
+#[test]
+fn laws_of_the_table_are_the_texts() {
+    let number = Value::Number;
+    let mooney = [("c10", number(4e3)), ("c01", number(1e3))];
+    let ogden = [("mu", Value::Numbers(&[6e3, -1e3])), ("alpha", Value::Numbers(&[1.8, -2.5]))];
+    for (name, own) in [("mooney_rivlin", mooney), ("ogden", ogden)] {
+        let text = compiled(WrittenLaw::find(name).unwrap());
+        let entry = TABLE.find(name).unwrap();
+        let values = Values::new().with("bulk_modulus", number(100e3)).with("density", number(1e3));
+        let values = own.into_iter().fold(values, |values, (name, value)| values.with(name, value));
+        let material = (entry.build)(&entry.values(values).unwrap()).unwrap();
+        let scale = text.stiffness.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for _ in 0..50 {
+            let mut vector = || Vec3::new(random(), random(), random());
+            let noise = Mat3::from_columns(vector(), vector(), vector()) * 0.35;
+            let F = exponential(vector() * 3.0) * (Mat3::IDENTITY + noise);
+            if F.determinant() < 0.2 {
+                continue;
+            }
+            let energies = (text.energy_at(&F), material.energy_density(&F));
+            // some tens of operations; the stress is a difference of parts of the size of the bulk modulus
+            assert!((energies.0 - energies.1).abs() <= 1e-12 * scale, "{name} {F:?}: {energies:?}");
+            let error = (text.stress_at(&F) - material.stress(&F)).largest_entry();
+            assert!(error <= 1e-12 * scale, "{name} {F:?}: {error:e}");
+        }
+    }
+}
+
 /// Moduli at rest that the literature gives: `2 (c10 + c01)`, `2 c1`, `Σ μ_p α_p / 2`, `c b / 2`.
 #[test]
 fn moduli_at_rest() {
@@ -141,7 +176,13 @@ fn grouped_constants_of_the_tables() {
         (ElementKind::Pyramid5, MapKind::General, 55),
     ] {
         // as in the source: one sample in simplices, six in prisms, five in pyramids, eight in hexahedra
-        let rule = if kind == ElementKind::Tri3 { &kind.rules()[0] } else { kind.default_rule() };
+        let samples = match kind {
+            ElementKind::Hex8 => 8,
+            ElementKind::Prism6 => 6,
+            ElementKind::Pyramid5 => 5,
+            _ => 1,
+        };
+        let rule = kind.rules().iter().find(|rule| rule.points.len() == samples).unwrap();
         let element = element_data(kind, rule, map).unwrap();
         for name in ["linear", "st_venant_kirchhoff"] {
             let derived = element.derive(&compiled(WrittenLaw::find(name).unwrap()), Cut::NONE).unwrap();

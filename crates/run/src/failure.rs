@@ -20,7 +20,7 @@ pub struct Failure {
 impl Failure {
     pub fn of(error: WorldError, world: &World, bodies: &[BodyInfo]) -> Self {
         let mut systems = world.model().systems.iter();
-        let system = match &error.error {
+        let system = match error.error.cause() {
             StepError::StateNotFinite { field, .. } => world.state().system_of(field),
             _ => systems.position(|system| error.place == format!("system `{}`", system.name)),
         };
@@ -28,7 +28,7 @@ impl Failure {
             let block = u32::try_from(block).ok()?;
             world.model().systems[system].kinematics.point_block_row(block).map(|row| row as usize)
         };
-        let row = system.and_then(|system| match &error.error {
+        let row = system.and_then(|system| match error.error.cause() {
             StepError::NewtonStalled { block, .. } => row_of(system, *block),
             StepError::ForceNotFinite { row, .. } => Some(*row),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".q") => Some(field.index),
@@ -40,7 +40,7 @@ impl Failure {
         let body = row.and_then(|row| {
             bodies.iter().find(|body| Some(body.system) == system && body.rows.contains(&row))
         });
-        let force = match &error.error {
+        let force = match error.error.cause() {
             StepError::ForceNotFinite { force, .. } => Some(force.clone()),
             _ => None,
         };

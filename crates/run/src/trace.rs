@@ -65,9 +65,11 @@ impl Trace {
     }
 
     pub fn summary(&self) -> Summary {
+        // a value that is not a number is not passed over
         let pick = |fold: fn(f64, f64) -> f64, start: f64| -> Vec<f64> {
+            let keep = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { fold(a, b) };
             (0..self.components)
-                .map(|c| self.values.iter().skip(c).step_by(self.components).fold(start, |a, b| fold(a, *b)))
+                .map(|c| self.values.iter().skip(c).step_by(self.components).fold(start, |a, b| keep(a, *b)))
                 .collect()
         };
         Summary {

@@ -157,6 +157,7 @@ fn parameter_schema(parameter: &Parameter) -> Json {
         Kind::Integer => integer(parameter.range),
         Kind::Boolean => json!({ "type": "boolean" }),
         Kind::Vector => vector(number()),
+        Kind::Numbers => json!({ "type": "array", "items": number(), "minItems": 1 }),
         Kind::Text => json!({ "type": "string" }),
         Kind::Texts => {
             let entry = json!({ "anyOf": [
@@ -213,6 +214,7 @@ fn value(value: Value) -> Json {
         Value::Integer(number) => json!(number),
         Value::Boolean(truth) => json!(truth),
         Value::Vector(vector) => json!(vector),
+        Value::Numbers(numbers) => json!(numbers),
         Value::Text(text) => json!(text),
         Value::Texts(texts) => {
             texts.iter().map(|(name, text)| (name.clone(), json!(text))).collect::<Map<_, _>>().into()

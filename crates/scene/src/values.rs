@@ -209,6 +209,15 @@ impl<'a> Reading<'a> {
     pub fn parameter(&self, parameter: &Parameter, values: &mut Values) -> Option<()> {
         let expected = parameter.expected();
         let (unit, range) = (parameter.unit, parameter.range);
+        if parameter.kind == Kind::Numbers {
+            let each = Parameter::number("", unit, range, "").expected();
+            let numbers = self.list(&expected, |item| item.number(unit, range, &each))?;
+            if numbers.is_empty() {
+                return self.refuse(Code::WrongType, "the list is empty", expected);
+            }
+            values.set(parameter.name, Value::Numbers(&numbers));
+            return Some(());
+        }
         if parameter.kind == Kind::Texts {
             values.set(parameter.name, Value::Texts(&self.texts(&expected)?));
             return Some(());
@@ -218,7 +227,7 @@ impl<'a> Reading<'a> {
             Kind::Integer => Value::Integer(self.integer(range, &expected)?),
             Kind::Boolean => Value::Boolean(self.boolean()?),
             Kind::Vector => Value::Vector(self.vector(unit, range, &expected)?.to_array()),
-            Kind::Text | Kind::Texts => Value::Text(self.text()?),
+            Kind::Text | Kind::Texts | Kind::Numbers => Value::Text(self.text()?),
             Kind::Choice(choices) => Value::Text(self.choice(choices)?),
         };
         values.set(parameter.name, value);

@@ -50,6 +50,20 @@ fn unusual_magnitudes_are_told() {
     }
 }
 
+/// A solver that cannot solve what the scene makes of it is replaced, and that is said.
+#[test]
+fn replaced_solvers_are_told() {
+    let with = |stepper: &str| BAR.replace("stepper = \"backward_euler\"", &format!("stepper = {stepper}"));
+    let viscous = "\n[bodies.bar.damping]\nviscosity = \"1 Pa s\"\n";
+    let cg = with("{ name = \"backward_euler\", solver = \"cg\" }");
+    assert_eq!(warnings(&cg), Vec::<String>::new());
+    let said = warnings(&(cg + viscous));
+    assert!(said.len() == 1 && said[0].contains("`gmres` takes its place"), "{said:?}");
+    let free = with("{ name = \"backward_euler\", matrix_free = true, preconditioner = \"rigid_modes\" }");
+    let said = warnings(&free);
+    assert!(said.len() == 1 && said[0].contains("`block_jacobi` takes its place"), "{said:?}");
+}
+
 /// Two pins of one point with different targets; the same target twice, or other axes, contradict nothing.
 #[test]
 fn contradicting_pins_are_refused() {
@@ -94,7 +108,7 @@ fn idle_loads_and_attachments_are_told() {
 fn formulas_must_be_finite_at_the_start() {
     let load =
         |force: &str| format!("{BAR}[[bodies.bar.loads]]\nregion = \"x_max\"\nforce = [{force}, 0, 0]\n");
-    assert_refused(&load("\"1 / t\""), &["the force on point", "at t = 0"]);
+    assert_refused(&load("\"1 / t\""), &["the load on point", "at t = 0"]);
     assert_refused(&load("\"ln(-x)\""), &["at (1, "]);
     assert!(warnings(&load("\"1 / (1 + t)\"")).is_empty());
     let led = BAR.to_owned() + "motion = { formula = [\"sqrt(t)\", 0, 0] }\n";

@@ -156,6 +156,53 @@ quantity = "displacement"
     assert!((corner - Vec3::new(0.005, 0.1 * 0.01_f64.sin(), 0.0)).length() < 1e-12, "{corner:?}");
 }
 
+/// A motion that is away from rest at the start is no tear in a static scene: all points are led there together, in as
+/// many load steps as wanted. A homogeneous stretch by half is `(1.5)` along and what the law makes of it across.
+#[test]
+fn statics_lead_from_rest() {
+    const PULLED: &str = r#"format = 1
+[world]
+period = "1 s"
+[bodies.bar]
+mesh = { generate = "bar", size = [1, 0.1, 0.1], cells = [8, 1, 1], element = "hex8" }
+material = { name = "neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
+[[bodies.bar.pins]]
+region = "x_min"
+axes = "x"
+[[bodies.bar.pins]]
+region = "y_min"
+axes = "y"
+[[bodies.bar.pins]]
+region = "z_min"
+axes = "z"
+[[bodies.bar.pins]]
+region = "x_max"
+axes = "x"
+motion = { formula = [0.5, 0, 0] }
+[probes.middle]
+body = "bar"
+region = { nearest = [0.5, 0.1, 0.1] }
+quantity = "displacement"
+[probes.end]
+body = "bar"
+region = "x_max"
+quantity = "displacement"
+"#;
+    let pulled = |steps: usize| {
+        let stepper = format!("systems.main.stepper={{ name = \"static\", load_steps = {steps} }}");
+        let (mut world, probes) = run(scene_with(PULLED, &[&stepper]), 0);
+        assert_eq!(vector(&probes, "end", &mut world), Vec3::ZERO, "at rest to begin with");
+        world.step().unwrap_or_else(|error| panic!("{error}"));
+        vector(&probes, "middle", &mut world)
+    };
+    let (at_once, in_four) = (pulled(1), pulled(4));
+    // Newton's tolerance is 1e-9 of the forces, some 1e-9 of the stretch
+    assert!(
+        (at_once.x - 0.25).abs() < 1e-8 && (at_once - in_four).length() < 1e-8,
+        "{at_once:?} {in_four:?}"
+    );
+}
+
 /// What `--set` changes is what the scene would say: same model, other hash.
 #[test]
 fn overrides_change_the_scene() {

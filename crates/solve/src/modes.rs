@@ -117,7 +117,9 @@ pub fn lowest_modes(
             return Err(too_many);
         }
         let pairs = space.ritz(width)?;
-        worst = pairs.iter().take(settings.count).map(|pair| pair.residual).fold(0.0, f64::max);
+        // by total order: what is not a number is the worst
+        worst =
+            pairs.iter().take(settings.count).map(|pair| pair.residual).max_by(f64::total_cmp).unwrap_or(0.0);
         if worst <= settings.tolerance {
             let pairs = &pairs[..settings.count];
             return Ok(Modes {
@@ -194,7 +196,7 @@ impl<'a> Subspace<'a> {
                 }
             }
             self.mass.apply(&v, &mut weighted);
-            let rest = reduce::dot(&v, &weighted).max(0.0).sqrt();
+            let rest = length_of(reduce::dot(&v, &weighted));
             if rest.is_nan() || rest <= 1e-10 * length {
                 continue;
             }
@@ -243,11 +245,16 @@ impl<'a> Subspace<'a> {
             reduce::add_scaled(&mut difference, -1.0 / theta(i), &image);
             let mut weighted = vec![Vec3::ZERO; self.block_count];
             self.mass.apply(&difference, &mut weighted);
-            let residual = reduce::dot(&difference, &weighted).max(0.0).sqrt();
+            let residual = length_of(reduce::dot(&difference, &weighted));
             Ritz { theta: theta(i), shape, image, residual }
         };
         Ok(order.iter().take(width).map(pair).collect())
     }
+}
+
+/// The root of a square that rounding may have made negative; of what is not a number, that.
+fn length_of(square: f64) -> f64 {
+    if square < 0.0 { 0.0 } else { square.sqrt() }
 }
 
 /// A fixed vector without symmetry, different for each seed: the fractional parts of multiples of irrationals.

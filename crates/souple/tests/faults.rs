@@ -50,6 +50,9 @@ fn changed(text: &str, from: &str, to: &str) -> String {
     text.replace(from, to)
 }
 
+/// What the cube is made of, density apart.
+const MATERIAL: &str = "\"neo_hookean\", youngs_modulus = \"20 kPa\", poissons_ratio = 0.3";
+
 /// The cube changed in one place, the status and the words that answer it.
 const SCENES: &[(&str, &str, &str, &str)] = &[
     ("unknown_key", "gravity", "gravty", "did you mean `gravity`"),
@@ -153,6 +156,71 @@ const SCENES: &[(&str, &str, &str, &str)] = &[
         "[probes.place]",
         "[systems.main]\nstepper = \"static\"\n[[bodies.cube.pins]]\nregion = { box = [[0, 0, 0], [0, 0, 1]] }\n[probes.place]",
         "1 of 6 rigid motions",
+    ),
+    (
+        "quasi_static_without_pins",
+        "[probes.place]",
+        "[systems.main]\nstepper = \"quasi_static\"\n[probes.place]",
+        "6 of 6 rigid motions are held by nothing",
+    ),
+    (
+        "newmark_that_blows_up",
+        "[probes.place]",
+        "[systems.main]\nstepper = { name = \"newmark\", gamma = 0.8, beta = 0.3 }\n[probes.place]",
+        "stable for beta of at least 0.4",
+    ),
+    (
+        "newmark_that_gains",
+        "[probes.place]",
+        "[systems.main]\nstepper = { name = \"newmark\", gamma = 0.4 }\n[probes.place]",
+        "between 0.5 and 1",
+    ),
+    (
+        "bdf2_with_a_stranger",
+        "[probes.place]",
+        "[systems.main]\nstepper = { name = \"bdf2\", gamma = 0.6 }\n[probes.place]",
+        "gamma",
+    ),
+    (
+        "mooney_that_gives_way",
+        MATERIAL,
+        "\"mooney_rivlin\", c10 = 1e3, c01 = -2e3, bulk_modulus = 1e5",
+        "must be above 0",
+    ),
+    ("mooney_without_volume", MATERIAL, "\"mooney_rivlin\", c10 = 1e3, c01 = 1e3", "bulk_modulus"),
+    ("mooney_by_young", MATERIAL, "\"mooney_rivlin\", youngs_modulus = 1e5", "youngs_modulus"),
+    ("mooney_in_metres", MATERIAL, "\"mooney_rivlin\", c10 = \"1 m\", c01 = 0, bulk_modulus = 1e5", "Pa"),
+    (
+        "ogden_of_one_half",
+        MATERIAL,
+        "\"ogden\", mu = [1e3, 2e3], alpha = [2], bulk_modulus = 1e5",
+        "they go in pairs",
+    ),
+    ("ogden_of_zero", MATERIAL, "\"ogden\", mu = [1e3], alpha = [0], bulk_modulus = 1e5", "alpha[0] is 0"),
+    (
+        "ogden_of_a_number",
+        MATERIAL,
+        "\"ogden\", mu = 1e3, alpha = [2], bulk_modulus = 1e5",
+        "a list of numbers",
+    ),
+    ("ogden_of_nothing", MATERIAL, "\"ogden\", mu = [], alpha = [], bulk_modulus = 1e5", "the list is empty"),
+    (
+        "ogden_of_four",
+        MATERIAL,
+        "\"ogden\", mu = [1, 1, 1, 1], alpha = [1, 2, 3, 4], bulk_modulus = 1e5",
+        "3 at most",
+    ),
+    (
+        "ogden_of_a_text",
+        MATERIAL,
+        "\"ogden\", mu = [\"1 kPa\", \"2 m\"], alpha = [1, 2], bulk_modulus = 1e5",
+        "mu[1]",
+    ),
+    (
+        "ogden_that_gives_way",
+        MATERIAL,
+        "\"ogden\", mu = [1e3], alpha = [-2], bulk_modulus = 1e5",
+        "must be above 0",
     ),
     (
         "load_without_a_start",
@@ -441,7 +509,7 @@ fn faulty_requests() {
         (&["mesh", "generate", "box", "out", "size=1,1,1", "cells=1,1,1"], 2, "out"),
         (&["mesh", "generate", "box", "nowhere/out.msh", "size=1,1,1", "cells=1,1,1"], 1, "nowhere/out.msh"),
         (&["mesh", "convert", "cube.toml", "out.msh"], 2, "cube.toml"),
-        (&["list"], 2, "kind"),
+        (&["list", "rubber"], 2, "materials"),
         (&["describe", "nothing_like_it"], 2, "nothing_like_it"),
     ];
     let faults: Vec<Fault> = cases

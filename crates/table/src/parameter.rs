@@ -23,6 +23,8 @@ pub enum Kind {
     Integer,
     Boolean,
     Vector,
+    /// A list of numbers, one at least.
+    Numbers,
     /// Free text: a name, a file, a formula; the summary says which.
     Text,
     /// Texts under names of the writer's choice; numbers and directions are kept as they were written.
@@ -104,6 +106,16 @@ impl Parameter {
         Self { name, summary, kind: Kind::Vector, unit, range: Range::ANY, default: None }
     }
 
+    /// A list of numbers, each in the range.
+    pub const fn numbers(
+        name: &'static str,
+        unit: &'static str,
+        range: Range,
+        summary: &'static str,
+    ) -> Self {
+        Self { name, summary, kind: Kind::Numbers, unit, range, default: None }
+    }
+
     pub const fn text(name: &'static str, summary: &'static str) -> Self {
         Self { name, summary, kind: Kind::Text, unit: "", range: Range::ANY, default: None }
     }
@@ -132,6 +144,7 @@ impl Parameter {
             }
             Kind::Boolean => "true or false".to_owned(),
             Kind::Vector => format!("three finite numbers{unit}"),
+            Kind::Numbers => format!("a list of numbers, each {}{unit}", self.range.describe()),
             Kind::Text => "text".to_owned(),
             Kind::Texts => "a table of names with a number, quantity, direction or text each".to_owned(),
             Kind::Choice(choices) => format!("one of {}", choices.join(", ")),

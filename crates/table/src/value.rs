@@ -13,6 +13,7 @@ pub enum Value<'a> {
     Integer(i64),
     Boolean(bool),
     Vector([f64; 3]),
+    Numbers(&'a [f64]),
     Text(&'a str),
     /// Names and what stands for them.
     Texts(&'a [(String, String)]),
@@ -25,6 +26,7 @@ impl fmt::Display for Value<'_> {
             Self::Integer(number) => write!(f, "{number}"),
             Self::Boolean(truth) => write!(f, "{truth}"),
             Self::Vector([x, y, z]) => write!(f, "[{x}, {y}, {z}]"),
+            Self::Numbers(numbers) => write!(f, "{numbers:?}"),
             Self::Text(text) => write!(f, "\"{text}\""),
             Self::Texts(texts) => {
                 let entries: Vec<String> =
@@ -41,6 +43,7 @@ enum Owned {
     Integer(i64),
     Boolean(bool),
     Vector([f64; 3]),
+    Numbers(Vec<f64>),
     Text(Cow<'static, str>),
     Texts(Vec<(String, String)>),
 }
@@ -87,6 +90,7 @@ impl Values {
             Value::Integer(number) => Owned::Integer(number),
             Value::Boolean(truth) => Owned::Boolean(truth),
             Value::Vector(vector) => Owned::Vector(vector),
+            Value::Numbers(numbers) => Owned::Numbers(numbers.to_vec()),
             Value::Text(text) => Owned::Text(Cow::Owned(text.to_owned())),
             Value::Texts(texts) => Owned::Texts(texts.to_vec()),
         };
@@ -99,6 +103,7 @@ impl Values {
             Owned::Integer(number) => Value::Integer(*number),
             Owned::Boolean(truth) => Value::Boolean(*truth),
             Owned::Vector(vector) => Value::Vector(*vector),
+            Owned::Numbers(numbers) => Value::Numbers(numbers),
             Owned::Text(text) => Value::Text(text),
             Owned::Texts(texts) => Value::Texts(texts),
         })
@@ -140,6 +145,9 @@ impl Values {
                 | (Kind::Text, Value::Text(_))
                 | (Kind::Texts, Value::Texts(_)) => true,
                 (Kind::Vector, Value::Vector(vector)) => vector.iter().all(|component| component.is_finite()),
+                (Kind::Numbers, Value::Numbers(numbers)) => {
+                    !numbers.is_empty() && numbers.iter().all(|number| parameter.range.contains(*number))
+                }
                 (Kind::Choice(choices), Value::Text(text)) => choices.contains(&text),
                 _ => false,
             };
@@ -185,6 +193,14 @@ impl Values {
         match self.get(name) {
             Some(Value::Vector(vector)) => vector,
             other => panic!("the entry declares no vector `{name}`: {other:?}"),
+        }
+    }
+
+    /// A list of numbers among completed values; panics like [`Values::number`].
+    pub fn numbers(&self, name: &str) -> &[f64] {
+        match self.get(name) {
+            Some(Value::Numbers(numbers)) => numbers,
+            other => panic!("the entry declares no numbers `{name}`: {other:?}"),
         }
     }
 

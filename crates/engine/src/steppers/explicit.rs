@@ -100,7 +100,7 @@ impl Stepper for ExplicitEuler {
     }
 
     fn stability(&self) -> Stability {
-        Stability::Growing
+        Stability::Growing { factor: 0.5, power: 1 }
     }
 
     // q' = q + h v,  v' = v + h a(q, v)

@@ -1,9 +1,13 @@
 //! Ways to step in time: one file each and one line in [`TABLE`].
 
 mod backward_euler;
+mod bdf2;
 mod explicit;
+mod implicit_formula;
+mod newmark;
 mod position_verlet;
-mod runge_kutta_4;
+mod quasi_static;
+mod runge_kutta;
 mod static_equilibrium;
 
 use souple_table::{Entry, Table, Values};
@@ -12,10 +16,14 @@ use crate::linear::SolverSettings;
 use crate::state::{Place, SystemState};
 use crate::system::{Surroundings, System, SystemWorkspace};
 
-pub use backward_euler::{BackwardEuler, NewtonMode};
+pub use backward_euler::BackwardEuler;
+pub use bdf2::Bdf2;
 pub use explicit::{ExplicitEuler, SymplecticEuler};
+pub use implicit_formula::NewtonMode;
+pub use newmark::Newmark;
 pub use position_verlet::PositionVerlet;
-pub use runge_kutta_4::RungeKutta4;
+pub use quasi_static::QuasiStatic;
+pub use runge_kutta::{RungeKutta2, RungeKutta4};
 pub use static_equilibrium::StaticEquilibrium;
 
 /// What a step had to do.
@@ -58,6 +66,16 @@ pub enum StepError {
         "prescribed points are {to_go:.3e} m from where they are led, and no step brings them closer; lead them more slowly"
     )]
     NotReached { to_go: f64 },
+    #[error(
+        "from {from} s on no equilibrium was found, even in parts of {parts:.1e} s: {error}; the body may buckle, snap or slip free there: damp it, lead it instead of loading it, or take a stepper with inertia"
+    )]
+    NoEquilibrium {
+        /// Seconds up to which there was one.
+        from: f64,
+        /// The shortest step tried [s].
+        parts: f64,
+        error: Box<StepError>,
+    },
     #[error("force `{force}` is not finite ({value:?} at row {row}, time {time} s)")]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
     #[error(
@@ -72,6 +90,16 @@ pub enum StepError {
     StateNotFinite { field: Place, time: f64 },
 }
 
+impl StepError {
+    /// What the innermost attempt failed of.
+    pub fn cause(&self) -> &Self {
+        match self {
+            Self::NoEquilibrium { error, .. } => error.cause(),
+            other => other,
+        }
+    }
+}
+
 /// How long a step may be for an oscillation of angular frequency `ω`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stability {
@@ -79,8 +107,9 @@ pub enum Stability {
     Unconditional,
     /// `h ω` below this.
     Limited(f64),
-    /// No step without damping: amplitudes grow by `ω² h / 2` per second.
-    Growing,
+    /// No step without damping: amplitudes grow by `factor (h ω)^(power + 1)` a step, which is
+    /// `factor ω^(power + 1) h^power` per second.
+    Growing { factor: f64, power: i32 },
 }
 
 /// A way to step.
@@ -135,9 +164,13 @@ pub const TABLE: Table<BuildStepper> = Table {
         &explicit::EXPLICIT_EULER,
         &explicit::SYMPLECTIC_EULER,
         &position_verlet::ENTRY,
-        &runge_kutta_4::ENTRY,
+        &runge_kutta::RK2,
+        &runge_kutta::RK4,
         &backward_euler::ENTRY,
+        &bdf2::ENTRY,
+        &newmark::ENTRY,
         &static_equilibrium::ENTRY,
+        &quasi_static::ENTRY,
     ],
 };
 

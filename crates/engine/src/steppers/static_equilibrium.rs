@@ -3,12 +3,12 @@
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
 
-use crate::implicit::{ImplicitBuffers, ImplicitStep, Lent, NewtonSettings};
+use crate::implicit::{self, ImplicitBuffers, ImplicitStep, NewtonSettings, Rates};
 use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
-use super::backward_euler::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
+use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
 use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
 
 /// Equilibrium at the end of every step: loads and prescribed motion grow over `load_steps` in the first
@@ -53,6 +53,11 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
     },
 };
 
+/// Whether all forces are minus the gradient of an energy.
+pub(super) fn conserves(system: &System) -> bool {
+    system.kinematics.is_conservative() && system.forces.iter().all(|force| force.declaration().conservative)
+}
+
 impl StaticEquilibrium {
     /// Equilibrium under the fraction `load` of the loads, from the configuration in `next`.
     fn equilibrate(
@@ -64,14 +69,8 @@ impl StaticEquilibrium {
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        let implicit = ImplicitStep {
-            system,
-            around,
-            end,
-            timestep: None,
-            has_potential: system.kinematics.is_conservative()
-                && system.forces.iter().all(|force| force.declaration().conservative),
-        };
+        let implicit =
+            ImplicitStep { system, around, end, rates: Rates::STATIC, has_potential: conserves(system) };
         settle(&implicit, self.newton, next, ws, buffers)
     }
 }
@@ -94,7 +93,7 @@ impl Stepper for StaticEquilibrium {
     }
 
     fn accepts_history(&self, system: &System, history: &[f64]) -> bool {
-        Lent::accepts_history(system, history)
+        implicit::accepts(&system.kinematics, history, 0)
     }
 
     fn step(

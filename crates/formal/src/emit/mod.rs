@@ -109,7 +109,7 @@ pub fn write(graph: &Graph, roots: &[Expr], style: &dyn Style) -> (Vec<String>, 
         let named =
             !is_leaf && !is_condition && uses.contains_key(&expr) && (shared || written.text.len() > LONG);
         // signs and the like are not worth a name
-        if named && !(written.text.len() <= 8 && !bases.contains(&expr)) {
+        if named && (written.text.len() > 8 || bases.contains(&expr)) {
             let name = style.part(lines.len());
             lines.push(style.definition(&name, &written.text));
             writer.written.insert(expr, Written::atom(name));

@@ -36,7 +36,7 @@ impl Graph {
         Ok(match &node {
             Node::Symbol(_) if self.shape(expr) != Shape::Scalar => {
                 let symbol = self.symbol_of(expr).expect("a symbol").clone();
-                (0..symbol.shape.len())
+                (0..symbol.shape.size())
                     .map(|index| {
                         let name = match symbol.shape {
                             Shape::Vector => format!("{}_{index}", symbol.name),
@@ -46,11 +46,11 @@ impl Graph {
                     })
                     .collect()
             }
-            Node::Zero(shape) => vec![self.number(0.0); shape.len()],
+            Node::Zero(shape) => vec![self.number(0.0); shape.size()],
             Node::Identity => {
                 (0..9).map(|index| self.number(if index % 4 == 0 { 1.0 } else { 0.0 })).collect()
             }
-            Node::Sum(terms) => (0..self.shape(expr).len())
+            Node::Sum(terms) => (0..self.shape(expr).size())
                 .map(|index| {
                     let terms: Vec<Expr> = terms.iter().map(|term| of(term)[index]).collect();
                     self.sum(&terms)

@@ -54,7 +54,7 @@ impl Graph {
     fn operations_of(&self, expr: Expr) -> Operations {
         let of =
             |additions, multiplications| Operations { additions, multiplications, ..Operations::default() };
-        let len = self.shape(expr).len();
+        let len = self.shape(expr).size();
         match self.node(expr) {
             Node::Number(_)
             | Node::Symbol(_)
@@ -78,7 +78,7 @@ impl Graph {
             Node::Scale(factor, _) => of(0, if self.value(*factor) == Some(-1.0) { 0 } else { len }),
             Node::Multiply(..) => of(18, 27),
             Node::Apply(..) => of(6, 9),
-            Node::Dot(a, _) => of(self.shape(*a).len() - 1, self.shape(*a).len()),
+            Node::Dot(a, _) => of(self.shape(*a).size() - 1, self.shape(*a).size()),
             Node::Trace(_) => of(2, 0),
             Node::Determinant(_) => of(5, 9),
             Node::Cofactor(_) => of(9, 18),

@@ -369,7 +369,7 @@ impl Adjoints {
             let (first, len) = match graph.shape(expr) {
                 // the adjoint of a decomposition is that of its stretches
                 Shape::Decomposition => (super::spectral::STRETCHES, 3),
-                shape => (0, shape.len() as u8),
+                shape => (0, shape.size() as u8),
             };
             let zero = graph.number(0.0);
             let packed: Vec<Expr> = (first..first + len)

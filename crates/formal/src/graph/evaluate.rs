@@ -78,12 +78,12 @@ impl Graph {
             Node::Number(bits) => put.number(bits.value()),
             Node::Symbol(index) => {
                 let of = &self.symbols[*index as usize];
-                put.all(&symbol(of)[..of.shape.len()]);
+                put.all(&symbol(of)[..of.shape.size()]);
             }
-            Node::Zero(shape) => put.len = shape.len(),
+            Node::Zero(shape) => put.len = shape.size(),
             Node::Identity => put.matrix(&Mat3::identity(1.0)),
             Node::Sum(terms) => {
-                put.len = self.shape(expr).len();
+                put.len = self.shape(expr).size();
                 for term in terms {
                     for (sum, number) in put.numbers.iter_mut().zip(values.of(*term)) {
                         *sum += number;
@@ -132,7 +132,7 @@ impl Graph {
             }
         }
         values.numbers.extend(&put.numbers[..put.len]);
-        debug_assert_eq!(put.len, self.shape(expr).len());
+        debug_assert_eq!(put.len, self.shape(expr).size());
     }
 }
 

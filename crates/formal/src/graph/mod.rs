@@ -48,7 +48,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    pub fn len(self) -> usize {
+    /// How many numbers it is.
+    pub fn size(self) -> usize {
         match self {
             Self::Scalar => 1,
             Self::Vector => 3,

@@ -284,14 +284,14 @@ impl Graph {
     /// A vector of three numbers or a matrix of nine, by columns.
     pub fn pack(&mut self, entries: &[Expr]) -> Expr {
         let shape = if entries.len() == 3 { Shape::Vector } else { Shape::Matrix };
-        assert_eq!(entries.len(), shape.len(), "three or nine entries");
+        assert_eq!(entries.len(), shape.size(), "three or nine entries");
         if entries.iter().all(|entry| self.is_zero(*entry)) {
             return self.zero(shape);
         }
         // the entries of one tensor in order are that tensor
         if let Node::Entry(tensor, 0) = *self.node(entries[0])
             && self.shape(tensor) == shape
-            && (0..shape.len()).all(|i| self.entry(tensor, i as u8) == entries[i])
+            && (0..shape.size()).all(|i| self.entry(tensor, i as u8) == entries[i])
         {
             return tensor;
         }

@@ -29,13 +29,13 @@ pub(super) fn check(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
 }
 
 fn whole(problem: LawProblem) -> LawError {
-    LawError { part: "energy".to_owned(), span: None, problem }
+    LawError::new("energy", None, problem)
 }
 
 /// The problem at the place where `expr`, or the first thing around it, is written.
 fn at(read: &Read, expr: Expr, problem: LawProblem) -> LawError {
     match read.origins.get(&expr) {
-        Some((part, span)) => LawError { part: part.clone(), span: Some(*span), problem },
+        Some((part, span)) => LawError::new(part.clone(), Some(*span), problem),
         None => whole(problem),
     }
 }
@@ -135,7 +135,8 @@ fn slope_at_rest(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
     let size = |matrix: &Mat3| matrix.largest_entry();
     let shifted = |h: f64, direction: &Mat3| law.stress_at(&(identity() + *direction * h));
     let scale = directions().iter().map(|d| size(&(shifted(1e-3, d) - rest)) / 1e-3).fold(0.0, f64::max);
-    if !(size(&rest) <= STRESS_AT_REST * scale.max(f64::MIN_POSITIVE)) {
+    let limit = STRESS_AT_REST * scale.max(f64::MIN_POSITIVE);
+    if size(&rest) > limit || size(&rest).is_nan() {
         // a corner such as that of |J - 1| shows as stress at rest from one side only
         if let Some(expr) = corner_at_rest(law) {
             return Err(at(read, expr, LawProblem::CornerAtRest));
@@ -156,11 +157,7 @@ fn slope_at_rest(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
             .map(|(_, s)| *s)
             .reduce(wider)
             .or(span);
-        return Err(LawError {
-            part: "energy".to_owned(),
-            span,
-            problem: LawProblem::StressAtRest { stress },
-        });
+        return Err(LawError::new("energy", span, LawProblem::StressAtRest { stress }));
     }
     for direction in directions() {
         for sign in [1.0, -1.0] {

@@ -12,7 +12,7 @@ pub struct LawError {
     pub part: String,
     /// The place in the text of that part.
     pub span: Option<Span>,
-    pub problem: LawProblem,
+    pub problem: Box<LawProblem>,
 }
 
 /// What is wrong with a law.
@@ -73,6 +73,10 @@ impl fmt::Display for LawError {
 impl std::error::Error for LawError {}
 
 impl LawError {
+    pub(super) fn new(part: impl Into<String>, span: Option<Span>, problem: LawProblem) -> Self {
+        Self { part: part.into(), span, problem: Box::new(problem) }
+    }
+
     /// The message, and under it the place in `text`, which is the text of [`Self::part`].
     pub fn explained(&self, text: &str) -> String {
         match self.span {

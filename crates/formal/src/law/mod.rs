@@ -1,7 +1,7 @@
 //! Hyperelastic laws as text: an energy density of the deformation gradient, from which stress and tangent are derived.
 //!
 //! The text is read into a [`Graph`] with what the law language knows beside numbers (`C`, `I1`, `J`, fibre
-//! directions, …, see [`vocabulary`]), with units checked on the way; then `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF` are derived.
+//! directions, …, see `vocabulary.rs`), with units checked on the way; then `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF` are derived.
 //! Before a law is handed out it has been tried: a value, no stress and a slope at rest, objectivity.
 
 mod check;

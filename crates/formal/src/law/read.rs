@@ -69,7 +69,7 @@ pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
     // the earliest expression, so that everything that varies with it comes later
     reader.graph.symbol(super::DEFORMATION, Shape::Matrix);
     let (energy, span) = reader.part("energy", &text.energy)?;
-    let fail = |problem| LawError { part: "energy".to_owned(), span: Some(span), problem };
+    let fail = |problem| LawError::new("energy", Some(span), problem);
     if energy.kind != Kind::Tensor(Shape::Scalar) {
         let wanted = "a number, the energy density".to_owned();
         return Err(fail(LawProblem::WrongShape { found: describe(energy.kind), wanted }));
@@ -103,7 +103,7 @@ fn check_names(text: &LawText) -> Result<(), LawError> {
         .chain(text.definitions.iter().map(|(name, _)| name))
         .collect();
     for (position, name) in names.iter().enumerate() {
-        let fail = |problem| Err(LawError { part: short(name), span: None, problem });
+        let fail = |problem| Err(LawError::new(short(name), None, problem));
         let mut letters = name.chars();
         let starts = letters.next().is_some_and(|first| first.is_ascii_alphabetic() || first == '_');
         if !starts || !letters.all(|letter| letter.is_ascii_alphanumeric() || letter == '_') {
@@ -127,7 +127,7 @@ fn check_names(text: &LawText) -> Result<(), LawError> {
         let direction = matches!(parameter, LawParameter::Direction(_));
         let zero = direction && numbers.iter().all(|number| *number == 0.0);
         if zero || !numbers.iter().all(|number| number.is_finite()) {
-            return Err(LawError { part: short(name), span: None, problem: LawProblem::BadParameter });
+            return Err(LawError::new(short(name), None, LawProblem::BadParameter));
         }
     }
     Ok(())
@@ -136,7 +136,7 @@ fn check_names(text: &LawText) -> Result<(), LawError> {
 impl Reader<'_> {
     /// Reads one text; the place is that of the whole.
     fn part(&mut self, part: &str, text: &str) -> Result<(Value, Span), LawError> {
-        let fail = |span, problem| LawError { part: part.to_owned(), span: Some(span), problem };
+        let fail = |span, problem| LawError::new(part, Some(span), problem);
         let expression =
             Expression::parse(text).map_err(|error| fail(error.span(), LawProblem::Syntax(error)))?;
         self.nodes += expression.nodes().len();
@@ -578,7 +578,7 @@ impl From<LawError> for Fault {
 impl From<Fault> for LawError {
     fn from(fault: Fault) -> Self {
         match fault {
-            Fault::Here(span, problem) => Self { part: "energy".to_owned(), span: Some(span), problem },
+            Fault::Here(span, problem) => Self::new("energy", Some(span), problem),
             Fault::Elsewhere(error) => error,
         }
     }

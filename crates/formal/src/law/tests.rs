@@ -151,7 +151,7 @@ fn bad_parts_are_told() {
         [("a", "b + 1"), ("b", "2*c"), ("c", "a^2")].map(|(n, t)| (n.to_owned(), t.to_owned())).to_vec();
     let error = refused(&cyclic);
     assert_eq!(
-        error.problem,
+        *error.problem,
         LawProblem::Recursion { cycle: ["a", "b", "c", "a"].map(str::to_owned).to_vec() }
     );
     assert_eq!((error.part.as_str(), error.span), ("c", Some(Span::new(0, 1))));

@@ -116,7 +116,7 @@ pub(crate) fn quantity(graph: &mut Graph, name: &str) -> Option<Expr> {
 /// `C12` is the entry (0, 1) of `C`.
 fn entry_of(name: &str) -> Option<(&str, usize, usize)> {
     let tensor = ["eps", "F", "C", "B", "E"].into_iter().find(|tensor| name.starts_with(tensor))?;
-    match name[tensor.len()..].as_bytes() {
+    match &name.as_bytes()[tensor.len()..] {
         [row @ b'1'..=b'3', column @ b'1'..=b'3'] => {
             Some((tensor, usize::from(row - b'1'), usize::from(column - b'1')))
         }

@@ -155,7 +155,7 @@ impl Lowering<'_> {
     }
 
     fn compute(&mut self, expr: Expr) -> Place {
-        let len = self.graph.shape(expr).len();
+        let len = self.graph.shape(expr).size();
         match self.graph.node(expr).clone() {
             Node::Number(_) | Node::Symbol(_) | Node::Zero(_) | Node::Identity => {
                 unreachable!("symbols have their places, and the others do not vary")
@@ -181,7 +181,7 @@ impl Lowering<'_> {
                 _ => self.emit_of(Code::Apply, 3, 3, &[matrix, vector]),
             },
             Node::Transpose(a) => self.emit_of(Code::Transpose, 9, 9, &[a]),
-            Node::Dot(a, b) => self.emit_of(Code::Dot, self.graph.shape(a).len(), 1, &[a, b]),
+            Node::Dot(a, b) => self.emit_of(Code::Dot, self.graph.shape(a).size(), 1, &[a, b]),
             Node::Trace(a) => self.emit_of(Code::Trace, 9, 1, &[a]),
             Node::Determinant(a) => {
                 // the first columns of A and cof A give the determinant, where the cofactor is wanted anyway

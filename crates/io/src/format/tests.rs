@@ -5,7 +5,7 @@ use souple_math::Vec3;
 use souple_mesh::ElementKind;
 
 use crate::testing::{
-    TemporaryFolder, mixed_mesh, real_input, surface_mesh, survives_faults, tetrahedra_mesh,
+    TemporaryFolder, mixed_mesh, quadratic_mesh, real_input, surface_mesh, survives_faults, tetrahedra_mesh,
 };
 use crate::{Digits, Facets, Field, HeldFields, HeldGroups, Precision, Shapes};
 
@@ -79,6 +79,58 @@ fn every_format_gives_back_what_it_holds() {
         let path = folder.path(format!("a.b.{}", extension.to_uppercase()));
         write_mesh(&path, &mesh).unwrap();
         assert_eq!(read_mesh(&path).unwrap().0, mesh, "{}", entry.name);
+    }
+}
+
+/// Quadratic cells and facets of every kind come back from the formats that hold all kinds, node for node.
+#[test]
+fn quadratic_cells_come_back() {
+    let mesh = quadratic_mesh();
+    assert_eq!(mesh.blocks.iter().map(|block| block.kind.node_count()).collect::<Vec<_>>(), [20, 13, 15, 10]);
+    for format in volume_formats() {
+        assert_eq!(read_back(format, &Output::new(&mesh)).mesh, mesh, "{format}");
+    }
+    // surface formats cut them into triangles and say so
+    for entry in round_trips().filter(|entry| entry.build.holds.is_surface()) {
+        let output = Output::new(&mesh);
+        let losses = entry.build.holds.losses(entry.name, &output);
+        assert!(losses.iter().any(|loss| loss.contains("2 curved facets")), "{losses:?}");
+        // four of the triangle, six of the quadrilateral
+        assert_eq!(read_back(entry.name, &output).mesh.facet_count(), 10, "{}", entry.name);
+    }
+}
+
+/// Gmsh numbers the middles of edges by the lowest corner: 1-2, 1-3, 1-4 (hexahedra 1-2, 1-4, 1-5, 2-3, …), as its
+/// manual draws them; the last two of a tetrahedron are 4-3 and 4-2.
+#[test]
+fn gmsh_order_of_middle_nodes() {
+    let mesh = quadratic_mesh();
+    let text = String::from_utf8(written("gmsh_2", &Output::new(&mesh))).unwrap();
+    let rows: Vec<Vec<usize>> = text
+        .lines()
+        .filter_map(|line| {
+            line.split_whitespace().map(|word| word.parse().ok()).collect::<Option<Vec<usize>>>()
+        })
+        .collect();
+    let edges: [(usize, &[[usize; 2]]); 4] = [
+        (11, &[[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [1, 3]]),
+        (
+            17,
+            &[[0, 1], [0, 3], [0, 4], [1, 2], [1, 5], [2, 3], [2, 6], [3, 7], [4, 5], [4, 7], [5, 6], [6, 7]],
+        ),
+        (18, &[[0, 1], [0, 2], [0, 3], [1, 2], [1, 4], [2, 5], [3, 4], [3, 5], [4, 5]]),
+        (19, &[[0, 1], [0, 3], [0, 4], [1, 2], [1, 4], [2, 3], [2, 4], [3, 4]]),
+    ];
+    let shift = Vec3::new(0.01, 1.0 / 300.0, -0.02);
+    for (element_type, edges) in edges {
+        let row = rows.iter().find(|row| row.len() > 12 && row[1] == element_type).unwrap();
+        let nodes = &row[5..];
+        let corners = nodes.len() - edges.len();
+        let point = |k: usize| mesh.points[nodes[k] - 1];
+        for (k, [a, b]) in edges.iter().enumerate() {
+            let expected = (point(*a) + point(*b)) * 0.5 + shift;
+            assert!((point(corners + k) - expected).length() < 1e-15, "type {element_type}, edge {k}");
+        }
     }
 }
 

@@ -53,11 +53,12 @@ impl Assembly {
     /// The type of a number, refused if its elements cannot be used.
     pub fn element_type(&self, cursor: &Cursor<'_>, number: i64) -> Result<ElementType, Fault> {
         let Some(element) = element_type::find(number) else {
-            let expected = "4 (tetrahedron), 5 (hexahedron), 6 (prism), 7 (pyramid), 2 or 3 (facets)";
+            let expected = "4, 11 (tetrahedra), 5, 17 (hexahedra), 6, 18 (prisms), 7, 19 (pyramids), or 2, 3, 9, 16 (facets)";
             return Err(cursor.fault("the element type", number.to_string(), expected));
         };
         if element.dimension == 3 && element.kind.is_none() {
-            let expected = "elements of the first order (in Gmsh: SetOrder 1)";
+            let expected = "elements of the first order (in Gmsh: SetOrder 1), or incomplete ones of the second \
+                            (Mesh.SecondOrderIncomplete = 1, SetOrder 2)";
             return Err(cursor.fault("the element type", format!("{number}, a {}", element.name), expected));
         }
         Ok(element)
@@ -80,7 +81,13 @@ impl Assembly {
         }
         let nodes = &nodes[..node_tags.len()];
         let destination = match element.kind {
-            Some(kind) => self.sorter.push(&mut self.dataset.mesh, kind, nodes),
+            Some(kind) => {
+                let mut ours = [0; MAX_NODES];
+                for (slot, theirs) in ours.iter_mut().zip(element_type::order(kind)) {
+                    *slot = nodes[usize::from(*theirs)];
+                }
+                self.sorter.push(&mut self.dataset.mesh, kind, &ours[..nodes.len()])
+            }
             None => Destination::Skipped,
         };
         if destination == Destination::Skipped && (element.dimension == 2 || physical.is_empty()) {

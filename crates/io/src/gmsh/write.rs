@@ -69,8 +69,8 @@ pub(super) fn version_4(
         for item in run {
             tag += 1;
             sink.size(tag)?;
-            for node in item.nodes {
-                sink.size(*node as usize + 1)?;
+            for node in element_type::listed(item.element_type, item.nodes) {
+                sink.size(node as usize + 1)?;
             }
             sink.end_line()?;
         }
@@ -161,8 +161,8 @@ pub(super) fn version_2(
                 Encoding::Binary(_) => sink.ints(&[item.element_type, 1, 2, tag])?,
             }
             sink.ints(&[group as i64, item.set as i64 + 1])?;
-            for node in item.nodes {
-                sink.int(i64::from(*node) + 1)?;
+            for node in element_type::listed(item.element_type, item.nodes) {
+                sink.int(i64::from(node) + 1)?;
             }
             sink.end_line()?;
         }
@@ -203,11 +203,13 @@ impl<'a> Grouping<'a> {
             }
             grouping.push(&mut known, POINT, 0, std::slice::from_ref(point), groups);
         }
-        for (blocks, lists, dimension) in [(facets, facet_groups, 2), (&mesh.blocks[..], cells, 3)] {
+        for (blocks, lists, dimension) in
+            [(facets, facet_groups, 2), (&mesh.blocks[..], cells, mesh.dimension() as u8)]
+        {
             let mut lists = lists.into_iter();
             for block in blocks {
                 let number = element_type::number_of(block.kind).ok_or_else(|| {
-                    IoError::request("an element", block.kind, "one that Gmsh has a first-order type for")
+                    IoError::request("an element", block.kind, "one that Gmsh has a type for")
                 })?;
                 for nodes in block.cells() {
                     grouping.push(&mut known, number, dimension, nodes, lists.next().unwrap_or_default());
@@ -251,7 +253,7 @@ fn names(mesh: &Mesh, facets: Facets) -> Result<Vec<(u8, usize, &str)>, IoError>
             ));
         }
         let facet_members = if facets == Facets::Written { group.facets.as_slice() } else { &[] };
-        let lists = [(2, facet_members), (3, group.cells.as_slice())];
+        let lists = [(2, facet_members), (mesh.dimension() as u8, group.cells.as_slice())];
         let mut dimensions: Vec<u8> =
             lists.iter().filter(|list| !list.1.is_empty()).map(|list| list.0).collect();
         // a group of nothing is kept by its name

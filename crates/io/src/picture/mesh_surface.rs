@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use souple_math::Vec3;
-use souple_mesh::{Cell, Mesh};
+use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
 
 use super::surface::{Paint, Surface};
 
@@ -57,7 +57,13 @@ impl MeshSurface {
         let mut numbers = HashMap::new();
         if mesh.cell_count() == 0 {
             for (facet, view) in mesh.facets().enumerate() {
-                of.push(mesh, view.nodes, facet as u32, &mut numbers);
+                of.push_face(mesh, (view.kind, view.nodes), facet as u32, &mut numbers);
+            }
+            return of;
+        }
+        if mesh.dimension() < 3 {
+            for (cell, view) in mesh.cells().enumerate() {
+                of.push_face(mesh, (view.kind, view.nodes), cell as u32, &mut numbers);
             }
             return of;
         }
@@ -65,8 +71,8 @@ impl MeshSurface {
         let mut faces = boundary.iter().peekable();
         for (cell, view) in mesh.cells().enumerate() {
             while let Some(face) = faces.next_if(|face| face.cell as usize == cell) {
-                let nodes: Vec<u32> = view.face_nodes(face.face.into()).1.collect();
-                of.push(mesh, &nodes, face.cell, &mut numbers);
+                let (kind, nodes) = view.face_nodes(face.face.into());
+                of.push_face(mesh, (kind, &nodes.collect::<Vec<_>>()), face.cell, &mut numbers);
             }
         }
         of
@@ -77,9 +83,13 @@ impl MeshSurface {
         let mut of = Self::default();
         for (cell, view) in mesh.cells().enumerate() {
             let mut numbers = HashMap::new();
+            if view.kind.dimension() < 3 {
+                of.push_face(mesh, (view.kind, view.nodes), cell as u32, &mut numbers);
+                continue;
+            }
             for face in 0..view.kind.faces().len() {
-                let nodes: Vec<u32> = view.face_nodes(face).1.collect();
-                of.push(mesh, &nodes, cell as u32, &mut numbers);
+                let (kind, nodes) = view.face_nodes(face);
+                of.push_face(mesh, (kind, &nodes.collect::<Vec<_>>()), cell as u32, &mut numbers);
             }
         }
         of
@@ -123,6 +133,42 @@ impl MeshSurface {
         for (point, cell) in self.surface.points.iter_mut().zip(&cell_of) {
             let (sum, count) = middles[cell];
             *point += (sum * (1.0 / count) - all) * amount;
+        }
+    }
+
+    /// A face as triangles, its own edges drawn: a straight one around its first corner, a curved one cut at the
+    /// middles of its sides.
+    fn push_face(
+        &mut self,
+        mesh: &Mesh,
+        (kind, nodes): (ElementKind, &[u32]),
+        cell: u32,
+        numbers: &mut HashMap<u32, u32>,
+    ) {
+        if kind.dimension() == 1 {
+            // a triangle without area: its drawn edge is all that is seen of it
+            let (ends, middle) = nodes.split_at(2);
+            for pair in [&[ends[0]], middle, &[ends[1]]].concat().windows(2) {
+                self.push(mesh, &[pair[0], pair[1], pair[1]], cell, numbers);
+                if let Some(edges) = self.surface.edges.last_mut() {
+                    *edges = [true, false, false];
+                }
+            }
+            return;
+        }
+        if kind.order() == Order::Linear {
+            self.push(mesh, nodes, cell, numbers);
+            return;
+        }
+        let corners = kind.corner_count();
+        let is_corner = |node: u32| nodes[..corners].contains(&node);
+        for triangle in facet_triangles(kind, nodes) {
+            let first = self.surface.triangles.len();
+            self.push(mesh, &triangle, cell, numbers);
+            for edges in &mut self.surface.edges[first..] {
+                // half a side of the face runs from a corner to a middle
+                *edges = [0, 1, 2].map(|k| is_corner(triangle[k]) != is_corner(triangle[(k + 1) % 3]));
+            }
         }
     }
 
@@ -218,9 +264,13 @@ impl Clipper<'_> {
 
     /// The section of a cell, as those of the tetrahedra between its first node and the faces opposite to it.
     fn section(&mut self, positions: &[Vec3], normal: Vec3, cell: &Cell<'_>, number: u32) {
+        if cell.kind.dimension() != 3 {
+            return;
+        }
         let apex = cell.nodes[0];
         for face in 0..cell.kind.faces().len() {
-            let nodes: Vec<u32> = cell.face_nodes(face).1.collect();
+            // curved cells by their corners: the section is as fine as the mesh
+            let nodes: Vec<u32> = cell.face_corners(face).collect();
             if nodes.contains(&apex) {
                 continue;
             }

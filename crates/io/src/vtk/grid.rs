@@ -98,7 +98,7 @@ impl Grid {
             start = end;
             let Some(cell_type) = cell_type(*number, listed.len()) else {
                 if !WITHOUT_VOLUME.contains(number) {
-                    let expected = "5, 8, 9 (facets), 10 (tet), 11, 12 (hex), 13 (wedge) or 14 (pyramid)";
+                    let expected = "5, 8, 9, 22, 23 (facets), 10, 24 (tets), 11, 12, 25 (hexes), 13, 26 (wedges) or 14, 27 (pyramids)";
                     return Err(Fault::new(place, format!("types[{cell}]"), number.to_string(), expected));
                 }
                 *skipped.entry(*number).or_default() += 1;

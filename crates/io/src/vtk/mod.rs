@@ -43,13 +43,28 @@ const CELL_TYPES: &[CellType] = &[
     CellType { number: 12, kind: ElementKind::Hex8, order: &[0, 1, 2, 3, 4, 5, 6, 7] },
     CellType { number: 13, kind: ElementKind::Prism6, order: &[0, 1, 2, 3, 4, 5] },
     CellType { number: 14, kind: ElementKind::Pyramid5, order: &[0, 1, 2, 3, 4] },
+    CellType { number: 22, kind: ElementKind::Tri6, order: PLAIN.split_at(6).0 },
+    CellType { number: 23, kind: ElementKind::Quad8, order: PLAIN.split_at(8).0 },
+    CellType { number: 24, kind: ElementKind::Tet10, order: PLAIN.split_at(10).0 },
+    CellType { number: 25, kind: ElementKind::Hex20, order: PLAIN },
+    CellType { number: 26, kind: ElementKind::Prism15, order: PLAIN.split_at(15).0 },
+    CellType { number: 27, kind: ElementKind::Pyramid13, order: PLAIN.split_at(13).0 },
 ];
 
-/// Types that hold no volume and no facet of ours: vertices, lines, strips, polygons, curved curves and facets.
-const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 22, 23, 28, 30, 34, 35, 36];
+/// Nodes of quadratic cells: VTK lists them as we do.
+const PLAIN: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
+
+/// Types that hold no volume and no facet of ours: vertices, lines, strips, polygons, curved curves and some facets.
+const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 28, 30, 34, 35, 36];
 
 /// The number of the VTK type of an element.
 fn cell_type_of(kind: ElementKind) -> Option<u8> {
+    match kind {
+        // read as curves around what they bound, written as cells
+        ElementKind::Edge2 => return Some(3),
+        ElementKind::Edge3 => return Some(21),
+        _ => {}
+    }
     let identity =
         |cell: &&CellType| cell.kind == kind && cell.order.iter().enumerate().all(|(i, n)| i == *n);
     CELL_TYPES.iter().find(identity).map(|cell| cell.number as u8)

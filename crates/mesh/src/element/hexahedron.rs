@@ -1,35 +1,50 @@
-//! The hexahedron with eight nodes: `ξ, η, ζ ∈ [-1, 1]`.
+//! Hexahedra, `ξ, η, ζ ∈ [-1, 1]`.
 
-use std::sync::LazyLock;
+use souple_math::Vec3;
 
-use super::{Derived, Element, ElementEntry, ElementKind, Face, Monomial};
+use super::{Element, ElementEntry, ElementKind, Monomial, Order, with_middles};
 use crate::quadrature::{RuleDefinition, hexahedron};
 
-static DERIVED: LazyLock<Derived> = LazyLock::new(|| DATA.derive());
+const NODES: [[f64; 3]; 8] = [
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
+/// The regular cell.
+const REGULAR: &[[f64; 3]] = &[
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [0.0, 1.0, 1.0],
+];
+/// Corners of each face, normal outward.
+const FACES: &[&[u8]] =
+    &[&[0, 3, 2, 1], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]];
+/// The middle node of a quadratic element on an edge has the number of the corners and that of the edge.
+const EDGES: [[u8; 2]; 12] =
+    [[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
+const MIRRORED: &[u8] = &[0, 3, 2, 1, 4, 7, 6, 5];
 
-static DATA: Element = Element {
+fn slack(xi: Vec3) -> f64 {
+    1.0 - xi.largest_component()
+}
+
+static HEX8_DATA: Element = Element {
     kind: ElementKind::Hex8,
+    order: Order::Linear,
+    corners: ElementKind::Hex8,
     dimension: 3,
-    nodes: &[
-        [-1.0, -1.0, -1.0],
-        [1.0, -1.0, -1.0],
-        [1.0, 1.0, -1.0],
-        [-1.0, 1.0, -1.0],
-        [-1.0, -1.0, 1.0],
-        [1.0, -1.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [-1.0, 1.0, 1.0],
-    ],
-    regular: &[
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [1.0, 0.0, 1.0],
-        [1.0, 1.0, 1.0],
-        [0.0, 1.0, 1.0],
-    ],
+    nodes: &NODES,
+    regular: REGULAR,
     basis: &[
         Monomial([0, 0, 0, 0]),
         Monomial([1, 0, 0, 0]),
@@ -40,16 +55,9 @@ static DATA: Element = Element {
         Monomial([1, 0, 1, 0]),
         Monomial([1, 1, 1, 0]),
     ],
-    faces: &[
-        Face { kind: ElementKind::Quad4, nodes: &[0, 3, 2, 1] },
-        Face { kind: ElementKind::Quad4, nodes: &[4, 5, 6, 7] },
-        Face { kind: ElementKind::Quad4, nodes: &[0, 1, 5, 4] },
-        Face { kind: ElementKind::Quad4, nodes: &[1, 2, 6, 5] },
-        Face { kind: ElementKind::Quad4, nodes: &[2, 3, 7, 6] },
-        Face { kind: ElementKind::Quad4, nodes: &[3, 0, 4, 7] },
-    ],
-    edges: &[[0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7]],
-    mirrored: &[0, 3, 2, 1, 4, 7, 6, 5],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
     measure: 8.0,
     rules: &[
         RuleDefinition { name: "gauss_1", degree: 1, points: || hexahedron(1) },
@@ -60,8 +68,7 @@ static DATA: Element = Element {
     default_rule: "gauss_8",
     full_rule: "gauss_27",
     mass_rule: "gauss_8",
-    slack: |xi| 1.0 - xi.largest_component(),
-    derived: &DERIVED,
+    slack,
 };
 
 pub(super) static HEX8: ElementEntry = ElementEntry {
@@ -69,5 +76,58 @@ pub(super) static HEX8: ElementEntry = ElementEntry {
     summary: "trilinear hexahedron; the most accurate of the linear elements in bending",
     source: "Dhatt & Touzot 1984, §2.6",
     parameters: &[],
-    build: &DATA,
+    build: &HEX8_DATA,
+};
+
+static HEX20_DATA: Element = Element {
+    kind: ElementKind::Hex20,
+    order: Order::Quadratic,
+    corners: ElementKind::Hex8,
+    dimension: 3,
+    nodes: &with_middles::<8, 12, 20>(&NODES, &EDGES),
+    regular: REGULAR,
+    basis: &[
+        Monomial([0, 0, 0, 0]),
+        Monomial([1, 0, 0, 0]),
+        Monomial([0, 1, 0, 0]),
+        Monomial([0, 0, 1, 0]),
+        Monomial([1, 1, 0, 0]),
+        Monomial([0, 1, 1, 0]),
+        Monomial([1, 0, 1, 0]),
+        Monomial([1, 1, 1, 0]),
+        Monomial([2, 0, 0, 0]),
+        Monomial([0, 2, 0, 0]),
+        Monomial([0, 0, 2, 0]),
+        Monomial([2, 1, 0, 0]),
+        Monomial([2, 0, 1, 0]),
+        Monomial([1, 2, 0, 0]),
+        Monomial([0, 2, 1, 0]),
+        Monomial([1, 0, 2, 0]),
+        Monomial([0, 1, 2, 0]),
+        Monomial([2, 1, 1, 0]),
+        Monomial([1, 2, 1, 0]),
+        Monomial([1, 1, 2, 0]),
+    ],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
+    measure: 8.0,
+    rules: &[
+        RuleDefinition { name: "gauss_8", degree: 3, points: || hexahedron(2) },
+        RuleDefinition { name: "gauss_27", degree: 5, points: || hexahedron(3) },
+        RuleDefinition { name: "gauss_64", degree: 7, points: || hexahedron(4) },
+        RuleDefinition { name: "gauss_125", degree: 9, points: || hexahedron(5) },
+    ],
+    default_rule: "gauss_27",
+    full_rule: "gauss_125",
+    mass_rule: "gauss_27",
+    slack,
+};
+
+pub(super) static HEX20: ElementEntry = ElementEntry {
+    name: "hex20",
+    summary: "quadratic hexahedron of the serendipity family; the most accurate in bending",
+    source: "Dhatt & Touzot 1984, §2.6",
+    parameters: &[],
+    build: &HEX20_DATA,
 };

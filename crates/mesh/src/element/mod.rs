@@ -1,14 +1,17 @@
-//! What an element is: reference nodes, polynomial basis, faces, edges, rules of quadrature.
+//! What an element is: reference nodes, basis, faces, edges, rules of quadrature, linear and quadratic alike.
 //!
 //! Shape functions are not written by hand: an element states a basis `m₁ … mₙ` as long as its list of nodes, and
-//! `N_a = Σ_m C_am m(ξ)` with `C = V⁻ᵀ`, `V_am = m(ξ_a)`, so that `N_a(ξ_b) = δ_ab`. Adding an element is one file
-//! of data and one line here.
+//! `N_a = Σ_m C_am m(ξ)` with `C = V⁻ᵀ`, `V_am = m(ξ_a)`, so that `N_a(ξ_b) = δ_ab`. Adding an element is data in a
+//! file and one line here (`docs/how-to-add-an-element.md`): shape functions, the nodes of curved faces, the mirrored
+//! order and the regular cell follow from it.
 //!
-//! Node orders are those of VTK and Gmsh, which agree for these elements. One quirk: VTK's documentation draws
+//! Node orders are those of VTK: corners, then the middles of edges in the order of the edges. Gmsh agrees for the
+//! linear elements. One quirk: VTK's documentation draws
 //! the wedge with the normal of its first triangle pointing outward, Gmsh (and VTK's own parametric coordinates)
 //! with that normal pointing to the second triangle. We take the latter; files of the other kind are repaired
 //! by [`crate::Mesh::validate`] as inverted cells.
 
+mod edge;
 mod hexahedron;
 mod prism;
 mod pyramid;
@@ -32,59 +35,92 @@ const SQRT_3_2: f64 = 0.866_025_403_784_438_6;
 /// `√(2/3)`, height of the regular tetrahedron.
 const SQRT_2_3: f64 = 0.816_496_580_927_726;
 
-/// The kind of a cell or of a facet of a surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[non_exhaustive]
-pub enum ElementKind {
-    Tri3,
-    Quad4,
-    Tet4,
-    Hex8,
-    Prism6,
-    Pyramid5,
+/// Writes the kinds, the table and what is derived from their data from one list of names, node counts and entries.
+macro_rules! elements {
+    ($($Kind:ident: $nodes:literal, $entry:path;)+) => {
+        /// The kind of a cell or of a facet of a surface.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum ElementKind { $($Kind),+ }
+
+        /// All elements, in the order of [`ElementKind`].
+        pub static ELEMENTS: Table<&'static Element> =
+            Table { kind: "element", entries: &[$(&$entry),+] };
+
+        impl ElementKind {
+            pub const ALL: &[Self] = &[$(Self::$Kind),+];
+
+            pub const fn node_count(self) -> usize {
+                match self { $(Self::$Kind => $nodes),+ }
+            }
+        }
+
+        /// What follows from the data of each element, computed at first use.
+        static DERIVED: [LazyLock<Derived>; ElementKind::ALL.len()] =
+            [$(LazyLock::new(|| $entry.build.derive())),+];
+    };
 }
 
-/// All elements, in the order of [`ElementKind`].
-pub static ELEMENTS: Table<&'static Element> = Table {
-    kind: "element",
-    entries: &[
-        &triangle::TRI3,
-        &quadrilateral::QUAD4,
-        &tetrahedron::TET4,
-        &hexahedron::HEX8,
-        &prism::PRISM6,
-        &pyramid::PYRAMID5,
-    ],
-};
+elements! {
+    Edge2: 2, edge::EDGE2;
+    Edge3: 3, edge::EDGE3;
+    Tri3: 3, triangle::TRI3;
+    Tri6: 6, triangle::TRI6;
+    Quad4: 4, quadrilateral::QUAD4;
+    Quad8: 8, quadrilateral::QUAD8;
+    Tet4: 4, tetrahedron::TET4;
+    Tet10: 10, tetrahedron::TET10;
+    Hex8: 8, hexahedron::HEX8;
+    Hex20: 20, hexahedron::HEX20;
+    Prism6: 6, prism::PRISM6;
+    Prism15: 15, prism::PRISM15;
+    Pyramid5: 5, pyramid::PYRAMID5;
+    Pyramid13: 13, pyramid::PYRAMID13;
+}
 
 /// `ξ^x η^y ζ^z / (1 - ζ)^w` for powers `[x, y, z, w]`; only pyramids have `w ≠ 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Monomial(pub [u8; 4]);
 
-/// A face of a cell: its nodes in the order of its own element, normal outward by the right-hand rule.
-#[derive(Clone, Copy, Debug)]
+/// Degree of the polynomials that an element holds completely, along its edges too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Nodes at the corners.
+    Linear,
+    /// Nodes at the corners, then one in the middle of each edge.
+    Quadratic,
+}
+
+/// A face of a cell (a side of a plane one): its nodes in the order of its own element, normal outward by the
+/// right-hand rule.
+#[derive(Clone, Debug)]
 pub struct Face {
     pub kind: ElementKind,
-    pub nodes: &'static [u8],
+    pub nodes: Vec<u8>,
 }
 
 /// The data of one element.
 #[derive(Debug)]
 pub struct Element {
     pub kind: ElementKind,
-    /// Dimension of the reference cell: 2 or 3.
+    pub order: Order,
+    /// The linear element of the same corners.
+    pub corners: ElementKind,
+    /// Dimension of the reference cell: 1, 2 or 3.
     pub dimension: usize,
-    /// Reference coordinates of the nodes; surface elements have `ζ = 0`.
+    /// Reference coordinates of the nodes, corners first; zero beyond the dimension.
     pub nodes: &'static [[f64; 3]],
-    /// Nodes of the regular cell, all edges of length one: the best quality there is.
+    /// Corners of the regular cell, all edges of length one: the best quality there is.
     pub regular: &'static [[f64; 3]],
     /// As many functions as nodes.
     pub basis: &'static [Monomial],
-    pub faces: &'static [Face],
+    /// Corners of each face, normal outward; none for edges.
+    pub faces: &'static [&'static [u8]],
+    /// Corners of each edge.
     pub edges: &'static [[u8; 2]],
-    /// Node order of the mirrored cell: turns an inverted cell into a good one.
+    /// Order of the corners of the mirrored cell: turns an inverted cell into a good one.
     pub mirrored: &'static [u8],
-    /// Volume (area) of the reference cell.
+    /// Volume (area, length) of the reference cell.
     pub measure: f64,
     /// By number of points.
     pub rules: &'static [RuleDefinition],
@@ -96,8 +132,6 @@ pub struct Element {
     pub mass_rule: &'static str,
     /// Smallest slack of the inequalities that define the reference cell: negative outside.
     pub slack: fn(Vec3) -> f64,
-    /// Coefficients and rules, computed at first use.
-    derived: &'static LazyLock<Derived>,
 }
 
 /// What follows from the data of an element.
@@ -106,23 +140,13 @@ struct Derived {
     /// `C_am` by rows: coefficients of shape function `a`.
     coefficients: Vec<f64>,
     rules: Vec<QuadratureRule>,
+    faces: Vec<Face>,
+    /// [`Element::mirrored`] for all nodes.
+    mirrored: Vec<u8>,
 }
 
 impl ElementKind {
-    pub const ALL: [Self; 6] =
-        [Self::Tri3, Self::Quad4, Self::Tet4, Self::Hex8, Self::Prism6, Self::Pyramid5];
-
-    pub const fn node_count(self) -> usize {
-        match self {
-            Self::Tri3 => 3,
-            Self::Quad4 | Self::Tet4 => 4,
-            Self::Hex8 => 8,
-            Self::Prism6 => 6,
-            Self::Pyramid5 => 5,
-        }
-    }
-
-    /// 2 for surface elements, 3 for volumes.
+    /// 1 for edges, 2 for surface elements, 3 for volumes.
     pub fn dimension(self) -> usize {
         self.element().dimension
     }
@@ -141,8 +165,47 @@ impl ElementKind {
         ELEMENTS.find(name).map(|entry| entry.build.kind)
     }
 
+    fn derived(self) -> &'static Derived {
+        &DERIVED[self as usize]
+    }
+
+    pub fn order(self) -> Order {
+        self.element().order
+    }
+
+    /// The linear element of the same corners.
+    pub fn corners(self) -> Self {
+        self.element().corners
+    }
+
+    pub fn corner_count(self) -> usize {
+        self.corners().node_count()
+    }
+
+    /// The element of the same corners and of another order.
+    pub fn of_order(self, order: Order) -> Self {
+        let same = |kind: &&Self| kind.corners() == self.corners() && kind.order() == order;
+        *Self::ALL.iter().find(same).expect("each reference cell has an element of each order")
+    }
+
+    /// Faces of volumes, sides of surface elements.
     pub fn faces(self) -> &'static [Face] {
-        self.element().faces
+        &self.derived().faces
+    }
+
+    /// Node order of the mirrored cell: turns an inverted cell into a good one.
+    pub fn mirrored(self) -> &'static [u8] {
+        &self.derived().mirrored
+    }
+
+    /// Nodes of the regular cell, all edges straight and of length one: the best quality there is.
+    pub fn regular(self) -> Vec<Vec3> {
+        let corners: Vec<Vec3> = self.element().regular.iter().map(|x| Vec3::from_array(*x)).collect();
+        self.element()
+            .nodes
+            .iter()
+            .map(|xi| self.corners().position(&corners, Vec3::from_array(*xi)))
+            .collect()
     }
 
     pub fn edges(self) -> &'static [[u8; 2]] {
@@ -161,7 +224,7 @@ impl ElementKind {
 
     /// All rules of quadrature, by number of points.
     pub fn rules(self) -> &'static [QuadratureRule] {
-        &self.element().derived.rules
+        &self.derived().rules
     }
 
     /// The rule that integrates the stiffness of linear elasticity exactly on an affine cell: the usual choice.
@@ -201,7 +264,8 @@ impl ElementKind {
     }
 
     /// `∂x/∂ξ` of a cell with its nodes at `positions`, column `i` is `∂x/∂ξᵢ`. For surface elements the third
-    /// column is the unit normal, so that the determinant is the change of area.
+    /// column is the unit normal, for edges the second and third are unit normals: the determinant is the change of
+    /// area, of length.
     pub fn jacobian(self, positions: &[Vec3], xi: Vec3) -> Mat3 {
         let mut columns = [Vec3::ZERO; 3];
         for (position, gradient) in positions.iter().zip(self.shape_gradients(xi).iter()) {
@@ -209,8 +273,16 @@ impl ElementKind {
                 columns[axis] += *position * gradient[axis];
             }
         }
-        if self.dimension() == 2 {
-            columns[2] = columns[0].cross(columns[1]).try_normalised().unwrap_or(Vec3::ZERO);
+        match self.dimension() {
+            1 => {
+                // the axis that the edge is farthest from gives the first normal
+                let t = columns[0].to_array().map(f64::abs);
+                let axis = (0..3).min_by(|a, b| t[*a].total_cmp(&t[*b])).unwrap_or(0);
+                columns[1] = columns[0].cross(Vec3::AXES[axis]).try_normalised().unwrap_or(Vec3::ZERO);
+                columns[2] = columns[0].cross(columns[1]).try_normalised().unwrap_or(Vec3::ZERO);
+            }
+            2 => columns[2] = columns[0].cross(columns[1]).try_normalised().unwrap_or(Vec3::ZERO),
+            _ => {}
         }
         Mat3 { columns }
     }
@@ -244,22 +316,24 @@ impl<T> std::ops::Deref for NodeValues<T> {
 impl Element {
     // N_a = Σ_m C_am m(ξ)
     fn shape(&self, xi: Vec3) -> NodeValues<f64> {
+        let coefficients = &self.kind.derived().coefficients;
         let mut shape = NodeValues { values: [0.0; MAX_NODES], len: self.nodes.len() };
         for (m, monomial) in self.basis.iter().enumerate() {
             let value = monomial.value(xi);
             for a in 0..shape.len {
-                shape.values[a] += self.derived.coefficients[a * shape.len + m] * value;
+                shape.values[a] += coefficients[a * shape.len + m] * value;
             }
         }
         shape
     }
 
     fn shape_gradients(&self, xi: Vec3) -> NodeValues<Vec3> {
+        let coefficients = &self.kind.derived().coefficients;
         let mut shape = NodeValues { values: [Vec3::ZERO; MAX_NODES], len: self.nodes.len() };
         for (m, monomial) in self.basis.iter().enumerate() {
             let gradient = monomial.gradient(xi);
             for a in 0..shape.len {
-                shape.values[a] += gradient * self.derived.coefficients[a * shape.len + m];
+                shape.values[a] += gradient * coefficients[a * shape.len + m];
             }
         }
         shape
@@ -267,7 +341,44 @@ impl Element {
 
     fn derive(&self) -> Derived {
         let rules = self.rules.iter().map(|definition| definition.build()).collect();
-        Derived { coefficients: inverse_transposed(&self.vandermonde(), self.nodes.len()), rules }
+        Derived {
+            coefficients: inverse_transposed(&self.vandermonde(), self.nodes.len()),
+            rules,
+            faces: self.faces.iter().map(|corners| self.face(corners)).collect(),
+            mirrored: self.nodes_of(self.kind, self.mirrored),
+        }
+    }
+
+    /// The face of given corners, of this element's order.
+    fn face(&self, corners: &[u8]) -> Face {
+        let linear = match corners.len() {
+            2 => ElementKind::Edge2,
+            3 => ElementKind::Tri3,
+            _ => ElementKind::Quad4,
+        };
+        let kind = linear.of_order(self.order);
+        Face { kind, nodes: self.nodes_of(kind, corners) }
+    }
+
+    /// The nodes of this element on which the nodes of `part` fall when its corners lie on `corners`.
+    fn nodes_of(&self, part: ElementKind, corners: &[u8]) -> Vec<u8> {
+        let node = |a: u8| Vec3::from_array(self.nodes[usize::from(a)]);
+        let corners: Vec<Vec3> = corners.iter().map(|a| node(*a)).collect();
+        let find = |xi: &[f64; 3]| {
+            // the linear element of the corners may be this one, whose data are being derived: written out
+            let place = part.corners().element().straight(&corners, Vec3::from_array(*xi));
+            (0..self.nodes.len() as u8).find(|a| (node(*a) - place).length() < 1e-9)
+        };
+        let found = part.element().nodes.iter().map(find);
+        found.collect::<Option<_>>().expect("middles of edges are nodes of elements of the same order")
+    }
+
+    /// `Σ N_a(ξ) x_a` of a linear element.
+    fn straight(&self, corners: &[Vec3], xi: Vec3) -> Vec3 {
+        let coefficients = inverse_transposed(&self.vandermonde(), self.nodes.len());
+        let values: Vec<f64> = self.basis.iter().map(|monomial| monomial.value(xi)).collect();
+        let weight = |row: &[f64]| row.iter().zip(&values).map(|(c, value)| c * value).sum::<f64>();
+        corners.iter().zip(coefficients.chunks(values.len())).map(|(x, row)| *x * weight(row)).sum()
     }
 
     /// `V_am = m(ξ_a)`, by rows.
@@ -348,6 +459,30 @@ fn inverse_transposed(matrix: &[f64], n: usize) -> Vec<f64> {
         }
     }
     (0..n * n).map(|index| right[(index % n) * n + index / n]).collect()
+}
+
+/// The corners, then the middle of each edge.
+const fn with_middles<const C: usize, const E: usize, const N: usize>(
+    corners: &[[f64; 3]; C],
+    edges: &[[u8; 2]; E],
+) -> [[f64; 3]; N] {
+    assert!(N == C + E, "one node for each corner and each edge");
+    let mut nodes = [[0.0; 3]; N];
+    let mut a = 0;
+    while a < N {
+        let mut axis = 0;
+        while axis < 3 {
+            nodes[a][axis] = if a < C {
+                corners[a][axis]
+            } else {
+                let [from, to] = edges[a - C];
+                0.5 * (corners[from as usize][axis] + corners[to as usize][axis])
+            };
+            axis += 1;
+        }
+        a += 1;
+    }
+    nodes
 }
 
 /// The entry of an element in the table.

@@ -1,21 +1,37 @@
-//! The pyramid with five nodes: base `[-1, 1]²` at `ζ = 0`, apex `(0, 0, 1)`; `|ξ|, |η| ≤ 1 - ζ`.
+//! Pyramids: base `[-1, 1]²` at `ζ = 0`, apex `(0, 0, 1)`; `|ξ|, |η| ≤ 1 - ζ`.
 //!
 //! `N_base = ¼ (1 - ζ ± ξ ± η ± ξη/(1-ζ))`, `N_apex = ζ`: bilinear on the base, linear on the triangles, so that
-//! it joins hexahedra to tetrahedra. Smooth except at the apex, where the gradient depends on the direction.
+//! the linear one joins hexahedra to tetrahedra; the quadratic one has the same rational functions times linear
+//! ones, and all quadratics. Smooth except at the apex, where the gradient depends on the direction.
 
+use souple_math::Vec3;
 use std::f64::consts::FRAC_1_SQRT_2;
-use std::sync::LazyLock;
 
-use super::{Derived, Element, ElementEntry, ElementKind, Face, Monomial};
+use super::{Element, ElementEntry, ElementKind, Monomial, Order, with_middles};
 use crate::quadrature::{RuleDefinition, pyramid, pyramid_five};
 
-static DERIVED: LazyLock<Derived> = LazyLock::new(|| DATA.derive());
+const NODES: [[f64; 3]; 5] =
+    [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// The regular cell.
+const REGULAR: &[[f64; 3]] =
+    &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, FRAC_1_SQRT_2]];
+/// Corners of each face, normal outward.
+const FACES: &[&[u8]] = &[&[0, 3, 2, 1], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4]];
+/// The middle node of a quadratic element on an edge has the number of the corners and that of the edge.
+const EDGES: [[u8; 2]; 8] = [[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]];
+const MIRRORED: &[u8] = &[0, 3, 2, 1, 4];
 
-static DATA: Element = Element {
+fn slack(xi: Vec3) -> f64 {
+    xi.z.min(1.0 - xi.z - xi.x.abs().max(xi.y.abs()))
+}
+
+static PYRAMID5_DATA: Element = Element {
     kind: ElementKind::Pyramid5,
+    order: Order::Linear,
+    corners: ElementKind::Pyramid5,
     dimension: 3,
-    nodes: &[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    regular: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, FRAC_1_SQRT_2]],
+    nodes: &NODES,
+    regular: REGULAR,
     basis: &[
         Monomial([0, 0, 0, 0]),
         Monomial([1, 0, 0, 0]),
@@ -23,15 +39,9 @@ static DATA: Element = Element {
         Monomial([0, 0, 1, 0]),
         Monomial([1, 1, 0, 1]),
     ],
-    faces: &[
-        Face { kind: ElementKind::Quad4, nodes: &[0, 3, 2, 1] },
-        Face { kind: ElementKind::Tri3, nodes: &[0, 1, 4] },
-        Face { kind: ElementKind::Tri3, nodes: &[1, 2, 4] },
-        Face { kind: ElementKind::Tri3, nodes: &[2, 3, 4] },
-        Face { kind: ElementKind::Tri3, nodes: &[3, 0, 4] },
-    ],
-    edges: &[[0, 1], [1, 2], [2, 3], [3, 0], [0, 4], [1, 4], [2, 4], [3, 4]],
-    mirrored: &[0, 3, 2, 1, 4],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
     measure: 4.0 / 3.0,
     rules: &[
         RuleDefinition { name: "gauss_1", degree: 1, points: || pyramid(1, 1) },
@@ -46,8 +56,7 @@ static DATA: Element = Element {
     default_rule: "gauss_4",
     full_rule: "gauss_9",
     mass_rule: "gauss_8",
-    slack: |xi| xi.z.min(1.0 - xi.z - xi.x.abs().max(xi.y.abs())),
-    derived: &DERIVED,
+    slack,
 };
 
 pub(super) static PYRAMID5: ElementEntry = ElementEntry {
@@ -55,5 +64,51 @@ pub(super) static PYRAMID5: ElementEntry = ElementEntry {
     summary: "rational pyramid: bilinear base, linear sides; joins hexes to tets",
     source: "Bedrosian 1992; Dhatt & Touzot 1984",
     parameters: &[],
-    build: &DATA,
+    build: &PYRAMID5_DATA,
+};
+
+static PYRAMID13_DATA: Element = Element {
+    kind: ElementKind::Pyramid13,
+    order: Order::Quadratic,
+    corners: ElementKind::Pyramid5,
+    dimension: 3,
+    nodes: &with_middles::<5, 8, 13>(&NODES, &EDGES),
+    regular: REGULAR,
+    basis: &[
+        Monomial([0, 0, 0, 0]),
+        Monomial([1, 0, 0, 0]),
+        Monomial([0, 1, 0, 0]),
+        Monomial([0, 0, 1, 0]),
+        Monomial([1, 1, 0, 1]),
+        Monomial([0, 0, 2, 0]),
+        Monomial([1, 0, 1, 0]),
+        Monomial([0, 1, 1, 0]),
+        Monomial([1, 1, 1, 1]),
+        Monomial([2, 0, 0, 0]),
+        Monomial([0, 2, 0, 0]),
+        Monomial([2, 1, 0, 1]),
+        Monomial([1, 2, 0, 1]),
+    ],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
+    measure: 4.0 / 3.0,
+    rules: &[
+        RuleDefinition { name: "gauss_8", degree: 3, points: || pyramid(2, 2) },
+        RuleDefinition { name: "gauss_18", degree: 3, points: || pyramid(3, 2) },
+        RuleDefinition { name: "gauss_27", degree: 5, points: || pyramid(3, 3) },
+        RuleDefinition { name: "gauss_75", degree: 5, points: || pyramid(5, 3) },
+    ],
+    default_rule: "gauss_18",
+    full_rule: "gauss_75",
+    mass_rule: "gauss_27",
+    slack,
+};
+
+pub(super) static PYRAMID13: ElementEntry = ElementEntry {
+    name: "pyramid13",
+    summary: "quadratic rational pyramid; joins hex20 to tet10",
+    source: "Bedrosian 1992",
+    parameters: &[],
+    build: &PYRAMID13_DATA,
 };

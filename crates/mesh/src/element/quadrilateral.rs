@@ -1,21 +1,34 @@
-//! The quadrilateral with four nodes, `ξ, η ∈ [-1, 1]`: facets of surfaces.
+//! Quadrilaterals, `ξ, η ∈ [-1, 1]`: cells of plane bodies and membranes, facets of surfaces.
 
-use std::sync::LazyLock;
+use souple_math::Vec3;
 
-use super::{Derived, Element, ElementEntry, ElementKind, Monomial};
+use super::{Element, ElementEntry, ElementKind, Monomial, Order, with_middles};
 use crate::quadrature::{RuleDefinition, quadrilateral};
 
-static DERIVED: LazyLock<Derived> = LazyLock::new(|| DATA.derive());
+const NODES: [[f64; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+/// The regular cell.
+const REGULAR: &[[f64; 3]] = &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+/// Its sides.
+const FACES: &[&[u8]] = &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]];
+/// The middle node of a quadratic element on an edge has the number of the corners and that of the edge.
+const EDGES: [[u8; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
+const MIRRORED: &[u8] = &[0, 3, 2, 1];
 
-static DATA: Element = Element {
+fn slack(xi: Vec3) -> f64 {
+    1.0 - xi.x.abs().max(xi.y.abs())
+}
+
+static QUAD4_DATA: Element = Element {
     kind: ElementKind::Quad4,
+    order: Order::Linear,
+    corners: ElementKind::Quad4,
     dimension: 2,
-    nodes: &[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
-    regular: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+    nodes: &NODES,
+    regular: REGULAR,
     basis: &[Monomial([0, 0, 0, 0]), Monomial([1, 0, 0, 0]), Monomial([0, 1, 0, 0]), Monomial([1, 1, 0, 0])],
-    faces: &[],
-    edges: &[[0, 1], [1, 2], [2, 3], [3, 0]],
-    mirrored: &[0, 3, 2, 1],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
     measure: 4.0,
     rules: &[
         RuleDefinition { name: "gauss_1", degree: 1, points: || quadrilateral(1) },
@@ -25,14 +38,53 @@ static DATA: Element = Element {
     default_rule: "gauss_4",
     full_rule: "gauss_9",
     mass_rule: "gauss_4",
-    slack: |xi| 1.0 - xi.x.abs().max(xi.y.abs()),
-    derived: &DERIVED,
+    slack,
 };
 
 pub(super) static QUAD4: ElementEntry = ElementEntry {
     name: "quad4",
-    summary: "bilinear quadrilateral; facets of surfaces",
+    summary: "bilinear quadrilateral; plane bodies, membranes, facets of surfaces",
     source: "Dhatt & Touzot 1984, §2.4",
     parameters: &[],
-    build: &DATA,
+    build: &QUAD4_DATA,
+};
+
+static QUAD8_DATA: Element = Element {
+    kind: ElementKind::Quad8,
+    order: Order::Quadratic,
+    corners: ElementKind::Quad4,
+    dimension: 2,
+    nodes: &with_middles::<4, 4, 8>(&NODES, &EDGES),
+    regular: REGULAR,
+    basis: &[
+        Monomial([0, 0, 0, 0]),
+        Monomial([1, 0, 0, 0]),
+        Monomial([0, 1, 0, 0]),
+        Monomial([1, 1, 0, 0]),
+        Monomial([2, 0, 0, 0]),
+        Monomial([0, 2, 0, 0]),
+        Monomial([2, 1, 0, 0]),
+        Monomial([1, 2, 0, 0]),
+    ],
+    faces: FACES,
+    edges: &EDGES,
+    mirrored: MIRRORED,
+    measure: 4.0,
+    rules: &[
+        RuleDefinition { name: "gauss_4", degree: 3, points: || quadrilateral(2) },
+        RuleDefinition { name: "gauss_9", degree: 5, points: || quadrilateral(3) },
+        RuleDefinition { name: "gauss_25", degree: 9, points: || quadrilateral(5) },
+    ],
+    default_rule: "gauss_9",
+    full_rule: "gauss_25",
+    mass_rule: "gauss_9",
+    slack,
+};
+
+pub(super) static QUAD8: ElementEntry = ElementEntry {
+    name: "quad8",
+    summary: "quadratic quadrilateral of the serendipity family",
+    source: "Dhatt & Touzot 1984, §2.4",
+    parameters: &[],
+    build: &QUAD8_DATA,
 };

@@ -13,7 +13,7 @@ fn samples(kind: ElementKind) -> Vec<Vec3> {
 #[test]
 fn table_agrees_with_the_kinds() {
     assert_eq!(ELEMENTS.entries.len(), ElementKind::ALL.len());
-    for (entry, kind) in ELEMENTS.entries.iter().zip(ElementKind::ALL) {
+    for (entry, kind) in ELEMENTS.entries.iter().zip(ElementKind::ALL.iter().copied()) {
         let element = entry.build;
         assert_eq!(element.kind, kind);
         assert_eq!(ElementKind::from_name(entry.name), Ok(kind));
@@ -28,11 +28,12 @@ fn table_agrees_with_the_kinds() {
 /// `N_a(ξ_b) = δ_ab`.
 #[test]
 fn shape_functions_are_one_at_their_node() {
-    for kind in ElementKind::ALL {
+    for kind in ElementKind::ALL.iter().copied() {
         for (b, node) in kind.element().nodes.iter().enumerate() {
             for (a, value) in kind.shape(Vec3::from_array(*node)).iter().enumerate() {
                 let expected = if a == b { 1.0 } else { 0.0 };
-                assert!((value - expected).abs() < 1e-15, "{kind}: N_{a} at node {b} is {value}");
+                // coefficients of the inverse are halves, quarters, eighths: what is left is their sums' rounding
+                assert!((value - expected).abs() < 4e-15, "{kind}: N_{a} at node {b} is {value}");
             }
         }
     }
@@ -41,7 +42,7 @@ fn shape_functions_are_one_at_their_node() {
 /// `Σ N_a = 1`, `Σ ∂N_a = 0`, and linear fields are reproduced: `Σ N_a ξ_a = ξ`.
 #[test]
 fn shape_functions_reproduce_linear_fields() {
-    for kind in ElementKind::ALL {
+    for kind in ElementKind::ALL.iter().copied() {
         let nodes: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
         for xi in samples(kind) {
             assert!((kind.shape(xi).iter().sum::<f64>() - 1.0).abs() < 1e-14);
@@ -55,7 +56,7 @@ fn shape_functions_reproduce_linear_fields() {
 #[test]
 fn gradients_are_differences() {
     let h = 1e-5;
-    for kind in ElementKind::ALL {
+    for kind in ElementKind::ALL.iter().copied() {
         for xi in samples(kind) {
             let gradients = kind.shape_gradients(xi);
             for axis in 0..kind.dimension() {
@@ -82,10 +83,14 @@ fn pyramid_at_its_apex() {
 /// Every rule integrates every monomial up to its degree, has positive weights and lies inside the cell.
 #[test]
 fn quadrature_is_exact_to_its_degree() {
-    for kind in ElementKind::ALL {
+    for kind in ElementKind::ALL.iter().copied() {
         for rule in kind.rules() {
             let weights: f64 = rule.points.iter().map(|point| point.weight).sum();
-            assert!((weights - kind.element().measure).abs() < 1e-14, "{kind} {}", rule.name);
+            assert!(
+                (weights - kind.element().measure).abs() < 1e-14 * kind.element().measure.max(1.0),
+                "{kind} {}",
+                rule.name
+            );
             assert_eq!(rule.name, format!("gauss_{}", rule.points.len()));
             for point in &rule.points {
                 assert!(
@@ -99,7 +104,8 @@ fn quadrature_is_exact_to_its_degree() {
                 let measured: f64 =
                     rule.points.iter().map(|point| point.weight * monomial.value(point.position)).sum();
                 let expected = exact(kind, x.into(), y.into(), z.into());
-                assert!((measured - expected).abs() < 1e-14, "{kind} {} {monomial:?}: {measured}", rule.name);
+                // published points have sixteen digits, of which a power of degree d loses d units of the last
+                assert!((measured - expected).abs() < 2e-14, "{kind} {} {monomial:?}: {measured}", rule.name);
             }
         }
     }
@@ -122,8 +128,8 @@ fn quadrature_of_rational_functions() {
 
 fn exponents(degree: usize, dimension: usize) -> Vec<(u8, u8, u8)> {
     let d = degree as u8;
-    let deepest = if dimension == 2 { 0 } else { d };
-    let all = (0..=d).flat_map(|x| (0..=d).flat_map(move |y| (0..=deepest).map(move |z| (x, y, z))));
+    let [widest, deepest] = [2, 3].map(|needed| if dimension < needed { 0 } else { d });
+    let all = (0..=d).flat_map(|x| (0..=widest).flat_map(move |y| (0..=deepest).map(move |z| (x, y, z))));
     all.filter(|(x, y, z)| x + y + z <= d).collect()
 }
 
@@ -140,7 +146,8 @@ fn line(n: usize) -> f64 {
 fn exact(kind: ElementKind, x: usize, y: usize, z: usize) -> f64 {
     // simplices: x! y! z! / (x + y + z + d)!
     let triangle = factorial(x) * factorial(y) / factorial(x + y + 2);
-    match kind {
+    match kind.corners() {
+        ElementKind::Edge2 => line(x),
         ElementKind::Tri3 => triangle,
         ElementKind::Quad4 => line(x) * line(y),
         ElementKind::Tet4 => factorial(x) * factorial(y) * factorial(z) / factorial(x + y + z + 3),
@@ -150,22 +157,24 @@ fn exact(kind: ElementKind, x: usize, y: usize, z: usize) -> f64 {
         ElementKind::Pyramid5 => {
             line(x) * line(y) * factorial(z) * factorial(x + y + 2) / factorial(x + y + z + 3)
         }
+        other => unreachable!("{other} is not linear"),
     }
 }
 
 /// Faces have outward normals, and their edges cover the edges of the cell, each twice.
 #[test]
 fn faces_are_closed_and_outward() {
-    for kind in ElementKind::ALL.into_iter().filter(|kind| kind.dimension() == 3) {
+    for kind in ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() == 3) {
         let nodes: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
         let centre = nodes.iter().copied().sum::<Vec3>() / nodes.len() as f64;
         let mut directed = Vec::new();
         for face in kind.faces() {
-            let corners: Vec<Vec3> = face.nodes.iter().map(|node| nodes[usize::from(*node)]).collect();
+            let ring = &face.nodes[..face.kind.corner_count()];
+            let corners: Vec<Vec3> = ring.iter().map(|node| nodes[usize::from(*node)]).collect();
             let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             assert!(normal.dot(corners[0] - centre) > 0.0, "{kind} {face:?}");
-            let ring = face.nodes.iter().zip(face.nodes.iter().cycle().skip(1));
-            directed.extend(ring.map(|(a, b)| [*a, *b]));
+            let sides = ring.iter().zip(ring.iter().cycle().skip(1));
+            directed.extend(sides.map(|(a, b)| [*a, *b]));
         }
         assert_eq!(directed.len(), 2 * kind.edges().len());
         for [a, b] in kind.edges() {
@@ -177,12 +186,53 @@ fn faces_are_closed_and_outward() {
 /// The mirrored order turns the sign of the Jacobian determinant on the whole cell.
 #[test]
 fn mirrored_order_turns_the_cell() {
-    for kind in ElementKind::ALL.into_iter().filter(|kind| kind.dimension() == 3) {
-        let element = kind.element();
-        let node = |a: &u8| Vec3::from_array(element.nodes[usize::from(*a)]);
-        let positions: Vec<Vec3> = element.mirrored.iter().map(node).collect();
+    for kind in ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() == 3) {
+        let node = |a: &u8| Vec3::from_array(kind.element().nodes[usize::from(*a)]);
+        let positions: Vec<Vec3> = kind.mirrored().iter().map(node).collect();
         for xi in samples(kind) {
             assert!(kind.jacobian(&positions, xi).determinant() < 0.0, "{kind}");
+        }
+    }
+}
+
+/// Quadratic elements reproduce quadratic fields, gradients included, and their nodes are those of the linear one and
+/// the middles of its edges.
+#[test]
+fn quadratic_elements_hold_all_quadratics() {
+    let field = |x: Vec3| 1.0 + x.x - 2.0 * x.y + x.x * x.x - x.y * x.z + 3.0 * x.z * x.z + x.x * x.y;
+    for kind in ElementKind::ALL.iter().copied().filter(|kind| kind.order() == Order::Quadratic) {
+        let nodes: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
+        let corners = kind.corner_count();
+        assert_eq!(nodes.len(), corners + kind.edges().len(), "{kind}");
+        for (node, [a, b]) in nodes[corners..].iter().zip(kind.edges()) {
+            assert_eq!(*node, (nodes[usize::from(*a)] + nodes[usize::from(*b)]) * 0.5, "{kind}");
+        }
+        for xi in samples(kind) {
+            let value: f64 =
+                kind.shape(xi).iter().zip(&nodes).map(|(weight, node)| weight * field(*node)).sum();
+            // twenty terms of size 10
+            assert!((value - field(xi)).abs() < 1e-13, "{kind} at {xi:?}: {value}");
+        }
+    }
+}
+
+/// On each face the shape functions of its nodes are those of the face's own element, and the others vanish: neighbours
+/// that share the nodes of a face fit.
+#[test]
+fn shape_functions_on_faces_are_those_of_the_face() {
+    for kind in ElementKind::ALL.iter().copied() {
+        let nodes: Vec<Vec3> = kind.element().nodes.iter().map(|node| Vec3::from_array(*node)).collect();
+        for face in kind.faces() {
+            let places: Vec<Vec3> = face.nodes.iter().map(|node| nodes[usize::from(*node)]).collect();
+            for eta in samples(face.kind) {
+                let on_face = face.kind.shape(eta);
+                let in_cell = kind.shape(face.kind.position(&places, eta));
+                for (a, value) in in_cell.iter().enumerate() {
+                    let own = face.nodes.iter().position(|node| usize::from(*node) == a);
+                    let expected = own.map_or(0.0, |b| on_face[b]);
+                    assert!((value - expected).abs() < 1e-13, "{kind} {face:?}: N_{a} is {value}");
+                }
+            }
         }
     }
 }

@@ -1,3 +1,5 @@
+//! Fillings keep their promises: angles, volume, conformity, on smooth shapes, thin ones and surfaces with faults.
+
 use souple_table::{Value, Values};
 
 use super::*;

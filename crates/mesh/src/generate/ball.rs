@@ -11,7 +11,9 @@ use std::f64::consts::FRAC_PI_4;
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
-use super::cut::{BASE_X_MAX, BASE_X_MIN, BASE_Z_MAX, Blocks, CORNERS, Cut};
+use super::cut::{
+    BASE_X_MAX, BASE_X_MIN, BASE_Z_MAX, Blocks, CORNERS, Cut, in_order, middle, on_arc, size_in_order,
+};
 use super::{Build, GeneratorEntry};
 use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
@@ -94,7 +96,8 @@ fn size(values: &Values) -> Result<MeshSize, MeshError> {
         Cut::Mixed => 6 * n.pow(2),
         _ => 0,
     };
-    Ok(MeshSize { points: corners + centres, cells: cubes * cut.cells_per_cube() })
+    let size = MeshSize { points: corners + centres, cells: cubes * cut.cells_per_cube() };
+    Ok(size_in_order(values, size))
 }
 
 fn ball(values: &Values) -> Result<Mesh, MeshError> {
@@ -104,7 +107,12 @@ fn ball(values: &Values) -> Result<Mesh, MeshError> {
     for point in &mut mesh.points {
         *point = centre + *point * radius;
     }
-    Ok(mesh)
+    // only the surface is round: the layers inside change from a cube to it
+    let on_sphere = |end: Vec3| ((end - centre).length() - radius).abs() < 1e-9 * radius;
+    let round = |ends: [Vec3; 2]| {
+        if ends.into_iter().all(on_sphere) { on_arc(ends, centre) } else { middle(ends) }
+    };
+    Ok(in_order(values, mesh, round))
 }
 
 /// The relative radius of the hollow, cubes along a quarter and through the wall, or why there are none.
@@ -136,7 +144,8 @@ fn hollow_size(values: &Values) -> Result<MeshSize, MeshError> {
         Cut::Mixed => 6 * n.pow(2),
         _ => 0,
     };
-    Ok(MeshSize { points: (layers + 1) * (6 * n.pow(2) + 2) + centres, cells: cubes * cut.cells_per_cube() })
+    let points = (layers + 1) * (6 * n.pow(2) + 2) + centres;
+    Ok(size_in_order(values, MeshSize { points, cells: cubes * cut.cells_per_cube() }))
 }
 
 fn hollow_ball(values: &Values) -> Result<Mesh, MeshError> {
@@ -146,7 +155,7 @@ fn hollow_ball(values: &Values) -> Result<Mesh, MeshError> {
     for point in &mut mesh.points {
         *point = centre + *point * radius;
     }
-    Ok(mesh)
+    Ok(in_order(values, mesh, |ends| on_arc(ends, centre)))
 }
 
 /// What is inside the shell of a unit ball.

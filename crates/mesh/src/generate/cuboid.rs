@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 use souple_table::{Parameter, Value, Values};
 
-use super::cut::Cut;
+use super::cut::{Cut, in_order, middle, size_in_order};
 use super::grid::Grid;
 use super::{Build, GeneratorEntry};
 use crate::{Mesh, MeshError};
@@ -29,7 +29,7 @@ pub(super) static BOX: GeneratorEntry = GeneratorEntry {
     build: BUILD,
 };
 
-const BUILD: Build = Build { size: |values| Ok(grid(values)?.size()), mesh: cuboid };
+const BUILD: Build = Build { size: |values| Ok(size_in_order(values, grid(values)?.size())), mesh: cuboid };
 
 fn grid(values: &Values) -> Result<Grid, MeshError> {
     Grid::new("cells", values.vector("cells"), Cut::from_values(values))
@@ -48,5 +48,6 @@ fn cuboid(values: &Values) -> Result<Mesh, MeshError> {
     let (origin, size) = (Vec3::from_array(values.vector("origin")), Vec3::from_array(size));
     let grid = grid(values)?;
     // origin + size ξ, with ξ = i/n computed first: the corners are exact
-    Ok(grid.mesh(|unit| origin + Vec3::new(size.x * unit.x, size.y * unit.y, size.z * unit.z)))
+    let mesh = grid.mesh(|unit| origin + Vec3::new(size.x * unit.x, size.y * unit.y, size.z * unit.z));
+    Ok(in_order(values, mesh, middle))
 }

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use souple_math::Vec3;
 use souple_table::{Kind, Parameter, Value, Values};
 
-use crate::{CellBlock, ElementKind};
+use crate::{CellBlock, ElementKind, Mesh, MeshSize, Order};
 
 /// How a cube is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +25,18 @@ impl Cut {
     pub(super) const PARAMETER: Parameter = Parameter {
         name: "element",
         summary: "kind of cells; `mixed` has all four kinds, conforming",
-        kind: Kind::Choice(&["tet4", "hex8", "prism6", "pyramid5", "mixed"]),
+        kind: Kind::Choice(&[
+            "tet4",
+            "hex8",
+            "prism6",
+            "pyramid5",
+            "mixed",
+            "tet10",
+            "hex20",
+            "prism15",
+            "pyramid13",
+            "mixed_quadratic",
+        ]),
         unit: "",
         range: souple_table::Range::ANY,
         default: Some(Value::Text("tet4")),
@@ -32,12 +44,26 @@ impl Cut {
 
     pub(super) fn from_values(values: &Values) -> Self {
         match values.text("element") {
-            "tet4" => Self::Tetrahedra,
-            "hex8" => Self::Hexahedra,
-            "prism6" => Self::Prisms,
-            "pyramid5" => Self::Pyramids,
-            "mixed" => Self::Mixed,
+            "tet4" | "tet10" => Self::Tetrahedra,
+            "hex8" | "hex20" => Self::Hexahedra,
+            "prism6" | "prism15" => Self::Prisms,
+            "pyramid5" | "pyramid13" => Self::Pyramids,
+            "mixed" | "mixed_quadratic" => Self::Mixed,
             other => unreachable!("`{other}` is not among the declared choices"),
+        }
+    }
+
+    /// The most points of a quadratic mesh for each of the linear one: one more for each edge.
+    fn raised_per_point(self) -> u64 {
+        match self {
+            // three edges along the axes for each point
+            Self::Hexahedra => 4,
+            // one across the faces of triangles
+            Self::Prisms => 5,
+            // three edges of a cube and eight to its centre, for two points
+            Self::Pyramids => 7,
+            // three along the axes, three across faces, one through the cube
+            Self::Tetrahedra | Self::Mixed => 8,
         }
     }
 
@@ -50,6 +76,49 @@ impl Cut {
             Self::Mixed => 7,
         }
     }
+}
+
+/// The order of the cells asked for.
+fn order(values: &Values) -> Order {
+    match values.text("element") {
+        "tet10" | "hex20" | "prism15" | "pyramid13" | "mixed_quadratic" | "tri6" | "quad8" | "edge3" => {
+            Order::Quadratic
+        }
+        _ => Order::Linear,
+    }
+}
+
+/// The mesh in the order asked for; `place` gives the middle of an edge from its ends.
+pub(super) fn in_order(values: &Values, mesh: Mesh, place: impl Fn([Vec3; 2]) -> Vec3) -> Mesh {
+    match order(values) {
+        Order::Linear => mesh,
+        Order::Quadratic => mesh.raised(place),
+    }
+}
+
+/// The size of that mesh from the linear one's: at most so many points.
+pub(super) fn size_in_order(values: &Values, size: MeshSize) -> MeshSize {
+    match order(values) {
+        Order::Linear => size,
+        Order::Quadratic => {
+            MeshSize { points: size.points * Cut::from_values(values).raised_per_point(), ..size }
+        }
+    }
+}
+
+/// The middle of a straight edge.
+pub(super) fn middle([a, b]: [Vec3; 2]) -> Vec3 {
+    (a + b) * 0.5
+}
+
+/// The middle of an edge of which both ends are as far from `centre`: on the arc between them. Others are straight.
+pub(super) fn on_arc(ends: [Vec3; 2], centre: Vec3) -> Vec3 {
+    let [a, b] = ends.map(|end| (end - centre).length());
+    let straight = middle(ends);
+    if (a - b).abs() > 1e-9 * a.max(b) {
+        return straight;
+    }
+    (straight - centre).try_normalised().map_or(straight, |ray| centre + ray * (0.5 * (a + b)))
 }
 
 /// Axis permutations in the order that numbers the tetrahedra of a cube; odd ones are mirrored.

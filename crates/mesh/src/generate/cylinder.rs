@@ -5,13 +5,12 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
-use super::cut::{Blocks, CORNERS, Cut};
+use super::cut::{Blocks, CORNERS, Cut, in_order, middle, on_arc, size_in_order};
 use super::{Build, GeneratorEntry, MeshSize};
 use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError};
 
-const ELEMENT: Parameter =
-    Parameter::choice("element", &["tet4", "hex8", "prism6", "pyramid5"], "kind of cells")
-        .or(Value::Text("tet4"));
+const ELEMENTS: &[&str] = &["tet4", "hex8", "prism6", "pyramid5", "tet10", "hex20", "prism15", "pyramid13"];
+const ELEMENT: Parameter = Parameter::choice("element", ELEMENTS, "kind of cells").or(Value::Text("tet4"));
 const ORIGIN: Parameter =
     Parameter::vector("origin", "m", "middle of the end of least x").or(Value::Vector([0.0; 3]));
 
@@ -222,13 +221,27 @@ fn cylinder_parts(values: &Values) -> Result<(Section, usize, Cut), MeshError> {
 
 fn cylinder_size(values: &Values) -> Result<MeshSize, MeshError> {
     let (section, along, cut) = cylinder_parts(values)?;
-    Ok(section.size(along, cut))
+    Ok(size_in_order(values, section.size(along, cut)))
 }
 
 fn cylinder(values: &Values) -> Result<Mesh, MeshError> {
     let (section, along, cut) = cylinder_parts(values)?;
     let origin = Vec3::from_array(values.vector("origin"));
-    Ok(section.swept(values.number("length"), along, origin, cut))
+    let radius = values.number("radius");
+    let round = |ends: [Vec3; 2]| {
+        // only the side is round: the rings inside change from squares to circles
+        let is_side =
+            |end: Vec3| (libm::hypot(end.y - origin.y, end.z - origin.z) - radius).abs() < 1e-9 * radius;
+        if ends.into_iter().all(is_side) { around_axis(ends, origin) } else { middle(ends) }
+    };
+    Ok(in_order(values, section.swept(values.number("length"), along, origin, cut), round))
+}
+
+/// The middle of an edge, on the arc around the axis where both ends are as far from it.
+fn around_axis(ends: [Vec3; 2], origin: Vec3) -> Vec3 {
+    let x = middle(ends).x;
+    let across = ends.map(|end| Vec3::new(x, end.y, end.z));
+    on_arc(across, Vec3::new(x, origin.y, origin.z))
 }
 
 /// Section, layers and cut of a shell.
@@ -253,11 +266,12 @@ fn shell_parts(values: &Values) -> Result<(Section, usize, Cut), MeshError> {
 
 fn shell_size(values: &Values) -> Result<MeshSize, MeshError> {
     let (section, along, cut) = shell_parts(values)?;
-    Ok(section.size(along, cut))
+    Ok(size_in_order(values, section.size(along, cut)))
 }
 
 fn shell(values: &Values) -> Result<Mesh, MeshError> {
     let (section, along, cut) = shell_parts(values)?;
     let origin = Vec3::from_array(values.vector("origin"));
-    Ok(section.swept(values.number("length"), along, origin, cut))
+    let mesh = section.swept(values.number("length"), along, origin, cut);
+    Ok(in_order(values, mesh, |ends| around_axis(ends, origin)))
 }

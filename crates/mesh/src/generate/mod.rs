@@ -1,13 +1,15 @@
-//! Meshes made from a few numbers: bar, box, sphere, cylinder, shell, in every kind of cell and in mixes.
+//! Meshes made from a few numbers: bar, box, sphere, cylinder, shell, sheet, line, in every kind of cell and in mixes.
 //!
 //! Boxes are grids of cubes (`grid`), balls a grid in a shell of six (`ball`), cylinders a section
-//! swept (`cylinder`); each cube is `cut` into cells.
+//! swept (`cylinder`); each cube is `cut` into cells. Quadratic cells are linear ones raised, middles of edges on the
+//! curve where there is one.
 
 mod ball;
 mod cuboid;
 mod cut;
 mod cylinder;
 mod grid;
+mod sheet;
 
 use souple_table::{Entry, Table, Values};
 
@@ -39,6 +41,8 @@ pub static GENERATORS: Table<Build> = Table {
         &ball::HOLLOW_SPHERE,
         &cylinder::CYLINDER,
         &cylinder::SHELL,
+        &sheet::SHEET,
+        &sheet::LINE,
     ],
 };
 

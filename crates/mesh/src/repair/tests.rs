@@ -1,3 +1,5 @@
+//! What is wrong with a surface is found, mended where that is safe, and said.
+
 use souple_table::{Value, Values};
 
 use super::*;

@@ -74,12 +74,12 @@ impl Setting {
 }
 
 /// A direction over all rows, always the same.
-fn direction(rows: usize, seed: f64) -> Vec<Vec3> {
+pub(crate) fn direction(rows: usize, seed: f64) -> Vec<Vec3> {
     let number = |i: f64| (12.9898 * (i + seed)).sin();
     (0..rows).map(|row| Vec3::from_array([0.0, 0.4, 0.7].map(|axis| number(row as f64 + axis)))).collect()
 }
 
-fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
+pub(crate) fn dot(a: &[Vec3], b: &[Vec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
 }
 
@@ -172,7 +172,7 @@ fn assert_dissipation(force: &dyn Force, setting: &Setting) {
     }
 }
 
-fn multiply(matrix: &BlockMatrix, x: &[Vec3]) -> Vec<Vec3> {
+pub(crate) fn multiply(matrix: &BlockMatrix, x: &[Vec3]) -> Vec<Vec3> {
     let pattern = matrix.pattern();
     let row = |a: usize| {
         pattern.slots(a).map(|slot| matrix.values()[slot] * x[pattern.columns()[slot] as usize]).sum()

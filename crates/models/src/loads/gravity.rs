@@ -18,7 +18,7 @@ enum Acceleration {
     /// Always the same; may be edited [m/s²].
     Constant(Vec3),
     /// Three formulas of [`TIME_VARIABLES`] [m/s²].
-    Varying([Formula; 3]),
+    Varying(Box<[Formula; 3]>),
 }
 
 /// What a gravity that varies may refer to: the time [s].
@@ -69,7 +69,7 @@ impl Gravity {
         mass: &Mass,
         kinematics: &Kinematics,
     ) -> Self {
-        Self::of(name.into(), Acceleration::Varying(acceleration), mass, kinematics)
+        Self::of(name.into(), Acceleration::Varying(Box::new(acceleration)), mass, kinematics)
     }
 
     fn of(name: String, acceleration: Acceleration, mass: &Mass, kinematics: &Kinematics) -> Self {

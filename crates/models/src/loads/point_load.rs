@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use souple_engine::tangent::add_block;
 use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use super::{ForceField, LoadError, finite};
@@ -35,6 +35,17 @@ impl PointLoad {
             finite(format!("rows[{index}].share"), *share)?;
         }
         Ok(Self { name: name.into(), rows, field })
+    }
+
+    /// Calls `add(row, ∂f/∂x)` for every row; never where the force does not change with the place.
+    fn for_blocks(&self, at: &Configuration, mut add: impl FnMut(usize, Mat3)) {
+        if !self.field.depends_on_position() {
+            return;
+        }
+        for &(row, share) in &self.rows {
+            let gradient = self.field.gradient(at.positions[row as usize], at.time);
+            add(row as usize, gradient * (share * at.load));
+        }
     }
 }
 
@@ -76,14 +87,7 @@ impl Force for PointLoad {
         _scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        if !self.field.depends_on_position() {
-            return;
-        }
-        for &(row, share) in &self.rows {
-            let row = row as usize;
-            let change = self.field.gradient(at.positions[row], at.time) * delta[row];
-            out[row] += change * (share * at.load * weights.position);
-        }
+        self.for_blocks(at, |row, block| out[row] += block * delta[row] * weights.position);
     }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
@@ -97,14 +101,20 @@ impl Force for PointLoad {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        if !self.field.depends_on_position() {
-            return;
-        }
-        for &(row, share) in &self.rows {
-            let row = row as usize;
-            let gradient = self.field.gradient(at.positions[row], at.time);
-            add_block(matrix, row, row, &(gradient * (share * at.load * weights.position)));
-        }
+        self.for_blocks(at, |row, block| add_block(matrix, row, row, &(block * weights.position)));
+    }
+
+    // (K + Kᵀ)/2
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.for_blocks(at, |row, block| {
+            add_block(matrix, row, row, &(block.symmetric_part() * weights.position));
+        });
     }
 
     fn bytes(&self) -> usize {

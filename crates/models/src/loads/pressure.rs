@@ -14,30 +14,28 @@ use souple_solve::BlockMatrix;
 
 use super::{LoadError, finite};
 
-/// The most corners of a face.
-const CORNERS: usize = 4;
+/// The most nodes of a face.
+const NODES: usize = 8;
 
-/// A face that is pressed: a triangle or quadrilateral of rows, counterclockwise seen from outside.
+/// A face that is pressed: a triangle or quadrilateral of rows, linear or quadratic, counterclockwise seen from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PressedFace {
-    rows: [u32; CORNERS],
+    rows: [u32; NODES],
     kind: ElementKind,
 }
 
 impl PressedFace {
-    /// `None` unless there are three or four corners.
-    pub fn new(rows: &[u32]) -> Option<Self> {
-        let kind = match rows.len() {
-            3 => ElementKind::Tri3,
-            4 => ElementKind::Quad4,
-            _ => return None,
-        };
-        let mut corners = [0; CORNERS];
-        corners[..rows.len()].copy_from_slice(rows);
-        Some(Self { rows: corners, kind })
+    /// `None` unless it is a surface element with a row for each node.
+    pub fn new(kind: ElementKind, rows: &[u32]) -> Option<Self> {
+        if kind.dimension() != 2 || rows.len() != kind.node_count() || rows.len() > NODES {
+            return None;
+        }
+        let mut nodes = [0; NODES];
+        nodes[..rows.len()].copy_from_slice(rows);
+        Some(Self { rows: nodes, kind })
     }
 
-    /// Corners in order.
+    /// Nodes: corners in order, then middles of sides.
     pub fn rows(&self) -> &[u32] {
         &self.rows[..self.kind.node_count()]
     }
@@ -53,23 +51,29 @@ struct Samples {
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     weight: f64,
-    shape: [f64; CORNERS],
-    by_xi: [f64; CORNERS],
-    by_eta: [f64; CORNERS],
+    shape: [f64; NODES],
+    by_xi: [f64; NODES],
+    by_eta: [f64; NODES],
 }
 
 impl Samples {
     fn of(kind: ElementKind) -> Self {
-        // N (x_ξ × x_η): linear on a triangle, of degree 2 along each side of a quadrilateral
-        let degree = if kind == ElementKind::Tri3 { 2 } else { 3 };
+        // N (x_ξ × x_η): linear on a triangle, of degree 2 along each side of a quadrilateral; of total degree 4 on the
+        // quadratic triangle, of degree 5 along each side of the quadratic quadrilateral
+        let degree = match kind {
+            ElementKind::Tri3 => 2,
+            ElementKind::Quad4 => 3,
+            ElementKind::Tri6 => 4,
+            _ => 5,
+        };
         let rule: &QuadratureRule = kind.rule_of_degree(degree).unwrap_or_else(|| kind.default_rule());
         let sample = |point: &souple_mesh::QuadraturePoint| {
             let (shape, gradients) = (kind.shape(point.position), kind.shape_gradients(point.position));
             let mut sample = Sample {
                 weight: point.weight,
-                shape: [0.0; CORNERS],
-                by_xi: [0.0; CORNERS],
-                by_eta: [0.0; CORNERS],
+                shape: [0.0; NODES],
+                by_xi: [0.0; NODES],
+                by_eta: [0.0; NODES],
             };
             for corner in 0..kind.node_count() {
                 sample.shape[corner] = shape[corner];
@@ -121,8 +125,8 @@ pub struct Pressure {
     /// Of [`super::VARIABLES`]: where the face is now, and the time [Pa].
     pressure: Formula,
     varies_with_place: bool,
-    triangle: Samples,
-    quadrilateral: Samples,
+    /// By kind of face, where there is one of it.
+    samples: Vec<(ElementKind, Samples)>,
     is_closed: bool,
 }
 
@@ -146,15 +150,13 @@ impl Pressure {
             finite("pressure", pressure.evaluate(&[0.0; super::VARIABLES.len()]))?;
         }
         let is_closed = is_closed(&faces);
-        Ok(Self {
-            name: name.into(),
-            faces,
-            pressure,
-            varies_with_place,
-            triangle: Samples::of(ElementKind::Tri3),
-            quadrilateral: Samples::of(ElementKind::Quad4),
-            is_closed,
-        })
+        let mut samples: Vec<(ElementKind, Samples)> = Vec::new();
+        for face in &faces {
+            if samples.iter().all(|(kind, _)| *kind != face.kind) {
+                samples.push((face.kind, Samples::of(face.kind)));
+            }
+        }
+        Ok(Self { name: name.into(), faces, pressure, varies_with_place, samples, is_closed })
     }
 
     fn has_energy(&self) -> bool {
@@ -176,8 +178,8 @@ impl Pressure {
     /// Calls `visit(face, sample, placed)` for every sample in order.
     fn for_samples(&self, positions: &[Vec3], mut visit: impl FnMut(&PressedFace, &Sample, &Placed)) {
         for face in &self.faces {
-            let samples = if face.kind == ElementKind::Tri3 { &self.triangle } else { &self.quadrilateral };
-            for sample in &samples.points {
+            let of_kind = self.samples.iter().find(|(kind, _)| *kind == face.kind);
+            for sample in of_kind.iter().flat_map(|(_, samples)| &samples.points) {
                 visit(face, sample, &Placed::of(sample, face.rows(), positions));
             }
         }
@@ -206,7 +208,7 @@ impl Pressure {
 fn is_closed(faces: &[PressedFace]) -> bool {
     let mut sides: HashMap<(u32, u32), i32> = HashMap::new();
     for face in faces {
-        let rows = face.rows();
+        let rows = &face.rows()[..face.kind.corner_count()];
         for (corner, &from) in rows.iter().enumerate() {
             let to = rows[(corner + 1) % rows.len()];
             let turn = if from < to { 1 } else { -1 };
@@ -275,6 +277,21 @@ impl Force for Pressure {
     ) {
         self.for_blocks(at, |a, b, block| {
             add_block(matrix, a as usize, b as usize, &(block * weights.position));
+        });
+    }
+
+    // (K + Kᵀ)/2
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.for_blocks(at, |a, b, block| {
+            let half = block * (0.5 * weights.position);
+            add_block(matrix, a as usize, b as usize, &half);
+            add_block(matrix, b as usize, a as usize, &half.transpose());
         });
     }
 

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
-use souple_engine::{Force, Grip, Hand, Kinematics, Mass, Motion, ParameterError, UnknownKind};
+use souple_engine::{Force, Grip, Hand, Kinematics, Mass, Motion, ParameterError, TangentWeights, UnknownKind};
 use souple_formal::Formula;
 use souple_math::Vec3;
+use souple_mesh::ElementKind;
+use souple_solve::{BlockMatrix, Pattern};
 
-use super::battery::{Setting, assert_force, stepper, stepper_of, world};
+use super::battery::{Setting, assert_force, direction, dot, multiply, stepper, stepper_of, world};
 use super::*;
 
 fn positions() -> Vec<Vec3> {
@@ -95,7 +97,10 @@ fn battery_of_every_load() {
 
 /// Faces of a pyramid of five rows, nothing planar or regular about it: a quadrilateral below, four triangles above it.
 fn pyramid() -> (Vec<PressedFace>, Vec<Vec3>) {
-    let face = |rows: &[u32]| PressedFace::new(rows).unwrap();
+    let face = |rows: &[u32]| {
+        let kind = if rows.len() == 3 { ElementKind::Tri3 } else { ElementKind::Quad4 };
+        PressedFace::new(kind, rows).unwrap()
+    };
     let faces =
         vec![face(&[0, 3, 2, 1]), face(&[0, 1, 4]), face(&[1, 2, 4]), face(&[2, 3, 4]), face(&[3, 0, 4])];
     let corners = [[0.0, 0.0, 0.1], [1.2, 0.1, 0.0], [1.0, 0.9, -0.2], [-0.1, 1.0, 0.0], [0.4, 0.5, 1.3]];
@@ -117,6 +122,45 @@ fn pressure_agrees_with_energy_and_derivatives() {
         let pressure = Pressure::new("pressure", faces, formula(text)).unwrap();
         assert_eq!(pressure.declaration().conservative, has_energy, "{text}");
         assert_force(&pressure, &Setting::new(&pressure, positions.clone(), velocities()));
+    }
+}
+
+/// What stands in for an unsymmetric tangent is its symmetric part: `x·S y = (x·K y + y·K x)/2`, the same either way round.
+#[test]
+fn symmetric_blocks_are_the_symmetric_part() {
+    let (faces, corners) = pyramid();
+    let varying = Formula::compile("1 + x * y - z", &VARIABLES).unwrap();
+    let field = FormulaVector::compile("[-y * t, x + z^2, 1 + x * y]").unwrap();
+    let forces: [Box<dyn Force>; 3] = [
+        Box::new(Pressure::new("open", faces[1..].to_vec(), Formula::constant(3.0)).unwrap()),
+        Box::new(Pressure::new("varying", faces, varying).unwrap()),
+        Box::new(PointLoad::new("by place", vec![(1, 0.25), (3, 0.75)], Arc::new(field)).unwrap()),
+    ];
+    for force in forces {
+        assert!(!force.declaration().symmetric_tangent);
+        let setting = Setting::new(force.as_ref(), corners.clone(), velocities());
+        let pattern =
+            Arc::new(Pattern::from_cliques(5, [[0, 1, 2, 3, 4]].iter().map(|all| &all[..])).unwrap());
+        let weights = TangentWeights { position: -0.7, velocity: -2.0 };
+        let mut scratch = force.new_scratch();
+        let mut exact = BlockMatrix::zeros(pattern.clone());
+        force.add_blocks(&setting.at(), weights, &mut scratch, &mut exact);
+        let mut symmetric = BlockMatrix::zeros(pattern);
+        force.add_symmetric_blocks(&setting.at(), weights, &mut scratch, &mut symmetric);
+        let (x, y) = (direction(5, 0.1), direction(5, 0.9));
+        let form = |matrix: &BlockMatrix, a: &[Vec3], b: &[Vec3]| dot(a, &multiply(matrix, b));
+        let expected = 0.5 * (form(&exact, &x, &y) + form(&exact, &y, &x));
+        for (a, b) in [(&x, &y), (&y, &x)] {
+            // some hundred terms, each of the size of the largest entry
+            let size = 1e-14 * exact.values().iter().map(|block| block.largest_entry()).fold(0.0, f64::max);
+            let error = (form(&symmetric, a, b) - expected).abs();
+            assert!(error <= size * 100.0, "{}: {error:e}", force.name());
+        }
+        assert!(
+            (form(&exact, &x, &y) - form(&exact, &y, &x)).abs() > 1e-3 * expected.abs(),
+            "{}",
+            force.name()
+        );
     }
 }
 

@@ -9,9 +9,9 @@ use std::sync::Arc;
 use souple_formal::law::{EnergyLaw, LawError, LawParameter, LawText};
 use souple_formal::tape::Tape;
 use souple_formal::{Expression, NodeKind, UnaryOperator, parse_quantity};
-use souple_table::{Entry, Parameter, Range, Value};
+use souple_table::{Entry, Parameter, Value};
 
-use super::{Build, Lame, Material, MaterialLaw, PARAMETERS_MAX};
+use super::{Build, DENSITY, Lame, Material, MaterialLaw, PARAMETERS_MAX};
 
 pub(super) const ENTRY: Entry<Build> = Entry {
     name: "hyperelastic",
@@ -33,7 +33,7 @@ pub(super) const ENTRY: Entry<Build> = Entry {
             "names for parts of the energy, such as { Q = \"b*(I4(fibre) - 1)^2\" }",
         )
         .or(Value::Texts(&[])),
-        Parameter::number("density", "kg/m³", Range::POSITIVE, "ρ: mass per volume of the rest shape"),
+        DENSITY,
     ],
     build: |values| {
         let text = law_text(values.text("energy"), values.texts("parameters"), values.texts("definitions"))?;
@@ -57,6 +57,11 @@ pub struct MaterialError {
 }
 
 impl MaterialError {
+    /// Of one parameter.
+    pub(super) fn of(parameter: &str, message: String) -> Self {
+        Self { path: vec![parameter.to_owned()], message }
+    }
+
     /// Keys that lead from the material to what is wrong: `["parameters", "mu"]`.
     pub fn path(&self) -> &[String] {
         &self.path

@@ -81,6 +81,11 @@ impl Lame {
         Self { mu, lambda: 2.0 * mu * poissons_ratio / (1.0 - 2.0 * poissons_ratio) }
     }
 
+    /// From the shear and the bulk modulus [Pa].
+    pub fn from_shear_bulk(shear: f64, bulk: f64) -> Self {
+        Self { mu: shear, lambda: bulk - 2.0 / 3.0 * shear }
+    }
+
     /// Stiffness against longitudinal waves, `λ + 2μ` [Pa]: the fastest waves run at `√((λ + 2μ)/ρ)`.
     pub fn longitudinal_modulus(&self) -> f64 {
         self.lambda + 2.0 * self.mu

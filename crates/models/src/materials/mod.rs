@@ -1,7 +1,7 @@
 //! Materials: hyperelastic laws, one file each, and their table.
 //!
 //! A new law is a file with an `impl Law` and an `ENTRY`, and its line in the list below. A law that is wanted in one
-//! scene needs no file: [`hyperelastic`] takes it as text.
+//! scene needs no file: `hyperelastic` takes it as text.
 
 // F, P, S, J as in the equations: the reader has the paper beside the code
 #![allow(non_snake_case)]
@@ -9,10 +9,13 @@
 mod corotational;
 mod hyperelastic;
 mod invariants;
+mod isochoric;
 mod law;
 mod library;
 mod linear;
+mod mooney_rivlin;
 mod neo_hookean;
+mod ogden;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
 
@@ -61,6 +64,8 @@ laws! {
     st_venant_kirchhoff: StVenantKirchhoff,
     neo_hookean: NeoHookean,
     stable_neo_hookean: StableNeoHookean,
+    mooney_rivlin: MooneyRivlin,
+    ogden: Ogden,
 }
 
 /// What an entry makes of its completed values.
@@ -123,17 +128,31 @@ const ISOTROPIC: &[Parameter] = &[
         Range::open(-1.0, 0.5),
         "ν: lateral contraction per extension of a rod",
     ),
-    Parameter::number("density", "kg/m³", Range::POSITIVE, "ρ: mass per volume of the rest shape"),
+    DENSITY,
 ];
+
+const DENSITY: Parameter =
+    Parameter::number("density", "kg/m³", Range::POSITIVE, "ρ: mass per volume of the rest shape");
+
+const BULK_MODULUS: Parameter = Parameter::number(
+    "bulk_modulus",
+    "Pa",
+    Range::POSITIVE,
+    "k: stiffness against change of volume; some hundred times the shear modulus for rubber",
+);
 
 impl Material {
     /// From the completed values of [`ISOTROPIC`].
     fn isotropic(law: AnyLaw, values: &Values) -> Result<Self, MaterialError> {
         let lame = Lame::from_young_poisson(values.number("youngs_modulus"), values.number("poissons_ratio"));
+        Ok(Self::known(law, lame, lame, values.number("density")))
+    }
+
+    /// A law with numbers of its own.
+    fn known<P: Parameters<f64>>(law: AnyLaw, numbers: P, small_strain: Lame, density: f64) -> Self {
         let mut parameters = [0.0; PARAMETERS_MAX];
-        lame.pack(|i, number| parameters[i] = number);
-        let law = MaterialLaw::Known(law);
-        Ok(Self { law, parameters, small_strain: lame, density: values.number("density") })
+        numbers.pack(|i, number| parameters[i] = number);
+        Self { law: MaterialLaw::Known(law), parameters, small_strain, density }
     }
 
     /// The numbers as the law `L` takes them.

@@ -29,18 +29,10 @@ pub struct Point<R> {
     left_cauchy_green: Mat3<R>,
 }
 
-/// `FᵀF`, its six different dot products taken once.
-#[inline(always)]
-fn right_cauchy_green<R: Real>(F: &Mat3<R>) -> Mat3<R> {
-    let [a, b, c] = F.columns;
-    let (ab, bc, ca) = (a.dot(b), b.dot(c), c.dot(a));
-    Mat3::from_columns(Vec3::new(a.dot(a), ab, ca), Vec3::new(ab, b.dot(b), bc), Vec3::new(ca, bc, c.dot(c)))
-}
-
 // S = 2μE + λ tr(E) I = μ C + (λ/2 (tr(C) - 3) - μ) I
 #[inline(always)]
 fn second_piola<R: Real>(p: &Lame<R>, F: &Mat3<R>) -> Mat3<R> {
-    let C = right_cauchy_green(F);
+    let C = F.gram();
     let s = (p.lambda * 0.5).mul_add(C.trace() - 3.0, -p.mu);
     let [a, b, c] = C.columns;
     let (xy, yz, zx) = (p.mu * a.y, p.mu * b.z, p.mu * a.z);
@@ -57,16 +49,12 @@ impl Law for StVenantKirchhoff {
 
     #[inline(always)]
     fn at<R: Real>(p: &Lame<R>, F: &Mat3<R>) -> Point<R> {
-        Point {
-            F: *F,
-            second_piola: second_piola(p, F),
-            left_cauchy_green: right_cauchy_green(&F.transpose()),
-        }
+        Point { F: *F, second_piola: second_piola(p, F), left_cauchy_green: F.transpose().gram() }
     }
 
     #[inline(always)]
     fn energy_density<R: Real>(p: &Lame<R>, F: &Mat3<R>) -> R {
-        let E = right_cauchy_green(F).plus_diagonal(F.columns[0].x.splat(-1.0)) * 0.5;
+        let E = F.gram().plus_diagonal(F.columns[0].x.splat(-1.0)) * 0.5;
         let trace = E.trace();
         p.mu * E.dot(&E) + p.lambda * trace * trace * 0.5
     }

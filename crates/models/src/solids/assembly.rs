@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use souple_math::{Mat3, Vec3};
+use souple_math::{Mat3, Padded, Vec3};
 use souple_solve::{BlockMatrix, Pattern};
 
 use super::elements::{Batch, Elements};
@@ -22,14 +22,6 @@ use super::parallel;
 const SLOTS_PER_TASK: usize = 4096;
 /// Place of a block that the matrix does not store.
 const NOWHERE: u16 = u16::MAX;
-
-/// Which pairs of nodes are summed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Pairs {
-    All,
-    /// For a matrix of diagonal blocks.
-    Equal,
-}
 
 /// Which blocks an element gives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,7 +52,6 @@ impl Symmetry {
 #[derive(Default)]
 pub struct Assembly {
     symmetry: Symmetry,
-    pairs: Option<Pairs>,
     pattern: Option<Arc<Pattern>>,
     /// `[block][pair of nodes][lane]` of all chunks: which of its chunk's sums an element block goes to, times two,
     /// plus one if transposed.
@@ -95,13 +86,19 @@ impl Assembly {
 
     /// Adds the elements' blocks to `matrix`: `blocks_of(batch, chunk, blocks, own rows of inputs, out)` writes those of
     /// some blocks of lanes, at most [`Batch::blocks_at_once`], `[block][pair of nodes][entry by columns][lane]`.
+    /// `partials` is scratch.
     pub fn add_blocks<K: Send + Sync, const I: usize>(
         &mut self,
         elements: &Elements<K>,
         inputs: [&[Vec3]; I],
+        partials: &mut Vec<Vec3>,
         matrix: &mut BlockMatrix,
-        blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Vec3]; I], &mut [f64]) + Sync,
+        blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Padded]; I], &mut [f64]) + Sync,
     ) {
+        let pattern = matrix.pattern();
+        if pattern.slot_count() == pattern.block_count() {
+            return self.add_diagonal_blocks(elements, inputs, partials, matrix, blocks_of);
+        }
         self.update(elements, matrix.pattern());
         let mut sums = std::mem::take(&mut self.sums);
         let start_of = |number: usize| self.starts[number].sum;
@@ -126,6 +123,57 @@ impl Assembly {
         });
         self.sums = sums;
         self.gather(matrix);
+    }
+
+    /// [`Self::add_blocks`] to a matrix of diagonal blocks, column by column: element blocks are computed three times, but
+    /// nothing has to be kept where memory is what counts.
+    fn add_diagonal_blocks<K: Send + Sync, const I: usize>(
+        &self,
+        elements: &Elements<K>,
+        inputs: [&[Vec3]; I],
+        partials: &mut Vec<Vec3>,
+        matrix: &mut BlockMatrix,
+        blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Padded]; I], &mut [f64]) + Sync,
+    ) {
+        for column in 0..3 {
+            elements.fill_partials(inputs, partials, |batch, chunk, inputs, sums| {
+                let nodes = batch.kind.node_count();
+                let (block_len, at_once) = (self.symmetry.pair_count(nodes) * LANES, batch.blocks_at_once);
+                BLOCKS.with_borrow_mut(|blocks| {
+                    blocks.resize(9 * block_len * at_once, 0.0);
+                    for first in (0..chunk.block_count()).step_by(at_once) {
+                        let range = first..chunk.block_count().min(first + at_once);
+                        blocks_of(batch, chunk, range.clone(), inputs, blocks);
+                        for (block, numbers) in range.zip(blocks.chunks_exact(9 * block_len)) {
+                            self.add_own_column(chunk, block, nodes, column, numbers, sums);
+                        }
+                    }
+                });
+            });
+            let blocks = &mut matrix.values_mut()[elements.rows()];
+            elements.gather_partials(partials, blocks, |block, sum| block.columns[column] += sum);
+        }
+    }
+
+    /// Adds one column of the diagonal blocks of a block of lanes to the sums on its nodes.
+    fn add_own_column(
+        &self,
+        chunk: &Chunk,
+        block: usize,
+        nodes: usize,
+        column: usize,
+        numbers: &[f64],
+        sums: &mut [Padded],
+    ) {
+        for (pair, (a, _)) in self.symmetry.pairs(nodes).enumerate().filter(|(_, (a, b))| a == b) {
+            let locals = &chunk.connectivity[(block * nodes + a) * LANES..][..LANES];
+            let number = |i: usize, lane: usize| numbers[(pair * 9 + 3 * column + i) * LANES + lane];
+            for (lane, local) in locals[..chunk.lanes_in(block)].iter().enumerate() {
+                let sum = &mut sums[*local as usize];
+                *sum =
+                    (Vec3::from(*sum) + Vec3::new(number(0, lane), number(1, lane), number(2, lane))).into();
+            }
+        }
     }
 
     /// Bytes of lists and sums.
@@ -161,19 +209,16 @@ impl Assembly {
         if self.pattern.as_ref().is_some_and(|known| Arc::ptr_eq(known, pattern)) {
             return;
         }
-        let is_diagonal = pattern.slot_count() == pattern.block_count();
-        let pairs = if is_diagonal { Pairs::Equal } else { Pairs::All };
-        if self.pairs != Some(pairs) {
-            self.number_sums(elements, pairs);
+        if self.pattern.is_none() {
+            self.number_sums(elements);
         }
         self.list_sources(&elements.rows(), pattern);
         self.pattern = Some(Arc::clone(pattern));
     }
 
     /// Numbers the pairs of nodes that occur in each chunk.
-    fn number_sums<K: Send + Sync>(&mut self, elements: &Elements<K>, pairs: Pairs) {
+    fn number_sums<K: Send + Sync>(&mut self, elements: &Elements<K>) {
         let symmetry = self.symmetry;
-        *self = Self { symmetry, pairs: Some(pairs), ..Self::default() };
         let mut known: Vec<(u16, u16)> = Vec::new();
         let mut ordered: Vec<Option<((u16, u16), bool)>> = Vec::new();
         for (batch, chunk) in elements.chunks() {
@@ -184,7 +229,7 @@ impl Assembly {
                 let local = |a: usize, lane: usize| chunk.connectivity[(block * nodes + a) * LANES + lane];
                 for (a, b) in symmetry.pairs(nodes) {
                     for lane in 0..LANES {
-                        let is_summed = lane < chunk.lanes_in(block) && (a == b || pairs == Pairs::All);
+                        let is_summed = lane < chunk.lanes_in(block);
                         // rows of a chunk ascend, so its own numbers stand for them
                         let (i, j) = (local(a, lane), local(b, lane));
                         let is_transposed = symmetry == Symmetry::Symmetric && i > j;

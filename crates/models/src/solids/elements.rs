@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ops::Range;
 
 use rayon::prelude::*;
-use souple_math::Vec3;
+use souple_math::{Padded, Vec3};
 use souple_mesh::{ElementKind, QuadratureRule};
 
 use super::layout::{self, Chunk, FlatCell, LANES};
@@ -60,14 +60,16 @@ pub trait Sorting {
 
 thread_local! {
     /// A chunk's own rows, gathered.
-    static LOCAL: RefCell<[Vec<Vec3>; 3]> = const { RefCell::new([Vec::new(), Vec::new(), Vec::new()]) };
+    static OWN_ROWS: RefCell<[Vec<Padded>; 3]> = const { RefCell::new([const { Vec::new() }; 3]) };
+    /// The sums on them.
+    static OWN_SUMS: RefCell<Vec<Padded>> = const { RefCell::new(Vec::new()) };
 }
 
 impl<K: Send + Sync> Elements<K> {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription, sorting: &impl Sorting<Kernel = K>) -> Result<Self, FlatCell> {
-        let SolidDescription { mesh, first_row, quadrature, .. } = description;
+        let SolidDescription { mesh, first_row, quadrature, section, .. } = description;
         let rows = *first_row..*first_row + mesh.points.len();
         let mut found = Vec::new();
         for (index, cell) in mesh.cells().enumerate() {
@@ -88,7 +90,12 @@ impl<K: Send + Sync> Elements<K> {
                 (cell.kind == kind && sorting.law_of(index) == law).then_some(index as u32)
             };
             let cells: Vec<u32> = mesh.cells().enumerate().filter_map(belongs).collect();
-            let body = layout::Body { mesh, first_row: *first_row, rule: quadrature.rule(kind) };
+            let body = layout::Body {
+                mesh,
+                first_row: *first_row,
+                rule: quadrature.rule(kind),
+                measure: section.measure(),
+            };
             let parameters_of = |cell: u32| sorting.parameters_of(cell as usize);
             let chunks = layout::chunks(&body, &cells, &parameters_of, elements.partial_count)?;
             elements.partial_count += chunks.iter().map(|chunk| chunk.rows.len()).sum::<usize>();
@@ -121,14 +128,25 @@ impl<K: Send + Sync> Elements<K> {
         (batch, &batch.chunks[number - batch.first_chunk])
     }
 
-    /// Runs `work` on every chunk with its own rows of `inputs` and its part of the sums, then adds the sums to
+    /// Runs `work` on every chunk with its own rows of `inputs` and sums on them, then adds the sums to
     /// `out`; `partials` is scratch.
     pub fn add_sums<const I: usize>(
         &self,
         inputs: [&[Vec3]; I],
         partials: &mut Vec<Vec3>,
         out: &mut [Vec3],
-        work: impl Fn(&Batch<K>, &Chunk, [&[Vec3]; I], &mut [Vec3]) + Sync,
+        work: impl Fn(&Batch<K>, &Chunk, [&[Padded]; I], &mut [Padded]) + Sync,
+    ) {
+        self.fill_partials(inputs, partials, work);
+        self.gather_partials(partials, &mut out[self.rows.clone()], |out, sum| *out += sum);
+    }
+
+    /// What `work` sums on every chunk's own rows.
+    pub fn fill_partials<const I: usize>(
+        &self,
+        inputs: [&[Vec3]; I],
+        partials: &mut Vec<Vec3>,
+        work: impl Fn(&Batch<K>, &Chunk, [&[Padded]; I], &mut [Padded]) + Sync,
     ) {
         partials.resize(self.partial_count, Vec3::ZERO);
         let start_of = |number: usize| {
@@ -136,23 +154,35 @@ impl<K: Send + Sync> Elements<K> {
         };
         parallel::fill(0..self.chunk_count, parallel::LIGHT, partials, &start_of, &|number, sums| {
             let (batch, chunk) = self.chunk(number);
-            sums.fill(Vec3::ZERO);
-            chunk.with_own_rows(inputs, |inputs| work(batch, chunk, inputs, sums));
+            OWN_SUMS.with_borrow_mut(|own| {
+                own.clear();
+                own.resize(sums.len(), Padded::default());
+                chunk.with_own_rows(inputs, |inputs| work(batch, chunk, inputs, own));
+                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum = Vec3::from(*own));
+            });
         });
-        let gather_rows = |(task, rows): (usize, &mut [Vec3])| {
+    }
+
+    /// Calls `add(out[row], Σ of its partial sums in chunk order)` for every row of the body.
+    pub fn gather_partials<T: Send>(
+        &self,
+        partials: &[Vec3],
+        out: &mut [T],
+        add: impl Fn(&mut T, Vec3) + Sync,
+    ) {
+        let gather_rows = |(task, rows): (usize, &mut [T])| {
             for (offset, row) in rows.iter_mut().enumerate() {
                 let mut sum = Vec3::ZERO;
                 for slot in self.gather.of(task * ROWS_PER_TASK + offset) {
                     sum += partials[*slot as usize];
                 }
-                *row += sum;
+                add(row, sum);
             }
         };
-        let rows = &mut out[self.rows.clone()];
-        if rows.len() >= 2 * ROWS_PER_TASK && rayon::current_num_threads() > 1 {
-            rows.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
+        if out.len() >= 2 * ROWS_PER_TASK && rayon::current_num_threads() > 1 {
+            out.par_chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
         } else {
-            rows.chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
+            out.chunks_mut(ROWS_PER_TASK).enumerate().for_each(gather_rows);
         }
     }
 
@@ -160,7 +190,7 @@ impl<K: Send + Sync> Elements<K> {
     pub fn sum<const I: usize>(
         &self,
         inputs: [&[Vec3]; I],
-        work: impl Fn(&Batch<K>, &Chunk, [&[Vec3]; I]) -> f64 + Sync,
+        work: impl Fn(&Batch<K>, &Chunk, [&[Padded]; I]) -> f64 + Sync,
     ) -> f64 {
         parallel::sum(0..self.chunk_count, &|number| {
             let (batch, chunk) = self.chunk(number);
@@ -242,12 +272,12 @@ impl Chunk {
     pub fn with_own_rows<const I: usize, T>(
         &self,
         inputs: [&[Vec3]; I],
-        work: impl FnOnce([&[Vec3]; I]) -> T,
+        work: impl FnOnce([&[Padded]; I]) -> T,
     ) -> T {
-        LOCAL.with_borrow_mut(|buffers| {
+        OWN_ROWS.with_borrow_mut(|buffers| {
             for (own, values) in buffers.iter_mut().zip(inputs) {
                 own.clear();
-                own.extend(self.rows.iter().map(|row| values[*row as usize]));
+                own.extend(self.rows.iter().map(|row| Padded::from(values[*row as usize])));
             }
             work(std::array::from_fn(|i| buffers[i].as_slice()))
         })

@@ -1,9 +1,11 @@
-//! From node positions to the gradient at a sample, and back, for elements of a known node count.
+//! From node positions to the gradient at a sample, and back.
 
 use souple_math::{Mat3, Real, Vec3};
 
 /// An element's nodes as the kernels see them; `reference` holds `∂N_a/∂ξ` at the sample.
 pub trait Geometry: Copy + Send + Sync + 'static {
+    /// Nodes, where their number is known ahead.
+    const NODES: Option<usize>;
     /// Samples, where their number does not depend on the rule: one where the gradient is the same everywhere.
     const SAMPLES: Option<usize>;
 
@@ -19,6 +21,7 @@ pub trait Geometry: Copy + Send + Sync + 'static {
 pub struct Tetrahedron;
 
 impl Geometry for Tetrahedron {
+    const NODES: Option<usize> = Some(4);
     const SAMPLES: Option<usize> = Some(1);
 
     #[inline(always)]
@@ -36,18 +39,19 @@ impl Geometry for Tetrahedron {
     }
 }
 
-/// Any element of `N` nodes.
+/// Any element: as many nodes as it has reference gradients at a sample.
 #[derive(Clone, Copy, Debug)]
-pub struct Nodes<const N: usize>;
+pub struct AnyElement;
 
-impl<const N: usize> Geometry for Nodes<N> {
+impl Geometry for AnyElement {
+    const NODES: Option<usize> = None;
     const SAMPLES: Option<usize> = None;
 
     #[inline(always)]
     fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
         let like = x[0].x;
         let mut sum = Mat3::zero(like);
-        for a in 0..N {
+        for a in 0..reference.len() {
             let g = reference[a];
             accumulate(&mut sum.columns[0], x[a], like.splat(g.x));
             accumulate(&mut sum.columns[1], x[a], like.splat(g.y));
@@ -59,7 +63,7 @@ impl<const N: usize> Geometry for Nodes<N> {
     #[inline(always)]
     fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]) {
         let like = stress.columns[0].x;
-        for a in 0..N {
+        for a in 0..reference.len() {
             let g = reference[a];
             let gradient = Vec3::new(like.splat(g.x), like.splat(g.y), like.splat(g.z));
             forces[a] -= *stress * gradient;

@@ -1,4 +1,5 @@
-//! The loops over elements, one text for every law, element and width of register.
+//! The loops over elements with a law compiled in: what the linear tetrahedron runs, one text for every law and width of
+//! register. Other elements, and laws as text, run in stages: [`super::staged`].
 //!
 //! At a sample with `X_ξ⁻¹ = (∂X/∂ξ)⁻¹` and volume `V`: `F = x_ξ X_ξ⁻¹`, `H = V P(F) X_ξ⁻ᵀ`, and node `a` feels
 //! `-H ∂N_a/∂ξ`.
@@ -7,7 +8,7 @@ use std::marker::PhantomData;
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
-use souple_math::{Lanes, Vec3};
+use souple_math::{Lanes, Padded, Vec3};
 
 use super::geometry::Geometry;
 use super::group::{Group, for_each_group};
@@ -17,21 +18,27 @@ use crate::materials::Law;
 /// The loops for one law on one element, behind a pointer so that a body may mix both.
 pub trait Kernel: Send + Sync {
     /// `forces[n] += f_n` over the chunk's nodes.
-    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], forces: &mut [Vec3]);
+    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded], forces: &mut [Padded]);
     /// `forces[n] += scale · (∂f/∂x δ)_n` over the chunk's nodes.
     fn differential(
         &self,
         chunk: &Chunk,
         reference: &[Vec3],
-        positions: &[Vec3],
-        delta: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
         scale: f64,
-        forces: &mut [Vec3],
+        forces: &mut [Padded],
     );
     /// Stored energy of the chunk [J].
-    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3]) -> f64;
+    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded]) -> f64;
     /// `δᵀ K δ` of the chunk with `K = -∂f/∂x` [J for a displacement of m].
-    fn quadratic_form(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], delta: &[Vec3]) -> f64;
+    fn quadratic_form(
+        &self,
+        chunk: &Chunk,
+        reference: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
+    ) -> f64;
     /// How many blocks of lanes [`Self::blocks`] likes to be asked for at once.
     fn blocks_at_once(&self) -> usize {
         1
@@ -42,7 +49,7 @@ pub trait Kernel: Send + Sync {
         chunk: &Chunk,
         blocks: Range<usize>,
         reference: &[Vec3],
-        positions: &[Vec3],
+        positions: &[Padded],
         scale: f64,
         out: &mut [f64],
     );
@@ -60,7 +67,7 @@ impl<L, G, const N: usize> Default for LawKernel<L, G, N> {
 }
 
 impl<L: Law, G: Geometry, const N: usize> Kernel for LawKernel<L, G, N> {
-    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], forces: &mut [Vec3]) {
+    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded], forces: &mut [Padded]) {
         Arch::new().dispatch(Forces::<L, G, N> { chunk, reference, positions, forces, kernel: PhantomData });
     }
 
@@ -68,10 +75,10 @@ impl<L: Law, G: Geometry, const N: usize> Kernel for LawKernel<L, G, N> {
         &self,
         chunk: &Chunk,
         reference: &[Vec3],
-        positions: &[Vec3],
-        delta: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
         scale: f64,
-        forces: &mut [Vec3],
+        forces: &mut [Padded],
     ) {
         let kernel = PhantomData;
         Arch::new().dispatch(Differential::<L, G, N> {
@@ -85,11 +92,17 @@ impl<L: Law, G: Geometry, const N: usize> Kernel for LawKernel<L, G, N> {
         });
     }
 
-    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3]) -> f64 {
+    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded]) -> f64 {
         Arch::new().dispatch(Energy::<L, G, N> { chunk, reference, positions, kernel: PhantomData })
     }
 
-    fn quadratic_form(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Vec3], delta: &[Vec3]) -> f64 {
+    fn quadratic_form(
+        &self,
+        chunk: &Chunk,
+        reference: &[Vec3],
+        positions: &[Padded],
+        delta: &[Padded],
+    ) -> f64 {
         let kernel = PhantomData;
         Arch::new().dispatch(QuadraticForm::<L, G, N> { chunk, reference, positions, delta, kernel })
     }
@@ -99,7 +112,7 @@ impl<L: Law, G: Geometry, const N: usize> Kernel for LawKernel<L, G, N> {
         chunk: &Chunk,
         blocks: Range<usize>,
         reference: &[Vec3],
-        positions: &[Vec3],
+        positions: &[Padded],
         scale: f64,
         out: &mut [f64],
     ) {
@@ -121,8 +134,8 @@ impl<L: Law, G: Geometry, const N: usize> Kernel for LawKernel<L, G, N> {
 struct Forces<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     reference: &'a [Vec3],
-    positions: &'a [Vec3],
-    forces: &'a mut [Vec3],
+    positions: &'a [Padded],
+    forces: &'a mut [Padded],
     kernel: PhantomData<(L, G)>,
 }
 
@@ -132,7 +145,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Forces<'_, L, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let x = group.gather(self.positions);
             let mut f = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
@@ -152,10 +165,10 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Forces<'_, L, G, N> {
 struct Differential<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     reference: &'a [Vec3],
-    positions: &'a [Vec3],
-    delta: &'a [Vec3],
+    positions: &'a [Padded],
+    delta: &'a [Padded],
     scale: f64,
-    forces: &'a mut [Vec3],
+    forces: &'a mut [Padded],
     kernel: PhantomData<(L, G)>,
 }
 
@@ -165,7 +178,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Differential<'_, L, G, N>
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
             let mut df = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
@@ -185,7 +198,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Differential<'_, L, G, N>
 struct Energy<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     reference: &'a [Vec3],
-    positions: &'a [Vec3],
+    positions: &'a [Padded],
     kernel: PhantomData<(L, G)>,
 }
 
@@ -196,7 +209,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Energy<'_, L, G, N> {
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         let mut sum = 0.0;
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let x = group.gather(self.positions);
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
@@ -213,8 +226,8 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Energy<'_, L, G, N> {
 struct QuadraticForm<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     reference: &'a [Vec3],
-    positions: &'a [Vec3],
-    delta: &'a [Vec3],
+    positions: &'a [Padded],
+    delta: &'a [Padded],
     kernel: PhantomData<(L, G)>,
 }
 
@@ -225,7 +238,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for QuadraticForm<'_, L, G, N
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         let mut sum = 0.0;
-        for_each_group!(simd, self.chunk, samples, 0..self.chunk.block_count(), N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
             let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
@@ -245,7 +258,7 @@ struct Blocks<'a, L, G, const N: usize> {
     chunk: &'a Chunk,
     block: usize,
     reference: &'a [Vec3],
-    positions: &'a [Vec3],
+    positions: &'a [Padded],
     scale: f64,
     out: &'a mut [f64],
     kernel: PhantomData<(L, G)>,
@@ -257,7 +270,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Blocks<'_, L, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
-        for_each_group!(simd, self.chunk, samples, self.block..self.block + 1, N, |group| {
+        for_each_group!(simd, self.chunk, N, samples, self.block..self.block + 1, N, |group| {
             let x = group.gather(self.positions);
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {

@@ -37,8 +37,9 @@ pub struct Chunk {
     pub connectivity: Vec<u16>,
     /// `[block][sample][SAMPLE_LEN][lane]`; lanes past the last element have no volume.
     samples: Vec<LaneBlock>,
-    /// `[block][parameter][lane]`.
+    /// `[block][parameter][lane]`, or of one block that stands for all where all elements have the same numbers.
     parameters: Vec<LaneBlock>,
+    has_one_material: bool,
     /// Where the chunk's nodes start among the partial sums.
     pub first_partial: usize,
 }
@@ -53,10 +54,10 @@ impl Chunk {
         (self.cells.len() - block).div_ceil(self.block_count()).min(LANES)
     }
 
-    /// `[block][sample][SAMPLE_LEN][lane]`, flat.
+    /// `[block][sample][SAMPLE_LEN]`.
     #[inline(always)]
-    pub fn samples(&self) -> &[f64] {
-        bytemuck::cast_slice(&self.samples)
+    pub fn samples(&self) -> &[LaneBlock] {
+        &self.samples
     }
 
     /// `X_ξ⁻¹` and the volume of the chunk's `slot`-th cell at a sample of `count`.
@@ -67,10 +68,23 @@ impl Chunk {
         (Mat3::from_columns(column(0), column(1), column(2)), number(9))
     }
 
-    /// `[block][parameter][lane]`, flat.
+    /// Volumes of the samples in row `row`, which counts samples block after block.
     #[inline(always)]
-    pub fn parameters(&self) -> &[f64] {
-        bytemuck::cast_slice(&self.parameters)
+    pub fn volumes(&self, row: usize) -> &[f64; LANES] {
+        &self.samples[(row + 1) * SAMPLE_LEN - 1].0
+    }
+
+    /// The `count` parameters of a block's elements.
+    #[inline(always)]
+    pub fn parameters(&self, block: usize, count: usize) -> &[LaneBlock] {
+        let block = if self.has_one_material { 0 } else { block };
+        &self.parameters[block * count..(block + 1) * count]
+    }
+
+    /// All parameters of a block's elements.
+    pub fn all_parameters(&self, block: usize) -> &[LaneBlock] {
+        let blocks = if self.has_one_material { 1 } else { self.block_count() };
+        self.parameters(block, self.parameters.len() / blocks)
     }
 
     pub fn bytes(&self) -> usize {
@@ -98,6 +112,8 @@ pub struct Body<'a> {
     /// Row of the mesh's first point.
     pub first_row: usize,
     pub rule: &'a QuadratureRule,
+    /// What makes a volume of the measure of a cell: 1, a thickness, the area of a cross-section.
+    pub measure: f64,
 }
 
 /// Lays out `cells` (numbers, all of one kind) into chunks; `parameters_of` gives as many numbers for each.
@@ -146,7 +162,7 @@ fn lay_out<'p>(
     parameters_of: &dyn Fn(u32) -> &'p [f64],
     first_partial: usize,
 ) -> Result<Chunk, FlatCell> {
-    let Body { mesh, first_row, rule } = body;
+    let Body { mesh, first_row, rule, measure } = body;
     let kind = body.cell(members[0]).kind;
     let row = |node: &u32| node + *first_row as u32;
     let nodes = kind.node_count();
@@ -156,11 +172,14 @@ fn lay_out<'p>(
     rows.shrink_to_fit();
     let blocks = members.len().div_ceil(LANES);
     let parameter_count = parameters_of(members[0]).len();
+    let has_one_material = members.iter().all(|cell| parameters_of(*cell) == parameters_of(members[0]));
+    let parameter_blocks = if has_one_material { 1 } else { blocks };
     let mut chunk = Chunk {
         cells: members.to_vec(),
         connectivity: vec![0; blocks * nodes * LANES],
         samples: vec![LaneBlock::default(); blocks * rule.points.len() * SAMPLE_LEN],
-        parameters: vec![LaneBlock::default(); blocks * parameter_count],
+        parameters: vec![LaneBlock::default(); parameter_blocks * parameter_count],
+        has_one_material,
         rows,
         first_partial,
     };
@@ -174,8 +193,10 @@ fn lay_out<'p>(
                 chunk.rows.binary_search(&row(node)).unwrap_or_else(|_| unreachable!("collected above"));
             chunk.connectivity[(block * nodes + a) * LANES + lane] = local as u16;
         }
-        for (i, number) in parameters_of(cell).iter().enumerate() {
-            chunk.parameters[block * parameter_count + i].0[lane] = *number;
+        if block < parameter_blocks {
+            for (i, number) in parameters_of(cell).iter().enumerate() {
+                chunk.parameters[block * parameter_count + i].0[lane] = *number;
+            }
         }
         let corners = mesh.positions_into(cell_nodes, &mut corners);
         for (sample, point) in rule.points.iter().enumerate() {
@@ -183,7 +204,7 @@ fn lay_out<'p>(
             let determinant = jacobian.determinant();
             let inverse = jacobian.try_inverse().filter(|inverse| determinant > 0.0 && inverse.is_finite());
             let inverse = inverse.ok_or(FlatCell { kind, cell, sample, determinant })?;
-            let volume = if slot < members.len() { determinant * point.weight } else { 0.0 };
+            let volume = if slot < members.len() { determinant * point.weight * measure } else { 0.0 };
             let at = (block * rule.points.len() + sample) * SAMPLE_LEN;
             for (i, number) in entries(&inverse).chain([volume]).enumerate() {
                 chunk.samples[at + i].0[lane] = number;

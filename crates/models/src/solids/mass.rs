@@ -1,19 +1,40 @@
 //! Mass of a body from its shape and densities.
+//!
+//! Densities are per measure of a cell: of a section, the density times its thickness or area.
 
 use souple_engine::Mass;
 use souple_math::Vec3;
-use souple_mesh::{Mesh, QuadratureRule};
+use souple_mesh::{Cell, MAX_NODES, Mesh, Order, QuadratureRule};
 
-/// Adds `∫ρ N_a dV` of every cell to the mass of row `first_row + a`: the row sums of the consistent mass, and
-/// a quarter of the cell for the corners of a tetrahedron. Call [`Mass::seal`] when all bodies are in.
+/// Adds the mass of every cell to those of its nodes' rows. Call [`Mass::seal`] when all bodies are in.
+///
+/// Of linear cells these are the row sums of the consistent mass, `∫ρ N_a dV`: a quarter of the cell for the corners of a
+/// tetrahedron. Row sums of quadratic cells are negative at corners; there the diagonal of the consistent mass is scaled
+/// to the mass of the cell (Hinton, Rock & Zienkiewicz 1976): `m_a = m ∫N_a² dV / Σ_b ∫N_b² dV`.
 pub fn lumped_mass(mesh: &Mesh, first_row: usize, density_of_cell: &dyn Fn(usize) -> f64, mass: &mut Mass) {
-    over_samples(mesh, 2, |cell, nodes, shape, volume| {
-        let row_mass = density_of_cell(cell) * volume;
-        for (node, weight) in nodes.iter().zip(shape) {
-            let row = node + first_row as u32;
-            mass.add(row, row, row_mass * weight);
+    for (index, cell) in mesh.cells().enumerate() {
+        let density = density_of_cell(index);
+        match cell.kind.order() {
+            Order::Linear => over_samples(mesh, cell, 2, |shape, volume| {
+                for (node, weight) in cell.nodes.iter().zip(shape) {
+                    let row = node + first_row as u32;
+                    mass.add(row, row, density * volume * weight);
+                }
+            }),
+            Order::Quadratic => {
+                let (mut total, mut diagonal) = (0.0, [0.0; MAX_NODES]);
+                over_samples(mesh, cell, 4, |shape, volume| {
+                    total += volume;
+                    diagonal.iter_mut().zip(shape).for_each(|(sum, weight)| *sum += volume * weight * weight);
+                });
+                let scale = density * total / diagonal.iter().sum::<f64>();
+                for (node, share) in cell.nodes.iter().zip(diagonal) {
+                    let row = node + first_row as u32;
+                    mass.add(row, row, share * scale);
+                }
+            }
         }
-    });
+    }
 }
 
 /// Adds `∫ρ N_a N_b dV` of every cell. Call [`Mass::seal`] when all bodies are in.
@@ -23,26 +44,27 @@ pub fn consistent_mass(
     density_of_cell: &dyn Fn(usize) -> f64,
     mass: &mut Mass,
 ) {
-    over_samples(mesh, 4, |cell, nodes, shape, volume| {
-        let sample_mass = density_of_cell(cell) * volume;
-        for (a, weight_a) in nodes.iter().zip(shape) {
-            for (b, weight_b) in nodes.iter().zip(shape) {
-                let (a, b) = (a + first_row as u32, b + first_row as u32);
-                mass.add(a, b, sample_mass * weight_a * weight_b);
+    for (index, cell) in mesh.cells().enumerate() {
+        let density = density_of_cell(index);
+        over_samples(mesh, cell, 4, |shape, volume| {
+            for (a, weight_a) in cell.nodes.iter().zip(shape) {
+                for (b, weight_b) in cell.nodes.iter().zip(shape) {
+                    let (a, b) = (a + first_row as u32, b + first_row as u32);
+                    mass.add(a, b, density * volume * weight_a * weight_b);
+                }
             }
-        }
-    });
+        });
+    }
 }
 
-/// Calls `add(cell, nodes, N, V)` at the samples of a rule of the given degree, or of the finest there is.
-fn over_samples(mesh: &Mesh, degree: usize, mut add: impl FnMut(usize, &[u32], &[f64], f64)) {
-    for (index, cell) in mesh.cells().enumerate() {
-        let finest = || cell.kind.rules().last().unwrap_or_else(|| cell.kind.default_rule());
-        let rule: &QuadratureRule = cell.kind.rule_of_degree(degree).unwrap_or_else(finest);
-        let corners: Vec<Vec3> = cell.nodes.iter().map(|node| mesh.points[*node as usize]).collect();
-        for point in &rule.points {
-            let volume = cell.kind.jacobian(&corners, point.position).determinant() * point.weight;
-            add(index, cell.nodes, &cell.kind.shape(point.position), volume);
-        }
+/// Calls `add(N, V)` at the samples of a rule of the given degree, or of the finest there is.
+fn over_samples(mesh: &Mesh, cell: Cell<'_>, degree: usize, mut add: impl FnMut(&[f64], f64)) {
+    let finest = || cell.kind.rules().last().unwrap_or_else(|| cell.kind.default_rule());
+    let rule: &QuadratureRule = cell.kind.rule_of_degree(degree).unwrap_or_else(finest);
+    let mut buffer = [Vec3::ZERO; MAX_NODES];
+    let positions = mesh.positions_into(cell.nodes, &mut buffer);
+    for point in &rule.points {
+        let volume = cell.kind.jacobian(positions, point.position).determinant() * point.weight;
+        add(&cell.kind.shape(point.position), volume);
     }
 }

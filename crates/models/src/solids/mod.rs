@@ -1,4 +1,4 @@
-//! Solids: finite elements of any kind and law, mixed in one body.
+//! Solids: finite elements of any kind and law, mixed in one body; plane bodies, membranes and bars with them.
 
 mod assembly;
 mod elements;
@@ -10,7 +10,11 @@ mod mass;
 mod output;
 mod parallel;
 mod rayleigh;
-mod text_kernel;
+mod row_law;
+mod sample_law;
+mod section;
+mod section_kernel;
+mod staged;
 mod viscosity;
 mod viscous_kernel;
 
@@ -21,20 +25,24 @@ use std::sync::Arc;
 use souple_engine::state::Pair;
 use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, Mesh, QuadratureRule};
+use souple_mesh::{ElementKind, MAX_NODES, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
-use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters, TextLaw};
+use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters};
 use assembly::{Assembly, Symmetry};
 use elements::{Batch, Elements, Sorting};
-use geometry::{Nodes, Tetrahedron};
+use geometry::{AnyElement, Tetrahedron};
 use kernel::{Kernel, LawKernel};
 use layout::Chunk;
-use text_kernel::TextKernel;
+use row_law::{RowLaw, row_law};
+use sample_law::{Compiled, SampleLaw, Taped};
+use section_kernel::SectionKernel;
+use staged::Staged;
 
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass};
 pub use rayleigh::RayleighDamping;
+pub use section::{BuildSection, SECTIONS, Section};
 pub use viscosity::Viscosity;
 
 /// Elastic forces of a body.
@@ -46,6 +54,9 @@ pub struct SolidForce {
     material_of_cell: Vec<u16>,
     chunk_of_cell: Vec<u32>,
     quadrature: Quadrature,
+    section: Section,
+    /// The laws of the materials, for what is read off single cells.
+    row_laws: Vec<Box<dyn RowLaw>>,
 }
 
 /// Which rule of quadrature integrates the energy of an element.
@@ -78,6 +89,8 @@ pub struct SolidDescription<'a> {
     /// Index into `materials` for each cell.
     pub material_of_cell: &'a [u16],
     pub quadrature: Quadrature,
+    /// What its cells are sections of.
+    pub section: Section,
 }
 
 /// Partial sums and what assembles matrices, kept between calls.
@@ -111,12 +124,9 @@ impl LawVisitor for MakeKernel {
     type Output = Box<dyn Kernel>;
 
     fn visit<L: Law>(self, _: L) -> Box<dyn Kernel> {
-        match self.0.node_count() {
-            4 => Box::new(LawKernel::<L, Tetrahedron, 4>::default()),
-            5 => Box::new(LawKernel::<L, Nodes<5>, 5>::default()),
-            6 => Box::new(LawKernel::<L, Nodes<6>, 6>::default()),
-            8 => Box::new(LawKernel::<L, Nodes<8>, 8>::default()),
-            other => unreachable!("no volume element has {other} nodes"),
+        match self.0 {
+            ElementKind::Tet4 => Box::new(LawKernel::<L, Tetrahedron, 4>::default()),
+            kind => staged(kind, Box::new(Compiled::<L>::default())),
         }
     }
 }
@@ -125,6 +135,7 @@ impl LawVisitor for MakeKernel {
 struct ByLaw<'a> {
     materials: &'a [Material],
     material_of_cell: &'a [u16],
+    section: Section,
 }
 
 impl Sorting for ByLaw<'_> {
@@ -146,9 +157,13 @@ impl Sorting for ByLaw<'_> {
     }
 
     fn kernel(&self, kind: ElementKind, law: &MaterialLaw) -> Box<dyn Kernel> {
+        if self.section != Section::Solid {
+            let (law, nodes) = (row_law(law), kind.node_count());
+            return Box::new(SectionKernel { law, section: self.section, nodes });
+        }
         match law {
             MaterialLaw::Known(law) => law.visit(MakeKernel(kind)),
-            MaterialLaw::Text(law) => text_kernel(kind, law),
+            MaterialLaw::Text(law) => staged(kind, Box::new(Taped(Arc::clone(law)))),
         }
     }
 
@@ -161,8 +176,9 @@ impl SolidForce {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        let SolidDescription { name, mesh, materials, material_of_cell, quadrature, .. } = description;
-        let elements = Elements::new(description, &ByLaw { materials, material_of_cell })?;
+        let SolidDescription { name, mesh, materials, material_of_cell, quadrature, section, .. } =
+            description;
+        let elements = Elements::new(description, &ByLaw { materials, material_of_cell, section: *section })?;
         Ok(Self {
             name: name.clone(),
             chunk_of_cell: elements.chunk_of_cell(mesh.cell_count()),
@@ -170,6 +186,8 @@ impl SolidForce {
             materials: materials.to_vec(),
             material_of_cell: material_of_cell.to_vec(),
             quadrature: *quadrature,
+            section: *section,
+            row_laws: materials.iter().map(|material| row_law(&material.law)).collect(),
         })
     }
 }
@@ -184,13 +202,11 @@ impl LawVisitor for ParameterCount {
     }
 }
 
-fn text_kernel(kind: ElementKind, law: &Arc<TextLaw>) -> Box<dyn Kernel> {
-    match kind.node_count() {
-        4 => Box::new(TextKernel::<Tetrahedron, 4>::new(law)),
-        5 => Box::new(TextKernel::<Nodes<5>, 5>::new(law)),
-        6 => Box::new(TextKernel::<Nodes<6>, 6>::new(law)),
-        8 => Box::new(TextKernel::<Nodes<8>, 8>::new(law)),
-        other => unreachable!("no volume element has {other} nodes"),
+/// The kernel for a law that knows no elements.
+fn staged(kind: ElementKind, law: Box<dyn SampleLaw>) -> Box<dyn Kernel> {
+    match kind {
+        ElementKind::Tet4 => Box::new(Staged::<Tetrahedron, 4>::new(law, 4)),
+        _ => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, kind.node_count())),
     }
 }
 
@@ -253,10 +269,16 @@ impl Force for SolidForce {
         if weights.position == 0.0 {
             return;
         }
-        let assembly = &mut SolidScratch::of(scratch).assembly;
-        assembly.add_blocks(&self.elements, [at.positions], matrix, |batch, chunk, blocks, [x], out| {
-            batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
-        });
+        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
+        assembly.add_blocks(
+            &self.elements,
+            [at.positions],
+            partials,
+            matrix,
+            |batch, chunk, blocks, [x], out| {
+                batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
+            },
+        );
     }
 
     fn bytes(&self) -> usize {
@@ -282,7 +304,7 @@ impl Force for SolidForce {
 impl SolidForce {
     /// Whether every law gives rotated bodies no stress.
     fn is_objective(&self) -> bool {
-        self.materials.iter().all(|material| material.law.is_objective())
+        self.section.follows_rotation() || self.materials.iter().all(|material| material.law.is_objective())
     }
 
     pub fn cell_count(&self) -> usize {

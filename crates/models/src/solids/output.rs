@@ -2,8 +2,11 @@
 
 use souple_engine::CellField;
 use souple_math::{Mat3, Vec3};
+use souple_mesh::{ElementKind, Order};
 
-use super::SolidForce;
+use super::layout::LANES;
+use super::section::Completed;
+use super::{Section, SolidForce};
 use crate::materials::cauchy_stress;
 
 impl SolidForce {
@@ -23,16 +26,18 @@ impl SolidForce {
             volume: 0.0,
             current_volume: 0.0,
         };
+        let mut current_volume = 0.0;
         let points = &self.quadrature().rule(kind).points;
         for (sample, point) in points.iter().enumerate() {
             let (inverse, volume) = chunk.sample_of(slot, sample, points.len());
-            let F = kind.jacobian(&now, point.position) * inverse;
+            let F = self.completed(cell, self.gradient(kind, &now, point.position) * inverse);
             let P = material.stress(&F);
             sum.deformation += F * volume;
             sum.stress += P * volume;
             sum.cauchy += cauchy_stress(&P, &F).unwrap_or(Mat3::ZERO) * volume;
             sum.energy_density += material.energy_density(&F) * volume;
             sum.volume += volume;
+            current_volume += F.determinant() * volume;
         }
         let mean = 1.0 / sum.volume;
         let cauchy = sum.cauchy * mean;
@@ -45,12 +50,38 @@ impl SolidForce {
             energy_density: sum.energy_density * mean,
             volume: sum.volume,
             // by the rule that is exact for the determinant, whatever the samples of the law
-            current_volume: kind
-                .default_rule()
-                .points
-                .iter()
-                .map(|point| point.weight * kind.jacobian(&now, point.position).determinant())
-                .sum(),
+            current_volume: if self.section == Section::Solid {
+                let rule = if kind.order() == Order::Linear { kind.default_rule() } else { kind.mass_rule() };
+                rule.points
+                    .iter()
+                    .map(|point| point.weight * kind.jacobian(&now, point.position).determinant())
+                    .sum()
+            } else {
+                current_volume
+            },
         })
+    }
+
+    /// `∂x/∂ξ`, zero along what is across the cell.
+    fn gradient(&self, kind: ElementKind, now: &[Vec3], xi: Vec3) -> Mat3 {
+        let mut columns = kind.jacobian(now, xi).columns;
+        columns[self.section.dimension()..].fill(Vec3::ZERO);
+        Mat3 { columns }
+    }
+
+    /// The deformation gradient with what the section says of the directions across; of bars, in their own frame.
+    fn completed(&self, cell: usize, F: Mat3) -> Mat3 {
+        if self.section == Section::Solid {
+            return F;
+        }
+        let number = usize::from(self.material_of_cell[cell]);
+        let parameters: Vec<f64> =
+            self.materials[number].parameters.iter().flat_map(|number| [*number; LANES]).collect();
+        let entries: [f64; 9] = std::array::from_fn(|e| F.columns[e / 3].to_array()[e % 3]);
+        let row = entries.map(|entry| [entry; LANES]);
+        let completed = Completed::new(self.section, self.row_laws[number].as_ref(), &parameters, row).F;
+        let column =
+            |i: usize| Vec3::new(completed[3 * i][0], completed[3 * i + 1][0], completed[3 * i + 2][0]);
+        Mat3::from_columns(column(0), column(1), column(2))
     }
 }

@@ -35,7 +35,8 @@ impl RayleighDamping {
             of_rest
         };
         let materials: Vec<Material> = description.materials.iter().map(linear).collect();
-        let sorting = ByLaw { materials: &materials, material_of_cell: description.material_of_cell };
+        let SolidDescription { material_of_cell, section, .. } = *description;
+        let sorting = ByLaw { materials: &materials, material_of_cell, section };
         let elements = Elements::new(description, &sorting)?;
         Ok(Self { name: description.name.clone(), elements, seconds })
     }
@@ -109,10 +110,16 @@ impl Force for RayleighDamping {
             return;
         }
         let scale = self.seconds * weights.velocity;
-        let assembly = &mut SolidScratch::of(scratch).assembly;
-        assembly.add_blocks(&self.elements, [at.positions], matrix, |batch, chunk, blocks, [x], out| {
-            batch.kernel.blocks(chunk, blocks, &batch.reference, x, scale, out);
-        });
+        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
+        assembly.add_blocks(
+            &self.elements,
+            [at.positions],
+            partials,
+            matrix,
+            |batch, chunk, blocks, [x], out| {
+                batch.kernel.blocks(chunk, blocks, &batch.reference, x, scale, out);
+            },
+        );
     }
 
     // heat: ∫ β vᵀ K₀ v dt

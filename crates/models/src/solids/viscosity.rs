@@ -5,12 +5,12 @@ use std::any::Any;
 use souple_engine::state::Pair;
 use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::Vec3;
-use souple_mesh::ElementKind;
+use souple_mesh::{ElementKind, MAX_NODES};
 use souple_solve::BlockMatrix;
 
 use super::assembly::Symmetry;
 use super::elements::{Elements, Sorting};
-use super::geometry::{Nodes, Tetrahedron};
+use super::geometry::{AnyElement, Tetrahedron};
 use super::layout::FlatCell;
 use super::viscous_kernel::{Flow, StrainRate, ViscousKernel};
 use super::{SolidDescription, SolidScratch};
@@ -38,12 +38,9 @@ impl Sorting for Alike {
     }
 
     fn kernel(&self, kind: ElementKind, (): &()) -> Box<dyn ViscousKernel> {
-        match kind.node_count() {
-            4 => Box::new(StrainRate::<Tetrahedron, 4>::default()),
-            5 => Box::new(StrainRate::<Nodes<5>, 5>::default()),
-            6 => Box::new(StrainRate::<Nodes<6>, 6>::default()),
-            8 => Box::new(StrainRate::<Nodes<8>, 8>::default()),
-            other => unreachable!("no volume element has {other} nodes"),
+        match kind {
+            ElementKind::Tet4 => Box::new(StrainRate::<Tetrahedron, 4>::new(4)),
+            _ => Box::new(StrainRate::<AnyElement, MAX_NODES>::new(kind.node_count())),
         }
     }
 }
@@ -123,10 +120,11 @@ impl Force for Viscosity {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        let (assembly, inputs) = (&mut SolidScratch::of(scratch).assembly, [at.positions, at.velocities]);
+        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
         assembly.add_blocks(
             &self.elements,
-            inputs,
+            [at.positions, at.velocities],
+            partials,
             matrix,
             |batch, chunk, blocks, [positions, velocities], out| {
                 let flow = Flow { chunk, reference: &batch.reference, positions, velocities };

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 use souple_engine::TangentWeights;
-use souple_math::{Mat3, Real, Vec3};
+use souple_math::{Mat3, Padded, Real, Vec3};
 
 use super::geometry::Geometry;
 use super::group::{Group, for_each_group};
@@ -21,47 +21,65 @@ pub struct Flow<'a> {
     /// `∂N_a/∂ξ`, sample after sample.
     pub reference: &'a [Vec3],
     /// Of the chunk's own nodes.
-    pub positions: &'a [Vec3],
-    pub velocities: &'a [Vec3],
+    pub positions: &'a [Padded],
+    pub velocities: &'a [Padded],
 }
 
 /// The loops on one element, behind a pointer so that a body may mix them.
 pub trait ViscousKernel: Send + Sync {
     /// `forces[n] += f_n` over the chunk's nodes.
-    fn forces(&self, flow: Flow, forces: &mut [Vec3]);
+    fn forces(&self, flow: Flow, forces: &mut [Padded]);
     /// `forces[n] += (a ∂f/∂x δ + b ∂f/∂v δ)_n` over the chunk's nodes.
-    fn differential(&self, flow: Flow, delta: &[Vec3], weights: TangentWeights, forces: &mut [Vec3]);
+    fn differential(&self, flow: Flow, delta: &[Padded], weights: TangentWeights, forces: &mut [Padded]);
     /// `∫ 2 η Ė:Ė dV` of the chunk [W].
     fn power(&self, flow: Flow) -> f64;
     /// `a ∂f_i/∂x_j + b ∂f_i/∂v_j` of the elements of some blocks of lanes, `[block][(i, j)][entry by columns][lane]`.
     fn blocks(&self, flow: Flow, blocks: Range<usize>, weights: TangentWeights, out: &mut [f64]);
 }
 
-/// [`ViscousKernel`] on elements of geometry `G` with `N` nodes.
-pub struct StrainRate<G, const N: usize>(PhantomData<G>);
+/// [`ViscousKernel`] on elements of geometry `G` with at most `N` nodes.
+pub struct StrainRate<G, const N: usize> {
+    /// Nodes of an element.
+    nodes: usize,
+    geometry: PhantomData<G>,
+}
 
-impl<G, const N: usize> Default for StrainRate<G, N> {
-    fn default() -> Self {
-        Self(PhantomData)
+impl<G, const N: usize> StrainRate<G, N> {
+    pub fn new(nodes: usize) -> Self {
+        Self { nodes, geometry: PhantomData }
     }
 }
 
 impl<G: Geometry, const N: usize> ViscousKernel for StrainRate<G, N> {
-    fn forces(&self, flow: Flow, forces: &mut [Vec3]) {
-        Arch::new().dispatch(Forces::<G, N> { flow, forces, kernel: PhantomData });
+    fn forces(&self, flow: Flow, forces: &mut [Padded]) {
+        Arch::new().dispatch(Forces::<G, N> { flow, forces, nodes: self.nodes, geometry: PhantomData });
     }
 
-    fn differential(&self, flow: Flow, delta: &[Vec3], weights: TangentWeights, forces: &mut [Vec3]) {
-        Arch::new().dispatch(Differential::<G, N> { flow, delta, weights, forces, kernel: PhantomData });
+    fn differential(&self, flow: Flow, delta: &[Padded], weights: TangentWeights, forces: &mut [Padded]) {
+        Arch::new().dispatch(Differential::<G, N> {
+            flow,
+            delta,
+            weights,
+            forces,
+            nodes: self.nodes,
+            geometry: PhantomData,
+        });
     }
 
     fn power(&self, flow: Flow) -> f64 {
-        Arch::new().dispatch(Power::<G, N> { flow, kernel: PhantomData })
+        Arch::new().dispatch(Power::<G, N> { flow, nodes: self.nodes, geometry: PhantomData })
     }
 
     fn blocks(&self, flow: Flow, blocks: Range<usize>, weights: TangentWeights, out: &mut [f64]) {
-        for (block, out) in blocks.zip(out.chunks_exact_mut(N * N * 9 * LANES)) {
-            Arch::new().dispatch(Blocks::<G, N> { flow, block, weights, out, kernel: PhantomData });
+        for (block, out) in blocks.zip(out.chunks_exact_mut(self.nodes * self.nodes * 9 * LANES)) {
+            Arch::new().dispatch(Blocks::<G, N> {
+                flow,
+                block,
+                weights,
+                out,
+                nodes: self.nodes,
+                geometry: PhantomData,
+            });
         }
     }
 }
@@ -87,8 +105,9 @@ fn stress_differential<R: Real>(
 
 struct Forces<'a, G, const N: usize> {
     flow: Flow<'a>,
-    forces: &'a mut [Vec3],
-    kernel: PhantomData<G>,
+    forces: &'a mut [Padded],
+    nodes: usize,
+    geometry: PhantomData<G>,
 }
 
 impl<G: Geometry, const N: usize> WithSimd for Forces<'_, G, N> {
@@ -97,13 +116,14 @@ impl<G: Geometry, const N: usize> WithSimd for Forces<'_, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Flow { chunk, reference, positions, velocities } = self.flow;
-        let samples = G::SAMPLES.unwrap_or(reference.len() / N);
-        for_each_group!(simd, chunk, samples, 0..chunk.block_count(), N, |group| {
+        let nodes = G::NODES.unwrap_or(self.nodes);
+        let samples = G::SAMPLES.unwrap_or(reference.len() / nodes);
+        for_each_group!(simd, chunk, nodes, samples, 0..chunk.block_count(), N, |group| {
             let (x, v) = (group.gather(positions), group.gather(velocities));
             let modulus = group.parameter(0, 1);
             let mut f = group.zeros();
             for sample in 0..samples {
-                let reference = &reference[sample * N..(sample + 1) * N];
+                let reference = &reference[sample * nodes..(sample + 1) * nodes];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let rate = G::gradient(&v, reference) * inverse;
@@ -118,10 +138,11 @@ impl<G: Geometry, const N: usize> WithSimd for Forces<'_, G, N> {
 
 struct Differential<'a, G, const N: usize> {
     flow: Flow<'a>,
-    delta: &'a [Vec3],
+    delta: &'a [Padded],
     weights: TangentWeights,
-    forces: &'a mut [Vec3],
-    kernel: PhantomData<G>,
+    forces: &'a mut [Padded],
+    nodes: usize,
+    geometry: PhantomData<G>,
 }
 
 impl<G: Geometry, const N: usize> WithSimd for Differential<'_, G, N> {
@@ -130,14 +151,15 @@ impl<G: Geometry, const N: usize> WithSimd for Differential<'_, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Flow { chunk, reference, positions, velocities } = self.flow;
-        let samples = G::SAMPLES.unwrap_or(reference.len() / N);
-        for_each_group!(simd, chunk, samples, 0..chunk.block_count(), N, |group| {
+        let nodes = G::NODES.unwrap_or(self.nodes);
+        let samples = G::SAMPLES.unwrap_or(reference.len() / nodes);
+        for_each_group!(simd, chunk, nodes, samples, 0..chunk.block_count(), N, |group| {
             let (x, v) = (group.gather(positions), group.gather(velocities));
             let delta = group.gather(self.delta);
             let modulus = group.parameter(0, 1);
             let mut df = group.zeros();
             for sample in 0..samples {
-                let reference = &reference[sample * N..(sample + 1) * N];
+                let reference = &reference[sample * nodes..(sample + 1) * nodes];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let rate = G::gradient(&v, reference) * inverse;
@@ -153,7 +175,8 @@ impl<G: Geometry, const N: usize> WithSimd for Differential<'_, G, N> {
 
 struct Power<'a, G, const N: usize> {
     flow: Flow<'a>,
-    kernel: PhantomData<G>,
+    nodes: usize,
+    geometry: PhantomData<G>,
 }
 
 impl<G: Geometry, const N: usize> WithSimd for Power<'_, G, N> {
@@ -162,13 +185,14 @@ impl<G: Geometry, const N: usize> WithSimd for Power<'_, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let Flow { chunk, reference, positions, velocities } = self.flow;
-        let samples = G::SAMPLES.unwrap_or(reference.len() / N);
+        let nodes = G::NODES.unwrap_or(self.nodes);
+        let samples = G::SAMPLES.unwrap_or(reference.len() / nodes);
         let mut sum = 0.0;
-        for_each_group!(simd, chunk, samples, 0..chunk.block_count(), N, |group| {
+        for_each_group!(simd, chunk, nodes, samples, 0..chunk.block_count(), N, |group| {
             let (x, v) = (group.gather(positions), group.gather(velocities));
             let modulus = group.parameter(0, 1);
             for sample in 0..samples {
-                let reference = &reference[sample * N..(sample + 1) * N];
+                let reference = &reference[sample * nodes..(sample + 1) * nodes];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let rate = G::gradient(&v, reference) * inverse;
@@ -185,7 +209,8 @@ struct Blocks<'a, G, const N: usize> {
     block: usize,
     weights: TangentWeights,
     out: &'a mut [f64],
-    kernel: PhantomData<G>,
+    nodes: usize,
+    geometry: PhantomData<G>,
 }
 
 impl<G: Geometry, const N: usize> WithSimd for Blocks<'_, G, N> {
@@ -194,28 +219,29 @@ impl<G: Geometry, const N: usize> WithSimd for Blocks<'_, G, N> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Flow { chunk, reference, positions, velocities } = self.flow;
-        let samples = G::SAMPLES.unwrap_or(reference.len() / N);
-        for_each_group!(simd, chunk, samples, self.block..self.block + 1, N, |group| {
+        let nodes = G::NODES.unwrap_or(self.nodes);
+        let samples = G::SAMPLES.unwrap_or(reference.len() / nodes);
+        for_each_group!(simd, chunk, nodes, samples, self.block..self.block + 1, N, |group| {
             let (x, v) = (group.gather(positions), group.gather(velocities));
             let modulus = group.parameter(0, 1);
             let axes = Mat3::identity(modulus).columns;
             for sample in 0..samples {
-                let reference = &reference[sample * N..(sample + 1) * N];
+                let reference = &reference[sample * nodes..(sample + 1) * nodes];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
                 let rate = G::gradient(&v, reference) * inverse;
                 let stress = stress(modulus, &F, &rate);
                 let gradients = group.gradients(&inverse, reference);
-                for b in 0..N {
+                for b in 0..nodes {
                     for k in 0..3 {
                         // the force on a, -V dP g_a, for a unit displacement of b along axis k
                         let d = axes[k].outer(gradients[b]);
                         let dP = stress_differential(modulus, [&F, &rate, &stress], &d, self.weights);
                         let dP = dP.scaled(-volume);
-                        for a in 0..N {
+                        for a in 0..nodes {
                             let column = (dP * gradients[a]).to_array();
                             for i in 0..3 {
-                                let at = ((a * N + b) * 9 + 3 * k + i) * LANES;
+                                let at = ((a * nodes + b) * 9 + 3 * k + i) * LANES;
                                 group.add_or_put(sample, column[i], &mut self.out[at..at + LANES]);
                             }
                         }

@@ -59,7 +59,7 @@ fn symplectic_methods_keep_their_invariants() {
 }
 
 /// Energy is multiplied every step by what each method's description gives: `1 + (hω)²` (explicit Euler),
-/// `1 - (hω)⁶/72 + (hω)⁸/576` (Runge–Kutta), `1/(1 + (hω)²)` (backward Euler, one solve and full alike).
+/// `1 + (hω)⁴/4` and `1 - (hω)⁶/72 + (hω)⁸/576` (Runge–Kutta 2 and 4), `1/(1 + (hω)²)` (backward Euler, one solve and full alike).
 #[test]
 fn other_methods_multiply_energy() {
     for timestep in [0.005, 0.04] {
@@ -67,6 +67,7 @@ fn other_methods_multiply_energy() {
         let euler = 1.0 / (1.0 + x * x);
         for (name, newton, factor) in [
             ("explicit_euler", None, 1.0 + x * x),
+            ("rk2", None, 1.0 + x.powi(4) / 4.0),
             ("rk4", None, 1.0 - x.powi(6) / 72.0 + x.powi(8) / 576.0),
             ("backward_euler", Some("one"), euler),
             ("backward_euler", Some("full"), euler),

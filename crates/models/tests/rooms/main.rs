@@ -10,6 +10,7 @@ mod field;
 mod forces;
 mod frame_and_tets;
 mod ghosts;
+mod implicit_formulas;
 mod plastic_link;
 mod stability;
 mod sticking_pair;
@@ -48,13 +49,23 @@ fn world((system, q): (System, Vec<Vec3>), period: f64) -> World {
 }
 
 fn stepper(name: &str) -> Box<dyn Stepper> {
-    let entry = souple_engine::steppers::TABLE.find(name).unwrap();
-    (entry.build)(&entry.values(souple_table::Values::new()).unwrap())
+    stepper_with(name, &[], "")
 }
 
 /// A stepper that solves `newton = "full"` or `"one"`.
 fn stepper_of(name: &str, newton: &str) -> Box<dyn Stepper> {
+    stepper_with(name, &[], newton)
+}
+
+/// A stepper with these numbers, that solves `newton = "full"` or `"one"`; with the default of that where it is empty.
+fn stepper_with(name: &str, given: &[(&'static str, f64)], newton: &str) -> Box<dyn Stepper> {
     let entry = souple_engine::steppers::TABLE.find(name).unwrap();
-    let given = souple_table::Values::new().with("newton", souple_table::Value::Text(newton));
-    (entry.build)(&entry.values(given).unwrap())
+    let number = |values: souple_table::Values, (name, number): &(&'static str, f64)| {
+        values.with(*name, souple_table::Value::Number(*number))
+    };
+    let mut values = given.iter().fold(souple_table::Values::new(), number);
+    if !newton.is_empty() {
+        values.set("newton", souple_table::Value::Text(newton));
+    }
+    (entry.build)(&entry.values(values).unwrap())
 }

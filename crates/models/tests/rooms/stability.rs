@@ -133,3 +133,30 @@ fn blow_up_is_where_it_is_forecast() {
     assert!(calm < 3.2 * 75.0 * 1e-9, "{calm} m from balance with the forecast step");
     assert!(wild > 1e-4, "{wild} m from balance with a step a tenth longer");
 }
+
+/// Methods without a stable step are forecast the one at which an oscillation grows by a tenth a second: at that step it
+/// does, and damping bounds the step too.
+#[test]
+fn growth_is_what_is_forecast() {
+    let (mass, omega): (f64, f64) = (0.5, 20.0);
+    let oscillator = |name: &str, damping: f64, timestep: f64| {
+        let spring = GroundSpring { row: 0, share: 1.0, anchor: Vec3::ZERO };
+        let spring = GroundSprings::new("spring", vec![spring], mass * omega * omega, damping).unwrap();
+        let system = points(&[Vec3::X], &[mass], vec![Box::new(spring)], stepper(name));
+        world(system, timestep)
+    };
+    for name in ["explicit_euler", "rk2"] {
+        let longest = forecast_of(&mut oscillator(name, 0.0, 1e-4)).longest_step;
+        let mut world = oscillator(name, 0.0, longest);
+        let before = world.energy().total();
+        let steps = (1.0 / longest).round();
+        (0..steps as u32).for_each(|_| world.step().unwrap());
+        // energy is the square of the amplitude
+        let growth = 0.5 * (world.energy().total() / before).ln() / (steps * longest);
+        // ln(1 + x) = x to the part x/2, the growth of a step
+        assert!((growth / 0.1 - 1.0).abs() < 0.01, "{name}: {growth} a second at {longest} s");
+        // γ = c/m, h γ < 2 less 5 %
+        let damped = forecast_of(&mut oscillator(name, 1e4 * mass, 1e-4)).longest_step;
+        assert!((damped / (0.95 * 2.0 / 1e4) - 1.0).abs() < 1e-6, "{name}: {damped}");
+    }
+}

@@ -103,7 +103,7 @@ impl Stage {
     /// Bounds of the bounded shapes that are not much larger than the bodies.
     pub(super) fn bounds(&self, time: f64, bodies: BoundingBox) -> Option<BoundingBox> {
         let boxes = self.obstacles.iter().filter_map(|obstacle| {
-            let bounds = BoundingBox::of(points_of(obstacle, time).into_iter());
+            let bounds = BoundingBox::of(points_of(obstacle, time));
             let is_bounded = matches!(obstacle.form, Form::Surface { .. });
             (is_bounded && bounds.diagonal() < MUCH_LARGER * bodies.diagonal()).then_some(bounds)
         });

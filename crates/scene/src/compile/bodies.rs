@@ -8,7 +8,7 @@ use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
-    FlatCell, RayleighDamping, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
+    FlatCell, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
 };
 
 use super::boundary::constant_vector;
@@ -67,7 +67,12 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
     let mut forces: Vec<Box<dyn Force>> = Vec::new();
     for body in bodies() {
         let Some((materials, material_of_cell)) = materials_of(draft, body) else { continue };
-        let density = |cell: usize| materials[usize::from(material_of_cell[cell])].density;
+        let section = body.spec.section();
+        if !suits(draft, body, &materials) {
+            continue;
+        }
+        let density =
+            |cell: usize| materials[usize::from(material_of_cell[cell])].density * section.measure();
         match body.spec.mass {
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
@@ -79,6 +84,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             materials: &materials,
             material_of_cell: &material_of_cell,
             quadrature: body.spec.quadrature,
+            section,
         };
         if let Err(error) = add_solid(body.spec, description, &mut forces) {
             let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
@@ -97,6 +103,31 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         stepper,
         steps_per_period: spec.steps_per_period,
     })
+}
+
+/// Whether materials and damping can be those of the body's section; what cannot is reported.
+fn suits(draft: &Draft, body: &Placed, materials: &[Material]) -> bool {
+    let section = body.spec.section();
+    let site = body.spec.section.as_ref().map_or(&body.spec.site, |chosen| &chosen.site);
+    let turns = section != Section::Solid && !section.is_plane();
+    let is_membrane = matches!(section, Section::Membrane { .. });
+    if is_membrane && !materials.iter().all(|material| material.law.is_objective()) {
+        let message = "a membrane turns in space, and a law of small strain would resist that";
+        draft.log.add(Code::Conflict, site, message, "an objective law, such as corotational or neo_hookean");
+        return false;
+    }
+    if turns && body.spec.damping.rayleigh_stiffness > 0.0 {
+        let message =
+            "rayleigh_stiffness damps by the stiffness at rest, which bodies that turn leave behind";
+        draft.log.add(
+            Code::Conflict,
+            site,
+            message,
+            "`viscosity` or `rayleigh_mass` for membranes, bars and cables",
+        );
+        return false;
+    }
+    true
 }
 
 /// The elastic force of a body and what damps its strain.
@@ -172,8 +203,14 @@ fn part_of_mass(mass: &Mass, rows: &Range<usize>) -> Mass {
     part
 }
 
-/// Rows of a body's surface with their shares of its area.
+/// Rows of a body's surface with their shares of its area; of a body of edges, with their shares of its length.
 fn surface_shares(body: &Placed) -> Vec<(u32, f64)> {
+    if body.mesh.dimension() == 1 {
+        let mut lengths = Mass::new(body.mesh.points.len());
+        lumped_mass(&body.mesh, 0, &|_| 1.0, &mut lengths);
+        let total: f64 = lengths.diagonal.iter().sum();
+        return (body.rows.start as u32..).zip(&lengths.diagonal).map(|(row, l)| (row, l / total)).collect();
+    }
     let surface = body.mesh.boundary_surface();
     let areas = point_areas(&surface);
     let total: f64 = areas.iter().sum();
@@ -215,7 +252,8 @@ fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>
     Some((materials, material_of_cell))
 }
 
-/// Rest positions and initial velocities; pinned points stand where their pins want them.
+/// Rest positions and initial velocities. Pinned points stand where their pins want them, but for steppers that look for
+/// equilibrium: those lead them there with all others, from rest.
 pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemState {
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
     let q: Vec<Vec3> = bodies().flat_map(|body| body.mesh.points.iter().copied()).collect();
@@ -227,6 +265,7 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
             state.v[row] = body.spec.velocity + body.spec.angular_velocity.cross(*x - centre);
         }
     }
-    system.impose_constraints(&mut state.q, &mut state.v, 0.0, 1.0);
+    let load = if system.stepper.has_inertia() { 1.0 } else { 0.0 };
+    system.impose_constraints(&mut state.q, &mut state.v, 0.0, load);
     state
 }

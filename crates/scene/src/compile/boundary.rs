@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use souple_engine::{Force, Mass};
+use souple_engine::Force;
 use souple_formal::Formula;
 use souple_math::Vec3;
+use souple_mesh::ElementKind;
 use souple_models::loads::{
     ForceField, FormulaVector, GroundSpring, GroundSprings, LoadError, PointLoad, PressedFace, Pressure,
     UniformForce,
 };
-use souple_models::solids::lumped_mass;
 
 use super::Draft;
 use super::bodies::Placed;
@@ -89,9 +89,17 @@ fn load_force(draft: &Draft, body: &Placed, name: String, load: &Load) -> Built 
         }
         LoadKind::Pressure(pressure) => {
             let faces = faces_of(draft, body, region);
-            let pressed: Vec<PressedFace> = faces.iter().filter_map(|face| PressedFace::new(face)).collect();
+            let pressed: Vec<PressedFace> =
+                faces.iter().filter_map(|(kind, face)| PressedFace::new(*kind, face)).collect();
+            if pressed.len() < faces.len() {
+                let message =
+                    "pressure follows faces of volumes and of membranes, and these are sides of a plane body";
+                draft.log.add(Code::Conflict, &load.site, message, "`traction`, which keeps its direction");
+                return None;
+            }
+            let rows = faces.into_iter().flat_map(|(_, face)| face);
             let value = |x: Vec3| Vec3::X * pressure.evaluate(&[x.x, x.y, x.z, 0.0]);
-            if pressed.is_empty() || !starts_finite(draft, body, load, value, faces.into_iter().flatten()) {
+            if pressed.is_empty() || !starts_finite(draft, body, load, value, rows) {
                 return None;
             }
             Some(Pressure::new(name, pressed, pressure.clone()).map(|force| Box::new(force) as _))
@@ -143,19 +151,23 @@ fn point_shares(
 }
 
 /// Rows of the faces of a region, corners in order.
-fn faces_of(draft: &Draft, body: &Placed, region: &Region) -> Vec<Vec<u32>> {
+fn faces_of(draft: &Draft, body: &Placed, region: &Region) -> Vec<(ElementKind, Vec<u32>)> {
     let first = body.rows.start as u32;
     let faces = draft.selector(body).faces(region);
-    faces.into_iter().map(|face| face.into_iter().map(|point| first + point).collect()).collect()
+    let rows = |face: Vec<u32>| face.into_iter().map(|point| first + point).collect();
+    faces.into_iter().map(|(kind, face)| (kind, rows(face))).collect()
 }
 
-/// Rows of the faces of a region with `∫ N_a dA` over the rest shape [m²].
+/// Rows of the faces of a region with `∫ N_a dA` over the rest shape [m²]; sides of a plane body are as wide as it is
+/// thick.
 fn area_shares(draft: &Draft, body: &Placed, region: &Region) -> Vec<(u32, f64)> {
     let mut areas: BTreeMap<u32, f64> = BTreeMap::new();
-    for face in draft.selector(body).faces(region) {
-        let corners: Vec<Vec3> = face.iter().map(|point| body.mesh.points[*point as usize]).collect();
-        for (point, share) in face.iter().zip(souple_mesh::face_node_areas(&corners)) {
-            *areas.entry(body.rows.start as u32 + point).or_default() += share;
+    let section = body.spec.section();
+    let width = if section.is_plane() { section.measure() } else { 1.0 };
+    for (kind, face) in draft.selector(body).faces(region) {
+        let nodes: Vec<Vec3> = face.iter().map(|point| body.mesh.points[*point as usize]).collect();
+        for (point, share) in face.iter().zip(souple_mesh::node_measures(kind, &nodes)) {
+            *areas.entry(body.rows.start as u32 + point).or_default() += share * width;
         }
     }
     areas.into_iter().collect()
@@ -163,14 +175,16 @@ fn area_shares(draft: &Draft, body: &Placed, region: &Region) -> Vec<(u32, f64)>
 
 /// Rows of the cells of a region with `∫ N_a dV` over the rest shape [m³].
 fn volume_shares(draft: &Draft, body: &Placed, region: &Region) -> Vec<(u32, f64)> {
-    let cells = draft.selector(body).cells(region);
-    let inside = |cell: usize| if cells.binary_search(&(cell as u32)).is_ok() { 1.0 } else { 0.0 };
-    // the lumped mass at density 1
-    let mut volumes = Mass::new(body.mesh.points.len());
-    lumped_mass(&body.mesh, 0, &inside, &mut volumes);
-    let first = body.rows.start as u32;
-    let shares = volumes.diagonal.iter().zip(first..).map(|(volume, row)| (row, *volume));
-    shares.filter(|(_, volume)| *volume != 0.0).collect()
+    let mut volumes: BTreeMap<u32, f64> = BTreeMap::new();
+    for cell in draft.selector(body).cells(region) {
+        let Some(cell) = body.mesh.cell(cell) else { continue };
+        let nodes: Vec<Vec3> = cell.nodes.iter().map(|point| body.mesh.points[*point as usize]).collect();
+        for (point, share) in cell.nodes.iter().zip(souple_mesh::node_measures(cell.kind, &nodes)) {
+            let volume = share * body.spec.section().measure();
+            *volumes.entry(body.rows.start as u32 + point).or_default() += volume;
+        }
+    }
+    volumes.into_iter().collect()
 }
 
 fn ground_springs(name: String, spring: &Spring, rows: &[(u32, f64)], anchor: impl Fn(u32) -> Vec3) -> Built {

@@ -1,5 +1,8 @@
 //! What is no fault but hardly meant: magnitudes that look like a slip of units, materials that lock.
 
+use souple_engine::System;
+use souple_engine::linear::Method;
+use souple_mesh::Order;
 use souple_models::materials::{Lame, Material};
 
 use super::Draft;
@@ -28,8 +31,10 @@ pub fn warn(draft: &mut Draft) {
             let place = draft.place(site);
             warnings.push(format!("{place}: body `{}` is {size:.3e} m across: {hint}", body.spec.name));
         }
+        let is_linear = body.mesh.blocks.iter().any(|block| block.kind.order() == Order::Linear);
         for (site, material) in materials(body.spec) {
-            warnings.extend(of_material(&material).map(|doubt| format!("{}: {doubt}", draft.place(site))));
+            let doubts = of_material(&material, is_linear);
+            warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(site))));
         }
     }
     draft.warnings.extend(warnings);
@@ -47,7 +52,8 @@ fn materials(body: &Body) -> Vec<(&Site, Material)> {
     chosen.filter_map(|chosen| Some((&chosen.site, (chosen.entry.build)(&chosen.values).ok()?))).collect()
 }
 
-fn of_material(material: &Material) -> impl Iterator<Item = String> {
+/// `is_linear`: some of its elements have linear shape functions.
+fn of_material(material: &Material, is_linear: bool) -> impl Iterator<Item = String> {
     let (density, modulus) = (material.density, youngs_modulus(&material.small_strain));
     let ratio = material.small_strain.lambda / material.small_strain.mu;
     let modulus_doubt = (!within(modulus, MODULI)).then(|| {
@@ -58,7 +64,7 @@ fn of_material(material: &Material) -> impl Iterator<Item = String> {
         let hint = if density < DENSITIES[0] { "did you mean g/cm^3?" } else { "did you mean kg/m^3?" };
         format!("the density is {density:.3e} kg/m³: {hint}")
     });
-    let locking = (ratio > LOCKING).then(|| {
+    let locking = (is_linear && ratio > LOCKING).then(|| {
         // ν = λ / (2 (λ + μ))
         let poisson = 0.5 * ratio / (ratio + 1.0);
         format!(
@@ -68,6 +74,23 @@ fn of_material(material: &Material) -> impl Iterator<Item = String> {
     });
     let of_law = material.warnings().iter().map(|doubt| format!("the law: {doubt}"));
     [modulus_doubt, density_doubt, locking].into_iter().flatten().chain(of_law)
+}
+
+/// What is asked of a solver that another one will have to do.
+pub fn of_solver(system: &System) -> Option<String> {
+    let settings = system.stepper.solver_settings();
+    let needs_symmetry = matches!(settings.method, Method::Cg);
+    let general = system.forces.iter().find(|force| !force.declaration().symmetric_tangent);
+    if let (true, Some(force)) = (needs_symmetry, general) {
+        let name = force.name();
+        return Some(format!(
+            "`cg` solves symmetric systems, but the stiffness of `{name}` is not symmetric: `gmres` takes its place"
+        ));
+    }
+    let asked = settings.preconditioner;
+    let is_plain = ["auto", "block_jacobi"].contains(&asked);
+    (settings.matrix_free && !is_plain)
+        .then(|| format!("without a stored matrix there is no `{asked}`: `block_jacobi` takes its place"))
 }
 
 /// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].

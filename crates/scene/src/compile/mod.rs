@@ -64,6 +64,7 @@ impl Draft<'_> {
             body: &body.spec.name,
             mesh: &body.mesh,
             point_numbers: &body.point_numbers,
+            section: body.spec.section(),
             log: self.log,
         }
     }
@@ -114,6 +115,10 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     }
     for (system, spec) in draft.systems.iter().zip(&spec.systems) {
         check_stepper(system, spec, log);
+        let site = spec.stepper.as_ref().map_or(&spec.site, |stepper| &stepper.site);
+        if let Some(doubt) = doubts::of_solver(system) {
+            draft.warnings.push(format!("{}: {doubt}", draft.place(site)));
+        }
         let state = bodies::initial_state(&draft, system, draft.state.systems.len());
         draft.state.systems.push(state);
     }

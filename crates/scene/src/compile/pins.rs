@@ -44,9 +44,18 @@ pub fn add(draft: &mut Draft) {
     let mut added: Vec<(usize, Constraint)> = Vec::new();
     for body in &draft.bodies {
         let system = &draft.systems[body.system];
-        for (point, hold) in holds(draft, body) {
+        let mut holds = holds(draft, body);
+        // plane bodies stay in their plane
+        let is_plane = body.spec.section().is_plane();
+        if is_plane {
+            (0..body.mesh.points.len() as u32).for_each(|point| {
+                holds.entry(point).or_default();
+            });
+        }
+        for (point, hold) in holds {
             let start = body.mesh.points[point as usize];
-            let free = [0, 1, 2].map(|axis: usize| if hold.by[axis].is_some() { 0.0 } else { 1.0 });
+            let is_held = |axis: usize| hold.by[axis].is_some() || (is_plane && axis == 2);
+            let free = [0, 1, 2].map(|axis| if is_held(axis) { 0.0 } else { 1.0 });
             let motions = hold.by.map(|led| led.and_then(|led| led.motion));
             let leads = motions.iter().any(Option::is_some);
             let motion = leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>);

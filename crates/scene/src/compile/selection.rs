@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use souple_math::Vec3;
-use souple_mesh::Mesh;
+use souple_mesh::{ElementKind, Mesh};
+use souple_models::solids::Section;
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::keys::did_you_mean;
@@ -16,6 +17,8 @@ pub struct Selector<'a> {
     pub mesh: &'a Mesh,
     /// The number that each point had in its file, ascending.
     pub point_numbers: &'a [u32],
+    /// What the cells are sections of.
+    pub section: Section,
     pub log: &'a Log,
 }
 
@@ -41,22 +44,21 @@ impl Selector<'_> {
         found
     }
 
-    /// Faces of the boundary of which all corners are in a region, as points in order with the normal outward; a
-    /// group of facets holds just its facets. A region without one is refused.
-    pub fn faces(&self, region: &Region) -> Vec<Vec<u32>> {
+    /// Faces of the boundary of which all nodes are in a region, as points in order with the normal outward; a
+    /// group of facets holds just its facets. Those of a plane body are its sides, those of a membrane its cells. A
+    /// region without one is refused.
+    pub fn faces(&self, region: &Region) -> Vec<(ElementKind, Vec<u32>)> {
         let Some(mask) = self.point_mask(region) else { return Vec::new() };
         let listed = self.facets_of_group(region);
         let mut faces = Vec::new();
         let mut centres = Vec::new();
-        for boundary in self.mesh.faces().boundary {
-            let Some(cell) = self.mesh.cell(boundary.cell) else { continue };
-            let face: Vec<u32> = cell.face_nodes(boundary.face.into()).1.collect();
+        for (kind, face) in self.all_faces() {
             let is_inside = match &listed {
                 Some(facets) => facets.contains(&ascending(&face)),
                 None => face.iter().all(|point| mask[*point as usize]),
             };
             if is_inside {
-                faces.push(face);
+                faces.push((kind, face));
             } else {
                 let sum: Vec3 = face.iter().map(|point| self.mesh.points[*point as usize]).sum();
                 centres.push(sum * (1.0 / face.len() as f64));
@@ -66,6 +68,19 @@ impl Selector<'_> {
             self.refuse_empty(region, "face", &centres);
         }
         faces
+    }
+
+    fn all_faces(&self) -> Vec<(ElementKind, Vec<u32>)> {
+        if matches!(self.section, Section::Membrane { .. }) {
+            return self.mesh.cells().map(|cell| (cell.kind, cell.nodes.to_vec())).collect();
+        }
+        let face = |boundary: souple_mesh::BoundaryFace| {
+            let cell = self.mesh.cell(boundary.cell)?;
+            let (kind, nodes) = cell.face_nodes(boundary.face.into());
+            let nodes: Vec<u32> = nodes.collect();
+            Some((kind, nodes))
+        };
+        self.mesh.faces().boundary.into_iter().filter_map(face).collect()
     }
 
     /// Points of each facet of the group that a region names; `None` where it names none with facets.
@@ -305,7 +320,13 @@ mod tests {
         let node = document.get("r").expect("a region");
         let reading = crate::values::Reading { node, path: String::new(), log: &log };
         let region = Region::from_reading(&reading, 0).expect("a region");
-        let selector = Selector { body: "bar", mesh: &mesh, point_numbers: &numbers, log: &log };
+        let selector = Selector {
+            body: "bar",
+            mesh: &mesh,
+            point_numbers: &numbers,
+            section: Section::Solid,
+            log: &log,
+        };
         let result = (selector.points(&region), selector.cells(&region));
         (result.0, result.1, log.is_empty())
     }

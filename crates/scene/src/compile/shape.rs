@@ -17,6 +17,9 @@ pub struct Shape {
     pub warnings: Vec<String>,
 }
 
+/// Points of a plane body lie in one plane up to this part of its size: rounding of files in single precision.
+const FLAT: f64 = 1e-6;
+
 /// The mesh of a body; `None` where it was refused.
 pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
     let spec = body.mesh.as_ref()?;
@@ -51,10 +54,31 @@ pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
         }
         Err(error) => return refuse(error.to_string(), "a mesh that can be made"),
     };
+    let section = body.section();
+    if mesh.cell_count() == 0 && section.dimension() == 2 {
+        mesh = mesh.facets_as_cells();
+    }
     let repairs = match mesh.validate() {
         Ok(repairs) => repairs,
         Err(error) => return refuse(error.to_string(), "a mesh that can be computed on"),
     };
+    if mesh.dimension() != section.dimension() {
+        let kind =
+            mesh.blocks.iter().find(|block| !block.is_empty()).map_or("none", |block| block.kind.name());
+        let section = body.section.as_ref().map_or("solid", |chosen| chosen.entry.name);
+        let message =
+            format!("the cells are {kind}, of dimension {}; the body is a {section}", mesh.dimension());
+        return refuse(
+            message,
+            match mesh.dimension() {
+                1 => "`section = { name = \"bar\", area = … }` or a cable, or a mesh of volume cells",
+                2 => {
+                    "`section = { name = \"plane_stress\", thickness = … }`, plane_strain or membrane, or volume cells"
+                }
+                _ => "no `section` for volume cells",
+            },
+        );
+    }
     let said = |message: String| format!("body `{}`: {message}", body.name);
     warnings.extend(repairs.messages().into_iter().map(said));
     if let MeshSpec::File { .. } = spec {
@@ -77,6 +101,21 @@ pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
             "placed, the mesh has points that are not finite".to_owned(),
             "a smaller scale or translation",
         );
+    }
+    if section.is_plane() {
+        let bounds = mesh.bounds();
+        if bounds.size().z > FLAT * bounds.diagonal() {
+            let message =
+                format!("the points of this plane body go from z = {} to {} m", bounds.low.z, bounds.high.z);
+            return refuse(message, "points of one z: plane bodies lie in a plane of constant z");
+        }
+        let turned = mesh.face_up();
+        if let Some(first) = turned.first() {
+            let count = turned.len();
+            warnings.push(said(format!(
+                "{count} cells seen from below were turned, the first is cells[{first}]"
+            )));
+        }
     }
     Some(Shape { mesh, point_numbers, warnings })
 }

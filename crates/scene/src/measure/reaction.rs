@@ -42,14 +42,8 @@ pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
 fn accelerations(system: &System, force: &[Vec3], time: f64, timestep: f64) -> Vec<Vec3> {
     let mut a = vec![Vec3::ZERO; force.len()];
     for constraint in &system.constraints {
-        if let (Some(row), Some(_)) =
-            (system.kinematics.point_block_row(constraint.block), &constraint.motion)
-        {
-            // the mean over a step: finite also where key frames make the velocity jump
-            let half = 0.5 * timestep;
-            let change = constraint.velocity(time + half) - constraint.velocity((time - half).max(0.0));
-            let over = time + half - (time - half).max(0.0);
-            a[row as usize] = constraint.constrained() * change / over;
+        if let Some(row) = system.kinematics.point_block_row(constraint.block) {
+            a[row as usize] = constraint.constrained() * constraint.mean_acceleration(time, timestep);
         }
     }
     if !system.mass.is_lumped() {

@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 use souple_models::materials;
-use souple_models::solids::Quadrature;
+use souple_models::solids::{BuildSection, Quadrature, SECTIONS, Section};
 use souple_table::{Range, Value};
 
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
@@ -14,6 +14,9 @@ use crate::reader::{Chosen, Reader};
 
 pub(crate) const MATERIAL: EntryShape =
     EntryShape { tag: "name", kind: "material", outlines: || outlines(&materials::TABLE), instead: &[] };
+
+pub(crate) const SECTION: EntryShape =
+    EntryShape { tag: "name", kind: "section", outlines: || outlines(&SECTIONS), instead: &[] };
 
 pub(crate) static DAMPING: Keys = Keys::new(
     "damping",
@@ -53,6 +56,11 @@ pub(crate) static BODY: Keys = Keys::new(
     &[
         Key { need: Need::Required, ..Key::new("mesh", Shape::Entry(MESH), "its shape at rest") },
         Key { need: Need::Required, ..Key::new("material", Shape::Entry(MATERIAL), "its law") },
+        Key::new(
+            "section",
+            Shape::Entry(SECTION),
+            "what its cells are sections of, where they are no volumes: a plane body, a membrane, a bar, a cable",
+        ),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new("mass", Shape::Choice(&["lumped", "consistent"]), "how mass is spread over points")
             .or(Value::Text("lumped")),
@@ -87,6 +95,8 @@ pub struct Body {
     pub name: String,
     pub mesh: Option<MeshSpec>,
     pub material: Option<Chosen<materials::Build>>,
+    /// What its cells are sections of; volumes where left out.
+    pub section: Option<Chosen<BuildSection>>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
@@ -180,6 +190,7 @@ impl Body {
             name,
             mesh: MeshSpec::read(reader),
             material: read_material(reader),
+            section: reader.entry("section", &SECTIONS),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
             quadrature: if reader.choice("quadrature") == "full" {
@@ -201,7 +212,15 @@ impl Body {
     }
 }
 
-/// The material, built once on trial: a law as text may be wrong where its table is right.
+impl Body {
+    /// What its cells are sections of.
+    pub fn section(&self) -> Section {
+        self.section.as_ref().map_or(Section::Solid, |chosen| (chosen.entry.build)(&chosen.values))
+    }
+}
+
+/// The material, built once on trial: a law as text may be wrong where its table is right, and numbers that are each in their
+/// range may make no body together.
 fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
     let chosen = reader.entry("material", &materials::TABLE)?;
     let Err(error) = (chosen.entry.build)(&chosen.values) else { return Some(chosen) };
@@ -217,7 +236,7 @@ fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
         Code::BadFormula,
         &site,
         error.to_string(),
-        "a hyperelastic law, see `souple describe hyperelastic`",
+        format!("a law that holds, see `souple describe {}`", chosen.entry.name),
     );
     None
 }

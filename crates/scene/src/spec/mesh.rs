@@ -62,6 +62,7 @@ const fn filling(index: usize) -> Key {
         Kind::Integer => Shape::Integer,
         Kind::Boolean => Shape::Boolean,
         Kind::Vector => Shape::Vector,
+        Kind::Numbers => Shape::Numbers,
         Kind::Text => Shape::Text,
         Kind::Choice(choices) => Shape::Choice(choices),
         Kind::Texts => Shape::Values,

@@ -139,7 +139,7 @@ fn cycle(
             (column[row], column[row + 1]) =
                 (c * column[row] + s * column[row + 1], c * column[row + 1] - s * column[row]);
         }
-        let length = column[used].hypot(column[used + 1]);
+        let length = libm::hypot(column[used], column[used + 1]);
         if length == 0.0 {
             // A M⁻¹ vⱼ vanished: a singular operator adds nothing in this direction
             break;

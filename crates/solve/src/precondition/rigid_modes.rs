@@ -243,7 +243,8 @@ impl RigidModes {
             let mut gram = [[0.0; 6]; 6];
             for &block in self.patch(patch) {
                 let (T, R) = self.motions[block as usize].matrices();
-                let columns = [T.columns, R.columns].concat();
+                let ([a, b, c], [d, e, f]) = (T.columns, R.columns);
+                let columns = [a, b, c, d, e, f];
                 for (i, j) in (0..36).map(|k| (k / 6, k % 6)) {
                     gram[i][j] += columns[i].dot(columns[j]);
                 }

@@ -109,8 +109,8 @@ fn first_step_refused(arguments: &Arguments, error: &souple_engine::WorldError) 
     json!({
         "code": "first_step",
         "file": scene_path(&arguments.scene).display().to_string(),
-        "line": 1,
-        "column": 1,
+        "line": null,
+        "column": null,
         "path": "",
         "value": "",
         "expected": "a scene whose first step can be made: finite forces, bodies that are held, steps short enough",

@@ -71,6 +71,15 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         let expected = format!("one of {}", unknown.known.join(", "));
         Refusal::request("unknown_element", &arguments.element, expected, unknown.to_string())
     })?;
+    if kind.dimension() == 1 {
+        let message = format!("{kind} has no gradient in a plane or in space to derive a law on");
+        return Err(Refusal::request(
+            "element",
+            &arguments.element,
+            "an element of surfaces or volumes",
+            message,
+        ));
+    }
     let rule = match &arguments.rule {
         // the source integrates simplices with constant strain by one sample
         None if matches!(kind, ElementKind::Tri3) => &kind.rules()[0],

@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Worker threads; the results do not depend on it
     #[arg(long)]
     threads: Option<usize>,
-    /// Of the random generators; the scene's by default
+    /// Recorded with the run, though nothing is random yet; the scene's by default
     #[arg(long)]
     seed: Option<u64>,
     /// Frames of the series; the scene's number by default
@@ -237,17 +237,16 @@ fn parse_duration(text: &str) -> Result<f64, Refusal> {
 }
 
 /// The scene of a program called without arguments, as it is in the repository.
-const DEFAULT_SCENE: &str = include_str!("../../../../scenes/soft_block/scene.toml");
+const DEFAULT_SCENE: &str = include_str!("../../../../scenes/liver/scene.toml");
 
 /// Greets, runs the default scene headless, and says what to try next.
 pub fn run_default_scene() -> Result<End, Refusal> {
     print_line(
-        "Souple, a simulator of soft things. The default scene runs now: a soft block falls on a floor.",
+        "Souple, a simulator of soft things. The default scene runs now: a liver hangs from its ligaments and is poked.",
     );
-    let scene = souple_scene::read_text("soft_block", DEFAULT_SCENE, Path::new("."), &[])?;
-    let out = PathBuf::from("out").join("soft_block");
-    let options =
-        Options { out: Some(out.clone()), scene_name: "soft_block".to_owned(), ..Options::default() };
+    let scene = souple_scene::read_text("liver", DEFAULT_SCENE, Path::new("."), &[])?;
+    let out = PathBuf::from("out").join("liver");
+    let options = Options { out: Some(out.clone()), scene_name: "liver".to_owned(), ..Options::default() };
     let outcome = play(scene, &options, false)?;
     let manner = Manner { out: Some(&out), output: Output::Lines, quiet: false, expect: Strictness::Strict };
     let end = conclude(&outcome, &manner);

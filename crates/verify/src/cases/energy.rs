@@ -8,8 +8,11 @@
 //! | explicit Euler | `E (1 + z²)` a step |
 //! | symplectic Euler | swings by `E₀ z / (1 - z²/4)` where it starts with nothing but speed, for ever |
 //! | Verlet | swings by `E₀ z²/4` from the same start, for ever |
+//! | Runge–Kutta 2 | `E (1 + z⁴/4)` a step |
 //! | Runge–Kutta 4 | `E (1 - z⁶/72 + z⁸/576)` a step |
 //! | backward Euler | `E / (1 + z²)` a step |
+//! | second backward differentiation formula | `E₀ \|w_n\|²`, `(3 + 2 i z) w_n = 4 w_(n-1) - w_(n-2)`, `w₀ = 1`, `w₁ = 1/(1 + i z)` |
+//! | Newmark | `E₀`, for ever; with `γ > ½` the powers of its matrix |
 
 use std::f64::consts::TAU;
 
@@ -17,9 +20,15 @@ use crate::{Case, Limit, Reading, Refinement, Statistic, Tolerance, Variant};
 
 const EXPLICIT_EULER: &str = r#"systems.main.stepper="explicit_euler""#;
 const SYMPLECTIC_EULER: &str = r#"systems.main.stepper="symplectic_euler""#;
+const RK2: &str = r#"systems.main.stepper="rk2""#;
 const RK4: &str = r#"systems.main.stepper="rk4""#;
 const BACKWARD_EULER: &str =
     r#"systems.main.stepper={ name = "backward_euler", newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#;
+const BDF2: &str =
+    r#"systems.main.stepper={ name = "bdf2", newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#;
+const NEWMARK: &str =
+    r#"systems.main.stepper={ name = "newmark", newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#;
+const NEWMARK_THAT_DISSIPATES: &str = r#"systems.main.stepper={ name = "newmark", gamma = 0.6, beta = 0.3025, newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#;
 
 /// Energy of the block at the start [J].
 const START: f64 = 0.125;
@@ -89,6 +98,47 @@ pub(super) const CASES: &[Case] = &[
         reference: START / power(1.0 + z2(0.01), 100),
         // Newton's method stops at 1e-12 of the force, 100 times
         tolerance: Tolerance::Relative(1e-10),
+        ..BLOCK
+    },
+    Case {
+        id: "energy_bdf2",
+        capabilities: &["DEB-35"],
+        what: "energy of the block after 100 steps of 50 ms under the second backward differentiation formula: dissipated",
+        settings: &[BDF2, r#"world.period="50 ms""#],
+        // the recursion above
+        reference: START * 0.596_071_663_767_725,
+        tolerance: Tolerance::Relative(1e-10),
+        ..BLOCK
+    },
+    Case {
+        id: "energy_newmark_swing",
+        capabilities: &["DEB-35"],
+        what: "swing of the energy under Newmark over 20 oscillations: none",
+        settings: &[NEWMARK],
+        reading: Reading::last("energy").taking(Statistic::Span).after(2_000),
+        reference: 0.0,
+        // Newton's method leaves 1e-12 of the force, which does as much of the energy's work in a step at most, to and fro
+        tolerance: Tolerance::Absolute(1e-12),
+        source: "Newmark 1959; Hughes 2000, §9.1: the trapezoidal rule keeps quadratic invariants",
+        mutation: "systems.main.stepper.beta=0.3",
+        ..BLOCK
+    },
+    Case {
+        id: "energy_newmark_dissipates",
+        capabilities: &["DEB-35"],
+        what: "energy of the block after 100 steps of 50 ms under Newmark with gamma = 0.6: dissipated",
+        settings: &[NEWMARK_THAT_DISSIPATES, r#"world.period="50 ms""#],
+        // powers of the matrix of (q, v, a)
+        reference: 0.048_095_516_170_437_11,
+        tolerance: Tolerance::Relative(1e-10),
+        ..BLOCK
+    },
+    Case {
+        id: "energy_rk2",
+        capabilities: &["DEB-34"],
+        what: "energy of the block after 100 steps of 8 ms: slowly grown",
+        settings: &[RK2, r#"world.period="8 ms""#],
+        reference: START * power(1.0 + power(z2(0.008), 2) / 4.0, 100),
         ..BLOCK
     },
     Case {

@@ -4,6 +4,7 @@ mod bar;
 mod cantilever_orders;
 mod cantilevers;
 mod contact;
+mod elements;
 mod energy;
 mod explicit;
 mod filling;
@@ -11,6 +12,7 @@ mod frequencies;
 mod implicit;
 mod motion;
 mod patch;
+mod rubber;
 mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
@@ -22,10 +24,12 @@ use crate::Case;
 pub const TABLES: &[&[Case]] = &[
     patch::CASES,
     traction::CASES,
+    rubber::CASES,
     thick_sphere::CASES,
     filling::CASES,
     cantilevers::CASES,
     cantilever_orders::CASES,
+    elements::CASES,
     frequencies::CASES,
     motion::CASES,
     stepper_orders::CASES,

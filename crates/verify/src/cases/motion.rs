@@ -62,6 +62,22 @@ pub(super) const CASES: &[Case] = &[
         ..FREE
     },
     Case {
+        id: "creep",
+        capabilities: &["DEB-35"],
+        what: "a block on springs creeps down through a viscous medium, without inertia",
+        settings: &[
+            r#"systems.main.stepper={ name = "quasi_static", newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#,
+            "world.gravity=[0, -1, 0]",
+            "bodies.block.damping.rayleigh_mass=10",
+        ],
+        // m g/k (1 - (1 + h k/(a m))⁻¹⁰⁰), which tends to m g/k (1 - exp(-k t/(a m)))
+        reference: -0.024_802_953_620_954_155,
+        tolerance: Tolerance::Relative(1e-10),
+        source: "a m v = m g - k x by implicit steps of 10 ms",
+        mutation: "bodies.block.damping.rayleigh_mass=10.01",
+        ..FREE
+    },
+    Case {
         id: "series_displacement",
         what: "where a bar half soft, half stiff stretches: in the soft half",
         // 0.5 m x 2000 / (2000 + 50)

@@ -123,6 +123,12 @@ pub(super) const CASES: &[Case] = &[
         ..STRETCHED
     },
     Case {
+        id: "exp18_quasi_static",
+        what: "the same by quasi-statics: led there against its damping, and relaxed",
+        settings: &[r#"systems.main.stepper={ name = "quasi_static", newton_tolerance = 1e-10 }"#],
+        ..STRETCHED
+    },
+    Case {
         id: "exp18_implicit_at_rest",
         what: "kinetic energy at the end of EXP-18, backward Euler: no oscillation",
         reading: Reading::last("kinetic"),

@@ -1,8 +1,9 @@
 //! The order of every stepper in time, on a linear oscillator and on a spinning, breathing cube.
 //!
 //! `error = C hᵖ (1 + c hᑫ)`: the order measured between two steps is off by about `c hᑫ / ln 2 (1 - 2^-q)`, which falls by `2^q`
-//! from one pair to the next. Tolerances are what that leaves: `q = 1` for Euler's methods and the Runge–Kutta method (`c h` is
-//! 3 % to 6 % at the finest steps), `q = 2` for Verlet's (`c h²` below 1 %).
+//! from one pair to the next. Tolerances are what that leaves: `q = 1` for Euler's methods, those of Runge and Kutta and the second
+//! backward differentiation formula, which starts with a step of Euler's (`c h` is 3 % to 6 % at the finest steps), `q = 2` for
+//! Verlet's and Newmark's (`c h²` below 1 %).
 //!
 //! The symplectic Euler method is Verlet's seen half a step late: positions are of second order where the motion starts
 //! without acceleration, as it does in both scenes, and velocities of first.
@@ -12,9 +13,14 @@ use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
 const EXPLICIT_EULER: &str = r#"systems.main.stepper="explicit_euler""#;
 const SYMPLECTIC_EULER: &str = r#"systems.main.stepper="symplectic_euler""#;
 const VERLET: &str = r#"systems.main.stepper="verlet""#;
+const RK2: &str = r#"systems.main.stepper="rk2""#;
 const RK4: &str = r#"systems.main.stepper="rk4""#;
 const BACKWARD_EULER: &str =
     r#"systems.main.stepper={ name = "backward_euler", newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#;
+const BDF2: &str =
+    r#"systems.main.stepper={ name = "bdf2", newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#;
+const NEWMARK: &str =
+    r#"systems.main.stepper={ name = "newmark", newton_tolerance = 1e-12, solver_tolerance = 1e-13 }"#;
 
 const STEPS_FROM_10_MS: &[Variant] = &[
     Variant { size: 10e-3, settings: &[r#"world.period="10 ms""#] },
@@ -94,6 +100,14 @@ pub(super) const CASES: &[Case] = &[
         ..BLOCK
     },
     Case {
+        id: "order_block_rk2",
+        capabilities: &["DEB-34"],
+        what: "order of Runge–Kutta 2, block on springs",
+        settings: &[RK2],
+        reference: 2.0,
+        ..BLOCK
+    },
+    Case {
         id: "order_block_rk4",
         what: "order of Runge–Kutta 4, block on springs",
         settings: &[RK4],
@@ -106,6 +120,23 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["FAU-40"],
         what: "order of backward Euler, block on springs",
         settings: &[BACKWARD_EULER],
+        ..BLOCK
+    },
+    Case {
+        id: "order_block_bdf2",
+        capabilities: &["DEB-35"],
+        what: "order of the second backward differentiation formula, block on springs",
+        settings: &[BDF2],
+        reference: 2.0,
+        ..BLOCK
+    },
+    Case {
+        id: "order_block_newmark",
+        capabilities: &["DEB-35"],
+        what: "order of Newmark's method, block on springs",
+        settings: &[NEWMARK],
+        reference: 2.0,
+        tolerance: Tolerance::Absolute(0.01),
         ..BLOCK
     },
     Case {
@@ -132,6 +163,14 @@ pub(super) const CASES: &[Case] = &[
         ..CUBE
     },
     Case {
+        id: "order_cube_rk2",
+        capabilities: &["DEB-34"],
+        what: "order of Runge–Kutta 2, spinning cube",
+        settings: &[RK2],
+        reference: 2.0,
+        ..CUBE
+    },
+    Case {
         id: "order_cube_rk4",
         what: "order of Runge–Kutta 4, spinning cube",
         settings: &[RK4],
@@ -145,6 +184,25 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["FAU-40", "DEB-35"],
         what: "order of backward Euler, spinning cube",
         settings: &[BACKWARD_EULER],
+        ..CUBE
+    },
+    Case {
+        id: "order_cube_bdf2",
+        capabilities: &["DEB-35"],
+        what: "order of the second backward differentiation formula, spinning cube",
+        settings: &[BDF2],
+        refinement: refined(STEPS_FROM_4_MS, CUBE_PLACE),
+        reference: 2.0,
+        ..CUBE
+    },
+    Case {
+        id: "order_cube_newmark",
+        capabilities: &["DEB-35"],
+        what: "order of Newmark's method, spinning cube",
+        settings: &[NEWMARK],
+        refinement: refined(STEPS_FROM_4_MS, CUBE_PLACE),
+        reference: 2.0,
+        tolerance: Tolerance::Absolute(0.02),
         ..CUBE
     },
 ];

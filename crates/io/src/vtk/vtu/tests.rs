@@ -186,7 +186,7 @@ fn faults_name_place_value_and_range() {
             .contains("the length of the connectivity is 19, but the cells use 18")
     );
     assert!(fault("4 8 10 18", "4 8 7 18").contains("offsets[2] is 7; expected 8 to 18"));
-    assert!(fault("10 10 3 11", "10 24 3 11").contains("types[1] is 24"));
+    assert!(fault("10 10 3 11", "10 42 3 11").contains("types[1] is 42"));
     assert!(fault("10 10 3 11", "10 14 3 11").contains("the number of nodes of cell 1 is 4; expected 5"));
     assert!(
         fault("0 1 2 3 1", "0 1 2 13 1")

@@ -22,7 +22,7 @@ pub fn values(texts: &[String], known: &[&Parameter]) -> Result<Values, Refusal>
         let list = value.trim().trim_start_matches('[').trim_end_matches(']');
         let is_number = matches!(
             parameter.map(|parameter| parameter.kind),
-            Some(Kind::Integer | Kind::Vector | Kind::Number)
+            Some(Kind::Integer | Kind::Vector | Kind::Number | Kind::Numbers)
         );
         let numbers: Option<Vec<f64>> = if is_number {
             let numbers: Result<_, _> = list.split(',').map(number).collect();
@@ -34,6 +34,7 @@ pub fn values(texts: &[String], known: &[&Parameter]) -> Result<Values, Refusal>
             (Some(Kind::Integer), Some([number])) if number.fract() == 0.0 => Value::Integer(*number as i64),
             (Some(Kind::Vector), Some([x, y, z])) => Value::Vector([*x, *y, *z]),
             (Some(Kind::Number), Some([number])) => Value::Number(*number),
+            (Some(Kind::Numbers), Some(numbers)) => Value::Numbers(numbers),
             _ => Value::Text(value),
         };
         values.set(key.to_owned(), value);

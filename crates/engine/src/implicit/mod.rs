@@ -1,0 +1,414 @@
+//! One implicit step as a nonlinear problem: whatever formula of time is behind it ([`Rates`]), and statics as its
+//! limit without inertia.
+//!
+//! The iteration is `souple_solve::newton`; what is particular to a step stays here, before and around it. Prescribed
+//! motion is a predictor: one linearised solve carries the constrained components to where they are led, and Newton
+//! then works on the free ones alone, so that its merit function is one potential throughout. The merit is the
+//! incremental potential where there is one; with damping there still is one as long as tangents are symmetric, known
+//! by its slopes. Rounding bounds what residual can be asked for.
+
+mod history;
+mod newton;
+mod rates;
+
+use std::time::Instant;
+
+use souple_math::Vec3;
+use souple_solve::newton as iteration;
+use souple_solve::reduce::norm;
+
+use crate::force::TangentWeights;
+use crate::linear::{Indefinite, LinearError, LinearSystem, Solved, Use};
+use crate::state::SystemState;
+use crate::steppers::{StepError, StepReport};
+use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::tangent::{Assembled, Linearisation, OperatorBuffers, TangentOperator};
+
+pub use history::Lent;
+pub(crate) use history::{accepts, carried, carry};
+pub use rates::Rates;
+
+/// The step from `(q_start, v_start)` to the end of `timestep`.
+pub struct ImplicitStep<'a> {
+    pub system: &'a System,
+    pub around: Surroundings<'a>,
+    /// Seconds at the end of the step.
+    pub end: f64,
+    /// How velocity and acceleration at the end follow from the displacement.
+    pub rates: Rates,
+    /// Whether all forces are minus the gradient of an energy, so that the step minimises a potential.
+    pub has_potential: bool,
+}
+
+/// How Newton's method iterates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonSettings {
+    /// Wanted norm of the unbalanced force, relative to the largest there was.
+    pub tolerance: f64,
+    pub max_iterations: u32,
+}
+
+/// Buffers of [`ImplicitStep`] in the size of blocks and rows.
+pub struct ImplicitBuffers {
+    /// Configuration and velocity at the start of the step.
+    pub q_start: Vec<Vec3>,
+    pub v_start: Vec<Vec3>,
+    /// `v₀` of [`Rates`].
+    pub velocity_offset: Vec<Vec3>,
+    /// `p` of [`Rates`], over velocity blocks and over rows.
+    pub coasting: Vec<Vec3>,
+    coasting_rows: Vec<Vec3>,
+    /// For formulas, in the size of the velocity.
+    pub displacement: Vec<Vec3>,
+    /// `-r = -Tᵀ g` over blocks, constrained components zero: the force that is not balanced.
+    residual: Vec<Vec3>,
+    /// `g` over rows.
+    unbalanced: Vec<Vec3>,
+    direction: Vec<Vec3>,
+    prescribed: Vec<Vec3>,
+    rhs: Vec<Vec3>,
+    /// Accepted by Newton's method; empty where one solve does.
+    q: Vec<Vec3>,
+    q_trial: Vec<Vec3>,
+    v_trial: Vec<Vec3>,
+    /// Empty where no force has velocity terms.
+    at_offset: Vec<Vec3>,
+    damping: Vec<Vec3>,
+    operator: OperatorBuffers,
+    newton: iteration::Workspace,
+}
+
+impl ImplicitBuffers {
+    pub fn new(system: &System) -> Self {
+        let blocks = || vec![Vec3::ZERO; system.kinematics.block_count()];
+        let rows = || vec![Vec3::ZERO; system.kinematics.row_count()];
+        let free_rows = || vec![Vec3::ZERO; system.kinematics.free_row_count()];
+        Self {
+            q_start: free_rows(),
+            v_start: blocks(),
+            velocity_offset: blocks(),
+            coasting: blocks(),
+            coasting_rows: rows(),
+            displacement: blocks(),
+            residual: blocks(),
+            unbalanced: rows(),
+            direction: blocks(),
+            prescribed: blocks(),
+            rhs: blocks(),
+            q: Vec::new(),
+            q_trial: free_rows(),
+            v_trial: blocks(),
+            at_offset: Vec::new(),
+            damping: Vec::new(),
+            operator: OperatorBuffers::new(system),
+            newton: iteration::Workspace::default(),
+        }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let buffers = [
+            &self.q_start,
+            &self.v_start,
+            &self.velocity_offset,
+            &self.coasting,
+            &self.coasting_rows,
+            &self.displacement,
+            &self.residual,
+            &self.unbalanced,
+            &self.direction,
+            &self.prescribed,
+            &self.rhs,
+            &self.q,
+            &self.q_trial,
+            &self.v_trial,
+            &self.at_offset,
+            &self.damping,
+        ];
+        buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
+            + self.operator.bytes()
+            + self.newton.bytes()
+    }
+}
+
+/// What constrained components do in a linear solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Constrained {
+    /// They stay where they are.
+    Still,
+    /// They go where they are led (`prescribed`), and take the others along.
+    Led,
+}
+
+/// What is asked of a linear solve.
+#[derive(Clone, Copy, Debug)]
+struct Wanted {
+    constrained: Constrained,
+    indefinite: Indefinite,
+    used_as: Use,
+    /// As [`LinearSystem::tolerance`].
+    tolerance: f64,
+}
+
+impl ImplicitStep<'_> {
+    /// Starts from `next`: what was, with `v₀` and `p` as if nothing had been before, for a formula to change.
+    pub fn begin(&self, next: &SystemState, buffers: &mut ImplicitBuffers) {
+        buffers.q_start.copy_from_slice(&next.q);
+        buffers.v_start.copy_from_slice(&next.v);
+        buffers.velocity_offset.fill(Vec3::ZERO);
+        buffers.coasting.copy_from_slice(&next.v);
+    }
+
+    /// `v₀` and `p` of constrained components such that they end with the velocity and the acceleration of their motion,
+    /// which a formula of two steps would follow late, or swing about.
+    pub fn lead_constrained(&self, timestep: f64, buffers: &mut ImplicitBuffers) {
+        for constraint in &self.system.constraints {
+            let Some(row) = self.system.kinematics.point_block_row(constraint.block) else { continue };
+            let (block, constrained) = (constraint.block as usize, constraint.constrained());
+            let d = constraint.position(self.end, self.around.load) - buffers.q_start[row as usize];
+            let velocity = constraint.velocity(self.end);
+            let acceleration = constraint.mean_acceleration(self.end, timestep);
+            let offset = &mut buffers.velocity_offset[block];
+            *offset += constrained * (velocity - d * self.rates.velocity - *offset);
+            let coasting = &mut buffers.coasting[block];
+            *coasting +=
+                constrained * (velocity - acceleration * (1.0 / self.rates.acceleration) - *coasting);
+        }
+    }
+
+    /// Velocity that a configuration implies, `a difference(q, q_start) + v₀`; zero in statics.
+    pub fn velocity_into(&self, q: &[Vec3], q_start: &[Vec3], offset: &[Vec3], v: &mut [Vec3]) {
+        if self.rates.has_velocity() {
+            self.system.kinematics.difference(q, q_start, v);
+            v.iter_mut().zip(offset).for_each(|(v, offset)| *v = *v * self.rates.velocity + *offset);
+        } else {
+            v.fill(Vec3::ZERO);
+        }
+    }
+
+    /// Row velocities from which acceleration counts.
+    fn place_coasting(&self, buffers: &mut ImplicitBuffers) {
+        let ImplicitBuffers { q_start, coasting, coasting_rows, .. } = buffers;
+        self.system.kinematics.velocities_into(q_start, coasting, coasting_rows);
+    }
+
+    /// `g = b M (ẋ - p) - f` over rows and `-Tᵀ g` without constrained components at `(q_trial, v_trial)`;
+    /// returns the norm of the latter.
+    fn evaluate(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) -> f64 {
+        let system = self.system;
+        system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        let clock = Instant::now();
+        system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
+        ws.stages.forces += clock.elapsed().as_secs_f64();
+        let g = &mut buffers.unbalanced;
+        g.fill(Vec3::ZERO);
+        if self.rates.has_inertia() {
+            let coasting = &buffers.coasting_rows;
+            for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(coasting) {
+                *change = (*now - *before) * self.rates.acceleration;
+            }
+            system.mass.add_product(&ws.row_scratch, g);
+        }
+        for (g, f) in g.iter_mut().zip(&ws.row_force) {
+            *g -= *f;
+        }
+        self.contract(ws, buffers);
+        norm(&buffers.residual)
+    }
+
+    /// `-Tᵀ g` without constrained components.
+    fn contract(&self, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
+        for (minus, g) in ws.row_scratch.iter_mut().zip(&buffers.unbalanced) {
+            *minus = -*g;
+        }
+        self.system.kinematics.forces_into(&buffers.q_trial, &mut ws.row_scratch, &mut buffers.residual);
+        self.system.project_free(&mut buffers.residual);
+    }
+
+    /// The incremental potential `½ b/a Σ m |ẋ - p|² + E(x)` at the placed rows: minus its gradient is the residual. For
+    /// backward Euler the first part is `Σ m |x - x̂|²/(2 h²)`, `x̂` where inertia alone would lead.
+    fn merit(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &ImplicitBuffers) -> f64 {
+        let system = self.system;
+        let mut stored = 0.0;
+        for (index, force) in system.forces.iter().enumerate() {
+            let at = system.view(index, &ws.rows, state, &self.around);
+            stored += force.energy(&at, &mut ws.scratches[index]).stored;
+        }
+        if !self.rates.has_inertia() {
+            return stored;
+        }
+        let coasting = &buffers.coasting_rows;
+        for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(coasting) {
+            *change = *now - *before;
+        }
+        self.rates.potential() * system.mass.kinetic_energy(&ws.row_scratch) + stored
+    }
+
+    /// What is left of prescribed motion: how far constrained components are from where they are led.
+    fn prescribed_into(&self, q: &[Vec3], prescribed: &mut [Vec3]) -> f64 {
+        prescribed.fill(Vec3::ZERO);
+        for constraint in &self.system.constraints {
+            if let Some(row) = self.system.kinematics.point_block_row(constraint.block) {
+                let to_go = constraint.position(self.end, self.around.load) - q[row as usize];
+                prescribed[constraint.block as usize] += constraint.constrained() * to_go;
+            }
+        }
+        let to_go = norm(prescribed);
+        if to_go <= 1e-14 * norm(q) { 0.0 } else { to_go }
+    }
+
+    /// `direction = A⁻¹ residual` at `(q_trial, v_trial)`.
+    /// Returns also the residual that rounding of positions makes, `ε |diag(A) x|`.
+    fn solve(
+        &self,
+        state: &SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+        wanted: Wanted,
+    ) -> Result<(Solved, f64), LinearError> {
+        let system = self.system;
+        let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
+        let ImplicitBuffers {
+            unbalanced,
+            residual,
+            direction,
+            prescribed,
+            rhs,
+            q_trial,
+            v_trial,
+            operator,
+            ..
+        } = buffers;
+        let at = Linearisation {
+            system,
+            state,
+            around: self.around,
+            rows,
+            q: q_trial,
+            v: v_trial,
+            rates: self.rates,
+            unbalanced,
+        };
+        rhs.copy_from_slice(residual);
+        let clock = Instant::now();
+        if wanted.constrained == Constrained::Led {
+            // A (δ_free + δ_prescribed) = -r
+            TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
+            for (rhs, lift) in rhs.iter_mut().zip(direction.iter()) {
+                *rhs -= *lift;
+            }
+            system.project_free(rhs);
+        }
+        let symmetric = self.is_symmetric();
+        let moved;
+        let positions = if system.kinematics.is_trivial() {
+            &rows.positions
+        } else {
+            moved = system.block_positions(&rows.positions);
+            &moved
+        };
+        let is_matrix_free = linear.is_matrix_free();
+        let Assembled { matrix, symmetric: nearby } = if is_matrix_free {
+            Assembled { matrix: tangent.assemble_diagonal(&at, scratches), symmetric: None }
+        } else {
+            tangent.assemble_with_symmetric(&at, scratches)
+        };
+        stages.assembly += clock.elapsed().as_secs_f64();
+        let weighted = (0..positions.len())
+            .map(|block| (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2));
+        let rounding = f64::EPSILON * weighted.sum::<f64>().sqrt();
+        let clock = Instant::now();
+        let products = is_matrix_free.then(|| TangentOperator::new(&at, scratches, operator));
+        let linear_system = LinearSystem {
+            matrix,
+            operator: products.as_ref().map(|operator| operator as _),
+            nearby,
+            symmetric,
+            kinematics: &system.kinematics,
+            reference: history::reference(&system.kinematics, &state.history),
+            positions,
+            indefinite: wanted.indefinite,
+            used_as: wanted.used_as,
+            tolerance: wanted.tolerance,
+        };
+        let solved = linear.solve(linear_system, rhs, direction);
+        stages.solve += clock.elapsed().as_secs_f64();
+        system.project_free(direction);
+        if wanted.constrained == Constrained::Led {
+            for (direction, prescribed) in direction.iter_mut().zip(prescribed.iter()) {
+                *direction += *prescribed;
+            }
+        }
+        Ok((solved?, rounding))
+    }
+
+    /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
+    fn is_symmetric(&self) -> bool {
+        !self.system.kinematics.has_rigid_frames()
+            && self.system.kinematics.is_conservative()
+            && self.system.forces.iter().all(|force| force.declaration().symmetric_tangent)
+    }
+
+    /// One linearisation about the start, for backward Euler `(M - h B - h² K) Δv = h (f + h K v)`, the forces' velocity
+    /// terms taken about the velocity of the start.
+    ///
+    /// # Errors
+    /// The linear solve failed.
+    pub fn solve_once(
+        &self,
+        lent: &Lent,
+        q: &mut [Vec3],
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+    ) -> Result<StepReport, StepError> {
+        let state = &lent.0;
+        self.place_coasting(buffers);
+        buffers.q_trial.copy_from_slice(q);
+        buffers.v_trial.copy_from_slice(&buffers.velocity_offset);
+        self.evaluate(state, ws, buffers);
+        if self.system.forces.iter().any(|force| force.declaration().velocity_terms) {
+            self.shift_to_start_velocity(state, ws, buffers);
+        }
+        let is_led = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
+        let constrained = if is_led { Constrained::Led } else { Constrained::Still };
+        let wanted =
+            Wanted { constrained, indefinite: Indefinite::Solve, used_as: Use::Answer, tolerance: 0.0 };
+        let (solved, _) = self.solve(state, ws, buffers, wanted)?;
+        self.system.kinematics.retract(q, &buffers.direction);
+        Ok(StepReport {
+            newton_iterations: 1,
+            linear_iterations: u64::from(solved.iterations),
+            linear_residual: solved.residual,
+            newton_residual: 0.0,
+        })
+    }
+
+    /// Replaces `f(q, v₀)` in the residual by `f(q, v) - B (v - v₀)`: exact for forces linear in velocity, and
+    /// linearised about where the body is going for others.
+    fn shift_to_start_velocity(
+        &self,
+        state: &SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+    ) {
+        let system = self.system;
+        let mut damping = std::mem::take(&mut buffers.damping);
+        let mut change = std::mem::take(&mut ws.row_scratch);
+        damping.resize(ws.row_force.len(), Vec3::ZERO);
+        buffers.at_offset.clone_from(&ws.row_force);
+        change.copy_from_slice(&ws.rows.velocities);
+        system.place_rows(&buffers.q_start, &buffers.v_start, self.end, &mut ws.rows);
+        for (change, start) in change.iter_mut().zip(&ws.rows.velocities) {
+            *change = *start - *change;
+        }
+        system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
+        let weights = TangentWeights { position: 0.0, velocity: 1.0 };
+        system.sum_row_differentials(ws, state, &self.around, weights, &change, &mut damping);
+        for (row, g) in buffers.unbalanced.iter_mut().enumerate() {
+            *g += buffers.at_offset[row] - (ws.row_force[row] - damping[row]);
+        }
+        ws.row_scratch = change;
+        buffers.damping = damping;
+        self.contract(ws, buffers);
+    }
+}

@@ -1,0 +1,168 @@
+//! What the implicit steppers share: how far the equation of a step is solved, and the page of stages around it.
+
+use souple_math::Vec3;
+use souple_table::{Parameter, Range, Value, Values};
+
+use crate::implicit::{ImplicitBuffers, ImplicitStep, Lent, NewtonSettings, Rates};
+use crate::state::SystemState;
+use crate::system::{Surroundings, System, SystemWorkspace};
+
+use super::{StepError, StepReport};
+
+/// How far the nonlinear equation of a step is solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NewtonMode {
+    /// One linearisation about the start (Baraff & Witkin 1998): the force at the end is `f + K Δq`, wrong by
+    /// `½ ∂²f/∂q² Δq²`, of second order in the step, so that no method loses its order. Exact where forces are linear.
+    /// Elsewhere there is no bound on energy: a law that stiffens along the step rises above the parabola that was
+    /// minimised, and long steps may gain. What does not touch at the start of a step is not felt in it.
+    One,
+    /// To the tolerance, with line search. Under backward Euler, where the potential is convex from the start of a step to
+    /// its end, `E' ≤ E - ½ M |v' - v|²` to the tolerance: energy does not grow.
+    Full(NewtonSettings),
+}
+
+pub(super) const NEWTON: Parameter = Parameter::choice(
+    "newton",
+    &["full", "one"],
+    "`full`: to the tolerance, with line search; `one`: a single linearised solve per step",
+)
+.or(Value::Text("full"));
+
+/// Wanted unbalanced force, relative to the largest in the step.
+pub(super) const NEWTON_TOLERANCE: Parameter = Parameter::number(
+    "newton_tolerance",
+    "",
+    Range::open(0.0, 1.0),
+    "unbalanced force at which Newton's method stops, relative to the largest in the step",
+)
+.or(Value::Number(1e-8));
+
+pub(super) const NEWTON_ITERATIONS: Parameter = Parameter::integer(
+    "newton_iterations",
+    Range::closed(1.0, 1000.0),
+    "iterations before a step is given up",
+)
+.or(Value::Integer(50));
+
+pub(super) fn newton_settings(values: &Values) -> NewtonSettings {
+    NewtonSettings {
+        tolerance: values.number("newton_tolerance"),
+        max_iterations: values.integer("newton_iterations") as u32,
+    }
+}
+
+/// Searches of pairs within one solve before it is given up.
+const MAX_SEARCHES: u32 = 16;
+
+/// Newton's method from the configuration of `next` until what touches is what was looked for.
+///
+/// While it iterates, pairs stay as they are: forces are pure and the merit is one function. Where it ends, rows may have
+/// come farther than the search of pairs saw. Pairs are then found again there, those still there with their memory, and
+/// the same equation is solved on from there. All of it follows from the State at the start of the step.
+pub(super) fn settle(
+    implicit: &ImplicitStep,
+    settings: NewtonSettings,
+    next: &mut SystemState,
+    ws: &mut SystemWorkspace,
+    buffers: &mut ImplicitBuffers,
+) -> Result<StepReport, StepError> {
+    let mut report = StepReport::default();
+    for _ in 0..MAX_SEARCHES {
+        let lent = Lent::from(next);
+        let solved = implicit.solve_newton(settings, &lent, &mut next.q, ws, buffers);
+        lent.give_back(next);
+        report.merge(&solved?);
+        implicit.system.place_rows(&next.q, &next.v, implicit.end, &mut ws.rows);
+        if !implicit.system.refresh_pairs(ws, next, &implicit.around) {
+            return Ok(report);
+        }
+    }
+    Err(StepError::PairsUnsettled { searches: MAX_SEARCHES })
+}
+
+/// The mode that a stepper's completed values ask for.
+pub(super) fn newton_mode(values: &Values) -> NewtonMode {
+    if values.text("newton") == "one" { NewtonMode::One } else { NewtonMode::Full(newton_settings(values)) }
+}
+
+/// A step with inertia under way: the system, when it ends, how long it is.
+pub(super) struct Stride<'a> {
+    pub system: &'a System,
+    pub around: &'a Surroundings<'a>,
+    pub start: f64,
+    pub timestep: f64,
+}
+
+/// `v₀` and `p` of [`Rates`], to be written over velocity blocks, and what they follow from.
+pub(super) struct Before<'a> {
+    /// Velocity at the start.
+    pub v: &'a [Vec3],
+    pub velocity_offset: &'a mut [Vec3],
+    /// Holds `v` to begin with.
+    pub coasting: &'a mut [Vec3],
+}
+
+/// Writes what a formula makes of the state and of what it carries.
+pub(super) type Prepare<'a> = dyn Fn(&SystemState, Before) + 'a;
+
+impl Stride<'_> {
+    /// The step of a formula whose `v₀` and `p` `prepare` writes; it is backward Euler's where nothing is prepared. Buffers
+    /// hold the start of the step afterwards, and `p`.
+    pub(super) fn take(
+        &self,
+        newton: NewtonMode,
+        rates: Rates,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+        prepare: Option<&Prepare>,
+    ) -> Result<StepReport, StepError> {
+        let Self { system, around, start, timestep } = *self;
+        let implicit = ImplicitStep {
+            system,
+            around: *around,
+            end: start + timestep,
+            rates,
+            has_potential: system.kinematics.is_trivial()
+                && system.forces.iter().all(|force| force.declaration().conservative),
+        };
+        implicit.begin(next, buffers);
+        if let Some(prepare) = prepare {
+            let ImplicitBuffers { v_start, velocity_offset, coasting, .. } = buffers;
+            prepare(next, Before { v: v_start, velocity_offset, coasting });
+            implicit.lead_constrained(timestep, buffers);
+        }
+        let report = match newton {
+            NewtonMode::One => {
+                let lent = Lent::from(next);
+                let solved = implicit.solve_once(&lent, &mut next.q, ws, buffers);
+                lent.give_back(next);
+                solved
+            }
+            NewtonMode::Full(settings) => settle(&implicit, settings, next, ws, buffers),
+        }?;
+        // the very velocity that the equation was solved with
+        let ImplicitBuffers { q_start, velocity_offset, .. } = buffers;
+        implicit.velocity_into(&next.q, q_start, velocity_offset, &mut next.v);
+        Ok(report)
+    }
+
+    /// Imposes what is prescribed, and moves memories on.
+    pub(super) fn end(&self, next: &mut SystemState, ws: &mut SystemWorkspace) {
+        let end = self.start + self.timestep;
+        self.system.impose_constraints(&mut next.q, &mut next.v, end, self.around.load);
+        self.system.place_rows(&next.q, &next.v, end, &mut ws.rows);
+        self.system.advance_memory(ws, next, self.around, self.timestep);
+    }
+}
+
+/// Why a formula of two steps, which adds vectors of different configurations, cannot step this system.
+pub(super) fn refuse_rotations(name: &str, system: &System) -> Option<String> {
+    system.kinematics.has_rigid_frames().then(|| {
+        format!(
+            "`{name}` adds displacements of earlier steps, which rigid frames do not have in common; take \
+             `backward_euler` or an explicit stepper"
+        )
+    })
+}
