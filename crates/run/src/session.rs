@@ -217,7 +217,7 @@ impl Session {
             around: self.around,
             energy: (self.energy_at_start.clone(), self.world.energy()),
             momentum: (self.momentum_at_start, self.world.momentum()),
-            solver: self.solver.clone(),
+            solver: self.solver,
             peak_bytes: peak_bytes(),
             solver_bytes: self.world.bytes(),
             probes: Vec::new(),
