@@ -1,3 +1,5 @@
+//! Decompositions multiply back, agree with iterations, and never give what is no rotation.
+
 use pulp::{Arch, Simd, WithSimd};
 
 use super::*;
