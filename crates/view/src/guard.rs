@@ -110,7 +110,11 @@ mod tests {
         let (_, token) =
             open.address().split_once("token=").map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
         assert_eq!(token.len(), 2 * TOKEN_BYTES);
-        let asking = |query: &str| Request { query: query.to_owned(), ..Request::default() };
+        let asking = |query: &str| {
+            let mut request = Request::default();
+            query.clone_into(&mut request.query);
+            request
+        };
         assert!(open.check_token(&asking(&format!("token={token}"))).is_ok());
         for query in ["", "token=", "token=00000000000000000000000000000000"] {
             assert_eq!(open.check_token(&asking(query)).unwrap_err().status, 401);

@@ -409,7 +409,7 @@ fn adjustable_to_json(adjustable: &Adjustable) -> Value {
         Kind::Boolean => ("boolean", &[][..]),
         Kind::Vector => ("vector", &[][..]),
         Kind::Choice(choices) => ("choice", *choices),
-        Kind::Text | Kind::Texts => ("text", &[][..]),
+        Kind::Text | Kind::Texts | Kind::Numbers => ("text", &[][..]),
     };
     let finite = |number: f64| number.is_finite().then_some(number);
     json!({
