@@ -18,10 +18,20 @@ pub struct NaturalFrequencies {
 
 /// Frequencies of a system that cannot be had.
 #[derive(Debug, thiserror::Error)]
-#[error("system `{system}`: {source}")]
+#[error("system `{system}`: {source}{}", hint(.source))]
 pub struct FrequencyError {
     pub system: String,
     pub source: SolveError,
+}
+
+/// What helps.
+fn hint(error: &SolveError) -> &'static str {
+    match error {
+        SolveError::Singular { .. } => {
+            "; bodies that are free to move have frequencies of zero: look near another one (`--near 1`)"
+        }
+        _ => "",
+    }
 }
 
 /// The `count` natural frequencies of each system nearest to `near` [Hz], about the scene's first state.

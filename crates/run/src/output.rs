@@ -22,6 +22,8 @@ pub const FRAMES: &str = "frames";
 pub enum OutputError {
     #[error("the folder `{}` cannot be made: {source}", .path.display())]
     Folder { path: PathBuf, source: std::io::Error },
+    #[error("`{}` is no folder; results go into one, made where there is nothing", .path.display())]
+    NoFolder { path: PathBuf },
     #[error(
         "`{}` was not written by a run (it is not listed in `{MANIFEST}` beside it) and would be overwritten; move it away or choose another folder",
         .path.display()
@@ -121,6 +123,9 @@ impl OutputFolder {
 }
 
 fn make_folder(path: &Path) -> Result<(), OutputError> {
+    if path.exists() && !path.is_dir() {
+        return Err(OutputError::NoFolder { path: path.to_owned() });
+    }
     fs::create_dir_all(path).map_err(|source| OutputError::Folder { path: path.to_owned(), source })
 }
 

@@ -74,7 +74,9 @@ impl<'a> Includer<'a> {
         let size = std::fs::metadata(&canonical)
             .map_or(0, |data| if data.is_file() { data.len() } else { u64::MAX });
         if size == u64::MAX {
-            return refuse(Code::Unreadable, format!("`{name}` is no file"), "a scene file");
+            let what = if canonical.is_dir() { "is a folder without a scene.toml" } else { "is no file" };
+            let expected = "a scene file, or a folder with a scene.toml";
+            return refuse(Code::Unreadable, format!("`{name}` {what}"), expected);
         }
         if size > LARGEST {
             return refuse(

@@ -50,6 +50,36 @@ fn unusual_magnitudes_are_told() {
     }
 }
 
+/// A motion that is elsewhere at the start tears, and is told; gravity that is not finite then is refused.
+#[test]
+fn starts_are_at_rest() {
+    let led = |offset: &str| {
+        format!(
+            "{BAR}[[bodies.bar.pins]]\nregion = \"x_max\"\nmotion = {{ formula = [\"{offset}\", 0, 0] }}\n"
+        )
+    };
+    assert_eq!(warnings(&led("t")), Vec::<String>::new());
+    let said = warnings(&led("0.5 + t"));
+    assert!(said.len() == 1 && said[0].contains("5.000e-1 m away from its points"), "{said:?}");
+    let heavy =
+        |y: &str| BAR.replace("[systems.main]", &format!("gravity = [0, \"{y}\", 0]\n[systems.main]"));
+    assert_eq!(warnings(&heavy("-9.81 * t")), Vec::<String>::new());
+    assert_refused(&heavy("1/t"), &["gravity is", "at t = 0"]);
+}
+
+/// Rotations are angles, also as key frames.
+#[test]
+fn rotations_are_angles() {
+    let turned = |angle: &str| {
+        format!(
+            "{BAR}[[bodies.bar.pins]]\nregion = \"x_max\"\n\
+             rotation = {{ times = [0, 1], offsets = [[0, 0, 0], [\"{angle}\", 0, 0]] }}\n"
+        )
+    };
+    assert_eq!(warnings(&turned("30 deg")), Vec::<String>::new());
+    assert_refused(&turned("50 cm"), &["50 cm"]);
+}
+
 /// A solver that cannot solve what the scene makes of it is replaced, and that is said.
 #[test]
 fn replaced_solvers_are_told() {

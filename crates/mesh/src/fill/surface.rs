@@ -20,6 +20,10 @@ pub fn surface_of(mesh: &Mesh) -> Option<TriangleSurface> {
     if mesh.cell_count() > 0 { Some(mesh.boundary_surface()) } else { mesh.facet_surface() }
 }
 
+/// Part of the enclosed volume below which a filling is said to have lost some: cells cut corners off, a twentieth at most
+/// where they are fit for the shape.
+const KEPT: f64 = 0.95;
+
 /// Mends a surface and fills it.
 ///
 /// # Errors
@@ -31,6 +35,7 @@ pub fn fill_surface(
 ) -> Result<FilledSurface, MeshError> {
     let (mended, repairs) = repair(surface, limits);
     let mut notes = repairs.messages();
+    let enclosed = mended.enclosed_volume().abs();
     let shape = SurfaceShape::new(mended)?;
     if shape.sign() == Sign::WindingNumber {
         notes.extend(shape.diagnosis().messages());
@@ -41,6 +46,14 @@ pub fn fill_surface(
     let parts = mesh.components().1;
     if parts > 1 {
         notes.push(format!("the filling has {parts} parts that share no point"));
+    }
+    let filled = mesh.volume();
+    if filled < KEPT * enclosed {
+        let percent = 100.0 * filled / enclosed;
+        notes.push(format!(
+            "the filling holds {filled:.4e} m³ of the {enclosed:.4e} m³ that the surface encloses, {percent:.0} %: \
+             what is thinner than its cells is lost; take a smaller size"
+        ));
     }
     Ok(FilledSurface { mesh, repairs, notes })
 }

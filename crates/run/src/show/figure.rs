@@ -70,6 +70,15 @@ struct Common {
     arrow_scale: f64,
 }
 
+/// Values that differ by less than this part of the largest are one value: solvers stop some digits before rounding.
+const ONE_VALUE: f64 = 1e-6;
+
+/// The range of colours for values from `low` to `high`: from zero where all are one value but for rounding.
+fn spread((low, high): (f64, f64)) -> (f64, f64) {
+    let most = low.abs().max(high.abs());
+    if high - low > ONE_VALUE * most { (low, high) } else { (low.min(0.0), high.max(0.0)) }
+}
+
 /// Bodies in colours of their own, where no field colours them.
 const BODIES: [[u8; 3]; 5] =
     [[214, 122, 104], [112, 150, 196], [160, 178, 96], [206, 168, 96], [160, 128, 184]];
@@ -120,7 +129,7 @@ impl Figure {
                 None => Some((value, value)),
                 Some((low, high)) => Some((low.min(value), high.max(value))),
             });
-            range = range.or(of_values);
+            range = range.or(of_values.map(spread));
             if let (ColourMap::Diverging, None, Some((low, high))) = (self.colours, self.range, range) {
                 let most = low.abs().max(high.abs());
                 range = Some((-most, most));

@@ -161,7 +161,19 @@ fn add_outer_forces(
     let world = &draft.spec.world;
     if let Some(formulas) = &world.gravity {
         match constant_vector(formulas) {
-            None => forces.push(Box::new(Gravity::varying("gravity", formulas.clone(), mass, kinematics))),
+            None => {
+                let [x, y, z] = [0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&[0.0]));
+                if ![x, y, z].into_iter().all(f64::is_finite) {
+                    let message = format!("gravity is ({x}, {y}, {z}) at t = 0");
+                    draft.log.add(
+                        Code::NotFinite,
+                        &world.site,
+                        message,
+                        "formulas that are finite at the start",
+                    );
+                }
+                forces.push(Box::new(Gravity::varying("gravity", formulas.clone(), mass, kinematics)));
+            }
             Some(Vec3::ZERO) => {}
             Some(constant) => match Gravity::new("gravity", constant, mass, kinematics) {
                 Ok(gravity) => forces.push(Box::new(gravity)),

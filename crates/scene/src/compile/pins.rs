@@ -42,6 +42,7 @@ const SAME: f64 = 1e-9;
 /// All pins of all bodies.
 pub fn add(draft: &mut Draft) {
     let mut added: Vec<(usize, Constraint)> = Vec::new();
+    let mut torn = Vec::new();
     for body in &draft.bodies {
         let system = &draft.systems[body.system];
         let mut holds = holds(draft, body);
@@ -51,6 +52,9 @@ pub fn add(draft: &mut Draft) {
             (0..body.mesh.points.len() as u32).for_each(|point| {
                 holds.entry(point).or_default();
             });
+        }
+        if system.stepper.has_inertia() {
+            torn.extend(torn_at_start(draft, body, &holds));
         }
         for (point, hold) in holds {
             let start = body.mesh.points[point as usize];
@@ -64,9 +68,35 @@ pub fn add(draft: &mut Draft) {
             added.push((body.system, Constraint { block, free, start, motion }));
         }
     }
+    draft.warnings.extend(torn);
     for (system, constraint) in added {
         draft.systems[system].constraints.push(constraint);
     }
+}
+
+/// Pins whose points are elsewhere at the start than at rest, in words: what moves starts at rest all around them.
+fn torn_at_start(draft: &Draft, body: &Placed, holds: &BTreeMap<u32, Hold>) -> Vec<String> {
+    let size = body.mesh.bounds().diagonal();
+    let mut farthest: BTreeMap<usize, f64> = BTreeMap::new();
+    for (point, hold) in holds {
+        let start = body.mesh.points[*point as usize];
+        for (axis, led) in hold.by.iter().enumerate() {
+            let Some(led) = led else { continue };
+            let offset = led.offset(start, 0.0)[axis].abs();
+            if offset > SAME * size {
+                let known = farthest.entry(led.pin).or_default();
+                *known = known.max(offset);
+            }
+        }
+    }
+    let told = |(pin, offset): (usize, f64)| {
+        let place = draft.place(&body.spec.pins[pin].site);
+        format!(
+            "{place}: this pin is {offset:.3e} m away from its points at t = 0 already: they jump there, and tear at \
+             those beside them; let the motion begin at zero"
+        )
+    };
+    farthest.into_iter().map(told).collect()
 }
 
 /// What holds the points of a body; contradictions and motions that are not finite are reported.

@@ -26,6 +26,20 @@ pub(crate) static MOTION: Keys = Keys::new(
     ],
 );
 
+pub(crate) static TURNING: Keys = Keys::new(
+    "turning",
+    "how points are turned: key frames (`times` and `offsets`) or a `formula` of a rotation vector",
+    &[
+        Key::new("times", Shape::Numbers, "of the key frames, growing").in_unit("s"),
+        Key::new("offsets", Shape::Vectors, "rotation vectors from the start, one for each time")
+            .in_unit("rad"),
+        Key::new("interpolation", Shape::Choice(&["linear", "smooth"]), "between key frames")
+            .or(Value::Text("linear")),
+        Key::new("formula", Shape::VectorFormula(LOAD_VARIABLES), "rotation vector from the start")
+            .in_unit("rad"),
+    ],
+);
+
 pub(crate) static PIN: Keys = Keys::new(
     "pin",
     "points that are held, or led where a motion is written",
@@ -35,8 +49,8 @@ pub(crate) static PIN: Keys = Keys::new(
         Key::new("motion", Shape::Table(&MOTION), "how they are led"),
         Key::new(
             "rotation",
-            Shape::Table(&MOTION),
-            "how they are turned about the pivot, before the motion: rotation vector, in radians",
+            Shape::Table(&TURNING),
+            "how they are turned about the pivot, before the motion",
         ),
         Key::vector("pivot", "m", "where they turn").or(Value::Vector([0.0; 3])),
     ],
@@ -107,7 +121,7 @@ pub struct Pin {
     pub site: Site,
 }
 
-/// An offset from the start, over time [m].
+/// An offset from the start, over time [m], or a rotation vector [rad].
 #[derive(Clone, Debug)]
 pub enum MotionSpec {
     KeyFrames {

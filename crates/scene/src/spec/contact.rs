@@ -5,7 +5,7 @@ use souple_models::contact::SHAPES;
 use souple_models::contact::shape::BuildShape;
 use souple_table::{Range, Value};
 
-use super::boundary::{MOTION, MotionSpec};
+use super::boundary::{MOTION, MotionSpec, TURNING};
 use super::region::Region;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
@@ -20,11 +20,7 @@ pub(crate) static SHAPE: Keys = Keys::new(
     &[
         Key::new("shape", Shape::Entry(SHAPE_ENTRY), "what it is").required(),
         Key::new("motion", Shape::Table(&MOTION), "how it is moved"),
-        Key::new(
-            "rotation",
-            Shape::Table(&MOTION),
-            "how it is turned about the pivot: rotation vector, in radians",
-        ),
+        Key::new("rotation", Shape::Table(&TURNING), "how it is turned about the pivot"),
         Key::vector("pivot", "m", "where it turns").or(Value::Vector([0.0; 3])),
     ],
 );

@@ -207,6 +207,7 @@ impl From<souple_run::RunError> for Refusal {
             | RunError::FileName { .. } => Self::request("run", "", "", error.to_string()),
             RunError::Output(output) => match output {
                 OutputError::Foreign { .. }
+                | OutputError::NoFolder { .. }
                 | OutputError::WouldLoseResults { .. }
                 | OutputError::List { .. } => Self::request(
                     "output",
