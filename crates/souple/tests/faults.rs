@@ -403,7 +403,7 @@ fn faulty_requests() {
     folder.write("empty.souple", "");
     let recording = std::fs::read_to_string(folder.path().join("run.json")).expect("a recording");
     folder.write("cut.json", &recording[..recording.len() / 2]);
-    folder.write("version.json", changed(&recording, "\"souple_recording\": 2", "\"souple_recording\": 1"));
+    folder.write("version.json", changed(&recording, "\"souple_recording\": 3", "\"souple_recording\": 1"));
     folder.write("steps.json", changed(&recording, "\"steps\": 10", "\"steps\": -10"));
     folder.write("altered.json", changed(&recording, "20 kPa", "21 kPa"));
     folder.write(

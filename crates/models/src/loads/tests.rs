@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use souple_engine::{Force, Grip, Hand, Kinematics, Mass, Motion, ParameterError, TangentWeights, UnknownKind};
+use souple_engine::{
+    Force, Grip, Hand, Kinematics, Mass, Motion, ParameterError, TangentWeights, UnknownKind,
+};
 use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::ElementKind;

@@ -1,4 +1,4 @@
-// The page in a real browser, before the released program: `cargo xtask test browser`.
+// The page in a real browser, before the released program: `cargo xtask browser`.
 //
 // SOUPLE_PROGRAM and SOUPLE_CHROMIUM name the program and the browser; SOUPLE_PICTURES a folder for pictures to look at.
 
