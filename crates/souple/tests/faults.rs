@@ -491,7 +491,7 @@ fn faulty_requests() {
         (&["replay", "garbage.json", "--out", "out"], 2, "garbage.json"),
         (&["replay", "no.json", "--out", "out"], 2, "souple_recording"),
         (&["replay", "cut.json", "--out", "out"], 2, "cut.json"),
-        (&["replay", "version.json", "--out", "out"], 2, "it is of version 1, this program plays version 2"),
+        (&["replay", "version.json", "--out", "out"], 2, "it is of version 1, this program plays version 3"),
         (&["replay", "steps.json", "--out", "out"], 2, "`steps`"),
         (&["replay", "altered.json", "--out", "out"], 2, "the recording was changed"),
         (&["replay", "commands.json", "--out", "out"], 2, "fly"),

@@ -207,7 +207,6 @@ impl From<souple_run::RunError> for Refusal {
             | RunError::FileName { .. } => Self::request("run", "", "", error.to_string()),
             RunError::Output(output) => match output {
                 OutputError::Foreign { .. }
-                | OutputError::NoFolder { .. }
                 | OutputError::WouldLoseResults { .. }
                 | OutputError::List { .. } => Self::request(
                     "output",
@@ -215,9 +214,10 @@ impl From<souple_run::RunError> for Refusal {
                     "a folder of its own, or that of an earlier run",
                     error.to_string(),
                 ),
-                OutputError::Folder { .. } | OutputError::NotRemoved { .. } | OutputError::Io(_) => {
-                    Self::work("io", error.to_string())
-                }
+                OutputError::Folder { .. }
+                | OutputError::NoFolder { .. }
+                | OutputError::NotRemoved { .. }
+                | OutputError::Io(_) => Self::work("io", error.to_string()),
             },
         }
     }
