@@ -212,11 +212,6 @@ pub trait Force: Send + Sync {
         false
     }
 
-    /// What this force leaves out of its tangent, or would warn of, at this configuration.
-    fn warnings(&self, _at: &Configuration) -> Vec<String> {
-        Vec::new()
-    }
-
     fn editable(&self) -> Vec<Editable> {
         Vec::new()
     }

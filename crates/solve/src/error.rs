@@ -54,9 +54,6 @@ pub enum SolveError {
     /// Eigenpairs asked for beyond what the matrix has.
     #[error("{wanted} eigenpairs were asked for, but the system has {available} unknowns")]
     TooManyModes { wanted: usize, available: usize },
-    /// The method works on coordinates, which were not given.
-    #[error("{method} needs the coordinates of the blocks; give them or choose another method")]
-    NeedsCoordinates { method: &'static str },
     /// The memory for a factor could not be had.
     #[error("not enough memory for {what}; an iterative method with another preconditioner needs less")]
     OutOfMemory { what: &'static str },

@@ -181,7 +181,7 @@ impl RowLaw for Written {
         let tape = self.0.energy();
         with_memory(tape, |memory| {
             write(memory, tape.deformation(0), F);
-            Arch::new().dispatch(Run { tape, part: Part::All, memory });
+            tape.run_here(Part::All, LANES, memory);
             let mut out = [0.0; LANES];
             out.copy_from_slice(&memory[tape.output(0, 0)..][..LANES]);
             out
@@ -192,7 +192,7 @@ impl RowLaw for Written {
         let tape = self.0.stress();
         with_memory(tape, |memory| {
             write(memory, tape.deformation(0), F);
-            Arch::new().dispatch(Run { tape, part: Part::All, memory });
+            tape.run_here(Part::All, LANES, memory);
             read(memory, tape.output(0, 0))
         })
     }
@@ -201,10 +201,10 @@ impl RowLaw for Written {
         let tape = self.0.differential();
         with_memory(tape, |memory| {
             write(memory, tape.deformation(0), F);
-            Arch::new().dispatch(Run { tape, part: Part::Deformation, memory });
+            tape.run_here(Part::Deformation, LANES, memory);
             for row in d {
                 write(memory, tape.variation(0), row);
-                Arch::new().dispatch(Run { tape, part: Part::Variation, memory });
+                tape.run_here(Part::Variation, LANES, memory);
                 *row = read(memory, tape.output(0, 0));
             }
         });
@@ -220,19 +220,4 @@ fn write(memory: &mut [f64], at: usize, row: &Row) {
 
 fn read(memory: &[f64], at: usize) -> Row {
     std::array::from_fn(|e| std::array::from_fn(|lane| memory[at + e * BATCH + lane]))
-}
-
-struct Run<'a> {
-    tape: &'a Tape,
-    part: Part,
-    memory: &'a mut [f64],
-}
-
-impl WithSimd for Run<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.tape.run(simd, self.part, LANES, self.memory);
-    }
 }
