@@ -25,6 +25,20 @@ pub struct Placed<'a> {
     pub mesh: Mesh,
     /// The number that each point had in its file, ascending.
     pub point_numbers: Vec<u32>,
+    pub materials: BodyMaterials,
+}
+
+/// The materials of a body, and which of them each cell has.
+#[derive(Default)]
+pub struct BodyMaterials {
+    pub all: Vec<Material>,
+    of_cell: Vec<u16>,
+}
+
+impl BodyMaterials {
+    pub fn of(&self, cell: usize) -> &Material {
+        &self.all[usize::from(self.of_cell[cell])]
+    }
 }
 
 /// Name of the elastic force of a body.
@@ -52,7 +66,13 @@ pub fn place(draft: &mut Draft) -> Option<()> {
             rows,
             mesh: shape.mesh,
             point_numbers: shape.point_numbers,
+            materials: BodyMaterials::default(),
         });
+    }
+    for index in 0..draft.bodies.len() {
+        if let Some(materials) = materials_of(draft, &draft.bodies[index]) {
+            draft.bodies[index].materials = materials;
+        }
     }
     (draft.bodies.len() == spec.bodies.len() && draft.log.is_empty()).then_some(())
 }
@@ -66,13 +86,12 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
     let mut mass = Mass::new(row_count);
     let mut forces: Vec<Box<dyn Force>> = Vec::new();
     for body in bodies() {
-        let Some((materials, material_of_cell)) = materials_of(draft, body) else { continue };
+        let materials = &body.materials;
         let section = body.spec.section();
-        if !suits(draft, body, &materials) {
+        if !suits(draft, body, &materials.all) {
             continue;
         }
-        let density =
-            |cell: usize| materials[usize::from(material_of_cell[cell])].density * section.measure();
+        let density = |cell: usize| materials.of(cell).density * section.measure();
         match body.spec.mass {
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
@@ -81,8 +100,8 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             name: solid_name(&body.spec.name),
             mesh: &body.mesh,
             first_row: body.rows.start,
-            materials: &materials,
-            material_of_cell: &material_of_cell,
+            materials: &materials.all,
+            material_of_cell: &materials.of_cell,
             quadrature: body.spec.quadrature,
             section,
         };
@@ -240,8 +259,7 @@ pub fn point_areas(surface: &TriangleSurface) -> Vec<f64> {
     areas
 }
 
-/// The materials of a body and the number of each cell's among them.
-fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>)> {
+fn materials_of(draft: &Draft, body: &Placed) -> Option<BodyMaterials> {
     let main = body.spec.material.as_ref()?;
     // tried when the scene was read
     let mut materials = vec![(main.entry.build)(&main.values).ok()?];
@@ -261,7 +279,7 @@ fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>
             material_of_cell[cell as usize] = number;
         }
     }
-    Some((materials, material_of_cell))
+    Some(BodyMaterials { all: materials, of_cell: material_of_cell })
 }
 
 /// Rest positions and initial velocities. Pinned points stand where their pins want them, but for steppers that look for

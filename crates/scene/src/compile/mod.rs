@@ -3,6 +3,7 @@
 mod bodies;
 mod boundary;
 mod contact;
+mod depth;
 mod doubts;
 mod freedom;
 mod links;
@@ -125,6 +126,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     if !log.is_empty() {
         return None;
     }
+    depth::warn(&mut draft);
     let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
     model.systems = systems;
     let bodies =
