@@ -99,13 +99,23 @@ fn from_forces(
     if system.kinematics.has_rigid_frames() {
         subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
     }
+    solve_for_row_forces(system, &state.q, ws, out)
+}
+
+/// `out = (TᵀMT)⁻¹ Tᵀ f` over free components, with `f` in `ws.row_force`.
+fn solve_for_row_forces(
+    system: &System,
+    q: &[Vec3],
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<StepReport, StepError> {
     let mut rhs = std::mem::take(&mut ws.blocks[5]);
     rhs.resize(out.len(), Vec3::ZERO);
-    system.kinematics.forces_into(&state.q, &mut ws.row_force, &mut rhs);
+    system.kinematics.forces_into(q, &mut ws.row_force, &mut rhs);
     system.project_free(&mut rhs);
     let mut matrix = ws.tangent.take_mass_matrix(system);
     matrix.set_zero();
-    add_generalised_mass(system, &state.q, &mut matrix);
+    add_generalised_mass(system, q, &mut matrix);
     constrain(system, &mut matrix);
     let solved = ws.linear.solve_mass(&matrix, &rhs, out);
     ws.tangent.put_mass_matrix(matrix);
@@ -116,6 +126,41 @@ fn from_forces(
         linear_residual: solved.residual,
         ..StepReport::default()
     })
+}
+
+/// What led components give to the free ones while their velocity changes from that at `from` to that at `to` seconds, for
+/// methods that kick velocities with [`accelerations_at`]: with the momentum `p = M_ff v_f + M_fc v_c` of the free
+/// components, `ṗ = f` is left for the kicks, and `v -= M_ff⁻¹ M_fc Δv_c` holds exactly however the motion goes. Nothing
+/// where the mass couples no points.
+///
+/// # Errors
+/// The mass matrix cannot be solved with.
+pub fn take_along(
+    system: &System,
+    (from, to): (f64, f64),
+    q: &[Vec3],
+    v: &mut [Vec3],
+    ws: &mut SystemWorkspace,
+) -> Result<StepReport, StepError> {
+    if system.mass.is_lumped() || system.constraints.iter().all(|constraint| constraint.motion.is_none()) {
+        return Ok(StepReport::default());
+    }
+    ws.row_scratch.fill(Vec3::ZERO);
+    for constraint in &system.constraints {
+        if let Some(row) = system.kinematics.point_block_row(constraint.block) {
+            let change = constraint.velocity(to) - constraint.velocity(from);
+            ws.row_scratch[row as usize] += constraint.constrained() * change;
+        }
+    }
+    system.kinematics.derive_rows(&mut ws.row_scratch);
+    ws.row_force.fill(Vec3::ZERO);
+    system.mass.add_scaled_product(-1.0, &ws.row_scratch, &mut ws.row_force);
+    let mut change = std::mem::take(&mut ws.taken_along);
+    change.resize(v.len(), Vec3::ZERO);
+    let solved = solve_for_row_forces(system, q, ws, &mut change);
+    reduce::add_scaled(v, 1.0, &change);
+    ws.taken_along = change;
+    solved
 }
 
 /// `matrix += TᵀMT`.

@@ -4,7 +4,7 @@
 use souple_math::Vec3;
 use souple_solve::reduce;
 
-use crate::inertia::accelerations_at;
+use crate::inertia::{accelerations_at, take_along};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
@@ -70,22 +70,21 @@ impl OneForce {
         let mut acceleration = std::mem::take(&mut ws.blocks[0]);
         acceleration.resize(next.v.len(), Vec3::ZERO);
         let evaluated = accelerations_at(system, around, start + first, next, ws, &mut acceleration);
-        if evaluated.is_ok() {
+        let stepped = evaluated.and_then(|mut report| {
             system.advance_memory(ws, next, around, timestep);
-            match self.drifts {
-                Drifts::BeforeKick => {
-                    system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
-                    kick(&mut next.v, &acceleration, timestep);
-                }
-                Drifts::AfterKick => {
-                    kick(&mut next.v, &acceleration, timestep);
-                    system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
-                }
+            if let Drifts::BeforeKick = self.drifts {
+                system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
+            }
+            kick(&mut next.v, &acceleration, timestep);
+            report.merge(&take_along(system, (start, start + timestep), &next.q, &mut next.v, ws)?);
+            if let Drifts::AfterKick = self.drifts {
+                system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
             }
             system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
-        }
+            Ok(report)
+        });
         ws.blocks[0] = acceleration;
-        evaluated
+        stepped
     }
 }
 

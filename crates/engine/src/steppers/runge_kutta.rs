@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use crate::inertia::accelerations_at;
+use crate::inertia::{accelerations_at, take_along};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
@@ -152,6 +152,7 @@ impl Method {
                 next.v.copy_from_slice(start_v);
                 system.kinematics.retract_scaled(&mut next.q, velocity, fraction * timestep);
                 kick(&mut next.v, acceleration, fraction * timestep);
+                report.merge(&take_along(system, (start, time), &next.q, &mut next.v, ws)?);
                 system.impose_constraints(&mut next.q, &mut next.v, time, around.load);
                 system.place_rows(&next.q, &next.v, time, &mut ws.rows);
                 system.refresh_pairs(ws, next, around);
@@ -171,6 +172,7 @@ impl Method {
         // q' = q + h Σ b v_i,  v' = v + h Σ b a_i
         system.kinematics.retract_scaled(&mut next.q, velocity_sum, timestep);
         kick(&mut next.v, acceleration_sum, timestep);
+        report.merge(&take_along(system, (start, start + timestep), &next.q, &mut next.v, ws)?);
         system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
         Ok(report)
     }
