@@ -85,6 +85,22 @@ fn from_forces(
     ws: &mut SystemWorkspace,
     out: &mut [Vec3],
 ) -> Result<StepReport, StepError> {
+    if system.kinematics.has_rigid_frames() {
+        subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
+    }
+    solve_mass(system, &state.q, ws, out)
+}
+
+/// `out = (TᵀMT)⁻¹ Tᵀ f` over free components, with `f` over rows in `ws.row_force`.
+///
+/// # Errors
+/// The mass matrix cannot be solved with.
+pub fn solve_mass(
+    system: &System,
+    q: &[Vec3],
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<StepReport, StepError> {
     if system.kinematics.is_trivial() && system.mass.is_lumped() {
         // a = f / m
         let (forces, masses) = (&ws.row_force, &system.mass.diagonal);
@@ -96,19 +112,6 @@ fn from_forces(
         system.project_free(out);
         return Ok(StepReport::default());
     }
-    if system.kinematics.has_rigid_frames() {
-        subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
-    }
-    solve_for_row_forces(system, &state.q, ws, out)
-}
-
-/// `out = (TᵀMT)⁻¹ Tᵀ f` over free components, with `f` in `ws.row_force`.
-fn solve_for_row_forces(
-    system: &System,
-    q: &[Vec3],
-    ws: &mut SystemWorkspace,
-    out: &mut [Vec3],
-) -> Result<StepReport, StepError> {
     let mut rhs = std::mem::take(&mut ws.blocks[5]);
     rhs.resize(out.len(), Vec3::ZERO);
     system.kinematics.forces_into(q, &mut ws.row_force, &mut rhs);
@@ -157,7 +160,7 @@ pub fn take_along(
     system.mass.add_scaled_product(-1.0, &ws.row_scratch, &mut ws.row_force);
     let mut change = std::mem::take(&mut ws.taken_along);
     change.resize(v.len(), Vec3::ZERO);
-    let solved = solve_for_row_forces(system, q, ws, &mut change);
+    let solved = solve_mass(system, q, ws, &mut change);
     reduce::add_scaled(v, 1.0, &change);
     ws.taken_along = change;
     solved
