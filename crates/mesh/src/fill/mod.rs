@@ -10,6 +10,7 @@
 //! the halves, quarters and half pyramids as they stand.
 
 mod background;
+mod groups;
 mod hexes;
 mod lattice;
 mod options;
@@ -23,7 +24,7 @@ use crate::implicit::Shape;
 use crate::{ElementKind, Group, Mesh};
 
 pub use options::{Options, PARAMETERS};
-pub use surface::{FilledSurface, fill_surface, surface_of};
+pub use surface::{FilledSurface, fill_mesh, fill_surface, surface_of};
 
 use lattice::Lattice;
 use stencil::Stencils;
@@ -124,7 +125,7 @@ pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) ->
     }
     mesh.remove_loose_points();
     mesh.groups.insert(
-        "surface".to_owned(),
+        groups::SURFACE.to_owned(),
         Group { points: mesh.boundary_surface().mesh_points, ..Group::default() },
     );
     let centres = mesh.cell_centres();

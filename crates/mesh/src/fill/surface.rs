@@ -1,6 +1,6 @@
 //! Fills what triangles enclose: mended first, everything said.
 
-use super::Options;
+use super::{Options, groups};
 use crate::implicit::{Sign, SurfaceShape};
 use crate::repair::{RepairLimits, SurfaceRepairs, repair};
 use crate::{Mesh, MeshError, TriangleSurface};
@@ -56,4 +56,15 @@ pub fn fill_surface(
         ));
     }
     Ok(FilledSurface { mesh, repairs, notes })
+}
+
+/// Fills the surface of a mesh and carries its groups along.
+///
+/// # Errors
+/// The mesh has neither facets nor cells; as [`fill_surface`].
+pub fn fill_mesh(mesh: &Mesh, limits: RepairLimits, options: &Options) -> Result<FilledSurface, MeshError> {
+    let surface = surface_of(mesh).ok_or(MeshError::NoCells)?;
+    let mut filled = fill_surface(&surface, limits, options)?;
+    filled.notes.extend(groups::carry(mesh, &surface, &mut filled.mesh));
+    Ok(filled)
 }

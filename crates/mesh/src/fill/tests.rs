@@ -234,3 +234,49 @@ fn fillings_by_count() {
     }
     assert!(options(0.1, 10).is_err() && options(0.0, 0).is_err());
 }
+
+/// Groups of a surface come onto its filling: the two ends of a box and its half of cells keep their areas and volume to
+/// what the lattice cuts off edges; a group too small for any face is told.
+#[test]
+fn groups_of_a_surface_are_carried() {
+    let values = Values::new().with("cells", Value::Vector([4.0, 2.0, 2.0]));
+    let values = values.with("size", Value::Vector([1.0, 0.5, 0.5]));
+    let bar = crate::generate::generate("bar", values).unwrap();
+    let surface = bar.boundary_surface();
+    let mut shell = Mesh { points: bar.points.clone(), ..Mesh::default() };
+    for corners in &surface.triangles {
+        shell.push_facet(ElementKind::Tri3, &corners.map(|corner| surface.mesh_points[corner as usize]));
+    }
+    let facets_where = |keep: &dyn Fn(Vec3) -> bool| {
+        let all = |triangle: &u32| surface.corners(*triangle).into_iter().all(keep);
+        Group { facets: (0..surface.triangles.len() as u32).filter(all).collect(), ..Group::default() }
+    };
+    shell.groups.insert("left".to_owned(), facets_where(&|p| p.x < 1e-9));
+    shell.groups.insert("right".to_owned(), facets_where(&|p| p.x > 1.0 - 1e-9));
+    shell.groups.insert("nowhere".to_owned(), Group::default());
+    let values = Values::new().with("size", Value::Number(0.05)).completed(PARAMETERS).unwrap();
+    let options = Options::from_values(&values).unwrap();
+    let filled = fill_mesh(&shell, Default::default(), &options).unwrap();
+    assert!(filled.notes.iter().any(|note| note.contains("`nowhere` reaches no face")), "{:?}", filled.notes);
+    for (name, end) in [("left", 0.0), ("right", 1.0)] {
+        let group = &filled.mesh.groups[name];
+        let far = |point: &u32| (filled.mesh.points[*point as usize].x - end).abs();
+        // bevels of the edges are within a size of the end
+        assert!(group.points.iter().map(far).fold(0.0, f64::max) < 0.05, "{name}");
+        let facets: Vec<_> = filled.mesh.facets().collect();
+        let area = |facet: &u32| {
+            let [a, b, c] = [0, 1, 2].map(|k| filled.mesh.points[facets[*facet as usize].nodes[k] as usize]);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        let total: f64 = group.facets.iter().map(area).sum();
+        assert!((total / 0.25 - 1.0).abs() < 0.15, "{name}: {total}");
+    }
+    // a volume with a group of cells
+    let mut bar = bar;
+    let half =
+        (0..bar.cell_count() as u32).filter(|cell| bar.cell_centres()[*cell as usize].x < 0.5).collect();
+    bar.groups.insert("half".to_owned(), Group { cells: half, ..Group::default() });
+    let filled = fill_mesh(&bar, Default::default(), &options).unwrap();
+    let part = filled.mesh.groups["half"].cells.len() as f64 / filled.mesh.cell_count() as f64;
+    assert!((part - 0.5).abs() < 0.02, "{part}");
+}

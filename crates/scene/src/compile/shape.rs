@@ -1,6 +1,6 @@
 //! From a mesh specification to a mesh that has passed every check, placed where the body starts.
 
-use souple_mesh::fill::{FillError, fill_surface, surface_of};
+use souple_mesh::fill::{FillError, fill_mesh};
 use souple_mesh::repair::RepairLimits;
 use souple_mesh::{Conformity, Mesh, MeshError, Repairs};
 
@@ -37,13 +37,10 @@ pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
         MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, &mut warnings)?),
         MeshSpec::Filled { file, scale, options, .. } => {
             let mesh = read(draft, spec.site(), file, *scale, &mut warnings)?;
-            let surface = surface_of(&mesh).ok_or(MeshError::NoCells);
-            surface.and_then(|surface| fill_surface(&surface, RepairLimits::default(), options)).map(
-                |filled| {
-                    warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
-                    filled.mesh
-                },
-            )
+            fill_mesh(&mesh, RepairLimits::default(), options).map(|filled| {
+                warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
+                filled.mesh
+            })
         }
     };
     let mut mesh = match built {

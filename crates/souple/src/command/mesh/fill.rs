@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_mesh::fill::{Options, PARAMETERS, fill_surface, surface_of};
+use souple_mesh::fill::{Options, PARAMETERS, fill_mesh, surface_of};
 use souple_mesh::implicit::SHAPES;
 use souple_mesh::repair::{RepairLimits, repair};
 use souple_mesh::simplify::{Goal, simplify};
@@ -41,8 +41,7 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     let scale = others.completed(&[SCALE]).map_err(|error| refuse(error.into()))?.number("scale");
     let (mut mesh, mut notes) = read(Path::new(input))?;
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
-    let surface = surface_of(&mesh).ok_or(MeshError::NoCells).map_err(refuse)?;
-    let filled = fill_surface(&surface, RepairLimits::default(), &options).map_err(refuse)?;
+    let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
     Ok((filled.mesh, notes))
 }
@@ -89,6 +88,12 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
         surface.triangles.len(),
         simple.distance
     ));
+    if simple.crossings > 0 {
+        notes.push(format!(
+            "{} pairs of triangles pass through each other, as in the given surface",
+            simple.crossings
+        ));
+    }
     Ok((mesh_of(&simple.surface), notes))
 }
 
