@@ -76,8 +76,6 @@ pub enum FillError {
     NotANumber { position: [f64; 3] },
     #[error("the shape is inside at {position:?}, on the border of its bounds; expected larger bounds")]
     BeyondBounds { position: [f64; 3] },
-    #[error("hexahedra of several sizes do not meet; expected one size, or tetrahedra")]
-    GradedHexahedra,
     #[error(
         "no point of a lattice of {size} m is inside the shape; expected a smaller size, or a shape with an inside"
     )]
@@ -112,9 +110,6 @@ impl Size {
 /// # Errors
 /// The size, the bounds or a value of the shape cannot be used; nothing of the lattice is inside.
 pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) -> Result<Mesh, FillError> {
-    if cells == Cells::HexDominant && !matches!(size.interior, Interior::Uniform) {
-        return Err(FillError::GradedHexahedra);
-    }
     let lattice = Lattice::new(shape, size)?;
     let mut mesh = match cells {
         Cells::Tetrahedra => tetrahedra(&lattice, shape),

@@ -189,6 +189,40 @@ fn hex_dominant_fillings() {
     }
 }
 
+/// Hexahedra of several sizes meet through pyramids: conforming, sound, and most of the volume in them; with fewer cells
+/// than of one size where the body is thick.
+#[test]
+fn graded_hex_dominant_fillings() {
+    for name in ["ellipsoid", "liver"] {
+        let body = implicit::body(name, Values::new()).unwrap();
+        let surface = body.shape.bounds().size().largest_component() / 48.0;
+        let of = |interior: Interior| {
+            fill(&*body.shape, &Size { surface, interior }, Cells::HexDominant, &[]).unwrap()
+        };
+        let uniform = of(Interior::Uniform);
+        let mut mesh = of(Interior::Graded { growth: 0.6, largest: 4.0 * surface });
+        assert_sound(&mut mesh);
+        let sizes: std::collections::BTreeSet<i64> = mesh
+            .cells()
+            .zip(mesh.cell_volumes())
+            .filter(|(cell, _)| cell.kind == ElementKind::Hex8)
+            .map(|(_, volume)| (volume.cbrt() / surface).log2().round() as i64)
+            .collect();
+        let volume = |kind: ElementKind| {
+            let of_kind = mesh.cells().zip(mesh.cell_volumes()).filter(|(cell, _)| cell.kind == kind);
+            of_kind.map(|(_, volume)| volume).sum::<f64>()
+        };
+        let share = volume(ElementKind::Hex8) / mesh.volume();
+        assert!(sizes.len() > 1, "{name}: {sizes:?}");
+        assert!(name != "ellipsoid" || mesh.cell_count() < uniform.cell_count(), "{}", mesh.cell_count());
+        assert!(share > 0.5, "{name}: {share}");
+        let worst = mesh.quality().iter().map(|cell| cell.scaled_jacobian).fold(1.0, f64::min);
+        assert!(worst > 0.0, "{name}: {worst}");
+        // the surface is that of the filling of one size
+        assert!((mesh.volume() / uniform.volume() - 1.0).abs() < 1e-3, "{name}");
+    }
+}
+
 /// Any number of threads gives the same points in the same order.
 #[test]
 fn threads_change_nothing() {
