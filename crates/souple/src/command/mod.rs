@@ -203,11 +203,11 @@ impl From<souple_run::RunError> for Refusal {
             | RunError::Edit { .. }
             | RunError::Change { .. }
             | RunError::TooManySteps { .. }
-            | RunError::NoStep { .. }
-            | RunError::FileName { .. } => Self::request("run", "", "", error.to_string()),
+            | RunError::NoStep { .. } => Self::request("run", "", "", error.to_string()),
             RunError::Output(output) => match output {
                 OutputError::Foreign { .. }
                 | OutputError::WouldLoseResults { .. }
+                | OutputError::InUse { .. }
                 | OutputError::List { .. } => Self::request(
                     "output",
                     "",

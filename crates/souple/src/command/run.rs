@@ -151,7 +151,15 @@ pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Ref
     };
     let outcome = souple_run::run(scene, options, &mut watch);
     bar.finish_and_clear();
-    Ok(outcome?)
+    let outcome = outcome?;
+    if let (false, 1.., Some(out)) = (quiet, outcome.replaced, &options.out) {
+        print_note(format_args!(
+            "note: {} files of an earlier run in {} were replaced",
+            outcome.replaced,
+            out.display()
+        ));
+    }
+    Ok(outcome)
 }
 
 /// Where the results of a run are told.
