@@ -87,10 +87,8 @@ pub fn of_solver(system: &System) -> Option<String> {
             "`cg` solves symmetric systems, but the stiffness of `{name}` is not symmetric: `gmres` takes its place"
         ));
     }
-    let asked = settings.preconditioner;
-    let is_plain = ["auto", "block_jacobi"].contains(&asked);
-    (settings.matrix_free && !is_plain)
-        .then(|| format!("without a stored matrix there is no `{asked}`: `block_jacobi` takes its place"))
+    let (asked, taken) = (settings.preconditioner, settings.preconditioner_instead()?);
+    Some(format!("without a stored matrix there is no `{asked}`: `{taken}` takes its place"))
 }
 
 /// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].
