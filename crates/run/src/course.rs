@@ -125,7 +125,16 @@ impl Course {
 
     /// The report, written with tables and pictures where the run has a folder.
     fn conclude(&mut self, status: Status, aims: &Aims) -> Report {
-        let Self { session, folder, traces, .. } = self;
+        let Self { session, folder, traces, frames } = self;
+        let drawable = folder.as_ref().and_then(|_| frames.drawable(&session.world, &session.bodies));
+        if let Some(moment) = &drawable
+            && moment.time < session.world.time()
+        {
+            session.warnings.push(format!(
+                "the bodies have run away: the picture shows {:.6} s, the last frame that can be drawn",
+                moment.time
+            ));
+        }
         let period = session.world.model().period;
         let measured = (session.first_step as f64 * period, session.world.time());
         let span = Span { scene_end: aims.scene_end, period, status, measured };
@@ -140,7 +149,9 @@ impl Course {
             report::write_report(folder, &report),
             report::write_tables(folder, &report, traces),
             picture::write_plots(folder, traces),
-            picture::write_last(folder, &report.title, aims.view, session),
+            drawable.map_or(Ok(()), |moment| {
+                picture::write_last(folder, &report.title, aims.view, session, &moment)
+            }),
         ];
         let errors: Vec<OutputError> = written.into_iter().filter_map(Result::err).collect();
         if errors.is_empty() {

@@ -25,6 +25,7 @@ use std::path::PathBuf;
 
 use souple_engine::World;
 use souple_scene::{BodyInfo, ProbeInfo, Scene};
+use souple_table::readable;
 
 pub use command::{command_from_json, command_to_json};
 pub use duration::{Periods, periods_in};
@@ -98,11 +99,13 @@ pub enum RunError {
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(
-        "a duration of {duration} s is {share:.3e} of a period of {period} s: no step would be made; a run lasts at least half a period"
+        "a duration of {} s is {share:.3e} of a period of {} s: no step would be made; a run lasts at least half a period",
+        readable(*.duration), readable(*.period)
     )]
     NoStep { duration: f64, period: f64, share: f64 },
     #[error(
-        "a duration of {duration:e} s at a period of {period} s is {steps:e} steps; at most {limit:e} can be counted"
+        "a duration of {duration:e} s at a period of {} s is {steps:e} steps; at most {limit:e} can be counted",
+        readable(*.period)
     )]
     TooManySteps { duration: f64, period: f64, steps: f64, limit: f64 },
 }

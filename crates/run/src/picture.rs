@@ -10,8 +10,8 @@ use crate::{Session, Trace};
 /// The picture of the last state.
 pub const PICTURE: &str = "last.png";
 
-/// All bodies as they stand, coloured by the von Mises stress of their cells, and the shapes they touch, into the
-/// folder of a run.
+/// All bodies of a moment, coloured by the von Mises stress of their cells, and the shapes they touch, into the folder
+/// of a run.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -20,15 +20,15 @@ pub fn write_last(
     title: &str,
     from: PictureView,
     session: &Session,
+    moment: &Moment,
 ) -> Result<(), OutputError> {
-    let mut stage = Stage::of_model(session.world.model(), from);
+    let mut stage = Stage::of_model(session.world.model(), &session.bodies, from);
     stage.title = title.to_owned();
-    let moment = Moment::of_world(&session.world, &session.bodies);
     let show = Show { stage, moments: Vec::new() };
     let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
     let plain = Figure { colour_by: None, ..figure.clone() };
     // bodies without stress are shown in colours of their own
-    let picture = match figure.picture(&show, &moment).or_else(|_| plain.picture(&show, &moment)) {
+    let picture = match figure.picture(&show, moment).or_else(|_| plain.picture(&show, moment)) {
         Ok(picture) => picture,
         Err(ShowError::Io(error)) => return Err(error.into()),
         Err(_) => return Ok(()),
