@@ -520,10 +520,12 @@ fn faulty_requests() {
         })
         .collect();
     assert_refused(&folder, &faults);
-    // commands that name what the scene does not have are met on the way: the run up to them is no file either
+    // commands that name what the scene does not have are met on the way: the report tells of the run up to them
     for file in ["force.json", "system.json", "block.json"] {
-        let answer = souple_in(folder.path(), ["replay", file, "--quiet", "--json"]).ends(2);
-        assert_errors(&answer.json());
+        let answer = souple_in(folder.path(), ["replay", file, "--quiet", "--json"]).ends(1);
+        let report = answer.json();
+        assert_eq!((&report["status"], &report["steps"]), (&"failed".into(), &1.into()), "{file}");
+        assert!(report["error"]["message"].to_string().contains("before period 1"), "{file}: {report:#}");
     }
 }
 

@@ -10,12 +10,16 @@ use super::{BodyMoment, Moment, Show, ShowError, vectors};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Common {
     pub bounds: BoundingBox,
+    /// About as much as a pixel shows [m].
+    pub pixel: f64,
     pub range: Option<(f64, f64)>,
     pub arrow_scale: f64,
 }
 
 /// Values that differ by less than this part of the largest are one value: solvers stop some digits before rounding.
 const ONE_VALUE: f64 = 1e-6;
+/// Part of the lesser side of a picture that bodies fill.
+const FILLED: f64 = 0.7;
 /// Radii of tubes, as parts of the diagonal of the picture: thin, and as thick as they get.
 const TUBES: [f64; 2] = [0.0012, 0.0035];
 /// Radius of tubes, as a part of the mean length of edges, between those bounds.
@@ -76,7 +80,8 @@ impl Common {
             let fitted = if longest > 0.0 { bounds.diagonal() / (6.0 * longest) } else { 1.0 };
             arrow_scale = arrows.scale.unwrap_or(fitted);
         }
-        Ok(Self { bounds, range, arrow_scale })
+        let pixels = FILLED * figure.size[0].min(figure.size[1]).max(1) as f64;
+        Ok(Self { bounds, pixel: bounds.diagonal() / pixels, range, arrow_scale })
     }
 }
 
@@ -86,7 +91,7 @@ impl BodyMoment {
         self.mesh.dimension() == 1
     }
 
-    /// Its edges, thick enough to be seen and thin enough to be told apart.
+    /// Its edges, thick enough to be seen and thin enough to be told apart where pixels allow it.
     pub(super) fn tubes(&self, common: &Common, cut: Option<Cut>) -> MeshSurface {
         let whole = common.bounds.diagonal();
         let cells = self.mesh.cell_count().max(1) as f64;
@@ -99,7 +104,7 @@ impl BodyMoment {
             })
             .sum();
         let [thin, thick] = TUBES.map(|part| part * whole);
-        let radius = (OF_EDGE * length / cells).clamp(thin, thick);
+        let radius = (OF_EDGE * length / cells).clamp(thin, thick).max(common.pixel);
         MeshSurface::tubes(&self.mesh, &self.positions, radius, cut)
     }
 }

@@ -167,6 +167,8 @@ impl BodyMoment {
     /// `known`: the mesh of a frame before, taken again where the cells are the same.
     fn of_file(name: &str, path: &Path, known: Option<&Arc<Mesh>>) -> Result<Self, IoError> {
         let Dataset { mesh, point_fields, cell_fields, .. } = read_dataset(path)?;
+        // the cells of a sheet are read as facets, fields on them in the same order
+        let mesh = if mesh.cell_count() == 0 { mesh.facets_as_cells() } else { mesh };
         let positions = mesh.points.clone();
         let mesh = match known {
             Some(known) if known.blocks == mesh.blocks && known.points.len() == mesh.points.len() => {

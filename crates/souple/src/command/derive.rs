@@ -65,7 +65,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         let definition = text.definitions.iter().find(|(name, _)| *name == error.part);
         let written = definition.map_or(text.energy.as_str(), |(_, text)| text.as_str());
         let expected = match &*error.problem {
-            LawProblem::UnknownName { name, nearest: None, .. } => format!(
+            LawProblem::UnknownName { name, .. } => format!(
                 "a hyperelastic law whose constants are given, as by `--parameter {name}=\"10 kPa\"` or `--define {name}=TEXT`"
             ),
             _ => "a hyperelastic law".to_owned(),
