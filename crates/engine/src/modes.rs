@@ -1,7 +1,7 @@
 //! Natural frequencies of a system about where it stands: `K φ = ω² M φ`, constrained directions at rest.
 
 use souple_math::Vec3;
-use souple_solve::modes::{Mass as MassMatrix, Modes, Settings, lowest_modes};
+use souple_solve::modes::{Modes, Settings, lowest_modes};
 use souple_solve::{BlockMatrix, SolveError};
 
 use crate::implicit::Rates;
@@ -41,5 +41,5 @@ pub fn lowest(
     let held = system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
     mass.constrain_blocks(held, 0.0)?;
     let positions = system.block_positions(&rows.positions);
-    lowest_modes(stiffness, MassMatrix::Consistent(&mass), Some(&positions), settings)
+    lowest_modes(stiffness, &mass, Some(&positions), settings)
 }

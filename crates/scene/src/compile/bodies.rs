@@ -186,7 +186,7 @@ fn add_outer_forces(
                     let message = format!("gravity is ({x}, {y}, {z}) at t = 0");
                     draft.log.add(
                         Code::NotFinite,
-                        &world.site,
+                        &world.gravity_site,
                         message,
                         "formulas that are finite at the start",
                     );
@@ -197,7 +197,7 @@ fn add_outer_forces(
             Some(constant) => match Gravity::new("gravity", constant, mass, kinematics) {
                 Ok(gravity) => forces.push(Box::new(gravity)),
                 Err(error) => {
-                    draft.log.add(Code::OutOfRange, &world.site, error.to_string(), "finite numbers")
+                    draft.log.add(Code::OutOfRange, &world.gravity_site, error.to_string(), "finite numbers")
                 }
             },
         }

@@ -17,6 +17,7 @@ pub(crate) use bodies::solid_name;
 pub(crate) use boundary::constant_vector;
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use souple_engine::{Model, State, System};
 
@@ -93,6 +94,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     };
     bodies::place(&mut draft)?;
     memory::check_placed(spec, &draft.bodies, log);
+    doubts::refuse(&draft);
     if !log.is_empty() {
         return None;
     }
@@ -132,7 +134,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     let bodies =
         bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
     Some(Scene {
-        title: spec.title.clone(),
+        title: title(spec, sources),
         description: spec.description.clone(),
         shows: spec.shows.clone(),
         bodies: bodies.collect(),
@@ -147,6 +149,16 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         inputs: Inputs::default(),
         warnings,
     })
+}
+
+/// The scene's title, or what its file is called.
+fn title(spec: &Spec, sources: &Sources) -> String {
+    if !spec.title.is_empty() {
+        return spec.title.clone();
+    }
+    let path = Path::new(&sources.get(0).name);
+    let folder = path.parent().and_then(Path::file_name).filter(|_| path.ends_with("scene.toml"));
+    folder.or(path.file_stem()).unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Forces are told apart by their names, which contacts may choose.

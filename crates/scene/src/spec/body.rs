@@ -142,7 +142,7 @@ pub struct Damping {
 }
 
 /// Where a rest shape stands: turned by `rotation` about `centre`, then moved.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Placement {
     /// Axis times angle [rad].
     pub rotation: Vec3,
@@ -150,6 +150,8 @@ pub struct Placement {
     pub centre: Vec3,
     /// [m]
     pub translation: Vec3,
+    /// Of what moves it, or of the body.
+    pub site: Site,
 }
 
 impl Placement {
@@ -163,7 +165,9 @@ impl Placement {
     }
 
     fn read(reader: &Reader) -> Self {
-        let mut placement = Self { translation: reader.vector("translate"), ..Self::default() };
+        let written = reader.written(&["translate", "rotate"]);
+        let site = written.first().map_or_else(|| reader.site(), |key| reader.site_of(key));
+        let mut placement = Self { translation: reader.vector("translate"), site, ..Self::default() };
         if let Some(rotation) = reader.table("rotate")
             && let Some(axis) = direction(&rotation, "axis")
         {
