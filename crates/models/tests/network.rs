@@ -17,6 +17,12 @@ const TE: f64 = 1e-3;
 
 /// A law of the table with numbers of the size of a metre and a kilonewton.
 fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
+    let text = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+        pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    let numbers = text(&[("k", "1 kN/m"), ("c", "3")]);
+    let states = text(&[("free", "0"), ("touching", "k * (1 - D) - c * V")]);
+    let transitions = text(&[("free -> touching", "D < 1"), ("touching -> free", "D > 1")]);
     let mut values = Values::new();
     for parameter in entry.parameters {
         let value = match parameter.name {
@@ -37,6 +43,10 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
             "solid_viscosity" => Value::Number(5.0),
             "fluid_stiffness" => Value::Number(1200.0),
             "fluid_viscosity" => Value::Number(50.0),
+            "push" => Value::Text("-k * (D - L0) - c * V"),
+            "states" => Value::Texts(&states),
+            "transitions" => Value::Texts(&transitions),
+            "parameters" => Value::Texts(&numbers),
             _ => continue,
         };
         values.set(parameter.name, value);
@@ -107,17 +117,18 @@ fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 fn battery_of_every_law() {
     for entry in LINKS.entries {
         let law = law(entry);
-        let mut memory = [0.0; 5];
+        let mut memory = [0.0; 16];
         law.begin(1.0, 1.0, &mut memory[..law.memory_len()]);
         for (length, before) in [(0.93, 0.931), (0.97, 0.968), (1.004, 1.003), (1.07, 1.072), (1.33, 1.331)] {
-            let push =
-                |length: f64, before: f64| law.respond(&Reach { length, before, rest: 1.0 }, &memory).push;
-            let stored = |length: f64| law.respond(&Reach { length, before, rest: 1.0 }, &memory).stored;
+            let push = |length: f64, before: f64| {
+                law.respond(&Reach { length, before, rest: 1.0 }, 0.0, &memory).push
+            };
+            let stored = |length: f64| law.respond(&Reach { length, before, rest: 1.0 }, 0.0, &memory).stored;
             let step = 1e-6;
             let reach = Reach { length, before, rest: 1.0 };
-            let [now, past] = law.slopes(&reach, &memory);
+            let [now, past] = law.slopes(&reach, 0.0, &memory);
             let numeric = |f: &dyn Fn(f64) -> f64| (f(step) - f(-step)) / (2.0 * step);
-            let tolerance = 1e-6 * law.stiffest().max(1000.0);
+            let tolerance = 1e-6 * law.stiffest(1.0).max(1000.0);
             let differs = (now - numeric(&|e| push(length + e, before))).abs();
             assert!(differs < tolerance, "{} at {length}: ∂φ/∂D off by {differs}", entry.name);
             let differs = (past - numeric(&|e| push(length, before + e))).abs();
@@ -128,7 +139,7 @@ fn battery_of_every_law() {
                 assert!(differs < tolerance, "{} at {length}: -∂E/∂D off by {differs}", entry.name);
                 assert_eq!(past, 0.0, "{} looks back", entry.name);
             }
-            let heat = law.respond(&reach, &memory).heat;
+            let heat = law.respond(&reach, 0.0, &memory).heat;
             // rounding of a product of forces of 1e4 N and steps of 1e-3 m
             assert!(heat >= -1e-12, "{} at {length} gives off {heat}", entry.name);
         }
@@ -241,7 +252,7 @@ fn characteristics_by_tests_and_by_absolute_values() {
     let kernel = InLanes(law);
     for i in 0..=200 {
         let length = 0.01 * f64::from(i);
-        let found = kernel.respond(&Reach { length, before: length, rest: 1.0 }, &[]).push;
+        let found = kernel.respond(&Reach { length, before: length, rest: 1.0 }, 0.0, &[]).push;
         assert!((found - by_tests(length)).abs() < 1e-13, "at {length}");
     }
     let error = Piecewise::new(&[1.0, 1.0], &[0.0; 3], 0.0, 0.0).unwrap_err().to_string();

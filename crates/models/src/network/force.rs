@@ -10,6 +10,7 @@ use souple_solve::BlockMatrix;
 use super::kernel::{LinkKernel, Moving};
 use super::law::Reach;
 use super::layout::{Ends, LANES, Layout, Part};
+use super::written::WRITTEN_MEMORY;
 use crate::solids::parallel;
 
 /// What links are made of.
@@ -93,12 +94,16 @@ impl Links {
     }
 
     /// What a link takes of the bound `4M` on its masses (see [`super::LinkLaw::stiffest`]) [N/m].
+    ///
+    /// At the rest length of the first link.
     pub fn stiffest(&self) -> f64 {
-        self.law.stiffest()
+        let rest =
+            self.layout.parts.iter().find(|part| !part.links.is_empty()).map_or(0.0, |part| part.rest(0)[0]);
+        self.law.stiffest(rest)
     }
 
     fn moving<'a>(&self, at: &Configuration<'a>) -> Moving<'a> {
-        Moving { positions: at.positions, velocities: at.velocities, timestep: self.timestep }
+        Moving { positions: at.positions, velocities: at.velocities, time: at.time, timestep: self.timestep }
     }
 
     fn remembers(&self) -> bool {
@@ -114,7 +119,7 @@ impl Links {
     }
 
     /// The numbers of a part's `slot`-th link.
-    fn remembered(&self, part: &Part, slot: usize, memory: &[f64]) -> [f64; super::law::MEMORY] {
+    fn remembered(&self, part: &Part, slot: usize, memory: &[f64]) -> [f64; WRITTEN_MEMORY] {
         let ((block, lane), len) = (part.place(slot), self.law.memory_len());
         std::array::from_fn(|i| if i < len { memory[(block * len + i) * LANES + lane] } else { 0.0 })
     }
@@ -139,7 +144,7 @@ impl Links {
         let part = &self.layout.parts[number as usize];
         let memory = self.remembered(part, slot as usize, self.of_part(number as usize, at.memory));
         let reach = self.standing(part, slot as usize, at).reach;
-        let response = self.law.respond(&reach, &memory);
+        let response = self.law.respond(&reach, at.time, &memory);
         LinkStance { length: reach.length, push: response.push, stored: response.stored }
     }
 
@@ -156,8 +161,8 @@ impl Links {
                 let Standing { rows, reach, directions } = self.standing(part, slot, at);
                 let Some([n, m]) = directions else { continue };
                 let numbers = self.remembered(part, slot, memory);
-                let push = self.law.respond(&reach, &numbers).push;
-                let [now, before] = self.law.slopes(&reach, &numbers);
+                let push = self.law.respond(&reach, at.time, &numbers).push;
+                let [now, before] = self.law.slopes(&reach, at.time, &numbers);
                 // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
                 let across = if reach.length > 0.0 { push / reach.length } else { 0.0 };
                 let position = n.outer(n) * (now - across) + Mat3::IDENTITY * across + n.outer(m) * before;
@@ -221,7 +226,7 @@ impl Force for Links {
             let (part, memory) = (&self.layout.parts[number], self.of_part(number, at.memory));
             let of = |slot| {
                 let numbers = self.remembered(part, slot, memory);
-                self.law.respond(&self.standing(part, slot, at).reach, &numbers).stored
+                self.law.respond(&self.standing(part, slot, at).reach, at.time, &numbers).stored
             };
             (0..part.links.len()).map(of).sum()
         };

@@ -19,6 +19,8 @@ pub struct Moving<'a> {
     pub positions: &'a [Vec3],
     /// [m/s]
     pub velocities: &'a [Vec3],
+    /// [s]
+    pub time: f64,
     /// Of the system [s].
     pub timestep: f64,
 }
@@ -28,7 +30,8 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn memory_len(&self) -> usize;
     fn begin(&self, rest: f64, length: f64, memory: &mut [f64]);
     fn is_conservative(&self) -> bool;
-    fn stiffest(&self) -> f64;
+    /// See [`LinkLaw::stiffest`]; of a link of this rest length.
+    fn stiffest(&self, rest: f64) -> f64;
     /// `sums[row] += f` over the rows of a part.
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]);
     /// Forces on first ends, `[block][lane]`.
@@ -36,9 +39,9 @@ pub trait LinkKernel: Debug + Send + Sync {
     /// Moves `memory` of a part's links on by a step; gives the heat of that [J].
     fn advance(&self, part: &Part, moving: Moving, memory: &mut [f64]) -> f64;
     /// Force and energy of one link.
-    fn respond(&self, reach: &Reach, memory: &[f64]) -> Response;
+    fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response;
     /// `∂φ/∂D` and `∂φ/∂D^r` of one link [N/m].
-    fn slopes(&self, reach: &Reach, memory: &[f64]) -> [f64; 2];
+    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2];
 }
 
 /// [`LinkKernel`] of a law in lanes.
@@ -66,7 +69,7 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
         self.0.is_conservative()
     }
 
-    fn stiffest(&self) -> f64 {
+    fn stiffest(&self, _: f64) -> f64 {
         self.0.stiffest()
     }
 
@@ -82,11 +85,11 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
         Arch::new().dispatch(Advance { law: &self.0, part, moving, memory })
     }
 
-    fn respond(&self, reach: &Reach, memory: &[f64]) -> Response {
+    fn respond(&self, reach: &Reach, _: f64, memory: &[f64]) -> Response {
         self.0.respond(reach, &mut self.numbers(memory, |number| number))
     }
 
-    fn slopes(&self, reach: &Reach, memory: &[f64]) -> [f64; 2] {
+    fn slopes(&self, reach: &Reach, _: f64, memory: &[f64]) -> [f64; 2] {
         [(1.0, 0.0), (0.0, 1.0)].map(|(now, before)| {
             let reach = Reach {
                 length: Dual::new(reach.length, now),

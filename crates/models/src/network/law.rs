@@ -5,6 +5,7 @@
 
 use std::fmt::Debug;
 
+use souple_formal::ParseError;
 use souple_math::Real;
 use souple_table::{Entry, Values};
 
@@ -75,4 +76,8 @@ pub type LinkEntry = Entry<BuildLink>;
 pub enum LinkError {
     #[error("`{parameter}` is {value}, but {expected}")]
     Unfit { parameter: &'static str, value: String, expected: String },
+    #[error("`{place}`: {error}")]
+    Formula { place: String, error: ParseError },
+    #[error("`{place}` {what}")]
+    Text { place: String, what: String },
 }

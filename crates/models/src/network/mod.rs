@@ -8,6 +8,7 @@ pub mod kernel;
 pub mod law;
 pub mod laws;
 mod layout;
+pub mod written;
 
 pub use force::{Account, LinkDescription, LinkStance, Links};
 pub use kernel::{InLanes, LinkKernel};

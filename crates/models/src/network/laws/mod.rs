@@ -1,7 +1,9 @@
 //! The laws of links: one file each and one line in [`LINKS`].
 
 mod elasto_plastic;
+mod finite_state;
 mod flowing;
+mod formula;
 mod lennard_jones;
 mod piecewise;
 mod spring_damper;
@@ -31,5 +33,7 @@ pub const LINKS: Table<BuildLink> = Table {
         &flowing::MAXWELL,
         &flowing::BINGHAM,
         &flowing::BURGER,
+        &formula::ENTRY,
+        &finite_state::ENTRY,
     ],
 };
