@@ -67,6 +67,19 @@ fn sum_forces(
     ws: &mut SystemWorkspace,
 ) -> Result<(), StepError> {
     system.place_rows(&state.q, &state.v, time, &mut ws.rows);
+    sum_placed_forces(system, around, state, ws)
+}
+
+/// Sums forces over the rows as they are placed.
+///
+/// # Errors
+/// A force is not finite.
+pub(crate) fn sum_placed_forces(
+    system: &System,
+    around: &Surroundings,
+    state: &SystemState,
+    ws: &mut SystemWorkspace,
+) -> Result<(), StepError> {
     let clock = std::time::Instant::now();
     system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
     ws.stages.forces += clock.elapsed().as_secs_f64();

@@ -7,6 +7,7 @@ mod decomposition;
 mod dual;
 mod lanes;
 mod matrix;
+mod packed;
 mod padded;
 mod real;
 mod rotation;

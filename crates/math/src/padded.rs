@@ -28,7 +28,7 @@ impl From<Padded> for Vec3 {
 /// The token of 256-bit registers, where they are what `S` computes with. Known when `S` is.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn four_wide<S: Simd>(simd: &S) -> Option<&pulp::x86::V3> {
+pub(crate) fn four_wide<S: Simd>(simd: &S) -> Option<&pulp::x86::V3> {
     (simd as &dyn Any).downcast_ref()
 }
 

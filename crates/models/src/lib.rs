@@ -6,4 +6,5 @@ pub mod contact;
 pub mod derive;
 pub mod loads;
 pub mod materials;
+pub mod network;
 pub mod solids;

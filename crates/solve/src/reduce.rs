@@ -114,6 +114,18 @@ pub fn for_each_chunk<T: Send>(y: &mut [T], leaf: &(impl Fn(usize, &mut [T]) + S
     });
 }
 
+/// Overwrites two vectors of the same length chunk by chunk.
+pub fn for_each_chunk_pair(
+    y: &mut [Vec3],
+    z: &mut [Vec3],
+    leaf: &(impl Fn(usize, &mut [Vec3], &mut [Vec3]) + Sync),
+) {
+    sum_mut_pair(0, y, z, &|first, y: &mut [Vec3], z: &mut [Vec3]| {
+        leaf(first, y, z);
+        Nothing
+    });
+}
+
 /// [`for_each_chunk`] for rows of a matrix, see [`sum_rows`].
 pub fn for_each_rows<T: Send>(y: &mut [T], leaf: &(impl Fn(usize, &mut [T]) + Sync)) {
     sum_rows(y, &|first, chunk: &mut [T]| {

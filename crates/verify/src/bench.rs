@@ -1,5 +1,6 @@
 //! Benchmarks: speed with its error beside it, on scenes anyone can run.
 
+mod links;
 mod timing;
 
 use std::fmt;
@@ -119,6 +120,16 @@ pub const BENCHES: &[Bench] = &[
         run: fill_100k,
     },
     Bench { name: "startup", what: "`souple list materials` from start to end [ms]", run: startup },
+    Bench {
+        name: "springs_lattice_100k",
+        what: "complete steps of a cubic lattice of 33 masses along each edge (104,544 damped springs) in motion [links/s]",
+        run: |effort| links::springs_lattice("springs_lattice_100k", 33, Some(118e6), effort),
+    },
+    Bench {
+        name: "springs_lattice_1m",
+        what: "the same with 70 masses along each edge (1,014,300 damped springs) [links/s]",
+        run: |effort| links::springs_lattice("springs_lattice_1m", 70, None, effort),
+    },
     Bench {
         name: "static_100k",
         what: "equilibrium of the reference bar, n = 12, St. Venant-Kirchhoff, to 1e-8 [s]",

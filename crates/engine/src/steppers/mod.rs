@@ -9,6 +9,7 @@ mod position_verlet;
 mod quasi_static;
 mod runge_kutta;
 mod static_equilibrium;
+mod t_simulation;
 
 use souple_table::{Entry, Table, Values};
 
@@ -25,6 +26,7 @@ pub use position_verlet::PositionVerlet;
 pub use quasi_static::QuasiStatic;
 pub use runge_kutta::{RungeKutta2, RungeKutta4};
 pub use static_equilibrium::StaticEquilibrium;
+pub use t_simulation::{Start, TSimulation};
 
 /// What a step had to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -164,6 +166,7 @@ pub const TABLE: Table<BuildStepper> = Table {
         &explicit::EXPLICIT_EULER,
         &explicit::SYMPLECTIC_EULER,
         &position_verlet::ENTRY,
+        &t_simulation::ENTRY,
         &runge_kutta::RK2,
         &runge_kutta::RK4,
         &backward_euler::ENTRY,

@@ -8,7 +8,7 @@ mod kernel;
 mod layout;
 mod mass;
 mod output;
-mod parallel;
+pub(crate) mod parallel;
 mod rayleigh;
 mod row_law;
 mod sample_law;

@@ -12,7 +12,8 @@ use souple_models::solids::{
 };
 
 use super::boundary::constant_vector;
-use super::{Draft, shape};
+use super::network::PlacedLinks;
+use super::{Draft, network, shape};
 use crate::diagnostic::Code;
 use crate::spec::body::{Body, Damping, MassKind};
 use crate::spec::world::SystemSpec;
@@ -26,6 +27,8 @@ pub struct Placed<'a> {
     /// The number that each point had in its file, ascending.
     pub point_numbers: Vec<u32>,
     pub materials: BodyMaterials,
+    /// Which masses the links of a network join, table after table.
+    pub links: Vec<PlacedLinks>,
 }
 
 /// The materials of a body, and which of them each cell has.
@@ -52,7 +55,11 @@ pub fn place(draft: &mut Draft) -> Option<()> {
     let mut next_row = vec![0; spec.systems.len()];
     // every mesh is looked at, so that each refused one is reported
     for body in &spec.bodies {
-        let Some(shape) = shape::build(body, draft) else { continue };
+        let built = match &body.network {
+            Some(network) => network::build(body, network, draft),
+            None => shape::build(body, draft).map(|shape| (shape, Vec::new())),
+        };
+        let Some((shape, links)) = built else { continue };
         let Some(system) = spec.systems.iter().position(|system| system.name == body.system) else {
             continue;
         };
@@ -67,6 +74,7 @@ pub fn place(draft: &mut Draft) -> Option<()> {
             mesh: shape.mesh,
             point_numbers: shape.point_numbers,
             materials: BodyMaterials::default(),
+            links,
         });
     }
     for index in 0..draft.bodies.len() {
@@ -86,6 +94,11 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
     let mut mass = Mass::new(row_count);
     let mut forces: Vec<Box<dyn Force>> = Vec::new();
     for body in bodies() {
+        if let Some(network) = &body.spec.network {
+            network::add_masses(body, network, &mut mass);
+            network::add_links(draft, body, network, spec, &mut forces);
+            continue;
+        }
         let materials = &body.materials;
         let section = body.spec.section();
         if !suits(draft, body, &materials.all) {
@@ -214,6 +227,12 @@ fn add_outer_forces(
             let force = Drag::new(format!("{name}.drag"), surface_shares(body), body.spec.drag);
             added.push(force.map(|force| Box::new(force) as _));
         }
+        if let Some(network) = &body.spec.network {
+            let shares = network::drags(body, network);
+            if !shares.is_empty() {
+                added.push(Drag::new(format!("{name}.drag"), shares, 1.0).map(|force| Box::new(force) as _));
+            }
+        }
         for force in added {
             match force {
                 Ok(force) => forces.push(force),
@@ -290,9 +309,16 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
     let mut state = system.initial_state(q);
     for body in bodies() {
         // v + ω × (x - c)
-        let centre = body.mesh.centroid();
+        let points = &body.mesh.points;
+        let centre = match body.spec.network {
+            Some(_) => points.iter().copied().sum::<Vec3>() / points.len() as f64,
+            None => body.mesh.centroid(),
+        };
         for (row, x) in body.rows.clone().zip(&body.mesh.points) {
             state.v[row] = body.spec.velocity + body.spec.angular_velocity.cross(*x - centre);
+        }
+        if let Some(network) = &body.spec.network {
+            network::add_velocities(body, network, &mut state.v);
         }
     }
     let load = if system.stepper.has_inertia() { 1.0 } else { 0.0 };

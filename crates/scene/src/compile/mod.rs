@@ -9,6 +9,7 @@ mod freedom;
 mod links;
 mod memory;
 mod motion;
+mod network;
 mod pins;
 mod selection;
 mod shape;
@@ -109,6 +110,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     links::couple(&mut draft);
     check_force_names(&draft);
     pins::warn_of_idle(&mut draft);
+    network::warn_of_steps(&mut draft);
     doubts::warn(&mut draft);
     freedom::check(&mut draft);
     let probes: Vec<ProbeInfo> =

@@ -7,6 +7,7 @@ use souple_table::{Range, Value};
 
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::mesh::{MESH, MeshSpec};
+use super::network::Network;
 use super::region::{Region, direction};
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Need, Shape, outlines};
@@ -113,6 +114,8 @@ pub struct Body {
     pub pins: Vec<Pin>,
     pub loads: Vec<Load>,
     pub springs: Vec<Spring>,
+    /// Masses and links in place of a mesh and its material.
+    pub network: Option<Network>,
     pub site: Site,
 }
 
@@ -164,7 +167,7 @@ impl Placement {
         souple_math::exponential(self.rotation) * (point - self.centre) + self.centre + self.translation
     }
 
-    fn read(reader: &Reader) -> Self {
+    pub(crate) fn read(reader: &Reader) -> Self {
         let written = reader.written(&["translate", "rotate"]);
         let site = written.first().map_or_else(|| reader.site(), |key| reader.site_of(key));
         let mut placement = Self { translation: reader.vector("translate"), site, ..Self::default() };
@@ -211,6 +214,7 @@ impl Body {
             pins: reader.tables("pins").iter().map(Pin::read).collect(),
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
+            network: None,
             site: reader.site(),
         }
     }

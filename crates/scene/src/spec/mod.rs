@@ -6,6 +6,7 @@ pub mod contact;
 pub mod expect;
 pub mod interaction;
 pub mod mesh;
+pub mod network;
 pub mod picture;
 pub mod probe;
 pub mod quantity;
@@ -27,6 +28,7 @@ use body::{BODY, Body};
 use contact::{Against, CONTACT, Contact, SHAPE, ShapeSpec};
 use expect::{EXPECT, Expect};
 use interaction::{ATTACHMENT, COUPLING, Link};
+use network::{NETWORK, Network};
 use picture::{PICTURE, PictureSpec, PictureView};
 use probe::{PROBE, Probe};
 use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD, WorldSpec};
@@ -48,6 +50,7 @@ pub(crate) static SCENE: Keys = Keys::new(
         Key::new("world", Shape::Table(&WORLD), "what all systems share").required(),
         Key::new("systems", Shape::Named(&SYSTEM), "how bodies step; `main` where left out"),
         Key::new("bodies", Shape::Named(&BODY), "soft solids"),
+        Key::new("networks", Shape::Named(&NETWORK), "masses and what acts between them"),
         Key::new("shapes", Shape::Named(&SHAPE), "things of fixed shape that bodies touch"),
         Key::new("contacts", Shape::Tables(&CONTACT), "who touches whom"),
         Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
@@ -108,7 +111,7 @@ impl Spec {
             description: reader.text("description"),
             shows: reader.texts("shows"),
             world: reader.table("world").map_or(empty.world, |world| WorldSpec::read(&world)),
-            bodies: reader.named("bodies").into_iter().map(|(name, body)| Body::read(name, &body)).collect(),
+            bodies: bodies(&reader),
             shapes: reader
                 .named("shapes")
                 .into_iter()
@@ -265,6 +268,20 @@ fn unfit_for_files(name: &str) -> Option<String> {
     }
     let bad = name.chars().find(|c| c.is_control() || NOT_IN_FILE_NAMES.contains(c))?;
     Some(format!("it has a {bad:?}"))
+}
+
+/// Solids, then networks, which share their names.
+fn bodies(reader: &Reader) -> Vec<Body> {
+    let solids = reader.named("bodies").into_iter().map(|(name, body)| Body::read(name, &body));
+    let networks = reader.named("networks").into_iter().map(|(name, network)| Network::body(name, &network));
+    let all: Vec<Body> = solids.chain(networks).collect();
+    for (index, body) in all.iter().enumerate() {
+        if all[..index].iter().any(|other| other.name == body.name) {
+            let message = format!("there are a body and a network `{}`", body.name);
+            reader.log().add(Code::Conflict, &body.site, message, "names that differ");
+        }
+    }
+    all
 }
 
 fn contacts(reader: &Reader) -> Vec<Contact> {

@@ -80,6 +80,18 @@ impl Timed {
         self.figure(name, rates, held, ("elements/s", true))
     }
 
+    /// Of a network, whose cells are its links.
+    pub fn links_per_second(&self, name: &str, held: &Held) -> Figure {
+        let rates = self.seconds.iter().map(|seconds| self.cells as f64 / seconds).collect();
+        self.figure(name, rates, held, ("links/s", true))
+    }
+
+    /// Of steps that move so many bytes.
+    pub fn gigabytes_per_second(&self, name: &str, bytes: usize, held: &Held) -> Figure {
+        let rates = self.seconds.iter().map(|seconds| 1e-9 * bytes as f64 / seconds).collect();
+        self.figure(name, rates, held, ("GB/s", true))
+    }
+
     pub fn milliseconds_per_step(&self, name: &str, held: &Held) -> Figure {
         let times = self.seconds.iter().map(|seconds| 1e3 * seconds).collect();
         self.figure(name, times, held, ("ms/step", false))

@@ -11,6 +11,7 @@ mod filling;
 mod frequencies;
 mod implicit;
 mod motion;
+mod network;
 mod patch;
 mod rubber;
 mod soft_cube;
@@ -39,6 +40,7 @@ pub const TABLES: &[&[Case]] = &[
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
     contact::CASES,
+    network::CASES,
 ];
 
 /// Every case.

@@ -1,0 +1,180 @@
+//! Vectors of three as they lie in long arrays: gathered into lanes as differences, and lanes added back to both ends.
+
+use pulp::Simd;
+
+#[cfg(target_arch = "x86_64")]
+use crate::padded::four_wide;
+use crate::{Lanes, Vec3};
+
+impl<S: Simd> Vec3<Lanes<S>> {
+    /// `values[to[lane]] - values[from[lane]]` side by side.
+    ///
+    /// # Safety
+    /// There are `S::F64_LANES` indices in both lists, each below the length of `values`.
+    #[inline(always)]
+    pub unsafe fn gather_difference(simd: S, values: &[Vec3], to: &[u32], from: &[u32]) -> Self {
+        debug_assert!(to[..S::F64_LANES].iter().all(|index| (*index as usize) < values.len()));
+        debug_assert!(from[..S::F64_LANES].iter().all(|index| (*index as usize) < values.len()));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = four_wide(&simd) {
+            let three: core::arch::x86_64::__m256i = bytemuck::cast([-1_i64, -1, -1, 0]);
+            // SAFETY: promised by the caller for every lane; the mask leaves out what stands behind the vector
+            let row = |lane: usize| unsafe {
+                let place = |indices: &[u32]| {
+                    values.as_ptr().add(*indices.get_unchecked(lane) as usize).cast::<f64>()
+                };
+                v3.avx._mm256_sub_pd(
+                    v3.avx._mm256_maskload_pd(place(to), three),
+                    v3.avx._mm256_maskload_pd(place(from), three),
+                )
+            };
+            let (a, b, c, d) = (row(0), row(1), row(2), row(3));
+            // a transposition: (a.x b.x c.x d.x), then y, then z
+            let (even, odd) = (v3.avx._mm256_unpacklo_pd(a, b), v3.avx._mm256_unpacklo_pd(c, d));
+            let (even_y, odd_y) = (v3.avx._mm256_unpackhi_pd(a, b), v3.avx._mm256_unpackhi_pd(c, d));
+            return Self::new(
+                Lanes::new(simd, bytemuck::cast(v3.avx._mm256_permute2f128_pd::<0x20>(even, odd))),
+                Lanes::new(simd, bytemuck::cast(v3.avx._mm256_permute2f128_pd::<0x20>(even_y, odd_y))),
+                Lanes::new(simd, bytemuck::cast(v3.avx._mm256_permute2f128_pd::<0x31>(even, odd))),
+            );
+        }
+        // SAFETY: promised by the caller for every lane
+        let value = |lane: usize| unsafe {
+            let of = |indices: &[u32]| *values.get_unchecked(*indices.get_unchecked(lane) as usize);
+            of(to) - of(from)
+        };
+        if S::F64_LANES == 8 {
+            // written out so that registers are filled by insertion: through memory, eight narrow stores followed by
+            // a wide load would stall
+            let (a, b, c, d) = (value(0), value(1), value(2), value(3));
+            let (e, f, g, h) = (value(4), value(5), value(6), value(7));
+            return Self::new(
+                Lanes::load(simd, &[a.x, b.x, c.x, d.x, e.x, f.x, g.x, h.x]),
+                Lanes::load(simd, &[a.y, b.y, c.y, d.y, e.y, f.y, g.y, h.y]),
+                Lanes::load(simd, &[a.z, b.z, c.z, d.z, e.z, f.z, g.z, h.z]),
+            );
+        }
+        let zero = Lanes::constant(simd, 0.0);
+        let mut out = Self::new(zero, zero, zero);
+        for lane in 0..S::F64_LANES {
+            let value = value(lane);
+            out.x.as_mut_slice()[lane] = value.x;
+            out.y.as_mut_slice()[lane] = value.y;
+            out.z.as_mut_slice()[lane] = value.z;
+        }
+        out
+    }
+
+    /// The vectors of the lanes, one after the other.
+    #[inline(always)]
+    pub fn unpack(self, simd: S, mut each: impl FnMut(usize, Vec3)) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = four_wide(&simd) {
+            let [x, y, z] = self.to_array().map(|lanes| bytemuck::cast(lanes.values()));
+            // lanes 0 and 2 of (x y), lanes 1 and 3 of (x y)
+            let (even, odd) = (v3.avx._mm256_unpacklo_pd(x, y), v3.avx._mm256_unpackhi_pd(x, y));
+            let ([ax, ay, cx, cy], [bx, by, dx, dy]): ([f64; 4], [f64; 4]) =
+                (bytemuck::cast(even), bytemuck::cast(odd));
+            let [az, bz, cz, dz]: [f64; 4] = bytemuck::cast(z);
+            each(0, Vec3::new(ax, ay, az));
+            each(1, Vec3::new(bx, by, bz));
+            each(2, Vec3::new(cx, cy, cz));
+            each(3, Vec3::new(dx, dy, dz));
+            return;
+        }
+        for lane in 0..S::F64_LANES {
+            each(lane, Vec3::new(self.x.as_slice()[lane], self.y.as_slice()[lane], self.z.as_slice()[lane]));
+        }
+    }
+
+    /// `sums[to[lane]] += self`, `sums[from[lane]] -= self`, lane after lane.
+    ///
+    /// # Safety
+    /// There are `S::F64_LANES` indices in both lists, each below the length of `sums`.
+    #[inline(always)]
+    pub unsafe fn scatter_pair(self, simd: S, sums: &mut [Vec3], to: &[u32], from: &[u32]) {
+        debug_assert!(to[..S::F64_LANES].iter().all(|index| (*index as usize) < sums.len()));
+        debug_assert!(from[..S::F64_LANES].iter().all(|index| (*index as usize) < sums.len()));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = four_wide(&simd) {
+            let [x, y, z] = self.to_array().map(|lanes| bytemuck::cast(lanes.values()));
+            let (even, odd) = (v3.avx._mm256_unpacklo_pd(x, y), v3.avx._mm256_unpackhi_pd(x, y));
+            // (x y) of lanes 0 to 3, and their z
+            let halves = [
+                v3.avx._mm256_castpd256_pd128(even),
+                v3.avx._mm256_castpd256_pd128(odd),
+                v3.avx._mm256_extractf128_pd::<1>(even),
+                v3.avx._mm256_extractf128_pd::<1>(odd),
+            ];
+            let thirds: [f64; 4] = bytemuck::cast(z);
+            for lane in 0..4 {
+                // SAFETY: promised by the caller
+                let sum = unsafe { sums.get_unchecked_mut(*to.get_unchecked(lane) as usize) };
+                let xy = v3.sse2._mm_add_pd(bytemuck::cast([sum.x, sum.y]), halves[lane]);
+                [sum.x, sum.y] = bytemuck::cast(xy);
+                sum.z += thirds[lane];
+                // SAFETY: promised by the caller
+                let sum = unsafe { sums.get_unchecked_mut(*from.get_unchecked(lane) as usize) };
+                let xy = v3.sse2._mm_sub_pd(bytemuck::cast([sum.x, sum.y]), halves[lane]);
+                [sum.x, sum.y] = bytemuck::cast(xy);
+                sum.z -= thirds[lane];
+            }
+            return;
+        }
+        self.unpack(simd, |lane, part| {
+            // SAFETY: promised by the caller
+            unsafe {
+                *sums.get_unchecked_mut(*to.get_unchecked(lane) as usize) += part;
+                *sums.get_unchecked_mut(*from.get_unchecked(lane) as usize) -= part;
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, WithSimd};
+
+    use super::*;
+
+    const COUNT: usize = 24;
+
+    struct ThereAndBack;
+
+    impl WithSimd for ThereAndBack {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            let vector = |i: usize| Vec3::new(i as f64, 100.0 + (i * i) as f64, 200.0 - i as f64);
+            let values: Vec<Vec3> = (0..COUNT).map(vector).collect();
+            // several lanes may name one vector, the last of the array too
+            for shift in 0..COUNT {
+                let list = |salt: usize| -> Vec<u32> {
+                    (0..S::F64_LANES).map(|lane| ((shift + salt + lane * lane / 2) % COUNT) as u32).collect()
+                };
+                let (to, from) = (list(0), list(5));
+                // SAFETY: as many indices as lanes, below COUNT
+                let difference = unsafe { Vec3::gather_difference(simd, &values, &to, &from) };
+                let mut expected = vec![Vec3::ZERO; COUNT];
+                difference.unpack(simd, |lane, found| {
+                    let (a, b) = (to[lane] as usize, from[lane] as usize);
+                    assert_eq!(found, vector(a) - vector(b));
+                    expected[a] += found;
+                    expected[b] -= found;
+                });
+                let mut sums = vec![Vec3::ZERO; COUNT];
+                // SAFETY: as above
+                unsafe { difference.scatter_pair(simd, &mut sums, &to, &from) };
+                assert_eq!(sums, expected);
+            }
+        }
+    }
+
+    /// Lanes hold the differences that were named, and each goes to both of its ends, whatever the width.
+    #[test]
+    fn differences_go_back_to_both_ends() {
+        Arch::default().dispatch(ThereAndBack);
+        ThereAndBack.with_simd(pulp::Scalar::new());
+    }
+}

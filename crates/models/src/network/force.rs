@@ -1,0 +1,316 @@
+//! Links of one law as a force of the engine.
+
+use std::any::Any;
+
+use souple_engine::tangent::add_block;
+use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
+use souple_math::{Mat3, Vec3};
+use souple_solve::BlockMatrix;
+
+use super::kernel::{LinkKernel, Moving};
+use super::law::Reach;
+use super::layout::{Ends, LANES, Layout, Part};
+use super::written::WRITTEN_MEMORY;
+use crate::solids::parallel;
+
+/// What links are made of.
+#[derive(Debug)]
+pub struct LinkDescription<'a> {
+    pub name: String,
+    pub law: Box<dyn LinkKernel>,
+    pub ends: &'a [Ends],
+    /// [m]
+    pub rest_lengths: &'a [f64],
+    /// At the start [m].
+    pub lengths: &'a [f64],
+    /// Of the system [s].
+    pub timestep: f64,
+    pub account: Account,
+}
+
+/// Whether links without memory keep account of what they give off, which costs a second pass over them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Account {
+    #[default]
+    None,
+    Heat,
+}
+
+/// Links of one law: `F1 = φ(D, D^r, memory) u = -F2` with `u = (P1 - P2)/D`.
+///
+/// `D^r` is taken from `X - h v`: a pair that turns without changing its length feels no damping. Its memory is, for
+/// each part, the heat given off and the numbers of its links.
+#[derive(Debug)]
+pub struct Links {
+    name: String,
+    law: Box<dyn LinkKernel>,
+    layout: Layout,
+    timestep: f64,
+    account: Account,
+    /// Part of each link and its slot there.
+    place_of: Vec<(u32, u32)>,
+    /// At the start [m]; of links that remember.
+    lengths: Vec<f64>,
+}
+
+/// What one link does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkStance {
+    /// `D` [m].
+    pub length: f64,
+    /// Positive when it pushes its ends apart [N].
+    pub push: f64,
+    /// [J]
+    pub stored: f64,
+}
+
+/// A link with its directions, for tangents.
+struct Standing {
+    rows: [u32; 2],
+    reach: Reach,
+    /// `(P1 - P2)/D` now and a step before; `None` where there is no direction.
+    directions: Option<[Vec3; 2]>,
+}
+
+/// Forces of links across stretches.
+struct Across(Vec<Vec3>);
+
+impl Links {
+    pub fn new(description: LinkDescription) -> Self {
+        let LinkDescription { name, law, ends, rest_lengths, lengths, timestep, account } = description;
+        let layout = Layout::new(ends, rest_lengths);
+        let mut place_of = vec![(0, 0); ends.len()];
+        for (number, part) in layout.parts.iter().enumerate() {
+            for (slot, link) in part.links.iter().enumerate() {
+                place_of[*link as usize] = (number as u32, slot as u32);
+            }
+        }
+        let lengths = if law.memory_len() > 0 { lengths.to_vec() } else { Vec::new() };
+        Self { name, law, layout, timestep, account, place_of, lengths }
+    }
+
+    pub fn link_count(&self) -> usize {
+        self.place_of.len()
+    }
+
+    /// What a link takes of the bound `4M` on its masses (see [`super::LinkLaw::stiffest`]) [N/m].
+    ///
+    /// At the rest length of the first link.
+    pub fn stiffest(&self) -> f64 {
+        let rest =
+            self.layout.parts.iter().find(|part| !part.links.is_empty()).map_or(0.0, |part| part.rest(0)[0]);
+        self.law.stiffest(rest)
+    }
+
+    fn moving<'a>(&self, at: &Configuration<'a>) -> Moving<'a> {
+        Moving { positions: at.positions, velocities: at.velocities, time: at.time, timestep: self.timestep }
+    }
+
+    fn remembers(&self) -> bool {
+        self.law.memory_len() > 0 || self.account == Account::Heat
+    }
+
+    fn of_part<'m>(&self, number: usize, memory: &'m [f64]) -> &'m [f64] {
+        if self.remembers() {
+            &memory[self.layout.memory_range(number, self.law.memory_len())][1..]
+        } else {
+            &[]
+        }
+    }
+
+    /// The numbers of a part's `slot`-th link.
+    fn remembered(&self, part: &Part, slot: usize, memory: &[f64]) -> [f64; WRITTEN_MEMORY] {
+        let ((block, lane), len) = (part.place(slot), self.law.memory_len());
+        std::array::from_fn(|i| if i < len { memory[(block * len + i) * LANES + lane] } else { 0.0 })
+    }
+
+    fn standing(&self, part: &Part, slot: usize, at: &Configuration) -> Standing {
+        let rows = part.ends_of(slot);
+        let [a, b] = rows.map(|row| row as usize);
+        let d = at.positions[a] - at.positions[b];
+        let e = d - (at.velocities[a] - at.velocities[b]) * self.timestep;
+        let (block, lane) = part.place(slot);
+        let reach = Reach { length: d.length(), before: e.length(), rest: part.rest(block)[lane] };
+        let directions = match (d.try_normalised(), e.try_normalised()) {
+            (Some(n), Some(m)) => Some([n, m]),
+            (n, m) => n.or(m).map(|n| [n, n]),
+        };
+        Standing { rows, reach, directions }
+    }
+
+    /// How link number `link` stands.
+    pub fn stance(&self, link: usize, at: &Configuration) -> LinkStance {
+        let (number, slot) = self.place_of[link];
+        let part = &self.layout.parts[number as usize];
+        let memory = self.remembered(part, slot as usize, self.of_part(number as usize, at.memory));
+        let reach = self.standing(part, slot as usize, at).reach;
+        let response = self.law.respond(&reach, at.time, &memory);
+        LinkStance { length: reach.length, push: response.push, stored: response.stored }
+    }
+
+    /// Calls `visit(rows, a ∂f1/∂d + b ∂f1/∂w)` for every link, with `d = P1 - P2` and its rate `w`.
+    fn visit_tangents(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        mut visit: impl FnMut([u32; 2], Mat3),
+    ) {
+        for (number, part) in self.layout.parts.iter().enumerate() {
+            let memory = self.of_part(number, at.memory);
+            for slot in 0..part.links.len() {
+                let Standing { rows, reach, directions } = self.standing(part, slot, at);
+                let Some([n, m]) = directions else { continue };
+                let numbers = self.remembered(part, slot, memory);
+                let push = self.law.respond(&reach, at.time, &numbers).push;
+                let [now, before] = self.law.slopes(&reach, at.time, &numbers);
+                // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
+                let across = if reach.length > 0.0 { push / reach.length } else { 0.0 };
+                let position = n.outer(n) * (now - across) + Mat3::IDENTITY * across + n.outer(m) * before;
+                let velocity = n.outer(m) * (-self.timestep * before);
+                visit(rows, position * weights.position + velocity * weights.velocity);
+            }
+        }
+    }
+}
+
+impl Force for Links {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn declaration(&self) -> Declaration {
+        let conservative = self.law.is_conservative();
+        Declaration {
+            conservative,
+            velocity_terms: !conservative,
+            // the line of a damper turns with its ends
+            symmetric_tangent: conservative,
+            ..Declaration::ELASTIC
+        }
+    }
+
+    fn memory_len(&self) -> usize {
+        if self.remembers() {
+            self.layout.memory_range(self.layout.parts.len(), self.law.memory_len()).start
+        } else {
+            0
+        }
+    }
+
+    fn initial_memory(&self, memory: &mut [f64]) {
+        memory.fill(0.0);
+        let len = self.law.memory_len();
+        if len == 0 {
+            return;
+        }
+        let mut numbers = vec![0.0; len];
+        for (number, part) in self.layout.parts.iter().enumerate() {
+            let own = &mut memory[self.layout.memory_range(number, len)][1..];
+            for slot in 0..part.links.len() {
+                let (block, lane) = part.place(slot);
+                let length = self.lengths[part.links[slot] as usize];
+                self.law.begin(part.rest(block)[lane], length, &mut numbers);
+                for (i, value) in numbers.iter().enumerate() {
+                    own[(block * len + i) * LANES + lane] = *value;
+                }
+            }
+        }
+    }
+
+    fn new_scratch(&self) -> Scratch {
+        Box::new(Across(Vec::new()))
+    }
+
+    fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
+        let stored = |number: usize| {
+            let (part, memory) = (&self.layout.parts[number], self.of_part(number, at.memory));
+            let of = |slot| {
+                let numbers = self.remembered(part, slot, memory);
+                self.law.respond(&self.standing(part, slot, at).reach, at.time, &numbers).stored
+            };
+            (0..part.links.len()).map(of).sum()
+        };
+        let len = self.law.memory_len();
+        let heat = |number: usize| at.memory[self.layout.memory_range(number, len).start];
+        let parts = 0..self.layout.parts.len();
+        let dissipated = if self.remembers() { parts.clone().map(heat).sum() } else { 0.0 };
+        Energy { stored: parallel::sum(parts, &stored), dissipated }
+    }
+
+    fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
+        let Across(across) =
+            scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"));
+        let moving = self.moving(at);
+        self.layout.add_sums(
+            across,
+            out,
+            |number, part, sums| {
+                self.law.add_forces(part, moving, self.of_part(number, at.memory), sums);
+            },
+            |number, part, forces| self.law.forces(part, moving, self.of_part(number, at.memory), forces),
+        );
+    }
+
+    fn add_differential(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        delta: &[Vec3],
+        _scratch: &mut Scratch,
+        out: &mut [Vec3],
+    ) {
+        self.visit_tangents(at, weights, |[a, b], block| {
+            let (a, b) = (a as usize, b as usize);
+            let change = block * (delta[a] - delta[b]);
+            out[a] += change;
+            out[b] -= change;
+        });
+    }
+
+    fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
+        for part in &self.layout.parts {
+            for slot in 0..part.links.len() {
+                visit(&part.ends_of(slot));
+            }
+        }
+    }
+
+    fn add_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.visit_tangents(at, weights, |[a, b], block| {
+            let (a, b) = (a as usize, b as usize);
+            add_block(matrix, a, a, &block);
+            add_block(matrix, b, b, &block);
+            add_block(matrix, a, b, &-block);
+            add_block(matrix, b, a, &-block);
+        });
+    }
+
+    fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
+        if !self.remembers() {
+            return;
+        }
+        let moving = self.moving(at);
+        self.layout.advance(self.law.memory_len(), memory, |part, own| {
+            let (heat, numbers) = own.split_at_mut(1);
+            heat[0] += self.law.advance(part, moving, numbers);
+        });
+    }
+
+    fn bytes(&self) -> usize {
+        self.layout.bytes() + size_of_val(self.place_of.as_slice()) + 8 * self.lengths.capacity()
+    }
+
+    fn scratch_bytes(&self, scratch: &Scratch) -> usize {
+        scratch.downcast_ref().map_or(0, |Across(across)| size_of::<Vec3>() * across.capacity())
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+}

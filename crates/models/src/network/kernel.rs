@@ -1,0 +1,254 @@
+//! The loops over links of one law: one text for every law and width of register.
+
+use std::fmt::Debug;
+
+use pulp::{Arch, Simd, WithSimd};
+use souple_math::{Dual, Lanes, Real, Vec3};
+
+use super::law::{LinkLaw, MEMORY, Reach, Response};
+use super::layout::{LANES, Part};
+
+/// A link shorter than this has no direction of its own: it keeps that of the step before, and without one gives no force
+/// [m].
+const SHORTEST: f64 = 1e-150;
+
+/// All rows as they move; memories beside them are of a part's links, `[block][number][lane]`.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving<'a> {
+    /// [m]
+    pub positions: &'a [Vec3],
+    /// [m/s]
+    pub velocities: &'a [Vec3],
+    /// [s]
+    pub time: f64,
+    /// Of the system [s].
+    pub timestep: f64,
+}
+
+/// The loops for one law, behind a pointer so that a network may mix laws.
+pub trait LinkKernel: Debug + Send + Sync {
+    fn memory_len(&self) -> usize;
+    fn begin(&self, rest: f64, length: f64, memory: &mut [f64]);
+    fn is_conservative(&self) -> bool;
+    /// See [`LinkLaw::stiffest`]; of a link of this rest length.
+    fn stiffest(&self, rest: f64) -> f64;
+    /// `sums[row] += f` over the rows of a part.
+    fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]);
+    /// Forces on first ends, `[block][lane]`.
+    fn forces(&self, part: &Part, moving: Moving, memory: &[f64], out: &mut [Vec3]);
+    /// Moves `memory` of a part's links on by a step; gives the heat of that [J].
+    fn advance(&self, part: &Part, moving: Moving, memory: &mut [f64]) -> f64;
+    /// Force and energy of one link.
+    fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response;
+    /// `∂φ/∂D` and `∂φ/∂D^r` of one link [N/m].
+    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2];
+}
+
+/// [`LinkKernel`] of a law in lanes.
+///
+/// No closures over lanes here: what is not inlined is not compiled for the processor's instructions.
+#[derive(Debug)]
+pub struct InLanes<L>(pub L);
+
+impl<L: LinkLaw> InLanes<L> {
+    fn numbers<R: Real>(&self, memory: &[f64], constant: impl Fn(f64) -> R) -> [R; MEMORY] {
+        std::array::from_fn(|i| constant(memory.get(i).copied().unwrap_or(0.0)))
+    }
+}
+
+impl<L: LinkLaw> LinkKernel for InLanes<L> {
+    fn memory_len(&self) -> usize {
+        self.0.memory_len()
+    }
+
+    fn begin(&self, rest: f64, length: f64, memory: &mut [f64]) {
+        self.0.begin(rest, length, memory);
+    }
+
+    fn is_conservative(&self) -> bool {
+        self.0.is_conservative()
+    }
+
+    fn stiffest(&self, _: f64) -> f64 {
+        self.0.stiffest()
+    }
+
+    fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]) {
+        Arch::new().dispatch(Forces::<L, true> { law: &self.0, part, moving, memory, out: sums });
+    }
+
+    fn forces(&self, part: &Part, moving: Moving, memory: &[f64], out: &mut [Vec3]) {
+        Arch::new().dispatch(Forces::<L, false> { law: &self.0, part, moving, memory, out });
+    }
+
+    fn advance(&self, part: &Part, moving: Moving, memory: &mut [f64]) -> f64 {
+        Arch::new().dispatch(Advance { law: &self.0, part, moving, memory })
+    }
+
+    fn respond(&self, reach: &Reach, _: f64, memory: &[f64]) -> Response {
+        self.0.respond(reach, &mut self.numbers(memory, |number| number))
+    }
+
+    fn slopes(&self, reach: &Reach, _: f64, memory: &[f64]) -> [f64; 2] {
+        [(1.0, 0.0), (0.0, 1.0)].map(|(now, before)| {
+            let reach = Reach {
+                length: Dual::new(reach.length, now),
+                before: Dual::new(reach.before, before),
+                rest: Dual::constant(reach.rest),
+            };
+            self.0.respond(&reach, &mut self.numbers(memory, Dual::constant)).push.derivative
+        })
+    }
+}
+
+/// A register's worth of links: lanes `lane .. lane + S::F64_LANES` of a block.
+struct Group<'a, S: Simd> {
+    simd: S,
+    part: &'a Part,
+    block: usize,
+    lane: usize,
+}
+
+/// How the links of a group stand.
+struct Stance<S: Simd> {
+    reach: Reach<Lanes<S>>,
+    /// `P1 - P2`, or that of the step before where the ends coincide [m].
+    along: Vec3<Lanes<S>>,
+    /// Its length [m].
+    length: Lanes<S>,
+}
+
+impl<S: Simd> Stance<S> {
+    /// `number`, or zero where there is no direction, nor for lanes without a link.
+    #[inline(always)]
+    fn directed(&self, number: Lanes<S>) -> Lanes<S> {
+        self.length.select_less(number.splat(SHORTEST), number.zero(), number)
+    }
+}
+
+impl<'a, S: Simd> Group<'a, S> {
+    /// Places of first or second ends among the rows of the part: below `row_count` (`Part::new`).
+    #[inline(always)]
+    fn ends(&self, end: usize) -> &'a [u32] {
+        let ends = self.part.ends(self.block);
+        &ends[end * LANES + self.lane..end * LANES + self.lane + S::F64_LANES]
+    }
+
+    #[inline(always)]
+    fn load(&self, numbers: &[f64]) -> Lanes<S> {
+        Lanes::load(self.simd, &numbers[self.lane..self.lane + S::F64_LANES])
+    }
+
+    /// `positions` and `velocities` are those of the part's rows.
+    #[inline(always)]
+    fn stance(&self, positions: &[Vec3], velocities: &[Vec3], timestep: f64) -> Stance<S> {
+        let (to, from) = (self.ends(0), self.ends(1));
+        // SAFETY: ends are below the length of the part's rows (`Part::new`), which these are (`Part::rows_of`)
+        let d = unsafe { Vec3::gather_difference(self.simd, positions, to, from) };
+        // SAFETY: as above
+        let w = unsafe { Vec3::gather_difference(self.simd, velocities, to, from) };
+        let h = Lanes::constant(self.simd, -timestep);
+        // where the ends were: X - h v
+        let e = Vec3::new(w.x.mul_add(h, d.x), w.y.mul_add(h, d.y), w.z.mul_add(h, d.z));
+        let length = d.z.mul_add(d.z, d.y.mul_add(d.y, d.x * d.x)).sqrt();
+        let before = e.z.mul_add(e.z, e.y.mul_add(e.y, e.x * e.x)).sqrt();
+        let rest = self.load(self.part.rest(self.block));
+        let shortest = length.splat(SHORTEST);
+        let along = Vec3::new(
+            length.select_less(shortest, e.x, d.x),
+            length.select_less(shortest, e.y, d.y),
+            length.select_less(shortest, e.z, d.z),
+        );
+        let known = length.select_less(shortest, before, length);
+        Stance { reach: Reach { length, before, rest }, along, length: known }
+    }
+
+    /// The group's numbers of a memory `[number][lane]` of its block.
+    #[inline(always)]
+    fn memory(&self, numbers: &[f64], len: usize) -> [Lanes<S>; MEMORY] {
+        let mut out = [Lanes::constant(self.simd, 0.0); MEMORY];
+        for i in 0..len {
+            out[i] = self.load(&numbers[i * LANES..(i + 1) * LANES]);
+        }
+        out
+    }
+}
+
+/// Adds forces to both ends (`ADDS`), or writes those on first ends link by link.
+struct Forces<'a, L, const ADDS: bool> {
+    law: &'a L,
+    part: &'a Part,
+    moving: Moving<'a>,
+    memory: &'a [f64],
+    out: &'a mut [Vec3],
+}
+
+impl<L: LinkLaw, const ADDS: bool> WithSimd for Forces<'_, L, ADDS> {
+    type Output = ();
+
+    // F1 = φ u = -F2
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { law, part, moving, memory, out } = self;
+        let (positions, velocities) = (part.rows_of(moving.positions), part.rows_of(moving.velocities));
+        let len = law.memory_len();
+        if ADDS {
+            assert!(out.len() == positions.len(), "a sum for each row of the part");
+        }
+        for block in 0..part.block_count() {
+            let numbers = &memory[block * len * LANES..(block + 1) * len * LANES];
+            let mut lane = 0;
+            while lane < LANES {
+                let group = Group { simd, part, block, lane };
+                let stance = group.stance(positions, velocities, moving.timestep);
+                let mut memory = group.memory(numbers, len);
+                let push = law.respond(&stance.reach, &mut memory).push;
+                let force = stance.along * stance.directed(push / stance.length);
+                if ADDS {
+                    // SAFETY: ends are below the length of the part's rows (`Part::new`), as many as sums
+                    unsafe { force.scatter_pair(simd, out, group.ends(0), group.ends(1)) };
+                } else {
+                    let own = &mut out[block * LANES + lane..block * LANES + lane + S::F64_LANES];
+                    force.unpack(simd, |lane, force| own[lane] = force);
+                }
+                lane += S::F64_LANES;
+            }
+        }
+    }
+}
+
+struct Advance<'a, L> {
+    law: &'a L,
+    part: &'a Part,
+    moving: Moving<'a>,
+    memory: &'a mut [f64],
+}
+
+impl<L: LinkLaw> WithSimd for Advance<'_, L> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Self { law, part, moving, memory } = self;
+        let (positions, velocities) = (part.rows_of(moving.positions), part.rows_of(moving.velocities));
+        let len = law.memory_len();
+        let mut heat = [0.0; LANES];
+        for block in 0..part.block_count() {
+            let numbers = &mut memory[block * len * LANES..(block + 1) * len * LANES];
+            let mut lane = 0;
+            while lane < LANES {
+                let group = Group { simd, part, block, lane };
+                let stance = group.stance(positions, velocities, moving.timestep);
+                let mut memory = group.memory(numbers, len);
+                let response = law.respond(&stance.reach, &mut memory);
+                for i in 0..len {
+                    memory[i].store(&mut numbers[i * LANES + lane..i * LANES + lane + S::F64_LANES]);
+                }
+                let sum = group.load(&heat) + stance.directed(response.heat);
+                sum.store(&mut heat[lane..lane + S::F64_LANES]);
+                lane += S::F64_LANES;
+            }
+        }
+        heat.iter().sum()
+    }
+}

@@ -1,0 +1,83 @@
+//! A link law: one scalar function of how far its ends are apart, now and a step before, and of what it remembers.
+//!
+//! Laws are written once over [`Real`]: in lanes they are the loop of a step, as [`souple_math::Dual`] numbers their own
+//! slopes.
+
+use std::fmt::Debug;
+
+use souple_formal::ParseError;
+use souple_math::Real;
+use souple_table::{Entry, Values};
+
+use super::kernel::LinkKernel;
+
+/// Most numbers that a law in lanes remembers of a link.
+pub const MEMORY: usize = 5;
+
+/// How far the ends of a link are apart [m].
+#[derive(Clone, Copy, Debug)]
+pub struct Reach<R = f64> {
+    /// `D`, now.
+    pub length: R,
+    /// `D^r`, a step before.
+    pub before: R,
+    /// The length the link was made with.
+    pub rest: R,
+}
+
+/// What a law makes of a link in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Response<R = f64> {
+    /// Force on the first end along `(P1 - P2)/D`, positive when it pushes the ends apart [N].
+    pub push: R,
+    /// Stored in the link [J].
+    pub stored: R,
+    /// Given off since the step before [J].
+    pub heat: R,
+}
+
+/// A law of links.
+pub trait LinkLaw: Debug + Send + Sync + 'static {
+    /// Numbers that a link remembers, at most [`MEMORY`].
+    fn memory_len(&self) -> usize {
+        0
+    }
+
+    /// What a link of this rest length and this length remembers at the start [m].
+    fn begin(&self, _rest: f64, _length: f64, _memory: &mut [f64]) {}
+
+    /// Force and energy of a link; `memory` becomes that of the next step.
+    fn respond<R: Real>(&self, reach: &Reach<R>, memory: &mut [R; MEMORY]) -> Response<R>;
+
+    /// The force is minus the derivative of what is stored, and of `D` alone.
+    fn is_conservative(&self) -> bool;
+
+    /// What a link takes of the bound `4M` on a mass between itself and a fixed point [N/m]: its transfer function at the
+    /// highest frequency a step can carry, `K + 2Z` of a spring and damper.
+    fn stiffest(&self) -> f64;
+}
+
+/// What laws are made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Making<'a> {
+    pub values: &'a Values,
+    /// `Te` of the system [s].
+    pub timestep: f64,
+}
+
+/// Makes a law from its checked parameters.
+pub type BuildLink = fn(&Making) -> Result<Box<dyn LinkKernel>, LinkError>;
+
+/// An entry of the table of laws.
+pub type LinkEntry = Entry<BuildLink>;
+
+/// Numbers that are each in their range but make no law together.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LinkError {
+    #[error("`{parameter}` is {value}, but {expected}")]
+    Unfit { parameter: &'static str, value: String, expected: String },
+    #[error("`{place}`: {error}")]
+    Formula { place: String, error: ParseError },
+    #[error("`{place}` {what}")]
+    Text { place: String, what: String },
+}

@@ -1,0 +1,143 @@
+//! Elasto-plastic links with hardening and rupture: a spring in series with a slider beside a second spring.
+
+use souple_math::Real;
+use souple_table::{Parameter, Range, Value};
+
+use crate::network::kernel::InLanes;
+use crate::network::law::{LinkEntry, LinkError, LinkLaw, MEMORY, Reach, Response};
+
+/// What yielding one way does to the threshold of the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Hardening {
+    Independent,
+    /// Both grow alike.
+    Isotropic,
+    /// The elastic range moves as a whole: what a slider beside a spring really does.
+    Kinematic,
+}
+
+/// Traction positive, `q = D - S`: elastic `f = k q` between the thresholds `S2 < q < S1`; beyond them along the slope
+/// `B = k k'/(k + k')`, after which the rest length `S` has moved so that unloading is elastic again. Torn at `q >= S3`, it
+/// pulls no more, but still pushes.
+#[derive(Clone, Copy, Debug)]
+struct ElastoPlastic {
+    /// `C = k` [N/m].
+    elastic: f64,
+    /// `B` [N/m].
+    plastic: f64,
+    /// `Qe` in traction and, negative, in compression [N].
+    yields: [f64; 2],
+    /// Elastic elongation at which it tears [m]; infinite for never.
+    tears: f64,
+    hardening: Hardening,
+}
+
+const REST: usize = 0;
+const TRACTION: usize = 1;
+const COMPRESSION: usize = 2;
+const TEARS: usize = 3;
+
+impl LinkLaw for ElastoPlastic {
+    fn memory_len(&self) -> usize {
+        4
+    }
+
+    fn begin(&self, rest: f64, _: f64, memory: &mut [f64]) {
+        let [traction, compression] = self.yields;
+        memory.copy_from_slice(&[rest, traction / self.elastic, compression / self.elastic, self.tears]);
+    }
+
+    #[inline(always)]
+    fn respond<R: Real>(&self, reach: &Reach<R>, memory: &mut [R; MEMORY]) -> Response<R> {
+        let [rest, s1, s2, s3, _] = *memory;
+        let q = reach.length - rest;
+        let (zero, c) = (q.zero(), 1.0 / self.elastic);
+        // f = A S1 + B q,  A = C - B
+        let beyond = |threshold: R| threshold * (self.elastic - self.plastic) + q * self.plastic;
+        let (pulled, pushed) = (beyond(s1), beyond(s2));
+        let (new_s1, new_s2) = (pulled * c, pushed * c);
+        let yielded = s1.select_less(q, pulled, q.select_less(s2, pushed, q * self.elastic));
+        let force = q.select_less(s3, yielded, zero);
+        // a torn link keeps its rest length; one that yielded has it where unloading ends
+        let moved = s1.select_less(q, reach.length - new_s1, q.select_less(s2, reach.length - new_s2, rest));
+        let (own1, own2) = (s1.select_less(q, new_s1, s1), q.select_less(s2, new_s2, s2));
+        let (next1, next2) = match self.hardening {
+            Hardening::Independent => (own1, own2),
+            Hardening::Isotropic => (q.select_less(s2, -new_s2, own1), s1.select_less(q, -new_s1, own2)),
+            Hardening::Kinematic => {
+                (q.select_less(s2, s1 + new_s2 - s2, own1), s1.select_less(q, s2 + new_s1 - s1, own2))
+            }
+        };
+        memory[REST] = q.select_less(s3, moved, rest);
+        memory[TRACTION] = q.select_less(s3, next1, s1);
+        memory[COMPRESSION] = q.select_less(s3, next2, s2);
+        memory[TEARS] = q.select_less(s3, s3, zero);
+        let slipped = memory[REST] - rest;
+        Response { push: -force, stored: force * force * (0.5 * c), heat: force * slipped }
+    }
+
+    fn is_conservative(&self) -> bool {
+        false
+    }
+
+    fn stiffest(&self) -> f64 {
+        self.elastic
+    }
+}
+
+pub const ENTRY: LinkEntry = LinkEntry {
+    name: "elasto_plastic",
+    summary: "elastic up to a threshold, then yields and hardens; may tear, and then still resists compression",
+    source: "Jimenez 1993, P2-V.2.3",
+    parameters: &[
+        Parameter::number("stiffness", "N/m", Range::POSITIVE, "k: elastic"),
+        Parameter::number(
+            "hardening",
+            "N/m",
+            Range::NOT_NEGATIVE,
+            "k': of hardening; 0 for perfect plasticity",
+        )
+        .or(Value::Number(0.0)),
+        Parameter::number("traction", "N", Range::POSITIVE, "Qe: yields when pulled by more"),
+        Parameter::number(
+            "compression",
+            "N",
+            Range::NOT_NEGATIVE,
+            "yields when pushed by more; as traction where 0",
+        )
+        .or(Value::Number(0.0)),
+        Parameter::number("rupture", "N", Range::NOT_NEGATIVE, "tears when pulled by more; 0 for never")
+            .or(Value::Number(0.0)),
+        Parameter::choice(
+            "mode",
+            &["independent", "isotropic", "kinematic"],
+            "what hardening one way does to the other threshold",
+        )
+        .or(Value::Text("independent")),
+    ],
+    build: |making| {
+        let number = |name| making.values.number(name);
+        let (k, hardening, traction) = (number("stiffness"), number("hardening"), number("traction"));
+        let (compression, rupture) = (number("compression"), number("rupture"));
+        if rupture > 0.0 && rupture <= traction {
+            return Err(LinkError::Unfit {
+                parameter: "rupture",
+                value: rupture.to_string(),
+                expected: format!(
+                    "it must be greater than `traction`, {traction}, for the link to yield at all"
+                ),
+            });
+        }
+        Ok(Box::new(InLanes(ElastoPlastic {
+            elastic: k,
+            plastic: k * hardening / (k + hardening),
+            yields: [traction, -if compression > 0.0 { compression } else { traction }],
+            tears: if rupture > 0.0 { rupture / k } else { f64::MAX },
+            hardening: match making.values.text("mode") {
+                "isotropic" => Hardening::Isotropic,
+                "kinematic" => Hardening::Kinematic,
+                _ => Hardening::Independent,
+            },
+        })))
+    },
+};

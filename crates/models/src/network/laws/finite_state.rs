@@ -1,0 +1,209 @@
+//! Finite-state links: a law for each state, conditions that lead from one to the other, numbers that are remembered.
+//!
+//! At step `n` the transitions out of the present state are looked at in the order they are written; the last one whose
+//! condition holds wins. What is entered may set remembered numbers; then the force is that of the new state.
+
+use souple_formal::{Condition, Formula};
+use souple_math::Dual;
+use souple_table::{Parameter, Value};
+
+use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
+use crate::network::written::{OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula};
+
+/// What formulas and conditions may refer to, before what is remembered and the parameters of the scene.
+const VARIABLES: [&str; 4] = ["D", "D_before", "V", "t"];
+
+#[derive(Debug)]
+struct FiniteState {
+    states: Vec<State>,
+    /// What each remembered number is at the start; `L0` is the first.
+    starts: Vec<Formula>,
+    constants: Vec<f64>,
+    timestep: f64,
+}
+
+#[derive(Debug)]
+struct State {
+    push: Formula,
+    /// Conditions and the states they lead to.
+    transitions: Vec<(Condition, usize)>,
+    /// Remembered numbers that are set on entry.
+    settings: Vec<(usize, Formula)>,
+}
+
+/// Place of the state among the numbers of a link; remembered numbers follow.
+const STATE: usize = 0;
+
+impl FiniteState {
+    /// Values of variables, remembered numbers and parameters.
+    fn arguments(&self, reach: &Reach, time: f64, memory: &[f64]) -> Vec<f64> {
+        let speed = (reach.length - reach.before) / self.timestep;
+        let own = [reach.length, reach.before, speed, time];
+        own.into_iter().chain(memory[1..].iter().copied()).chain(self.constants.iter().copied()).collect()
+    }
+
+    /// Makes the transition of a step.
+    fn switch(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> &State {
+        let state = &self.states[memory[STATE] as usize];
+        let arguments = self.arguments(reach, time, memory);
+        let Some((_, next)) =
+            state.transitions.iter().rev().find(|(condition, _)| condition.holds(&arguments))
+        else {
+            return state;
+        };
+        let entered = &self.states[*next];
+        memory[STATE] = *next as f64;
+        for (number, formula) in &entered.settings {
+            memory[1 + number] = formula.evaluate(&arguments);
+        }
+        entered
+    }
+}
+
+impl WrittenLaw for FiniteState {
+    fn memory_len(&self) -> usize {
+        1 + self.starts.len()
+    }
+
+    fn begin(&self, rest: f64, length: f64, memory: &mut [f64]) {
+        memory.fill(0.0);
+        memory[1] = rest;
+        let reach = Reach { length, before: length, rest };
+        for (number, start) in self.starts.iter().enumerate().skip(1) {
+            memory[1 + number] = start.evaluate(&self.arguments(&reach, 0.0, memory));
+        }
+    }
+
+    fn is_conservative(&self) -> bool {
+        false
+    }
+
+    fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response {
+        let state = self.switch(reach, time, memory);
+        let push = state.push.evaluate(&self.arguments(reach, time, memory));
+        Response { push, stored: 0.0, heat: 0.0 }
+    }
+
+    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2] {
+        let mut numbers = [0.0; WRITTEN_MEMORY];
+        numbers[..memory.len()].copy_from_slice(memory);
+        let memory = &mut numbers[..memory.len()];
+        let state = self.switch(reach, time, memory);
+        let values = self.arguments(reach, time, memory);
+        [(1.0, 0.0), (0.0, 1.0)].map(|(now, before)| {
+            let mut duals: Vec<Dual> = values.iter().map(|value| Dual::constant(*value)).collect();
+            duals[0].derivative = now;
+            duals[1].derivative = before;
+            duals[2].derivative = (now - before) / self.timestep;
+            state.push.evaluate_dual(&duals).derivative
+        })
+    }
+
+    // of the stiffest state, as links are at the start
+    fn stiffest(&self, rest: f64) -> f64 {
+        let mut memory = vec![0.0; self.memory_len()];
+        self.begin(rest, rest, &mut memory);
+        let of = |(index, state): (usize, &State)| {
+            memory[STATE] = index as f64;
+            let values = self.arguments(&Reach { length: rest, before: rest, rest }, 0.0, &memory);
+            let slope = |by| state.push.differentiate(&values, by).derivative;
+            // H(-1) = -∂φ/∂D + ∂φ/∂D^r, with V = (D - D^r)/Te
+            (slope(1) - slope(0) - 2.0 * slope(2) / self.timestep).max(0.0)
+        };
+        self.states.iter().enumerate().map(of).fold(0.0, f64::max)
+    }
+}
+
+pub const ENTRY: LinkEntry = LinkEntry {
+    name: "finite_state",
+    summary: "a law for each of several states, with conditions that lead from one to another and memory: collisions, \
+              glue, plectra, grips, whatever switches",
+    source: "Jimenez 1993, P2-I.3.3, P2-II.5",
+    parameters: &[
+        Parameter::texts(
+            "states",
+            "the push [N] in each state, of D, D_before, V, t, L0 and the names below; the first is that of the start",
+        ),
+        Parameter::texts(
+            "transitions",
+            "conditions under \"a -> b\"; of those that hold the last written wins",
+        )
+        .or(Value::Texts(&[])),
+        Parameter::texts("entries", "what a state sets when it is entered: \"L0 = D; k = 0\"")
+            .or(Value::Texts(&[])),
+        Parameter::texts(
+            "memory",
+            "numbers that are remembered, with what they are at the start; L0 is always one",
+        )
+        .or(Value::Texts(&[])),
+        Parameter::texts("parameters", "numbers that do not change").or(Value::Texts(&[])),
+    ],
+    build: |making| Ok(Box::new(OneByOne(read(making)?))),
+};
+
+fn text(place: impl Into<String>, what: impl Into<String>) -> LinkError {
+    LinkError::Text { place: place.into(), what: what.into() }
+}
+
+fn read(making: &Making) -> Result<FiniteState, LinkError> {
+    let texts = |name| making.values.texts(name);
+    let (names, constants) = constants(texts("parameters"))?;
+    let remembered: Vec<&str> =
+        ["L0"].into_iter().chain(texts("memory").iter().map(|(name, _)| name.as_str())).collect();
+    if 1 + remembered.len() > WRITTEN_MEMORY {
+        return Err(text(
+            "memory",
+            format!("holds {} numbers; at most {}", remembered.len() - 1, WRITTEN_MEMORY - 2),
+        ));
+    }
+    let variables: Vec<&str> = VARIABLES.into_iter().chain(remembered.iter().copied()).chain(names).collect();
+    let mut states = Vec::new();
+    let state_names: Vec<&str> = texts("states").iter().map(|(name, _)| name.as_str()).collect();
+    for (name, push) in texts("states") {
+        let push = formula(&format!("states.{name}"), push, &variables)?;
+        states.push(State { push, transitions: Vec::new(), settings: Vec::new() });
+    }
+    if states.is_empty() {
+        return Err(text("states", "is empty: a link is in one state at least"));
+    }
+    let find = |place: &str, name: &str| {
+        state_names.iter().position(|known| *known == name).ok_or_else(|| {
+            text(place, format!("names the state `{name}`; there are {}", state_names.join(", ")))
+        })
+    };
+    let mut is_entered = vec![false; states.len()];
+    is_entered[0] = true;
+    for (arrow, condition) in texts("transitions") {
+        let place = format!("transitions.\"{arrow}\"");
+        let (from, to) = arrow
+            .split_once("->")
+            .ok_or_else(|| text(&place, "is no transition: write \"a -> b\" for from a to b"))?;
+        let (from, to) = (find(&place, from.trim())?, find(&place, to.trim())?);
+        let condition = Condition::compile(condition, &variables)
+            .map_err(|error| LinkError::Formula { place: place.clone(), error })?;
+        is_entered[to] |= from != to;
+        states[from].transitions.push((condition, to));
+    }
+    if let Some(state) = is_entered.iter().position(|entered| !entered) {
+        let name = state_names[state];
+        return Err(text(format!("states.{name}"), "is never entered: no transition leads there"));
+    }
+    for (name, settings) in texts("entries") {
+        let place = format!("entries.{name}");
+        let state = find(&place, name)?;
+        for setting in settings.split(';').map(str::trim).filter(|setting| !setting.is_empty()) {
+            let (number, value) = setting
+                .split_once('=')
+                .ok_or_else(|| text(&place, format!("says `{setting}`: write \"L0 = D; k = 0\"")))?;
+            let number = remembered.iter().position(|known| *known == number.trim()).ok_or_else(|| {
+                text(&place, format!("sets `{}`; remembered are {}", number.trim(), remembered.join(", ")))
+            })?;
+            states[state].settings.push((number, formula(&place, value.trim(), &variables)?));
+        }
+    }
+    let mut starts = vec![formula("L0", "L0", &variables)?];
+    for (name, start) in texts("memory") {
+        starts.push(formula(&format!("memory.{name}"), start, &variables)?);
+    }
+    Ok(FiniteState { states, starts, constants, timestep: making.timestep })
+}

@@ -1,0 +1,39 @@
+//! The laws of links: one file each and one line in [`LINKS`].
+
+mod elasto_plastic;
+mod finite_state;
+mod flowing;
+mod formula;
+mod lennard_jones;
+mod piecewise;
+mod spring_damper;
+mod stops;
+
+use souple_table::Table;
+
+use super::law::BuildLink;
+
+pub use piecewise::Piecewise;
+pub use spring_damper::SpringDamper;
+
+/// All laws.
+pub const LINKS: Table<BuildLink> = Table {
+    kind: "link",
+    entries: &[
+        &spring_damper::SPRING_DAMPER,
+        &spring_damper::SPRING,
+        &spring_damper::DAMPER,
+        &piecewise::PIECEWISE_LINEAR,
+        &piecewise::COHESION,
+        &lennard_jones::ENTRY,
+        &stops::BALL,
+        &stops::BUBBLE,
+        &stops::EXPONENTIAL_STOP,
+        &elasto_plastic::ENTRY,
+        &flowing::MAXWELL,
+        &flowing::BINGHAM,
+        &flowing::BURGER,
+        &formula::ENTRY,
+        &finite_state::ENTRY,
+    ],
+};

@@ -1,0 +1,241 @@
+//! How links lie in memory, and in what order their forces are summed.
+//!
+//! Rows are cut into stretches. Links within a stretch add to its rows as they come; links across stretches put their
+//! forces into a buffer, from which each stretch then takes its own in order. Neither order depends on the number of
+//! threads. Within a part, links follow their lower ends, so that a regular network is read once from end to end.
+
+use std::ops::Range;
+
+use souple_math::Vec3;
+
+use crate::solids::parallel;
+
+/// Links side by side in a block.
+pub const LANES: usize = 8;
+/// Rows of a stretch: few links of a lattice cross, and some stretches for each thread remain.
+const ROWS_PER_STRETCH: usize = 16384;
+/// Blocks that are filled lane after lane: neighbouring links, which share masses, stand in different blocks, so that sums
+/// on a mass do not wait for each other.
+const BLOCKS_PER_TILE: usize = 64;
+/// Links across stretches that one task computes.
+const CROSSING_PER_PART: usize = BLOCKS_PER_TILE * LANES;
+/// A part of a stretch is worth a thread of its own.
+const GRAIN: usize = 2;
+
+/// Two ends of a link, rows of the system.
+pub type Ends = [u32; 2];
+
+/// Links that are computed by one thread.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Numbers of its links, slot by slot.
+    pub links: Vec<u32>,
+    /// Row that ends are counted from.
+    pub first_row: usize,
+    /// `(block, end, lane)`; lanes without a link join the first row to itself.
+    ends: Vec<u32>,
+    /// Rest length of `(block, lane)` [m].
+    rest: Vec<f64>,
+    /// Blocks of the parts before it.
+    pub first_block: usize,
+    /// Rows that it reads, counted from `first_row`.
+    row_count: usize,
+}
+
+/// All links of a law.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// One for each stretch, then those across.
+    pub parts: Vec<Part>,
+    /// First row of each stretch, and the end of the last.
+    stretches: Vec<usize>,
+    /// `takes[take_starts[s] .. take_starts[s + 1]]`: what stretch `s` takes of the forces across.
+    takes: Vec<Take>,
+    take_starts: Vec<u32>,
+}
+
+/// A force across stretches and the row it acts on.
+#[derive(Clone, Copy, Debug)]
+struct Take {
+    /// Slot of the buffer, times two, plus one where it is the second end.
+    slot: u32,
+    /// Counted from the first of the stretch.
+    row: u32,
+}
+
+impl Part {
+    fn new(links: Vec<u32>, all: &[Ends], rest: &[f64], rows: Range<usize>, first_block: usize) -> Self {
+        let blocks = links.len().div_ceil(LANES);
+        let mut part = Self {
+            ends: vec![0; 2 * LANES * blocks],
+            rest: vec![0.0; LANES * blocks],
+            first_row: rows.start,
+            first_block,
+            row_count: rows.len(),
+            links,
+        };
+        for (slot, link) in part.links.iter().enumerate() {
+            let (block, lane) = part.place(slot);
+            for (end, row) in all[*link as usize].iter().enumerate() {
+                part.ends[(2 * block + end) * LANES + lane] = row - rows.start as u32;
+            }
+            part.rest[block * LANES + lane] = rest[*link as usize];
+        }
+        assert!(part.ends.iter().all(|end| (*end as usize) < part.row_count), "ends are rows of the part");
+        part
+    }
+
+    pub fn block_count(&self) -> usize {
+        self.links.len().div_ceil(LANES)
+    }
+
+    /// Block and lane of the part's `slot`-th link.
+    pub fn place(&self, slot: usize) -> (usize, usize) {
+        let (tile, inside) = (slot / (BLOCKS_PER_TILE * LANES), slot % (BLOCKS_PER_TILE * LANES));
+        let blocks = (self.block_count() - BLOCKS_PER_TILE * tile).min(BLOCKS_PER_TILE);
+        (BLOCKS_PER_TILE * tile + inside % blocks, inside / blocks)
+    }
+
+    /// Rows of the ends of the part's `slot`-th link.
+    pub fn ends_of(&self, slot: usize) -> Ends {
+        let (block, lane) = self.place(slot);
+        [0, 1].map(|end| self.ends[(2 * block + end) * LANES + lane] + self.first_row as u32)
+    }
+
+    /// Ends of a block's links, `[end][lane]`: below the length of what [`Self::rows_of`] gives.
+    #[inline(always)]
+    pub fn ends(&self, block: usize) -> &[u32] {
+        &self.ends[2 * block * LANES..2 * (block + 1) * LANES]
+    }
+
+    /// Rest lengths of a block's links [m].
+    #[inline(always)]
+    pub fn rest(&self, block: usize) -> &[f64] {
+        &self.rest[block * LANES..(block + 1) * LANES]
+    }
+
+    /// The rows that the part reads.
+    pub fn rows_of<'v>(&self, values: &'v [Vec3]) -> &'v [Vec3] {
+        &values[self.first_row..self.first_row + self.row_count]
+    }
+}
+
+impl Layout {
+    pub fn new(ends: &[Ends], rest: &[f64]) -> Self {
+        let all = || ends.iter().flatten().map(|row| *row as usize);
+        let rows = all().min().unwrap_or(0)..all().max().map_or(0, |last| last + 1);
+        let stretches: Vec<usize> = rows.clone().step_by(ROWS_PER_STRETCH).chain([rows.end]).collect();
+        let stretch = |row: u32| (row as usize - rows.start) / ROWS_PER_STRETCH;
+        let mut order: Vec<u32> = (0..ends.len() as u32).collect();
+        let key = |link: &u32| {
+            let [a, b] = ends[*link as usize];
+            (a.min(b), a.max(b), *link)
+        };
+        order.sort_unstable_by_key(key);
+        let (mut within, mut across) = (vec![Vec::new(); stretches.len() - 1], Vec::new());
+        for link in order {
+            let [a, b] = ends[link as usize].map(stretch);
+            if a == b { &mut within[a] } else { &mut across }.push(link);
+        }
+        let mut layout = Self { parts: Vec::new(), stretches, takes: Vec::new(), take_starts: Vec::new() };
+        for (index, links) in within.into_iter().enumerate() {
+            layout.push(links, ends, rest, layout.stretches[index]..layout.stretches[index + 1]);
+        }
+        for links in across.chunks(CROSSING_PER_PART) {
+            layout.push(links.to_vec(), ends, rest, rows.clone());
+        }
+        layout.list_takes();
+        layout
+    }
+
+    fn push(&mut self, links: Vec<u32>, ends: &[Ends], rest: &[f64], rows: Range<usize>) {
+        let first_block = self.block_count();
+        self.parts.push(Part::new(links, ends, rest, rows, first_block));
+    }
+
+    fn stretch_count(&self) -> usize {
+        self.stretches.len() - 1
+    }
+
+    fn list_takes(&mut self) {
+        let first = self.stretches[0];
+        let mut lists = vec![Vec::new(); self.stretch_count()];
+        let across = self.parts.get(self.stretch_count()..).unwrap_or_default();
+        let first_block = across.first().map_or(0, |part| part.first_block);
+        for part in across {
+            for slot in 0..part.links.len() {
+                let (block, lane) = part.place(slot);
+                let place = ((part.first_block - first_block + block) * LANES + lane) as u32;
+                for (end, row) in part.ends_of(slot).into_iter().enumerate() {
+                    let stretch = (row as usize - first) / ROWS_PER_STRETCH;
+                    let row = row - self.stretches[stretch] as u32;
+                    lists[stretch].push(Take { slot: 2 * place + end as u32, row });
+                }
+            }
+        }
+        self.take_starts = vec![0];
+        for list in lists {
+            self.takes.extend(list);
+            self.take_starts.push(self.takes.len() as u32);
+        }
+    }
+
+    /// Blocks of all parts.
+    pub fn block_count(&self) -> usize {
+        self.parts.last().map_or(0, |part| part.first_block + part.block_count())
+    }
+
+    /// Sums forces of links on rows: `within(number, part, sums on its rows)` adds those of a stretch, `across(number, part,
+    /// forces on first ends)` writes those of links across, `[block][lane]`; `buffer` is scratch.
+    pub fn add_sums(
+        &self,
+        buffer: &mut Vec<Vec3>,
+        out: &mut [Vec3],
+        within: impl Fn(usize, &Part, &mut [Vec3]) + Sync,
+        across: impl Fn(usize, &Part, &mut [Vec3]) + Sync,
+    ) {
+        let stretches = self.stretch_count();
+        let block =
+            |number: usize| self.parts.get(number).map_or(self.block_count(), |part| part.first_block);
+        let start_of = |number: usize| LANES * (block(number) - block(stretches));
+        buffer.resize(start_of(self.parts.len()), Vec3::ZERO);
+        parallel::fill(stretches..self.parts.len(), parallel::LIGHT, buffer, &start_of, &|number, forces| {
+            across(number, &self.parts[number], forces);
+        });
+        let (buffer, out) = (&*buffer, &mut out[self.stretches[0]..self.stretches[stretches]]);
+        let start_of = |number: usize| self.stretches[number] - self.stretches[0];
+        parallel::fill(0..stretches, GRAIN, out, &start_of, &|number, sums| {
+            within(number, &self.parts[number], sums);
+            let takes = self.take_starts[number] as usize..self.take_starts[number + 1] as usize;
+            for Take { slot, row } in &self.takes[takes] {
+                let force = buffer[(slot >> 1) as usize];
+                sums[*row as usize] += if slot & 1 == 0 { force } else { -force };
+            }
+        });
+    }
+
+    /// Where a part's memory stands that keeps one number of its own and `len` for each link, `[block][number][lane]`.
+    pub fn memory_range(&self, number: usize, len: usize) -> Range<usize> {
+        let start = |number: usize| {
+            let blocks = self.parts.get(number).map_or(self.block_count(), |part| part.first_block);
+            number + LANES * len * blocks
+        };
+        start(number)..start((number + 1).min(self.parts.len()))
+    }
+
+    /// Runs `work` on every part with its memory.
+    pub fn advance(&self, len: usize, memory: &mut [f64], work: impl Fn(&Part, &mut [f64]) + Sync) {
+        let start_of = |number: usize| self.memory_range(number, len).start;
+        parallel::fill(0..self.parts.len(), GRAIN, memory, &start_of, &|number, own| {
+            work(&self.parts[number], own);
+        });
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let part = |part: &Part| {
+            size_of::<Part>() + 4 * (part.links.capacity() + part.ends.capacity()) + 8 * part.rest.capacity()
+        };
+        self.parts.iter().map(part).sum::<usize>() + size_of::<Take>() * self.takes.capacity()
+    }
+}

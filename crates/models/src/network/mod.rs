@@ -1,0 +1,17 @@
+//! Networks of masses and interactions: points that have all the inertia, links that have all the behaviour.
+//!
+//! A mass is a point unknown of the engine. Links of one law are one [`souple_engine::Force`]; what they remember
+//! lives in State. Laws are in [`laws`], one file and one line of its table each.
+
+pub mod force;
+pub mod kernel;
+pub mod law;
+pub mod laws;
+mod layout;
+pub mod written;
+
+pub use force::{Account, LinkDescription, LinkStance, Links};
+pub use kernel::{InLanes, LinkKernel};
+pub use law::{BuildLink, LinkEntry, LinkError, LinkLaw, Making, Reach, Response};
+pub use laws::LINKS;
+pub use layout::Ends;

@@ -1,0 +1,333 @@
+//! Networks of masses and links: what every law promises, invariants of the scheme, the same bits for any threads.
+
+use std::f64::consts::PI;
+
+use souple_engine::steppers::TABLE;
+use souple_engine::{
+    Configuration, Force, Kinematics, Mass, Model, State, System, TangentWeights, UnknownKind, World,
+};
+use souple_math::Vec3;
+use souple_models::network::laws::Piecewise;
+use souple_models::network::{
+    Account, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel, Links, Making, Reach,
+};
+use souple_table::{Value, Values};
+
+const TE: f64 = 1e-3;
+
+/// A law of the table with numbers of the size of a metre and a kilonewton.
+fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
+    let text = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+        pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    let numbers = text(&[("k", "1 kN/m"), ("c", "3")]);
+    let states = text(&[("free", "0"), ("touching", "k * (1 - D) - c * V")]);
+    let transitions = text(&[("free -> touching", "D < 1"), ("touching -> free", "D > 1")]);
+    let mut values = Values::new();
+    for parameter in entry.parameters {
+        let value = match parameter.name {
+            "stiffness" => Value::Number(1000.0),
+            "damping" | "viscosity" => Value::Number(3.0),
+            "hardening" => Value::Number(250.0),
+            "traction" => Value::Number(20.0),
+            "compression" => Value::Number(30.0),
+            "threshold" | "distance" => Value::Number(1.0),
+            "depth" => Value::Number(0.3),
+            "peak" => Value::Number(1.1),
+            "range" => Value::Number(1.5),
+            "cohesion" => Value::Number(700.0),
+            "thresholds" => Value::Numbers(&[0.9, 1.2, 1.6]),
+            "slopes" => Value::Numbers(&[-1000.0, -200.0, 100.0, 0.0]),
+            "zero" => Value::Number(1.05),
+            "solid_stiffness" => Value::Number(800.0),
+            "solid_viscosity" => Value::Number(5.0),
+            "fluid_stiffness" => Value::Number(1200.0),
+            "fluid_viscosity" => Value::Number(50.0),
+            "push" => Value::Text("-k * (D - L0) - c * V"),
+            "states" => Value::Texts(&states),
+            "transitions" => Value::Texts(&transitions),
+            "parameters" => Value::Texts(&numbers),
+            _ => continue,
+        };
+        values.set(parameter.name, value);
+    }
+    let values = entry.values(values).unwrap();
+    (entry.build)(&Making { values: &values, timestep: TE }).unwrap()
+}
+
+fn links(law: Box<dyn LinkKernel>, ends: &[[u32; 2]], rest: f64, account: Account) -> Links {
+    let lengths = vec![rest; ends.len()];
+    Links::new(LinkDescription {
+        name: "links".into(),
+        law,
+        ends,
+        rest_lengths: &lengths,
+        lengths: &lengths,
+        timestep: TE,
+        account,
+    })
+}
+
+fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3], memory: &'a [f64]) -> Configuration<'a> {
+    Configuration {
+        positions,
+        velocities,
+        time: 0.0,
+        load: 1.0,
+        memory,
+        pairs: &[],
+        driven: &[],
+        fields: &[],
+    }
+}
+
+fn memory_of(force: &Links) -> Vec<f64> {
+    let mut memory = vec![0.0; force.memory_len()];
+    force.initial_memory(&mut memory);
+    memory
+}
+
+/// Points of a cubic lattice, shaken, with velocities; neighbours are linked.
+fn lattice(n: usize) -> (Vec<Vec3>, Vec<Vec3>, Vec<[u32; 2]>) {
+    let shake = |i: usize, phase: f64| {
+        let wave = |salt: f64| (12.9898 * i as f64 + salt + phase).sin();
+        Vec3::new(wave(0.0), wave(1.3), wave(2.9))
+    };
+    let place = |i: usize| Vec3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64);
+    let count = n * n * n;
+    let mut ends = Vec::new();
+    for i in 0..count {
+        for (step, along) in [1, n, n * n].into_iter().zip(place(i).to_array()) {
+            if along < (n - 1) as f64 {
+                ends.push([i as u32, (i + step) as u32]);
+            }
+        }
+    }
+    let positions = (0..count).map(|i| place(i) + shake(i, 0.0) * 0.1).collect();
+    (positions, (0..count).map(|i| shake(i, 5.0)).collect(), ends)
+}
+
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+/// Slopes are the derivatives of the push, and the push of a conservative law is minus that of its energy; nobody is pushed
+/// at rest, and what is given off is not negative. Central differences err by `ε²` of a third derivative.
+#[test]
+fn battery_of_every_law() {
+    for entry in LINKS.entries {
+        let law = law(entry);
+        let mut memory = [0.0; 16];
+        law.begin(1.0, 1.0, &mut memory[..law.memory_len()]);
+        for (length, before) in [(0.93, 0.931), (0.97, 0.968), (1.004, 1.003), (1.07, 1.072), (1.33, 1.331)] {
+            let push = |length: f64, before: f64| {
+                law.respond(&Reach { length, before, rest: 1.0 }, 0.0, &memory).push
+            };
+            let stored = |length: f64| law.respond(&Reach { length, before, rest: 1.0 }, 0.0, &memory).stored;
+            let step = 1e-6;
+            let reach = Reach { length, before, rest: 1.0 };
+            let [now, past] = law.slopes(&reach, 0.0, &memory);
+            let numeric = |f: &dyn Fn(f64) -> f64| (f(step) - f(-step)) / (2.0 * step);
+            let tolerance = 1e-6 * law.stiffest(1.0).max(1000.0);
+            let differs = (now - numeric(&|e| push(length + e, before))).abs();
+            assert!(differs < tolerance, "{} at {length}: ∂φ/∂D off by {differs}", entry.name);
+            let differs = (past - numeric(&|e| push(length, before + e))).abs();
+            assert!(differs < tolerance, "{} at {length}: ∂φ/∂D^r off by {differs}", entry.name);
+            if law.is_conservative() {
+                let force = -numeric(&|e| stored(length + e));
+                let differs = (force - push(length, before)).abs();
+                assert!(differs < tolerance, "{} at {length}: -∂E/∂D off by {differs}", entry.name);
+                assert_eq!(past, 0.0, "{} looks back", entry.name);
+            }
+            let heat = law.respond(&reach, 0.0, &memory).heat;
+            // rounding of a product of forces of 1e4 N and steps of 1e-3 m
+            assert!(heat >= -1e-12, "{} at {length} gives off {heat}", entry.name);
+        }
+    }
+}
+
+/// Lanes, stretches and what crosses them make the forces of the links one by one.
+#[test]
+fn forces_are_those_of_single_links() {
+    let (positions, velocities, ends) = lattice(27);
+    for entry in LINKS.entries {
+        let force = links(law(entry), &ends, 1.0, Account::None);
+        let memory = memory_of(&force);
+        let at = at(&positions, &velocities, &memory);
+        let mut found = vec![Vec3::ZERO; positions.len()];
+        force.add_force(&at, &mut force.new_scratch(), &mut found);
+        let mut expected = vec![Vec3::ZERO; positions.len()];
+        let mut largest: f64 = 0.0;
+        for (link, [a, b]) in ends.iter().map(|ends| ends.map(|end| end as usize)).enumerate() {
+            let d = positions[a] - positions[b];
+            let push = d * (force.stance(link, &at).push / d.length());
+            largest = largest.max(push.length());
+            expected[a] += push;
+            expected[b] -= push;
+        }
+        // rounding of lengths near one over small elongations, and of the law's own sums
+        let worst = found.iter().zip(&expected).map(|(f, e)| (*f - *e).length()).fold(0.0, f64::max);
+        assert!(worst < 1e-10 * largest.max(1e3), "{}: {worst} of {largest}", entry.name);
+        let total: Vec3 = found.iter().copied().sum();
+        assert!(total.length() < 1e-12 * largest.max(1.0) * ends.len() as f64, "{}: {total:?}", entry.name);
+    }
+}
+
+/// Forces and memories are the same to the last bit by any number of threads.
+#[test]
+fn same_bits_for_any_thread_count() {
+    let (positions, velocities, ends) = lattice(30);
+    let plastic = LINKS.entries.iter().find(|entry| entry.name == "elasto_plastic").unwrap();
+    let step = |threads: usize| {
+        with_threads(threads, || {
+            let force = links(law(plastic), &ends, 1.0, Account::Heat);
+            let mut memory = memory_of(&force);
+            let before = memory.clone();
+            let at = at(&positions, &velocities, &before);
+            let mut out = vec![Vec3::ZERO; positions.len()];
+            force.add_force(&at, &mut force.new_scratch(), &mut out);
+            force.advance_memory(&at, TE, &mut memory, &mut []);
+            (out, memory)
+        })
+    };
+    let one = step(1);
+    assert!(one == step(2) && one == step(5));
+    assert!(one.1 != memory_of(&links(law(plastic), &ends, 1.0, Account::Heat)), "some links yield");
+}
+
+/// Differentials are differences of forces, damping included, and blocks agree with them.
+#[test]
+fn differentials_are_differences() {
+    let (positions, velocities, ends) = lattice(3);
+    for entry in LINKS.entries {
+        let force = links(law(entry), &ends, 1.0, Account::None);
+        let memory = memory_of(&force);
+        let mut scratch = force.new_scratch();
+        let delta: Vec<Vec3> = (0..positions.len())
+            .map(|i| Vec3::new((i as f64).sin(), (2.0 * i as f64).cos(), (3.0 + i as f64).sin()))
+            .collect();
+        let moved = |base: &[Vec3], scale: f64| -> Vec<Vec3> {
+            base.iter().zip(&delta).map(|(x, d)| *x + *d * scale).collect()
+        };
+        let mut evaluate = |x: &[Vec3], v: &[Vec3]| {
+            let mut out = vec![Vec3::ZERO; x.len()];
+            force.add_force(&at(x, v, &memory), &mut scratch, &mut out);
+            out
+        };
+        let step = 1e-7;
+        for (position, velocity) in [(1.0, 0.0), (0.0, 1.0)] {
+            let (sx, sv) = (step * position, step * velocity);
+            let plus = evaluate(&moved(&positions, sx), &moved(&velocities, sv));
+            let minus = evaluate(&moved(&positions, -sx), &moved(&velocities, -sv));
+            let mut exact = vec![Vec3::ZERO; positions.len()];
+            let weights = TangentWeights { position, velocity };
+            let at = at(&positions, &velocities, &memory);
+            force.add_differential(&at, weights, &delta, &mut force.new_scratch(), &mut exact);
+            for ((p, m), e) in plus.iter().zip(&minus).zip(&exact) {
+                let numeric = (*p - *m) * (0.5 / step);
+                // rounding of forces of 1e4 N over the step, and its square times a curvature of 1e7
+                assert!((numeric - *e).length() < 1e-2, "{}: {numeric:?} {e:?}", entry.name);
+            }
+        }
+    }
+}
+
+/// Both forms of a characteristic agree; coefficients and values are those of the specification's §2.8.3.
+#[test]
+fn characteristics_by_tests_and_by_absolute_values() {
+    let (thresholds, slopes) = ([0.9, 1.2, 1.6], [-10.0, -2.0, 1.0, 0.0]);
+    let law = Piecewise::new(&thresholds, &slopes, 0.0, 0.0).unwrap();
+    let (linear, constant, bends) = law.coefficients();
+    assert!((linear + 5.0).abs() < 1e-14 && (constant + 4.6).abs() < 1e-14);
+    for (found, expected) in bends.iter().zip([4.0, 1.5, -0.5]) {
+        assert!((found - expected).abs() < 1e-14);
+    }
+    let by_tests = |length: f64| {
+        let mut value = slopes[0] * length;
+        for (i, threshold) in thresholds.iter().enumerate() {
+            value += (slopes[i + 1] - slopes[i]) * (length - threshold).max(0.0);
+        }
+        value
+    };
+    let kernel = InLanes(law);
+    for i in 0..=200 {
+        let length = 0.01 * f64::from(i);
+        let found = kernel.respond(&Reach { length, before: length, rest: 1.0 }, 0.0, &[]).push;
+        assert!((found - by_tests(length)).abs() < 1e-13, "at {length}");
+    }
+    let error = Piecewise::new(&[1.0, 1.0], &[0.0; 3], 0.0, 0.0).unwrap_err().to_string();
+    assert!(error.contains("thresholds") && error.contains("greater"), "{error}");
+}
+
+/// A chain of masses between fixed ends, along x, stepped by `t_simulation`.
+fn chain(count: usize, stiffness: f64, start: impl Fn(usize) -> f64) -> World {
+    let ends: Vec<[u32; 2]> = (0..count as u32 + 1).map(|i| [i, i + 1]).collect();
+    let values = Values::new().with("stiffness", Value::Number(stiffness));
+    let spring = LINKS.find("spring").unwrap();
+    let law = (spring.build)(&Making { values: &spring.values(values).unwrap(), timestep: TE }).unwrap();
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, count + 2);
+    let mut mass = Mass::new(count + 2);
+    mass.diagonal.fill(1.0);
+    let stepper = TABLE.find("t_simulation").unwrap();
+    let fixed = |row: usize| souple_engine::Constraint::pin(row as u32, Vec3::new(row as f64, 0.0, 0.0));
+    let system = System {
+        name: "main".into(),
+        kinematics,
+        mass,
+        forces: vec![Box::new(links(law, &ends, 1.0, Account::None))],
+        constraints: vec![fixed(0), fixed(count + 1)],
+        stepper: (stepper.build)(&stepper.values(Values::new()).unwrap()),
+        steps_per_period: 1,
+    };
+    let place = |i: usize| Vec3::new(i as f64 + start(i), 0.0, 0.0);
+    let state = system.initial_state((0..count + 2).map(place).collect());
+    let model = Model { period: TE, systems: vec![system], ..Model::default() };
+    model.start(State { systems: vec![state], ..State::default() })
+}
+
+/// `ω Te = 2 asin(√(K/M) sin(p π/(2 (n + 1))))` of mode `p` of a chain: `q_n = A cos(ω (n + ½) Te)/cos(ω Te/2)` from rest.
+#[test]
+fn modes_of_a_chain() {
+    let count = 10;
+    for mode in [1, 3, 10] {
+        let shape = |i: usize| (mode as f64 * PI * i as f64 / (count + 1) as f64).sin();
+        // K/M = k Te²/m = 0.5
+        let mut world = chain(count, 0.5 / (TE * TE), |i| 0.01 * shape(i));
+        for _ in 0..1000 {
+            world.step().unwrap();
+        }
+        let angle = 2.0 * (0.5_f64.sqrt() * (mode as f64 * PI / (2.0 * (count + 1) as f64)).sin()).asin();
+        let factor = (angle * 1000.5).cos() / (0.5 * angle).cos();
+        for i in 1..=count {
+            let moved = world.rows(0).positions[i].x - i as f64;
+            // rounding of places of ten metres over 1000 steps
+            assert!((moved - 0.01 * shape(i) * factor).abs() < 1e-11, "mode {mode}, mass {i}");
+        }
+    }
+}
+
+/// `½ Σ M V² + ½ X_nᵀ K X_{n-1}` of an undamped linear network stays: to rounding over 20 000 steps.
+#[test]
+fn discrete_energy_is_kept() {
+    let (count, stiffness) = (10, 0.9 / (TE * TE));
+    let mut world = chain(count, stiffness, |i| if i == 3 { 0.05 } else { 0.0 });
+    let energy = |world: &World| {
+        let rows = world.rows(0);
+        let kinetic: f64 = rows.velocities.iter().map(|v| 0.5 * v.length_sq()).sum();
+        let before = |i: usize| rows.positions[i] - rows.velocities[i] * TE;
+        let bilinear = |i: usize| {
+            let now = rows.positions[i + 1].x - rows.positions[i].x - 1.0;
+            0.5 * stiffness * now * (before(i + 1).x - before(i).x - 1.0)
+        };
+        kinetic + (0..=count).map(bilinear).sum::<f64>()
+    };
+    world.step().unwrap();
+    let start = energy(&world);
+    for _ in 0..20_000 {
+        world.step().unwrap();
+    }
+    // places of ten metres round to 2e-15 m, elongations are 0.05 m: 4e-14 of the energy a step, growing as a random walk
+    let drift = (energy(&world) / start - 1.0).abs();
+    assert!(drift < 4e-14 * 20_000_f64.sqrt(), "{drift}");
+}

@@ -1,0 +1,290 @@
+//! Networks become points with masses, and links of one law one force each.
+
+use std::collections::HashMap;
+
+use souple_engine::steppers::Stability;
+use souple_engine::{Force, Mass};
+use souple_math::Vec3;
+use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
+use souple_models::network::{Account, LinkDescription, Links, Making};
+
+use super::Draft;
+use super::bodies::Placed;
+use super::shape::Shape;
+use crate::diagnostic::Code;
+use crate::spec::body::Body;
+use crate::spec::network::{Join, LinkTable, MassGroup, Network};
+use crate::spec::world::SystemSpec;
+
+/// Which masses the links of a table join, and how long they are at rest.
+pub struct PlacedLinks {
+    /// Numbers of the network's masses.
+    pub ends: Vec<[u32; 2]>,
+    /// [m]
+    pub rest_lengths: Vec<f64>,
+    /// At the start [m].
+    pub lengths: Vec<f64>,
+}
+
+/// Links of a network, at most.
+const LINKS_MAX: usize = 500_000_000;
+
+/// Masses as points, links as edges, groups of masses as groups; `None` where something was refused.
+pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Vec<PlacedLinks>)> {
+    let (mut points, mut groups) = (Vec::new(), Vec::new());
+    for group in &network.masses {
+        let first = points.len() as u32;
+        points.extend(group.positions.iter().map(|place| body.placement.place(*place)));
+        groups.push((group, first..points.len() as u32));
+    }
+    if let Some(point) = points.iter().position(|point: &Vec3| !point.is_finite()) {
+        let message = format!("mass {point} starts at no finite place");
+        draft.log.add(Code::NotFinite, &body.site, message, "finite numbers");
+        return None;
+    }
+    if points.is_empty() {
+        draft.log.add(Code::EmptyRegion, &body.site, "the network has no masses", "at least one");
+        return None;
+    }
+    let links: Vec<PlacedLinks> = network
+        .links
+        .iter()
+        .filter_map(|table| {
+            let ends = ends_of(table, &groups, &points, draft)?;
+            let length = |[a, b]: &[u32; 2]| (points[*a as usize] - points[*b as usize]).length();
+            let lengths: Vec<f64> = ends.iter().map(length).collect();
+            let rest_lengths = lengths.iter().map(|length| table.rest_length.unwrap_or(*length)).collect();
+            Some(PlacedLinks { rest_lengths, lengths, ends })
+        })
+        .collect();
+    if links.len() < network.links.len() {
+        return None;
+    }
+    let warnings = coincident(body, network, &links, &points, draft);
+    let nodes = links.iter().flat_map(|links| links.ends.iter().flatten().copied()).collect();
+    let mut mesh = Mesh::new(points, ElementKind::Edge2, nodes);
+    mesh.blocks.retain(|block: &CellBlock| !block.is_empty());
+    for (group, numbers) in groups {
+        let points = Group { points: numbers.collect(), ..Group::default() };
+        mesh.groups.insert(group.name.clone(), points);
+    }
+    let point_numbers = (0..mesh.points.len() as u32).collect();
+    Some((Shape { mesh, point_numbers, warnings }, links))
+}
+
+/// Links that have no direction at the start: only another force can part their ends.
+fn coincident(
+    body: &Body,
+    network: &Network,
+    links: &[PlacedLinks],
+    points: &[Vec3],
+    draft: &Draft,
+) -> Vec<String> {
+    let tables = network.links.iter().zip(links);
+    tables
+        .filter_map(|(table, links)| {
+            let ends =
+                links.ends.iter().find(|[a, b]| points[*a as usize] == points[*b as usize])?;
+            let [a, b] = ends;
+            let place = draft.place(&table.site);
+            Some(format!(
+                "{place}: masses {a} and {b} of network `{}` start at one place: a link between them has no direction",
+                body.name
+            ))
+        })
+        .collect()
+}
+
+type Groups<'a> = [(&'a MassGroup, std::ops::Range<u32>)];
+
+/// The masses that a table of links joins; `None` where it was refused.
+fn ends_of(table: &LinkTable, groups: &Groups, points: &[Vec3], draft: &Draft) -> Option<Vec<[u32; 2]>> {
+    let find =
+        |name: &String| groups.iter().find(|(group, _)| group.name == *name).map(|(_, range)| range.clone());
+    let (first, last) = match &table.of[..] {
+        [] => (0..points.len() as u32, 0..points.len() as u32),
+        [one] => (find(one)?, find(one)?),
+        [one, other, ..] => (find(one)?, find(other)?),
+    };
+    let is_one = first == last;
+    // pairs of one group once, those of two all
+    let is_pair = |a: u32, b: u32| if is_one { a < b } else { a != b };
+    let mut ends: Vec<[u32; 2]> = match table.join.as_ref()? {
+        Join::Chain => first.clone().zip(first.clone().skip(1)).map(|(a, b)| [a, b]).collect(),
+        Join::All => {
+            let count = first.len() * last.len() / if is_one { 2 } else { 1 };
+            if count > LINKS_MAX {
+                let message = format!("{count} links between every pair");
+                draft.log.add(Code::TooLarge, &table.site, message, "`reach`, which joins neighbours only");
+                return None;
+            }
+            let of = |a: u32| last.clone().filter(move |b| is_pair(a, *b)).map(move |b| [a, b]);
+            first.clone().flat_map(of).collect()
+        }
+        Join::Reach(reach) => near(points, first.clone(), last.clone(), *reach, &is_pair),
+        Join::Ends(from, to) => {
+            let mut ends = Vec::with_capacity(from.len());
+            for (index, (a, b)) in from.iter().zip(to).enumerate() {
+                for (key, number, group) in [("from", a, &first), ("to", b, &last)] {
+                    if *number as usize >= group.len() {
+                        let message =
+                            format!("{key}[{index}] is mass {number}, but the group has {}", group.len());
+                        let expected = format!("numbers below {}", group.len());
+                        draft.log.add(Code::OutOfRange, &table.site, message, expected);
+                        return None;
+                    }
+                }
+                let pair = [first.start + a, last.start + b];
+                if pair[0] == pair[1] {
+                    let message = format!("link {index} joins mass {a} to itself");
+                    draft.log.add(
+                        Code::Conflict,
+                        &table.site,
+                        message,
+                        "two masses for the two ends of a link",
+                    );
+                    return None;
+                }
+                ends.push(pair);
+            }
+            ends
+        }
+    };
+    if ends.is_empty() {
+        draft.log.add(
+            Code::EmptyRegion,
+            &table.site,
+            "no masses are joined",
+            "a longer reach, or other groups",
+        );
+        return None;
+    }
+    ends.shrink_to_fit();
+    Some(ends)
+}
+
+/// Pairs of one range and another at most `reach` apart, in the order of the first, then of the second.
+fn near(
+    points: &[Vec3],
+    first: std::ops::Range<u32>,
+    last: std::ops::Range<u32>,
+    reach: f64,
+    is_pair: &impl Fn(u32, u32) -> bool,
+) -> Vec<[u32; 2]> {
+    let cell = |point: Vec3| point.to_array().map(|x| (x / reach).floor() as i64);
+    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    for b in last {
+        cells.entry(cell(points[b as usize])).or_default().push(b);
+    }
+    let mut ends = Vec::new();
+    for a in first {
+        let (from, start) = (points[a as usize], ends.len());
+        let [x, y, z] = cell(from);
+        for (i, j, k) in (0..27).map(|n| (n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)) {
+            let Some(others) = cells.get(&[x + i, y + j, z + k]) else { continue };
+            let near =
+                |b: &&u32| is_pair(a, **b) && (points[**b as usize] - from).length_sq() <= reach * reach;
+            ends.extend(others.iter().filter(near).map(|b| [a, *b]));
+        }
+        ends[start..].sort_unstable();
+    }
+    ends
+}
+
+/// Puts the masses of a network where they belong among the rows.
+pub fn add_masses(body: &Placed, network: &Network, mass: &mut Mass) {
+    let masses = network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.mass));
+    for (row, own) in body.rows.clone().zip(masses) {
+        mass.diagonal[row] = own;
+    }
+}
+
+/// Adds the velocities that groups of masses have of their own.
+pub fn add_velocities(body: &Placed, network: &Network, velocities: &mut [Vec3]) {
+    let own = network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.velocity));
+    for (row, own) in body.rows.clone().zip(own) {
+        velocities[row] += own;
+    }
+}
+
+/// Rows that a medium brakes, with their drag [N s/m].
+pub fn drags(body: &Placed, network: &Network) -> Vec<(u32, f64)> {
+    let own = network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.drag));
+    (body.rows.start as u32..).zip(own).filter(|(_, drag)| *drag > 0.0).collect()
+}
+
+/// A force for each table of links.
+pub fn add_links(
+    draft: &Draft,
+    body: &Placed,
+    network: &Network,
+    system: &SystemSpec,
+    forces: &mut Vec<Box<dyn Force>>,
+) {
+    let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
+    let first = body.rows.start as u32;
+    for (index, (table, links)) in network.links.iter().zip(&body.links).enumerate() {
+        let Some(chosen) = &table.law else { continue };
+        let law = match (chosen.entry.build)(&Making { values: &chosen.values, timestep }) {
+            Ok(law) => law,
+            Err(error) => {
+                let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
+                draft.log.add(Code::OutOfRange, &chosen.site, error.to_string(), expected);
+                continue;
+            }
+        };
+        let ends: Vec<[u32; 2]> = links.ends.iter().map(|ends| ends.map(|end| first + end)).collect();
+        forces.push(Box::new(Links::new(LinkDescription {
+            name: format!("{}.links[{index}]", body.spec.name),
+            law,
+            ends: &ends,
+            rest_lengths: &links.rest_lengths,
+            lengths: &links.lengths,
+            timestep,
+            account: if network.keeps_account { Account::Heat } else { Account::None },
+        })));
+    }
+}
+
+/// Warns of masses whose links are too stiff for an explicit step: at a mass `2 Σ H` over links to free masses and `Σ H`
+/// over those to fixed ones must stay below `4 m/Te²`, by Gershgorin's theorem on the links' Laplacian.
+pub fn warn_of_steps(draft: &mut Draft) {
+    let mut warnings = Vec::new();
+    for (body, network) in draft.bodies.iter().filter_map(|body| Some((body, body.spec.network.as_ref()?))) {
+        let system = &draft.systems[body.system];
+        if !matches!(system.stepper.stability(), Stability::Limited(_)) {
+            continue;
+        }
+        let spec = &draft.spec.systems[body.system];
+        let timestep = draft.spec.world.period / f64::from(spec.steps_per_period);
+        let is_fixed: Vec<bool> =
+            network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.is_fixed)).collect();
+        let mut loads = vec![0.0; body.mesh.points.len()];
+        for (index, links) in body.links.iter().enumerate() {
+            let name = format!("{}.links[{index}]", body.spec.name);
+            let force = system.forces.iter().find(|force| force.name() == name);
+            let Some(law) = force.and_then(|force| force.as_any().downcast_ref::<Links>()) else { continue };
+            for [a, b] in links.ends.iter().map(|ends| ends.map(|end| end as usize)) {
+                loads[a] += law.stiffest() * if is_fixed[b] { 1.0 } else { 2.0 };
+                loads[b] += law.stiffest() * if is_fixed[a] { 1.0 } else { 2.0 };
+            }
+        }
+        // of the bound, at each mass that moves
+        let share = |(mass, load): (usize, &f64)| {
+            let bound = 4.0 * system.mass.diagonal[body.rows.start + mass] / (timestep * timestep);
+            (!is_fixed[mass]).then_some((mass, load / bound))
+        };
+        let shares = loads.iter().enumerate().filter_map(share);
+        let Some((mass, share)) = shares.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+        if share > 1.0 {
+            warnings.push(format!(
+                "{}: K + 2Z of the links at mass {mass} of network `{}` is {share:.3} of what a step of {timestep} s bears: \
+                 the network may be unstable; a step of {:.3e} s is safe",
+                draft.place(&body.spec.site),
+                body.spec.name,
+                timestep / share,
+            ));
+        }
+    }
+    draft.warnings.extend(warnings);
+}

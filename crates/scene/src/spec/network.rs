@@ -1,0 +1,310 @@
+//! Networks of masses and interactions: what stands for a body where matter is points and links.
+
+use souple_math::Vec3;
+use souple_models::network::{BuildLink, LINKS};
+use souple_models::solids::Quadrature;
+use souple_table::{Range, Value};
+
+use super::body::{Body, Damping, MassKind, Placement, ROTATION};
+use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
+use super::region::{Region, RegionKind};
+use crate::diagnostic::{Code, Site};
+use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
+use crate::reader::{Chosen, Reader};
+
+const LINK: EntryShape =
+    EntryShape { tag: "name", kind: "link", outlines: || outlines(&LINKS), instead: &[] };
+
+/// Masses of a group, at most.
+const MASSES_MAX: f64 = 1e8;
+
+static LINE: Keys = Keys::new(
+    "mass_line",
+    "masses at equal distances on a line",
+    &[
+        Key::vector("from", "m", "the first").required(),
+        Key::vector("to", "m", "the last").required(),
+        Key::integer("count", Range::closed(2.0, MASSES_MAX), "how many, both ends included").required(),
+    ],
+);
+
+static LATTICE: Keys = Keys::new(
+    "mass_lattice",
+    "masses on a square or cubic lattice; x counts fastest, then y",
+    &[
+        Key::vector("origin", "m", "the first").or(Value::Vector([0.0; 3])),
+        Key::number("spacing", "m", Range::POSITIVE, "between neighbours").required(),
+        Key::new("counts", Shape::Vector, "how many along x, y and z").required(),
+    ],
+);
+
+static MASSES: Keys = Keys::new(
+    "mass_group",
+    "masses of one kind, a group of the network's points",
+    &[
+        Key::new("positions", Shape::Vectors, "where they start, one by one").in_unit("m"),
+        Key::new("line", Shape::Table(&LINE), "they start on a line"),
+        Key::new("lattice", Shape::Table(&LATTICE), "they start on a lattice"),
+        Key::number("mass", "kg", Range::POSITIVE, "of each").required(),
+        Key::new("fixed", Shape::Boolean, "they stay where they are, whatever pulls")
+            .or(Value::Boolean(false)),
+        Key::vector("velocity", "m/s", "at the start, over that of the network").or(Value::Vector([0.0; 3])),
+        Key::number("drag", "N s/m", Range::NOT_NEGATIVE, "of each against a medium at rest")
+            .or(Value::Number(0.0)),
+    ],
+);
+
+static LINK_TABLE: Keys = Keys::new(
+    "links",
+    "links of one law: all that `chain`, `all`, `reach`, or `from` and `to` say, which is one of them",
+    &[
+        Key::new("law", Shape::Entry(LINK), "what they do").required(),
+        Key::new(
+            "of",
+            Shape::Texts,
+            "the group, or the two, whose masses they join; all masses where left out",
+        ),
+        Key::new("chain", Shape::Boolean, "each mass of a group with the next"),
+        Key::new("all", Shape::Boolean, "every pair"),
+        Key::number("reach", "m", Range::POSITIVE, "every pair that is at most so far apart at the start"),
+        Key::new("from", Shape::Integers, "first ends: numbers within the first group"),
+        Key::new("to", Shape::Integers, "second ends: numbers within the last group"),
+        Key::number(
+            "rest_length",
+            "m",
+            Range::NOT_NEGATIVE,
+            "of each; how long it is at the start where left out",
+        ),
+    ],
+);
+
+pub(crate) static NETWORK: Keys = Keys::new(
+    "network",
+    "masses and what acts between them; names what bodies name, for pins, probes and contacts",
+    &[
+        Key::new("masses", Shape::Named(&MASSES), "groups of masses, in the order of their numbers")
+            .required(),
+        Key::new("links", Shape::Tables(&LINK_TABLE), "what acts between masses"),
+        Key::new("account", Shape::Boolean, "links without memory keep account of the heat they give off")
+            .or(Value::Boolean(false)),
+        Key::new("rotate", Shape::Table(&ROTATION), "turns the start, before it is translated"),
+        Key::vector("translate", "m", "moves the start").or(Value::Vector([0.0; 3])),
+        Key::vector("velocity", "m/s", "at the start").or(Value::Vector([0.0; 3])),
+        Key::vector("angular_velocity", "rad/s", "at the start, about the mean of the masses' places")
+            .or(Value::Vector([0.0; 3])),
+        Key::new("system", Shape::Text, "the system it steps in"),
+        Key::new("pins", Shape::Tables(&PIN), "masses that are held or led"),
+        Key::new("loads", Shape::Tables(&LOAD), "forces on masses"),
+        Key::new("springs", Shape::Tables(&SPRING), "springs from masses to where they start"),
+    ],
+);
+
+/// Masses and what acts between them.
+pub struct Network {
+    pub masses: Vec<MassGroup>,
+    pub links: Vec<LinkTable>,
+    /// Links without memory keep account of the heat they give off.
+    pub keeps_account: bool,
+}
+
+/// Masses of one kind.
+pub struct MassGroup {
+    pub name: String,
+    /// Where they start [m].
+    pub positions: Vec<Vec3>,
+    /// Of each [kg].
+    pub mass: f64,
+    pub is_fixed: bool,
+    /// [m/s]
+    pub velocity: Vec3,
+    /// Of each against a medium at rest [N s/m].
+    pub drag: f64,
+    pub site: Site,
+}
+
+/// Links of one law.
+pub struct LinkTable {
+    pub law: Option<Chosen<BuildLink>>,
+    /// Names of groups: none, one or two.
+    pub of: Vec<String>,
+    pub join: Option<Join>,
+    /// [m]
+    pub rest_length: Option<f64>,
+    pub site: Site,
+}
+
+/// Which masses links join.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Join {
+    Chain,
+    All,
+    /// At most so far apart at the start [m].
+    Reach(f64),
+    /// First and second ends.
+    Ends(Vec<u32>, Vec<u32>),
+}
+
+impl Network {
+    /// A network as a body: its masses are points, its links are cells.
+    pub(crate) fn body(name: String, reader: &Reader) -> Body {
+        let network = Self {
+            masses: reader
+                .named("masses")
+                .into_iter()
+                .map(|(name, group)| MassGroup::read(name, &group))
+                .collect(),
+            links: reader.tables("links").iter().map(LinkTable::read).collect(),
+            keeps_account: reader.boolean("account"),
+        };
+        network.check_groups(reader);
+        let held = network.masses.iter().filter(|group| group.is_fixed).map(MassGroup::pin);
+        let pins = held.chain(reader.tables("pins").iter().map(Pin::read)).collect();
+        Body {
+            name,
+            mesh: None,
+            material: None,
+            section: None,
+            regions: Vec::new(),
+            mass: MassKind::Lumped,
+            quadrature: Quadrature::Default,
+            damping: Damping::default(),
+            drag: 0.0,
+            placement: Placement::read(reader),
+            velocity: reader.vector("velocity"),
+            angular_velocity: reader.vector("angular_velocity"),
+            system: reader.text("system"),
+            pins,
+            loads: reader.tables("loads").iter().map(Load::read).collect(),
+            springs: reader.tables("springs").iter().map(Spring::read).collect(),
+            network: Some(network),
+            site: reader.site(),
+        }
+    }
+
+    fn check_groups(&self, reader: &Reader) {
+        let known: Vec<&str> = self.masses.iter().map(|group| group.name.as_str()).collect();
+        for links in &self.links {
+            for name in links.of.iter().filter(|name| !known.contains(&name.as_str())) {
+                let hint = crate::keys::did_you_mean(name, known.iter().copied());
+                let message = format!("there is no group of masses `{name}`{hint}");
+                reader.log().add(
+                    Code::UnknownName,
+                    &links.site,
+                    message,
+                    format!("one of {}", known.join(", ")),
+                );
+            }
+        }
+    }
+}
+
+impl MassGroup {
+    /// What holds masses that are fixed.
+    fn pin(&self) -> Pin {
+        let region = Region { kind: RegionKind::Group(self.name.clone()), site: self.site.clone() };
+        Pin {
+            region: Some(region),
+            axes: [true; 3],
+            motion: None,
+            rotation: None,
+            pivot: Vec3::ZERO,
+            site: self.site.clone(),
+        }
+    }
+
+    fn read(name: String, reader: &Reader) -> Self {
+        let written = reader.written(&["positions", "line", "lattice"]);
+        let positions = match written[..] {
+            ["positions"] => reader.vectors("positions"),
+            ["line"] => reader.table("line").map_or_else(Vec::new, |line| on_line(&line)),
+            ["lattice"] => reader.table("lattice").map_or_else(Vec::new, |lattice| on_lattice(&lattice)),
+            _ => {
+                let message = format!("masses start in one way, these say {}", written.len());
+                reader.log().add(Code::WrongType, &reader.site(), message, "one of positions, line, lattice");
+                Vec::new()
+            }
+        };
+        Self {
+            name,
+            positions,
+            mass: reader.number("mass"),
+            is_fixed: reader.boolean("fixed"),
+            velocity: reader.vector("velocity"),
+            drag: reader.number("drag"),
+            site: reader.site(),
+        }
+    }
+}
+
+fn on_line(reader: &Reader) -> Vec<Vec3> {
+    let (from, to) = (reader.vector("from"), reader.vector("to"));
+    let count = reader.maybe_integer("count").unwrap_or(2);
+    (0..count).map(|i| from + (to - from) * (i as f64 / (count - 1) as f64)).collect()
+}
+
+fn on_lattice(reader: &Reader) -> Vec<Vec3> {
+    let counts = reader.vector("counts");
+    let is_count = |number: f64| number >= 1.0 && number.fract() == 0.0;
+    if !counts.to_array().into_iter().all(is_count) || counts.x * counts.y * counts.z > MASSES_MAX {
+        let message = format!("a lattice of ({}, {}, {}) masses", counts.x, counts.y, counts.z);
+        let expected = format!("three whole numbers from 1, at most {MASSES_MAX:.0e} masses together");
+        reader.log().add(Code::OutOfRange, &reader.site_of("counts"), message, expected);
+        return Vec::new();
+    }
+    let (spacing, origin) = (reader.number("spacing"), reader.vector("origin"));
+    let [nx, ny, nz] = counts.to_array().map(|count| count as u64);
+    let mut places = Vec::with_capacity((nx * ny * nz) as usize);
+    for k in 0..nz {
+        for j in 0..ny {
+            for i in 0..nx {
+                places.push(origin + Vec3::new(i as f64, j as f64, k as f64) * spacing);
+            }
+        }
+    }
+    places
+}
+
+impl LinkTable {
+    fn read(reader: &Reader) -> Self {
+        let of = reader.texts("of");
+        let refuse = |key: &str, message: &str, expected: &str| {
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+        };
+        if of.len() > 2 {
+            refuse("of", "a link has two ends", "one group or two");
+        }
+        let written = reader.written(&["chain", "all", "reach", "from", "to"]);
+        let join = match written[..] {
+            ["chain"] if of.len() == 2 => {
+                refuse("chain", "a chain is of one group", "one group in `of`");
+                None
+            }
+            ["chain"] => reader.boolean("chain").then_some(Join::Chain),
+            ["all"] => reader.boolean("all").then_some(Join::All),
+            ["reach"] => reader.maybe_number("reach").map(Join::Reach),
+            ["from", "to"] => {
+                let ends = reader.maybe_indices("from").zip(reader.maybe_indices("to"));
+                if ends.as_ref().is_some_and(|(from, to)| from.len() != to.len()) {
+                    refuse(
+                        "to",
+                        "a link has two ends: `from` and `to` are not as many",
+                        "lists of one length",
+                    );
+                }
+                ends.map(|(from, to)| Join::Ends(from, to))
+            }
+            _ => {
+                let message = format!("links join masses in one way, these say {}", written.join(" and "));
+                refuse("law", &message, "one of chain, all, reach, or from and to");
+                None
+            }
+        };
+        Self {
+            law: reader.entry("law", &LINKS),
+            of,
+            join,
+            rest_length: reader.maybe_number("rest_length"),
+            site: reader.site(),
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! Networks in scenes: what they become, what is refused and what is warned of.
+
+use std::path::Path;
+
+use souple_scene::{Scene, read_text};
+
+const HEAD: &str = "format = 1\n[world]\nperiod = \"10 ms\"\n[systems.main]\nstepper = \"t_simulation\"\n";
+
+fn scene(text: &str) -> Result<Scene, String> {
+    read_text("net.toml", &format!("{HEAD}{text}"), Path::new("."), &[]).map_err(|faults| faults.to_string())
+}
+
+fn refused(text: &str, words: &[&str]) {
+    let message = scene(text).err().expect("the scene is refused");
+    for word in words {
+        assert!(message.contains(word), "`{word}` is not in:\n{message}");
+    }
+}
+
+const TWO: &str = "[networks.n.masses.a]\npositions = [[0, 0, 0], [1, 0, 0]]\nmass = 2\n";
+
+fn linked(links: &str) -> String {
+    format!("{TWO}[[networks.n.links]]\n{links}\n")
+}
+
+const SPRING: &str = "law = { name = \"spring\", stiffness = 100 }";
+
+/// Groups are numbered as they are written; links join what their keys say, each pair of a group once.
+#[test]
+fn masses_become_points_and_links_edges() {
+    let text = format!(
+        "{TWO}[networks.n.masses.b]\nlattice = {{ origin = [0, 1, 0], spacing = 1, counts = [3, 2, 2] }}\nmass = 0.5\n\
+         velocity = [0, 0, 2]\n[networks.n]\nvelocity = [1, 0, 0]\n\
+         [[networks.n.links]]\n{SPRING}\nof = [\"b\"]\nreach = 1.01\n\
+         [[networks.n.links]]\n{SPRING}\nof = [\"a\", \"b\"]\nall = true\n\
+         [[networks.n.links]]\n{SPRING}\nof = [\"a\"]\nchain = true\nrest_length = 0.9\n"
+    );
+    let scene = scene(&text).unwrap();
+    let body = &scene.bodies[0];
+    assert_eq!(body.mesh.points.len(), 14);
+    // 12 nodes of a 3 x 2 x 2 lattice have 20 edges; 2 x 12 pairs; 1
+    assert_eq!(body.mesh.cell_count(), 20 + 24 + 1);
+    assert_eq!(body.mesh.groups["b"].points, (2..14).collect::<Vec<u32>>());
+    let state = &scene.state.systems[0];
+    assert_eq!(state.v[0].to_array(), [1.0, 0.0, 0.0]);
+    assert_eq!(state.v[13].to_array(), [1.0, 0.0, 2.0]);
+    let mass = &scene.model.systems[0].mass.diagonal;
+    assert_eq!((mass[1], mass[2]), (2.0, 0.5));
+}
+
+#[test]
+fn wrong_networks_are_refused_in_words() {
+    refused(
+        &linked(&format!("{SPRING}\nof = [\"c\"]\nchain = true")),
+        &["no group of masses `c`", "one of a"],
+    );
+    refused(&linked(&format!("{SPRING}\nfrom = [0]\nto = [2]")), &["to[0] is mass 2", "numbers below 2"]);
+    refused(&linked(&format!("{SPRING}\nfrom = [1]\nto = [1]")), &["joins mass 1 to itself", "two masses"]);
+    refused(&linked(&format!("{SPRING}\nfrom = [0, 1]\nto = [1]")), &["not as many"]);
+    refused(&linked(&format!("{SPRING}\nreach = 0.5")), &["no masses are joined"]);
+    refused(&linked(&format!("{SPRING}\nchain = true\nall = true")), &["in one way", "chain and all"]);
+    refused(&linked("law = \"sprung\"\nchain = true"), &["no link `sprung`"]);
+    refused(
+        &linked(
+            "law = { name = \"cohesion\", distance = 1, peak = 0.9, range = 2, cohesion = 5 }\nchain = true",
+        ),
+        &["`peak` is 0.9", "greater than `distance`"],
+    );
+    refused(&TWO.replace("mass = 2", "mass = 0"), &["0 is out of range"]);
+    refused(
+        &TWO.replace("mass = 2", "mass = 2\nline = { from = [0, 0, 0], to = [1, 0, 0], count = 3 }"),
+        &["start in one way"],
+    );
+    refused(
+        &TWO.replace("positions = [[0, 0, 0], [1, 0, 0]]", "lattice = { spacing = 1, counts = [2, 0, 1] }"),
+        &["lattice of (2, 0, 1)"],
+    );
+}
+
+/// Two free masses of 2 kg on a spring bear `k Te² < 2 · 2 kg`.
+#[test]
+fn unstable_networks_are_warned_of() {
+    let with = |stiffness: f64| {
+        linked(&format!("law = {{ name = \"spring\", stiffness = {stiffness} }}\nchain = true"))
+    };
+    let warnings = |stiffness| scene(&with(stiffness)).unwrap().warnings.join("\n");
+    assert_eq!(warnings(39_999.0), "");
+    let said = warnings(40_001.0);
+    assert!(said.contains("network `n`") && said.contains("may be unstable"), "{said}");
+    let together = TWO.replace("[1, 0, 0]", "[0, 0, 0]");
+    let said = scene(&format!("{together}[[networks.n.links]]\n{SPRING}\nchain = true\n")).unwrap().warnings;
+    assert!(said[0].contains("masses 0 and 1") && said[0].contains("no direction"), "{said:?}");
+}

@@ -1,0 +1,94 @@
+//! Networks: links that a core updates in a second, and what of the memory's bandwidth that takes.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use super::timing::{Held, Timed, Timing, as_it_is, scene};
+use super::{Effort, Figure, value_of};
+
+/// Steps in a period of the world: what is done once a period is shared by them.
+const STEPS_PER_PERIOD: usize = 10;
+
+/// Bytes that a step must move for a link: two ends and a rest length.
+const BYTES_OF_LINK: usize = 16;
+/// The same for a mass: place and velocity read; the sum of forces cleared, added to and read; place and velocity moved on.
+const BYTES_OF_MASS: usize = 2 * 24 + 4 * 24 + 4 * 24 + 8;
+
+/// A cubic lattice of `n` masses along each edge, whose halves run into each other.
+fn lattice(n: usize) -> Vec<String> {
+    let half = n / 2;
+    let group = |name: &str, planes: usize, below: usize| {
+        let height = 0.1 * below as f64;
+        format!(
+            "networks.lattice.masses.{name}.lattice={{ origin = [0, 0, {height}], spacing = 0.1, counts = [{n}, {n}, {planes}] }}"
+        )
+    };
+    vec![
+        group("lower", half, 0),
+        group("upper", n - half, half),
+        r#"networks.lattice.links=[{ law = { name = "spring_damper", stiffness = 100, damping = 0.002 }, reach = 0.101 }]"#
+            .to_owned(),
+        format!("systems.main.steps_per_period={STEPS_PER_PERIOD}"),
+    ]
+}
+
+pub fn springs_lattice(
+    name: &str,
+    n: usize,
+    peer: Option<f64>,
+    effort: Effort,
+) -> Result<Vec<Figure>, String> {
+    // momentum is kept to rounding, whatever the links do
+    let small = lattice(11);
+    let momentum = |steps| value_of(scene("network_lattice", &small)?, steps, "momentum", 0);
+    let held = Held {
+        error: (momentum(100)? / momentum(1)? - 1.0).abs(),
+        error_of: "momentum after 1000 steps of 11 masses along each edge".to_owned(),
+        baseline: peer,
+    };
+    let timing = Timing {
+        scene: "network_lattice",
+        settings: &lattice(n),
+        prepare: as_it_is,
+        warm_up: 1,
+        samples: effort.choose(5, 20),
+        steps_per_sample: 1,
+    };
+    let mut figures = Vec::new();
+    for timed in timing.run()? {
+        let own =
+            Timed { seconds: timed.seconds.iter().map(|s| s / STEPS_PER_PERIOD as f64).collect(), ..timed };
+        let moved = own.cells * BYTES_OF_LINK + n.pow(3) * BYTES_OF_MASS;
+        let triad = super::timing::with_threads(own.threads, triad_gigabytes_per_second)?;
+        let bandwidth = Held {
+            error: 0.0,
+            error_of: "nothing: the baseline is the triad's bandwidth on the same threads".to_owned(),
+            baseline: Some(triad),
+        };
+        figures.push(own.links_per_second(name, &held));
+        figures.push(own.gigabytes_per_second(&format!("{name}_bandwidth"), moved, &bandwidth));
+    }
+    Ok(figures)
+}
+
+/// `a = b + s c` over arrays far larger than the caches [GB/s].
+fn triad_gigabytes_per_second() -> f64 {
+    use rayon::prelude::*;
+    const LENGTH: usize = 8 << 20;
+    let (b, c) = (vec![1.0_f64; LENGTH], vec![2.0_f64; LENGTH]);
+    let mut a = vec![0.0_f64; LENGTH];
+    let chunk = LENGTH.div_ceil(rayon::current_num_threads());
+    let mut best = f64::INFINITY;
+    for _ in 0..5 {
+        let clock = Instant::now();
+        a.par_chunks_mut(chunk).zip(b.par_chunks(chunk)).zip(c.par_chunks(chunk)).for_each(|((a, b), c)| {
+            for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+                *a = *b + 3.0 * *c;
+            }
+        });
+        best = best.min(clock.elapsed().as_secs_f64());
+        black_box(&mut a);
+    }
+    // read, read, write, and what is written is fetched first
+    4.0 * 8.0 * LENGTH as f64 / best * 1e-9
+}
