@@ -1,11 +1,14 @@
 //! The longest stable step of explicit methods: from the highest frequency of the linearised system.
 
 use souple_math::Vec3;
+use souple_solve::{LinearOperator, reduce};
 
 use crate::force::TangentWeights;
+use crate::inertia::add_generalised_mass;
 use crate::state::SystemState;
 use crate::steppers::Stability;
 use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::tangent::constrain;
 
 /// What the highest frequency allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,6 +73,9 @@ fn highest_eigenvalue(
     ws: &mut SystemWorkspace,
     weights: TangentWeights,
 ) -> f64 {
+    if system.kinematics.has_frames() {
+        return highest_eigenvalue_of_frames(system, state, around, ws, weights);
+    }
     let rows = system.kinematics.row_count();
     let row_mass = lumped_row_mass(system);
     let touching: Vec<_> = system
@@ -115,6 +121,61 @@ fn highest_eigenvalue(
         }
         direction.iter_mut().for_each(|d| *d = *d * (1.0 / largest));
     }
+    eigenvalue
+}
+
+/// The same over velocity blocks, with the generalised mass `TᵀMT`: rows of a frame's axes have no mass of their own.
+fn highest_eigenvalue_of_frames(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &mut SystemWorkspace,
+    weights: TangentWeights,
+) -> f64 {
+    let kinematics = &system.kinematics;
+    let mut mass = ws.tangent.take_mass_matrix(system);
+    mass.set_zero();
+    add_generalised_mass(system, &state.q, &mut mass);
+    constrain(system, &mut mass);
+    let zeros = |count: usize| vec![Vec3::ZERO; count];
+    let mut direction: Vec<Vec3> = (0..kinematics.block_count()).map(start_vector).collect();
+    let (mut moved, mut product) = (zeros(kinematics.row_count()), zeros(kinematics.row_count()));
+    let (mut force, mut inertia) = (zeros(kinematics.block_count()), zeros(kinematics.block_count()));
+    let mut eigenvalue = 0.0;
+    for _ in 0..ITERATIONS {
+        system.project_free(&mut direction);
+        kinematics.velocities_into(&state.q, &direction, &mut moved);
+        product.fill(Vec3::ZERO);
+        for (index, force) in system.forces.iter().enumerate() {
+            let at = system.view(index, &ws.rows, state, around);
+            match force.touching_stiffness().filter(|_| weights.position != 0.0) {
+                Some(stiffness) => stiffness.iter().for_each(|&(row, k)| {
+                    product[row as usize] += moved[row as usize] * (-weights.position * k)
+                }),
+                None => {
+                    force.add_differential(&at, weights, &moved, &mut ws.scratches[index], &mut product);
+                }
+            }
+        }
+        kinematics.forces_into(&state.q, &mut product, &mut force);
+        system.project_free(&mut force);
+        mass.apply(&direction, &mut inertia);
+        let (tangent, inertia) = (reduce::dot(&direction, &force), reduce::dot(&direction, &inertia));
+        if !(tangent > 0.0 && inertia > 0.0) {
+            break;
+        }
+        eigenvalue = f64::max(eigenvalue, tangent / inertia);
+        // a mass that cannot be solved with has no highest frequency: what was found stands
+        if ws.linear.solve_mass(&mass, &force, &mut direction).is_err() {
+            break;
+        }
+        let largest = direction.iter().map(|d| d.largest_component()).fold(0.0, f64::max);
+        if largest == 0.0 || !largest.is_finite() {
+            break;
+        }
+        direction.iter_mut().for_each(|d| *d = *d * (1.0 / largest));
+    }
+    ws.tangent.put_mass_matrix(mass);
     eigenvalue
 }
 
