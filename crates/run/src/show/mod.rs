@@ -37,6 +37,8 @@ pub struct BodyMoment {
     pub positions: Vec<Vec3>,
     pub point_fields: Vec<Field>,
     pub cell_fields: Vec<Field>,
+    /// Origin and axes of the frames that carry it, where they are known: files of a run hold points alone.
+    pub frames: Vec<[Vec3; 4]>,
 }
 
 /// A run's moments on their stage.
@@ -138,10 +140,17 @@ impl Moment {
                 positions: world.rows(info.system).positions[info.rows.clone()].to_vec(),
                 point_fields,
                 cell_fields,
+                frames: frames_of(world, info),
             }
         };
         Self { time: world.time(), bodies: bodies.iter().map(body).collect() }
     }
+}
+
+fn frames_of(world: &World, info: &BodyInfo) -> Vec<[Vec3; 4]> {
+    let positions = &world.rows(info.system).positions;
+    let rows = info.frames.iter().flat_map(|frames| &frames.rows);
+    rows.map(|row| std::array::from_fn(|k| positions[*row as usize + k])).collect()
 }
 
 impl BodyMoment {
@@ -155,7 +164,7 @@ impl BodyMoment {
             }
             _ => Arc::new(mesh),
         };
-        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields })
+        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields, frames: Vec::new() })
     }
 
     /// Whether it can be drawn.

@@ -4,6 +4,7 @@ mod bodies;
 mod boundary;
 mod contact;
 mod doubts;
+mod frames;
 mod freedom;
 mod links;
 mod memory;
@@ -12,8 +13,9 @@ mod pins;
 mod selection;
 mod shape;
 
-pub(crate) use bodies::solid_name;
+pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;
+pub(crate) use frames::hold_name;
 
 use std::collections::BTreeSet;
 
@@ -27,7 +29,6 @@ use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
 
-use bodies::Placed;
 use freedom::Joint;
 use selection::Selector;
 
@@ -127,8 +128,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     }
     let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
     model.systems = systems;
-    let bodies =
-        bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
+    let bodies = bodies.into_iter().map(BodyInfo::new);
     Some(Scene {
         title: spec.title.clone(),
         description: spec.description.clone(),

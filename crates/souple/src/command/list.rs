@@ -8,8 +8,8 @@ use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct ListArguments {
-    /// materials, elements, sections, steppers, solvers, preconditioners, generators, bodies, shapes, formats, quantities, functions,
-    /// units, colour_maps
+    /// materials, elements, sections, placements, weights, points, steppers, solvers, preconditioners, generators, bodies, shapes,
+    /// formats, quantities, functions, units, colour_maps
     ///
     /// The kinds themselves if left out.
     kind: Option<String>,
@@ -89,6 +89,9 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("materials", pages_of(&souple_models::materials::TABLE)),
         ("elements", pages_of(&souple_mesh::ELEMENTS)),
         ("sections", pages_of(&souple_models::solids::SECTIONS)),
+        ("placements", pages_of(&souple_models::frames::PLACEMENTS)),
+        ("weights", pages_of(&souple_models::frames::WEIGHTS)),
+        ("points", pages_of(&souple_models::frames::POINTS)),
         ("steppers", pages_of(&souple_engine::steppers::TABLE)),
         ("solvers", pages_chosen_by(&linear::SOLVER, &souple_solve::solvers::TABLE)),
         ("preconditioners", pages_chosen_by(&linear::PRECONDITIONER, &souple_solve::precondition::TABLE)),
