@@ -183,7 +183,7 @@ pub fn take_along(
 pub fn add_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatrix) {
     let kinematics = &system.kinematics;
     let map = |row: u32| kinematics.position_map(row, q);
-    for (row, mass) in system.mass.diagonal.iter().enumerate() {
+    for (row, mass) in system.mass.diagonal.iter().enumerate().filter(|(_, mass)| **mass != 0.0) {
         add_congruent(kinematics, matrix, (row, row), &map, &map, |left, right| {
             left.transpose_mul(right) * *mass
         });

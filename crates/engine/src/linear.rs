@@ -230,6 +230,11 @@ impl LinearSolver {
         self.settings.matrix_free
     }
 
+    /// Whether the solver that was chosen solves symmetric systems only.
+    pub fn wants_symmetry(&self) -> bool {
+        matches!(self.settings.method, Method::Cg | Method::Direct)
+    }
+
     /// Bytes of factors and preconditioners.
     pub fn bytes(&self) -> usize {
         let made = [&self.symmetric, &self.general, &self.mass].into_iter().flatten();

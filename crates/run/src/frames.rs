@@ -105,16 +105,18 @@ fn precision_for(positions: &[Vec3]) -> Precision {
     if fits { Precision::Single } else { Precision::Double }
 }
 
-/// Displacement and velocity of every point; stress and energy density of every cell.
+/// Displacement and velocity of every point, and the weight of the frame that is shown; stress and energy density of every cell.
 pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let positions = &world.rows(body.system).positions[body.rows.clone()];
     let velocities = &world.rows(body.system).velocities[body.rows.clone()];
     let displacements: Vec<Vec3> =
         positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
-    let point_fields = vec![
+    let mut point_fields = vec![
         Field::new("displacement", 3, flat(&displacements)),
         Field::new("velocity", 3, flat(velocities)),
     ];
+    point_fields
+        .extend(body.frames.as_ref().map(|frames| Field::new("influence", 1, frames.influence.clone())));
     (point_fields, cell_fields(world, body))
 }
 

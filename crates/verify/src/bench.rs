@@ -1,5 +1,6 @@
 //! Benchmarks: speed with its error beside it, on scenes anyone can run.
 
+mod frames;
 mod links;
 mod timing;
 
@@ -113,6 +114,16 @@ pub const BENCHES: &[Bench] = &[
         name: "contact_block",
         what: "a gel block that falls on a floor with friction (324 hexahedra), Newton to 1e-7 [ms/step]",
         run: contact_block,
+    },
+    Bench {
+        name: "frames_50_1k",
+        what: "50 rigid frames and 1,000 points, neo-Hookean, one linearised backward Euler step [steps/s]",
+        run: |effort| frames::steps("frames_50_1k", frames::SMALL, effort),
+    },
+    Bench {
+        name: "frames_500_50k",
+        what: "the same with 500 frames and 50,000 points [steps/s]",
+        run: |effort| frames::steps("frames_500_50k", frames::LARGE, effort),
     },
     Bench {
         name: "fill_100k",

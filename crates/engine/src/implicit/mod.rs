@@ -299,7 +299,11 @@ impl ImplicitStep<'_> {
             }
             system.project_free(rhs);
         }
-        let symmetric = self.is_symmetric();
+        let is_matrix_free = linear.is_matrix_free();
+        let is_symmetrised = !is_matrix_free
+            && self.turns_alone_break_symmetry()
+            && (wanted.used_as == Use::Answer || linear.wants_symmetry());
+        let symmetric = is_symmetrised || self.is_symmetric();
         let moved;
         let positions = if system.kinematics.is_trivial() {
             &rows.positions
@@ -307,12 +311,14 @@ impl ImplicitStep<'_> {
             moved = system.block_positions(&rows.positions);
             &moved
         };
-        let is_matrix_free = linear.is_matrix_free();
         let Assembled { matrix, symmetric: nearby } = if is_matrix_free {
             Assembled { matrix: tangent.assemble_diagonal(&at, scratches), symmetric: None }
         } else {
             tangent.assemble_with_symmetric(&at, scratches)
         };
+        if is_symmetrised {
+            matrix.symmetrise();
+        }
         stages.assembly += clock.elapsed().as_secs_f64();
         let weighted = (0..positions.len())
             .map(|block| (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2));
@@ -344,8 +350,17 @@ impl ImplicitStep<'_> {
 
     /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
     fn is_symmetric(&self) -> bool {
-        !self.system.kinematics.has_rigid_frames()
-            && self.system.kinematics.is_conservative()
+        !self.system.kinematics.has_rigid_frames() && self.is_symmetric_over_rows()
+    }
+
+    /// Whether turning frames are all that makes the tangent not symmetric. What they add is of the size of the unbalanced
+    /// torque and of the turn in a step: one linearised step may leave it out, as it leaves out what else is of that order.
+    fn turns_alone_break_symmetry(&self) -> bool {
+        self.system.kinematics.has_rigid_frames() && self.is_symmetric_over_rows()
+    }
+
+    fn is_symmetric_over_rows(&self) -> bool {
+        self.system.kinematics.is_conservative()
             && self.system.forces.iter().all(|force| force.declaration().symmetric_tangent)
     }
 

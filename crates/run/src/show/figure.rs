@@ -65,6 +65,10 @@ impl Default for Figure {
 const BODIES: [[u8; 3]; 5] =
     [[214, 122, 104], [112, 150, 196], [160, 178, 96], [206, 168, 96], [160, 128, 184]];
 const ARROW: [u8; 3] = [40, 44, 52];
+/// Axes x, y, z of frames.
+const AXES: [[u8; 3]; 3] = [[200, 48, 48], [40, 150, 70], [50, 90, 210]];
+/// Their length next to all that is seen.
+const AXIS: f64 = 0.03;
 /// Most arrows of a body: more hide it.
 const MOST_ARROWS: usize = 400;
 
@@ -98,6 +102,7 @@ impl Figure {
         for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_drawable()) {
             surfaces.push(self.surface(body, index, common).surface);
             strokes.extend(self.arrows_of(body, common.arrow_scale));
+            strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
         }
         let coloured = surfaces.iter().any(|surface| !matches!(surface.paint, Paint::Plain(_)));
         surfaces.extend(show.stage.surfaces(moment.time, common.bounds));
@@ -212,4 +217,15 @@ impl Figure {
             up: show.stage.view.up,
         })
     }
+}
+
+/// The frames that carry a body, as three arrows each.
+fn axes_of(body: &BodyMoment, length: f64) -> impl Iterator<Item = Stroke> + '_ {
+    body.frames.iter().flat_map(move |[origin, axes @ ..]| {
+        axes.iter().zip(AXES).map(move |(axis, colour)| Stroke {
+            shape: StrokeShape::Arrow(*origin, *origin + *axis * length),
+            colour: Colour::from_screen(colour),
+            width: 2.0,
+        })
+    })
 }

@@ -38,6 +38,8 @@ pub struct BodyMoment {
     pub positions: Vec<Vec3>,
     pub point_fields: Vec<Field>,
     pub cell_fields: Vec<Field>,
+    /// Origin and axes of the frames that carry it, where they are known: files of a run hold points alone.
+    pub frames: Vec<[Vec3; 4]>,
 }
 
 /// A run's moments on their stage.
@@ -157,10 +159,17 @@ impl Moment {
                 positions: world.rows(info.system).positions[info.rows.clone()].to_vec(),
                 point_fields,
                 cell_fields,
+                frames: frames_of(world, info),
             }
         };
         Self { time: world.time(), bodies: bodies.iter().enumerate().map(body).collect() }
     }
+}
+
+fn frames_of(world: &World, info: &BodyInfo) -> Vec<[Vec3; 4]> {
+    let positions = &world.rows(info.system).positions;
+    let rows = info.frames.iter().flat_map(|frames| &frames.rows);
+    rows.map(|row| std::array::from_fn(|k| positions[*row as usize + k])).collect()
 }
 
 impl BodyMoment {
@@ -176,7 +185,7 @@ impl BodyMoment {
             }
             _ => Arc::new(mesh),
         };
-        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields })
+        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields, frames: Vec::new() })
     }
 
     /// Whether it can be drawn: it is finite, and has not grown beyond all bounds; of one that has, a point or two

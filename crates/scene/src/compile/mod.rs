@@ -5,6 +5,7 @@ mod boundary;
 mod contact;
 mod depth;
 mod doubts;
+mod frames;
 mod freedom;
 mod links;
 mod memory;
@@ -14,8 +15,9 @@ mod pins;
 mod selection;
 mod shape;
 
-pub(crate) use bodies::solid_name;
+pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;
+pub(crate) use frames::hold_name;
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -30,7 +32,6 @@ use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
 
-use bodies::Placed;
 use freedom::Joint;
 use selection::Selector;
 
@@ -133,8 +134,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     depth::warn(&mut draft);
     let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
     model.systems = systems;
-    let bodies =
-        bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
+    let bodies = bodies.into_iter().map(BodyInfo::new);
     Some(Scene {
         title: title(spec, sources),
         description: spec.description.clone(),

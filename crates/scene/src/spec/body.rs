@@ -6,6 +6,7 @@ use souple_models::solids::{BuildSection, Quadrature, SECTIONS, Section};
 use souple_table::{Range, Value};
 
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
+use super::frames::{FRAMES, FramesSpec};
 use super::mesh::{MESH, MeshSpec};
 use super::network::Network;
 use super::region::{Region, direction};
@@ -62,6 +63,7 @@ pub(crate) static BODY: Keys = Keys::new(
             Shape::Entry(SECTION),
             "what its cells are sections of, where they are no volumes: a plane body, a membrane, a bar, a cable",
         ),
+        Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new("mass", Shape::Choice(&["lumped", "consistent"]), "how mass is spread over points")
             .or(Value::Text("lumped")),
@@ -98,6 +100,8 @@ pub struct Body {
     pub material: Option<Chosen<materials::Build>>,
     /// What its cells are sections of; volumes where left out.
     pub section: Option<Chosen<BuildSection>>,
+    /// What carries it; the points of its mesh where left out.
+    pub frames: Option<FramesSpec>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
@@ -198,6 +202,7 @@ impl Body {
             mesh: MeshSpec::read(reader),
             material: read_material(reader),
             section: reader.entry("section", &SECTIONS),
+            frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
             quadrature: if reader.choice("quadrature") == "full" {

@@ -4,6 +4,7 @@ pub mod body;
 pub mod boundary;
 pub mod contact;
 pub mod expect;
+pub mod frames;
 pub mod interaction;
 pub mod mesh;
 pub mod network;

@@ -9,8 +9,8 @@ use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct ListArguments {
-    /// materials, laws, elements, sections, links, steppers, solvers, preconditioners, generators, bodies, shapes,
-    /// formats, quantities, functions, units, colour_maps
+    /// materials, laws, elements, sections, links, placements, weights, points, steppers, solvers, preconditioners,
+    /// generators, bodies, shapes, formats, quantities, functions, units, colour_maps
     ///
     /// The kinds themselves if left out.
     kind: Option<String>,
@@ -105,6 +105,9 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("elements", pages_of(&souple_mesh::ELEMENTS)),
         ("sections", pages_of(&souple_models::solids::SECTIONS)),
         ("links", pages_of(&souple_models::network::LINKS)),
+        ("placements", pages_of(&souple_models::frames::PLACEMENTS)),
+        ("weights", pages_of(&souple_models::frames::WEIGHTS)),
+        ("points", pages_of(&souple_models::frames::POINTS)),
         ("steppers", pages_of(&souple_engine::steppers::TABLE)),
         ("solvers", pages_chosen_by(&linear::SOLVER, &souple_solve::solvers::TABLE)),
         ("preconditioners", pages_chosen_by(&linear::PRECONDITIONER, &souple_solve::precondition::TABLE)),
