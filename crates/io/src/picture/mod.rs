@@ -165,7 +165,7 @@ impl Picture {
         let open = light::openness(&whole, &camera, 0.09 * bounds.diagonal().max(f64::MIN_POSITIVE));
         drop(whole);
 
-        let lamps = Lamps::of(&camera, self.view.up);
+        let lamps = Lamps::of(&camera, &self.view);
         let scene = Scene {
             camera,
             shadow: Shadow::of(&self.surfaces, lamps.key()),

@@ -76,6 +76,9 @@ pub struct Arguments {
     /// What is up in the picture; the scene's if left out
     #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
     up: Option<[f64; 3]>,
+    /// From the lamp that throws shadows towards the bodies; over the eye's left shoulder if left out
+    #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
+    light: Option<[f64; 3]>,
     /// Angle between the upper and the lower border [deg]
     #[arg(long, default_value_t = 28.65)]
     field_of_view: f64,
@@ -346,6 +349,7 @@ fn view(arguments: &Arguments, stage: &Stage) -> Result<View, Refusal> {
         ));
     }
     view.field_of_view = arguments.field_of_view.to_radians();
+    view.light = arguments.light.map(|light| unit("light", Vec3::from_array(light))).transpose()?;
     Ok(view)
 }
 
