@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use souple_mesh::ElementKind;
+use souple_math::Vec3;
+use souple_mesh::{ElementKind, Mesh};
 
 use super::*;
 use crate::testing::survives_faults;
