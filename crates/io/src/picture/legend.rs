@@ -69,9 +69,10 @@ fn labelled(ticks: &[f64], largest: f64, step: f64) -> Vec<String> {
     let exponent = libm::floor(libm::log10(largest) + 1e-9) as i32;
     let scale = libm::pow(10.0, f64::from(exponent));
     let digits = digits_below(scale);
-    let scaled = |tick: &f64| match *tick {
-        0.0 => "0".to_owned(),
-        tick => minus(format!("{:.digits$}e{exponent}", tick / scale)),
+    let scaled = |tick: &f64| {
+        let number = minus(format!("{:.digits$}", tick / scale));
+        let is_zero = number.bytes().all(|digit| matches!(digit, b'0' | b'.'));
+        if is_zero { "0".to_owned() } else { format!("{number}e{exponent}") }
     };
     ticks.iter().map(scaled).collect()
 }
@@ -98,7 +99,8 @@ mod tests {
         assert_eq!(names(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(names(0.0, 7.031), ["0", "1", "2", "3", "4", "5", "6", "7.0"]);
         assert_eq!(names(15803.2, 16531.7), ["15803", "16000", "16200", "16400", "16532"][..].to_vec());
-        assert_eq!(names(0.0, 3.45e-7), ["0", "1e-7", "2e-7", "3e-7", "3.5e-7"][..].to_vec());
+        assert_eq!(names(0.0, 3.4e-6)[6..], ["3.0e-6", "3.40e-6"]);
+        assert_eq!(names(1e3, 1.71e11)[0], "0");
         assert_eq!(names(2.0, 2.0), ["2"]);
         for (low, high) in [(0.0, f64::INFINITY), (f64::NAN, 1.0), (-1e308, 1e308), (1.0, 1.0 + 1e-15)] {
             assert!(scale(low, high, 5, 0.05).len() < 50);

@@ -45,9 +45,8 @@ fn contents(document: &Json) -> String {
     let mut parts = vec![format!("{} points", document["points"])];
     let cells = document["cells"].as_object().into_iter().flatten();
     parts.extend(cells.map(|(kind, count)| format!("{count} {kind}")));
-    match document["facets"].as_u64() {
-        Some(facets @ 1..) => parts.push(format!("{facets} facets")),
-        _ => {}
+    if let Some(facets @ 1..) = document["facets"].as_u64() {
+        parts.push(format!("{facets} facets"));
     }
     let components = document["components"].as_u64().or(document["faults"]["components"].as_u64());
     let in_parts = match components {
