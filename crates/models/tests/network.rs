@@ -9,7 +9,8 @@ use souple_engine::{
 use souple_math::Vec3;
 use souple_models::network::laws::Piecewise;
 use souple_models::network::{
-    Account, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel, Links, Making, Reach,
+    Account, Crowd, CrowdDescription, Friction, Hook, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel,
+    Links, Making, Phase, Reach,
 };
 use souple_table::{Value, Values};
 
@@ -330,4 +331,100 @@ fn discrete_energy_is_kept() {
     // places of ten metres round to 2e-15 m, elongations are 0.05 m: 4e-14 of the energy a step, growing as a random walk
     let drift = (energy(&world) / start - 1.0).abs();
     assert!(drift < 4e-14 * 20_000_f64.sqrt(), "{drift}");
+}
+
+/// What is found in the grid is all that acts: forces of a crowd are those of links between every pair, of one group and of
+/// two.
+#[test]
+fn crowds_are_all_pairs() {
+    let count = 240;
+    let number = |i: usize, salt: f64| ((i as f64 * 12.9898 + salt).sin() * 43_758.545_3).fract().abs();
+    let positions: Vec<Vec3> =
+        (0..count).map(|i| Vec3::new(number(i, 0.1), number(i, 1.7), number(i, 3.3)) * 5.0).collect();
+    let velocities: Vec<Vec3> = (0..count).map(|i| Vec3::new(number(i, 5.1), -number(i, 7.7), 0.0)).collect();
+    for name in ["ball", "cohesion", "exponential_stop"] {
+        let entry = LINKS.find(name).unwrap();
+        for (first, second) in [(0..240, 0..240), (0..100, 100..240)] {
+            let range = law(entry).range();
+            assert!((1.0..=1.5).contains(&range), "{name} ends at {range}");
+            let crowd = Crowd::new(CrowdDescription {
+                name: "crowd".into(),
+                law: law(entry),
+                first: first.clone(),
+                second: second.clone(),
+                range,
+                friction: None,
+                timestep: TE,
+            });
+            let mut pairs = Vec::new();
+            let mut scratch = crowd.new_scratch();
+            crowd.find_pairs(&at(&positions, &velocities, &[0.0]), &mut scratch, &mut pairs);
+            assert!(pairs.is_sorted_by_key(|pair| (pair.a, pair.b)) && pairs.len() > 100);
+            let with_pairs = Configuration { pairs: &pairs, ..at(&positions, &velocities, &[0.0]) };
+            let mut found = vec![Vec3::ZERO; count];
+            crowd.add_force(&with_pairs, &mut scratch, &mut found);
+            let is_one = first == second;
+            let ends: Vec<[u32; 2]> = first
+                .flat_map(|a| second.clone().map(move |b| [a, b]))
+                .filter(|[a, b]| !is_one || a < b)
+                .collect();
+            let force = links(law(entry), &ends, 1.0, Account::None);
+            let mut expected = vec![Vec3::ZERO; count];
+            force.add_force(&at(&positions, &velocities, &[]), &mut force.new_scratch(), &mut expected);
+            for (found, expected) in found.iter().zip(&expected) {
+                // rounding of some ten forces of a kilonewton
+                assert!((*found - *expected).length() < 1e-9, "{name}: {found:?} {expected:?}");
+            }
+        }
+    }
+}
+
+/// A hook pulls back by its stiffness, tears at the static coefficient, slides at the kinetic one, and hooks again when slow.
+#[test]
+fn friction_sticks_slides_and_sticks() {
+    let friction = Friction { stiffness: 1000.0, damping: 0.0, sticking: 0.6, sliding: 0.4, slow: 1e-4 };
+    let (up, normal) = (Vec3::new(0.0, 0.0, 1.0), 10.0);
+    let start = friction.grip(Hook::FREE, up, up, normal);
+    assert_eq!((start.next.phase, start.force), (Phase::Stick, Vec3::ZERO));
+    let shifted = |x: f64| Vec3::new(x, 0.0, 1.0);
+    let held = friction.grip(start.next, shifted(1e-3), shifted(0.9e-3), normal);
+    // D_acc is the part of a millimetre across a line that has turned by a thousandth
+    assert!((held.force.x + 1.0).abs() < 1e-5 && held.next.phase == Phase::Stick);
+    let slid = friction.grip(held.next, shifted(7e-3), shifted(6e-3), normal);
+    assert!(slid.next.phase == Phase::Slide && (slid.force.length() - 4.0).abs() < 1e-12 && slid.heat > 0.0);
+    let again = friction.grip(slid.next, shifted(7e-3), shifted(7e-3), normal);
+    assert_eq!((again.next.phase, again.next.began), (Phase::Stick, shifted(7e-3)));
+    assert_eq!(friction.grip(again.next, up, up, 0.0).next, Hook::FREE);
+}
+
+/// Faulty automata are refused in words.
+#[test]
+fn automata_are_checked() {
+    let entry = LINKS.find("finite_state").unwrap();
+    let text = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+        pairs.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    let refused = |states: &[(&str, &str)], transitions: &[(&str, &str)], entries: &[(&str, &str)]| {
+        let (states, transitions, entries) = (text(states), text(transitions), text(entries));
+        let values = Values::new()
+            .with("states", Value::Texts(&states))
+            .with("transitions", Value::Texts(&transitions))
+            .with("entries", Value::Texts(&entries));
+        let values = entry.values(values).unwrap();
+        (entry.build)(&Making { values: &values, timestep: TE }).unwrap_err().to_string()
+    };
+    let two = [("a", "0"), ("b", "-D")];
+    let cases = [
+        (refused(&two, &[("a -> c", "D > 1")], &[]), ["the state `c`", "there are a, b"]),
+        (refused(&two, &[], &[]), ["states.b", "never entered"]),
+        (refused(&two, &[("a b", "D > 1")], &[]), ["no transition", "a -> b"]),
+        (refused(&two, &[("a -> b", "D +")], &[]), ["transitions", "a -> b"]),
+        (refused(&two, &[("a -> b", "D > 1")], &[("b", "K = 1")]), ["sets `K`", "remembered are L0"]),
+        (refused(&[("a", "x")], &[], &[]), ["states.a", "x"]),
+    ];
+    for (message, words) in cases {
+        for word in words {
+            assert!(message.contains(word), "`{word}` is not in: {message}");
+        }
+    }
 }

@@ -32,6 +32,10 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn is_conservative(&self) -> bool;
     /// See [`LinkLaw::stiffest`]; of a link of this rest length.
     fn stiffest(&self, rest: f64) -> f64;
+    /// Beyond it there is no force [m]; infinite where there always is, or nobody can tell.
+    fn range(&self) -> f64 {
+        f64::INFINITY
+    }
     /// `sums[row] += f` over the rows of a part.
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]);
     /// Forces on first ends, `[block][lane]`.
@@ -71,6 +75,10 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
 
     fn stiffest(&self, _: f64) -> f64 {
         self.0.stiffest()
+    }
+
+    fn range(&self) -> f64 {
+        self.0.range()
     }
 
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]) {

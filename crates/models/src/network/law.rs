@@ -55,6 +55,11 @@ pub trait LinkLaw: Debug + Send + Sync + 'static {
     /// What a link takes of the bound `4M` on a mass between itself and a fixed point [N/m]: its transfer function at the
     /// highest frequency a step can carry, `K + 2Z` of a spring and damper.
     fn stiffest(&self) -> f64;
+
+    /// Beyond it there is no force [m]; infinite where there always is.
+    fn range(&self) -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// What laws are made from.

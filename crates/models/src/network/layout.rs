@@ -15,10 +15,10 @@ pub const LANES: usize = 8;
 /// Rows of a stretch: few links of a lattice cross, and some stretches for each thread remain.
 const ROWS_PER_STRETCH: usize = 16384;
 /// Blocks that are filled lane after lane: neighbouring links, which share masses, stand in different blocks, so that sums
-/// on a mass do not wait for each other.
-const BLOCKS_PER_TILE: usize = 64;
+/// on a mass do not wait for each other. Few, so that memory is still read nearly in order.
+const BLOCKS_PER_TILE: usize = 8;
 /// Links across stretches that one task computes.
-const CROSSING_PER_PART: usize = BLOCKS_PER_TILE * LANES;
+const CROSSING_PER_PART: usize = 512;
 /// A part of a stretch is worth a thread of its own.
 const GRAIN: usize = 2;
 

@@ -3,14 +3,18 @@
 //! A mass is a point unknown of the engine. Links of one law are one [`souple_engine::Force`]; what they remember
 //! lives in State. Laws are in [`laws`], one file and one line of its table each.
 
+pub mod crowd;
 pub mod force;
+pub mod friction;
 pub mod kernel;
 pub mod law;
 pub mod laws;
 mod layout;
 pub mod written;
 
+pub use crowd::{Crowd, CrowdDescription, PAIR_MEMORY};
 pub use force::{Account, LinkDescription, LinkStance, Links};
+pub use friction::{Friction, Grip, Hook, Phase};
 pub use kernel::{InLanes, LinkKernel};
 pub use law::{BuildLink, LinkEntry, LinkError, LinkLaw, Making, Reach, Response};
 pub use laws::LINKS;

@@ -31,29 +31,27 @@ pub trait WrittenLaw: Debug + Send + Sync + 'static {
 pub struct OneByOne<L>(pub L);
 
 impl<L: WrittenLaw> OneByOne<L> {
-    /// Calls `each(block, lane, force on the first end, response, memory of the next step)` for every link.
-    fn for_each(
+    /// Force on the first end of the part's `slot`-th link, and what its law says; `memory` is the part's, `numbers` become
+    /// the link's of the next step.
+    fn act(
         &self,
         part: &Part,
         moving: Moving,
+        slot: usize,
         memory: &[f64],
-        mut each: impl FnMut(usize, usize, Vec3, Response, &[f64]),
-    ) {
-        let len = self.0.memory_len();
-        let mut numbers = [0.0; WRITTEN_MEMORY];
-        for slot in 0..part.links.len() {
-            let (block, lane) = part.place(slot);
-            let [a, b] = part.ends_of(slot).map(|row| row as usize);
-            let d = moving.positions[a] - moving.positions[b];
-            let e = d - (moving.velocities[a] - moving.velocities[b]) * moving.timestep;
-            let reach = Reach { length: d.length(), before: e.length(), rest: part.rest(block)[lane] };
-            for i in 0..len {
-                numbers[i] = memory[(block * len + i) * LANES + lane];
-            }
-            let response = self.0.respond(&reach, moving.time, &mut numbers[..len]);
-            let direction = d.try_normalised().or(e.try_normalised()).unwrap_or(Vec3::ZERO);
-            each(block, lane, direction * response.push, response, &numbers[..len]);
+        numbers: &mut [f64; WRITTEN_MEMORY],
+    ) -> (Vec3, Response) {
+        let (len, (block, lane)) = (self.0.memory_len(), part.place(slot));
+        let [a, b] = part.ends_of(slot).map(|row| row as usize);
+        let d = moving.positions[a] - moving.positions[b];
+        let e = d - (moving.velocities[a] - moving.velocities[b]) * moving.timestep;
+        let reach = Reach { length: d.length(), before: e.length(), rest: part.rest(block)[lane] };
+        for i in 0..len {
+            numbers[i] = memory[(block * len + i) * LANES + lane];
         }
+        let response = self.0.respond(&reach, moving.time, &mut numbers[..len]);
+        let direction = d.try_normalised().or(e.try_normalised()).unwrap_or(Vec3::ZERO);
+        (direction * response.push, response)
     }
 }
 
@@ -75,29 +73,33 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
     }
 
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]) {
-        let first = part.first_row;
-        let mut slot = 0;
-        self.for_each(part, moving, memory, |_, _, force, _, _| {
-            let [a, b] = part.ends_of(slot).map(|row| row as usize - first);
+        let mut numbers = [0.0; WRITTEN_MEMORY];
+        for slot in 0..part.links.len() {
+            let (force, _) = self.act(part, moving, slot, memory, &mut numbers);
+            let [a, b] = part.ends_of(slot).map(|row| row as usize - part.first_row);
             sums[a] += force;
             sums[b] -= force;
-            slot += 1;
-        });
+        }
     }
 
     fn forces(&self, part: &Part, moving: Moving, memory: &[f64], out: &mut [Vec3]) {
-        self.for_each(part, moving, memory, |block, lane, force, _, _| out[block * LANES + lane] = force);
+        let mut numbers = [0.0; WRITTEN_MEMORY];
+        for slot in 0..part.links.len() {
+            let (block, lane) = part.place(slot);
+            out[block * LANES + lane] = self.act(part, moving, slot, memory, &mut numbers).0;
+        }
     }
 
     fn advance(&self, part: &Part, moving: Moving, memory: &mut [f64]) -> f64 {
-        let (len, before) = (self.0.memory_len(), memory.to_vec());
+        let (len, mut numbers) = (self.0.memory_len(), [0.0; WRITTEN_MEMORY]);
         let mut heat = 0.0;
-        self.for_each(part, moving, &before, |block, lane, _, response, numbers| {
-            heat += response.heat;
-            for (i, number) in numbers.iter().enumerate() {
-                memory[(block * len + i) * LANES + lane] = *number;
+        for slot in 0..part.links.len() {
+            let (block, lane) = part.place(slot);
+            heat += self.act(part, moving, slot, memory, &mut numbers).1.heat;
+            for i in 0..len {
+                memory[(block * len + i) * LANES + lane] = numbers[i];
             }
-        });
+        }
         heat
     }
 
@@ -113,8 +115,45 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
     }
 }
 
-/// Numbers under names, in SI units, that formulas may refer to.
-pub fn constants(texts: &[(String, String)]) -> Result<(Vec<&str>, Vec<f64>), LinkError> {
+/// Most numbers that formulas of a law may refer to.
+pub const ARGUMENTS: usize = 64;
+
+/// What formulas read: variables, what is remembered, parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct Arguments<T> {
+    values: [T; ARGUMENTS],
+    len: usize,
+}
+
+impl<T: Copy> Arguments<T> {
+    /// `zero` fills what is not used.
+    pub fn new(zero: T, values: impl IntoIterator<Item = T>) -> Self {
+        let mut arguments = Self { values: [zero; ARGUMENTS], len: 0 };
+        for value in values {
+            arguments.values[arguments.len] = value;
+            arguments.len += 1;
+        }
+        arguments
+    }
+
+    pub fn as_slice(&self) -> &[T] {
+        &self.values[..self.len]
+    }
+
+    pub fn as_mut_slice(&mut self) -> &mut [T] {
+        &mut self.values[..self.len]
+    }
+}
+
+/// Numbers under names, in SI units, that formulas may refer to, beside `others`.
+///
+/// # Errors
+/// A number that cannot be read or is not finite; too many of them.
+pub fn constants(texts: &[(String, String)], others: usize) -> Result<(Vec<&str>, Vec<f64>), LinkError> {
+    if texts.len() + others > ARGUMENTS {
+        let what = format!("are {}; at most {}", texts.len(), ARGUMENTS - others);
+        return Err(LinkError::Text { place: "parameters".to_owned(), what });
+    }
     let mut values = Vec::with_capacity(texts.len());
     for (name, text) in texts {
         let place = || format!("parameters.{name}");

@@ -143,7 +143,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
     for body in bodies() {
         if let Some(network) = &body.spec.network {
             network::add_masses(body, network, &mut mass);
-            network::add_links(draft, body, network, spec, &mut forces);
+            network::add_forces(draft, body, network, spec, &mut forces);
             continue;
         }
         let materials = &body.materials;

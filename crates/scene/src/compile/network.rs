@@ -6,14 +6,18 @@ use souple_engine::steppers::Stability;
 use souple_engine::{Force, Mass};
 use souple_math::Vec3;
 use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
-use souple_models::network::{Account, LinkDescription, Links, Making};
+use souple_models::network::{
+    Account, BuildLink, Crowd, CrowdDescription, Friction, LinkDescription, LinkKernel, Links, Making,
+    PAIR_MEMORY,
+};
 
 use super::Draft;
 use super::bodies::Placed;
 use super::shape::Shape;
 use crate::diagnostic::Code;
+use crate::reader::Chosen;
 use crate::spec::body::Body;
-use crate::spec::network::{Join, LinkTable, MassGroup, Network};
+use crate::spec::network::{CrowdSpec, Join, LinkTable, MassGroup, Network};
 use crate::spec::world::SystemSpec;
 
 /// Which masses the links of a table join, and how long they are at rest.
@@ -213,8 +217,8 @@ pub fn drags(body: &Placed, network: &Network) -> Vec<(u32, f64)> {
     (body.rows.start as u32..).zip(own).filter(|(_, drag)| *drag > 0.0).collect()
 }
 
-/// A force for each table of links.
-pub fn add_links(
+/// A force for each table of links and for each crowd.
+pub fn add_forces(
     draft: &Draft,
     body: &Placed,
     network: &Network,
@@ -224,15 +228,7 @@ pub fn add_links(
     let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
     let first = body.rows.start as u32;
     for (index, (table, links)) in network.links.iter().zip(&body.links).enumerate() {
-        let Some(chosen) = &table.law else { continue };
-        let law = match (chosen.entry.build)(&Making { values: &chosen.values, timestep }) {
-            Ok(law) => law,
-            Err(error) => {
-                let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
-                draft.log.add(Code::OutOfRange, &chosen.site, error.to_string(), expected);
-                continue;
-            }
-        };
+        let Some(law) = law(table.law.as_ref(), timestep, draft) else { continue };
         let ends: Vec<[u32; 2]> = links.ends.iter().map(|ends| ends.map(|end| first + end)).collect();
         forces.push(Box::new(Links::new(LinkDescription {
             name: format!("{}.links[{index}]", body.spec.name),
@@ -244,6 +240,77 @@ pub fn add_links(
             account: if network.keeps_account { Account::Heat } else { Account::None },
         })));
     }
+    for (index, crowd) in network.crowds.iter().enumerate() {
+        let name = format!("{}.crowds[{index}]", body.spec.name);
+        if let Some(crowd) = self::crowd(name, crowd, body, network, timestep, draft) {
+            forces.push(Box::new(crowd));
+        }
+    }
+}
+
+fn law(chosen: Option<&Chosen<BuildLink>>, timestep: f64, draft: &Draft) -> Option<Box<dyn LinkKernel>> {
+    let chosen = chosen?;
+    match (chosen.entry.build)(&Making { values: &chosen.values, timestep }) {
+        Ok(law) => Some(law),
+        Err(error) => {
+            let expected = format!("a law that holds, see `souple describe {}`", chosen.entry.name);
+            draft.log.add(Code::OutOfRange, &chosen.site, error.to_string(), expected);
+            None
+        }
+    }
+}
+
+fn crowd(
+    name: String,
+    spec: &CrowdSpec,
+    body: &Placed,
+    network: &Network,
+    timestep: f64,
+    draft: &Draft,
+) -> Option<Crowd> {
+    let law = law(spec.law.as_ref(), timestep, draft)?;
+    if law.memory_len() > PAIR_MEMORY {
+        let message = format!("the law remembers {} numbers of a pair", law.memory_len());
+        let expected = format!("at most {PAIR_MEMORY}, or `links`, which are always there");
+        draft.log.add(Code::Conflict, &spec.site, message, expected);
+        return None;
+    }
+    let range = spec.range.unwrap_or_else(|| law.range());
+    if !range.is_finite() {
+        let message = "this law acts at any distance, and no `range` is given";
+        draft.log.add(
+            Code::MissingKey,
+            &spec.site,
+            message,
+            "range = …, or a law with an end, such as ball or cohesion",
+        );
+        return None;
+    }
+    let rows = |name: &str| {
+        let mut first = body.rows.start as u32;
+        for group in &network.masses {
+            let end = first + group.positions.len() as u32;
+            if group.name == name {
+                return Some(first..end);
+            }
+            first = end;
+        }
+        None
+    };
+    let all = body.rows.start as u32..body.rows.end as u32;
+    let (first, second) = match &spec.of[..] {
+        [] => (all.clone(), all),
+        [one] => (rows(one)?, rows(one)?),
+        [one, other, ..] => (rows(one)?, rows(other)?),
+    };
+    let friction = spec.friction.map(|friction| Friction {
+        stiffness: friction.stiffness,
+        damping: friction.damping / timestep,
+        sticking: friction.sticking,
+        sliding: friction.sliding,
+        slow: friction.speed * timestep,
+    });
+    Some(Crowd::new(CrowdDescription { name, law, first, second, range, friction, timestep }))
 }
 
 /// Warns of masses whose links are too stiff for an explicit step: at a mass `2 Σ H` over links to free masses and `Σ H`

@@ -78,6 +78,34 @@ static LINK_TABLE: Keys = Keys::new(
     ],
 );
 
+static FRICTION: Keys = Keys::new(
+    "crowd_friction",
+    "dry friction of balls: a hook while they stick, Coulomb's force while they slide",
+    &[
+        Key::number("static", "", Range::NOT_NEGATIVE, "of the normal force, at which the hook tears")
+            .required(),
+        Key::number("kinetic", "", Range::NOT_NEGATIVE, "of the normal force, while sliding").required(),
+        Key::number("stiffness", "N/m", Range::POSITIVE, "of the hook").required(),
+        Key::number("damping", "N s/m", Range::NOT_NEGATIVE, "of the hook").or(Value::Number(0.0)),
+        Key::number("speed", "m/s", Range::POSITIVE, "of sliding, below which it ends").required(),
+    ],
+);
+
+static CROWD: Keys = Keys::new(
+    "crowd",
+    "a law between all masses that are near each other at any time",
+    &[
+        Key::new("law", Shape::Entry(LINK), "what they do to each other").required(),
+        Key::new(
+            "of",
+            Shape::Texts,
+            "the group, or the two, that act on each other; all masses where left out",
+        ),
+        Key::number("range", "m", Range::POSITIVE, "no force beyond; that of the law where left out"),
+        Key::new("friction", Shape::Table(&FRICTION), "what holds them across"),
+    ],
+);
+
 pub(crate) static NETWORK: Keys = Keys::new(
     "network",
     "masses and what acts between them; names what bodies name, for pins, probes and contacts",
@@ -85,6 +113,7 @@ pub(crate) static NETWORK: Keys = Keys::new(
         Key::new("masses", Shape::Named(&MASSES), "groups of masses, in the order of their numbers")
             .required(),
         Key::new("links", Shape::Tables(&LINK_TABLE), "what acts between masses"),
+        Key::new("crowds", Shape::Tables(&CROWD), "what acts between masses wherever they come near"),
         Key::new("account", Shape::Boolean, "links without memory keep account of the heat they give off")
             .or(Value::Boolean(false)),
         Key::new("rotate", Shape::Table(&ROTATION), "turns the start, before it is translated"),
@@ -103,6 +132,7 @@ pub(crate) static NETWORK: Keys = Keys::new(
 pub struct Network {
     pub masses: Vec<MassGroup>,
     pub links: Vec<LinkTable>,
+    pub crowds: Vec<CrowdSpec>,
     /// Links without memory keep account of the heat they give off.
     pub keeps_account: bool,
 }
@@ -133,6 +163,30 @@ pub struct LinkTable {
     pub site: Site,
 }
 
+/// A law between all masses that are near.
+pub struct CrowdSpec {
+    pub law: Option<Chosen<BuildLink>>,
+    /// Names of groups: none, one or two.
+    pub of: Vec<String>,
+    /// That of the law where `None` [m].
+    pub range: Option<f64>,
+    pub friction: Option<FrictionSpec>,
+    pub site: Site,
+}
+
+/// Dry friction of balls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionSpec {
+    pub sticking: f64,
+    pub sliding: f64,
+    /// [N/m]
+    pub stiffness: f64,
+    /// [N s/m]
+    pub damping: f64,
+    /// [m/s]
+    pub speed: f64,
+}
+
 /// Which masses links join.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Join {
@@ -154,6 +208,7 @@ impl Network {
                 .map(|(name, group)| MassGroup::read(name, &group))
                 .collect(),
             links: reader.tables("links").iter().map(LinkTable::read).collect(),
+            crowds: reader.tables("crowds").iter().map(CrowdSpec::read).collect(),
             keeps_account: reader.boolean("account"),
         };
         network.check_groups(reader);
@@ -184,16 +239,13 @@ impl Network {
 
     fn check_groups(&self, reader: &Reader) {
         let known: Vec<&str> = self.masses.iter().map(|group| group.name.as_str()).collect();
-        for links in &self.links {
-            for name in links.of.iter().filter(|name| !known.contains(&name.as_str())) {
+        let links = self.links.iter().map(|links| (&links.of, &links.site));
+        let crowds = self.crowds.iter().map(|crowd| (&crowd.of, &crowd.site));
+        for (of, site) in links.chain(crowds) {
+            for name in of.iter().filter(|name| !known.contains(&name.as_str())) {
                 let hint = crate::keys::did_you_mean(name, known.iter().copied());
                 let message = format!("there is no group of masses `{name}`{hint}");
-                reader.log().add(
-                    Code::UnknownName,
-                    &links.site,
-                    message,
-                    format!("one of {}", known.join(", ")),
-                );
+                reader.log().add(Code::UnknownName, site, message, format!("one of {}", known.join(", ")));
             }
         }
     }
@@ -305,6 +357,34 @@ impl LinkTable {
             of,
             join,
             rest_length: reader.maybe_number("rest_length"),
+            site: reader.site(),
+        }
+    }
+}
+
+impl CrowdSpec {
+    fn read(reader: &Reader) -> Self {
+        let of = reader.texts("of");
+        if of.len() > 2 {
+            reader.log().add(
+                Code::Conflict,
+                &reader.site_of("of"),
+                "a pair has two ends",
+                "one group or two",
+            );
+        }
+        let friction = reader.table("friction").map(|table| FrictionSpec {
+            sticking: table.number("static"),
+            sliding: table.number("kinetic"),
+            stiffness: table.number("stiffness"),
+            damping: table.number("damping"),
+            speed: table.number("speed"),
+        });
+        Self {
+            law: reader.entry("law", &LINKS),
+            of,
+            range: reader.maybe_number("range"),
+            friction,
             site: reader.site(),
         }
     }

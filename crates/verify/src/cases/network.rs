@@ -455,4 +455,138 @@ pub(super) const CASES: &[Case] = &[
         mutation: "networks.sample.links[0].law.depth=0.101",
         ..CURVE
     },
+    Case {
+        id: "ball_restitution",
+        capabilities: &["JIM-23", "JIM-21"],
+        what: "speed of a ball after a collision with damping ratio 0.1",
+        scene: "network_collision",
+        reading: Reading::component("speed", 0),
+        // 0.5 exp(-π h/√(1 - h²))
+        reference: 0.36462380714383547,
+        // first order in the step: contact lasts some 700 steps
+        tolerance: Tolerance::Relative(2e-3),
+        source: "specification §2.9.5",
+        mutation: "networks.balls.crowds[0].law.damping=4.6",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "sliding_distance",
+        capabilities: &["JIM-45", "JIM-47", "JIM-22"],
+        what: "a mass at 2 m/s slides v²/(2 μ g) on a huge ball and stops",
+        scene: "network_friction",
+        reading: Reading::component("place", 0),
+        reference: 0.509_683_995_922_528,
+        tolerance: Tolerance::Relative(1e-2),
+        source: "EXP-38: within 1 %",
+        mutation: "networks.table.crowds[0].friction.kinetic=0.41",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "sliding_distance_slow",
+        capabilities: &["JIM-45"],
+        what: "the same at 1 m/s",
+        scene: "network_friction",
+        settings: &["networks.table.masses.book.velocity=[1, 0, 0]"],
+        reading: Reading::component("place", 0),
+        reference: 0.127_420_998_980_632,
+        tolerance: Tolerance::Relative(1e-2),
+        source: "EXP-38: within 1 %",
+        mutation: "networks.table.crowds[0].friction.kinetic=0.41",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "sticking_hook",
+        capabilities: &["JIM-46", "JIM-47"],
+        what: "at rest under gravity that leans to tan θ = 0.5 the mass hangs on its hook: F_t/K_t from its place",
+        scene: "network_friction",
+        settings: &[
+            "networks.table.masses.book.velocity=[0, 0, 0]",
+            r#"world.gravity=["4.905 * min(t/0.5, 1)", 0, -9.81]"#,
+        ],
+        reading: Reading::component("place", 0),
+        reference: 4.905e-5,
+        // what the hook gave way while the normal force found its level
+        tolerance: Tolerance::Relative(2e-2),
+        source: "F_t = -K_t D_acc (specification §2.14.3)",
+        mutation: "networks.table.crowds[0].friction.static=0.45",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "torn_state",
+        capabilities: &["JIM-10", "JIM-19"],
+        what: "fracture as a finite-state link: torn beyond 1.02 m it pulls no more",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { whole = "-k * (D - L0)", torn = "0" }, transitions = { "whole -> torn" = "D - L0 > 0.021" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 0.0,
+        source: "specification §2.7: fracture",
+        mutation: r#"networks.sample.links[0].law.transitions={ "whole -> torn" = "D > 2" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "glued_state",
+        capabilities: &["JIM-10", "JIM-19"],
+        what: "glue: joined below 0.985 m with the length of that moment, k (1.03 - 0.98) at the end",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { free = "0", glued = "-k * (D - L0)" }, transitions = { "free -> glued" = "D < 0.985" }, entries = { glued = "L0 = D" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 50.0,
+        source: "specification §2.7: gluing",
+        mutation: r#"networks.sample.links[0].law.entries={ glued = "L0 = 1" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_state",
+        capabilities: &["JIM-10"],
+        what: "step plasticity: past 12.5 mm the rest length jumps to the present one, twice on the way to 1.03 m and back",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { elastic = "-k * (D - L0)", jumps = "-k * (D - L0)" }, transitions = { "elastic -> jumps" = "D - L0 > 0.0125", "jumps -> elastic" = "D > 0" }, entries = { jumps = "L0 = D" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(6),
+        reference: -5.0,
+        source: "specification §2.7: step plasticity; 1.015 m, then 1.03 m, and back to 1.025 m",
+        mutation: "networks.sample.links[0].law.parameters.k=1001",
+        ..PLASTIC
+    },
+    Case {
+        id: "gripped_state",
+        capabilities: &["JIM-10"],
+        what: "a grip on command at 55 ms holds the length of that moment",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { open = "0", closed = "-k * (D - L0)" }, transitions = { "open -> closed" = "t > 0.055" }, entries = { closed = "L0 = D" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(12),
+        reference: -45.0,
+        source: "specification §2.7: grip on command, at 1.025 m, then at 0.98 m",
+        mutation: r#"networks.sample.links[0].law.transitions={ "open -> closed" = "t > 0.065" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "last_condition_wins",
+        capabilities: &["JIM-10", "JIM-19"],
+        what: "of two conditions that hold the one written last leads on",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { a = "0", b = "-1", c = "-2" }, transitions = { "a -> b" = "D > 1.001", "a -> c" = "D > 1.002" } }"#,
+        ],
+        reading: PULL.after(2),
+        reference: 2.0,
+        source: "specification §2.7: the last one met wins",
+        mutation: r#"networks.sample.links[0].law.transitions={ "a -> c" = "D > 1.002", "a -> b" = "D > 1.001" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "written_law",
+        capabilities: &["JIM-15"],
+        what: "a cubic spring written as an energy, k (0.03 m)³ at 1.03 m",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "formula", energy = "k/4 * (D - L0)^4", parameters = { k = "1e6" } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 27.0,
+        source: "φ = -dE/dD",
+        mutation: "networks.sample.links[0].law.parameters.k=1000001",
+        ..PLASTIC
+    },
 ];

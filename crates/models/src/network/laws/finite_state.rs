@@ -8,7 +8,7 @@ use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
-use crate::network::written::{OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula};
+use crate::network::written::{Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula};
 
 /// What formulas and conditions may refer to, before what is remembered and the parameters of the scene.
 const VARIABLES: [&str; 4] = ["D", "D_before", "V", "t"];
@@ -36,10 +36,11 @@ const STATE: usize = 0;
 
 impl FiniteState {
     /// Values of variables, remembered numbers and parameters.
-    fn arguments(&self, reach: &Reach, time: f64, memory: &[f64]) -> Vec<f64> {
+    fn arguments(&self, reach: &Reach, time: f64, memory: &[f64]) -> Arguments<f64> {
         let speed = (reach.length - reach.before) / self.timestep;
         let own = [reach.length, reach.before, speed, time];
-        own.into_iter().chain(memory[1..].iter().copied()).chain(self.constants.iter().copied()).collect()
+        let rest = memory[1..].iter().chain(&self.constants).copied();
+        Arguments::new(0.0, own.into_iter().chain(rest))
     }
 
     /// Makes the transition of a step.
@@ -47,14 +48,14 @@ impl FiniteState {
         let state = &self.states[memory[STATE] as usize];
         let arguments = self.arguments(reach, time, memory);
         let Some((_, next)) =
-            state.transitions.iter().rev().find(|(condition, _)| condition.holds(&arguments))
+            state.transitions.iter().rev().find(|(condition, _)| condition.holds(arguments.as_slice()))
         else {
             return state;
         };
         let entered = &self.states[*next];
         memory[STATE] = *next as f64;
         for (number, formula) in &entered.settings {
-            memory[1 + number] = formula.evaluate(&arguments);
+            memory[1 + number] = formula.evaluate(arguments.as_slice());
         }
         entered
     }
@@ -70,7 +71,7 @@ impl WrittenLaw for FiniteState {
         memory[1] = rest;
         let reach = Reach { length, before: length, rest };
         for (number, start) in self.starts.iter().enumerate().skip(1) {
-            memory[1 + number] = start.evaluate(&self.arguments(&reach, 0.0, memory));
+            memory[1 + number] = start.evaluate(self.arguments(&reach, 0.0, memory).as_slice());
         }
     }
 
@@ -80,7 +81,7 @@ impl WrittenLaw for FiniteState {
 
     fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response {
         let state = self.switch(reach, time, memory);
-        let push = state.push.evaluate(&self.arguments(reach, time, memory));
+        let push = state.push.evaluate(self.arguments(reach, time, memory).as_slice());
         Response { push, stored: 0.0, heat: 0.0 }
     }
 
@@ -91,11 +92,13 @@ impl WrittenLaw for FiniteState {
         let state = self.switch(reach, time, memory);
         let values = self.arguments(reach, time, memory);
         [(1.0, 0.0), (0.0, 1.0)].map(|(now, before)| {
-            let mut duals: Vec<Dual> = values.iter().map(|value| Dual::constant(*value)).collect();
-            duals[0].derivative = now;
-            duals[1].derivative = before;
-            duals[2].derivative = (now - before) / self.timestep;
-            state.push.evaluate_dual(&duals).derivative
+            let constants = values.as_slice().iter().map(|value| Dual::constant(*value));
+            let mut duals = Arguments::new(Dual::constant(0.0), constants);
+            let own = duals.as_mut_slice();
+            own[0].derivative = now;
+            own[1].derivative = before;
+            own[2].derivative = (now - before) / self.timestep;
+            state.push.evaluate_dual(own).derivative
         })
     }
 
@@ -106,7 +109,7 @@ impl WrittenLaw for FiniteState {
         let of = |(index, state): (usize, &State)| {
             memory[STATE] = index as f64;
             let values = self.arguments(&Reach { length: rest, before: rest, rest }, 0.0, &memory);
-            let slope = |by| state.push.differentiate(&values, by).derivative;
+            let slope = |by| state.push.differentiate(values.as_slice(), by).derivative;
             // H(-1) = -∂φ/∂D + ∂φ/∂D^r, with V = (D - D^r)/Te
             (slope(1) - slope(0) - 2.0 * slope(2) / self.timestep).max(0.0)
         };
@@ -147,7 +150,7 @@ fn text(place: impl Into<String>, what: impl Into<String>) -> LinkError {
 
 fn read(making: &Making) -> Result<FiniteState, LinkError> {
     let texts = |name| making.values.texts(name);
-    let (names, constants) = constants(texts("parameters"))?;
+    let (names, constants) = constants(texts("parameters"), VARIABLES.len() + WRITTEN_MEMORY)?;
     let remembered: Vec<&str> =
         ["L0"].into_iter().chain(texts("memory").iter().map(|(name, _)| name.as_str())).collect();
     if 1 + remembered.len() > WRITTEN_MEMORY {

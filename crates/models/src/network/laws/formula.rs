@@ -5,7 +5,7 @@ use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Reach, Response};
-use crate::network::written::{OneByOne, WrittenLaw, constants, formula};
+use crate::network::written::{Arguments, OneByOne, WrittenLaw, constants, formula};
 
 /// What formulas of links may refer to, before the parameters of the scene.
 const VARIABLES: [&str; 5] = ["D", "D_before", "V", "L0", "t"];
@@ -28,17 +28,20 @@ enum Kind {
 
 impl Written {
     /// Values of the variables and their rates with `D` and `D_before`.
-    fn arguments(&self, reach: &Reach, time: f64, [now, before]: [f64; 2]) -> Vec<Dual> {
+    fn arguments(&self, reach: &Reach, time: f64, [now, before]: [f64; 2]) -> Arguments<Dual> {
         let (length, past) = (Dual::new(reach.length, now), Dual::new(reach.before, before));
         let speed = (length - past) * (1.0 / self.timestep);
         let variables = [length, past, speed, Dual::constant(reach.rest), Dual::constant(time)];
-        variables.into_iter().chain(self.constants.iter().map(|value| Dual::constant(*value))).collect()
+        let constants = self.constants.iter().map(|value| Dual::constant(*value));
+        Arguments::new(Dual::constant(0.0), variables.into_iter().chain(constants))
     }
 
     fn push(&self, reach: &Reach, time: f64) -> f64 {
         match self.kind {
-            Kind::Push => self.formula.evaluate_dual(&self.arguments(reach, time, [0.0; 2])).value,
-            Kind::Energy => -self.formula.evaluate_dual(&self.arguments(reach, time, [1.0, 0.0])).derivative,
+            Kind::Push => self.formula.evaluate_dual(&self.arguments(reach, time, [0.0; 2]).as_slice()).value,
+            Kind::Energy => {
+                -self.formula.evaluate_dual(&self.arguments(reach, time, [1.0, 0.0]).as_slice()).derivative
+            }
         }
     }
 }
@@ -57,15 +60,18 @@ impl WrittenLaw for Written {
     fn respond(&self, reach: &Reach, time: f64, _: &mut [f64]) -> Response {
         let stored = match self.kind {
             Kind::Push => 0.0,
-            Kind::Energy => self.formula.evaluate_dual(&self.arguments(reach, time, [0.0; 2])).value,
+            Kind::Energy => {
+                self.formula.evaluate_dual(&self.arguments(reach, time, [0.0; 2]).as_slice()).value
+            }
         };
         Response { push: self.push(reach, time), stored, heat: 0.0 }
     }
 
     fn slopes(&self, reach: &Reach, time: f64, _: &[f64]) -> [f64; 2] {
         match self.kind {
-            Kind::Push => [[1.0, 0.0], [0.0, 1.0]]
-                .map(|rates| self.formula.evaluate_dual(&self.arguments(reach, time, rates)).derivative),
+            Kind::Push => [[1.0, 0.0], [0.0, 1.0]].map(|rates| {
+                self.formula.evaluate_dual(&self.arguments(reach, time, rates).as_slice()).derivative
+            }),
             Kind::Energy => {
                 // formulas carry one rate: the second comes by a central difference of the first
                 let step = f64::EPSILON.cbrt() * reach.length.abs().max(f64::MIN_POSITIVE);
@@ -92,7 +98,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
         Parameter::texts("parameters", "numbers that the formula names").or(Value::Texts(&[])),
     ],
     build: |making| {
-        let (names, constants) = constants(making.values.texts("parameters"))?;
+        let (names, constants) = constants(making.values.texts("parameters"), VARIABLES.len())?;
         let (push, energy) = (making.values.text("push"), making.values.text("energy"));
         let (kind, place, text) = match (push.is_empty(), energy.is_empty()) {
             (false, true) => (Kind::Push, "push", push),

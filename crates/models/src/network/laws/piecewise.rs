@@ -96,6 +96,16 @@ impl LinkLaw for Piecewise {
     fn stiffest(&self) -> f64 {
         self.steepest + 2.0 * self.damping
     }
+
+    /// The last threshold, where the last piece is level and without force.
+    fn range(&self) -> f64 {
+        let last = self.bends.last().map_or(f64::INFINITY, |(bend, _)| *bend);
+        let slope = self.linear + self.bends.iter().map(|(_, share)| share).sum::<f64>();
+        // of sums of slopes that cancel rounding remains
+        let rounding = 8.0 * f64::EPSILON * self.steepest;
+        let ends = slope.abs() <= rounding && self.elastic(last).abs() <= rounding * (1.0 + last);
+        if ends { last } else { f64::INFINITY }
+    }
 }
 
 const DAMPING: Parameter =

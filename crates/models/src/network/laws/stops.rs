@@ -66,6 +66,13 @@ impl LinkLaw for Stop {
     fn stiffest(&self) -> f64 {
         self.stiffness + 2.0 * self.damping
     }
+
+    fn range(&self) -> f64 {
+        match self.zone {
+            Zone::Inside => self.threshold,
+            Zone::Outside => f64::INFINITY,
+        }
+    }
 }
 
 /// `φ = K d (e^{(S - D)/d} - 1)` for `D < S`: the stiffer the deeper.
@@ -96,6 +103,10 @@ impl LinkLaw for ExponentialStop {
     fn stiffest(&self) -> f64 {
         // at a depth of d, twice of which a stop is hardly meant to see
         self.stiffness * std::f64::consts::E
+    }
+
+    fn range(&self) -> f64 {
+        self.threshold
     }
 }
 
