@@ -9,7 +9,7 @@ use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
 use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
-use crate::steppers::{StepError, StepReport};
+use crate::steppers::{Step, StepError, StepReport};
 use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 
 /// A field on a grid: steps itself in State from what rows did, and acts through ordinary forces that read
@@ -306,7 +306,8 @@ impl World {
                 system.update_pairs(ws, state, &around);
                 ws.stages.pairs += clock.elapsed().as_secs_f64();
             }
-            let stepped = system.stepper.step(system, &around, time, timestep, state, ws);
+            let stepped =
+                system.stepper.step(&Step { system, around: &around, start: time, timestep }, state, ws);
             let place = || format!("system `{}`", system.name);
             report.merge(&stepped.map_err(|error| WorldError { place: place(), error })?);
         }
