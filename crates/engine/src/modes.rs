@@ -40,6 +40,7 @@ pub fn lowest(
     // held directions have no mass, and so take no part
     let held = system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
     mass.constrain_blocks(held, 0.0)?;
-    let positions = system.block_positions(&rows.positions);
+    let mut positions = Vec::new();
+    system.block_positions_into(&rows.positions, &mut positions);
     lowest_modes(stiffness, &mass, Some(&positions), settings)
 }

@@ -346,16 +346,12 @@ impl System {
 
     /// A position for every velocity block (the frame's origin for all of its blocks), for orderings and
     /// rigid modes.
-    pub fn block_positions(&self, row_positions: &[Vec3]) -> Vec<Vec3> {
-        if self.kinematics.is_trivial() {
-            return row_positions.to_vec();
-        }
-        let mut positions = vec![Vec3::ZERO; self.kinematics.block_count()];
+    pub fn block_positions_into(&self, row_positions: &[Vec3], positions: &mut Vec<Vec3>) {
+        positions.resize(self.kinematics.block_count(), Vec3::ZERO);
         let mut row = 0;
         for (kind, blocks) in self.kinematics.unknowns() {
             positions[blocks].fill(row_positions[row]);
             row += kind.row_count();
         }
-        positions
     }
 }

@@ -191,6 +191,11 @@ impl Tangent {
         self.diagonal.insert(diagonal)
     }
 
+    /// Forces have come or gone: what is coupled is asked for again.
+    pub fn forget_patterns(&mut self) {
+        self.pattern_pairs = None;
+    }
+
     fn update_patterns(&mut self, system: &System, pairs: &[Pair]) {
         let changes = system.forces.iter().any(|force| force.declaration().changing_pattern);
         let coupling = if changes { pairs } else { &[] };

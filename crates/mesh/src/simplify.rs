@@ -315,6 +315,9 @@ impl<'a> Collapse<'a> {
             return false;
         }
         let bound = f64::min(self.bounds[a as usize], self.bounds[b as usize]);
+        if bound < 0.0 {
+            return false;
+        }
         let Some((carried, reached)) = self.within_bound(bound, &touched, &new) else { return false };
         self.reached = self.reached.max(reached);
         for (list, (triangle, _)) in carried.into_iter().zip(&new) {
@@ -463,6 +466,18 @@ mod tests {
             "{}",
             simple.surface.triangles.len()
         );
+    }
+
+    /// Two balls that cross as given keep crossing, and the bound all the same.
+    #[test]
+    fn surfaces_that_cross_keep_the_bound() {
+        let mut two = ball();
+        let count = two.points.len() as u32;
+        two.points.extend(ball().points.iter().map(|point| *point + Vec3::X));
+        two.triangles.extend(ball().triangles.iter().map(|corners| corners.map(|corner| corner + count)));
+        let simple = simplify(&two, Goal { distance: 0.02, triangles: 0 }).unwrap();
+        assert!(simple.crossings > 0 && simple.distance <= 0.02, "{} m", simple.distance);
+        assert!(simple.surface.triangles.len() < two.triangles.len());
     }
 
     #[test]

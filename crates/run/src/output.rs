@@ -80,6 +80,10 @@ impl OutputFolder {
                 return Err(OutputError::Foreign { path: root.join(name) });
             }
         }
+        let frames = root.join(FRAMES);
+        if frames.exists() && !frames.is_dir() {
+            return Err(OutputError::Foreign { path: frames });
+        }
         let stays = |name: &String| plan.keeps.is_some_and(|keeps| keeps(name));
         if plan.keeps.is_some()
             && let Some(name) = listed.iter().find(|name| !stays(name) && root.join(name).exists())

@@ -175,6 +175,10 @@ impl Session {
         let (state, log) = (self.world.state().clone(), self.world.log().to_vec());
         let other = |error| ChangeError::OtherWorld { setting: setting.to_owned(), error };
         world.resume_edited(state, log).map_err(other)?;
+        world.inherit_stages(&self.world);
+        let told = scene.warnings.into_iter().chain(forecast_warnings(&mut world));
+        let new: Vec<String> = told.filter(|warning| !self.warnings.contains(warning)).collect();
+        self.warnings.extend(new);
         let period = world.state().period;
         self.recording.changes.push(Change { period, setting: setting.to_owned() });
         (self.world, self.bodies, self.probes) = (world, scene.bodies, scene.probes);

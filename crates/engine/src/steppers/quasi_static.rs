@@ -53,7 +53,7 @@ impl QuasiStatic {
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        let Step { system, around, start, timestep } = *step;
+        let Step { system, around, timestep, .. } = *step;
         let implicit = ImplicitStep {
             system,
             around: *around,

@@ -134,7 +134,7 @@ impl Stepper for StaticEquilibrium {
         ws.implicit = Some(buffers);
         let report = outcome?;
         next.v.fill(Vec3::ZERO);
-        system.place_rows(&next.q, &next.v, start + timestep, &mut ws.rows);
+        system.place_rows(&next.q, &next.v, step.end(), &mut ws.rows);
         system.advance_memory(ws, next, around, timestep);
         Ok(report)
     }

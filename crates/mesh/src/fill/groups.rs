@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use souple_math::Vec3;
 
 use crate::boundary::BoundaryFace;
+use crate::implicit::Shape;
 use crate::surface::closest_point_on_triangle;
 use crate::tree::{Aabb, AabbTree};
 use crate::{CellLocator, Group, Mesh, TriangleSurface};
@@ -12,10 +13,29 @@ use crate::{CellLocator, Group, Mesh, TriangleSurface};
 /// The group that every filling has.
 pub(super) const SURFACE: &str = "surface";
 
+/// Areas of the triangles [m²], turned to where the shape that they enclose is not: a file may wind them either way.
+pub(super) fn outward_areas(surface: &TriangleSurface, shape: &dyn Shape) -> Vec<Vec3> {
+    let outward = |triangle: u32| {
+        let area = surface.area_vector(triangle);
+        let centre = surface.corners(triangle).into_iter().sum::<Vec3>() / 3.0;
+        let aside = area.try_normalised().unwrap_or(Vec3::ZERO) * (ASIDE * area.length().sqrt());
+        if shape.value(centre + aside) < shape.value(centre - aside) { -area } else { area }
+    };
+    (0..surface.triangles.len() as u32).map(outward).collect()
+}
+
+/// How far beside a triangle its sides are looked at, in its size.
+const ASIDE: f64 = 1e-3;
+
 /// Gives a filling the groups of the mesh whose `surface` it fills: a face of the filling belongs to those of the nearest
 /// triangle that looks the same way, with its points; a cell to those of the cell of the mesh where its centre lies.
 /// Returns a line for each group that cannot be carried.
-pub(super) fn carry(source: &Mesh, surface: &TriangleSurface, filling: &mut Mesh) -> Vec<String> {
+pub(super) fn carry(
+    source: &Mesh,
+    surface: &TriangleSurface,
+    outward: &[Vec3],
+    filling: &mut Mesh,
+) -> Vec<String> {
     let mut notes = Vec::new();
     let groups: Vec<(&String, &Group)> = source.groups.iter().filter(|(name, _)| *name != SURFACE).collect();
     if groups.len() < source.groups.len() {
@@ -26,7 +46,7 @@ pub(super) fn carry(source: &Mesh, surface: &TriangleSurface, filling: &mut Mesh
     if groups.is_empty() {
         return notes;
     }
-    let faces = nearest_triangles(surface, filling);
+    let faces = nearest_triangles(surface, outward, filling);
     let cells = cells_below(source, filling);
     for (name, group) in groups {
         let is_in = triangles_of(source, surface, group);
@@ -59,7 +79,11 @@ pub(super) fn carry(source: &Mesh, surface: &TriangleSurface, filling: &mut Mesh
 }
 
 /// The faces of the filling's boundary, each with the triangle it stands for.
-fn nearest_triangles(surface: &TriangleSurface, filling: &Mesh) -> Vec<(BoundaryFace, u32)> {
+fn nearest_triangles(
+    surface: &TriangleSurface,
+    outward: &[Vec3],
+    filling: &Mesh,
+) -> Vec<(BoundaryFace, u32)> {
     let count = surface.triangles.len() as u32;
     let tree = AabbTree::build(&(0..count).map(|t| Aabb::of(surface.corners(t))).collect::<Vec<_>>());
     let nearest = |face: &BoundaryFace| {
@@ -72,7 +96,7 @@ fn nearest_triangles(surface: &TriangleSurface, filling: &Mesh) -> Vec<(Boundary
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         // the other side of what is thin may be nearer than this one
         let distance_sq = |triangle: u32| {
-            if surface.area_vector(triangle).dot(normal) <= 0.0 {
+            if outward[triangle as usize].dot(normal) <= 0.0 {
                 return f64::INFINITY;
             }
             let triangle = surface.corners(triangle);

@@ -293,6 +293,13 @@ fn groups_of_a_surface_are_carried() {
     let options = Options::from_values(&values).unwrap();
     let filled = fill_mesh(&shell, Default::default(), &options).unwrap();
     assert!(filled.notes.iter().any(|note| note.contains("`nowhere` reaches no face")), "{:?}", filled.notes);
+    // the same from a shell that is inside out
+    let mut turned = shell.clone();
+    for block in &mut turned.facet_blocks {
+        block.nodes.chunks_exact_mut(3).for_each(|corners| corners.swap(1, 2));
+    }
+    let again = fill_mesh(&turned, Default::default(), &options).unwrap();
+    assert!(again.mesh.groups["left"].points == filled.mesh.groups["left"].points);
     for (name, end) in [("left", 0.0), ("right", 1.0)] {
         let group = &filled.mesh.groups[name];
         let far = |point: &u32| (filled.mesh.points[*point as usize].x - end).abs();

@@ -192,7 +192,9 @@ impl BodyMoment {
     /// would be seen.
     fn is_drawable(&self) -> bool {
         let extent = |points: &[Vec3]| BoundingBox::of(points.iter().copied()).diagonal();
-        self.positions.iter().all(|x| x.is_finite())
-            && extent(&self.positions) <= MOST_GROWTH * extent(&self.mesh.points)
+        let rest = extent(&self.mesh.points);
+        // masses that start at one place may go anywhere
+        let has_run_away = rest > 0.0 && extent(&self.positions) > MOST_GROWTH * rest;
+        self.positions.iter().all(|x| x.is_finite()) && !has_run_away
     }
 }

@@ -330,7 +330,8 @@ pub fn count<const N: u64>(text: &str) -> Result<u64, String> {
 /// A time on the command line [s]: a number of seconds, or a quantity such as `5 ms`.
 pub fn seconds(text: &str) -> Result<f64, String> {
     let number = text.parse().or_else(|_| souple_formal::quantity_in(text, "s"));
-    number.map_err(|error| error.to_string())
+    let number: f64 = number.map_err(|error| error.to_string())?;
+    if number.is_finite() { Ok(number) } else { Err(format!("{number} is no time")) }
 }
 
 /// Reads a scene file.

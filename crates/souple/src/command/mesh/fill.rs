@@ -56,12 +56,15 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
 
 /// A count is met within this part of it, or else it is said.
 const MET: f64 = 0.1;
+/// Fewer cells than this lie in layers of which each is a good part of all.
+const FEW: f64 = 2000.0;
 
 /// What to say of a filling that has not about as many cells as were wanted (0: any number).
 fn missed(wanted: i64, mesh: &Mesh) -> Option<String> {
     let (wanted, cells) = (wanted as f64, mesh.cell_count());
     (wanted > 0.0 && (cells as f64 / wanted - 1.0).abs() > MET).then(|| {
-        format!("{cells} cells are as near to {wanted} as was found: of few cells, whole layers come and go at once")
+        let few = if wanted < FEW { ": of few cells, whole layers come and go at once" } else { "" };
+        format!("{cells} cells are as near to {wanted} as was found{few}")
     })
 }
 
