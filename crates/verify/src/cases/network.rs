@@ -248,8 +248,7 @@ pub(super) const CASES: &[Case] = &[
         what: "the same with a compression threshold of 5 N, pushed to 1 m: f = A S2 + B q",
         settings: &["networks.sample.links[0].law.compression=5"],
         reading: PULL.after(10),
-        // the threshold is passed at 1.010 m: -0.8 x 5 + 0.2 x (1010 - 1016) = -5.2 with S = 1.0152, S2 = -0.0052;
-        // then -0.8 x 5.2 + 0.2 x (1000 - 1015.2 + ...)
+        // -4 - 0.2 x 6 = -5.2 at 1.010 m, whence S = 1.0152 m and S2 = -5.2 mm; then -0.8 x 5.2 - 0.2 x 15.2
         reference: -7.2,
         ..PLASTIC
     },
@@ -265,10 +264,10 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "rheometer_torn_pushes",
         capabilities: &["JIM-51"],
-        what: "torn, it still resists compression: -k (1.008 - 1) at 1 m",
+        what: "torn at 1.015 m, it still resists compression: -k (1 - 0.99) at 0.99 m",
         settings: &["networks.sample.links[0].law.rupture=13.5"],
-        reading: PULL.after(10),
-        reference: -8.0,
+        reading: PULL.after(11),
+        reference: -10.0,
         mutation: "networks.sample.links[0].law.rupture=30",
         ..PLASTIC
     },
