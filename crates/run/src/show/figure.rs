@@ -85,6 +85,8 @@ const BODIES: [[u8; 3]; 5] =
 const ARROW: [u8; 3] = [40, 44, 52];
 /// Most arrows of a body: more hide it.
 const MOST_ARROWS: usize = 400;
+/// Most lines or dots of a body.
+const MOST_LINES: usize = 100_000;
 
 impl Figure {
     /// Pictures of all moments of a show, in one frame and one range of colours.
@@ -159,6 +161,7 @@ impl Figure {
         for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_finite()) {
             surfaces.push(self.surface(body, index).surface);
             strokes.extend(self.arrows_of(body, common.arrow_scale));
+            strokes.extend(self.lines_of(body, index, common.range));
         }
         let coloured = surfaces.iter().any(|surface| !matches!(surface.paint, Paint::Plain(_)));
         surfaces.extend(show.stage.surfaces(moment.time, common.bounds));
@@ -200,6 +203,41 @@ impl Figure {
         }
         surface.surface.edge_style = self.edges;
         surface
+    }
+
+    /// Edges as lines, and points that are in no cell as dots: surfaces show nothing of them.
+    fn lines_of(&self, body: &BodyMoment, index: usize, range: Option<(f64, f64)>) -> Vec<Stroke> {
+        let is_of_edges = body.mesh.dimension() == 1;
+        if !is_of_edges && body.mesh.cell_count() > 0 {
+            return Vec::new();
+        }
+        let values = self.quantity().and_then(|quantity| quantity.at_points(body));
+        let (low, high) = range.unwrap_or((0.0, 1.0));
+        let colour = |point: u32| match &values {
+            Some(values) => {
+                self.colours.colour((values[point as usize] - low) / (high - low).max(f64::MIN_POSITIVE))
+            }
+            None => Colour::from_screen(BODIES[index % BODIES.len()]),
+        };
+        let at = |point: u32| body.positions[point as usize];
+        let mut is_dot = vec![true; body.positions.len()];
+        let mut strokes = Vec::new();
+        let every = body.mesh.cell_count().div_ceil(MOST_LINES).max(1);
+        for (number, cell) in body.mesh.cells().enumerate() {
+            cell.nodes.iter().for_each(|node| is_dot[*node as usize] = false);
+            if number % every == 0 {
+                let shape = StrokeShape::Line(vec![at(cell.nodes[0]), at(cell.nodes[1])]);
+                strokes.push(Stroke { shape, colour: colour(cell.nodes[0]), width: 1.5 });
+            }
+        }
+        let dots = (0..body.positions.len() as u32).filter(|point| is_dot[*point as usize]);
+        let every = dots.clone().count().div_ceil(MOST_LINES).max(1);
+        strokes.extend(dots.step_by(every).map(|point| Stroke {
+            shape: StrokeShape::Dot(at(point)),
+            colour: colour(point),
+            width: 8.0,
+        }));
+        strokes
     }
 
     fn arrows_of(&self, body: &BodyMoment, scale: f64) -> Vec<Stroke> {
