@@ -1,6 +1,6 @@
 //! Masses and links: the recurrence of a mass, oscillators step by step, momenta, and every law on the virtual rheometer.
 
-use crate::{Case, Reading, Tolerance};
+use crate::{Case, Reading, Statistic, Tolerance};
 
 const OSCILLATOR: Case = Case {
     id: "",
@@ -587,5 +587,31 @@ pub(super) const CASES: &[Case] = &[
         source: "φ = -dE/dD",
         mutation: "networks.sample.links[0].law.parameters.k=1000001",
         ..PLASTIC
+    },
+    Case {
+        id: "sand_heap_rests",
+        capabilities: &["JIM-28"],
+        what: "kinetic energy of a heap of balls with friction, four seconds after the first fell",
+        scene: "sand_heap",
+        reading: Reading::last("moving"),
+        reference: 0.0,
+        // 196 balls of 0.5 kg at a tenth of a diameter a second
+        tolerance: Tolerance::Absolute(5e-3),
+        source: "EXP-35: the greatest speed goes to zero",
+        mutation: "networks.sand.crowds[0].friction={ static = 0, kinetic = 0, stiffness = 1, speed = 0.01 }",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "clay_breaks",
+        capabilities: &["JIM-30", "JIM-25"],
+        what: "greatest pull of a cohesive block of sixteen columns: sixteen bonds of k_a (S2 - S)",
+        scene: "clay_sticks_again",
+        reading: Reading::last("pull").taking(Statistic::Min),
+        reference: -1600.0,
+        // drag of the moving layers comes on top
+        tolerance: Tolerance::Relative(0.03),
+        source: "EXP-36: peak force = bonds x k_a (S2 - S)",
+        mutation: "networks.clay.crowds[0].law.cohesion=1100",
+        ..OSCILLATOR
     },
 ];
