@@ -136,8 +136,8 @@ impl Crowd {
             {
                 // the hook as it is while it sticks
                 let across = Mat3::IDENTITY - n.outer(n);
-                position = position - across * friction.stiffness;
-                velocity = velocity - across * (friction.damping * self.0.timestep);
+                position -= across * friction.stiffness;
+                velocity -= across * (friction.damping * self.0.timestep);
             }
             visit([pair.a as u32, pair.b as u32], position * weights.position + velocity * weights.velocity);
         }

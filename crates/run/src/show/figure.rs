@@ -71,6 +71,8 @@ const AXES: [[u8; 3]; 3] = [[200, 48, 48], [40, 150, 70], [50, 90, 210]];
 const AXIS: f64 = 0.03;
 /// Most arrows of a body: more hide it.
 const MOST_ARROWS: usize = 400;
+/// Most dots of a body.
+const MOST_DOTS: usize = 100_000;
 
 impl Figure {
     /// Pictures of all moments of a show, in one frame and one range of colours.
@@ -103,6 +105,7 @@ impl Figure {
             surfaces.push(self.surface(body, index, common).surface);
             strokes.extend(self.arrows_of(body, common.arrow_scale));
             strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
+            strokes.extend(self.dots_of(body, index, common.range));
         }
         let coloured = surfaces.iter().any(|surface| !matches!(surface.paint, Paint::Plain(_)));
         surfaces.extend(show.stage.surfaces(moment.time, common.bounds));
@@ -147,6 +150,32 @@ impl Figure {
             None => surface.surface.paint = Paint::Plain(Colour::from_screen(BODIES[index % BODIES.len()])),
         }
         surface
+    }
+
+    /// Masses that no edge joins, as dots; what edges join is drawn as tubes.
+    fn dots_of(&self, body: &BodyMoment, index: usize, range: Option<(f64, f64)>) -> Vec<Stroke> {
+        if !body.is_of_edges() && body.mesh.cell_count() > 0 {
+            return Vec::new();
+        }
+        let values = self.quantity().and_then(|quantity| quantity.at_points(body));
+        let (low, high) = range.unwrap_or((0.0, 1.0));
+        let colour = |point: u32| match &values {
+            Some(values) => {
+                self.colours.colour((values[point as usize] - low) / (high - low).max(f64::MIN_POSITIVE))
+            }
+            None => Colour::from_screen(BODIES[index % BODIES.len()]),
+        };
+        let mut is_loose = vec![true; body.positions.len()];
+        for node in body.mesh.cells().flat_map(|cell| cell.nodes) {
+            is_loose[*node as usize] = false;
+        }
+        let loose = (0..body.positions.len() as u32).filter(|point| is_loose[*point as usize]);
+        let every = loose.clone().count().div_ceil(MOST_DOTS).max(1);
+        let dot = |point: u32| {
+            let shape = StrokeShape::Dot(body.positions[point as usize]);
+            Stroke { shape, colour: colour(point), width: 8.0 }
+        };
+        loose.step_by(every).map(dot).collect()
     }
 
     fn arrows_of(&self, body: &BodyMoment, scale: f64) -> Vec<Stroke> {

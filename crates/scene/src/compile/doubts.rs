@@ -28,7 +28,8 @@ pub fn warn(draft: &mut Draft) {
     let mut warnings = Vec::new();
     for body in &draft.bodies {
         let size = body.mesh.bounds().diagonal();
-        if !within(size, SIZES) {
+        // huge balls serve networks as walls, lone masses have no size
+        if body.spec.network.is_none() && !within(size, SIZES) {
             let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
             let hint =
                 if size > SIZES[1] { "did you mean mm (`scale = 0.001`)?" } else { "is the scale right?" };

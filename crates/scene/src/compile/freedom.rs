@@ -53,6 +53,10 @@ pub fn check(draft: &mut Draft) {
 
 fn check_system(draft: &Draft, system: usize, warnings: &mut Vec<String>) {
     let (parts, part_of_row) = parts_of(draft, system);
+    if parts.is_empty() {
+        // masses without a link: nothing hangs together
+        return;
+    }
     let joints = joints_of(draft, system);
     for group in groups(parts.len(), &part_of_row, &joints) {
         if group.len() > MOST_PARTS {

@@ -39,7 +39,7 @@ impl LinkLaw for Bingham {
         let pushed = elastic.select_less(q.splat(compression), flowing(compression), elastic);
         let force = q.splat(traction).select_less(elastic, flowing(traction), pushed);
         let moved = (elastic - force) * (1.0 / k);
-        memory[0] = memory[0] + moved;
+        memory[0] += moved;
         Response { push: -force, stored: force * force * (0.5 / k), heat: force * moved }
     }
 

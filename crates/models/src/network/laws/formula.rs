@@ -38,9 +38,9 @@ impl Written {
 
     fn push(&self, reach: &Reach, time: f64) -> f64 {
         match self.kind {
-            Kind::Push => self.formula.evaluate_dual(&self.arguments(reach, time, [0.0; 2]).as_slice()).value,
+            Kind::Push => self.formula.evaluate_dual(self.arguments(reach, time, [0.0; 2]).as_slice()).value,
             Kind::Energy => {
-                -self.formula.evaluate_dual(&self.arguments(reach, time, [1.0, 0.0]).as_slice()).derivative
+                -self.formula.evaluate_dual(self.arguments(reach, time, [1.0, 0.0]).as_slice()).derivative
             }
         }
     }
@@ -61,7 +61,7 @@ impl WrittenLaw for Written {
         let stored = match self.kind {
             Kind::Push => 0.0,
             Kind::Energy => {
-                self.formula.evaluate_dual(&self.arguments(reach, time, [0.0; 2]).as_slice()).value
+                self.formula.evaluate_dual(self.arguments(reach, time, [0.0; 2]).as_slice()).value
             }
         };
         Response { push: self.push(reach, time), stored, heat: 0.0 }
@@ -70,7 +70,7 @@ impl WrittenLaw for Written {
     fn slopes(&self, reach: &Reach, time: f64, _: &[f64]) -> [f64; 2] {
         match self.kind {
             Kind::Push => [[1.0, 0.0], [0.0, 1.0]].map(|rates| {
-                self.formula.evaluate_dual(&self.arguments(reach, time, rates).as_slice()).derivative
+                self.formula.evaluate_dual(self.arguments(reach, time, rates).as_slice()).derivative
             }),
             Kind::Energy => {
                 // formulas carry one rate: the second comes by a central difference of the first
