@@ -8,6 +8,7 @@ mod elements;
 mod energy;
 mod explicit;
 mod filling;
+mod frames;
 mod frequencies;
 mod implicit;
 mod motion;
@@ -39,6 +40,7 @@ pub const TABLES: &[&[Case]] = &[
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
     contact::CASES,
+    frames::CASES,
 ];
 
 /// Every case.
