@@ -127,6 +127,7 @@ pub(super) const CASES: &[Case] = &[
             "bodies.lower.mesh.cells=[4, 2, 4]",
             "bodies.upper.mesh.cells=[4, 2, 4]",
             "bodies.tissue.mesh.cells=[3, 2, 3]",
+            "run.duration=3",
         ],
         reading: Reading::component("pull", 1),
         // (0.4 + 0.4 + 0.072) kg · 9.81 m/s²
