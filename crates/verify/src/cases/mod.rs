@@ -8,6 +8,7 @@ mod elements;
 mod energy;
 mod explicit;
 mod filling;
+mod frames;
 mod frequencies;
 mod implicit;
 mod motion;
@@ -41,6 +42,7 @@ pub const TABLES: &[&[Case]] = &[
     soft_cube::IMPLICIT_STEPS,
     contact::CASES,
     network::CASES,
+    frames::CASES,
 ];
 
 /// Every case.
