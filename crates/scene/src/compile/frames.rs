@@ -216,11 +216,11 @@ pub fn hold_name(body: &str) -> String {
     format!("{body}.pins")
 }
 
-/// A point that pins hold: its number, which directions are held, how it is led.
-pub type HeldPoint = (u32, Vec3, Option<Arc<dyn Motion>>);
+/// A point that pins hold: its number, the directions that are held, how it is led.
+pub type Held = (u32, Vec3, Option<Arc<dyn Motion>>);
 
 /// Springs that hold the points of a body of frames: each as stiff as a thin layer of the material around it.
-pub fn hold(body: &Placed, held: Vec<HeldPoint>) -> Option<Hold> {
+pub fn hold(body: &Placed, held: Vec<Held>) -> Option<Hold> {
     let material =
         body.spec.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok())?;
     let modulus = youngs_modulus(&material.small_strain);
