@@ -7,9 +7,6 @@
 
 use std::sync::LazyLock;
 
-/// Most triangles of a cell.
-pub const MOST_TRIANGLES: usize = 5;
-
 /// The triangles of one pattern of signs: edges of the cell, counterclockwise seen from outside (where values are
 /// negative).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -136,7 +133,7 @@ mod tests {
                 let cut = signs >> low & 1 != signs >> (low | 1 << axis) & 1;
                 assert_eq!(cut, used >> edge & 1 == 1, "pattern {signs}, edge {edge}");
             }
-            assert!(case.triangles.len() <= MOST_TRIANGLES);
+            assert!(case.triangles.len() <= 5);
         }
     }
 
