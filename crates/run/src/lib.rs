@@ -24,7 +24,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use souple_engine::World;
-use souple_scene::{BodyInfo, ProbeInfo, Scene};
+use souple_scene::{BodyInfo, Scene, SkinInfo};
 
 pub use command::{command_from_json, command_to_json};
 pub use duration::{Periods, periods_in};
@@ -118,6 +118,7 @@ pub struct Outcome {
     pub recording: Recording,
     pub world: World,
     pub bodies: Vec<BodyInfo>,
+    pub skins: Vec<SkinInfo>,
 }
 
 /// Runs a scene to its end, to a refused step, or until `watch` stops it.
@@ -141,14 +142,14 @@ pub fn run(
     let steps = periods.count;
     session.warnings.extend(periods.warning);
     session.forecast();
-    let mut folder = output_folder(options, &session.bodies, &session.probes, first_step)?;
+    let mut folder = output_folder(options, &session, first_step)?;
     let mut traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
-    let mut frames = frames::Frames::open(folder.as_ref(), &session.bodies, frame_count, steps)?;
+    let mut frames = frames::Frames::open(folder.as_ref(), &session, frame_count, steps)?;
     let mut status = Status::Done;
     let mut commands = commands_left(options, &session.world).peekable();
     let mut changes = options.changes.iter().peekable();
     session.measure(&mut |probe, time, value| traces[probe].push(time, value));
-    frames.write(folder.as_mut(), &session.world, &session.bodies, 0)?;
+    frames.write(folder.as_mut(), &session, 0)?;
     for step in 1..=steps {
         let now = session.world.state().period;
         while let Some(change) = changes.next_if(|change| change.period <= now) {
@@ -169,7 +170,7 @@ pub fn run(
         if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
             session.push_hash();
         }
-        frames.write(folder.as_mut(), &session.world, &session.bodies, step)?;
+        frames.write(folder.as_mut(), &session, step)?;
         let wall_seconds = session.clock.elapsed().as_secs_f64();
         let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
         let stops = watch(&progress) == Control::Stop && !last;
@@ -186,7 +187,7 @@ pub fn run(
             break;
         }
     }
-    frames.close(folder.as_mut(), &session.world, &session.bodies)?;
+    frames.close(folder.as_mut(), &session)?;
     let span = expect::Span {
         scene_end: duration,
         period,
@@ -203,12 +204,11 @@ pub fn run(
         report::write_all(folder, &report, &traces)?;
         picture::write_plots(folder, &traces)?;
         let path = folder.claim(PICTURE)?;
-        picture::write_picture(&path, &report.title, view, &session.world, &session.bodies)
-            .map_err(OutputError::from)?;
+        picture::write_picture(&path, &report.title, view, &session).map_err(OutputError::from)?;
     }
     let recording = session.recording();
-    let Session { world, bodies, .. } = session;
-    Ok(Outcome { report, traces, recording, world, bodies })
+    let Session { world, bodies, skins, .. } = session;
+    Ok(Outcome { report, traces, recording, world, bodies, skins })
 }
 
 /// The picture of the last state.
@@ -238,15 +238,24 @@ fn commands_left<'a>(
 /// The folder of the run, cleared of the run before.
 fn output_folder(
     options: &Options,
-    bodies: &[BodyInfo],
-    probes: &[ProbeInfo],
+    session: &Session,
     first_step: u64,
 ) -> Result<Option<OutputFolder>, RunError> {
     let Some(out) = &options.out else { return Ok(None) };
+    let (bodies, skins, probes) = (&session.bodies, &session.skins, &session.probes);
     check_file_names("body", bodies.iter().map(|body| body.name.as_str()))?;
+    check_file_names("skin", skins.iter().map(|skin| skin.name.as_str()))?;
     check_file_names("probe", probes.iter().map(|probe| probe.name.as_str()))?;
+    let is_frame = |file: &str| {
+        bodies.iter().any(|body| frames::is_frame_of(&body.name, "vtu", file))
+            || skins.iter().any(|skin| {
+                let name = frames::name_of_skin(skin, bodies);
+                let formats = skin.formats.iter().map(String::as_str);
+                formats.chain(["vtu"]).any(|format| frames::is_frame_of(&name, format, file))
+            })
+    };
     let writes = |name: &str| match name.split_once('/') {
-        Some((output::FRAMES, file)) => bodies.iter().any(|body| frames::is_frame_of(&body.name, file)),
+        Some((output::FRAMES, file)) => is_frame(file),
         _ => {
             name == PICTURE
                 || report::NAMES.contains(&name)

@@ -2,30 +2,22 @@
 
 use std::path::Path;
 
-use souple_engine::World;
 use souple_io::IoError;
 use souple_io::plot::{Axis, Curve, Plot};
-use souple_scene::BodyInfo;
 use souple_scene::spec::picture::PictureView;
 
-use crate::Trace;
 use crate::output::{OutputError, OutputFolder};
 use crate::show::{Figure, Moment, Show, ShowError, Stage};
+use crate::{Session, Trace};
 
-/// All bodies as they stand, coloured by the von Mises stress of their cells, and the shapes they touch.
+/// All bodies and skins as they stand, coloured by the von Mises stress of their cells, and the shapes they touch.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_picture(
-    path: &Path,
-    title: &str,
-    from: PictureView,
-    world: &World,
-    bodies: &[BodyInfo],
-) -> Result<(), IoError> {
-    let mut stage = Stage::of_model(world.model(), from);
+pub fn write_picture(path: &Path, title: &str, from: PictureView, session: &Session) -> Result<(), IoError> {
+    let mut stage = Stage::of_model(session.world.model(), from);
     stage.title = title.to_owned();
-    let moment = Moment::of_world(world, bodies);
+    let moment = Moment::of_session(session);
     let show = Show { stage, moments: Vec::new() };
     let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
     let plain = Figure { colour_by: None, ..figure.clone() };

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use souple_engine::{Model, State};
+use souple_engine::{Model, State, World};
+use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
+use souple_skin::{Lattice, Polygons};
 
 use crate::adjust::Adjustable;
 use crate::compile::compile;
@@ -30,6 +32,7 @@ pub struct Scene {
     pub model: Model,
     pub state: State,
     pub bodies: Vec<BodyInfo>,
+    pub skins: Vec<SkinInfo>,
     pub probes: Vec<ProbeInfo>,
     pub expects: Vec<Expect>,
     /// Values that may be set while it runs.
@@ -58,6 +61,31 @@ pub struct BodyInfo {
     pub surface: TriangleSurface,
     /// Name of its elastic force.
     pub force: String,
+}
+
+/// Where a skin is in the state.
+#[derive(Clone, Debug)]
+pub struct SkinInfo {
+    pub name: String,
+    /// Index of its field.
+    pub field: usize,
+    pub lattice: Lattice,
+    /// Rows that it acts on.
+    pub reactions: usize,
+    /// Formats that its surface is written in beside VTU, by their extensions.
+    pub formats: Vec<String>,
+}
+
+impl SkinInfo {
+    /// The skin as committed.
+    pub fn view<'a>(&self, world: &'a World) -> souple_skin::View<'a> {
+        souple_skin::View::new(&world.state().fields[self.field], self.reactions)
+    }
+
+    /// Its surface as committed, with normals.
+    pub fn surface(&self, world: &World) -> (Polygons, Vec<Vec3>) {
+        souple_skin::surface_of(self.view(world).grid, &self.lattice)
+    }
 }
 
 impl BodyInfo {

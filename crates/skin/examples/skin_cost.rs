@@ -66,11 +66,13 @@ fn seconds_per_step(cells: f64) -> f64 {
         skin.start(-corner, corner, &|p| 0.95 - p.length(), &mut scratch).expect("a ball is a skin");
     let (steps, timestep) = (20, voxel);
     for step in 1..=3 {
-        skin.step(&Moment::at(f64::from(step) * timestep), timestep, &mut field, &mut scratch).expect("it steps");
+        skin.step(&Moment::at(f64::from(step) * timestep), timestep, &mut field, &mut scratch)
+            .expect("it steps");
     }
     let clock = Instant::now();
     for step in 4..4 + steps {
-        skin.step(&Moment::at(f64::from(step) * timestep), timestep, &mut field, &mut scratch).expect("it steps");
+        skin.step(&Moment::at(f64::from(step) * timestep), timestep, &mut field, &mut scratch)
+            .expect("it steps");
     }
     assert!(skin.view(&field).substeps() == 1.0);
     clock.elapsed().as_secs_f64() / f64::from(steps)

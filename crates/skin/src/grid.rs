@@ -331,11 +331,8 @@ mod tests {
         for (index, key) in keys.iter().enumerate() {
             let [bx, by, bz] = block_of(*key).map(|c| c as usize * EDGE);
             for node in 0..NODES {
-                let place = Vec3::new(
-                    (bx + node % 8) as f64,
-                    (by + node / 8 % 8) as f64,
-                    (bz + node / 64) as f64,
-                );
+                let place =
+                    Vec3::new((bx + node % 8) as f64, (by + node / 8 % 8) as f64, (bz + node / 64) as f64);
                 values[NODES * index + node] = f(place);
             }
         }

@@ -14,7 +14,8 @@ use rayon::prelude::*;
 
 use crate::crossings::{Crossings, FIRST_X, FIRST_Y, LAST_X, Layers, back_x, back_y, bits, layers_where};
 use crate::grid::{
-    BAND, EDGE, FARTHEST, Found, Grid, Halo, NODES, Neighbours, block_of, key_of, neighbour, node_of, steps_to, wide,
+    BAND, EDGE, FARTHEST, Found, Grid, Halo, NODES, Neighbours, block_of, key_of, neighbour, node_of,
+    steps_to, wide,
 };
 
 /// Speeds of the nodes around a surface.
@@ -166,16 +167,11 @@ fn beside(neighbours: &Neighbours, crossings: &Crossings, block: usize) -> Layer
 }
 
 /// The mean over the crossings of a node's own edges.
-fn mean_at(
-    neighbours: &Neighbours,
-    crossings: &Crossings,
-    speeds: &[f64],
-    block: usize,
-    node: usize,
-) -> f64 {
+fn mean_at(neighbours: &Neighbours, crossings: &Crossings, speeds: &[f64], block: usize, node: usize) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for axis in 0..3 {
-        for place in [next_node(neighbours, block, node, axis, 0), Some((block, node))].into_iter().flatten() {
+        for place in [next_node(neighbours, block, node, axis, 0), Some((block, node))].into_iter().flatten()
+        {
             let (block, node) = place;
             let (z, bit) = (node / (EDGE * EDGE), node % (EDGE * EDGE));
             if crossings.cut(block)[axis][z] >> bit & 1 == 1 {
@@ -326,22 +322,21 @@ impl Rows for Moving<'_> {
 /// Whether a row and those beside it are beyond the band.
 #[inline(always)]
 fn is_far(f: &[f64], at: usize) -> bool {
-    let far = |start: usize, len: usize| f[start..start + len].iter().fold(true, |far, f| far & (f.abs() >= BAND));
+    let far =
+        |start: usize, len: usize| f[start..start + len].iter().fold(true, |far, f| far & (f.abs() >= BAND));
     let (dy, dz) = (wide(0, 1, 0), wide(0, 0, 1));
-    far(at - 1, EDGE + 2) && far(at - dy, EDGE) && far(at + dy, EDGE) && far(at - dz, EDGE) && far(at + dz, EDGE)
+    far(at - 1, EDGE + 2)
+        && far(at - dy, EDGE)
+        && far(at + dy, EDGE)
+        && far(at - dz, EDGE)
+        && far(at + dz, EDGE)
 }
 
 #[inline(always)]
-fn move_row(
-    f: &[f64],
-    at: usize,
-    values: &[f64; EDGE],
-    known: u8,
-    redistance: f64,
-    out: &mut [f64; EDGE],
-) {
+fn move_row(f: &[f64], at: usize, values: &[f64; EDGE], known: u8, redistance: f64, out: &mut [f64; EDGE]) {
     let (dy, dz) = (wide(0, 1, 0), wide(0, 0, 1));
-    let line = |offset: usize| -> &[f64; EDGE] { f[offset..offset + EDGE].try_into().expect("a row has its nodes") };
+    let line =
+        |offset: usize| -> &[f64; EDGE] { f[offset..offset + EDGE].try_into().expect("a row has its nodes") };
     let c = line(at);
     let (xm, xp) = (line(at - 1), line(at + 1));
     let (ym, yp) = (line(at - dy), line(at + dy));
@@ -417,8 +412,7 @@ pub fn curvature_at(f: &[f64], at: usize) -> (f64, f64) {
     let gauss = (x * x * (yy * zz - yz * yz)
         + y * y * (xx * zz - xz * xz)
         + z * z * (xx * yy - xy * xy)
-        + 2.0
-            * (x * y * (xz * yz - xy * zz) + y * z * (xy * xz - yz * xx) + x * z * (xy * yz - xz * yy)))
+        + 2.0 * (x * y * (xz * yz - xy * zz) + y * z * (xy * xz - yz * xx) + x * z * (xy * yz - xz * yy)))
         / (slope_sq * slope_sq);
     let outside = -c / slope;
     let shrink = (1.0 - outside * curvature + outside * outside * gauss).max(0.25);
@@ -558,15 +552,16 @@ impl Waking {
 
     pub fn bytes(&self) -> usize {
         let layers = size_of::<Layers>() * (self.band.capacity() + self.inside.capacity());
-        layers + self.wanted.capacity() + 8 * (self.woken.capacity() + self.keys.capacity() + self.values.capacity())
+        layers
+            + self.wanted.capacity()
+            + 8 * (self.woken.capacity() + self.keys.capacity() + self.values.capacity())
     }
 }
 
 /// Whether a set has nodes at the border towards a neighbour.
 fn touches(set: &Layers, number: usize) -> bool {
     let [dx, dy, dz] = steps_to(number);
-    let mask = [FIRST_X, !0, LAST_X][(dx + 1) as usize]
-        & [FIRST_Y, !0, FIRST_Y << 56][(dy + 1) as usize];
+    let mask = [FIRST_X, !0, LAST_X][(dx + 1) as usize] & [FIRST_Y, !0, FIRST_Y << 56][(dy + 1) as usize];
     match dz {
         -1 => set[0] & mask != 0,
         1 => set[EDGE - 1] & mask != 0,

@@ -29,12 +29,7 @@ struct EdgePlace {
 ///
 /// Cells belong to the block of their lowest node. Where that block is not kept no cell is cut: a node next to it that
 /// is within the band, or of the other sign, would have woken it.
-pub fn polygonise(
-    grid: Grid,
-    neighbours: &Neighbours,
-    crossings: &Crossings,
-    triangles: &mut Vec<[u32; 3]>,
-) {
+pub fn polygonise(grid: Grid, neighbours: &Neighbours, crossings: &Crossings, triangles: &mut Vec<[u32; 3]>) {
     let places: [EdgePlace; 12] = std::array::from_fn(|edge| {
         let (axis, corner) = edge_place(edge);
         EdgePlace { axis, x: corner & 1, y: corner >> 1 & 1, z: corner >> 2 }
@@ -64,7 +59,8 @@ pub fn polygonise(
             for bit in bits(any & !all) {
                 let mut signs = 0;
                 for corner in 0..4 {
-                    signs |= (below[corner] >> bit & 1) << corner | (above[corner] >> bit & 1) << (corner + 4);
+                    signs |=
+                        (below[corner] >> bit & 1) << corner | (above[corner] >> bit & 1) << (corner + 4);
                 }
                 let case = &CASES[signs as usize];
                 let (x, y) = (bit % EDGE, bit / EDGE);
@@ -225,7 +221,11 @@ impl Audit {
             for k in 1..fan.len() {
                 let end = fan[k - 1][1];
                 let Some(next) = (k..fan.len()).find(|next| fan[*next][0] == end) else {
-                    return Err(if end == fan[0][0] { Torn::Pinched { point: at } } else { Torn::Link { point: at } });
+                    return Err(if end == fan[0][0] {
+                        Torn::Pinched { point: at }
+                    } else {
+                        Torn::Link { point: at }
+                    });
                 };
                 fan.swap(k, next);
             }

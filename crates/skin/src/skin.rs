@@ -65,19 +65,27 @@ pub enum SkinError {
         "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside, or smaller voxels where it is thinner than one"
     )]
     Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
-    #[error("its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`")]
+    #[error(
+        "its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`"
+    )]
     BeyondDomain { place: [f64; 3] },
     #[error("its target does not say where it is; expected a `domain`")]
     NoDomain,
-    #[error("voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_BLOCKS}: larger voxels")]
+    #[error(
+        "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_BLOCKS}: larger voxels"
+    )]
     TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },
-    #[error("it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth")]
+    #[error(
+        "it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth"
+    )]
     Grown { blocks: usize, time: f64 },
     #[error("it left its space, {FARTHEST} blocks of 8 voxels, at t = {time} s")]
     Runaway { time: f64 },
     #[error("its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
     Speed { speed: f64, place: [f64; 3], time: f64 },
-    #[error("a step of {timestep} s would be more than {MOST_SUBSTEPS} sub-steps of {substep:.3e} s: larger voxels, slower terms or shorter steps")]
+    #[error(
+        "a step of {timestep} s would be more than {MOST_SUBSTEPS} sub-steps of {substep:.3e} s: larger voxels, slower terms or shorter steps"
+    )]
     TooManySubsteps { timestep: f64, substep: f64 },
     #[error("{torn} at t = {time} s")]
     Torn { torn: Torn, time: f64 },
@@ -217,7 +225,8 @@ impl Skin {
             let size = (high - low).to_array();
             return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
         }
-        let mut field = FieldState { values: vec![0.0; HEAD + 3 * self.reactions], indices: vec![0; HEAD_INDICES] };
+        let mut field =
+            FieldState { values: vec![0.0; HEAD + 3 * self.reactions], indices: vec![0; HEAD_INDICES] };
         self.sample(first.map(|c| c as i64), counts.map(|c| c as i64), value, &mut field)?;
         if crate::polygons::is_empty(Grid { keys: &[], values: &field.values[self.head()..] }) {
             let (low, high) = (low.to_array(), high.to_array());
@@ -240,7 +249,8 @@ impl Skin {
         field: &mut FieldState,
     ) -> Result<(), SkinError> {
         let lattice = self.lattice;
-        let at = move |node: [i64; 3]| lattice.to_world(Vec3::new(node[0] as f64, node[1] as f64, node[2] as f64));
+        let at =
+            move |node: [i64; 3]| lattice.to_world(Vec3::new(node[0] as f64, node[1] as f64, node[2] as f64));
         let edge = EDGE as i64;
         // slab by slab of blocks along z: a wide block's values, or nothing where it is uniform
         for z in 0..counts[2] {

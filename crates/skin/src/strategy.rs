@@ -87,9 +87,11 @@ fn formula(
     if text.is_empty() {
         return Ok(None);
     }
-    Formula::compile(text, variables)
-        .map(Some)
-        .map_err(|error| TermError { term, parameter, message: error.to_string() })
+    Formula::compile(text, variables).map(Some).map_err(|error| TermError {
+        term,
+        parameter,
+        message: error.to_string(),
+    })
 }
 
 struct Attraction(f64);
@@ -228,7 +230,8 @@ static PRESSURE: TermEntry = Entry {
     parameters: &[Parameter::text("speed", "[m/s] as a formula of t")],
     build: |values| {
         let speed = formula(values, "pressure", "speed", TIME)?;
-        let missing = || TermError { term: "pressure", parameter: "speed", message: "it is empty".to_owned() };
+        let missing =
+            || TermError { term: "pressure", parameter: "speed", message: "it is empty".to_owned() };
         Ok(Box::new(Pressure(speed.ok_or_else(missing)?)))
     },
 };

@@ -103,10 +103,7 @@ fn part(name: &str, values: &[(&'static str, Value<'static>)]) -> Part {
         fn particles(&self, _: &str, _: f64) -> Result<souple_skin::target::Particles, String> {
             Err("there is none".to_owned())
         }
-        fn body_surface(
-            &self,
-            _: &str,
-        ) -> Result<(souple_mesh::TriangleSurface, usize, Vec<u32>), String> {
+        fn body_surface(&self, _: &str) -> Result<(souple_mesh::TriangleSurface, usize, Vec<u32>), String> {
             Err("there is none".to_owned())
         }
     }
@@ -122,9 +119,8 @@ fn part(name: &str, values: &[(&'static str, Value<'static>)]) -> Part {
 #[test]
 fn a_skin_comes_to_rest_on_its_target() {
     let voxel = 0.05;
-    let point = |x: f64| {
-        part("point", &[("at", Value::Vector([x, 0.0, 0.0])), ("radius", Value::Number(0.5))])
-    };
+    let point =
+        |x: f64| part("point", &[("at", Value::Vector([x, 0.0, 0.0])), ("radius", Value::Number(0.5))]);
     let target = Target { parts: vec![point(-0.4), point(0.4)], iso: ISO };
     let mut skin = skin(voxel, vec![term("attraction", &[("strength", number(1.0))])]);
     skin.target = Some(target);

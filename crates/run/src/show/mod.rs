@@ -10,17 +10,18 @@ mod stage;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use souple_engine::World;
 use souple_io::{Dataset, Field, IoError, read_dataset, read_series};
 use souple_math::Vec3;
 use souple_mesh::{BoundingBox, Mesh};
-use souple_scene::BodyInfo;
+use souple_scene::{BodyInfo, SkinInfo};
+
+use crate::Session;
 
 pub use figure::{Arrows, Figure};
 pub use film::{FilmError, write_film};
 pub use stage::Stage;
 
-/// All bodies at one time.
+/// All bodies and skins at one time.
 #[derive(Clone, Debug)]
 pub struct Moment {
     /// [s]
@@ -128,8 +129,9 @@ impl Show {
 }
 
 impl Moment {
-    /// The present state of a world.
-    pub fn of_world(world: &World, bodies: &[BodyInfo]) -> Self {
+    /// The present state of a session.
+    pub fn of_session(session: &Session) -> Self {
+        let world = &session.world;
         let body = |info: &BodyInfo| {
             let (point_fields, cell_fields) = crate::frames::fields(world, info);
             BodyMoment {
@@ -140,7 +142,20 @@ impl Moment {
                 cell_fields,
             }
         };
-        Self { time: world.time(), bodies: bodies.iter().map(body).collect() }
+        let skin = |info: &SkinInfo| {
+            let (mesh, _) = crate::frames::mesh_of_skin(info, world);
+            BodyMoment {
+                name: crate::frames::name_of_skin(info, &session.bodies),
+                positions: mesh.points.clone(),
+                mesh: Arc::new(mesh),
+                point_fields: Vec::new(),
+                cell_fields: Vec::new(),
+            }
+        };
+        // what wears a skin is hidden by it
+        let is_worn = |body: &&BodyInfo| session.skins.iter().any(|skin| skin.name == body.name);
+        let bodies = session.bodies.iter().filter(|body| !is_worn(body)).map(body);
+        Self { time: world.time(), bodies: bodies.chain(session.skins.iter().map(skin)).collect() }
     }
 }
 

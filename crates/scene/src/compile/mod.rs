@@ -11,6 +11,7 @@ mod motion;
 mod pins;
 mod selection;
 mod shape;
+mod skins;
 
 pub(crate) use bodies::solid_name;
 pub(crate) use boundary::constant_vector;
@@ -22,7 +23,7 @@ use souple_engine::{Model, State, System};
 use crate::diagnostic::{Code, Log, Site};
 use crate::inputs::Inputs;
 use crate::measure::ProbeInfo;
-use crate::scene::{BodyInfo, Scene};
+use crate::scene::{BodyInfo, Scene, SkinInfo};
 use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
@@ -44,6 +45,7 @@ pub(crate) struct Draft<'a> {
     pub warnings: Vec<String>,
     /// What hinders rigid motions besides pins.
     pub joints: Vec<Joint>,
+    pub skins: Vec<SkinInfo>,
 }
 
 impl Draft<'_> {
@@ -89,6 +91,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         state: State::default(),
         warnings: Vec::new(),
         joints: Vec::new(),
+        skins: Vec::new(),
     };
     bodies::place(&mut draft)?;
     memory::check_placed(spec, &draft.bodies, log);
@@ -108,6 +111,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     pins::warn_of_idle(&mut draft);
     doubts::warn(&mut draft);
     freedom::check(&mut draft);
+    skins::add(&mut draft);
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
     if !log.is_empty() {
@@ -125,7 +129,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     if !log.is_empty() {
         return None;
     }
-    let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
+    let Draft { bodies, systems, mut model, state, warnings, skins, .. } = draft;
     model.systems = systems;
     let bodies =
         bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
@@ -134,6 +138,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         description: spec.description.clone(),
         shows: spec.shows.clone(),
         bodies: bodies.collect(),
+        skins,
         model,
         state,
         probes,

@@ -10,6 +10,7 @@ pub mod picture;
 pub mod probe;
 pub mod quantity;
 pub mod region;
+pub mod skin;
 pub mod world;
 
 use souple_formal::Formula;
@@ -29,6 +30,7 @@ use expect::{EXPECT, Expect};
 use interaction::{ATTACHMENT, COUPLING, Link};
 use picture::{PICTURE, PictureSpec, PictureView};
 use probe::{PROBE, Probe};
+use skin::{SKIN, SkinSpec};
 use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD, WorldSpec};
 
 /// The version of the format that this crate reads.
@@ -52,6 +54,7 @@ pub(crate) static SCENE: Keys = Keys::new(
         Key::new("contacts", Shape::Tables(&CONTACT), "who touches whom"),
         Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
         Key::new("couplings", Shape::Tables(&COUPLING), "what joins systems"),
+        Key::new("skins", Shape::Named(&SKIN), "surfaces with behaviour of their own"),
         Key::new("probes", Shape::Named(&PROBE), "what is measured"),
         Key::new("expect", Shape::Tables(&EXPECT), "what the probes must read"),
         Key::new("run", Shape::Table(&RUN), "what a run does unless told otherwise"),
@@ -72,6 +75,8 @@ pub struct Spec {
     pub contacts: Vec<Contact>,
     pub attachments: Vec<Link>,
     pub couplings: Vec<Link>,
+    /// Those of bodies among them, by the name of the body.
+    pub skins: Vec<SkinSpec>,
     pub probes: Vec<Probe>,
     pub expects: Vec<Expect>,
     pub run: RunSpec,
@@ -121,6 +126,7 @@ impl Spec {
                 .table("picture")
                 .map_or_else(PictureSpec::default, |picture| PictureSpec::read(&picture)),
             run: reader.table("run").map_or(empty.run, |run| RunSpec::read(&run)),
+            skins: skins(&reader),
             systems,
             probes,
             expects,
@@ -145,6 +151,7 @@ impl Spec {
             contacts: Vec::new(),
             attachments: Vec::new(),
             couplings: Vec::new(),
+            skins: Vec::new(),
             probes: Vec::new(),
             expects: Vec::new(),
             run: RunSpec::default(),
@@ -174,6 +181,12 @@ impl Spec {
                 log.add(Code::UnknownName, site, message, format!("one of {}", known.join(", ")));
             }
         };
+        let skins: Vec<&str> = self.skins.iter().map(|skin| skin.name.as_str()).collect();
+        for probe in &self.probes {
+            if let Some(skin) = &probe.skin {
+                check("skin", skin, &skins, &probe.site);
+            }
+        }
         for body in &self.bodies {
             check("system", &body.system, &systems, &body.site);
         }
@@ -259,6 +272,14 @@ fn unfit_for_files(name: &str) -> Option<String> {
     }
     let bad = name.chars().find(|c| c.is_control() || NOT_IN_FILE_NAMES.contains(c))?;
     Some(format!("it has a {bad:?}"))
+}
+
+/// Skins that stand alone, then those of bodies.
+fn skins(reader: &Reader) -> Vec<SkinSpec> {
+    let alone = reader.named("skins").into_iter().map(|(name, skin)| SkinSpec::read(name, &skin));
+    let bodies = reader.named("bodies").into_iter();
+    let worn = bodies.filter_map(|(name, body)| Some(SkinSpec::of_body(&name, &body.table("skin")?)));
+    alone.chain(worn).collect()
 }
 
 fn contacts(reader: &Reader) -> Vec<Contact> {

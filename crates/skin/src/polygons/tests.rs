@@ -58,8 +58,8 @@ fn surfaces_of_noise_are_manifold() {
 fn balls_and_tori_are_measured() {
     let mut audit = Audit::default();
     let centre = Vec3::new(19.7, 20.1, 19.9);
-    let ball = |radius: f64| move |[x, y, z]: [i64; 3]| {
-        radius - (Vec3::new(x as f64, y as f64, z as f64) - centre).length()
+    let ball = |radius: f64| {
+        move |[x, y, z]: [i64; 3]| radius - (Vec3::new(x as f64, y as f64, z as f64) - centre).length()
     };
     let mut errors = Vec::new();
     for radius in [7.0, 14.0] {
@@ -68,11 +68,16 @@ fn balls_and_tori_are_measured() {
         let (area, volume) = area_and_volume(&surface.points, &surface.triangles);
         assert_eq!(audit.check(surface.points.len(), &surface.triangles).unwrap(), (2, 1));
         let pi = std::f64::consts::PI;
-        errors.push((area / (4.0 * pi * radius * radius) - 1.0, volume / (4.0 / 3.0 * pi * radius.powi(3)) - 1.0));
+        errors.push((
+            area / (4.0 * pi * radius * radius) - 1.0,
+            volume / (4.0 / 3.0 * pi * radius.powi(3)) - 1.0,
+        ));
     }
     // chords fall short by a few (h/R)²/10; half the voxels, a quarter of the error
     assert!(errors[0].0 < 0.0 && errors[0].0 > -0.5 / 49.0, "{errors:?}");
-    assert!((errors[1].0 / errors[0].0 - 0.25).abs() < 0.05 && (errors[1].1 / errors[0].1 - 0.25).abs() < 0.05);
+    assert!(
+        (errors[1].0 / errors[0].0 - 0.25).abs() < 0.05 && (errors[1].1 / errors[0].1 - 0.25).abs() < 0.05
+    );
     let torus = |[x, y, z]: [i64; 3]| {
         let p = Vec3::new(x as f64, y as f64, z as f64) - centre;
         4.0 - ((p.x.hypot(p.y) - 10.0).powi(2) + p.z * p.z).sqrt()
@@ -100,7 +105,6 @@ fn what_is_torn_is_found() {
     turned[3] = [0, 2, 3];
     assert!(audit.check(4, &turned).is_err());
     // two tetrahedra that share a point
-    let two: Vec<[u32; 3]> =
-        tetrahedron.into_iter().chain(tetrahedron.map(|t| t.map(|p| p + 3))).collect();
+    let two: Vec<[u32; 3]> = tetrahedron.into_iter().chain(tetrahedron.map(|t| t.map(|p| p + 3))).collect();
     assert_eq!(audit.check(7, &two), Err(Torn::Pinched { point: 3 }));
 }

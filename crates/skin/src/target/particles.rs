@@ -27,7 +27,10 @@ pub struct Particle {
 pub enum Particles {
     Led(Vec<Particle>),
     /// Rows of a system, each with its radius [m].
-    Rows { system: usize, rows: Vec<(u32, f64)> },
+    Rows {
+        system: usize,
+        rows: Vec<(u32, f64)>,
+    },
 }
 
 /// Kernels reach so far, in radii of their particle.
@@ -62,7 +65,9 @@ impl Cloud {
     pub fn place(&mut self, particles: impl Iterator<Item = (Vec3, f64)>) -> Result<(), String> {
         self.placed.clear();
         self.placed.extend(particles);
-        let is_wrong = |(position, radius): &(Vec3, f64)| !position.is_finite() || !(*radius > 0.0 && radius.is_finite());
+        let is_wrong = |(position, radius): &(Vec3, f64)| {
+            !position.is_finite() || !(*radius > 0.0 && radius.is_finite())
+        };
         if let Some(index) = self.placed.iter().position(is_wrong) {
             let (position, radius) = self.placed[index];
             return Err(format!(
@@ -73,9 +78,10 @@ impl Cloud {
         let Some((first, _)) = self.placed.first() else {
             return Err("there is no particle".to_owned());
         };
-        (self.low, self.high) = self.placed.iter().fold((*first, *first), |(low, high), (p, _)| {
-            (low.min_components(*p), high.max_components(*p))
-        });
+        (self.low, self.high) = self
+            .placed
+            .iter()
+            .fold((*first, *first), |(low, high), (p, _)| (low.min_components(*p), high.max_components(*p)));
         let reach = REACH * self.placed.iter().map(|(_, radius)| *radius).fold(0.0, f64::max);
         let extent = (self.high - self.low).largest_component();
         self.cell = reach.max(extent / (MOST_CELLS - 4.0));

@@ -87,7 +87,8 @@ pub(super) static MESH: PartEntry = Entry {
     source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
     parameters: &[
         Parameter::text("file", "a surface, relative to the scene file that names it"),
-        Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0)),
+        Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file")
+            .or(Value::Number(1.0)),
         WIDTH,
     ],
     build: |values, around| {

@@ -17,13 +17,14 @@ pub trait Warp: Send + Sync {
 pub type BuildWarp = fn(&Values) -> Box<dyn Warp>;
 
 /// All warps.
-pub static WARPS: Table<BuildWarp> =
-    Table { kind: "skin warp", entries: &[&TWIST, &BEND, &TAPER] };
+pub static WARPS: Table<BuildWarp> = Table { kind: "skin warp", entries: &[&TWIST, &BEND, &TAPER] };
 
 const SOURCE: &str = "Barr 1984, Global and local deformations of solid primitives";
 
-const AXIS: Parameter = Parameter::choice("axis", &["x", "y", "z"], "along which it changes").or(Value::Text("x"));
-const CENTRE: Parameter = Parameter::vector("centre", "m", "where nothing changes").or(Value::Vector([0.0; 3]));
+const AXIS: Parameter =
+    Parameter::choice("axis", &["x", "y", "z"], "along which it changes").or(Value::Text("x"));
+const CENTRE: Parameter =
+    Parameter::vector("centre", "m", "where nothing changes").or(Value::Vector([0.0; 3]));
 
 /// An axis and the two across it, right-handed, through a point.
 #[derive(Clone, Copy)]
@@ -121,7 +122,11 @@ static BEND: Entry<BuildWarp> = Entry {
     name: "bend",
     summary: "bends the axis to a circle, towards the next axis in the order x, y, z",
     source: SOURCE,
-    parameters: &[AXIS, CENTRE, Parameter::number("rate", "rad/m", Range::ANY, "angle for each metre, 1/radius")],
+    parameters: &[
+        AXIS,
+        CENTRE,
+        Parameter::number("rate", "rad/m", Range::ANY, "angle for each metre, 1/radius"),
+    ],
     build: |values| Box::new(Bend { frame: Frame::of(values), rate: values.number("rate") }),
 };
 
@@ -152,6 +157,10 @@ static TAPER: Entry<BuildWarp> = Entry {
     name: "taper",
     summary: "scales across the axis by a factor that grows along it",
     source: SOURCE,
-    parameters: &[AXIS, CENTRE, Parameter::number("rate", "1/m", Range::ANY, "growth of the factor for each metre")],
+    parameters: &[
+        AXIS,
+        CENTRE,
+        Parameter::number("rate", "1/m", Range::ANY, "growth of the factor for each metre"),
+    ],
     build: |values| Box::new(Taper { frame: Frame::of(values), rate: values.number("rate") }),
 };
