@@ -63,7 +63,11 @@ pub fn read_particles(path: &Path) -> Result<Vec<ParticleRow>, IoError> {
             match cell.parse::<f64>() {
                 Ok(number) if !number.is_nan() => *value = Some(number),
                 _ => {
-                    return refuse(format!("line {}", number + 1), cell, "a number in each column".to_owned());
+                    return refuse(
+                        format!("line {}", number + 1),
+                        cell,
+                        "a number in each column".to_owned(),
+                    );
                 }
             }
         }

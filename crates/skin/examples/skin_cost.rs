@@ -14,7 +14,7 @@ fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread starts");
     pool.install(|| {
         let mut last: Option<(f64, f64)> = None;
-        for cells in [64.0, 128.0, 256.0, 512.0] {
+        for cells in [64.0, 128.0, 256.0] {
             let seconds = seconds_per_step(cells);
             let exponent = last.map(|(n, s): (f64, f64)| (seconds / s).ln() / (cells / n).ln());
             println!("{cells:5} cells: {:8.2} ms/step, exponent {exponent:?}", 1e3 * seconds);

@@ -17,6 +17,7 @@ use crate::grid::{
     BAND, EDGE, FARTHEST, Found, Grid, Halo, NODES, Neighbours, block_of, key_of, neighbour, node_of,
     steps_to, wide,
 };
+use crate::widest::{Rows, run_widest};
 
 /// Speeds of the nodes around a surface.
 #[derive(Clone, Debug, Default)]
@@ -247,11 +248,6 @@ pub fn advance(grid: Grid, neighbours: &Neighbours, speeds: &Speeds, redistance:
     );
 }
 
-/// A loop over the rows of a block.
-trait Rows {
-    fn run(self);
-}
-
 /// Values that move.
 struct Moving<'a> {
     halo: &'a Halo,
@@ -267,23 +263,6 @@ struct Tense<'a> {
     beside: &'a Layers,
     tension: f64,
     values: &'a mut [f64; NODES],
-}
-
-/// Runs with the widest instructions of this processor.
-fn run_widest<R: Rows>(rows: R) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = pulp::x86::V3::try_new() {
-        struct Wide<R>(R);
-        impl<R: Rows> pulp::NullaryFnOnce for Wide<R> {
-            type Output = ();
-            #[inline(always)]
-            fn call(self) {
-                self.0.run();
-            }
-        }
-        return simd.vectorize(Wide(rows));
-    }
-    rows.run();
 }
 
 /// Half second differences up to this are curvature, larger ones kinks [voxels].

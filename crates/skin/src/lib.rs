@@ -6,6 +6,7 @@
 
 mod cases;
 mod crossings;
+mod dress;
 mod field;
 pub mod grid;
 mod level_set;
@@ -13,7 +14,9 @@ pub mod polygons;
 mod skin;
 pub mod strategy;
 pub mod target;
+mod widest;
 
+pub use dress::dress;
 pub use grid::{Grid, Lattice};
 pub use polygons::{Measures, Polygons};
 pub use skin::{Skin, SkinError, SkinScratch, View, mean_curvature, surface_of};

@@ -6,7 +6,8 @@ use std::f64::consts::PI;
 use souple_engine::FieldState;
 use souple_math::Vec3;
 use souple_skin::strategy::{TERMS, Term};
-use souple_skin::target::{ISO, Moment, PARTS, Part, Surroundings, Target};
+use souple_skin::target::particles::Density;
+use souple_skin::target::{ISO, Moment, PARTS, Part, Particle, Particles, Surroundings, Target};
 use souple_skin::{Lattice, Skin, SkinScratch};
 use souple_table::{Value, Values};
 
@@ -225,4 +226,57 @@ fn bad_targets_end_in_words() {
     let fine = Skin { lattice: Lattice { voxel: 1e-9, origin: Vec3::ZERO }, ..skin };
     let error = fine.start(-corner, corner, &|p| 0.5 - p.length(), &mut fine.new_scratch()).unwrap_err();
     assert!(error.to_string().contains("larger voxels"), "{error}");
+}
+
+/// Particles that become eight of half their radius each do not show: the skin moves by less than half a voxel in every step,
+/// stays in one piece, and goes back to its volume.
+#[test]
+fn splitting_particles_do_not_show() {
+    let (radius, split) = (0.1, 1.0);
+    let mut particles = Vec::new();
+    for i in 0..125_i32 {
+        let place = Vec3::new((i % 5).into(), (i / 5 % 5).into(), (i / 25).into()) * (2.0 * radius);
+        let led = |position: Vec3, radius: f64, during: [f64; 2]| Particle {
+            position,
+            velocity: Vec3::ZERO,
+            radius,
+            during,
+        };
+        particles.push(led(place, radius, [f64::NEG_INFINITY, split]));
+        for corner in 0..8 {
+            let sign = |bit: i32| if corner >> bit & 1 == 1 { 0.5 * radius } else { -0.5 * radius };
+            let child = place + Vec3::new(sign(0), sign(1), sign(2));
+            particles.push(led(child, 0.5 * radius, [split, f64::INFINITY]));
+        }
+    }
+    let terms = vec![
+        term("attraction", &[("strength", number(0.5))]),
+        term("tension", &[("strength", number(0.002))]),
+    ];
+    let mut skin = skin(0.05, terms);
+    let density = Density { particles: Particles::Led(particles) };
+    skin.target = Some(Target { parts: vec![Part::new(Box::new(density))], iso: ISO });
+    let target = skin.target.as_ref().unwrap();
+    let mut placed = target.new_scratch();
+    target.place(&Moment::at(0.0), &mut placed).unwrap();
+    let bounds = target.bounds(&placed).unwrap();
+    let mut scratch = skin.new_scratch();
+    let mut field =
+        skin.start(bounds.low, bounds.high, &|p| target.excess(p, &placed), &mut scratch).unwrap();
+    let timestep = 0.05;
+    let mut before = 0.0;
+    for step in 1..=60 {
+        skin.step(&Moment::at(f64::from(step) * timestep), timestep, &mut field, &mut scratch).unwrap();
+        let view = skin.view(&field);
+        assert_eq!((view.measures().components, view.events()), (1, 0));
+        if step > 10 {
+            assert!(view.speed() * timestep < 0.5 * skin.lattice.voxel, "{} at step {step}", view.speed());
+        }
+        if step == 19 {
+            before = view.measures().volume;
+        }
+    }
+    let after = skin.view(&field).measures().volume;
+    // the finer kernel follows edges and corners more closely, by a part of a particle's radius
+    assert!((after / before - 1.0).abs() < 0.05, "{before} {after}");
 }

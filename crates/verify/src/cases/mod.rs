@@ -13,6 +13,7 @@ mod implicit;
 mod motion;
 mod patch;
 mod rubber;
+mod skins;
 mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
@@ -39,6 +40,7 @@ pub const TABLES: &[&[Case]] = &[
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
     contact::CASES,
+    skins::CASES,
 ];
 
 /// Every case.
