@@ -58,7 +58,7 @@ fn seconds_per_step(cells: f64) -> f64 {
         target: Some(target),
         terms: vec![term("attraction", 0.1), term("tension", 0.01 * voxel)],
         redistance: 0.25,
-        reactions: 0,
+        reaction: None,
     };
     let mut scratch = skin.new_scratch();
     let corner = Vec3::new(1.0, 1.0, 1.0);

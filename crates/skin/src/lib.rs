@@ -11,6 +11,7 @@ mod field;
 pub mod grid;
 mod level_set;
 pub mod polygons;
+pub mod reaction;
 mod skin;
 pub mod strategy;
 pub mod target;

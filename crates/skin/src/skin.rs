@@ -8,6 +8,7 @@ use crate::crossings::Crossings;
 use crate::grid::{BAND, EDGE, FARTHEST, Grid, Halo, Lattice, NODES, Neighbours, key_of, wide};
 use crate::level_set::{Heads, Runaway, Speeds, Waking, advance, curvature_at};
 use crate::polygons::{Audit, Measures, Polygons, Torn, area_and_volume, normals, polygonise};
+use crate::reaction::{Reaction, ReactionScratch, Tense};
 use crate::strategy::{SurfacePoints, Term, Whole};
 use crate::target::{Moment, Target, TargetScratch};
 
@@ -19,8 +20,8 @@ pub struct Skin {
     pub terms: Vec<Box<dyn Term>>,
     /// Share of the way that `|∇f|` goes to 1 in a sub-step.
     pub redistance: f64,
-    /// Rows that the skin acts on, see [`crate::reaction`]; the numbers of them stand before the grid.
-    pub reactions: usize,
+    /// What it does to rows; their forces stand before the grid in State.
+    pub reaction: Option<Reaction>,
 }
 
 /// Numbers at the beginning of a skin's values in State.
@@ -154,6 +155,7 @@ pub struct SkinScratch {
     next: Vec<f64>,
     waking: Waking,
     audit: Audit,
+    reaction: ReactionScratch,
     target: Option<TargetScratch>,
 }
 
@@ -175,6 +177,7 @@ impl SkinScratch {
             + self.spread.bytes()
             + self.waking.bytes()
             + self.audit.bytes()
+            + self.reaction.bytes()
     }
 }
 
@@ -190,8 +193,14 @@ impl Skin {
             next: Vec::new(),
             waking: Waking::default(),
             audit: Audit::default(),
+            reaction: ReactionScratch::default(),
             target: self.target.as_ref().map(Target::new_scratch),
         }
+    }
+
+    /// Rows that it acts on.
+    pub fn reactions(&self) -> usize {
+        self.reaction.as_ref().map_or(0, |reaction| reaction.rows.len())
     }
 
     fn voxel(&self) -> f64 {
@@ -226,7 +235,7 @@ impl Skin {
             return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
         }
         let mut field =
-            FieldState { values: vec![0.0; HEAD + 3 * self.reactions], indices: vec![0; HEAD_INDICES] };
+            FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
         self.sample(first.map(|c| c as i64), counts.map(|c| c as i64), value, &mut field)?;
         if crate::polygons::is_empty(Grid { keys: &[], values: &field.values[self.head()..] }) {
             let (low, high) = (low.to_array(), high.to_array());
@@ -311,7 +320,7 @@ impl Skin {
     }
 
     pub(crate) fn head(&self) -> usize {
-        HEAD + 3 * self.reactions
+        HEAD + 3 * self.reactions()
     }
 
     fn grid<'a>(&self, field: &'a FieldState) -> Grid<'a> {
@@ -367,7 +376,8 @@ impl Skin {
         }
         field.values[SUBSTEPS] = f64::from(substeps);
         self.find_crossings(field, scratch);
-        self.measure(field, scratch, end.time)
+        self.measure(field, scratch, end.time)?;
+        self.react(field, scratch, end)
     }
 
     /// Area and volume as they stand within a step, where a term asks.
@@ -489,9 +499,22 @@ impl Skin {
         Ok(())
     }
 
+    /// Forces on rows, from the surface as it stands now.
+    fn react(&self, field: &mut FieldState, scratch: &mut SkinScratch, at: &Moment) -> Result<(), SkinError> {
+        let Some(reaction) = &self.reaction else { return Ok(()) };
+        let surface = Tense {
+            points: &scratch.crossings.points,
+            triangles: &scratch.triangles,
+            volume: field.values[VOLUME],
+            rest_volume: field.values[REST_VOLUME],
+        };
+        let out = &mut field.values[HEAD..HEAD + 3 * reaction.rows.len()];
+        reaction.act(surface, at, &mut scratch.reaction, out).map_err(SkinError::Target)
+    }
+
     /// A reader's view of the state.
     pub fn view<'a>(&self, field: &'a FieldState) -> View<'a> {
-        View::new(field, self.reactions)
+        View::new(field, self.reactions())
     }
 }
 

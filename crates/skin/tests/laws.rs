@@ -33,7 +33,7 @@ fn skin(voxel: f64, terms: Vec<Box<dyn Term>>) -> Skin {
         target: None,
         terms,
         redistance: 0.25,
-        reactions: 0,
+        reaction: None,
     }
 }
 

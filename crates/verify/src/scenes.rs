@@ -23,6 +23,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("skin_dresses", include_str!("../../../scenes/skin_dresses/scene.toml")),
     ("skin_held", include_str!("../../../scenes/skin_held/scene.toml")),
     ("skin_metamorphosis", include_str!("../../../scenes/skin_metamorphosis/scene.toml")),
+    ("skin_two_way", include_str!("../../../scenes/skin_two_way/scene.toml")),
     ("skin_worn", include_str!("../../../scenes/skin_worn/scene.toml")),
     ("soft_block", include_str!("../../../scenes/soft_block/scene.toml")),
     ("sphere_under_tension", include_str!("../../../scenes/sphere_under_tension/scene.toml")),

@@ -5,6 +5,7 @@ use std::path::Path;
 use souple_engine::FieldState;
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
+use souple_skin::reaction::{Reaction, SkinPush};
 use souple_skin::strategy::Term;
 use souple_skin::target::{Moment, Part, Particle, Particles, Surroundings, Target};
 use souple_skin::{Lattice, Skin, SkinError};
@@ -23,9 +24,15 @@ pub fn add(draft: &mut Draft) {
                 name: skin.name.clone(),
                 field: draft.model.fields.len(),
                 lattice: model.lattice,
-                reactions: model.reactions,
+                reactions: model.reactions(),
                 formats: skin.formats.clone(),
             });
+            if let Some(reaction) = &model.reaction {
+                let rows = reaction.rows.iter().map(|(row, _)| *row).collect();
+                let field = draft.model.fields.len();
+                let push = SkinPush { name: format!("{}.skin", skin.name), field, rows };
+                draft.systems[reaction.system].forces.push(Box::new(push));
+            }
             draft.model.fields.push(Box::new(model));
             draft.state.fields.push(field);
         }
@@ -52,7 +59,7 @@ fn build(draft: &Draft, spec: &SkinSpec) -> Option<(Skin, FieldState)> {
         target: (!target.parts.is_empty()).then_some(target),
         terms: terms?,
         redistance: spec.redistance,
-        reactions: 0,
+        reaction: reaction(draft, spec)?,
     };
     if skin.target.is_none() && skin.terms.iter().any(|term| term.needs_target()) {
         let message = format!("skin `{}` is drawn to a target, and has no `parts`", spec.name);
@@ -71,6 +78,19 @@ fn build(draft: &Draft, spec: &SkinSpec) -> Option<(Skin, FieldState)> {
     };
     let field = started.map_err(refuse).ok()?;
     Some((skin, field))
+}
+
+/// What the skin of a body does to it; the outer `None` where that was refused.
+fn reaction(draft: &Draft, spec: &SkinSpec) -> Option<Option<Reaction>> {
+    let Some(push) = &spec.push else { return Some(None) };
+    let Some(body) = draft.body(&spec.name) else { return Some(None) };
+    let Some(radius) = push.radius else {
+        let message = format!("the skin of body `{}` pushes particles, and has no `radius` of them", spec.name);
+        draft.log.add(Code::MissingKey, &spec.site, message, "radius = LENGTH beside");
+        return None;
+    };
+    let rows = body.rows.clone().map(|row| (row as u32, radius)).collect();
+    Some(Some(Reaction { system: body.system, rows, tension: push.tension, pressure: push.pressure }))
 }
 
 /// What a skin begins as, where that is not its target.

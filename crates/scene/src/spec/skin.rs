@@ -103,8 +103,30 @@ pub(crate) static BODY_SKIN: Keys = Keys::new(
             "of the body's points as particles, half the distance between them; where left out the skin dresses the body's surface",
         ),
         TERMS_KEY,
+        Key::new("push", Shape::Table(&SKIN_PUSH), "what it does to the body's points"),
     ],
 );
+
+static SKIN_PUSH: Keys = Keys::new(
+    "skin_push",
+    "what a skin does to the particles it dresses",
+    &[
+        Key::number("tension", "N/m", Range::NOT_NEGATIVE, "of its surface").or(Value::Number(0.0)),
+        Key::number("pressure", "Pa", Range::NOT_NEGATIVE, "outward, for each relative loss of its volume")
+            .or(Value::Number(0.0)),
+    ],
+);
+
+/// What a skin does to the particles it dresses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PushSpec {
+    /// [N/m]
+    pub tension: f64,
+    /// [Pa]
+    pub pressure: f64,
+    /// Of the particles [m].
+    pub radius: Option<f64>,
+}
 
 /// A part of a target.
 pub struct PartSpec {
@@ -132,6 +154,7 @@ pub struct SkinSpec {
     pub parts: Vec<PartSpec>,
     pub start: Vec<PartSpec>,
     pub terms: Vec<Chosen<BuildTerm>>,
+    pub push: Option<PushSpec>,
     /// Extensions of formats that a run writes it in.
     pub formats: Vec<String>,
     pub site: Site,
@@ -181,6 +204,7 @@ impl SkinSpec {
         }
         Self {
             formats,
+            push: None,
             name,
             voxel: reader.number("voxel"),
             origin: reader.vector("origin"),
@@ -211,7 +235,12 @@ impl SkinSpec {
 
     /// The skin of a body, which has the body's name.
     pub(crate) fn of_body(body: &str, reader: &Reader) -> Self {
-        let bare = Self::bare(body.to_owned(), reader);
+        let push = reader.table("push").map(|push| PushSpec {
+            tension: push.number("tension"),
+            pressure: push.number("pressure"),
+            radius: reader.maybe_number("radius"),
+        });
+        let bare = Self { push, ..Self::bare(body.to_owned(), reader) };
         let mut values = Values::new();
         let (part, text) = match reader.maybe_number("radius") {
             Some(radius) => {

@@ -128,6 +128,10 @@ impl Cloud {
         sum
     }
 
+    pub fn bytes(&self) -> usize {
+        size_of::<(Vec3, f64)>() * self.placed.capacity() + 16 * self.sorted.capacity()
+    }
+
     /// Position and radius of each [m].
     pub fn particles(&self) -> &[(Vec3, f64)] {
         &self.placed
