@@ -7,9 +7,7 @@
 
 use std::any::Any;
 
-use souple_engine::{
-    Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights,
-};
+use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 

@@ -234,8 +234,7 @@ impl Skin {
             let size = (high - low).to_array();
             return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
         }
-        let mut field =
-            FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
+        let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
         self.sample(first.map(|c| c as i64), counts.map(|c| c as i64), value, &mut field)?;
         if crate::polygons::is_empty(Grid { keys: &[], values: &field.values[self.head()..] }) {
             let (low, high) = (low.to_array(), high.to_array());
@@ -278,10 +277,11 @@ impl Skin {
                         let node = [i % 10, i / 10 % 10, i / 100];
                         let place = at([0, 1, 2].map(|axis| edge * block[axis] + node[axis] - 1));
                         let f = value(place);
+                        let is_own = node.iter().all(|c| (1..=edge).contains(c));
                         if !f.is_finite() {
                             return Err(SkinError::TargetNotANumber { value: f, place: place.to_array() });
                         }
-                        if is_border && f > 0.0 {
+                        if is_border && is_own && f > 0.0 {
                             return Err(SkinError::BeyondDomain { place: place.to_array() });
                         }
                         (inside, outside) = (inside | (f > 0.0), outside | (f <= 0.0));

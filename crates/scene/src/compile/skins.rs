@@ -85,7 +85,8 @@ fn reaction(draft: &Draft, spec: &SkinSpec) -> Option<Option<Reaction>> {
     let Some(push) = &spec.push else { return Some(None) };
     let Some(body) = draft.body(&spec.name) else { return Some(None) };
     let Some(radius) = push.radius else {
-        let message = format!("the skin of body `{}` pushes particles, and has no `radius` of them", spec.name);
+        let message =
+            format!("the skin of body `{}` pushes particles, and has no `radius` of them", spec.name);
         draft.log.add(Code::MissingKey, &spec.site, message, "radius = LENGTH beside");
         return None;
     };
