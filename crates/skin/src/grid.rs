@@ -12,7 +12,7 @@ pub const EDGE: usize = 8;
 /// Nodes of a block, x fastest.
 pub const NODES: usize = EDGE * EDGE * EDGE;
 /// Half the width of the band around the surface [voxels].
-pub const BAND: f64 = 4.0;
+pub const BAND: f64 = 5.0;
 
 /// Bits of a coordinate of a block in its key.
 const BITS: u32 = 21;

@@ -39,7 +39,7 @@ fn nodes(set: &Layers) -> impl Iterator<Item = usize> {
 }
 
 /// Layers of nodes beyond those beside the surface that speeds are carried to.
-const CARRIED: usize = 3;
+const CARRIED: usize = 4;
 
 /// Steps to the six nearest neighbours of a block, by axis: below and above.
 const BESIDE: [[usize; 2]; 3] = [
@@ -272,7 +272,7 @@ const SMOOTH: f64 = 0.125;
 const SLOW: f64 = 0.1;
 /// Nodes further out are relaxed to a distance, to first order; what is nearer keeps the distance it came with, because a
 /// kink at the surface of the size of its curvature would be felt as one [voxels].
-const SETTLED: f64 = 1.5;
+const SETTLED: f64 = 2.5;
 /// No curvature is felt beyond that of a ball of one voxel's radius [1/voxel].
 const SHARPEST: f64 = 2.0;
 
