@@ -25,7 +25,7 @@ struct Sorted {
 /// # Errors
 /// A particle is nowhere or has no radius; the voxels are too small for so large a cloud, or too large to see it.
 pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygons, Vec<Vec3>), SkinError> {
-    let is_wrong = |(x, radius): &(Vec3, f64)| !x.is_finite() || !(*radius > 0.0 && radius.is_finite());
+    let is_wrong = |(x, radius): &(Vec3, f64)| !(x.is_finite() && *radius > 0.0 && radius.is_finite());
     if let Some(index) = particles.iter().position(is_wrong) {
         let (position, radius) = particles[index];
         let place = position.to_array();
@@ -41,8 +41,8 @@ pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygon
     let sorted = sort(particles, &lattice)?;
     // blocks that a particle of a neighbouring block may reach
     let steps = (reach / EDGE as f64).ceil();
-    if !((2.0 * steps + 1.0).powi(3) * sorted.blocks.len() as f64 <= 64.0 * MOST_BLOCKS as f64) {
-        let blocks = (2.0 * steps + 1.0).powi(3) * sorted.blocks.len() as f64;
+    let blocks = (2.0 * steps + 1.0).powi(3) * sorted.blocks.len() as f64;
+    if blocks.is_nan() || blocks > 64.0 * MOST_BLOCKS as f64 {
         return Err(SkinError::TooManyBlocks { voxel, size: [2.0 * reach * voxel; 3], blocks });
     }
     let steps = steps as i64;

@@ -229,8 +229,8 @@ impl Skin {
         let last = self.lattice.to_voxels(high).to_array().map(|c| (c / edge).floor() + 1.0);
         let counts = [0, 1, 2].map(|axis| (last[axis] - first[axis] + 1.0).max(1.0));
         let blocks: f64 = counts.iter().product();
-        let far = first.iter().chain(&last).any(|c| !(c.abs() < FARTHEST as f64));
-        if far || !(blocks <= 64.0 * MOST_BLOCKS as f64) {
+        let far = first.iter().chain(&last).any(|c| c.is_nan() || c.abs() >= FARTHEST as f64);
+        if far || blocks.is_nan() || blocks > 64.0 * MOST_BLOCKS as f64 {
             let size = (high - low).to_array();
             return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
         }
@@ -262,7 +262,7 @@ impl Skin {
         let edge = EDGE as i64;
         // slab by slab of blocks along z: a wide block's values, or nothing where it is uniform
         for z in 0..counts[2] {
-            let slab: Vec<Result<Option<(u64, Vec<f64>)>, SkinError>> = (0..counts[0] * counts[1])
+            let slab: Vec<Result<Sampled, SkinError>> = (0..counts[0] * counts[1])
                 .into_par_iter()
                 .map(|i| {
                     let block = [first[0] + i % counts[0], first[1] + i / counts[0], first[2] + z];
@@ -362,7 +362,7 @@ impl Skin {
             let (fastest, answer) = self.add_speeds(field, scratch, now)?;
             let substep = self.longest_substep(fastest, answer);
             let count = (left / substep).ceil().max(1.0);
-            if !(count + f64::from(substeps) <= f64::from(MOST_SUBSTEPS)) {
+            if count.is_nan() || count + f64::from(substeps) > f64::from(MOST_SUBSTEPS) {
                 return Err(SkinError::TooManySubsteps { timestep, substep });
             }
             let substep = left / count;
@@ -517,6 +517,9 @@ impl Skin {
         View::new(field, self.reactions())
     }
 }
+
+/// The key and the values of a block; nothing of one beyond the band.
+type Sampled = Option<(u64, Vec<f64>)>;
 
 /// Values over the greatest slope to a neighbour, of a block with the nodes around it: near distances in voxels.
 fn distances(values: &[f64]) -> Vec<f64> {

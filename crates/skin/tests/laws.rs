@@ -15,7 +15,7 @@ fn term(name: &str, values: &[(&'static str, Value<'static>)]) -> Box<dyn Term> 
     let entry = TERMS.find(name).unwrap();
     let mut given = Values::new();
     for (name, value) in values {
-        given.set((*name).to_owned(), value.clone());
+        given.set((*name).to_owned(), *value);
     }
     (entry.build)(&entry.values(given).unwrap()).unwrap()
 }
@@ -111,7 +111,7 @@ fn part(name: &str, values: &[(&'static str, Value<'static>)]) -> Part {
     let entry = PARTS.find(name).unwrap();
     let mut given = Values::new();
     for (name, value) in values {
-        given.set((*name).to_owned(), value.clone());
+        given.set((*name).to_owned(), *value);
     }
     Part::new((entry.build)(&entry.values(given).unwrap(), &Nothing).unwrap())
 }
@@ -216,7 +216,7 @@ fn bad_targets_end_in_words() {
     let mut scratch = skin.new_scratch();
     let corner = Vec3::new(1.0, 1.0, 1.0);
     let mut refused = |value: &(dyn Fn(Vec3) -> f64 + Sync)| {
-        skin.start(-corner, corner, value, &mut scratch).err().expect("it is refused").to_string()
+        skin.start(-corner, corner, value, &mut scratch).expect_err("it is refused").to_string()
     };
     assert!(refused(&|_| -1.0).contains("inside nowhere"));
     assert!(refused(&|_| 1.0).contains("on the border"));

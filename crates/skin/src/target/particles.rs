@@ -65,9 +65,8 @@ impl Cloud {
     pub fn place(&mut self, particles: impl Iterator<Item = (Vec3, f64)>) -> Result<(), String> {
         self.placed.clear();
         self.placed.extend(particles);
-        let is_wrong = |(position, radius): &(Vec3, f64)| {
-            !position.is_finite() || !(*radius > 0.0 && radius.is_finite())
-        };
+        let is_wrong =
+            |(position, radius): &(Vec3, f64)| !(position.is_finite() && *radius > 0.0 && radius.is_finite());
         if let Some(index) = self.placed.iter().position(is_wrong) {
             let (position, radius) = self.placed[index];
             return Err(format!(
