@@ -7,6 +7,7 @@ use souple_math::Vec3;
 use crate::constraint::Constraint;
 use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
+use crate::force::Scratch;
 use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
 use crate::steppers::{Step, StepError, StepReport};
@@ -23,7 +24,12 @@ pub trait Field: Send + Sync {
         (field.values.len(), field.indices.len()) == (current.values.len(), current.indices.len())
     }
 
-    /// Moves `field` on from `start` to `start + timestep` seconds, reading the committed rows of all systems.
+    fn new_scratch(&self) -> Scratch {
+        Box::new(())
+    }
+
+    /// Moves `field` on from `start` to `start + timestep` seconds, reading the committed rows of all systems. What the
+    /// scratch holds must not change a bit of the result.
     ///
     /// # Errors
     /// The field cannot be stepped; says why.
@@ -33,7 +39,13 @@ pub trait Field: Send + Sync {
         start: f64,
         timestep: f64,
         field: &mut FieldState,
+        scratch: &mut Scratch,
     ) -> Result<(), String>;
+
+    /// Bytes of constant data and of a scratch on the heap, for the memory report.
+    fn bytes(&self, _scratch: &Scratch) -> usize {
+        0
+    }
 }
 
 /// The rows of all systems as they stand at the end of a period.
@@ -61,6 +73,8 @@ pub struct Model {
 /// Scratch of the world.
 pub struct Workspace {
     pub systems: Vec<SystemWorkspace>,
+    /// One for each field.
+    field_scratches: Vec<Scratch>,
     /// The next State, swapped in when a step is complete.
     next: State,
     /// For each coupling the number of its force in the faster system.
@@ -113,7 +127,8 @@ impl Model {
             forces.iter().position(|force| force.name() == name)
         };
         let fast_ends = self.couplings.iter().map(fast_end).collect();
-        let workspace = Workspace { systems, next: state.clone(), fast_ends };
+        let field_scratches = self.fields.iter().map(|field| field.new_scratch()).collect();
+        let workspace = Workspace { systems, field_scratches, next: state.clone(), fast_ends };
         let mut world =
             World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
         world.place_all_rows();
@@ -194,7 +209,9 @@ impl World {
             let constraints = size_of::<Constraint>() * system.constraints.capacity();
             forces + constraints + system.mass.bytes() + system.kinematics.bytes() + ws.bytes(system)
         });
-        systems.sum::<usize>() + self.state.bytes() + self.workspace.next.bytes()
+        let fields = self.model.fields.iter().zip(&self.workspace.field_scratches);
+        let fields: usize = fields.map(|(field, scratch)| field.bytes(scratch)).sum();
+        systems.sum::<usize>() + fields + self.state.bytes() + self.workspace.next.bytes()
     }
 
     /// Changes the world between steps, and keeps the command for replay.
@@ -356,8 +373,9 @@ impl World {
 
     fn step_fields(&mut self, start: f64, next: &mut State) -> Result<(), WorldError> {
         let rows = CommittedRows(&self.workspace.systems);
-        for (field, state) in self.model.fields.iter().zip(&mut next.fields) {
-            field.step(rows, start, self.model.period, state).map_err(|message| WorldError {
+        let scratches = &mut self.workspace.field_scratches;
+        for ((field, state), scratch) in self.model.fields.iter().zip(&mut next.fields).zip(scratches) {
+            field.step(rows, start, self.model.period, state, scratch).map_err(|message| WorldError {
                 place: format!("field `{}`", field.name()),
                 error: StepError::Field(message),
             })?;

@@ -15,6 +15,7 @@ mod gmsh;
 mod holds;
 mod obj;
 mod off;
+mod particles;
 mod parts;
 pub mod picture;
 pub mod plot;
@@ -34,4 +35,5 @@ pub use format::{
     read_mesh, read_mesh_bytes, read_mesh_content, write_dataset, write_dataset_as, write_mesh,
 };
 pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
+pub use particles::{ParticleRow, read_particles};
 pub use vtk::{Series, read_series};

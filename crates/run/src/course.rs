@@ -68,15 +68,14 @@ impl Course {
             Ok(status) => status,
             Err(error) => self.session.fail(&error),
         };
-        if let Err(error) = self.frames.close(self.folder.as_mut(), &self.session.world, &self.session.bodies)
-        {
+        if let Err(error) = self.frames.close(self.folder.as_mut(), &self.session) {
             status = self.session.fail(&error.into());
         }
         let report = self.conclude(status, aims);
         let recording = self.session.recording();
         let replaced = self.folder.as_ref().map_or(0, OutputFolder::replaced);
-        let Session { world, bodies, .. } = self.session;
-        Outcome { report, traces: self.traces, recording, world, bodies, replaced }
+        let Session { world, bodies, skins, .. } = self.session;
+        Outcome { report, traces: self.traces, recording, world, bodies, skins, replaced }
     }
 
     /// # Errors
@@ -92,7 +91,7 @@ impl Course {
         let commands = commands_left(options, &session.world).peekable();
         let mut dues = Dues { commands, changes: options.changes.iter().peekable() };
         session.measure(&mut |probe, time, value| traces[probe].push(time, value));
-        frames.write(folder.as_mut(), &session.world, &session.bodies, 0)?;
+        frames.write(folder.as_mut(), session, 0)?;
         for step in 1..=steps {
             dues.make(session)?;
             if !session.step() {
@@ -104,7 +103,7 @@ impl Course {
             if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
                 session.push_hash();
             }
-            frames.write(folder.as_mut(), &session.world, &session.bodies, step)?;
+            frames.write(folder.as_mut(), session, step)?;
             let wall_seconds = session.clock.elapsed().as_secs_f64();
             let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
             let stops = watch(&progress) == Control::Stop && !last;
@@ -126,7 +125,7 @@ impl Course {
     /// The report, written with tables and pictures where the run has a folder.
     fn conclude(&mut self, status: Status, aims: &Aims) -> Report {
         let Self { session, folder, traces, frames } = self;
-        let drawable = folder.as_ref().and_then(|_| frames.drawable(&session.world, &session.bodies));
+        let drawable = folder.as_ref().and_then(|_| frames.drawable(session));
         if let Some(moment) = &drawable
             && moment.time < session.world.time()
         {

@@ -1,16 +1,22 @@
-//! The frames of a run: a series of files for ParaView per body.
+//! The frames of a run: a series of files for ParaView per body and per skin, and a skin's surface in other formats.
+
+use std::path::{Path, PathBuf};
 
 use souple_engine::{Force, Model, World};
-use souple_io::{Facets, Field, Output, Precision, Series};
+use souple_io::{Facets, Field, Output, Precision, Series, write_mesh};
 use souple_math::Vec3;
-use souple_scene::BodyInfo;
+use souple_mesh::{ElementKind, Mesh};
+use souple_scene::{BodyInfo, SkinInfo};
 
+use crate::Session;
 use crate::output::{FRAMES, OutputError, OutputFolder};
 use crate::show::Moment;
 
 /// Writes frames at even distances; none where the run has no folder.
 pub struct Frames {
-    series: Vec<Series>,
+    folder: PathBuf,
+    bodies: Vec<Series>,
+    skins: Vec<Series>,
     /// Steps between frames.
     every: u64,
     last_written: Option<u64>,
@@ -22,61 +28,53 @@ pub struct Frames {
 impl Frames {
     pub fn open(
         folder: Option<&OutputFolder>,
-        bodies: &[BodyInfo],
+        session: &Session,
         count: u64,
         steps: u64,
     ) -> Result<Self, OutputError> {
-        let mut series = Vec::new();
+        let (mut bodies, mut skins) = (Vec::new(), Vec::new());
+        let mut path = PathBuf::new();
         if let Some(folder) = folder.filter(|_| count > 0) {
-            let folder = folder.frames()?;
-            series = bodies.iter().map(|body| Series::new(&folder, &body.name)).collect();
+            path = folder.frames()?;
+            bodies = session.bodies.iter().map(|body| Series::new(&path, &body.name)).collect();
+            let name = |skin| name_of_skin(skin, &session.bodies);
+            skins = session.skins.iter().map(|skin| Series::new(&path, name(skin))).collect();
         }
         let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };
-        Ok(Self { series, every, last_written: None, step: 0, drawable: None })
+        Ok(Self { folder: path, bodies, skins, every, last_written: None, step: 0, drawable: None })
     }
 
     /// The frame of a step, if one is due.
     pub fn write(
         &mut self,
         folder: Option<&mut OutputFolder>,
-        world: &World,
-        bodies: &[BodyInfo],
+        session: &Session,
         step: u64,
     ) -> Result<(), OutputError> {
         self.step = step;
         match folder {
-            Some(folder) if step.is_multiple_of(self.every) => self.write_now(folder, world, bodies),
+            Some(folder) if step.is_multiple_of(self.every) => self.write_now(folder, session),
             _ => Ok(()),
         }
     }
 
     /// The last frame, however the run ended.
-    pub fn close(
-        &mut self,
-        folder: Option<&mut OutputFolder>,
-        world: &World,
-        bodies: &[BodyInfo],
-    ) -> Result<(), OutputError> {
+    pub fn close(&mut self, folder: Option<&mut OutputFolder>, session: &Session) -> Result<(), OutputError> {
         match folder {
-            Some(folder) if self.last_written != Some(self.step) => self.write_now(folder, world, bodies),
+            Some(folder) if self.last_written != Some(self.step) => self.write_now(folder, session),
             _ => Ok(()),
         }
     }
 
-    /// The state of a world, or the last frame before it that can be drawn.
-    pub fn drawable(&self, world: &World, bodies: &[BodyInfo]) -> Option<Moment> {
-        let now = Moment::of_world(world, bodies, self.drawable.as_ref());
+    /// The state of a session, or the last frame before it that can be drawn.
+    pub fn drawable(&self, session: &Session) -> Option<Moment> {
+        let now = Moment::of_session(session, self.drawable.as_ref());
         if now.is_drawable() { Some(now) } else { self.drawable.clone() }
     }
 
-    fn write_now(
-        &mut self,
-        folder: &mut OutputFolder,
-        world: &World,
-        bodies: &[BodyInfo],
-    ) -> Result<(), OutputError> {
-        let moment = Moment::of_world(world, bodies, self.drawable.as_ref());
-        for (series, body) in self.series.iter_mut().zip(&moment.bodies) {
+    fn write_now(&mut self, folder: &mut OutputFolder, session: &Session) -> Result<(), OutputError> {
+        let moment = Moment::of_session(session, self.drawable.as_ref());
+        for (series, body) in self.bodies.iter_mut().zip(&moment.bodies) {
             let output = Output {
                 mesh: &body.mesh,
                 positions: Some(&body.positions),
@@ -85,10 +83,25 @@ impl Frames {
                 facets: Facets::LeftOut,
                 precision: precision_for(&body.positions),
             };
-            for name in series.next_names() {
+            push(folder, series, moment.time, &output)?;
+        }
+        for (series, skin) in self.skins.iter_mut().zip(&session.skins) {
+            let (mesh, normals) = mesh_of_skin(skin, &session.world);
+            for format in &skin.formats {
+                let [frame, _] = series.next_names();
+                let name = frame.replace(".vtu", &format!(".{format}"));
                 folder.claim(&format!("{FRAMES}/{name}"))?;
+                write_mesh(&self.folder.join(Path::new(&name)), &mesh)?;
             }
-            series.push(moment.time, &output)?;
+            let output = Output {
+                mesh: &mesh,
+                positions: None,
+                point_fields: &[Field::new("normal", 3, flat(&normals))],
+                cell_fields: &[],
+                facets: Facets::LeftOut,
+                precision: precision_for(&mesh.points),
+            };
+            push(folder, series, moment.time, &output)?;
         }
         if moment.is_drawable() {
             self.drawable = Some(moment);
@@ -96,6 +109,33 @@ impl Frames {
         self.last_written = Some(self.step);
         Ok(())
     }
+}
+
+fn push(
+    folder: &mut OutputFolder,
+    series: &mut Series,
+    time: f64,
+    output: &Output,
+) -> Result<(), OutputError> {
+    for name in series.next_names() {
+        folder.claim(&format!("{FRAMES}/{name}"))?;
+    }
+    series.push(time, output)?;
+    Ok(())
+}
+
+/// The name of a skin's files: its own, `NAME.skin` for that of a body.
+pub fn name_of_skin(skin: &SkinInfo, bodies: &[BodyInfo]) -> String {
+    let is_worn = bodies.iter().any(|body| body.name == skin.name);
+    if is_worn { format!("{}.skin", skin.name) } else { skin.name.clone() }
+}
+
+/// A skin's triangles as they stand, and its normals.
+pub fn mesh_of_skin(skin: &SkinInfo, world: &World) -> (Mesh, Vec<Vec3>) {
+    let (surface, normals) = skin.surface(world);
+    let mut mesh = Mesh { points: surface.points, ..Mesh::default() };
+    surface.triangles.iter().for_each(|corners| mesh.push_cell(ElementKind::Tri3, corners));
+    (mesh, normals)
 }
 
 /// Single, unless a run that went astray left coordinates which would become infinite by it: such a frame could not
@@ -124,10 +164,10 @@ fn flat(vectors: &[Vec3]) -> Vec<f64> {
     vectors.iter().flat_map(|vector| vector.to_array()).collect()
 }
 
-/// Whether a file in the folder of frames may be a body's: `NAME.pvd` or `NAME_0000.vtu`.
-pub fn is_frame_of(body: &str, file: &str) -> bool {
-    let Some(rest) = file.strip_prefix(body) else { return false };
-    let number = rest.strip_prefix('_').and_then(|rest| rest.strip_suffix(".vtu"));
+/// Whether a file in the folder of frames may be a body's or a skin's: `NAME.pvd` or `NAME_0000.vtu`.
+pub fn is_frame_of(name: &str, format: &str, file: &str) -> bool {
+    let Some(rest) = file.strip_prefix(name) else { return false };
+    let number = rest.strip_prefix('_').and_then(|rest| rest.strip_suffix(format)?.strip_suffix('.'));
     rest == ".pvd"
         || number.is_some_and(|digits| digits.len() >= 4 && digits.bytes().all(|b| b.is_ascii_digit()))
 }

@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use souple_engine::World;
-use souple_scene::{BodyInfo, ProbeInfo, Scene};
+use souple_scene::{BodyInfo, Scene, SkinInfo};
 use souple_table::readable;
 
 pub use command::{command_from_json, command_to_json};
@@ -119,6 +119,7 @@ pub struct Outcome {
     pub bodies: Vec<BodyInfo>,
     /// Files of an earlier run in its folder that it took the place of.
     pub replaced: usize,
+    pub skins: Vec<SkinInfo>,
 }
 
 /// Runs a scene to its end, to a refused step, or until `watch` stops it.
@@ -142,9 +143,9 @@ pub fn run(
     let steps = periods.count;
     session.warnings.extend(periods.warning);
     session.forecast();
-    let folder = output_folder(options, &session.bodies, &session.probes, first_step)?;
+    let folder = output_folder(options, &session, first_step)?;
     let traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
-    let frames = frames::Frames::open(folder.as_ref(), &session.bodies, frame_count, steps)?;
+    let frames = frames::Frames::open(folder.as_ref(), &session, frame_count, steps)?;
     Ok(course::Course { session, folder, frames, traces }.run(steps, options, &aims, watch))
 }
 
@@ -160,13 +161,21 @@ fn snapshot_period(name: &str) -> Option<u64> {
 /// The folder of the run, cleared of the run before.
 fn output_folder(
     options: &Options,
-    bodies: &[BodyInfo],
-    probes: &[ProbeInfo],
+    session: &Session,
     first_step: u64,
 ) -> Result<Option<OutputFolder>, RunError> {
     let Some(out) = &options.out else { return Ok(None) };
+    let (bodies, skins, probes) = (&session.bodies, &session.skins, &session.probes);
+    let is_frame = |file: &str| {
+        bodies.iter().any(|body| frames::is_frame_of(&body.name, "vtu", file))
+            || skins.iter().any(|skin| {
+                let name = frames::name_of_skin(skin, bodies);
+                let formats = skin.formats.iter().map(String::as_str);
+                formats.chain(["vtu"]).any(|format| frames::is_frame_of(&name, format, file))
+            })
+    };
     let writes = |name: &str| match name.split_once('/') {
-        Some((output::FRAMES, file)) => bodies.iter().any(|body| frames::is_frame_of(&body.name, file)),
+        Some((output::FRAMES, file)) => is_frame(file),
         _ => {
             name == picture::PICTURE
                 || report::NAMES.contains(&name)

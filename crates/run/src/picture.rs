@@ -24,11 +24,12 @@ pub fn write_last(
 ) -> Result<(), OutputError> {
     let mut stage = Stage::of_model(session.world.model(), &session.bodies, from);
     stage.title = title.to_owned();
+    let moment = moment.clone().without_worn(session);
     let show = Show { stage, moments: Vec::new() };
     let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
     let plain = Figure { colour_by: None, ..figure.clone() };
     // bodies without stress are shown in colours of their own
-    let picture = match figure.picture(&show, moment).or_else(|_| plain.picture(&show, moment)) {
+    let picture = match figure.picture(&show, &moment).or_else(|_| plain.picture(&show, &moment)) {
         Ok(picture) => picture,
         Err(ShowError::Io(error)) => return Err(error.into()),
         Err(_) => return Ok(()),

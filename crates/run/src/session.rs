@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use souple_engine::{Edit, EditError, ResumeError, StepReport, World};
 use souple_io::IoError;
-use souple_scene::{Adjustable, BodyInfo, Diagnostics, Measurement, ProbeInfo, Scene, inputs::Inputs};
+use souple_scene::{
+    Adjustable, BodyInfo, Diagnostics, Measurement, ProbeInfo, Scene, SkinInfo, inputs::Inputs,
+};
 
 use crate::failure::Failure;
 use crate::machine::peak_bytes;
@@ -23,6 +25,7 @@ pub struct Session {
     pub scene_sha256: String,
     pub world: World,
     pub bodies: Vec<BodyInfo>,
+    pub skins: Vec<SkinInfo>,
     pub probes: Vec<ProbeInfo>,
     /// Values of the scene that may be set, see [`Session::change`].
     pub adjustables: Vec<Adjustable>,
@@ -62,7 +65,7 @@ impl Session {
     /// # Errors
     /// The snapshot or the commands to go on from do not fit the scene.
     pub fn start(scene: Scene, options: &Options) -> Result<Self, RunError> {
-        let Scene { title, model, state, bodies, probes, adjustables, .. } = scene;
+        let Scene { title, model, state, bodies, skins, probes, adjustables, .. } = scene;
         let Scene { scene_sha256, inputs, warnings, run, .. } = scene;
         let mut world = model.start(state);
         if let Some(snapshot) = &options.resume {
@@ -86,6 +89,7 @@ impl Session {
             momentum_at_start: world.momentum(),
             world,
             bodies,
+            skins,
             probes,
             adjustables,
             warnings,

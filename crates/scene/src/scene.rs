@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use souple_engine::{Model, State};
+use souple_engine::{Model, State, World};
+use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::Carried;
+use souple_skin::{Lattice, Polygons};
 
 use crate::adjust::Adjustable;
 use crate::compile::{Placed, compile};
@@ -31,6 +33,7 @@ pub struct Scene {
     pub model: Model,
     pub state: State,
     pub bodies: Vec<BodyInfo>,
+    pub skins: Vec<SkinInfo>,
     pub probes: Vec<ProbeInfo>,
     pub expects: Vec<Expect>,
     /// Values that may be set while it runs.
@@ -70,6 +73,31 @@ pub struct FramesInfo {
     pub rows: Vec<u32>,
     /// Of each point of the mesh: the weight of the frame that is shown.
     pub influence: Vec<f64>,
+}
+
+/// Where a skin is in the state.
+#[derive(Clone, Debug)]
+pub struct SkinInfo {
+    pub name: String,
+    /// Index of its field.
+    pub field: usize,
+    pub lattice: Lattice,
+    /// Rows that it acts on.
+    pub reactions: usize,
+    /// Formats that its surface is written in beside VTU, by their extensions.
+    pub formats: Vec<String>,
+}
+
+impl SkinInfo {
+    /// The skin as committed.
+    pub fn view<'a>(&self, world: &'a World) -> souple_skin::View<'a> {
+        souple_skin::View::new(&world.state().fields[self.field], self.reactions)
+    }
+
+    /// Its surface as committed, with normals.
+    pub fn surface(&self, world: &World) -> (Polygons, Vec<Vec3>) {
+        souple_skin::surface_of(self.view(world).grid, &self.lattice)
+    }
 }
 
 impl BodyInfo {

@@ -19,7 +19,7 @@ pub use formula::FormulaShape;
 pub use surface::{Sign, SurfaceShape};
 
 /// A solid as a function.
-pub trait Shape: Sync {
+pub trait Shape: Send + Sync {
     /// Negative inside, positive outside. Where it is near the signed distance [m], growth of cells by distance and
     /// cuts of edges are found fastest; nothing else depends on that.
     fn value(&self, point: Vec3) -> f64;

@@ -19,7 +19,14 @@ impl Field for Pressure {
     fn name(&self) -> &str {
         "pressure"
     }
-    fn step(&self, rows: CommittedRows, _: f64, timestep: f64, field: &mut FieldState) -> Result<(), String> {
+    fn step(
+        &self,
+        rows: CommittedRows,
+        _: f64,
+        timestep: f64,
+        field: &mut FieldState,
+        _: &mut Scratch,
+    ) -> Result<(), String> {
         let cell = (rows.of(0).positions[0].x.clamp(0.0, 2.0)) as usize;
         field.values[cell] += timestep;
         field.indices[0] = cell as u64;

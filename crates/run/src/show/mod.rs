@@ -15,13 +15,15 @@ use souple_engine::World;
 use souple_io::{Dataset, Field, IoError, read_dataset, read_series};
 use souple_math::Vec3;
 use souple_mesh::{BoundingBox, Mesh};
-use souple_scene::BodyInfo;
+use souple_scene::{BodyInfo, SkinInfo};
+
+use crate::Session;
 
 pub use figure::{Arrows, Figure};
 pub use film::{FilmError, write_film};
 pub use stage::Stage;
 
-/// All bodies at one time.
+/// All bodies and skins at one time.
 #[derive(Clone, Debug)]
 pub struct Moment {
     /// [s]
@@ -148,8 +150,10 @@ impl Moment {
         self.bodies.iter().all(BodyMoment::is_drawable)
     }
 
-    /// The present state of a world; meshes are those of a moment before, where there is one.
-    pub fn of_world(world: &World, bodies: &[BodyInfo], before: Option<&Self>) -> Self {
+    /// The present state of a session, all bodies, then all skins; meshes of bodies are those of a moment before, where
+    /// there is one.
+    pub fn of_session(session: &Session, before: Option<&Self>) -> Self {
+        let world = &session.world;
         let body = |(index, info): (usize, &BodyInfo)| {
             let (point_fields, cell_fields) = crate::frames::fields(world, info);
             let known = before.and_then(|before| before.bodies.get(index));
@@ -162,8 +166,31 @@ impl Moment {
                 frames: frames_of(world, info),
             }
         };
-        Self { time: world.time(), bodies: bodies.iter().enumerate().map(body).collect() }
+        let skin = |info: &SkinInfo| {
+            let (mesh, _) = crate::frames::mesh_of_skin(info, world);
+            BodyMoment {
+                name: crate::frames::name_of_skin(info, &session.bodies),
+                positions: mesh.points.clone(),
+                mesh: Arc::new(mesh),
+                point_fields: Vec::new(),
+                cell_fields: Vec::new(),
+                frames: Vec::new(),
+            }
+        };
+        let bodies = session.bodies.iter().enumerate().map(body);
+        Self { time: world.time(), bodies: bodies.chain(session.skins.iter().map(skin)).collect() }
     }
+
+    /// Without the bodies that wear a skin, which hides them.
+    pub fn without_worn(mut self, session: &Session) -> Self {
+        self.bodies.retain(|body| !is_worn(&body.name, session));
+        self
+    }
+}
+
+/// Whether a skin has the name of a body, not that of a skin that stands alone.
+fn is_worn(name: &str, session: &Session) -> bool {
+    session.bodies.iter().any(|body| body.name == name) && session.skins.iter().any(|skin| skin.name == name)
 }
 
 fn frames_of(world: &World, info: &BodyInfo) -> Vec<[Vec3; 4]> {

@@ -243,7 +243,7 @@ pub fn mean_edge(surface: &TriangleSurface) -> f64 {
 }
 
 /// The triangles of a surface file, or the boundary of a volume mesh.
-fn read_surface(path: &Path) -> Result<TriangleSurface, String> {
+pub(super) fn read_surface(path: &Path) -> Result<TriangleSurface, String> {
     let (mesh, _) = souple_io::read_mesh(path).map_err(|error| error.to_string())?;
     match mesh.facet_surface() {
         Some(surface) if mesh.cell_count() == 0 => Ok(surface),

@@ -14,6 +14,7 @@ mod network;
 mod pins;
 mod selection;
 mod shape;
+mod skins;
 
 pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;
@@ -27,7 +28,7 @@ use souple_engine::{Model, State, System};
 use crate::diagnostic::{Code, Log, Site};
 use crate::inputs::Inputs;
 use crate::measure::ProbeInfo;
-use crate::scene::{BodyInfo, Scene};
+use crate::scene::{BodyInfo, Scene, SkinInfo};
 use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
@@ -48,6 +49,7 @@ pub(crate) struct Draft<'a> {
     pub warnings: Vec<String>,
     /// What hinders rigid motions besides pins.
     pub joints: Vec<Joint>,
+    pub skins: Vec<SkinInfo>,
 }
 
 impl Draft<'_> {
@@ -93,6 +95,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         state: State::default(),
         warnings: Vec::new(),
         joints: Vec::new(),
+        skins: Vec::new(),
     };
     bodies::place(&mut draft)?;
     memory::check_placed(spec, &draft.bodies, log);
@@ -114,6 +117,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     network::warn_of_steps(&mut draft);
     doubts::warn(&mut draft);
     freedom::check(&mut draft);
+    skins::add(&mut draft);
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
     if !log.is_empty() {
@@ -132,7 +136,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     depth::warn(&mut draft);
-    let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
+    let Draft { bodies, systems, mut model, state, warnings, skins, .. } = draft;
     model.systems = systems;
     let bodies = bodies.into_iter().map(BodyInfo::new);
     Some(Scene {
@@ -140,6 +144,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         description: spec.description.clone(),
         shows: spec.shows.clone(),
         bodies: bodies.collect(),
+        skins,
         model,
         state,
         probes,

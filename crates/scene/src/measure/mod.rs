@@ -7,15 +7,18 @@ mod cells;
 mod contact;
 mod points;
 mod reaction;
+mod skin;
 
 use souple_engine::World;
 use souple_math::Vec3;
 
 use crate::compile::{Draft, hold_name, solid_name};
 use crate::diagnostic::Code;
+use crate::scene::SkinInfo;
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
-    BodyQuantity, CellQuantity, Momentum, PointQuantity, Rank, Reduction, Subject, WorldQuantity,
+    BodyQuantity, CellQuantity, Momentum, PointQuantity, Rank, Reduction, SkinQuantity, Subject,
+    WorldQuantity,
 };
 
 /// A probe that knows where to read.
@@ -42,6 +45,7 @@ enum Target {
     Body(BodyQuantity, Part),
     BodyMomentum(Momentum, Part),
     Cells(CellQuantity, CellPart),
+    Skin(SkinQuantity, SkinInfo),
 }
 
 /// Points of a body.
@@ -98,6 +102,10 @@ impl ProbeInfo {
     pub(crate) fn compile(probe: &Probe, draft: &Draft) -> Option<Self> {
         let target = match (probe.quantity.build.subject, &probe.body) {
             (Subject::World(quantity), _) => Target::World(quantity),
+            (Subject::Skin(quantity), _) => {
+                let name = probe.skin.as_deref()?;
+                Target::Skin(quantity, draft.skins.iter().find(|skin| skin.name == name)?.clone())
+            }
             (Subject::BodyOrWorld(momentum), None) => {
                 Target::WorldMomentum(momentum, probe.about.unwrap_or(Vec3::ZERO))
             }
@@ -128,6 +136,7 @@ impl ProbeInfo {
     pub fn measure(&self, world: &mut World) -> Measurement {
         match &self.target {
             Target::World(quantity) => Measurement::Number(of_world(*quantity, world)),
+            Target::Skin(quantity, skin) => Measurement::Number(skin::measure(*quantity, skin, world)),
             Target::WorldMomentum(momentum, about) => {
                 let (linear, angular) = world.momentum();
                 self.vector(match momentum {

@@ -10,6 +10,7 @@ use super::frames::{FRAMES, FramesSpec};
 use super::mesh::{MESH, MeshSpec};
 use super::network::Network;
 use super::region::{Region, direction};
+use super::skin::BODY_SKIN;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Need, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -90,6 +91,7 @@ pub(crate) static BODY: Keys = Keys::new(
         Key::new("pins", Shape::Tables(&PIN), "points that are held or led"),
         Key::new("loads", Shape::Tables(&LOAD), "forces on points"),
         Key::new("springs", Shape::Tables(&SPRING), "springs from points to where they start"),
+        Key::new("skin", Shape::Table(&BODY_SKIN), "a skin that dresses it, see `skins`"),
     ],
 );
 

@@ -12,6 +12,7 @@ pub mod picture;
 pub mod probe;
 pub mod quantity;
 pub mod region;
+pub mod skin;
 pub mod world;
 
 use souple_formal::Formula;
@@ -32,6 +33,7 @@ use interaction::{ATTACHMENT, COUPLING, Link};
 use network::{NETWORK, Network};
 use picture::{PICTURE, PictureSpec, PictureView};
 use probe::{PROBE, Probe};
+use skin::{SKIN, SkinSpec};
 use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD, WorldSpec};
 
 /// The version of the format that this crate reads.
@@ -56,6 +58,7 @@ pub(crate) static SCENE: Keys = Keys::new(
         Key::new("contacts", Shape::Tables(&CONTACT), "who touches whom"),
         Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
         Key::new("couplings", Shape::Tables(&COUPLING), "what joins systems"),
+        Key::new("skins", Shape::Named(&SKIN), "surfaces with behaviour of their own"),
         Key::new("probes", Shape::Named(&PROBE), "what is measured"),
         Key::new("expect", Shape::Tables(&EXPECT), "what the probes must read"),
         Key::new("run", Shape::Table(&RUN), "what a run does unless told otherwise"),
@@ -76,6 +79,8 @@ pub struct Spec {
     pub contacts: Vec<Contact>,
     pub attachments: Vec<Link>,
     pub couplings: Vec<Link>,
+    /// Those of bodies among them, by the name of the body.
+    pub skins: Vec<SkinSpec>,
     pub probes: Vec<Probe>,
     pub expects: Vec<Expect>,
     pub run: RunSpec,
@@ -125,6 +130,7 @@ impl Spec {
                 .table("picture")
                 .map_or_else(PictureSpec::default, |picture| PictureSpec::read(&picture)),
             run: reader.table("run").map_or(empty.run, |run| RunSpec::read(&run)),
+            skins: skins(&reader),
             systems,
             probes,
             expects,
@@ -155,6 +161,7 @@ impl Spec {
             contacts: Vec::new(),
             attachments: Vec::new(),
             couplings: Vec::new(),
+            skins: Vec::new(),
             probes: Vec::new(),
             expects: Vec::new(),
             run: RunSpec::default(),
@@ -184,6 +191,12 @@ impl Spec {
                 log.add(Code::UnknownName, site, message, format!("one of {}", known.join(", ")));
             }
         };
+        let skins: Vec<&str> = self.skins.iter().map(|skin| skin.name.as_str()).collect();
+        for probe in &self.probes {
+            if let Some(skin) = &probe.skin {
+                check("skin", skin, &skins, &probe.site);
+            }
+        }
         for body in &self.bodies {
             check("system", &body.system, &systems, &body.site);
         }
@@ -283,6 +296,14 @@ fn bodies(reader: &Reader) -> Vec<Body> {
         }
     }
     all
+}
+
+/// Skins that stand alone, then those of bodies.
+fn skins(reader: &Reader) -> Vec<SkinSpec> {
+    let alone = reader.named("skins").into_iter().map(|(name, skin)| SkinSpec::read(name, &skin));
+    let bodies = reader.named("bodies").into_iter();
+    let worn = bodies.filter_map(|(name, body)| Some(SkinSpec::of_body(&name, &body.table("skin")?)));
+    alone.chain(worn).collect()
 }
 
 fn contacts(reader: &Reader) -> Vec<Contact> {

@@ -24,6 +24,7 @@ pub(crate) static PROBE: Keys = Keys::new(
             Shape::Choice(&["mean", "sum", "min", "max"]),
             "how the values of a region become one",
         ),
+        Key::new("skin", Shape::Text, "whose, for quantities of skins; a body's skin has the body's name"),
         Key::new("contact", Shape::Text, "only what this contact does (for quantities of contacts)"),
         Key::vector("about", "m", "the place that moments are taken about"),
     ],
@@ -39,6 +40,7 @@ pub struct Probe {
     pub component: Option<Component>,
     pub reduction: Reduction,
     pub contact: Option<String>,
+    pub skin: Option<String>,
     /// The place that moments are taken about [m]; the centre of mass where `None`.
     pub about: Option<Vec3>,
     pub site: Site,
@@ -94,6 +96,7 @@ impl Probe {
             component,
             reduction,
             contact: reader.maybe_text("contact"),
+            skin: reader.maybe_text("skin"),
             about: reader.maybe_vector("about"),
             site: reader.site(),
         }
@@ -113,6 +116,19 @@ fn refuse(reader: &Reader, key: &str, message: String, expected: &str) {
 fn check_keys(reader: &Reader, entry: &QuantityEntry) {
     let (name, quantity) = (entry.name, entry.build);
     match quantity.subject {
+        Subject::Skin(_) => {
+            for key in reader.written(&["body", "region"]) {
+                refuse(reader, key, format!("`{name}` is of a skin"), "no body and no region");
+            }
+            if !reader.has("skin") {
+                refuse(
+                    reader,
+                    "quantity",
+                    format!("`{name}` is of a skin, and none is named"),
+                    "skin = \"…\"",
+                );
+            }
+        }
         Subject::World(_) => {
             for key in reader.written(&["body", "region"]) {
                 refuse(reader, key, format!("`{name}` is of the whole world"), "no body and no region");
@@ -148,6 +164,14 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             "contact",
             format!("`{name}` is of no contact"),
             "a quantity of contacts, such as \"contact_force\"",
+        );
+    }
+    if reader.has("skin") && !matches!(quantity.subject, Subject::Skin(_)) {
+        refuse(
+            reader,
+            "skin",
+            format!("`{name}` is of no skin"),
+            "a quantity of skins, such as \"skin.area\"",
         );
     }
     if reader.has("about") && !quantity.is_moment() {

@@ -47,6 +47,19 @@ pub enum Subject {
     /// One value of a body's region, or of the world where no body is named.
     BodyOrWorld(Momentum),
     World(WorldQuantity),
+    Skin(SkinQuantity),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SkinQuantity {
+    Area,
+    Volume,
+    Curvature,
+    Euler,
+    Components,
+    Events,
+    Speed,
+    Blocks,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,6 +144,7 @@ impl Quantity {
 const KINEMATICS: &str = "kinematics of points";
 const CONTACT: &str = "Wriggers 2006, §5";
 const STRESS: &str = "Bonet & Wood 2008, §5";
+const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
 const MECHANICS: &str = "balance of momentum";
 
 const fn entry(
@@ -148,6 +162,10 @@ const fn points(unit: &'static str, rank: Rank, reduction: Reduction, quantity: 
 
 const fn cells(unit: &'static str, reduction: Reduction, quantity: CellQuantity) -> Quantity {
     Quantity::of(unit, Rank::Number, reduction, Subject::Cells(quantity))
+}
+
+const fn skin(unit: &'static str, quantity: SkinQuantity) -> Quantity {
+    Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Skin(quantity))
 }
 
 const fn world(unit: &'static str, quantity: WorldQuantity) -> Quantity {
@@ -308,6 +326,29 @@ const ENTRIES: &[&QuantityEntry] = &[
         world("J", WorldQuantity::DissipatedEnergy),
     ),
     &entry("time", "simulated", KINEMATICS, world("s", WorldQuantity::Time)),
+    &entry("skin.area", "of its triangles", SKIN, skin("m^2", SkinQuantity::Area)),
+    &entry("skin.volume", "enclosed by its triangles", SKIN, skin("m^3", SkinQuantity::Volume)),
+    &entry(
+        "skin.curvature",
+        "kappa = div n, twice the mean curvature, over the surface",
+        SKIN,
+        skin("1/m", SkinQuantity::Curvature),
+    ),
+    &entry(
+        "skin.euler",
+        "V - E + F of its triangles: 2 for each ball, 0 for a ring, 2 - 2g at g holes",
+        SKIN,
+        skin("", SkinQuantity::Euler),
+    ),
+    &entry("skin.components", "parts that share no point", SKIN, skin("", SkinQuantity::Components)),
+    &entry(
+        "skin.events",
+        "times that the Euler characteristic or the number of parts changed",
+        SKIN,
+        skin("", SkinQuantity::Events),
+    ),
+    &entry("skin.speed", "the greatest at the surface", SKIN, skin("m/s", SkinQuantity::Speed)),
+    &entry("skin.blocks", "blocks of 512 nodes that its grid keeps", SKIN, skin("", SkinQuantity::Blocks)),
 ];
 
 /// All quantities.

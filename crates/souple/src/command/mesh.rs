@@ -1,7 +1,8 @@
-//! `souple mesh`: generate, fill, simplify, convert, quality.
+//! `souple mesh`: generate, fill, simplify, skin, convert, quality.
 
 mod fill;
 mod parameters;
+mod skin;
 mod summary;
 
 use std::path::{Path, PathBuf};
@@ -51,6 +52,16 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
+    /// Dresses particles with a surface: `souple mesh skin drops.csv out.ply radius=0.01`
+    Skin {
+        /// A table x,y,z[,radius] with commas, or a mesh file, of which the points are taken
+        input: PathBuf,
+        out: PathBuf,
+        /// NAME=VALUE: radius (half the distance between particles, m), voxel (the radius where left out), iso
+        parameters: Vec<String>,
+        #[arg(long)]
+        json: bool,
+    },
     /// Reads one format and writes another, by extension; tells what the written file holds
     Convert {
         input: PathBuf,
@@ -72,6 +83,7 @@ impl Arguments {
             Action::Generate { json, .. }
             | Action::Fill { json, .. }
             | Action::Simplify { json, .. }
+            | Action::Skin { json, .. }
             | Action::Convert { json, .. }
             | Action::Quality { json, .. } => *json,
         }
@@ -96,6 +108,14 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
             write(&out, &mesh)?;
             report(&out, &mesh, &notes, json);
+            Ok(End::Done)
+        }
+        Action::Skin { input, out, parameters, json } => {
+            let mesh = skin::dressed(&input, &parameters)?;
+            write(&out, &mesh)?;
+            if let Some(surface) = mesh.facet_surface() {
+                report_surface(&mesh, &surface, &[], json);
+            }
             Ok(End::Done)
         }
         Action::Convert { input, out, json } => {

@@ -15,6 +15,7 @@ mod motion;
 mod network;
 mod patch;
 mod rubber;
+mod skins;
 mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
@@ -43,6 +44,7 @@ pub const TABLES: &[&[Case]] = &[
     contact::CASES,
     network::CASES,
     frames::CASES,
+    skins::CASES,
 ];
 
 /// Every case.

@@ -1,0 +1,204 @@
+//! Skins become fields of the world.
+
+use std::path::Path;
+
+use souple_engine::FieldState;
+use souple_math::Vec3;
+use souple_mesh::TriangleSurface;
+use souple_skin::reaction::{Reaction, SkinPush};
+use souple_skin::strategy::Term;
+use souple_skin::target::{Moment, Part, Particle, Particles, Surroundings, Target};
+use souple_skin::{Lattice, Skin, SkinError};
+
+use super::Draft;
+use crate::diagnostic::{Code, Site};
+use crate::scene::SkinInfo;
+use crate::spec::skin::{PartSpec, SkinSpec};
+
+/// All skins, each with its first state.
+pub fn add(draft: &mut Draft) {
+    let spec = draft.spec;
+    for skin in &spec.skins {
+        if let Some((model, field)) = build(draft, skin) {
+            draft.skins.push(SkinInfo {
+                name: skin.name.clone(),
+                field: draft.model.fields.len(),
+                lattice: model.lattice,
+                reactions: model.reactions(),
+                formats: skin.formats.clone(),
+            });
+            if let Some(reaction) = &model.reaction {
+                let rows = reaction.rows.iter().map(|(row, _)| *row).collect();
+                let field = draft.model.fields.len();
+                let push = SkinPush { name: format!("{}.skin", skin.name), field, rows };
+                draft.systems[reaction.system].forces.push(Box::new(push));
+            }
+            draft.model.fields.push(Box::new(model));
+            draft.state.fields.push(field);
+        }
+    }
+}
+
+fn build(draft: &Draft, spec: &SkinSpec) -> Option<(Skin, FieldState)> {
+    let target = target(draft, &spec.parts, spec.iso)?;
+    let start = target_of_start(draft, spec)?;
+    let terms: Option<Vec<Box<dyn Term>>> = spec
+        .terms
+        .iter()
+        .map(|chosen| {
+            let refuse = |error: souple_skin::strategy::TermError| {
+                let expected = format!("a term that holds, see `souple describe {}`", chosen.entry.name);
+                draft.log.add(Code::BadFormula, &chosen.site, error.to_string(), expected);
+            };
+            (chosen.entry.build)(&chosen.values).map_err(refuse).ok()
+        })
+        .collect();
+    let skin = Skin {
+        name: spec.name.clone(),
+        lattice: Lattice { origin: spec.origin, voxel: spec.voxel },
+        target: (!target.parts.is_empty()).then_some(target),
+        terms: terms?,
+        redistance: spec.redistance,
+        reaction: reaction(draft, spec)?,
+    };
+    if skin.target.is_none() && skin.terms.iter().any(|term| term.needs_target()) {
+        let message = format!("skin `{}` is drawn to a target, and has no `parts`", spec.name);
+        draft.log.add(Code::Conflict, &spec.site, message, "[[skins.NAME.parts]], or no such term");
+        return None;
+    }
+    let started = first_state(draft, spec, &skin, start.as_ref());
+    let refuse = |error: SkinError| {
+        let message = format!("skin `{}` cannot start: {error}", spec.name);
+        draft.log.add(
+            Code::OutOfRange,
+            &spec.site,
+            message,
+            "a start with an inside that ends within its domain",
+        );
+    };
+    let field = started.map_err(refuse).ok()?;
+    Some((skin, field))
+}
+
+/// What the skin of a body does to it; the outer `None` where that was refused.
+fn reaction(draft: &Draft, spec: &SkinSpec) -> Option<Option<Reaction>> {
+    let Some(push) = &spec.push else { return Some(None) };
+    let Some(body) = draft.body(&spec.name) else { return Some(None) };
+    let Some(radius) = push.radius else {
+        let message =
+            format!("the skin of body `{}` pushes particles, and has no `radius` of them", spec.name);
+        draft.log.add(Code::MissingKey, &spec.site, message, "radius = LENGTH beside");
+        return None;
+    };
+    let rows = body.rows.clone().map(|row| (row as u32, radius)).collect();
+    Some(Some(Reaction { system: body.system, rows, tension: push.tension, pressure: push.pressure }))
+}
+
+/// What a skin begins as, where that is not its target.
+fn target_of_start(draft: &Draft, spec: &SkinSpec) -> Option<Option<Target>> {
+    if spec.start.is_empty() { Some(None) } else { target(draft, &spec.start, spec.iso).map(Some) }
+}
+
+fn first_state(
+    draft: &Draft,
+    spec: &SkinSpec,
+    skin: &Skin,
+    start: Option<&Target>,
+) -> Result<FieldState, SkinError> {
+    let Some(target) = start.or(skin.target.as_ref()) else { return Err(SkinError::NoDomain) };
+    let rows: Vec<Vec<Vec3>> = (0..draft.spec.systems.len())
+        .map(|system| {
+            let bodies = draft.bodies.iter().filter(|body| body.system == system);
+            bodies.flat_map(|body| body.mesh.points.iter().copied()).collect()
+        })
+        .collect();
+    let mut placed = target.new_scratch();
+    let positions = |system: usize| rows[system].as_slice();
+    target.place(&Moment { time: 0.0, positions: &positions }, &mut placed).map_err(SkinError::Target)?;
+    let [low, high] = match spec.domain {
+        Some(domain) => domain,
+        None => {
+            let bounds = target.bounds(&placed).ok_or(SkinError::NoDomain)?;
+            [bounds.low, bounds.high]
+        }
+    };
+    let value = |point: Vec3| target.excess(point, &placed);
+    skin.start(low, high, &value, &mut skin.new_scratch())
+}
+
+/// `None` where a part was refused.
+fn target(draft: &Draft, parts: &[PartSpec], iso: f64) -> Option<Target> {
+    let parts: Option<Vec<Part>> = parts.iter().map(|spec| part(draft, spec)).collect();
+    Some(Target { parts: parts?, iso })
+}
+
+fn part(draft: &Draft, spec: &PartSpec) -> Option<Part> {
+    let chosen = spec.part.as_ref()?;
+    let around = Around { draft, site: &chosen.site };
+    let potential = match (chosen.entry.build)(&chosen.values, &around) {
+        Ok(potential) => potential,
+        Err(error) => {
+            let site =
+                Site { path: format!("{}.{}", spec.site.path, error.parameter), ..chosen.site.clone() };
+            let message = format!("this is {}", error.value);
+            draft.log.add(Code::OutOfRange, &site, message, error.expected);
+            return None;
+        }
+    };
+    let warps = spec.warps.iter().map(|chosen| (chosen.entry.build)(&chosen.values)).collect();
+    Some(Part { potential, combine: spec.combine, during: spec.during, warps, motion: spec.motion.clone() })
+}
+
+/// What parts may ask of a scene.
+struct Around<'a> {
+    draft: &'a Draft<'a>,
+    site: &'a Site,
+}
+
+impl Around<'_> {
+    fn open(&self, file: &str) -> Result<std::path::PathBuf, String> {
+        let source = self.site.place.source;
+        self.draft.sources.open(source, file).map_err(|error| format!("it cannot be read: {error}"))
+    }
+}
+
+impl Surroundings for Around<'_> {
+    fn surface(&self, file: &str) -> Result<TriangleSurface, String> {
+        super::contact::read_surface(&self.open(file)?)
+    }
+
+    fn particles(&self, from: &str, radius: f64) -> Result<Particles, String> {
+        if let Some(body) = self.draft.body(from) {
+            let rows = body.rows.clone().map(|row| (row as u32, radius)).collect();
+            return Ok(Particles::Rows { system: body.system, rows });
+        }
+        Ok(Particles::Led(read_particles(&self.open(from)?, radius)?))
+    }
+
+    fn body_surface(&self, name: &str) -> Result<(TriangleSurface, usize, Vec<u32>), String> {
+        let Some(body) = self.draft.body(name) else { return Err("there is none of this name".to_owned()) };
+        let surface = body.mesh.boundary_surface();
+        let first = body.rows.start as u32;
+        let rows = surface.mesh_points.iter().map(|point| first + point).collect();
+        Ok((surface, body.system, rows))
+    }
+}
+
+/// Particles of a file: a table with columns, or the points of a mesh.
+fn read_particles(path: &Path, radius: f64) -> Result<Vec<Particle>, String> {
+    let is_table = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    if is_table {
+        let table = souple_io::read_particles(path).map_err(|error| error.to_string())?;
+        let particle = |p: &souple_io::ParticleRow| Particle {
+            position: p.position,
+            velocity: p.velocity,
+            radius: p.radius.unwrap_or(radius),
+            during: p.during,
+        };
+        return Ok(table.iter().map(particle).collect());
+    }
+    let (mesh, _) = souple_io::read_mesh(path).map_err(|error| error.to_string())?;
+    let during = [f64::NEG_INFINITY, f64::INFINITY];
+    let particle = |position: &Vec3| Particle { position: *position, velocity: Vec3::ZERO, radius, during };
+    Ok(mesh.points.iter().map(particle).collect())
+}

@@ -1,0 +1,21 @@
+//! Quantities of skins.
+
+use souple_engine::World;
+
+use crate::scene::SkinInfo;
+use crate::spec::quantity::SkinQuantity;
+
+pub fn measure(quantity: SkinQuantity, skin: &SkinInfo, world: &World) -> f64 {
+    let view = skin.view(world);
+    let measures = view.measures();
+    match quantity {
+        SkinQuantity::Area => measures.area,
+        SkinQuantity::Volume => measures.volume,
+        SkinQuantity::Curvature => souple_skin::mean_curvature(view.grid, &skin.lattice),
+        SkinQuantity::Euler => measures.euler as f64,
+        SkinQuantity::Components => measures.components as f64,
+        SkinQuantity::Events => view.events() as f64,
+        SkinQuantity::Speed => view.speed(),
+        SkinQuantity::Blocks => view.grid.keys.len() as f64,
+    }
+}

@@ -1,0 +1,239 @@
+//! The surface of particles as they stand: their density on the nodes around them, and its polygons.
+//!
+//! Each block of nodes gathers the particles that reach it, in the order of their blocks, so the result is the same for any
+//! number of threads. Only blocks near the surface are kept.
+
+use rayon::prelude::*;
+use souple_math::Vec3;
+
+use crate::grid::{BAND, EDGE, FARTHEST, Grid, Lattice, NODES, block_of, key_of};
+use crate::polygons::Polygons;
+use crate::skin::{MOST_BLOCKS, SkinError, surface_of};
+use crate::target::particles::{REACH, kernel};
+use crate::widest::{Rows, run_widest};
+
+/// Particles by their block.
+struct Sorted {
+    /// Blocks with particles, ascending, and where each one's particles begin.
+    blocks: Vec<(u64, u32)>,
+    /// Position [voxels] and inverse of twice the radius [1/voxel], block by block.
+    particles: Vec<(Vec3, f64)>,
+}
+
+/// The surface where the density of particles, position and radius [m], is `iso`, with outward normals.
+///
+/// # Errors
+/// A particle is nowhere or has no radius; the voxels are too small for so large a cloud, or too large to see it.
+pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygons, Vec<Vec3>), SkinError> {
+    let is_wrong = |(x, radius): &(Vec3, f64)| !(x.is_finite() && *radius > 0.0 && radius.is_finite());
+    if let Some(index) = particles.iter().position(is_wrong) {
+        let (position, radius) = particles[index];
+        let place = position.to_array();
+        return Err(SkinError::Target(format!(
+            "particle {index} is at {place:?} with the radius {radius}; expected finite numbers and a radius above 0"
+        )));
+    }
+    let Some((origin, _)) = particles.first().copied() else {
+        return Err(SkinError::Target("there is no particle".to_owned()));
+    };
+    let lattice = Lattice { origin, voxel };
+    let reach = REACH * particles.iter().map(|(_, radius)| *radius).fold(0.0, f64::max) / voxel;
+    let sorted = sort(particles, &lattice)?;
+    // blocks that a particle of a neighbouring block may reach
+    let steps = (reach / EDGE as f64).ceil();
+    let blocks = (2.0 * steps + 1.0).powi(3) * sorted.blocks.len() as f64;
+    if blocks.is_nan() || blocks > 64.0 * MOST_BLOCKS as f64 {
+        return Err(SkinError::TooManyBlocks { voxel, size: [2.0 * reach * voxel; 3], blocks });
+    }
+    let steps = steps as i64;
+    let mut keys: Vec<u64> = Vec::new();
+    for (key, _) in &sorted.blocks {
+        let [x, y, z] = block_of(*key);
+        let around = |c: i64| c - steps..=c + steps;
+        around(z).for_each(|z| around(y).for_each(|y| keys.extend(around(x).map(|x| key_of([x, y, z])))));
+    }
+    keys.sort_unstable();
+    keys.dedup();
+    let densities: Vec<Option<Box<[f64; NODES]>>> =
+        keys.par_iter().map(|key| gather(&sorted, block_of(*key), steps, iso)).collect();
+    let (mut kept, mut values) = (Vec::new(), Vec::new());
+    for (key, density) in keys.iter().zip(&densities) {
+        if let Some(density) = density {
+            kept.push(*key);
+            values.extend_from_slice(&density[..]);
+        }
+    }
+    keep_near(&mut kept, &mut values);
+    if values.iter().all(|value| *value <= 0.0) {
+        let bounds = souple_mesh::BoundingBox::of(particles.iter().map(|(x, _)| *x));
+        let (low, high) = (bounds.low.to_array(), bounds.high.to_array());
+        return Err(SkinError::Empty { low, high, voxel });
+    }
+    Ok(surface_of(Grid { keys: &kept, values: &values }, &lattice))
+}
+
+fn sort(particles: &[(Vec3, f64)], lattice: &Lattice) -> Result<Sorted, SkinError> {
+    let mut order = Vec::with_capacity(particles.len());
+    for (index, (position, _)) in particles.iter().enumerate() {
+        let block = (lattice.to_voxels(*position) * (1.0 / EDGE as f64)).to_array().map(f64::floor);
+        if block.iter().any(|c| c.abs() > FARTHEST as f64 / 2.0) {
+            return Err(SkinError::Runaway { time: 0.0 });
+        }
+        order.push((key_of(block.map(|c| c as i64)), index as u32));
+    }
+    order.sort_unstable();
+    let mut sorted = Sorted { blocks: Vec::new(), particles: Vec::with_capacity(particles.len()) };
+    for (key, index) in order {
+        if sorted.blocks.last().is_none_or(|(last, _)| *last != key) {
+            sorted.blocks.push((key, sorted.particles.len() as u32));
+        }
+        let (position, radius) = particles[index as usize];
+        sorted.particles.push((lattice.to_voxels(position), 0.5 * lattice.voxel / radius));
+    }
+    Ok(sorted)
+}
+
+impl Sorted {
+    fn of_block(&self, at: usize) -> &[(Vec3, f64)] {
+        let end = self.blocks.get(at + 1).map_or(self.particles.len(), |(_, first)| *first as usize);
+        &self.particles[self.blocks[at].1 as usize..end]
+    }
+}
+
+/// Density less `iso` on the nodes of a block; `None` where no particle reaches.
+fn gather(sorted: &Sorted, block: [i64; 3], steps: i64, iso: f64) -> Option<Box<[f64; NODES]>> {
+    let low = Vec3::from_array(block.map(|c| (c * EDGE as i64) as f64));
+    let high = low + Vec3::new(1.0, 1.0, 1.0) * (EDGE - 1) as f64;
+    let mut near = Vec::new();
+    for z in block[2] - steps..=block[2] + steps {
+        for y in block[1] - steps..=block[1] + steps {
+            let row = |x: i64| key_of([x, y, z]);
+            let first = sorted.blocks.partition_point(|(key, _)| *key < row(block[0] - steps));
+            let ends = row(block[0] + steps);
+            for at in (first..sorted.blocks.len()).take_while(|at| sorted.blocks[*at].0 <= ends) {
+                near.extend(sorted.of_block(at).iter().copied().filter(|(position, inverse)| {
+                    let outside =
+                        (low - *position).max_components(*position - high).max_components(Vec3::ZERO);
+                    outside.length_sq() * inverse * inverse < 4.0
+                }));
+            }
+        }
+    }
+    if near.is_empty() {
+        return None;
+    }
+    let mut values = Box::new([-iso; NODES]);
+    run_widest(Splat { particles: &near, low, values: &mut values });
+    Some(values)
+}
+
+/// Kernels of particles on the nodes of a block.
+struct Splat<'a> {
+    particles: &'a [(Vec3, f64)],
+    low: Vec3,
+    values: &'a mut [f64; NODES],
+}
+
+impl Rows for Splat<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for (position, inverse) in self.particles {
+            // twice the kernel's length
+            let reach = 2.0 / inverse;
+            let at = *position - self.low;
+            let range = |c: f64, reach: f64| {
+                let first = (c - reach).ceil().max(0.0) as usize;
+                let last = (c + reach).floor().min((EDGE - 1) as f64);
+                first..if last < 0.0 { 0 } else { last as usize + 1 }
+            };
+            for z in range(at.z, reach) {
+                let dz = z as f64 - at.z;
+                let left = (reach * reach - dz * dz).max(0.0).sqrt();
+                for y in range(at.y, left) {
+                    let dy = y as f64 - at.y;
+                    let across = dy * dy + dz * dz;
+                    let first = EDGE * (y + EDGE * z);
+                    for (x, value) in self.values[first..first + EDGE].iter_mut().enumerate() {
+                        let dx = x as f64 - at.x;
+                        *value += kernel((dx * dx + across).sqrt() * inverse);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Drops blocks that are of one sign, and all around them too.
+fn keep_near(keys: &mut Vec<u64>, values: &mut Vec<f64>) {
+    let mut neighbours = crate::grid::Neighbours::default();
+    // what no particle reaches is outside, whatever stands before it in its row
+    let signs: Vec<i8> = values
+        .chunks_exact(NODES)
+        .map(|block| {
+            let inside = block.iter().filter(|value| **value > 0.0).count();
+            if inside == 0 {
+                -1
+            } else if inside == NODES {
+                1
+            } else {
+                0
+            }
+        })
+        .collect();
+    neighbours.find(Grid { keys, values });
+    let is_near = |block: usize| {
+        (0..27).any(|number| match neighbours.of(block, number) {
+            crate::grid::Found::Kept(other) => signs[other as usize] != signs[block],
+            _ => signs[block] > 0,
+        }) || signs[block] == 0
+    };
+    let kept: Vec<usize> = (0..keys.len()).filter(|block| is_near(*block)).collect();
+    for (to, from) in kept.iter().enumerate() {
+        keys[to] = keys[*from];
+        values.copy_within(NODES * from..NODES * (from + 1), NODES * to);
+    }
+    keys.truncate(kept.len());
+    values.truncate(NODES * kept.len());
+    values.iter_mut().for_each(|value| *value = value.clamp(-BAND, BAND));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::polygons::{Audit, area_and_volume};
+
+    /// A cube of particles at twice their radius is dressed by one closed surface of about its volume; two far apart by two.
+    #[test]
+    fn particles_are_dressed() {
+        let cube = |at: Vec3| {
+            (0..512).map(move |i: i32| {
+                let place = Vec3::new((i % 8).into(), (i / 8 % 8).into(), (i / 64).into());
+                (place * 0.02 + at, 0.01)
+            })
+        };
+        let mut audit = Audit::default();
+        let one: Vec<(Vec3, f64)> = cube(Vec3::ZERO).collect();
+        let (surface, normals) = dress(&one, 0.01, 0.5).unwrap();
+        assert_eq!(normals.len(), surface.points.len());
+        assert_eq!(audit.check(surface.points.len(), &surface.triangles).unwrap(), (2, 1));
+        let volume = area_and_volume(&surface.points, &surface.triangles).1;
+        // corners are rounded, by less than a tenth of the cube
+        assert!((volume / 0.16_f64.powi(3) - 1.0).abs() < 0.1, "{volume}");
+        let two: Vec<(Vec3, f64)> = cube(Vec3::ZERO).chain(cube(Vec3::X)).collect();
+        let (surface, _) = dress(&two, 0.01, 0.5).unwrap();
+        assert_eq!(audit.check(surface.points.len(), &surface.triangles).unwrap(), (4, 2));
+    }
+
+    /// What cannot be dressed is said.
+    #[test]
+    fn bad_particles_end_in_words() {
+        let refused =
+            |particles: &[(Vec3, f64)], voxel: f64| dress(particles, voxel, 0.5).unwrap_err().to_string();
+        assert!(refused(&[], 1.0).contains("no particle"));
+        assert!(refused(&[(Vec3::X * f64::NAN, 1.0)], 1.0).contains("particle 0"));
+        assert!(refused(&[(Vec3::ZERO, 0.0)], 1.0).contains("radius above 0"));
+        // one particle alone has no density of one half
+        assert!(refused(&[(Vec3::ZERO, 1.0)], 1.0).contains("inside nowhere"));
+        assert!(refused(&[(Vec3::ZERO, 1.0)], 1e-4).contains("larger voxels"));
+    }
+}

@@ -1,0 +1,23 @@
+//! A skin: the zero level of a potential on a sparse grid, moved by strategies, with tension, area and volume of its own.
+//!
+//! [`Skin`] holds what is constant: a lattice, a [`Target`](target::Target), a list of [`Term`](strategy::Term)s. What
+//! evolves is a field of State: blocks of values around the surface. Each step moves it by as many sub-steps as it
+//! needs, makes its triangles, checks that they are a closed manifold, and notes when its topology changes.
+
+mod cases;
+mod crossings;
+mod dress;
+mod field;
+pub mod grid;
+mod level_set;
+pub mod polygons;
+pub mod reaction;
+mod skin;
+pub mod strategy;
+pub mod target;
+mod widest;
+
+pub use dress::dress;
+pub use grid::{Grid, Lattice};
+pub use polygons::{Measures, Polygons};
+pub use skin::{Skin, SkinError, SkinScratch, View, mean_curvature, surface_of};

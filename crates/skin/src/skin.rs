@@ -1,0 +1,585 @@
+//! A skin: its lattice, its target, its terms, and the step that moves its grid in State.
+
+use rayon::prelude::*;
+use souple_engine::FieldState;
+use souple_math::Vec3;
+
+use crate::crossings::Crossings;
+use crate::grid::{BAND, EDGE, FARTHEST, Grid, Halo, Lattice, NODES, Neighbours, key_of, wide};
+use crate::level_set::{Heads, Runaway, Speeds, Waking, advance, curvature_at};
+use crate::polygons::{Audit, Measures, Polygons, Torn, area_and_volume, normals, polygonise};
+use crate::reaction::{Reaction, ReactionScratch, Tense};
+use crate::strategy::{SurfacePoints, Term, Whole};
+use crate::target::{Moment, Target, TargetScratch};
+
+/// The constant part of a skin.
+pub struct Skin {
+    pub name: String,
+    pub lattice: Lattice,
+    pub target: Option<Target>,
+    pub terms: Vec<Box<dyn Term>>,
+    /// Share of the way that `|∇f|` goes to 1 in a sub-step.
+    pub redistance: f64,
+    /// What it does to rows; their forces stand before the grid in State.
+    pub reaction: Option<Reaction>,
+}
+
+/// Numbers at the beginning of a skin's values in State.
+pub const HEAD: usize = 8;
+const AREA: usize = 0;
+const VOLUME: usize = 1;
+const REST_AREA: usize = 2;
+const REST_VOLUME: usize = 3;
+/// Greatest speed of a node beside the surface in the last sub-step [m/s].
+const SPEED: usize = 4;
+/// When the topology changed last [s].
+const CHANGED: usize = 5;
+/// Sub-steps of the last step; largest share of a voxel moved.
+const SUBSTEPS: usize = 6;
+
+/// Integers before the keys of the blocks.
+pub const HEAD_INDICES: usize = 5;
+const EULER: usize = 0;
+const COMPONENTS: usize = 1;
+/// Changes of topology so far.
+const EVENTS: usize = 2;
+const POINTS: usize = 3;
+const TRIANGLES: usize = 4;
+
+/// Blocks that a skin may have: 2 GB of values.
+pub const MOST_BLOCKS: usize = 1 << 19;
+/// Sub-steps of a step at most.
+const MOST_SUBSTEPS: u32 = 10_000;
+/// The surface moves no further in a sub-step [voxels].
+const FARTHEST_MOVE: f64 = 0.5;
+/// `β Δt ≤ voxel²/6` (6).
+const TENSION_LIMIT: f64 = 1.0 / 6.0;
+
+/// Why a skin cannot start or go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SkinError {
+    #[error("its target cannot be placed: {0}")]
+    Target(String),
+    #[error("its target is {value} at {place:?}; expected a number")]
+    TargetNotANumber { value: f64, place: [f64; 3] },
+    #[error(
+        "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside, or smaller voxels where it is thinner than one"
+    )]
+    Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
+    #[error(
+        "its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`"
+    )]
+    BeyondDomain { place: [f64; 3] },
+    #[error("its target does not say where it is; expected a `domain`")]
+    NoDomain,
+    #[error(
+        "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_BLOCKS}: larger voxels"
+    )]
+    TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },
+    #[error(
+        "it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth"
+    )]
+    Grown { blocks: usize, time: f64 },
+    #[error("it left its space, {FARTHEST} blocks of 8 voxels, at t = {time} s")]
+    Runaway { time: f64 },
+    #[error("its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
+    Speed { speed: f64, place: [f64; 3], time: f64 },
+    #[error(
+        "a step of {timestep} s would be more than {MOST_SUBSTEPS} sub-steps of {substep:.3e} s: larger voxels, slower terms or shorter steps"
+    )]
+    TooManySubsteps { timestep: f64, substep: f64 },
+    #[error("{torn} at t = {time} s")]
+    Torn { torn: Torn, time: f64 },
+}
+
+/// A skin's part of State, as a reader sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    pub grid: Grid<'a>,
+    head: &'a [f64],
+    head_indices: &'a [u64],
+    /// Forces on the rows it acts on [N], three numbers each.
+    pub reactions: &'a [f64],
+}
+
+impl<'a> View<'a> {
+    pub fn new(field: &'a FieldState, reactions: usize) -> Self {
+        let (head, rest) = field.values.split_at(HEAD);
+        let (reactions, values) = rest.split_at(3 * reactions);
+        let (head_indices, keys) = field.indices.split_at(HEAD_INDICES);
+        Self { grid: Grid { keys, values }, head, head_indices, reactions }
+    }
+
+    pub fn measures(&self) -> Measures {
+        Measures {
+            area: self.head[AREA],
+            volume: self.head[VOLUME],
+            euler: self.head_indices[EULER] as i64,
+            components: self.head_indices[COMPONENTS],
+        }
+    }
+
+    /// Greatest speed of a node beside the surface in the last sub-step [m/s].
+    pub fn speed(&self) -> f64 {
+        self.head[SPEED]
+    }
+
+    /// Times that the number of components or the Euler characteristic changed.
+    pub fn events(&self) -> u64 {
+        self.head_indices[EVENTS]
+    }
+
+    /// When that was last [s].
+    pub fn changed(&self) -> f64 {
+        self.head[CHANGED]
+    }
+
+    pub fn substeps(&self) -> f64 {
+        self.head[SUBSTEPS]
+    }
+
+    /// Points and triangles of the surface.
+    pub fn counts(&self) -> [u64; 2] {
+        [self.head_indices[POINTS], self.head_indices[TRIANGLES]]
+    }
+}
+
+/// Scratch of a skin.
+pub struct SkinScratch {
+    neighbours: Neighbours,
+    crossings: Crossings,
+    triangles: Vec<[u32; 3]>,
+    excess: Vec<f64>,
+    speeds: Vec<f64>,
+    spread: Speeds,
+    next: Vec<f64>,
+    waking: Waking,
+    audit: Audit,
+    reaction: ReactionScratch,
+    target: Option<TargetScratch>,
+}
+
+impl SkinScratch {
+    /// The surface of the last step.
+    pub fn points(&self) -> &[Vec3] {
+        &self.crossings.points
+    }
+
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    pub fn bytes(&self) -> usize {
+        self.neighbours.bytes()
+            + self.crossings.bytes()
+            + 12 * self.triangles.capacity()
+            + 8 * (self.excess.capacity() + self.speeds.capacity() + self.next.capacity())
+            + self.spread.bytes()
+            + self.waking.bytes()
+            + self.audit.bytes()
+            + self.reaction.bytes()
+    }
+}
+
+impl Skin {
+    pub fn new_scratch(&self) -> SkinScratch {
+        SkinScratch {
+            neighbours: Neighbours::default(),
+            crossings: Crossings::default(),
+            triangles: Vec::new(),
+            excess: Vec::new(),
+            speeds: Vec::new(),
+            spread: Speeds::default(),
+            next: Vec::new(),
+            waking: Waking::default(),
+            audit: Audit::default(),
+            reaction: ReactionScratch::default(),
+            target: self.target.as_ref().map(Target::new_scratch),
+        }
+    }
+
+    /// Rows that it acts on.
+    pub fn reactions(&self) -> usize {
+        self.reaction.as_ref().map_or(0, |reaction| reaction.rows.len())
+    }
+
+    fn voxel(&self) -> f64 {
+        self.lattice.voxel
+    }
+
+    /// `β` of all terms [m²/s].
+    fn tension(&self) -> f64 {
+        self.terms.iter().map(|term| term.tension()).sum()
+    }
+
+    /// The state of a skin that begins as the zero level of `value` within a box [m].
+    ///
+    /// # Errors
+    /// There is no inside, it does not end within the box, or it is too large for its voxels.
+    pub fn start(
+        &self,
+        low: Vec3,
+        high: Vec3,
+        value: &(dyn Fn(Vec3) -> f64 + Sync),
+        scratch: &mut SkinScratch,
+    ) -> Result<FieldState, SkinError> {
+        let edge = EDGE as f64;
+        // one block around, so that all ends within
+        let first = self.lattice.to_voxels(low).to_array().map(|c| (c / edge).floor() - 1.0);
+        let last = self.lattice.to_voxels(high).to_array().map(|c| (c / edge).floor() + 1.0);
+        let counts = [0, 1, 2].map(|axis| (last[axis] - first[axis] + 1.0).max(1.0));
+        let blocks: f64 = counts.iter().product();
+        let far = first.iter().chain(&last).any(|c| c.is_nan() || c.abs() >= FARTHEST as f64);
+        if far || blocks.is_nan() || blocks > 64.0 * MOST_BLOCKS as f64 {
+            let size = (high - low).to_array();
+            return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
+        }
+        let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
+        self.sample(first.map(|c| c as i64), counts.map(|c| c as i64), value, &mut field)?;
+        if crate::polygons::is_empty(Grid { keys: &[], values: &field.values[self.head()..] }) {
+            let (low, high) = (low.to_array(), high.to_array());
+            return Err(SkinError::Empty { low, high, voxel: self.voxel() });
+        }
+        self.make_distance(&mut field, scratch)?;
+        self.measure(&mut field, scratch, 0.0)?;
+        field.values[REST_AREA] = field.values[AREA];
+        field.values[REST_VOLUME] = field.values[VOLUME];
+        field.indices[EVENTS] = 0;
+        Ok(field)
+    }
+
+    /// Values in voxels, by the slope between neighbours, of the blocks within the band.
+    fn sample(
+        &self,
+        first: [i64; 3],
+        counts: [i64; 3],
+        value: &(dyn Fn(Vec3) -> f64 + Sync),
+        field: &mut FieldState,
+    ) -> Result<(), SkinError> {
+        let lattice = self.lattice;
+        let at =
+            move |node: [i64; 3]| lattice.to_world(Vec3::new(node[0] as f64, node[1] as f64, node[2] as f64));
+        let edge = EDGE as i64;
+        // slab by slab of blocks along z: a wide block's values, or nothing where it is uniform
+        for z in 0..counts[2] {
+            let slab: Vec<Result<Sampled, SkinError>> = (0..counts[0] * counts[1])
+                .into_par_iter()
+                .map(|i| {
+                    let block = [first[0] + i % counts[0], first[1] + i / counts[0], first[2] + z];
+                    let is_border = [i % counts[0], i / counts[0], z]
+                        .iter()
+                        .zip(counts)
+                        .any(|(c, count)| *c == 0 || *c == count - 1);
+                    let mut values = vec![0.0; 1000];
+                    let (mut inside, mut outside) = (false, false);
+                    for (index, out) in values.iter_mut().enumerate() {
+                        let i = index as i64;
+                        let node = [i % 10, i / 10 % 10, i / 100];
+                        let place = at([0, 1, 2].map(|axis| edge * block[axis] + node[axis] - 1));
+                        let f = value(place);
+                        let is_own = node.iter().all(|c| (1..=edge).contains(c));
+                        if !f.is_finite() {
+                            return Err(SkinError::TargetNotANumber { value: f, place: place.to_array() });
+                        }
+                        if is_border && is_own && f > 0.0 {
+                            return Err(SkinError::BeyondDomain { place: place.to_array() });
+                        }
+                        (inside, outside) = (inside | (f > 0.0), outside | (f <= 0.0));
+                        *out = f;
+                    }
+                    let distances = distances(&values);
+                    let is_near = (inside && outside) || distances.iter().any(|f| f.abs() < BAND);
+                    Ok(is_near.then(|| (key_of(block), distances)))
+                })
+                .collect();
+            for block in slab {
+                if let Some((key, values)) = block? {
+                    field.indices.push(key);
+                    field.values.extend(values);
+                    let blocks = field.indices.len() - HEAD_INDICES;
+                    if blocks > MOST_BLOCKS {
+                        return Err(SkinError::Grown { blocks, time: 0.0 });
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Wakes the whole band, and makes values distances.
+    fn make_distance(&self, field: &mut FieldState, scratch: &mut SkinScratch) -> Result<(), SkinError> {
+        // a kink runs through the band in as many steps as it has half voxels, and as many again settle it
+        for _ in 0..8 * BAND as usize {
+            self.find_neighbours(field, scratch);
+            self.find_crossings(field, scratch);
+            scratch.speeds.clear();
+            scratch.speeds.resize(scratch.crossings.points.len(), 0.0);
+            self.move_by(field, scratch, 0.0, 2.0 * self.redistance, 0.0)?;
+        }
+        Ok(())
+    }
+
+    pub(crate) fn head(&self) -> usize {
+        HEAD + 3 * self.reactions()
+    }
+
+    fn grid<'a>(&self, field: &'a FieldState) -> Grid<'a> {
+        Grid { keys: &field.indices[HEAD_INDICES..], values: &field.values[self.head()..] }
+    }
+
+    fn find_neighbours(&self, field: &FieldState, scratch: &mut SkinScratch) {
+        scratch.neighbours.find(self.grid(field));
+    }
+
+    fn find_crossings(&self, field: &FieldState, scratch: &mut SkinScratch) {
+        scratch.crossings.find(self.grid(field), &scratch.neighbours, &self.lattice);
+    }
+
+    /// Moves the skin on by `timestep` [s] to the moment `end`.
+    ///
+    /// # Errors
+    /// Why it cannot go on.
+    pub fn step(
+        &self,
+        end: &Moment,
+        timestep: f64,
+        field: &mut FieldState,
+        scratch: &mut SkinScratch,
+    ) -> Result<(), SkinError> {
+        let (mut done, mut substeps) = (0.0, 0_u32);
+        let start = end.time - timestep;
+        if let (Some(target), Some(placed)) = (&self.target, &mut scratch.target) {
+            target.place(end, placed).map_err(SkinError::Target)?;
+        }
+        self.find_neighbours(field, scratch);
+        while done < timestep {
+            let left = timestep - done;
+            let now = start + done;
+            self.find_crossings(field, scratch);
+            if substeps > 0 {
+                self.measure_size(field, scratch);
+            }
+            let (fastest, answer) = self.add_speeds(field, scratch, now)?;
+            let substep = self.longest_substep(fastest, answer);
+            let count = (left / substep).ceil().max(1.0);
+            if count.is_nan() || count + f64::from(substeps) > f64::from(MOST_SUBSTEPS) {
+                return Err(SkinError::TooManySubsteps { timestep, substep });
+            }
+            let substep = left / count;
+            let h = self.voxel();
+            scratch.speeds.iter_mut().for_each(|speed| *speed *= substep / h);
+            let tension = self.tension() * substep / (h * h);
+            self.move_by(field, scratch, tension, self.redistance, now + substep)?;
+            field.values[SPEED] = scratch.spread.greatest() * h / substep;
+            done = if count == 1.0 { timestep } else { done + substep };
+            substeps += 1;
+        }
+        field.values[SUBSTEPS] = f64::from(substeps);
+        self.find_crossings(field, scratch);
+        self.measure(field, scratch, end.time)?;
+        self.react(field, scratch, end)
+    }
+
+    /// Area and volume as they stand within a step, where a term asks.
+    fn measure_size(&self, field: &mut FieldState, scratch: &mut SkinScratch) {
+        let whole = self.whole(field, 0.0);
+        if self.terms.iter().all(|term| term.answer(&whole) == 0.0) {
+            return;
+        }
+        polygonise(self.grid(field), &scratch.neighbours, &scratch.crossings, &mut scratch.triangles);
+        let (area, volume) = area_and_volume(&scratch.crossings.points, &scratch.triangles);
+        field.values[AREA] = area;
+        field.values[VOLUME] = volume;
+    }
+
+    fn whole(&self, field: &FieldState, time: f64) -> Whole {
+        let head = &field.values;
+        Whole {
+            time,
+            area: head[AREA],
+            volume: head[VOLUME],
+            rest_area: head[REST_AREA],
+            rest_volume: head[REST_VOLUME],
+        }
+    }
+
+    /// Speeds of the crossings without tension [m/s]; the greatest, and how fast terms answer what they do [1/s].
+    fn add_speeds(
+        &self,
+        field: &FieldState,
+        scratch: &mut SkinScratch,
+        time: f64,
+    ) -> Result<(f64, f64), SkinError> {
+        let points = &scratch.crossings.points;
+        scratch.excess.clear();
+        scratch.excess.resize(points.len(), 0.0);
+        if let (Some(target), Some(placed)) = (&self.target, &scratch.target)
+            && self.terms.iter().any(|term| term.needs_target())
+        {
+            scratch.excess.par_iter_mut().zip(points).with_min_len(256).for_each(|(excess, point)| {
+                *excess = target.excess(*point, placed);
+            });
+        }
+        let whole = self.whole(field, time);
+        let uniform: f64 = self.terms.iter().map(|term| term.uniform(&whole)).sum();
+        let answer: f64 = self.terms.iter().map(|term| term.answer(&whole)).sum();
+        scratch.speeds.clear();
+        scratch.speeds.resize(points.len(), uniform);
+        for term in &self.terms {
+            term.add_at(SurfacePoints { points, excess: &scratch.excess }, &whole, &mut scratch.speeds);
+        }
+        let mut fastest = 0.0_f64;
+        for (speed, point) in scratch.speeds.iter().zip(points) {
+            if !speed.is_finite() {
+                return Err(SkinError::Speed { speed: *speed, place: point.to_array(), time });
+            }
+            fastest = fastest.max(speed.abs());
+        }
+        Ok((fastest, answer))
+    }
+
+    fn longest_substep(&self, fastest: f64, answer: f64) -> f64 {
+        let h = self.voxel();
+        let by_speed = FARTHEST_MOVE * h / fastest;
+        let by_tension = TENSION_LIMIT * h * h / self.tension();
+        // a term that answers itself goes half the way at most
+        let by_answer = 0.5 / answer;
+        by_speed.min(by_tension).min(by_answer)
+    }
+
+    /// One sub-step with speeds in voxels and `tension = β Δt / voxel²`.
+    fn move_by(
+        &self,
+        field: &mut FieldState,
+        scratch: &mut SkinScratch,
+        tension: f64,
+        redistance: f64,
+        time: f64,
+    ) -> Result<(), SkinError> {
+        let head = self.head();
+        let grid = self.grid(field);
+        scratch.spread.spread(grid, &scratch.neighbours, &scratch.crossings, &scratch.speeds, tension);
+        advance(grid, &scratch.neighbours, &scratch.spread, redistance, &mut scratch.next);
+        field.values[head..].copy_from_slice(&scratch.next);
+        let heads = Heads { indices: HEAD_INDICES, values: head };
+        let changed = scratch
+            .waking
+            .update(&mut field.indices, &mut field.values, heads, &scratch.neighbours)
+            .map_err(|Runaway| SkinError::Runaway { time })?;
+        if changed {
+            let blocks = field.indices.len() - HEAD_INDICES;
+            if blocks > MOST_BLOCKS {
+                return Err(SkinError::Grown { blocks, time });
+            }
+            self.find_neighbours(field, scratch);
+        }
+        Ok(())
+    }
+
+    /// Triangles, their measures, and whether the topology changed.
+    fn measure(&self, field: &mut FieldState, scratch: &mut SkinScratch, time: f64) -> Result<(), SkinError> {
+        let grid = self.grid(field);
+        scratch.crossings.find(grid, &scratch.neighbours, &self.lattice);
+        polygonise(grid, &scratch.neighbours, &scratch.crossings, &mut scratch.triangles);
+        let (points, triangles) = (&scratch.crossings.points, &scratch.triangles);
+        let (area, volume) = area_and_volume(points, triangles);
+        let topology = scratch.audit.check(points.len(), triangles);
+        let (euler, components) = topology.map_err(|torn| SkinError::Torn { torn, time })?;
+        field.values[AREA] = area;
+        field.values[VOLUME] = volume;
+        let indices = &mut field.indices;
+        if (indices[EULER], indices[COMPONENTS]) != (euler as u64, components) {
+            indices[EVENTS] += 1;
+            field.values[CHANGED] = time;
+        }
+        indices[EULER] = euler as u64;
+        indices[COMPONENTS] = components;
+        indices[POINTS] = points.len() as u64;
+        indices[TRIANGLES] = triangles.len() as u64;
+        Ok(())
+    }
+
+    /// Forces on rows, from the surface as it stands now.
+    fn react(&self, field: &mut FieldState, scratch: &mut SkinScratch, at: &Moment) -> Result<(), SkinError> {
+        let Some(reaction) = &self.reaction else { return Ok(()) };
+        let surface = Tense {
+            points: &scratch.crossings.points,
+            triangles: &scratch.triangles,
+            volume: field.values[VOLUME],
+            rest_volume: field.values[REST_VOLUME],
+        };
+        let out = &mut field.values[HEAD..HEAD + 3 * reaction.rows.len()];
+        reaction.act(surface, at, &mut scratch.reaction, out).map_err(SkinError::Target)
+    }
+
+    /// A reader's view of the state.
+    pub fn view<'a>(&self, field: &'a FieldState) -> View<'a> {
+        View::new(field, self.reactions())
+    }
+}
+
+/// The key and the values of a block; nothing of one beyond the band.
+type Sampled = Option<(u64, Vec<f64>)>;
+
+/// Values over the greatest slope to a neighbour, of a block with the nodes around it: near distances in voxels.
+fn distances(values: &[f64]) -> Vec<f64> {
+    let mut out = Vec::with_capacity(NODES);
+    for z in 0..EDGE {
+        for y in 0..EDGE {
+            for x in 0..EDGE {
+                let at = wide(x + 1, y + 1, z + 1);
+                let f = values[at];
+                let slope_sq: f64 = [1, wide(0, 1, 0), wide(0, 0, 1)]
+                    .iter()
+                    .map(|d| {
+                        let (low, high) = (f - values[at - d], values[at + d] - f);
+                        // at a ridge the greater slope, where it is smooth the middle one
+                        let is_ridge = low * high < 0.0;
+                        let slope = if is_ridge { low.abs().max(high.abs()) } else { 0.5 * (low + high) };
+                        slope * slope
+                    })
+                    .sum();
+                let distance = if slope_sq > 0.0 { f / slope_sq.sqrt() } else { f.signum() * BAND };
+                out.push(if f == 0.0 { 0.0 } else { distance.clamp(-BAND, BAND) });
+            }
+        }
+    }
+    out
+}
+
+/// The surface of a grid.
+pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
+    let (mut neighbours, mut crossings) = (Neighbours::default(), Crossings::default());
+    neighbours.find(grid);
+    crossings.find(grid, &neighbours, lattice);
+    let (mut triangles, mut directions) = (Vec::new(), Vec::new());
+    polygonise(grid, &neighbours, &crossings, &mut triangles);
+    normals(grid, &neighbours, &crossings, lattice, &mut directions);
+    (Polygons { points: crossings.points, triangles }, directions)
+}
+
+/// `κ = div n`, twice the mean curvature, averaged over the surface [1/m].
+pub fn mean_curvature(grid: Grid, lattice: &Lattice) -> f64 {
+    let mut neighbours = Neighbours::default();
+    neighbours.find(grid);
+    let mut halo = Halo::ZERO;
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for block in 0..grid.keys.len() {
+        if grid.block(block).iter().all(|f| f.abs() >= SMEARED) {
+            continue;
+        }
+        halo.read(grid, &neighbours, block);
+        for (node, f) in grid.block(block).iter().enumerate().filter(|(_, f)| f.abs() < SMEARED) {
+            let at = wide(node % 8 + 1, node / 8 % 8 + 1, node / 64 + 1);
+            let (curvature, slope) = curvature_at(&halo.0, at);
+            // a hat on both sides of the surface in place of Dirac's function
+            let share = (1.0 - f.abs() / SMEARED) * slope;
+            sum += share * curvature;
+            weight += share;
+        }
+    }
+    if weight > 0.0 { sum / weight / lattice.voxel } else { 0.0 }
+}
+
+/// Nodes nearer than this take part in means over the surface [voxels].
+const SMEARED: f64 = 1.0;

@@ -1,0 +1,264 @@
+//! What moves a skin: terms that add up to the speed along its outward normal.
+//!
+//! `v_n = α (G − iso) − β κ + γ_A (A0 − A)/A0 + γ_V (V0 − V)/V0 + …`, each term one entry of [`TERMS`].
+
+use souple_formal::Formula;
+use souple_math::Vec3;
+use souple_table::{Entry, Parameter, Range, Table, Value, Values};
+
+/// A skin as a whole, for terms that look at all of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Whole {
+    /// [s]
+    pub time: f64,
+    /// [m²]
+    pub area: f64,
+    /// [m³]
+    pub volume: f64,
+    /// At the start.
+    pub rest_area: f64,
+    pub rest_volume: f64,
+}
+
+/// The surface points of a skin, with the target's potential less its iso value there.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoints<'a> {
+    pub points: &'a [Vec3],
+    /// Zero without a target.
+    pub excess: &'a [f64],
+}
+
+/// One term of the speed, positive outward [m/s].
+pub trait Term: Send + Sync {
+    /// The same everywhere.
+    fn uniform(&self, _whole: &Whole) -> f64 {
+        0.0
+    }
+
+    /// How fast the term answers a change of the skin that it made itself [1/m]: a speed for each metre that the whole
+    /// skin moves. It limits sub-steps.
+    fn answer(&self, _whole: &Whole) -> f64 {
+        0.0
+    }
+
+    /// `out += speed` at each point.
+    fn add_at(&self, _at: SurfacePoints, _whole: &Whole, _out: &mut [f64]) {}
+
+    /// `β` of a term `−β κ` [m²/s].
+    fn tension(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether it needs a target.
+    fn needs_target(&self) -> bool {
+        false
+    }
+}
+
+/// Why a term cannot be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{parameter}` of the term `{term}`: {message}")]
+pub struct TermError {
+    pub term: &'static str,
+    pub parameter: &'static str,
+    pub message: String,
+}
+
+/// Constructor of a term from completed values.
+pub type BuildTerm = fn(&Values) -> Result<Box<dyn Term>, TermError>;
+type TermEntry = Entry<BuildTerm>;
+
+/// All terms of the speed of a skin.
+pub static TERMS: Table<BuildTerm> = Table {
+    kind: "skin term",
+    entries: &[&ATTRACTION, &TENSION, &CONSTANT_AREA, &CONSTANT_VOLUME, &PRESSURE, &SPEED],
+};
+
+const SOURCE: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
+
+/// A formula, or `None` for an empty text.
+fn formula(
+    values: &Values,
+    term: &'static str,
+    parameter: &'static str,
+    variables: &[&str],
+) -> Result<Option<Formula>, TermError> {
+    let text = values.text(parameter).trim();
+    if text.is_empty() {
+        return Ok(None);
+    }
+    Formula::compile(text, variables).map(Some).map_err(|error| TermError {
+        term,
+        parameter,
+        message: error.to_string(),
+    })
+}
+
+struct Attraction(f64);
+
+impl Term for Attraction {
+    // α (G − iso)
+    fn add_at(&self, at: SurfacePoints, _: &Whole, out: &mut [f64]) {
+        out.iter_mut().zip(at.excess).for_each(|(out, excess)| *out += self.0 * excess);
+    }
+
+    fn needs_target(&self) -> bool {
+        true
+    }
+}
+
+static ATTRACTION: TermEntry = Entry {
+    name: "attraction",
+    summary: "to the target: alpha (G - iso)",
+    source: SOURCE,
+    parameters: &[Parameter::number(
+        "strength",
+        "m/s",
+        Range::NOT_NEGATIVE,
+        "alpha, speed where the potential is one more than its iso value",
+    )],
+    build: |values| Ok(Box::new(Attraction(values.number("strength")))),
+};
+
+struct Tension(f64);
+
+impl Term for Tension {
+    fn tension(&self) -> f64 {
+        self.0
+    }
+}
+
+static TENSION: TermEntry = Entry {
+    name: "tension",
+    summary: "of the surface: -beta kappa, makes the area smaller; a sphere shrinks as R^2 = R0^2 - 4 beta t",
+    source: SOURCE,
+    parameters: &[Parameter::number("strength", "m^2/s", Range::NOT_NEGATIVE, "beta")],
+    build: |values| Ok(Box::new(Tension(values.number("strength")))),
+};
+
+const TIME: &[&str] = &["t"];
+
+/// What is held constant.
+#[derive(Clone, Copy)]
+enum Held {
+    Area,
+    Volume,
+}
+
+struct Constant {
+    rate: f64,
+    /// Of time; what it was at the start where `None`.
+    goal: Option<Formula>,
+    held: Held,
+}
+
+impl Constant {
+    fn goal(&self, whole: &Whole) -> f64 {
+        let rest = match self.held {
+            Held::Area => whole.rest_area,
+            Held::Volume => whole.rest_volume,
+        };
+        self.goal.as_ref().map_or(rest, |goal| goal.evaluate(&[whole.time]))
+    }
+}
+
+impl Term for Constant {
+    // γ (goal − now)/goal
+    fn uniform(&self, whole: &Whole) -> f64 {
+        let now = match self.held {
+            Held::Area => whole.area,
+            Held::Volume => whole.volume,
+        };
+        let goal = self.goal(whole);
+        if goal > 0.0 && goal.is_finite() { self.rate * (goal - now) / goal } else { f64::NAN }
+    }
+
+    // dV = A ds; of a ball dA = 2 A/R ds with R = 3 V/A
+    fn answer(&self, whole: &Whole) -> f64 {
+        let goal = self.goal(whole);
+        if goal <= 0.0 || whole.volume <= 0.0 {
+            return 0.0;
+        }
+        let change = match self.held {
+            Held::Area => 2.0 / 3.0 * whole.area * whole.area / whole.volume,
+            Held::Volume => whole.area,
+        };
+        self.rate * change / goal
+    }
+}
+
+static CONSTANT_AREA: TermEntry = Entry {
+    name: "constant_area",
+    summary: "gamma_A (A0 - A)/A0: the area goes to that of the start, or to one given",
+    source: SOURCE,
+    parameters: &[
+        Parameter::number("rate", "m/s", Range::NOT_NEGATIVE, "gamma_A"),
+        Parameter::text("area", "A0 [m^2] as a formula of t; empty: that of the start").or(Value::Text("")),
+    ],
+    build: |values| {
+        let goal = formula(values, "constant_area", "area", TIME)?;
+        Ok(Box::new(Constant { rate: values.number("rate"), goal, held: Held::Area }))
+    },
+};
+
+static CONSTANT_VOLUME: TermEntry = Entry {
+    name: "constant_volume",
+    summary: "gamma_V (V0 - V)/V0: the volume goes to that of the start, or to one given",
+    source: SOURCE,
+    parameters: &[
+        Parameter::number("rate", "m/s", Range::NOT_NEGATIVE, "gamma_V"),
+        Parameter::text("volume", "V0 [m^3] as a formula of t; empty: that of the start").or(Value::Text("")),
+    ],
+    build: |values| {
+        let goal = formula(values, "constant_volume", "volume", TIME)?;
+        Ok(Box::new(Constant { rate: values.number("rate"), goal, held: Held::Volume }))
+    },
+};
+
+struct Pressure(Formula);
+
+impl Term for Pressure {
+    fn uniform(&self, whole: &Whole) -> f64 {
+        self.0.evaluate(&[whole.time])
+    }
+}
+
+static PRESSURE: TermEntry = Entry {
+    name: "pressure",
+    summary: "a speed that is the same everywhere, outward where positive",
+    source: SOURCE,
+    parameters: &[Parameter::text("speed", "[m/s] as a formula of t")],
+    build: |values| {
+        let speed = formula(values, "pressure", "speed", TIME)?;
+        let missing =
+            || TermError { term: "pressure", parameter: "speed", message: "it is empty".to_owned() };
+        Ok(Box::new(Pressure(speed.ok_or_else(missing)?)))
+    },
+};
+
+struct Speed(Formula);
+
+const SPEED_VARIABLES: &[&str] = &["x", "y", "z", "t", "g", "area", "volume"];
+
+impl Term for Speed {
+    fn add_at(&self, at: SurfacePoints, whole: &Whole, out: &mut [f64]) {
+        for ((out, p), excess) in out.iter_mut().zip(at.points).zip(at.excess) {
+            *out += self.0.evaluate(&[p.x, p.y, p.z, whole.time, *excess, whole.area, whole.volume]);
+        }
+    }
+}
+
+static SPEED: TermEntry = Entry {
+    name: "speed",
+    summary: "a speed written as text, outward where positive",
+    source: "own",
+    parameters: &[Parameter::text(
+        "formula",
+        "[m/s] of x, y, z [m], t [s], g (the target's potential less its iso value), area [m^2], volume [m^3]",
+    )],
+    build: |values| {
+        let speed = formula(values, "speed", "formula", SPEED_VARIABLES)?;
+        let missing = || TermError { term: "speed", parameter: "formula", message: "it is empty".to_owned() };
+        Ok(Box::new(Speed(speed.ok_or_else(missing)?)))
+    },
+};

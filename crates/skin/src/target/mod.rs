@@ -1,0 +1,256 @@
+//! Targets: potentials that a skin is drawn to, above one half inside.
+//!
+//! A target is a list of parts, put together in their order: blended by their sum, joined, cut, met. A part is an entry
+//! of [`PARTS`]; it may be warped, moved, and there for a while only, so that one shape turns into another.
+
+mod formula;
+pub mod particles;
+mod shape;
+mod skeleton;
+mod warp;
+
+use std::any::Any;
+
+use souple_formal::Formula;
+use souple_math::Vec3;
+use souple_mesh::{BoundingBox, TriangleSurface};
+use souple_table::{Entry, Table, Values};
+
+pub use particles::{Particle, Particles};
+pub use shape::SurfacePart;
+pub use warp::{BuildWarp, WARPS, Warp};
+
+/// The value of all built-in potentials on their surface.
+pub const ISO: f64 = 0.5;
+
+/// When, and where the rows of the systems are.
+#[derive(Clone, Copy)]
+pub struct Moment<'a> {
+    /// [s]
+    pub time: f64,
+    /// Row positions of a system.
+    pub positions: &'a dyn Fn(usize) -> &'a [Vec3],
+}
+
+impl Moment<'_> {
+    /// A time without rows.
+    pub fn at(time: f64) -> Self {
+        Self { time, positions: &|_| &[] }
+    }
+}
+
+/// What a part keeps between evaluations, opaque to all others.
+pub type PartScratch = Box<dyn Any + Send + Sync>;
+
+/// A potential: above [`ISO`] inside.
+pub trait Potential: Send + Sync {
+    fn new_scratch(&self) -> PartScratch {
+        Box::new(())
+    }
+
+    /// Follows rows and time.
+    ///
+    /// # Errors
+    /// Why it has no value now.
+    fn place(&self, _at: &Moment, _scratch: &mut PartScratch) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn value(&self, point: Vec3, scratch: &PartScratch) -> f64;
+
+    /// A box around all that is inside; `None` where it is not known.
+    fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox>;
+}
+
+/// How a part joins what stands before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Combine {
+    /// The sum of potentials: seams are round.
+    Blend,
+    Union,
+    /// What was before without this.
+    Difference,
+    Intersection,
+}
+
+impl Combine {
+    pub const NAMES: &'static [&'static str] = &["blend", "union", "difference", "intersection"];
+
+    pub fn named(name: &str) -> Self {
+        match name {
+            "union" => Self::Union,
+            "difference" => Self::Difference,
+            "intersection" => Self::Intersection,
+            _ => Self::Blend,
+        }
+    }
+
+    fn of(self, before: f64, value: f64, iso: f64) -> f64 {
+        match self {
+            Self::Blend => before + value,
+            Self::Union => before.max(value),
+            Self::Difference => before.min(2.0 * iso - value),
+            Self::Intersection => before.min(value),
+        }
+    }
+}
+
+/// A potential in a target.
+pub struct Part {
+    pub potential: Box<dyn Potential>,
+    pub combine: Combine,
+    /// There from the first to before the second [s].
+    pub during: [f64; 2],
+    /// Applied to the part in this order.
+    pub warps: Vec<Box<dyn Warp>>,
+    /// Moved by this, as formulas of t [m].
+    pub motion: Option<[Formula; 3]>,
+}
+
+impl Part {
+    /// A part that is always there.
+    pub fn new(potential: Box<dyn Potential>) -> Self {
+        let during = [f64::NEG_INFINITY, f64::INFINITY];
+        Self { potential, combine: Combine::Blend, during, warps: Vec::new(), motion: None }
+    }
+
+    fn is_there(&self, time: f64) -> bool {
+        self.during[0] <= time && time < self.during[1]
+    }
+
+    fn offset(&self, time: f64) -> Vec3 {
+        self.motion.as_ref().map_or(Vec3::ZERO, |motion| {
+            let [x, y, z] = [0, 1, 2].map(|axis: usize| motion[axis].evaluate(&[time]));
+            Vec3::new(x, y, z)
+        })
+    }
+}
+
+/// What a skin is drawn to.
+pub struct Target {
+    pub parts: Vec<Part>,
+    pub iso: f64,
+}
+
+/// A target as placed at a time.
+pub struct TargetScratch {
+    parts: Vec<PartScratch>,
+    offsets: Vec<Vec3>,
+    there: Vec<bool>,
+}
+
+impl Target {
+    pub fn new_scratch(&self) -> TargetScratch {
+        TargetScratch {
+            parts: self.parts.iter().map(|part| part.potential.new_scratch()).collect(),
+            offsets: vec![Vec3::ZERO; self.parts.len()],
+            there: vec![false; self.parts.len()],
+        }
+    }
+
+    /// Follows rows and time.
+    ///
+    /// # Errors
+    /// Why a part has no value now.
+    pub fn place(&self, at: &Moment, scratch: &mut TargetScratch) -> Result<(), String> {
+        for (index, part) in self.parts.iter().enumerate() {
+            scratch.there[index] = part.is_there(at.time);
+            scratch.offsets[index] = part.offset(at.time);
+            if scratch.there[index] {
+                if !scratch.offsets[index].is_finite() {
+                    return Err(format!("the motion of parts[{index}] is not finite at t = {} s", at.time));
+                }
+                let placed = part.potential.place(at, &mut scratch.parts[index]);
+                placed.map_err(|why| format!("parts[{index}]: {why}"))?;
+            }
+        }
+        if !self.parts.is_empty() && !scratch.there.contains(&true) {
+            return Err(format!("no part of the target is there at t = {} s", at.time));
+        }
+        Ok(())
+    }
+
+    /// The potential less its iso value; positive inside.
+    pub fn excess(&self, point: Vec3, scratch: &TargetScratch) -> f64 {
+        let mut sum: Option<f64> = None;
+        for (index, part) in self.parts.iter().enumerate() {
+            if !scratch.there[index] {
+                continue;
+            }
+            let mut place = point - scratch.offsets[index];
+            // the last warp is undone first
+            for warp in part.warps.iter().rev() {
+                place = warp.undo(place);
+            }
+            let value = part.potential.value(place, &scratch.parts[index]);
+            sum = Some(sum.map_or(value, |before| part.combine.of(before, value, self.iso)));
+        }
+        sum.unwrap_or(0.0) - self.iso
+    }
+
+    /// A box around all that is inside; `None` where it is not known.
+    pub fn bounds(&self, scratch: &TargetScratch) -> Option<BoundingBox> {
+        let mut all: Option<BoundingBox> = None;
+        for (index, part) in self.parts.iter().enumerate() {
+            if !scratch.there[index] || matches!(part.combine, Combine::Difference) {
+                continue;
+            }
+            let bounds = part.potential.bounds(&scratch.parts[index])?;
+            let bounds = part.warps.iter().fold(bounds, |bounds, warp| warp.bounds(bounds));
+            let offset = scratch.offsets[index];
+            let moved = BoundingBox { low: bounds.low + offset, high: bounds.high + offset };
+            all = Some(all.map_or(moved, |all| all.union(moved)));
+        }
+        all
+    }
+}
+
+/// What a constructor may ask for besides values.
+pub trait Surroundings {
+    /// The triangles of a file.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn surface(&self, file: &str) -> Result<TriangleSurface, String>;
+
+    /// The particles of a file or a body, by name.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn particles(&self, from: &str, radius: f64) -> Result<Particles, String>;
+
+    /// The surface of a body, by name: its rows move it.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn body_surface(&self, body: &str) -> Result<(TriangleSurface, usize, Vec<u32>), String>;
+}
+
+/// Why a part cannot be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("`{parameter}` is {value}; expected {expected}")]
+pub struct PartError {
+    pub parameter: &'static str,
+    pub value: String,
+    pub expected: String,
+}
+
+/// Constructor of a part from completed values.
+pub type BuildPart = fn(&Values, &dyn Surroundings) -> Result<Box<dyn Potential>, PartError>;
+type PartEntry = Entry<BuildPart>;
+
+/// All potentials known by name.
+pub static PARTS: Table<BuildPart> = Table {
+    kind: "skin part",
+    entries: &[
+        &particles::PARTICLES,
+        &skeleton::POINT,
+        &skeleton::SEGMENT,
+        &skeleton::POLYLINE,
+        &skeleton::TRIANGLE,
+        &shape::SHAPE,
+        &shape::MESH,
+        &shape::SURFACE,
+        &formula::FORMULA,
+    ],
+};

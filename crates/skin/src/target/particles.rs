@@ -1,0 +1,199 @@
+//! The density that particles induce: `G(x) = Σ V_i W(x − x_i, h_i)` with `V_i = (2 r_i)³`, `h_i = 2 r_i` and the cubic spline.
+//!
+//! Where particles of one radius stand at twice that distance it is near 1, and one half near the border of what they
+//! fill. A particle that becomes eight of half its radius keeps its volume, so splitting and merging does not show.
+
+use souple_math::Vec3;
+use souple_mesh::BoundingBox;
+use souple_table::{Entry, Parameter, Range};
+
+use super::{Moment, PartEntry, PartError, PartScratch, Potential};
+
+/// A particle that is led.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Particle {
+    /// At the time 0 [m].
+    pub position: Vec3,
+    /// [m/s]
+    pub velocity: Vec3,
+    /// Half the distance to its neighbours [m].
+    pub radius: f64,
+    /// There from the first to before the second [s].
+    pub during: [f64; 2],
+}
+
+/// Where particles are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Particles {
+    Led(Vec<Particle>),
+    /// Rows of a system, each with its radius [m].
+    Rows {
+        system: usize,
+        rows: Vec<(u32, f64)>,
+    },
+}
+
+/// Kernels reach so far, in radii of their particle.
+pub const REACH: f64 = 4.0;
+
+/// `V W` at the distance `q h`: 1/π of `(2 − q)³/4 − (1 − q)³`, each where positive, since `V = h³`.
+#[inline(always)]
+pub fn kernel(q: f64) -> f64 {
+    let (far, near) = ((2.0 - q).max(0.0), (1.0 - q).max(0.0));
+    std::f64::consts::FRAC_1_PI * (0.25 * far * far * far - near * near * near)
+}
+
+/// Particles in cells as large as the farthest reach, sorted by cell.
+#[derive(Clone, Debug, Default)]
+pub struct Cloud {
+    /// Position and radius [m].
+    placed: Vec<(Vec3, f64)>,
+    sorted: Vec<(u64, u32)>,
+    cell: f64,
+    low: Vec3,
+    high: Vec3,
+}
+
+/// Cells along each axis at most: three coordinates in a key.
+const MOST_CELLS: f64 = 1_048_576.0;
+
+impl Cloud {
+    /// Sorts particles given by position and radius.
+    ///
+    /// # Errors
+    /// One is nowhere, or has no radius.
+    pub fn place(&mut self, particles: impl Iterator<Item = (Vec3, f64)>) -> Result<(), String> {
+        self.placed.clear();
+        self.placed.extend(particles);
+        let is_wrong =
+            |(position, radius): &(Vec3, f64)| !(position.is_finite() && *radius > 0.0 && radius.is_finite());
+        if let Some(index) = self.placed.iter().position(is_wrong) {
+            let (position, radius) = self.placed[index];
+            return Err(format!(
+                "particle {index} is at {:?} with the radius {radius}; expected finite numbers and a radius above 0",
+                position.to_array()
+            ));
+        }
+        let Some((first, _)) = self.placed.first() else {
+            return Err("there is no particle".to_owned());
+        };
+        (self.low, self.high) = self
+            .placed
+            .iter()
+            .fold((*first, *first), |(low, high), (p, _)| (low.min_components(*p), high.max_components(*p)));
+        let reach = REACH * self.placed.iter().map(|(_, radius)| *radius).fold(0.0, f64::max);
+        let extent = (self.high - self.low).largest_component();
+        self.cell = reach.max(extent / (MOST_CELLS - 4.0));
+        self.sorted.clear();
+        for (index, (position, _)) in self.placed.iter().enumerate() {
+            let [x, y, z] = self.cell_of(*position);
+            self.sorted.push((key(x, y, z), index as u32));
+        }
+        self.sorted.sort_unstable();
+        Ok(())
+    }
+
+    /// Coordinates of the cell of a place, from 1 for those of particles.
+    fn cell_of(&self, point: Vec3) -> [u64; 3] {
+        ((point - self.low) * self.cell.recip()).to_array().map(|c| (c + 1.0).clamp(0.0, MOST_CELLS) as u64)
+    }
+
+    /// Visits the particles in the cells around a place, in their sorted order.
+    pub fn around(&self, point: Vec3, mut visit: impl FnMut(Vec3, f64, u32)) {
+        let [x, y, z] = self.cell_of(point);
+        for z in z.saturating_sub(1)..=z + 1 {
+            for y in y.saturating_sub(1)..=y + 1 {
+                let (from, to) = (key(x.saturating_sub(1), y, z), key(x + 1, y, z));
+                let first = self.sorted.partition_point(|(cell, _)| *cell < from);
+                for (cell, index) in &self.sorted[first..] {
+                    if *cell > to {
+                        break;
+                    }
+                    let (position, radius) = self.placed[*index as usize];
+                    visit(position, radius, *index);
+                }
+            }
+        }
+    }
+
+    pub fn density(&self, point: Vec3) -> f64 {
+        let mut sum = 0.0;
+        self.around(point, |position, radius, _| {
+            let distance_sq = (position - point).length_sq();
+            if distance_sq < REACH * REACH * radius * radius {
+                sum += kernel(distance_sq.sqrt() / (2.0 * radius));
+            }
+        });
+        sum
+    }
+
+    pub fn bytes(&self) -> usize {
+        size_of::<(Vec3, f64)>() * self.placed.capacity() + 16 * self.sorted.capacity()
+    }
+
+    /// Position and radius of each [m].
+    pub fn particles(&self) -> &[(Vec3, f64)] {
+        &self.placed
+    }
+
+    /// A box around all that the kernels reach.
+    pub fn bounds(&self) -> BoundingBox {
+        BoundingBox { low: self.low, high: self.high }.grown(self.cell)
+    }
+}
+
+fn key(x: u64, y: u64, z: u64) -> u64 {
+    z << 42 | y << 21 | x
+}
+
+/// The density of particles as a potential.
+pub struct Density {
+    pub particles: Particles,
+}
+
+impl Potential for Density {
+    fn new_scratch(&self) -> PartScratch {
+        Box::new(Cloud::default())
+    }
+
+    fn place(&self, at: &Moment, scratch: &mut PartScratch) -> Result<(), String> {
+        let Some(cloud) = scratch.downcast_mut::<Cloud>() else { return Ok(()) };
+        match &self.particles {
+            Particles::Led(particles) => cloud.place(particles.iter().filter_map(|particle| {
+                let there = particle.during[0] <= at.time && at.time < particle.during[1];
+                there.then(|| (particle.position + particle.velocity * at.time, particle.radius))
+            })),
+            Particles::Rows { system, rows } => {
+                let positions = (at.positions)(*system);
+                cloud.place(rows.iter().map(|(row, radius)| (positions[*row as usize], *radius)))
+            }
+        }
+    }
+
+    fn value(&self, point: Vec3, scratch: &PartScratch) -> f64 {
+        scratch.downcast_ref::<Cloud>().map_or(f64::NAN, |cloud| cloud.density(point))
+    }
+
+    fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {
+        scratch.downcast_ref::<Cloud>().map(Cloud::bounds)
+    }
+}
+
+pub(super) static PARTICLES: PartEntry = Entry {
+    name: "particles",
+    summary: "the density of particles: points of a body as they move, or a file",
+    source: "Monaghan 1992, Smoothed particle hydrodynamics; Desbrun & Cani-Gascuel 1998",
+    parameters: &[
+        Parameter::text("from", "a body, or a file of points, relative to the scene file that names it"),
+        Parameter::number("radius", "m", Range::POSITIVE, "half the distance between neighbours"),
+    ],
+    build: |values, around| {
+        let (from, radius) = (values.text("from"), values.number("radius"));
+        let particles = around.particles(from, radius).map_err(|message| PartError {
+            parameter: "from",
+            value: format!("\"{from}\""),
+            expected: format!("a body or a file of particles: {message}"),
+        })?;
+        Ok(Box::new(Density { particles }))
+    },
+};

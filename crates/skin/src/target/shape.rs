@@ -1,0 +1,191 @@
+//! Potentials of solids: shapes known by name, closed surfaces from files, surfaces of bodies.
+//!
+//! `G = ½ − d/(2 width)` between 0 and 1, with the signed distance `d`, negative inside: no skin runs faster to a far
+//! target than to a near one.
+
+use souple_math::Vec3;
+use souple_mesh::implicit::{self, Shape, SurfaceShape};
+use souple_mesh::{BoundingBox, SignedDistance, TriangleSurface};
+use souple_table::{Entry, Parameter, Range, Value, Values};
+
+use super::{ISO, Moment, PartEntry, PartError, PartScratch, Potential};
+
+const WIDTH: Parameter = Parameter::number(
+    "width",
+    "m",
+    Range::NOT_NEGATIVE,
+    "distance over which the potential goes from one half to 1 and to 0; 0: a tenth of the diagonal",
+)
+.or(Value::Number(0.0));
+
+fn potential(distance: f64, width: f64) -> f64 {
+    ISO + (-0.5 * distance / width).clamp(-0.5, 0.5)
+}
+
+/// The width asked for, or a tenth of a diagonal.
+fn width(values: &Values, bounds: BoundingBox) -> f64 {
+    let asked = values.number("width");
+    if asked > 0.0 { asked } else { 0.1 * bounds.diagonal() }
+}
+
+struct Solid {
+    shape: Box<dyn Shape + Send + Sync>,
+    width: f64,
+}
+
+impl Potential for Solid {
+    fn value(&self, point: Vec3, _: &PartScratch) -> f64 {
+        potential(self.shape.value(point), self.width)
+    }
+
+    fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {
+        Some(self.shape.bounds())
+    }
+}
+
+pub(super) static SHAPE: PartEntry = Entry {
+    name: "shape",
+    summary: "a body shape by its name, such as torus, ellipsoid, bunny, liver, as it is by default or scaled",
+    source: "own",
+    parameters: &[
+        Parameter::text("shape", "its name, see `souple list shapes`"),
+        Parameter::number("scale", "", Range::POSITIVE, "times its size by default").or(Value::Number(1.0)),
+        WIDTH,
+    ],
+    build: |values, _| {
+        let name = values.text("shape");
+        let body = implicit::body(name, Values::new()).map_err(|error| PartError {
+            parameter: "shape",
+            value: format!("\"{name}\""),
+            expected: format!("the name of a shape: {error}"),
+        })?;
+        let scaled = Scaled { shape: body.shape, scale: values.number("scale") };
+        let width = width(values, scaled.bounds());
+        Ok(Box::new(Solid { shape: Box::new(scaled), width }))
+    },
+};
+
+struct Scaled {
+    shape: Box<dyn Shape>,
+    scale: f64,
+}
+
+impl Shape for Scaled {
+    fn value(&self, point: Vec3) -> f64 {
+        self.shape.value(point * self.scale.recip()) * self.scale
+    }
+
+    fn bounds(&self) -> BoundingBox {
+        let bounds = self.shape.bounds();
+        BoundingBox { low: bounds.low * self.scale, high: bounds.high * self.scale }
+    }
+}
+
+pub(super) static MESH: PartEntry = Entry {
+    name: "mesh",
+    summary: "what the triangles of a file enclose; those with holes by winding numbers",
+    source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
+    parameters: &[
+        Parameter::text("file", "a surface, relative to the scene file that names it"),
+        Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file")
+            .or(Value::Number(1.0)),
+        WIDTH,
+    ],
+    build: |values, around| {
+        let file = values.text("file");
+        let refuse = |message: String| PartError {
+            parameter: "file",
+            value: format!("\"{file}\""),
+            expected: format!("a file of triangles: {message}"),
+        };
+        let mut surface = around.surface(file).map_err(refuse)?;
+        let scale = values.number("scale");
+        surface.points.iter_mut().for_each(|point| *point = *point * scale);
+        let shape = SurfaceShape::new(surface).map_err(|error| refuse(error.to_string()))?;
+        let width = width(values, shape.bounds());
+        Ok(Box::new(Solid { shape: Box::new(shape), width }))
+    },
+};
+
+/// The inside of a closed surface whose points follow rows.
+pub struct SurfacePart {
+    surface: TriangleSurface,
+    system: usize,
+    /// For each point of the surface.
+    rows: Vec<u32>,
+    /// Outward by this [m].
+    offset: f64,
+    width: f64,
+}
+
+impl SurfacePart {
+    /// # Errors
+    /// The surface is not closed; says why.
+    pub fn new(
+        surface: TriangleSurface,
+        system: usize,
+        rows: Vec<u32>,
+        offset: f64,
+        width: f64,
+    ) -> Result<Self, String> {
+        let width = if width > 0.0 { width } else { 0.1 * surface.bounds().diagonal() };
+        SignedDistance::new(surface.clone()).map_err(|error| error.to_string())?;
+        Ok(Self { surface, system, rows, offset, width })
+    }
+}
+
+struct Moved {
+    distance: Option<SignedDistance>,
+    positions: Vec<Vec3>,
+}
+
+impl Potential for SurfacePart {
+    fn new_scratch(&self) -> PartScratch {
+        let distance = SignedDistance::new(self.surface.clone()).ok();
+        Box::new(Moved { distance, positions: self.surface.points.clone() })
+    }
+
+    fn place(&self, at: &Moment, scratch: &mut PartScratch) -> Result<(), String> {
+        let Some(moved) = scratch.downcast_mut::<Moved>() else { return Ok(()) };
+        let positions = (at.positions)(self.system);
+        for (place, row) in moved.positions.iter_mut().zip(&self.rows) {
+            *place = positions[*row as usize];
+        }
+        if let Some(distance) = &mut moved.distance {
+            distance.move_points(&moved.positions);
+        }
+        Ok(())
+    }
+
+    fn value(&self, point: Vec3, scratch: &PartScratch) -> f64 {
+        let distance = scratch.downcast_ref::<Moved>().and_then(|moved| moved.distance.as_ref());
+        distance.map_or(f64::NAN, |distance| potential(distance.distance(point) - self.offset, self.width))
+    }
+
+    fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {
+        let moved = scratch.downcast_ref::<Moved>()?;
+        Some(BoundingBox::of(moved.positions.iter().copied()).grown(self.offset.max(0.0)))
+    }
+}
+
+pub(super) static SURFACE: PartEntry = Entry {
+    name: "surface",
+    summary: "the inside of the surface of a body of the scene, as it moves",
+    source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
+    parameters: &[
+        Parameter::text("body", "its name"),
+        Parameter::number("offset", "m", Range::ANY, "outward by this").or(Value::Number(0.0)),
+        WIDTH,
+    ],
+    build: |values, around| {
+        let body = values.text("body");
+        let refuse = |message: String| PartError {
+            parameter: "body",
+            value: format!("\"{body}\""),
+            expected: format!("a body with a closed surface: {message}"),
+        };
+        let (surface, system, rows) = around.body_surface(body).map_err(refuse)?;
+        let part = SurfacePart::new(surface, system, rows, values.number("offset"), values.number("width"));
+        Ok(Box::new(part.map_err(refuse)?))
+    },
+};

@@ -1,0 +1,166 @@
+//! Warps: parts twisted, bent and tapered about an axis through a point.
+
+use souple_math::Vec3;
+use souple_mesh::BoundingBox;
+use souple_table::{Entry, Parameter, Range, Table, Value, Values};
+
+/// A map of space, given by its inverse: the potential is asked where a point was before.
+pub trait Warp: Send + Sync {
+    /// Where a point was before.
+    fn undo(&self, point: Vec3) -> Vec3;
+
+    /// A box around what a box becomes.
+    fn bounds(&self, bounds: BoundingBox) -> BoundingBox;
+}
+
+/// Constructor of a warp from completed values.
+pub type BuildWarp = fn(&Values) -> Box<dyn Warp>;
+
+/// All warps.
+pub static WARPS: Table<BuildWarp> = Table { kind: "skin warp", entries: &[&TWIST, &BEND, &TAPER] };
+
+const SOURCE: &str = "Barr 1984, Global and local deformations of solid primitives";
+
+const AXIS: Parameter =
+    Parameter::choice("axis", &["x", "y", "z"], "along which it changes").or(Value::Text("x"));
+const CENTRE: Parameter =
+    Parameter::vector("centre", "m", "where nothing changes").or(Value::Vector([0.0; 3]));
+
+/// An axis and the two across it, right-handed, through a point.
+#[derive(Clone, Copy)]
+struct Frame {
+    axis: usize,
+    centre: Vec3,
+}
+
+impl Frame {
+    fn of(values: &Values) -> Self {
+        let axis = match values.text("axis") {
+            "y" => 1,
+            "z" => 2,
+            _ => 0,
+        };
+        Self { axis, centre: Vec3::from_array(values.vector("centre")) }
+    }
+
+    /// Along the axis, and across it.
+    fn split(&self, point: Vec3) -> (f64, [f64; 2]) {
+        let p = point - self.centre;
+        (p[self.axis], [p[(self.axis + 1) % 3], p[(self.axis + 2) % 3]])
+    }
+
+    fn join(&self, along: f64, across: [f64; 2]) -> Vec3 {
+        let mut p = Vec3::ZERO;
+        p[self.axis] = along;
+        p[(self.axis + 1) % 3] = across[0];
+        p[(self.axis + 2) % 3] = across[1];
+        p + self.centre
+    }
+
+    /// A box around a ball about the centre that holds a box.
+    fn ball(&self, bounds: BoundingBox, factor: f64) -> BoundingBox {
+        let centre = self.centre;
+        let far = (bounds.low - centre).to_array().into_iter().zip((bounds.high - centre).to_array());
+        let radius = far.map(|(low, high)| low.abs().max(high.abs()).powi(2)).sum::<f64>().sqrt() * factor;
+        BoundingBox { low: centre, high: centre }.grown(radius)
+    }
+}
+
+fn turned([a, b]: [f64; 2], angle: f64) -> [f64; 2] {
+    let (sin, cos) = libm::sincos(angle);
+    [cos * a - sin * b, sin * a + cos * b]
+}
+
+struct Twist {
+    frame: Frame,
+    rate: f64,
+}
+
+impl Warp for Twist {
+    fn undo(&self, point: Vec3) -> Vec3 {
+        let (along, across) = self.frame.split(point);
+        self.frame.join(along, turned(across, -self.rate * along))
+    }
+
+    fn bounds(&self, bounds: BoundingBox) -> BoundingBox {
+        self.frame.ball(bounds, 1.0)
+    }
+}
+
+static TWIST: Entry<BuildWarp> = Entry {
+    name: "twist",
+    summary: "turns about the axis by an angle that grows along it",
+    source: SOURCE,
+    parameters: &[AXIS, CENTRE, Parameter::number("rate", "rad/m", Range::ANY, "angle for each metre")],
+    build: |values| Box::new(Twist { frame: Frame::of(values), rate: values.number("rate") }),
+};
+
+struct Bend {
+    frame: Frame,
+    rate: f64,
+}
+
+impl Warp for Bend {
+    // the axis becomes a circle of radius 1/rate about a centre on the first axis across
+    fn undo(&self, point: Vec3) -> Vec3 {
+        let (along, [a, b]) = self.frame.split(point);
+        if self.rate == 0.0 {
+            return point;
+        }
+        let radius = 1.0 / self.rate;
+        let angle = libm::atan2(along * radius.signum(), (radius - a) * radius.signum());
+        let distance = along.hypot(radius - a) * radius.signum();
+        self.frame.join(angle * radius, [radius - distance, b])
+    }
+
+    fn bounds(&self, bounds: BoundingBox) -> BoundingBox {
+        self.frame.ball(bounds, 1.0)
+    }
+}
+
+static BEND: Entry<BuildWarp> = Entry {
+    name: "bend",
+    summary: "bends the axis to a circle, towards the next axis in the order x, y, z",
+    source: SOURCE,
+    parameters: &[
+        AXIS,
+        CENTRE,
+        Parameter::number("rate", "rad/m", Range::ANY, "angle for each metre, 1/radius"),
+    ],
+    build: |values| Box::new(Bend { frame: Frame::of(values), rate: values.number("rate") }),
+};
+
+struct Taper {
+    frame: Frame,
+    rate: f64,
+}
+
+/// Scales stay above this: what would turn over becomes a thread.
+const THINNEST: f64 = 0.05;
+/// And below its inverse.
+const THICKEST: f64 = 20.0;
+
+impl Warp for Taper {
+    fn undo(&self, point: Vec3) -> Vec3 {
+        let (along, across) = self.frame.split(point);
+        let scale = (1.0 + self.rate * along).clamp(THINNEST, THICKEST);
+        self.frame.join(along, across.map(|c| c / scale))
+    }
+
+    fn bounds(&self, bounds: BoundingBox) -> BoundingBox {
+        let ends = [bounds.low, bounds.high].map(|p| (1.0 + self.rate * self.frame.split(p).0).abs());
+        self.frame.ball(bounds, ends[0].max(ends[1]).clamp(1.0, THICKEST))
+    }
+}
+
+static TAPER: Entry<BuildWarp> = Entry {
+    name: "taper",
+    summary: "scales across the axis by a factor that grows along it",
+    source: SOURCE,
+    parameters: &[
+        AXIS,
+        CENTRE,
+        Parameter::number("rate", "1/m", Range::ANY, "growth of the factor for each metre"),
+    ],
+    build: |values| Box::new(Taper { frame: Frame::of(values), rate: values.number("rate") }),
+};
