@@ -13,6 +13,7 @@ mod implicit;
 mod motion;
 mod network;
 mod patch;
+mod rheometer;
 mod rubber;
 mod soft_cube;
 mod stepper_orders;
@@ -41,6 +42,7 @@ pub const TABLES: &[&[Case]] = &[
     soft_cube::IMPLICIT_STEPS,
     contact::CASES,
     network::CASES,
+    rheometer::CASES,
 ];
 
 /// Every case.
