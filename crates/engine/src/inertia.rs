@@ -98,6 +98,22 @@ fn from_forces(
     ws: &mut SystemWorkspace,
     out: &mut [Vec3],
 ) -> Result<StepReport, StepError> {
+    if system.kinematics.has_rigid_frames() {
+        subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
+    }
+    solve_mass(system, &state.q, ws, out)
+}
+
+/// `out = (TᵀMT)⁻¹ Tᵀ f` over free components, with `f` over rows in `ws.row_force`.
+///
+/// # Errors
+/// The mass matrix cannot be solved with.
+pub fn solve_mass(
+    system: &System,
+    q: &[Vec3],
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<StepReport, StepError> {
     if system.kinematics.is_trivial() && system.mass.is_lumped() {
         // a = f / m
         let (forces, masses) = (&ws.row_force, &system.mass.diagonal);
@@ -109,16 +125,13 @@ fn from_forces(
         system.project_free(out);
         return Ok(StepReport::default());
     }
-    if system.kinematics.has_rigid_frames() {
-        subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
-    }
     let mut rhs = std::mem::take(&mut ws.blocks[5]);
     rhs.resize(out.len(), Vec3::ZERO);
-    system.kinematics.forces_into(&state.q, &mut ws.row_force, &mut rhs);
+    system.kinematics.forces_into(q, &mut ws.row_force, &mut rhs);
     system.project_free(&mut rhs);
     let mut matrix = ws.tangent.take_mass_matrix(system);
     matrix.set_zero();
-    add_generalised_mass(system, &state.q, &mut matrix);
+    add_generalised_mass(system, q, &mut matrix);
     constrain(system, &mut matrix);
     let solved = ws.linear.solve_mass(&matrix, &rhs, out);
     ws.tangent.put_mass_matrix(matrix);
@@ -131,11 +144,46 @@ fn from_forces(
     })
 }
 
+/// What led components give to the free ones while their velocity changes from that at `from` to that at `to` seconds, for
+/// methods that kick velocities with [`accelerations_at`]: with the momentum `p = M_ff v_f + M_fc v_c` of the free
+/// components, `ṗ = f` is left for the kicks, and `v -= M_ff⁻¹ M_fc Δv_c` holds exactly however the motion goes. Nothing
+/// where the mass couples no points.
+///
+/// # Errors
+/// The mass matrix cannot be solved with.
+pub fn take_along(
+    system: &System,
+    (from, to): (f64, f64),
+    q: &[Vec3],
+    v: &mut [Vec3],
+    ws: &mut SystemWorkspace,
+) -> Result<StepReport, StepError> {
+    if system.mass.is_lumped() || system.constraints.iter().all(|constraint| constraint.motion.is_none()) {
+        return Ok(StepReport::default());
+    }
+    ws.row_scratch.fill(Vec3::ZERO);
+    for constraint in &system.constraints {
+        if let Some(row) = system.kinematics.point_block_row(constraint.block) {
+            let change = constraint.velocity(to) - constraint.velocity(from);
+            ws.row_scratch[row as usize] += constraint.constrained() * change;
+        }
+    }
+    system.kinematics.derive_rows(&mut ws.row_scratch);
+    ws.row_force.fill(Vec3::ZERO);
+    system.mass.add_scaled_product(-1.0, &ws.row_scratch, &mut ws.row_force);
+    let mut change = std::mem::take(&mut ws.taken_along);
+    change.resize(v.len(), Vec3::ZERO);
+    let solved = solve_mass(system, q, ws, &mut change);
+    reduce::add_scaled(v, 1.0, &change);
+    ws.taken_along = change;
+    solved
+}
+
 /// `matrix += TᵀMT`.
 pub fn add_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatrix) {
     let kinematics = &system.kinematics;
     let map = |row: u32| kinematics.position_map(row, q);
-    for (row, mass) in system.mass.diagonal.iter().enumerate() {
+    for (row, mass) in system.mass.diagonal.iter().enumerate().filter(|(_, mass)| **mass != 0.0) {
         add_congruent(kinematics, matrix, (row, row), &map, &map, |left, right| {
             left.transpose_mul(right) * *mass
         });

@@ -285,21 +285,27 @@ impl Kinematics {
 
     /// Generalised forces `Tᵀ f` on velocity blocks; `rows` is consumed as scratch.
     pub fn forces_into(&self, q: &[Vec3], rows: &mut [Vec3], blocks: &mut [Vec3]) {
-        let free = self.carriers.len();
-        for (index, derived) in self.derived.iter().enumerate().rev() {
-            if derived.feedback == Feedback::Transpose {
-                let force = rows[free + index];
-                for &(parent, weight) in &derived.parents {
-                    rows[parent as usize] += force * weight;
-                }
-            }
-        }
+        self.return_forces(rows);
         blocks.fill(Vec3::ZERO);
         for (row, &(block, carrier)) in self.carriers.iter().enumerate() {
             blocks[block as usize] += match carrier {
                 Carrier::Translation => rows[row],
                 Carrier::Rotation => q[row].cross(rows[row]),
             };
+        }
+    }
+
+    /// Gives forces on derived rows back to the free rows that carry them, which add them to their own.
+    pub fn return_forces(&self, rows: &mut [Vec3]) {
+        let free = self.carriers.len();
+        for (index, derived) in self.derived.iter().enumerate().rev() {
+            let force = rows[free + index];
+            // most derived rows are only looked at
+            if derived.feedback == Feedback::Transpose && force != Vec3::ZERO {
+                for &(parent, weight) in &derived.parents {
+                    rows[parent as usize] += force * weight;
+                }
+            }
         }
     }
 

@@ -37,6 +37,6 @@ pub use mass::Mass;
 pub use obstacle::Obstacle;
 pub use snapshot::SnapshotError;
 pub use state::{FieldName, FieldRef, FieldState, Pair, Place, State, SystemState};
-pub use steppers::{StepError, StepReport, Stepper};
+pub use steppers::{Step, StepError, StepReport, Stepper};
 pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 pub use world::{CommittedRows, EnergyReport, Field, Model, ResumeError, Workspace, World, WorldError};

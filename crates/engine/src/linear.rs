@@ -71,8 +71,10 @@ const METHODS: [(&str, Method); 5] = [
     ("bicgstab", Method::Bicgstab),
 ];
 const AUTOMATIC: &str = "auto";
+/// All that needs no more of a matrix than its diagonal blocks.
+const WITHOUT_MATRIX: &str = "block_jacobi";
 /// `lagged_factor` is not among them: it would carry factors of earlier steps into later bits.
-const PRECONDITIONERS: &[&str] = &[AUTOMATIC, "rigid_modes", "incomplete_cholesky", "block_jacobi"];
+const PRECONDITIONERS: &[&str] = &[AUTOMATIC, "rigid_modes", "incomplete_cholesky", WITHOUT_MATRIX];
 
 pub const SOLVER: Parameter = Parameter::choice(
     "solver",
@@ -123,6 +125,12 @@ impl SolverSettings {
             max_iterations: values.integer("solver_iterations") as usize,
             matrix_free: values.boolean("matrix_free"),
         }
+    }
+
+    /// The preconditioner that takes the place of the chosen one where no matrix is stored; `None` where it stays.
+    pub fn preconditioner_instead(&self) -> Option<&'static str> {
+        let stays = !self.matrix_free || [AUTOMATIC, WITHOUT_MATRIX].contains(&self.preconditioner);
+        (!stays).then_some(WITHOUT_MATRIX)
     }
 }
 
@@ -222,6 +230,11 @@ impl LinearSolver {
         self.settings.matrix_free
     }
 
+    /// Whether the solver that was chosen solves symmetric systems only.
+    pub fn wants_symmetry(&self) -> bool {
+        matches!(self.settings.method, Method::Cg | Method::Direct)
+    }
+
     /// Bytes of factors and preconditioners.
     pub fn bytes(&self) -> usize {
         let made = [&self.symmetric, &self.general, &self.mass].into_iter().flatten();
@@ -279,7 +292,7 @@ impl LinearSolver {
         x: &mut [Vec3],
     ) -> Result<Solved, SolveError> {
         let choice = match (system.operator, self.settings.method) {
-            (Some(_), _) => ("cg", "block_jacobi"),
+            (Some(_), _) => ("cg", WITHOUT_MATRIX),
             (None, Method::Cg) => ("cg", self.settings.preconditioner),
             (None, Method::Direct) => ("direct", AUTOMATIC),
             (None, _) => ("auto", self.settings.preconditioner),
@@ -309,7 +322,7 @@ impl LinearSolver {
         let is_stored = system.operator.is_none();
         let automatic = match system.nearby {
             Some(_) => AUTOMATIC,
-            None => "block_jacobi",
+            None => WITHOUT_MATRIX,
         };
         let is_free = self.settings.preconditioner == AUTOMATIC || !is_stored;
         let preconditioner = if is_free { automatic } else { self.settings.preconditioner };

@@ -1,7 +1,7 @@
 //! Natural frequencies of a system about where it stands: `K φ = ω² M φ`, constrained directions at rest.
 
 use souple_math::Vec3;
-use souple_solve::modes::{Mass as MassMatrix, Modes, Settings, lowest_modes};
+use souple_solve::modes::{Modes, Settings, lowest_modes};
 use souple_solve::{BlockMatrix, SolveError};
 
 use crate::implicit::Rates;
@@ -40,6 +40,7 @@ pub fn lowest(
     // held directions have no mass, and so take no part
     let held = system.constraints.iter().map(|constraint| (constraint.block as usize, constraint.free));
     mass.constrain_blocks(held, 0.0)?;
-    let positions = system.block_positions(&rows.positions);
-    lowest_modes(stiffness, MassMatrix::Consistent(&mass), Some(&positions), settings)
+    let mut positions = Vec::new();
+    system.block_positions_into(&rows.positions, &mut positions);
+    lowest_modes(stiffness, &mass, Some(&positions), settings)
 }

@@ -3,6 +3,7 @@
 use souple_math::Vec3;
 
 use crate::force::TangentWeights;
+use crate::inertia::solve_mass;
 use crate::state::SystemState;
 use crate::steppers::Stability;
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -24,8 +25,8 @@ const GROWTH: f64 = 0.1;
 /// Iterations of the power method: the Rayleigh quotient of a mesh's spectrum is then within a few percent.
 const ITERATIONS: usize = 40;
 
-/// Highest frequency and rate of damping at the placed state, by the power method on `M⁻¹ K` and `M⁻¹ B` with the
-/// lumped mass of rows. What may touch later counts as if all of it touched at once, by
+/// Highest frequency and rate of damping at the placed state, by the power method on `M⁻¹ K` and `M⁻¹ B` over the unknowns,
+/// whatever carries the rows. What may touch later counts as if all of it touched at once, by
 /// [`crate::Force::touching_stiffness`]; how it would damp then does not.
 ///
 /// A random-like but fixed start vector; the Rayleigh quotient approaches the highest frequency from below,
@@ -62,7 +63,7 @@ fn longest_step(frequency: f64, damping: f64) -> f64 {
     2.0 / (half + (half * half + 4.0 * frequency * frequency).sqrt())
 }
 
-/// Highest eigenvalue of `M⁻¹ (weights · tangent)` by the power method.
+/// Highest eigenvalue of `(TᵀMT)⁻¹ Tᵀ (weights · tangent) T` by the power method over velocity blocks.
 fn highest_eigenvalue(
     system: &System,
     state: &SystemState,
@@ -70,62 +71,54 @@ fn highest_eigenvalue(
     ws: &mut SystemWorkspace,
     weights: TangentWeights,
 ) -> f64 {
-    let rows = system.kinematics.row_count();
-    let row_mass = lumped_row_mass(system);
+    let kinematics = &system.kinematics;
     let touching: Vec<_> = system
         .forces
         .iter()
         .map(|force| if weights.position == 0.0 { None } else { force.touching_stiffness() })
         .collect();
-    let mut direction: Vec<Vec3> = (0..rows).map(start_vector).collect();
-    let mut product = vec![Vec3::ZERO; rows];
+    let blocks = kinematics.block_count();
+    let mut direction: Vec<Vec3> = (0..blocks).map(start_vector).collect();
+    let mut accelerations = vec![Vec3::ZERO; blocks];
+    let mut moved = vec![Vec3::ZERO; kinematics.row_count()];
     let mut eigenvalue = 0.0;
     for _ in 0..ITERATIONS {
-        system.project_free_rows(&mut direction);
-        system.kinematics.derive_rows(&mut direction);
+        system.project_free(&mut direction);
+        kinematics.velocities_into(&state.q, &direction, &mut moved);
         // Rayleigh quotient (δ·K δ) / (δ·M δ)
+        let mut product = std::mem::take(&mut ws.row_force);
         product.fill(Vec3::ZERO);
         for (index, force) in system.forces.iter().enumerate() {
             match &touching[index] {
                 Some(stiffness) => stiffness
                     .iter()
                     .map(|&(row, k)| (row as usize, k))
-                    .for_each(|(row, k)| product[row] += direction[row] * (-weights.position * k)),
+                    .for_each(|(row, k)| product[row] += moved[row] * (-weights.position * k)),
                 None => {
                     let at = system.view(index, &ws.rows, state, around);
                     let scratch = &mut ws.scratches[index];
-                    force.add_differential(&at, weights, &direction, scratch, &mut product);
+                    force.add_differential(&at, weights, &moved, scratch, &mut product);
                 }
             }
         }
-        let tangent: f64 = direction.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum();
-        let mass: f64 = direction.iter().zip(&row_mass).map(|(d, m)| m * d.length_sq()).sum();
+        let tangent: f64 = moved.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum();
+        let mass = 2.0 * system.mass.kinetic_energy(&moved);
+        ws.row_force = product;
         if !(tangent > 0.0 && mass > 0.0) {
             break;
         }
         eigenvalue = f64::max(eigenvalue, tangent / mass);
         // δ <- M⁻¹ K δ, normalised
-        let mut largest: f64 = 0.0;
-        for ((d, k), m) in direction.iter_mut().zip(&product).zip(&row_mass) {
-            *d = if *m > 0.0 { *k * (1.0 / m) } else { Vec3::ZERO };
-            largest = largest.max(d.largest_component());
+        if solve_mass(system, &state.q, ws, &mut accelerations).is_err() {
+            break;
         }
+        let largest = accelerations.iter().map(|a| a.largest_component()).fold(0.0, f64::max);
         if largest == 0.0 || !largest.is_finite() {
             break;
         }
-        direction.iter_mut().for_each(|d| *d = *d * (1.0 / largest));
+        direction.iter_mut().zip(&accelerations).for_each(|(d, a)| *d = *a * (1.0 / largest));
     }
     eigenvalue
-}
-
-/// Row sums of the mass.
-fn lumped_row_mass(system: &System) -> Vec<f64> {
-    let mut mass = system.mass.diagonal.clone();
-    for &(a, b, coupling) in &system.mass.couplings {
-        mass[a as usize] += coupling;
-        mass[b as usize] += coupling;
-    }
-    mass
 }
 
 /// A fixed vector without symmetry: components from a multiplicative hash of the index.

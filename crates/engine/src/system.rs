@@ -43,6 +43,8 @@ pub struct SystemWorkspace {
     pub row_scratch: Vec<Vec3>,
     /// Buffers for steppers in the size of the velocity; who takes one gives it that size.
     pub blocks: [Vec<Vec3>; 6],
+    /// Changes of velocity by masses coupled to led points.
+    pub taken_along: Vec<Vec3>,
     /// A buffer for steppers in the size of the configuration, likewise.
     pub configuration: Vec<Vec3>,
     pub found_pairs: Vec<Pair>,
@@ -88,7 +90,7 @@ impl SystemWorkspace {
     pub fn bytes(&self, system: &System) -> usize {
         let Rows { positions, velocities, .. } = &self.rows;
         let buffers = [positions, velocities, &self.row_force, &self.row_scratch, &self.searched];
-        let buffers = buffers.into_iter().chain(&self.blocks).chain([&self.configuration]);
+        let buffers = buffers.into_iter().chain(&self.blocks).chain([&self.taken_along, &self.configuration]);
         let scratches = system.forces.iter().zip(&self.scratches);
         buffers.map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
             + scratches.map(|(force, scratch)| force.scratch_bytes(scratch)).sum::<usize>()
@@ -138,6 +140,7 @@ impl System {
             row_force: zeros(rows),
             row_scratch: zeros(rows),
             blocks: Default::default(),
+            taken_along: Vec::new(),
             configuration: Vec::new(),
             found_pairs: Vec::new(),
             pairs: Vec::new(),
@@ -343,16 +346,12 @@ impl System {
 
     /// A position for every velocity block (the frame's origin for all of its blocks), for orderings and
     /// rigid modes.
-    pub fn block_positions(&self, row_positions: &[Vec3]) -> Vec<Vec3> {
-        if self.kinematics.is_trivial() {
-            return row_positions.to_vec();
-        }
-        let mut positions = vec![Vec3::ZERO; self.kinematics.block_count()];
+    pub fn block_positions_into(&self, row_positions: &[Vec3], positions: &mut Vec<Vec3>) {
+        positions.resize(self.kinematics.block_count(), Vec3::ZERO);
         let mut row = 0;
         for (kind, blocks) in self.kinematics.unknowns() {
             positions[blocks].fill(row_positions[row]);
             row += kind.row_count();
         }
-        positions
     }
 }

@@ -31,6 +31,8 @@ pub struct Tangent {
     blocks: Option<BlockMatrix>,
     mass: Option<BlockMatrix>,
     diagonal: Option<BlockMatrix>,
+    /// `g` on free rows.
+    unbalanced: Vec<Vec3>,
     /// The matrix with symmetric stand-ins of what is not symmetric, for points alone.
     symmetric: Option<BlockMatrix>,
 }
@@ -100,7 +102,7 @@ impl Tangent {
         }
         // b Tᵀ M D
         let rate = at.rates.acceleration;
-        for (row, mass) in system.mass.diagonal.iter().enumerate() {
+        for (row, mass) in system.mass.diagonal.iter().enumerate().filter(|(_, mass)| **mass != 0.0) {
             let scaled = |left: &Mat3, right: &Mat3| left.transpose_mul(right) * (mass * rate);
             add_congruent(kinematics, &mut blocks, (row, row), &position_map, &velocity_map, scaled);
         }
@@ -112,14 +114,17 @@ impl Tangent {
         }
         self.rows = Some(rows);
         // ∂(Tᵀ) g
-        for row in 0..kinematics.row_count() {
-            for &(free, weight) in kinematics.backward(row) {
-                if let Some((block, geometric)) =
-                    kinematics.geometric_block(free, at.q, at.unbalanced[row] * weight)
-                {
+        if kinematics.has_rigid_frames() {
+            let mut unbalanced = std::mem::take(&mut self.unbalanced);
+            unbalanced.clear();
+            unbalanced.extend_from_slice(at.unbalanced);
+            kinematics.return_forces(&mut unbalanced);
+            for (row, g) in unbalanced[..kinematics.free_row_count()].iter().enumerate() {
+                if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
                     add_block(&mut blocks, block as usize, block as usize, &geometric);
                 }
             }
+            self.unbalanced = unbalanced;
         }
         constrain(system, &mut blocks);
         self.blocks.insert(blocks)
@@ -186,6 +191,11 @@ impl Tangent {
         self.diagonal.insert(diagonal)
     }
 
+    /// Forces have come or gone: what is coupled is asked for again.
+    pub fn forget_patterns(&mut self) {
+        self.pattern_pairs = None;
+    }
+
     fn update_patterns(&mut self, system: &System, pairs: &[Pair]) {
         let changes = system.forces.iter().any(|force| force.declaration().changing_pattern);
         let coupling = if changes { pairs } else { &[] };
@@ -221,7 +231,7 @@ impl Tangent {
         for &(a, b, _) in &system.mass.couplings {
             add(&[a, b]);
         }
-        for row in 0..kinematics.row_count() {
+        for row in rows_with_blocks(system) {
             add(&[row as u32]);
         }
         let build = |builder: PatternBuilder| {
@@ -249,7 +259,7 @@ impl Tangent {
                     .add_clique(&blocks)
                     .unwrap_or_else(|error| panic!("rows move with no block: {error}"));
             };
-            (0..kinematics.row_count()).for_each(|row| add(&[row]));
+            rows_with_blocks(system).for_each(|row| add(&[row]));
             system.mass.couplings.iter().for_each(|&(a, b, _)| add(&[a as usize, b as usize]));
             let pattern =
                 builder.build().unwrap_or_else(|error| panic!("the mass matrix is too large: {error}"));
@@ -266,8 +276,16 @@ impl Tangent {
         let held =
             [&self.rows, &self.row_velocities, &self.blocks, &self.mass, &self.diagonal, &self.symmetric];
         let keys = size_of::<(u64, u64, u64)>() * self.pattern_pairs.as_ref().map_or(0, Vec::capacity);
-        held.into_iter().flatten().map(BlockMatrix::bytes).sum::<usize>() + keys
+        held.into_iter().flatten().map(BlockMatrix::bytes).sum::<usize>()
+            + keys
+            + 24 * self.unbalanced.capacity()
     }
+}
+
+/// Rows whose diagonal block may hold something besides forces: unknowns, and derived rows of a mass of their own.
+fn rows_with_blocks(system: &System) -> impl Iterator<Item = usize> {
+    let free = system.kinematics.free_row_count();
+    (0..system.kinematics.row_count()).filter(move |row| *row < free || system.mass.diagonal[*row] != 0.0)
 }
 
 fn add_row_blocks(
@@ -332,6 +350,10 @@ fn transform_rows(
     for a in 0..pattern.block_count() {
         for slot in pattern.slots(a) {
             let (b, value) = (pattern.columns()[slot] as usize, rows.values()[slot]);
+            // derived rows that no force acts on would be expanded for nothing
+            if value == Mat3::ZERO {
+                continue;
+            }
             let product = |left: &Mat3, right: &Mat3| left.transpose_mul(&(value * *right));
             add_congruent(kinematics, blocks, (a, b), left_map, right_map, product);
         }
@@ -451,13 +473,11 @@ impl<'a> TangentOperator<'a> {
         }
         kinematics.forces_into(at.q, row_force, out);
         if kinematics.has_rigid_frames() {
-            for row in 0..kinematics.row_count() {
-                for &(free, weight) in kinematics.backward(row) {
-                    if let Some((block, geometric)) =
-                        kinematics.geometric_block(free, at.q, at.unbalanced[row] * weight)
-                    {
-                        out[block as usize] += geometric * delta[block as usize];
-                    }
+            row_force.copy_from_slice(at.unbalanced);
+            kinematics.return_forces(row_force);
+            for (row, g) in row_force[..kinematics.free_row_count()].iter().enumerate() {
+                if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
+                    out[block as usize] += geometric * delta[block as usize];
                 }
             }
         }

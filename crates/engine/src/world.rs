@@ -9,7 +9,7 @@ use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
 use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
-use crate::steppers::{StepError, StepReport};
+use crate::steppers::{Step, StepError, StepReport};
 use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 
 /// A field on a grid: steps itself in State from what rows did, and acts through ordinary forces that read
@@ -204,7 +204,7 @@ impl World {
     pub fn edit(&mut self, edit: Edit) -> Result<(), EditError> {
         let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
-        self.fit_scratches();
+        self.fit_workspace();
         let period = self.state.period;
         match (self.log.last_mut(), &edit) {
             // of the places that a hand passes within a period the last one counts
@@ -227,17 +227,28 @@ impl World {
         for command in &log {
             self.model.apply(&mut self.state, &command.edit)?;
         }
-        self.fit_scratches();
+        self.fit_workspace();
         self.log = log;
         Ok(self.resume(state)?)
     }
 
-    /// A scratch for each force. Only hands come and go, after all other forces, and theirs hold nothing.
-    fn fit_scratches(&mut self) {
+    /// A scratch for each force, and matrices of what they couple. Only hands come and go, after all other forces, and
+    /// theirs hold nothing.
+    fn fit_workspace(&mut self) {
         for (system, ws) in self.model.systems.iter().zip(&mut self.workspace.systems) {
+            if ws.scratches.len() != system.forces.len() {
+                ws.tangent.forget_patterns();
+            }
             ws.scratches.truncate(system.forces.len());
             let first_new = ws.scratches.len();
             ws.scratches.extend(system.forces[first_new..].iter().map(|force| force.new_scratch()));
+        }
+    }
+
+    /// Goes on counting the time of stages where another world left off.
+    pub fn inherit_stages(&mut self, other: &Self) {
+        for (own, before) in self.workspace.systems.iter_mut().zip(&other.workspace.systems) {
+            own.stages = before.stages;
         }
     }
 
@@ -306,7 +317,8 @@ impl World {
                 system.update_pairs(ws, state, &around);
                 ws.stages.pairs += clock.elapsed().as_secs_f64();
             }
-            let stepped = system.stepper.step(system, &around, time, timestep, state, ws);
+            let stepped =
+                system.stepper.step(&Step { system, around: &around, start: time, timestep }, state, ws);
             let place = || format!("system `{}`", system.name);
             report.merge(&stepped.map_err(|error| WorldError { place: place(), error })?);
         }

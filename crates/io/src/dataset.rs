@@ -150,7 +150,7 @@ pub(crate) enum Destination {
     Skipped,
 }
 
-/// Puts cells of a file among the volume cells or the facets of a mesh, and counts them.
+/// Puts cells of a file among the cells or the facets of a mesh, and counts them.
 #[derive(Debug, Default)]
 pub(crate) struct Sorter {
     cell_count: u32,
@@ -159,7 +159,8 @@ pub(crate) struct Sorter {
 
 impl Sorter {
     pub fn push(&mut self, mesh: &mut Mesh, kind: ElementKind, nodes: &[u32]) -> Destination {
-        if kind.dimension() == 3 {
+        // edges bound no volume
+        if kind.dimension() != 2 {
             mesh.push_cell(kind, nodes);
             self.cell_count += 1;
             Destination::Cell(self.cell_count - 1)

@@ -111,7 +111,7 @@ fn read_content(path: &Path, bytes: &[u8]) -> Result<Dataset, IoError> {
         (Ok(named), found) if (named.build.recognises)(bytes) || found.is_none() => named,
         (_, Some(found)) => found,
         (Ok(named), None) => named,
-        (Err(error), None) => return Err(error),
+        (Err(_), None) => return Err(unknown_extension(path, |format| format.read.is_some())),
     };
     let read = entry.build.read.ok_or(IoError::Unsupported {
         format: entry.name,
@@ -216,12 +216,16 @@ fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {
         .iter()
         .copied()
         .find(|entry| entry.build.extensions.contains(&extension.as_str()))
-        .ok_or_else(|| {
-            let known: Vec<_> =
-                FORMATS.entries.iter().flat_map(|entry| entry.build.extensions).copied().collect();
-            let expected = format!("one of {}", known.join(", "));
-            IoError::Extension { path: path.to_owned(), found: extension.clone(), expected }
-        })
+        .ok_or_else(|| unknown_extension(path, |format| format.write.is_some()))
+}
+
+/// The extensions that would be known are those of formats that fit what is wanted.
+fn unknown_extension(path: &Path, fits: impl Fn(&Format) -> bool) -> IoError {
+    let found = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let fitting = FORMATS.entries.iter().filter(|entry| fits(&entry.build));
+    let known: Vec<&str> = fitting.flat_map(|entry| entry.build.extensions).copied().collect();
+    let expected = format!("one of {}", known.join(", "));
+    IoError::Extension { path: path.to_owned(), found, expected }
 }
 
 fn readable() -> String {

@@ -5,12 +5,16 @@
 //! condition, Dey et al. 1999), turn a triangle over, or leave the bound: corners, middles of sides and centres of
 //! the new triangles must be as close to the given surface as asked, and so must every given point and centre of a
 //! triangle be to the new one. Points on edges that have not two triangles stay where they are.
+//!
+//! What no collapse sees is two parts of the surface that come through each other. They are looked for at the end; where
+//! there are any, all is done again with half the bound for the given points around them, until there are none.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 use souple_math::{Mat3, Vec3};
 
+use crate::repair::crossings;
 use crate::{Aabb, AabbTree, MeshError, TriangleSurface, closest_point_on_triangle};
 
 /// How far to go.
@@ -28,6 +32,8 @@ pub struct Simplified {
     pub surface: TriangleSurface,
     /// Largest distance that was measured in either direction [m].
     pub distance: f64,
+    /// Pairs of triangles that pass through each other; none where the given surface has none.
+    pub crossings: usize,
 }
 
 /// Cosine of the largest turn of a triangle in one collapse.
@@ -43,10 +49,56 @@ pub fn simplify(surface: &TriangleSurface, goal: Goal) -> Result<Simplified, Mes
     if surface.triangles.is_empty() {
         return Err(MeshError::NoCells);
     }
-    let mut state = Collapse::new(surface, goal.distance);
-    state.run(goal.triangles);
-    Ok(state.finish())
+    // beyond its own size nothing is left of a surface
+    let size = surface.bounds().diagonal();
+    let mut bounds = vec![goal.distance.min(size); surface.points.len()];
+    loop {
+        let mut state = Collapse::new(surface, &bounds);
+        state.run(goal.triangles);
+        let mut simplified = state.finish();
+        let crossed = crossings(&simplified.surface);
+        simplified.crossings = crossed.len();
+        // with no bound left the given surface is left, which may cross itself
+        if crossed.is_empty()
+            || !tighten(surface, &simplified.surface, &crossed, LEAST_BOUND * size, &mut bounds)
+        {
+            return Ok(simplified);
+        }
+    }
 }
+
+/// Bounds below this part of the surface's size are none: the point is held.
+const LEAST_BOUND: f64 = 1e-4;
+
+/// Halves the bounds of the given points near pairs of new triangles; whether any was left to halve.
+fn tighten(
+    given: &TriangleSurface,
+    new: &TriangleSurface,
+    pairs: &[[u32; 2]],
+    least: f64,
+    bounds: &mut [f64],
+) -> bool {
+    let around = |triangle: u32| {
+        let bounds = Aabb::of(new.corners(triangle));
+        // a given point may lie beside the triangle that stands for it
+        bounds.grown(0.5 * bounds.diagonal())
+    };
+    let boxes: Vec<Aabb> = pairs.iter().flatten().map(|triangle| around(*triangle)).collect();
+    let tree = AabbTree::build(&boxes);
+    let mut found = false;
+    for (point, bound) in given.points.iter().zip(bounds) {
+        let mut is_near = false;
+        tree.overlapping(Aabb { low: *point, high: *point }, |_| is_near = true);
+        if is_near && *bound >= 0.0 {
+            *bound = if *bound > least { 0.5 * *bound } else { HELD };
+            found = true;
+        }
+    }
+    found
+}
+
+/// The bound of points that stay where they are.
+const HELD: f64 = -1.0;
 
 /// `xᵀ A x - 2 b · x + c`: squared distances to planes, weighted.
 #[derive(Clone, Copy)]
@@ -118,7 +170,8 @@ impl Eq for Candidate {}
 struct Collapse<'a> {
     given: &'a TriangleSurface,
     tree: AabbTree,
-    bound: f64,
+    /// How far the surface may leave each point [m].
+    bounds: Vec<f64>,
     /// Quadrics, points and bounds are taken about this point, near which nothing large cancels.
     origin: Vec3,
     points: Vec<Vec3>,
@@ -135,13 +188,13 @@ struct Collapse<'a> {
 }
 
 impl<'a> Collapse<'a> {
-    fn new(given: &'a TriangleSurface, bound: f64) -> Self {
+    fn new(given: &'a TriangleSurface, bounds: &[f64]) -> Self {
         let boxes: Vec<Aabb> =
             (0..given.triangles.len() as u32).map(|triangle| Aabb::of(given.corners(triangle))).collect();
         let mut state = Self {
             given,
             tree: AabbTree::build(&boxes),
-            bound,
+            bounds: bounds.to_vec(),
             origin: given.bounds().centre(),
             points: given.points.clone(),
             triangles: given.triangles.clone(),
@@ -149,7 +202,7 @@ impl<'a> Collapse<'a> {
             around: vec![Vec::new(); given.points.len()],
             quadrics: vec![Quadric::ZERO; given.points.len()],
             ages: vec![0; given.points.len()],
-            is_fixed: vec![false; given.points.len()],
+            is_fixed: bounds.iter().map(|bound| *bound < 0.0).collect(),
             carried: Vec::with_capacity(given.triangles.len()),
             left: given.triangles.len(),
             reached: 0.0,
@@ -261,7 +314,11 @@ impl<'a> Collapse<'a> {
         if new.is_empty() || new.iter().any(turns) {
             return false;
         }
-        let Some((carried, reached)) = self.within_bound(&touched, &new) else { return false };
+        let bound = f64::min(self.bounds[a as usize], self.bounds[b as usize]);
+        if bound < 0.0 {
+            return false;
+        }
+        let Some((carried, reached)) = self.within_bound(bound, &touched, &new) else { return false };
         self.reached = self.reached.max(reached);
         for (list, (triangle, _)) in carried.into_iter().zip(&new) {
             self.carried[*triangle as usize] = list;
@@ -282,6 +339,7 @@ impl<'a> Collapse<'a> {
         self.points[a as usize] = position;
         self.quadrics[a as usize] = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         self.is_fixed[a as usize] |= self.is_fixed[b as usize];
+        self.bounds[a as usize] = bound;
         self.ages[a as usize] += 1;
         self.ages[b as usize] += 1;
         self.left -= 2;
@@ -297,14 +355,19 @@ impl<'a> Collapse<'a> {
     }
 
     /// The given points that each new triangle carries, and the largest distance measured; `None` beyond the bound.
-    fn within_bound(&self, touched: &[u32], new: &[(u32, [Vec3; 3])]) -> Option<(Vec<Vec<Vec3>>, f64)> {
+    fn within_bound(
+        &self,
+        bound: f64,
+        touched: &[u32],
+        new: &[(u32, [Vec3; 3])],
+    ) -> Option<(Vec<Vec<Vec3>>, f64)> {
         let mut reached = 0.0_f64;
         let mut carried = vec![Vec::new(); new.len()];
         for point in touched.iter().flat_map(|triangle| &self.carried[*triangle as usize]) {
             let distances = new.iter().map(|(_, corners)| distance_sq(*point, *corners));
             let (nearest, least) = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
             reached = reached.max(least);
-            if least.is_nan() || least > self.bound * self.bound {
+            if least.is_nan() || least > bound * bound {
                 return None;
             }
             carried[nearest].push(*point);
@@ -313,7 +376,7 @@ impl<'a> Collapse<'a> {
             let samples = [*a, (*a + *b) * 0.5, (*b + *c) * 0.5, (*c + *a) * 0.5, (*a + *b + *c) / 3.0];
             for sample in samples {
                 let distance = |triangle| distance_sq(sample, self.given.corners(triangle));
-                let (_, least) = self.tree.nearest(sample, self.bound * self.bound, distance)?;
+                let (_, least) = self.tree.nearest(sample, bound * bound, distance)?;
                 reached = reached.max(least);
             }
         }
@@ -325,7 +388,7 @@ impl<'a> Collapse<'a> {
             self.triangles.iter().zip(&self.is_gone).filter(|(_, gone)| !**gone).map(|(t, _)| *t).collect();
         let mut surface = TriangleSurface::from_mesh(&self.points, &kept, Vec::new());
         surface.mesh_points.clear();
-        Simplified { surface, distance: self.reached }
+        Simplified { surface, distance: self.reached, crossings: 0 }
     }
 }
 
@@ -381,6 +444,40 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A thin shell: its two sides come through each other where each alone may leave its place by the shell's thickness.
+    #[test]
+    fn nothing_comes_through_itself() {
+        let outer = ball();
+        let mut shell = outer.clone();
+        let count = outer.points.len() as u32;
+        shell.points.extend(outer.points.iter().map(|point| *point * 0.97));
+        shell.triangles.extend(outer.triangles.iter().map(|[a, b, c]| [c + count, b + count, a + count]));
+        let goal = Goal { distance: 0.1, triangles: 0 };
+        let mut free = Collapse::new(&shell, &vec![goal.distance; shell.points.len()]);
+        free.run(0);
+        assert!(!crossings(&free.finish().surface).is_empty(), "the case is no case");
+        let simple = simplify(&shell, goal).unwrap();
+        assert_eq!(simple.crossings, 0);
+        assert!(diagnose(&simple.surface).is_simple());
+        assert!(
+            4 * simple.surface.triangles.len() < 3 * shell.triangles.len(),
+            "{}",
+            simple.surface.triangles.len()
+        );
+    }
+
+    /// Two balls that cross as given keep crossing, and the bound all the same.
+    #[test]
+    fn surfaces_that_cross_keep_the_bound() {
+        let mut two = ball();
+        let count = two.points.len() as u32;
+        two.points.extend(ball().points.iter().map(|point| *point + Vec3::X));
+        two.triangles.extend(ball().triangles.iter().map(|corners| corners.map(|corner| corner + count)));
+        let simple = simplify(&two, Goal { distance: 0.02, triangles: 0 }).unwrap();
+        assert!(simple.crossings > 0 && simple.distance <= 0.02, "{} m", simple.distance);
+        assert!(simple.surface.triangles.len() < two.triangles.len());
     }
 
     #[test]

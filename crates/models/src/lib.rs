@@ -4,6 +4,7 @@
 
 pub mod contact;
 pub mod derive;
+pub mod frames;
 pub mod loads;
 pub mod materials;
 pub mod network;

@@ -1,6 +1,7 @@
 //! How many periods a run steps.
 
 use souple_engine::State;
+use souple_table::readable;
 
 use crate::{Options, RunError};
 
@@ -33,7 +34,8 @@ pub fn periods_in(duration: f64, period: f64) -> Result<Periods, RunError> {
     let warning = (!is_whole).then(|| {
         let end = whole * period;
         format!(
-            "a duration of {duration} s is {exact:.6} periods of {period} s; {whole} are stepped, to {end:.6} s"
+            "a duration of {duration} s is {exact:.6} periods of {} s; {whole} are stepped, to {end:.6} s",
+            readable(period)
         )
     });
     Ok(Periods { count: whole as u64, warning })

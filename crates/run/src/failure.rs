@@ -1,14 +1,23 @@
-//! A refused step in words: which force or body, where.
+//! Why a run failed, in words: a refused step with its force or body and place, or what was to be done between steps.
 
 use serde_json::{Value, json};
 use souple_engine::{StepError, World, WorldError};
 use souple_math::Vec3;
 use souple_scene::BodyInfo;
 
+/// What ended a run early.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cause {
+    /// A step is refused.
+    Step(WorldError),
+    /// What was due between two steps, in words: an edit that does not fit, a file that cannot be written.
+    Between(String),
+}
+
 /// Why a run ended early, and what of the scene it was.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
-    pub error: WorldError,
+    pub cause: Cause,
     /// Periods stepped before.
     pub period: u64,
     pub force: Option<String>,
@@ -18,7 +27,8 @@ pub struct Failure {
 }
 
 impl Failure {
-    pub fn of(error: WorldError, world: &World, bodies: &[BodyInfo]) -> Self {
+    /// A refused step.
+    pub fn of_step(error: WorldError, world: &World, bodies: &[BodyInfo]) -> Self {
         let mut systems = world.model().systems.iter();
         let system = match error.error.cause() {
             StepError::StateNotFinite { field, .. } => world.state().system_of(field),
@@ -47,7 +57,12 @@ impl Failure {
         let point =
             body.zip(row).map(|(body, row)| (row - body.rows.start, world.rows(body.system).positions[row]));
         let (period, body) = (world.state().period, body.map(|body| body.name.clone()));
-        Self { error, period, force, body, point }
+        Self { cause: Cause::Step(error), period, force, body, point }
+    }
+
+    /// Between two steps.
+    pub fn between(message: String, period: u64) -> Self {
+        Self { cause: Cause::Between(message), period, force: None, body: None, point: None }
     }
 
     /// One sentence, with the body and its point where they are known.
@@ -58,14 +73,28 @@ impl Failure {
             }
             _ => String::new(),
         };
-        format!("step {} is refused: {}{place}", self.period + 1, self.error)
+        match &self.cause {
+            Cause::Step(error) => format!("step {} is refused: {error}{place}", self.period + 1),
+            Cause::Between(message) => format!("after step {}: {message}", self.period),
+        }
+    }
+
+    /// The refused step, or the one after which it happened.
+    fn step(&self) -> u64 {
+        match self.cause {
+            Cause::Step(_) => self.period + 1,
+            Cause::Between(_) => self.period,
+        }
     }
 
     pub fn to_json(&self) -> Value {
         json!({
             "message": self.message(),
-            "step": self.period + 1,
-            "place": self.error.place,
+            "step": self.step(),
+            "place": match &self.cause {
+                Cause::Step(error) => Some(&error.place),
+                Cause::Between(_) => None,
+            },
             "force": self.force,
             "body": self.body,
             "point": self.point.map(|(point, _)| point),

@@ -1,11 +1,12 @@
 //! The frames of a run: a series of files for ParaView per body.
 
-use souple_engine::{Force, World};
+use souple_engine::{Force, Model, World};
 use souple_io::{Facets, Field, Output, Precision, Series};
 use souple_math::Vec3;
 use souple_scene::BodyInfo;
 
 use crate::output::{FRAMES, OutputError, OutputFolder};
+use crate::show::Moment;
 
 /// Writes frames at even distances; none where the run has no folder.
 pub struct Frames {
@@ -14,6 +15,8 @@ pub struct Frames {
     every: u64,
     last_written: Option<u64>,
     step: u64,
+    /// The last frame that can be drawn.
+    drawable: Option<Moment>,
 }
 
 impl Frames {
@@ -29,7 +32,7 @@ impl Frames {
             series = bodies.iter().map(|body| Series::new(&folder, &body.name)).collect();
         }
         let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };
-        Ok(Self { series, every, last_written: None, step: 0 })
+        Ok(Self { series, every, last_written: None, step: 0, drawable: None })
     }
 
     /// The frame of a step, if one is due.
@@ -60,28 +63,35 @@ impl Frames {
         }
     }
 
+    /// The state of a world, or the last frame before it that can be drawn.
+    pub fn drawable(&self, world: &World, bodies: &[BodyInfo]) -> Option<Moment> {
+        let now = Moment::of_world(world, bodies, self.drawable.as_ref());
+        if now.is_drawable() { Some(now) } else { self.drawable.clone() }
+    }
+
     fn write_now(
         &mut self,
         folder: &mut OutputFolder,
         world: &World,
         bodies: &[BodyInfo],
     ) -> Result<(), OutputError> {
-        let time = world.time();
-        for (series, body) in self.series.iter_mut().zip(bodies) {
-            let positions = &world.rows(body.system).positions[body.rows.clone()];
-            let (point_fields, cell_fields) = fields(world, body);
+        let moment = Moment::of_world(world, bodies, self.drawable.as_ref());
+        for (series, body) in self.series.iter_mut().zip(&moment.bodies) {
             let output = Output {
                 mesh: &body.mesh,
-                positions: Some(positions),
-                point_fields: &point_fields,
-                cell_fields: &cell_fields,
+                positions: Some(&body.positions),
+                point_fields: &body.point_fields,
+                cell_fields: &body.cell_fields,
                 facets: Facets::LeftOut,
-                precision: precision_for(positions),
+                precision: precision_for(&body.positions),
             };
             for name in series.next_names() {
                 folder.claim(&format!("{FRAMES}/{name}"))?;
             }
-            series.push(time, &output)?;
+            series.push(moment.time, &output)?;
+        }
+        if moment.is_drawable() {
+            self.drawable = Some(moment);
         }
         self.last_written = Some(self.step);
         Ok(())
@@ -95,16 +105,18 @@ fn precision_for(positions: &[Vec3]) -> Precision {
     if fits { Precision::Single } else { Precision::Double }
 }
 
-/// Displacement and velocity of every point; stress and energy density of every cell.
+/// Displacement and velocity of every point, and the weight of the frame that is shown; stress and energy density of every cell.
 pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let positions = &world.rows(body.system).positions[body.rows.clone()];
     let velocities = &world.rows(body.system).velocities[body.rows.clone()];
     let displacements: Vec<Vec3> =
         positions.iter().zip(&body.mesh.points).map(|(x, rest)| *x - *rest).collect();
-    let point_fields = vec![
+    let mut point_fields = vec![
         Field::new("displacement", 3, flat(&displacements)),
         Field::new("velocity", 3, flat(velocities)),
     ];
+    point_fields
+        .extend(body.frames.as_ref().map(|frames| Field::new("influence", 1, frames.influence.clone())));
     (point_fields, cell_fields(world, body))
 }
 
@@ -121,14 +133,14 @@ pub fn is_frame_of(body: &str, file: &str) -> bool {
 }
 
 /// The elastic force of a body.
-pub fn solid_of<'a>(world: &'a World, body: &BodyInfo) -> Option<&'a dyn Force> {
-    let forces = &world.model().systems[body.system].forces;
+pub fn solid_of<'a>(model: &'a Model, body: &BodyInfo) -> Option<&'a dyn Force> {
+    let forces = &model.systems[body.system].forces;
     forces.iter().find(|force| force.name() == body.force).map(AsRef::as_ref)
 }
 
 /// Cauchy stress (six components xx, yy, zz, xy, yz, xz), von Mises stress and energy density of every cell.
 fn cell_fields(world: &World, body: &BodyInfo) -> Vec<Field> {
-    let Some(solid) = solid_of(world, body) else {
+    let Some(solid) = solid_of(world.model(), body) else {
         return Vec::new();
     };
     let positions = &world.rows(body.system).positions;

@@ -4,6 +4,7 @@
 //! benchmarks all go through it, so that each of their numbers can be had again from the command line.
 
 mod command;
+mod course;
 mod duration;
 mod expect;
 mod failure;
@@ -21,15 +22,15 @@ mod trace;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::time::Instant;
 
 use souple_engine::World;
 use souple_scene::{BodyInfo, ProbeInfo, Scene};
+use souple_table::readable;
 
 pub use command::{command_from_json, command_to_json};
 pub use duration::{Periods, periods_in};
 pub use expect::{Finding, Verdict, summary};
-pub use failure::Failure;
+pub use failure::{Cause, Failure};
 pub use frames::solid_of;
 pub use frequencies::{FrequencyError, NaturalFrequencies, natural_frequencies};
 pub use machine::{binary, instruction_set, peak_bytes};
@@ -86,7 +87,7 @@ pub enum Control {
     Stop,
 }
 
-/// A run that could not start or whose files could not be written.
+/// A run that could not start; or, in words, what ended it between two steps.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     #[error("the snapshot does not fit the scene: {0}")]
@@ -98,17 +99,15 @@ pub enum RunError {
     #[error(transparent)]
     Output(#[from] OutputError),
     #[error(
-        "a duration of {duration} s is {share:.3e} of a period of {period} s: no step would be made; a run lasts at least half a period"
+        "a duration of {} s is {share:.3e} of a period of {} s: no step would be made; a run lasts at least half a period",
+        readable(*.duration), readable(*.period)
     )]
     NoStep { duration: f64, period: f64, share: f64 },
     #[error(
-        "a duration of {duration:e} s at a period of {period} s is {steps:e} steps; at most {limit:e} can be counted"
+        "a duration of {duration:e} s at a period of {} s is {steps:e} steps; at most {limit:e} can be counted",
+        readable(*.period)
     )]
     TooManySteps { duration: f64, period: f64, steps: f64, limit: f64 },
-    #[error(
-        "the {kind} `{name}` cannot name the files of a run: without `/`, `\\` and control characters, not begun by a dot, it would"
-    )]
-    FileName { kind: &'static str, name: String },
 }
 
 /// What a run was.
@@ -118,6 +117,8 @@ pub struct Outcome {
     pub recording: Recording,
     pub world: World,
     pub bodies: Vec<BodyInfo>,
+    /// Files of an earlier run in its folder that it took the place of.
+    pub replaced: usize,
 }
 
 /// Runs a scene to its end, to a refused step, or until `watch` stops it.
@@ -126,93 +127,26 @@ pub struct Outcome {
 /// start removes nothing.
 ///
 /// # Errors
-/// The run cannot start, or a file cannot be written. A refused step is no error: the report holds it, with all
-/// that was computed before.
+/// The run cannot start. What goes wrong later (a refused step, an edit that does not fit, a file that cannot be
+/// written) is no error: the report holds it, with all that was computed before.
 pub fn run(
     scene: Scene,
     options: &Options,
     watch: &mut dyn FnMut(&Progress) -> Control,
 ) -> Result<Outcome, RunError> {
     let (duration, frame_count) = (scene.run.duration, options.frames.unwrap_or(scene.run.frames));
-    let (expects, view) = (scene.expects.clone(), scene.picture);
+    let aims = course::Aims { expects: scene.expects.clone(), scene_end: duration, view: scene.picture };
     let mut session = Session::start(scene, options)?;
     let (first_step, period) = (session.first_step, session.world.model().period);
     let periods = duration::periods_of(options, duration, period, session.world.state())?;
     let steps = periods.count;
     session.warnings.extend(periods.warning);
     session.forecast();
-    let mut folder = output_folder(options, &session.bodies, &session.probes, first_step)?;
-    let mut traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
-    let mut frames = frames::Frames::open(folder.as_ref(), &session.bodies, frame_count, steps)?;
-    let mut status = Status::Done;
-    let mut commands = commands_left(options, &session.world).peekable();
-    let mut changes = options.changes.iter().peekable();
-    session.measure(&mut |probe, time, value| traces[probe].push(time, value));
-    frames.write(folder.as_mut(), &session.world, &session.bodies, 0)?;
-    for step in 1..=steps {
-        let now = session.world.state().period;
-        while let Some(change) = changes.next_if(|change| change.period <= now) {
-            let error = |error| RunError::Change { period: change.period, error };
-            session.change(&change.setting).map_err(error)?;
-        }
-        while let Some(command) = commands.next_if(|command| command.period <= now) {
-            let error = |error| RunError::Edit { period: command.period, error };
-            session.edit(command.edit.clone()).map_err(error)?;
-        }
-        if !session.step() {
-            status = Status::Failed;
-            break;
-        }
-        session.measure(&mut |probe, time, value| traces[probe].push(time, value));
-        let last = step == steps;
-        let write_clock = Instant::now();
-        if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
-            session.push_hash();
-        }
-        frames.write(folder.as_mut(), &session.world, &session.bodies, step)?;
-        let wall_seconds = session.clock.elapsed().as_secs_f64();
-        let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
-        let stops = watch(&progress) == Control::Stop && !last;
-        if let (Some(every), Some(folder)) = (options.snapshot_every, &mut folder)
-            && (last || stops || step.is_multiple_of(every))
-        {
-            let path = folder.claim(&snapshot_name(session.world.state().period))?;
-            session.write_snapshot(&path).map_err(OutputError::from)?;
-        }
-        session.around.write += write_clock.elapsed().as_secs_f64();
-        if stops {
-            status = Status::Interrupted;
-            session.push_hash();
-            break;
-        }
-    }
-    frames.close(folder.as_mut(), &session.world, &session.bodies)?;
-    let span = expect::Span {
-        scene_end: duration,
-        period,
-        status,
-        measured: (first_step as f64 * period, session.world.time()),
-    };
-    let report = Report {
-        probes: traces.iter().map(Trace::summary).collect(),
-        expectations: expects.iter().map(|expect| Verdict::of(expect, &traces, &span)).collect(),
-        ..session.report(status)
-    };
-    if let Some(folder) = &mut folder {
-        // numbers first: a picture that cannot be written must not cost the report
-        report::write_all(folder, &report, &traces)?;
-        picture::write_plots(folder, &traces)?;
-        let path = folder.claim(PICTURE)?;
-        picture::write_picture(&path, &report.title, view, &session.world, &session.bodies)
-            .map_err(OutputError::from)?;
-    }
-    let recording = session.recording();
-    let Session { world, bodies, .. } = session;
-    Ok(Outcome { report, traces, recording, world, bodies })
+    let folder = output_folder(options, &session.bodies, &session.probes, first_step)?;
+    let traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
+    let frames = frames::Frames::open(folder.as_ref(), &session.bodies, frame_count, steps)?;
+    Ok(course::Course { session, folder, frames, traces }.run(steps, options, &aims, watch))
 }
-
-/// The picture of the last state.
-const PICTURE: &str = "last.png";
 
 fn snapshot_name(period: u64) -> String {
     format!("snapshot_{period:08}.souple")
@@ -223,18 +157,6 @@ fn snapshot_period(name: &str) -> Option<u64> {
     name.strip_prefix("snapshot_")?.strip_suffix(".souple")?.parse().ok()
 }
 
-/// Commands that the world has not seen: those after its state, and those at its state's period that came later
-/// than what its log holds.
-fn commands_left<'a>(
-    options: &'a Options,
-    world: &World,
-) -> impl Iterator<Item = &'a souple_engine::Command> + use<'a> {
-    let now = world.state().period;
-    let done = world.log().iter().filter(|command| command.period == now).count();
-    let from = if options.resume.is_some() { now } else { 0 };
-    options.commands.iter().filter(move |command| command.period >= from).skip(done)
-}
-
 /// The folder of the run, cleared of the run before.
 fn output_folder(
     options: &Options,
@@ -243,12 +165,10 @@ fn output_folder(
     first_step: u64,
 ) -> Result<Option<OutputFolder>, RunError> {
     let Some(out) = &options.out else { return Ok(None) };
-    check_file_names("body", bodies.iter().map(|body| body.name.as_str()))?;
-    check_file_names("probe", probes.iter().map(|probe| probe.name.as_str()))?;
     let writes = |name: &str| match name.split_once('/') {
         Some((output::FRAMES, file)) => bodies.iter().any(|body| frames::is_frame_of(&body.name, file)),
         _ => {
-            name == PICTURE
+            name == picture::PICTURE
                 || report::NAMES.contains(&name)
                 || probes.iter().any(|probe| picture::plot_names(&probe.name).iter().any(|plot| plot == name))
                 || (options.snapshot_every.is_some() && snapshot_period(name).is_some())
@@ -257,21 +177,6 @@ fn output_folder(
     let keeps = |name: &str| snapshot_period(name).is_some_and(|period| period <= first_step);
     let keeps: Option<&dyn Fn(&str) -> bool> = if options.resume.is_some() { Some(&keeps) } else { None };
     Ok(Some(OutputFolder::open(out, &Plan { writes: &writes, keeps })?))
-}
-
-/// Names become names of files, which stay inside the run's folder.
-fn check_file_names<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>) -> Result<(), RunError> {
-    let is_refused = |name: &str| {
-        name.is_empty()
-            || name.starts_with('.')
-            || name.contains(|c: char| matches!(c, '/' | '\\') || c.is_control())
-    };
-    for name in names {
-        if is_refused(name) {
-            return Err(RunError::FileName { kind, name: name.to_owned() });
-        }
-    }
-    Ok(())
 }
 
 /// What stands against stability before the first step.

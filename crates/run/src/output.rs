@@ -1,11 +1,13 @@
 //! The folder of a run. What a run writes there is replaced as a set by the next one; all else stays untouched.
 //!
+//! The folder itself is locked while a run has it; the system takes the lock away with the process that held it.
+//!
 //! `files.txt` lists what was written, each file before it is: also a run that was killed leaves a folder that the
 //! next one can clear. A file that is not listed is nobody's but the user's: where a run would write over one, it
 //! refuses to start.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
 
@@ -34,6 +36,11 @@ pub enum OutputError {
         .folder.display()
     )]
     WouldLoseResults { folder: PathBuf, example: String },
+    #[error(
+        "another run is writing into `{}`; wait for its end or choose another folder",
+        .path.display()
+    )]
+    InUse { path: PathBuf },
     #[error("line {line} of `{}` is `{found}`, no file within the folder", .path.display())]
     List { path: PathBuf, line: usize, found: String },
     #[error("`{}`, of an earlier run, cannot be removed: {source}", .path.display())]
@@ -55,17 +62,27 @@ pub struct OutputFolder {
     root: PathBuf,
     listed: BTreeSet<String>,
     list: File,
+    replaced: usize,
+    /// Holds the lock.
+    _folder: Option<File>,
 }
 
 impl OutputFolder {
     /// # Errors
-    /// The folder cannot be had, or a file in it must not be replaced; nothing has been removed then.
+    /// The folder cannot be had or another run has it, or a file in it must not be replaced; nothing has been removed
+    /// then.
     pub fn open(root: &Path, plan: &Plan) -> Result<Self, OutputError> {
+        make_folder(root)?;
+        let folder = locked(root)?;
         let listed = read_list(root)?;
         for name in present(root) {
             if (plan.writes)(&name) && !listed.contains(&name) {
                 return Err(OutputError::Foreign { path: root.join(name) });
             }
+        }
+        let frames = root.join(FRAMES);
+        if frames.exists() && !frames.is_dir() {
+            return Err(OutputError::Foreign { path: frames });
         }
         let stays = |name: &String| plan.keeps.is_some_and(|keeps| keeps(name));
         if plan.keeps.is_some()
@@ -75,14 +92,15 @@ impl OutputFolder {
             return Err(OutputError::WouldLoseResults { folder, example });
         }
         let (kept, old): (BTreeSet<String>, BTreeSet<String>) = listed.into_iter().partition(stays);
-        make_folder(root)?;
+        let mut replaced = 0;
         for name in &old {
             let path = root.join(name);
             match fs::remove_file(&path) {
+                Ok(()) => replaced += 1,
                 Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
                     return Err(OutputError::NotRemoved { path, source });
                 }
-                _ => {}
+                Err(_) => {}
             }
         }
         if old.iter().any(|name| name.starts_with(FRAMES)) {
@@ -96,7 +114,12 @@ impl OutputFolder {
         })?;
         let list = File::options().append(true).open(&path);
         let list = list.map_err(|source| IoError::Write { path, source })?;
-        Ok(Self { root: root.to_owned(), listed: kept, list })
+        Ok(Self { root: root.to_owned(), listed: kept, list, replaced, _folder: folder })
+    }
+
+    /// Files of the run before that are gone.
+    pub fn replaced(&self) -> usize {
+        self.replaced
     }
 
     /// Lists a file as the run's own, by its name relative to the folder, and gives its path.
@@ -119,6 +142,16 @@ impl OutputFolder {
         let path = self.root.join(FRAMES);
         make_folder(&path)?;
         Ok(path)
+    }
+}
+
+/// A folder that no other run can have while this is open; `None` where the system locks no folders.
+fn locked(path: &Path) -> Result<Option<File>, OutputError> {
+    let Ok(folder) = File::open(path) else { return Ok(None) };
+    match folder.try_lock() {
+        Ok(()) => Ok(Some(folder)),
+        Err(TryLockError::WouldBlock) => Err(OutputError::InUse { path: path.to_owned() }),
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 
@@ -208,9 +241,12 @@ mod tests {
             fs::write(first.claim(name).unwrap(), "x").unwrap();
         }
         folder.write("notes.txt");
+        drop(first);
         let mut second = OutputFolder::open(&folder.0, &plan).unwrap();
         fs::write(second.claim("report.json").unwrap(), "y").unwrap();
+        assert_eq!(second.replaced(), 3);
         assert_eq!(folder.names(), [MANIFEST, "notes.txt", "report.json"]);
+        drop(second);
         fs::write(folder.0.join(MANIFEST), format!("{HEADER}\n../outside\n")).unwrap();
         let refused = OutputFolder::open(&folder.0, &plan);
         assert!(matches!(refused, Err(OutputError::List { line: 2, .. })));
@@ -223,6 +259,7 @@ mod tests {
         let mut first = OutputFolder::open(&folder.0, &Plan { writes: &|_| false, keeps: None }).unwrap();
         fs::write(first.claim("probes.csv").unwrap(), "x").unwrap();
         folder.write("report.json");
+        drop(first);
         let plan = Plan { writes: &|name| name != MANIFEST, keeps: None };
         assert!(matches!(OutputFolder::open(&folder.0, &plan), Err(OutputError::Foreign { .. })));
         assert_eq!(folder.names(), [MANIFEST, "probes.csv", "report.json"]);
@@ -237,12 +274,28 @@ mod tests {
         let plan = Plan { writes: &|name| name != MANIFEST, keeps: None };
         let mut first = OutputFolder::open(&folder.0, &plan).unwrap();
         fs::write(first.claim("snapshot_1.souple").unwrap(), "x").unwrap();
+        drop(first);
         let keeps = |name: &str| name.starts_with("snapshot");
         let resumed = Plan { keeps: Some(&keeps), ..plan };
         let mut second = OutputFolder::open(&folder.0, &resumed).unwrap();
         assert_eq!(folder.names(), [MANIFEST, "snapshot_1.souple"]);
         fs::write(second.claim("report.json").unwrap(), "x").unwrap();
+        drop(second);
         assert!(matches!(OutputFolder::open(&folder.0, &resumed), Err(OutputError::WouldLoseResults { .. })));
         assert_eq!(folder.names(), [MANIFEST, "report.json", "snapshot_1.souple"]);
+    }
+
+    /// Two runs do not share a folder; when the first is over, however it ended, the next one has it.
+    #[test]
+    #[cfg(unix)]
+    fn a_folder_has_one_run_at_a_time() {
+        let folder = Temporary::new("locked");
+        let mut first = OutputFolder::open(&folder.0, &ANY).unwrap();
+        fs::write(first.claim("report.json").unwrap(), "x").unwrap();
+        assert!(matches!(OutputFolder::open(&folder.0, &ANY), Err(OutputError::InUse { .. })));
+        assert_eq!(folder.names(), [MANIFEST, "report.json"]);
+        drop(first);
+        let plan = Plan { writes: &|name| name != MANIFEST, keeps: None };
+        assert_eq!(OutputFolder::open(&folder.0, &plan).unwrap().replaced(), 1);
     }
 }

@@ -1,41 +1,39 @@
 //! The picture of the last state, and the plots of the probes.
 
-use std::path::Path;
-
-use souple_engine::World;
-use souple_io::IoError;
 use souple_io::plot::{Axis, Curve, Plot};
-use souple_scene::BodyInfo;
 use souple_scene::spec::picture::PictureView;
 
-use crate::Trace;
 use crate::output::{OutputError, OutputFolder};
 use crate::show::{Figure, Moment, Show, ShowError, Stage};
+use crate::{Session, Trace};
 
-/// All bodies as they stand, coloured by the von Mises stress of their cells, and the shapes they touch.
+/// The picture of the last state.
+pub const PICTURE: &str = "last.png";
+
+/// All bodies of a moment, coloured by the von Mises stress of their cells, and the shapes they touch, into the folder
+/// of a run.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_picture(
-    path: &Path,
+pub fn write_last(
+    folder: &mut OutputFolder,
     title: &str,
     from: PictureView,
-    world: &World,
-    bodies: &[BodyInfo],
-) -> Result<(), IoError> {
-    let mut stage = Stage::of_model(world.model(), from);
+    session: &Session,
+    moment: &Moment,
+) -> Result<(), OutputError> {
+    let mut stage = Stage::of_model(session.world.model(), &session.bodies, from);
     stage.title = title.to_owned();
-    let moment = Moment::of_world(world, bodies);
     let show = Show { stage, moments: Vec::new() };
     let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
     let plain = Figure { colour_by: None, ..figure.clone() };
     // bodies without stress are shown in colours of their own
-    let picture = match figure.picture(&show, &moment).or_else(|_| plain.picture(&show, &moment)) {
+    let picture = match figure.picture(&show, moment).or_else(|_| plain.picture(&show, moment)) {
         Ok(picture) => picture,
-        Err(ShowError::Io(error)) => return Err(error),
+        Err(ShowError::Io(error)) => return Err(error.into()),
         Err(_) => return Ok(()),
     };
-    picture.render()?.write_png(path)
+    Ok(picture.render()?.write_png(&folder.claim(PICTURE)?)?)
 }
 
 /// The files of a probe's plot.

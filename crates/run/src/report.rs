@@ -62,7 +62,7 @@ pub struct Report {
     pub probes: Vec<Summary>,
     pub hashes: Vec<(u64, String)>,
     pub expectations: Vec<Verdict>,
-    /// Why the run ended early, where a step was refused.
+    /// Why the run ended early, where it failed.
     pub failure: Option<Failure>,
     pub warnings: Vec<String>,
 }
@@ -216,28 +216,37 @@ pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
     counts
 }
 
-/// Names of the files that [`write_all`] may write.
-pub const NAMES: [&str; 3] = ["probes.csv", "expect.txt", "report.json"];
+/// Names of the files that [`write_report`] and [`write_tables`] may write.
+pub const NAMES: [&str; 3] = [REPORT, PROBES, EXPECT];
+const REPORT: &str = "report.json";
+const PROBES: &str = "probes.csv";
+const EXPECT: &str = "expect.txt";
 
-/// `report.json`, `probes.csv` and `expect.txt` into the folder of a run.
+/// `report.json` into the folder of a run.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_report(folder: &mut OutputFolder, report: &Report) -> Result<(), OutputError> {
+    let document = report.to_json();
+    Ok(souple_io::write_file(&folder.claim(REPORT)?, |file| writeln!(file, "{document:#}"))?)
+}
+
+/// `probes.csv` and `expect.txt` into the folder of a run.
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_all(folder: &mut OutputFolder, report: &Report, traces: &[Trace]) -> Result<(), OutputError> {
-    let [probes, expect, numbers] = NAMES;
+pub fn write_tables(folder: &mut OutputFolder, report: &Report, traces: &[Trace]) -> Result<(), OutputError> {
     if !traces.is_empty() {
-        write_csv(&folder.claim(probes)?, traces)?;
+        write_csv(&folder.claim(PROBES)?, traces)?;
     }
     let verdicts = &report.expectations;
     if !verdicts.is_empty() {
-        souple_io::write_file(&folder.claim(expect)?, |file| {
+        souple_io::write_file(&folder.claim(EXPECT)?, |file| {
             writeln!(file, "{}", summary(verdicts))?;
             verdicts.iter().try_for_each(|verdict| {
                 writeln!(file, "{:10}  {}", verdict.finding.as_str(), verdict.message())
             })
         })?;
     }
-    let document = report.to_json();
-    souple_io::write_file(&folder.claim(numbers)?, |file| writeln!(file, "{document:#}"))?;
     Ok(())
 }

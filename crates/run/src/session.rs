@@ -27,7 +27,7 @@ pub struct Session {
     /// Values of the scene that may be set, see [`Session::change`].
     pub adjustables: Vec<Adjustable>,
     pub warnings: Vec<String>,
-    /// Why the last step was refused.
+    /// Why it cannot go on.
     pub failure: Option<Failure>,
     pub first_step: u64,
     pub(crate) around: AroundSteps,
@@ -109,9 +109,20 @@ impl Session {
     pub fn step(&mut self) -> bool {
         match self.world.step() {
             Ok(()) => self.solver.merge(self.world.last_report()),
-            Err(error) => self.failure = Some(Failure::of(error, &self.world, &self.bodies)),
+            Err(error) => self.failure = Some(Failure::of_step(error, &self.world, &self.bodies)),
         }
         self.failure.is_none()
+    }
+
+    /// Notes what ends the run between two steps; what comes after a first failure is a warning.
+    pub(crate) fn fail(&mut self, error: &RunError) -> Status {
+        match self.failure {
+            None => {
+                self.failure = Some(Failure::between(error.to_string(), self.world.state().period));
+            }
+            Some(_) => self.warnings.push(error.to_string()),
+        }
+        Status::Failed
     }
 
     /// Reads all probes: their number, the time, the value.
@@ -164,6 +175,10 @@ impl Session {
         let (state, log) = (self.world.state().clone(), self.world.log().to_vec());
         let other = |error| ChangeError::OtherWorld { setting: setting.to_owned(), error };
         world.resume_edited(state, log).map_err(other)?;
+        world.inherit_stages(&self.world);
+        let told = scene.warnings.into_iter().chain(forecast_warnings(&mut world));
+        let new: Vec<String> = told.filter(|warning| !self.warnings.contains(warning)).collect();
+        self.warnings.extend(new);
         let period = world.state().period;
         self.recording.changes.push(Change { period, setting: setting.to_owned() });
         (self.world, self.bodies, self.probes) = (world, scene.bodies, scene.probes);

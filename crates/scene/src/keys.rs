@@ -195,6 +195,15 @@ impl Keys {
     }
 }
 
+/// What may be chosen, in words.
+pub fn one_of(names: &[&str]) -> String {
+    if names.is_empty() {
+        "none here, for the scene has none".to_owned()
+    } else {
+        format!("one of {}", names.join(", "))
+    }
+}
+
 /// ` (did you mean …?)`, or nothing.
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     nearest(name, known).map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default()

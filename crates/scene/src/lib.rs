@@ -24,6 +24,6 @@ mod values;
 pub use adjust::Adjustable;
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{Measurement, ProbeInfo};
-pub use scene::{BodyInfo, Scene, read_again, read_file, read_spec, read_text};
+pub use scene::{BodyInfo, FramesInfo, Scene, read_again, read_file, read_spec, read_text};
 pub use schema::schema;
 pub use spec::Spec;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use crate::diagnostic::{Code, Fault, Log, Site};
 use crate::document::{Content, Entry, Node, Table, parse_value};
-use crate::keys::{Keys, Shape, did_you_mean};
+use crate::keys::{Keys, Shape, did_you_mean, one_of};
 use crate::source::{Place, Source, Sources};
 use crate::spec::SCENE;
 use crate::spec::world::{DEFAULT_STEPPER, DEFAULT_SYSTEM};
@@ -121,7 +121,7 @@ impl Setting<'_> {
                 names.dedup();
                 let hint = did_you_mean(name, names.iter().copied());
                 let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
-                return self.refuse(message, format!("one of {}", names.join(", ")));
+                return self.refuse(message, one_of(&names));
             }
             let content =
                 if rest.is_empty() { value.content.clone() } else { Content::Table(Table::default()) };
@@ -159,16 +159,13 @@ impl Setting<'_> {
                         let names: Vec<&str> = table.keys().collect();
                         let hint = did_you_mean(name, names.iter().copied());
                         let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
-                        self.refuse(message, format!("one of {}", names.join(", ")));
+                        self.refuse(message, one_of(&names));
                     }
                 },
                 Some(Shape::Values) if table.get(name).is_none() => {
                     let names: Vec<&str> = table.keys().collect();
                     let hint = did_you_mean(name, names.iter().copied());
-                    self.refuse(
-                        format!("the scene has no parameter `{name}`{hint}"),
-                        format!("one of {}", names.join(", ")),
-                    );
+                    self.refuse(format!("the scene has no parameter `{name}`{hint}"), one_of(&names));
                 }
                 _ => self.set(table, None, steps, value),
             },

@@ -27,6 +27,15 @@ pub struct Chosen<B: 'static> {
     pub entry: &'static Entry<B>,
     pub values: Values,
     pub site: Site,
+    /// Where the parameters that are written are.
+    pub written: Vec<(&'static str, Site)>,
+}
+
+impl<B> Chosen<B> {
+    /// Where a parameter is written, or the whole where it is not.
+    pub fn site_of(&self, parameter: &str) -> &Site {
+        self.written.iter().find(|(name, _)| *name == parameter).map_or(&self.site, |(_, site)| site)
+    }
 }
 
 impl<'a> Reader<'a> {
@@ -340,7 +349,7 @@ pub fn choose<B>(
             return name.refuse(Code::UnknownName, message, format!("one of {}", unknown.known.join(", ")));
         }
     };
-    let mut values = Values::new();
+    let (mut values, mut written) = (Values::new(), Vec::new());
     let mut is_good = true;
     let known = || entry.parameters.iter().map(|parameter| parameter.name);
     let inside = own.iter().flat_map(|content| &content.entries).filter(|e| e.key != shape.tag);
@@ -360,11 +369,12 @@ pub fn choose<B>(
         };
         let value = Reading { node: &item.node, path, log };
         is_good &= value.parameter(parameter, &mut values).is_some();
+        written.push((parameter.name, value.site()));
     }
     for parameter in entry.parameters {
-        let written = own.is_some_and(|content| content.get(parameter.name).is_some())
+        let is_written = own.is_some_and(|content| content.get(parameter.name).is_some())
             || others.iter().any(|other| other.key == parameter.name);
-        if !written && parameter.default.is_none() {
+        if !is_written && parameter.default.is_none() {
             let message = format!("{} `{}` needs `{}`", table.kind, entry.name, parameter.name);
             let expected = format!("{} = {} ({})", parameter.name, parameter.expected(), parameter.summary);
             let site =
@@ -377,7 +387,7 @@ pub fn choose<B>(
         return None;
     }
     match entry.values(values) {
-        Ok(values) => Some(Chosen { entry, values, site: reading.site() }),
+        Ok(values) => Some(Chosen { entry, values, site: reading.site(), written }),
         Err(error) => reading.refuse(Code::OutOfRange, error.to_string(), expected),
     }
 }

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 
 use souple_engine::{Model, State};
 use souple_mesh::{Mesh, TriangleSurface};
+use souple_models::frames::Carried;
 
 use crate::adjust::Adjustable;
-use crate::compile::compile;
+use crate::compile::{Placed, compile};
 use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
@@ -58,13 +59,33 @@ pub struct BodyInfo {
     pub surface: TriangleSurface,
     /// Name of its elastic force.
     pub force: String,
+    /// What carries it, where that is not its points.
+    pub frames: Option<FramesInfo>,
+}
+
+/// The frames that carry a body.
+#[derive(Clone, Debug)]
+pub struct FramesInfo {
+    /// Row of each frame's origin; the rows of its axes follow.
+    pub rows: Vec<u32>,
+    /// Of each point of the mesh: the weight of the frame that is shown.
+    pub influence: Vec<f64>,
 }
 
 impl BodyInfo {
-    pub(crate) fn new(name: &str, system: usize, rows: Range<usize>, mesh: Mesh) -> Self {
+    pub(crate) fn new(placed: Placed) -> Self {
+        let Placed { spec, system, rows, mesh, frames, .. } = placed;
         let surface = mesh.boundary_surface();
-        let force = crate::compile::solid_name(name);
-        Self { name: name.to_owned(), system, rows, mesh, surface, force }
+        let force = crate::compile::solid_name(&spec.name);
+        let shown = spec.frames.as_ref().map_or(0, |frames| frames.shown as u32);
+        let frames = frames.map(|frames| {
+            let weight = |carried: &Carried| {
+                let place = carried.frames.binary_search(&shown);
+                place.map_or(0.0, |place| carried.rows[place][0].0)
+            };
+            FramesInfo { influence: frames.carried_points.iter().map(weight).collect(), rows: frames.rows }
+        });
+        Self { name: spec.name.clone(), system, rows, mesh, surface, force, frames }
     }
 }
 

@@ -4,7 +4,7 @@
 
 use souple_formal::{Condition, Formula, parse_quantity, quantity_in};
 use souple_math::Vec3;
-use souple_table::{Kind, Parameter, Range, Value, Values, nearest};
+use souple_table::{Kind, Parameter, Range, Value, Values, nearest, readable};
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node};
@@ -55,7 +55,7 @@ impl<'a> Reading<'a> {
             return Some(number);
         }
         let message = if number.is_finite() {
-            format!("{number} is out of range")
+            format!("{} is out of range", readable(number))
         } else {
             format!("{number} is no finite number")
         };

@@ -157,6 +157,23 @@ impl BlockMatrix {
         Ok(())
     }
 
+    /// Takes the mean of the matrix and its transpose: the symmetric matrix that is nearest.
+    pub fn symmetrise(&mut self) {
+        let pattern = Arc::clone(&self.pattern);
+        for row in 0..pattern.block_count() {
+            for slot in pattern.slots(row) {
+                let column = pattern.columns()[slot] as usize;
+                if column < row {
+                    continue;
+                }
+                let mirror = pattern.slot(column, row).expect("patterns are symmetric");
+                let mean = (self.values[slot] + self.values[mirror].transpose()) * 0.5;
+                self.values[slot] = mean;
+                self.values[mirror] = mean.transpose();
+            }
+        }
+    }
+
     /// Mean of the diagonal entries; 0 for a matrix without rows.
     pub fn mean_diagonal(&self) -> f64 {
         let rows = self.pattern.block_count();

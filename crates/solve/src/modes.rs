@@ -6,33 +6,10 @@
 use souple_math::Vec3;
 
 use crate::direct::Factor;
-use crate::error::check_length;
 use crate::{BlockMatrix, DirectSolver, LinearOperator, SolveError, dense, reduce};
 
 /// Blocks of the subspace between restarts.
 const DEPTH: usize = 4;
-
-/// The mass matrix of an eigenproblem.
-#[derive(Clone, Copy, Debug)]
-pub enum Mass<'a> {
-    /// One mass per block.
-    Lumped(&'a [f64]),
-    /// Of the same pattern as the stiffness.
-    Consistent(&'a BlockMatrix),
-}
-
-impl Mass<'_> {
-    fn apply(&self, x: &[Vec3], y: &mut [Vec3]) {
-        match self {
-            Self::Lumped(masses) => {
-                for ((y, x), mass) in y.iter_mut().zip(x).zip(*masses) {
-                    *y = *x * *mass;
-                }
-            }
-            Self::Consistent(matrix) => matrix.apply(x, y),
-        }
-    }
-}
 
 /// What is sought.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +43,7 @@ pub struct Modes {
     pub restarts: usize,
 }
 
-/// Computes eigenpairs of a symmetric stiffness and a positive mass.
+/// Computes eigenpairs of a symmetric stiffness and a positive mass of the same pattern.
 ///
 /// Directions without mass or held by [`BlockMatrix::constrain`] should be given a mass of zero: they then
 /// take no part.
@@ -76,26 +53,19 @@ pub struct Modes {
 /// no convergence.
 pub fn lowest_modes(
     stiffness: &BlockMatrix,
-    mass: Mass<'_>,
+    mass: &BlockMatrix,
     coordinates: Option<&[Vec3]>,
     settings: &Settings,
 ) -> Result<Modes, SolveError> {
     let count = stiffness.block_count();
     let mut shifted = stiffness.clone();
-    match mass {
-        Mass::Lumped(masses) => {
-            check_length("masses", masses.len(), count)?;
-            shifted.add_scaled_diagonal(-settings.shift, masses)?;
-        }
-        Mass::Consistent(mass) => shifted.add_scaled(-settings.shift, mass)?,
-    }
+    shifted.add_scaled(-settings.shift, mass)?;
     let mut solver = DirectSolver::analyse_for(Factor::Ldlt, stiffness.pattern(), coordinates)?;
     solver.factorize(&shifted)?;
 
-    let available = match mass {
-        Mass::Lumped(masses) => 3 * masses.iter().filter(|mass| **mass > 0.0).count(),
-        Mass::Consistent(_) => 3 * count,
-    };
+    // a direction whose own mass is zero has none to share
+    let has_mass = |row: usize| (0..3).filter(move |axis| mass.diagonal_block(row).entry(*axis, *axis) > 0.0);
+    let available = (0..count).map(|row| has_mass(row).count()).sum();
     let too_many = SolveError::TooManyModes { wanted: settings.count, available };
     if settings.count > available {
         return Err(too_many);
@@ -143,7 +113,7 @@ pub fn lowest_modes(
 /// An `M`-orthonormal basis `V` with its images `W = (K − σM)⁻¹ M V`.
 struct Subspace<'a> {
     solver: &'a DirectSolver,
-    mass: Mass<'a>,
+    mass: &'a BlockMatrix,
     basis: Vec<Vec<Vec3>>,
     weighted: Vec<Vec<Vec3>>,
     images: Vec<Vec<Vec3>>,
@@ -160,7 +130,7 @@ struct Ritz {
 }
 
 impl<'a> Subspace<'a> {
-    fn new(solver: &'a DirectSolver, mass: Mass<'a>, block_count: usize) -> Self {
+    fn new(solver: &'a DirectSolver, mass: &'a BlockMatrix, block_count: usize) -> Self {
         Self { solver, mass, basis: Vec::new(), weighted: Vec::new(), images: Vec::new(), block_count }
     }
 

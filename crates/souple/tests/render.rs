@@ -88,7 +88,13 @@ fn sheets_films_and_surfaces() {
     souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
     let answer = render(&folder, "run", "sheet.png", &["--sheet", "4"]).ends(0).json();
     assert_eq!(answer["moments"], 4);
-    assert_eq!(size_of(&folder, "sheet.png"), [192, 128]);
+    // two by two, under one title
+    let [width, height] = size_of(&folder, "sheet.png");
+    assert!(width == 192 && (129..192).contains(&height), "{width} x {height}");
+    let bare = render(&folder, "run", "bare.png", &["--sheet", "4", "--title", ""]).ends(0);
+    assert_eq!((bare.json()["moments"].as_u64(), size_of(&folder, "bare.png")), (Some(4), [192, 128]));
+    let beyond = render(&folder, "run", "late.png", &["--time", "77"]).ends(0);
+    assert!(beyond.stderr.contains("there is nothing at 77 s: the last frame, of 0.1"), "{beyond:#?}");
     for (file, start) in [("a.gif", &b"GIF89a"[..]), ("a.apng", b"\x89PNG"), ("a.glb", b"glTF")] {
         let answer = render(&folder, "run", file, &["--frames", "3"]).ends(0).json();
         assert_eq!(answer["moments"], 3, "{file}");
@@ -101,6 +107,78 @@ fn sheets_films_and_surfaces() {
         _ => assert!(film.status == Some(1) && film.stderr.contains("ffmpeg"), "{film:#?}"),
     }
     assert!(folder.files().iter().all(|file| !file.contains(".part")));
+}
+
+/// Runs that went astray are drawn as they were when they could be.
+#[test]
+fn blown_up_runs_are_drawn_as_they_were() {
+    let folder = Folder::new("blown");
+    // fifty times the longest stable step: grows without bound
+    let text = CUBE.replace("[bodies.cube]", "[systems.main]\nstepper = \"symplectic_euler\"\n[bodies.cube]");
+    let text = text.replace("20 kPa", "20 GPa").replace("\"100 ms\"", "\"10 s\"");
+    let text = text.replace("material =", "angular_velocity = [0, 3, 1]\nmaterial =");
+    folder.write("fast.toml", text);
+    let run = ["run", "fast.toml", "--json", "--quiet", "--frames", "1000", "--out", "run"];
+    let report = souple_in(folder.path(), run).ends(1).json();
+    assert!(folder.path().join("run/last.png").is_file());
+    let last = report["simulated_seconds"].as_f64().expect("a time");
+    let drawn = render(&folder, "run", "a.png", &[]).ends(0);
+    assert!(drawn.stderr.contains("the bodies have run away"), "{last} s: {drawn:#?}");
+    assert!(report["warnings"].to_string().contains("the bodies have run away"), "{report:#}");
+    // of two pictures, one with the body and one of nothing but its background, this is the first
+    let empty = render(&folder, "run", "b.png", &["--position", "0,0,900", "--look-at", "0,0,901"]).ends(0);
+    assert_eq!(empty.status, Some(0));
+    let read = |file: &str| std::fs::read(folder.path().join(file)).expect("a picture");
+    assert_ne!(read("a.png"), read("b.png"));
+}
+
+/// Bodies of every dimension have values to be coloured by, from the frames of their run as from the run itself.
+#[test]
+fn sheets_and_cables_are_coloured() {
+    use souple::io::picture::Paint;
+    use souple::run::show::{Figure, Show, Stage};
+
+    let folder = Folder::new("coloured");
+    for name in ["plate", "blown_strip", "hanging_cable"] {
+        let scene = common::scenes().join(name);
+        let scene = scene.to_str().expect("a path");
+        let run = ["run", scene, "--quiet", "--expect", "warn", "--steps", "2", "--out", name];
+        souple_in(folder.path(), run).ends(0);
+        let show = Show::of_run(&folder.path().join(name), Stage::default()).expect("frames");
+        let pictures = Figure::default().pictures(&show).expect("pictures");
+        let last = pictures.last().expect("a picture");
+        for surface in &last.surfaces {
+            let Paint::PointScalar(values) = &surface.paint else { panic!("{name} is not coloured") };
+            assert!(!values.is_empty() && values.iter().all(|value| value.is_finite()), "{name}: {values:?}");
+        }
+        assert!(!last.surfaces.is_empty(), "{name}");
+    }
+}
+
+/// A cable is drawn, and coloured by its tension.
+#[test]
+fn cables_are_drawn() {
+    let folder = Folder::new("cables");
+    let scene = common::scenes().join("hanging_cable");
+    let scene = scene.to_str().expect("a path");
+    let run = ["run", scene, "--quiet", "--expect", "warn", "--steps", "5", "--out", "run"];
+    souple_in(folder.path(), run).ends(0);
+    let read = |file: &str| std::fs::read(folder.path().join(file)).expect("a picture");
+    for (file, more) in [
+        ("by_stress.png", &[][..]),
+        ("plain.png", &["--colour", "none"]),
+        ("nothing.png", &["--cut", "0,1,0,-9"]),
+        ("half.png", &["--cut", "1,0,0,0.5"]),
+    ] {
+        render(&folder, "run", file, more).ends(0);
+    }
+    let files = ["by_stress.png", "plain.png", "nothing.png", "half.png"];
+    for (index, a) in files.iter().enumerate() {
+        for b in &files[index + 1..] {
+            assert!(read(a) != read(b), "{a} and {b}");
+        }
+    }
+    assert!(render(&folder, "run", "a.glb", &["--frames", "2"]).ends(0).json()["moments"] == 2);
 }
 
 /// A run whose scene has been moved is drawn without its shapes, and that is said.

@@ -318,3 +318,78 @@ fn a_folder_that_cannot_be_cleared_is_told() {
     let answer = Answer::of("again".to_owned(), again.output().expect("the program starts")).ends(1);
     assert!(answer.stderr.contains("probes.csv"), "{answer:#?}");
 }
+
+/// What cannot be written after the first step ends the run as failed, with its cause, and costs nothing else.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_frame_that_cannot_be_written_costs_no_report() {
+    let folder = Folder::new("kept");
+    let scene = folder.write("cube.toml", CUBE);
+    let program = env!("CARGO_BIN_EXE_souple");
+    // the folder of frames goes away while the run is on, at its tenth of many steps
+    let script = format!(
+        "{program} run {scene} --quiet --json --steps 100000 --frames 100000 --out out & run=$!; \
+         until test -e out/frames/cube_0010.vtu; do sleep 0.01; done; mv out/frames out/gone; wait $run"
+    );
+    let output = std::process::Command::new("sh").args(["-c", &script]).current_dir(folder.path()).output();
+    let answer = Answer::of(script, output.expect("a shell")).ends(1);
+    assert!(answer.stderr.contains("error: after step") && answer.stderr.contains("frames"), "{answer:#?}");
+    let told = answer.json();
+    let text = std::fs::read_to_string(folder.path().join("out/report.json")).expect("a report");
+    let written: Value = serde_json::from_str(&text).expect("JSON");
+    for report in [&told, &written] {
+        assert_eq!(report["status"], "failed");
+        assert!(report["error"]["message"].to_string().contains("frames/cube_"), "{report:#}");
+        assert!(report["steps"].as_u64().is_some_and(|steps| steps >= 10));
+    }
+    let left = below(&folder, "out");
+    for file in ["probes.csv", "place.svg", "last.png"] {
+        assert!(left.contains(&file.to_owned()), "{file}: {left:?}");
+    }
+}
+
+/// A command that does not fit ends the run where it stands, with all that was computed.
+#[test]
+fn a_command_that_does_not_fit_costs_no_report() {
+    use souple::engine::{Command, Edit};
+    use souple::run::{Control, Options, Status, run};
+
+    let folder = Folder::new("late_edit");
+    let scene = souple::scene::read_text("cube", CUBE, Path::new("."), &[]).expect("a scene");
+    let out = folder.path().join("out");
+    let edit = Edit::Pin { system: 0, block: 999_999 };
+    let options = Options {
+        out: Some(out.clone()),
+        commands: vec![Command { period: 5, edit }],
+        frames: Some(0),
+        ..Options::default()
+    };
+    let outcome = run(scene, &options, &mut |_| Control::Continue).expect("a run");
+    assert_eq!((outcome.report.status, outcome.report.steps), (Status::Failed, 5));
+    let message = outcome.report.failure.expect("a cause").message();
+    assert!(message.starts_with("after step 5: command before period 5"), "{message}");
+    assert!(out.join("report.json").is_file() && out.join("probes.csv").is_file());
+    assert_eq!(outcome.traces[0].times.len(), 6);
+}
+
+/// Two runs do not write into one folder; one that was killed leaves it free, and the next says what it replaces.
+#[cfg(unix)]
+#[test]
+fn a_folder_belongs_to_one_run() {
+    let folder = Folder::new("shared_folder");
+    let scene = folder.write("cube.toml", CUBE);
+    let out = folder.at("out");
+    let mut long = command();
+    long.args(["run", &scene, "--quiet", "--steps", "100000000", "--frames", "0", "--out", &out]);
+    let mut child = long.spawn().expect("the program starts");
+    while !folder.path().join("out/files.txt").is_file() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let refused = souple(["run", &scene, "--quiet", "--out", &out]).ends(2);
+    assert!(refused.stderr.contains("another run is writing into"), "{refused:#?}");
+    child.kill().expect("the first run is killed");
+    child.wait().expect("it has ended");
+    souple(["run", &scene, "--quiet", "--frames", "0", "--out", &out]).ends(0);
+    let again = souple(["run", &scene, "--frames", "0", "--out", &out]).ends(0);
+    assert!(again.stderr.contains("files of an earlier run in"), "{again:#?}");
+}

@@ -19,13 +19,22 @@ pub enum Value<'a> {
     Texts(&'a [(String, String)]),
 }
 
+/// A number as a person writes it: with an exponent where there would be many zeros.
+pub fn readable(number: f64) -> String {
+    let is_plain = number == 0.0 || !number.is_finite() || (1e-5..1e15).contains(&number.abs());
+    if is_plain { number.to_string() } else { format!("{number:e}") }
+}
+
 impl fmt::Display for Value<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Number(number) => write!(f, "{number}"),
+            Self::Number(number) => f.write_str(&readable(*number)),
             Self::Integer(number) => write!(f, "{number}"),
             Self::Boolean(truth) => write!(f, "{truth}"),
-            Self::Vector([x, y, z]) => write!(f, "[{x}, {y}, {z}]"),
+            Self::Vector(vector) => {
+                let [x, y, z] = vector.map(readable);
+                write!(f, "[{x}, {y}, {z}]")
+            }
             Self::Numbers(numbers) => write!(f, "{numbers:?}"),
             Self::Text(text) => write!(f, "\"{text}\""),
             Self::Texts(texts) => {

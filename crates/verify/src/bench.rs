@@ -1,5 +1,6 @@
 //! Benchmarks: speed with its error beside it, on scenes anyone can run.
 
+mod frames;
 mod links;
 mod timing;
 
@@ -77,12 +78,12 @@ pub const BENCHES: &[Bench] = &[
     Bench {
         name: "explicit_tet4_stvk_100k",
         what: "complete symplectic steps of the reference bar, n = 12 (103,680 tetrahedra), bent [elements/s]",
-        run: |effort| explicit("explicit_tet4_stvk_100k", "tet4", 12, 20e6, effort),
+        run: |effort| explicit("explicit_tet4_stvk_100k", "tet4", 20e6, trace_of_tet4, effort),
     },
     Bench {
         name: "explicit_hex8_stvk",
         what: "the same with hexahedra of eight samples, n = 12 [elements/s]",
-        run: |effort| explicit("explicit_hex8_stvk", "hex8", 12, 3e6, effort),
+        run: |effort| explicit("explicit_hex8_stvk", "hex8", 3e6, rest_of_hex8, effort),
     },
     Bench {
         name: "implicit_beam_n3",
@@ -113,6 +114,16 @@ pub const BENCHES: &[Bench] = &[
         name: "contact_block",
         what: "a gel block that falls on a floor with friction (324 hexahedra), Newton to 1e-7 [ms/step]",
         run: contact_block,
+    },
+    Bench {
+        name: "frames_50_1k",
+        what: "50 rigid frames and 1,000 points, neo-Hookean, one linearised backward Euler step [steps/s]",
+        run: |effort| frames::steps("frames_50_1k", frames::SMALL, effort),
+    },
+    Bench {
+        name: "frames_500_50k",
+        what: "the same with 500 frames and 50,000 points [steps/s]",
+        run: |effort| frames::steps("frames_500_50k", frames::LARGE, effort),
     },
     Bench {
         name: "fill_100k",
@@ -193,26 +204,51 @@ fn value_of(scene: Scene, steps: u64, probe: &str, component: usize) -> Result<f
         .ok_or_else(|| "the probe is empty".to_owned())
 }
 
-fn explicit(name: &str, element: &str, n: u32, peer: f64, effort: Effort) -> Result<Vec<Figure>, String> {
-    let settings = |element: &str, cells: u32, period: &str| {
-        vec![
-            format!("world.period=\"{period}\""),
-            "systems.main.stepper=\"symplectic_euler\"".to_owned(),
-            format!("bodies.bar.mesh.cells=[{}, {cells}, {cells}]", 10 * cells),
-            format!("bodies.bar.mesh.element=\"{element}\""),
-        ]
-    };
-    // the error of this very scheme: the trace of an independent code at n = 3 after 1000 steps of 50 µs
-    let reference = settings("tet4", 3, "50 us");
-    let expected = -0.015741317589581534;
-    let held = Held {
-        error: (value_of(scene("cantilever_dynamic", &reference)?, 1000, "tip", 1)? / expected - 1.0).abs(),
-        error_of: "tip after 1000 steps at n = 3 (tet4), independent code".to_owned(),
-        baseline: Some(peer),
-    };
+/// Settings of the explicit benchmarks.
+fn explicit_settings(element: &str, cells: u32, period: &str) -> Vec<String> {
+    vec![
+        format!("world.period=\"{period}\""),
+        "systems.main.stepper=\"symplectic_euler\"".to_owned(),
+        format!("bodies.bar.mesh.cells=[{}, {cells}, {cells}]", 10 * cells),
+        format!("bodies.bar.mesh.element=\"{element}\""),
+    ]
+}
+
+/// How far off an element's answer is, and of what.
+type Check = fn() -> Result<(f64, &'static str), String>;
+
+/// This very scheme: the trace of an independent code.
+fn trace_of_tet4() -> Result<(f64, &'static str), String> {
+    let scene = scene("cantilever_dynamic", &explicit_settings("tet4", 3, "50 us"))?;
+    let tip = value_of(scene, 1000, "tip", 1)?;
+    Ok(((tip / -0.015741317589581534 - 1.0).abs(), "tip after 1000 steps at n = 3, independent code"))
+}
+
+/// The forces of the elements where they balance gravity; the independent code integrates with 27 samples.
+fn rest_of_hex8() -> Result<(f64, &'static str), String> {
+    let settings = [
+        "bodies.bar.mesh.cells=[30, 3, 3]",
+        "bodies.bar.mesh.element=\"hex8\"",
+        "bodies.bar.quadrature=\"full\"",
+        "systems.main.stepper={ name = \"static\", newton_tolerance = 1e-9 }",
+    ];
+    let scene = scene("cantilever", &settings.map(str::to_owned))?;
+    let tip = value_of(scene, 1, "tip", 1)?;
+    Ok(((tip / -0.13619818759625157 - 1.0).abs(), "tip at rest at n = 3 with 27 samples, GetFEM"))
+}
+
+fn explicit(
+    name: &str,
+    element: &str,
+    peer: f64,
+    check: Check,
+    effort: Effort,
+) -> Result<Vec<Figure>, String> {
+    let (error, error_of) = check()?;
+    let held = Held { error, error_of: error_of.to_owned(), baseline: Some(peer) };
     let timing = Timing {
         scene: "cantilever_dynamic",
-        settings: &settings(element, n, "10 us"),
+        settings: &explicit_settings(element, 12, "10 us"),
         prepare: bend,
         warm_up: 0,
         samples: effort.choose(5, 30),

@@ -18,6 +18,7 @@ use souple_solve::newton as iteration;
 use souple_solve::reduce::norm;
 
 use crate::force::TangentWeights;
+use crate::kinematics::UnknownKind;
 use crate::linear::{Indefinite, LinearError, LinearSystem, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
@@ -74,6 +75,8 @@ pub struct ImplicitBuffers {
     /// Empty where no force has velocity terms.
     at_offset: Vec<Vec3>,
     damping: Vec<Vec3>,
+    /// Empty where rows are points.
+    block_positions: Vec<Vec3>,
     operator: OperatorBuffers,
     newton: iteration::Workspace,
 }
@@ -100,6 +103,7 @@ impl ImplicitBuffers {
             v_trial: blocks(),
             at_offset: Vec::new(),
             damping: Vec::new(),
+            block_positions: Vec::new(),
             operator: OperatorBuffers::new(system),
             newton: iteration::Workspace::default(),
         }
@@ -124,6 +128,7 @@ impl ImplicitBuffers {
             &self.v_trial,
             &self.at_offset,
             &self.damping,
+            &self.block_positions,
         ];
         buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
             + self.operator.bytes()
@@ -277,6 +282,7 @@ impl ImplicitStep<'_> {
             q_trial,
             v_trial,
             operator,
+            block_positions,
             ..
         } = buffers;
         let at = Linearisation {
@@ -299,20 +305,25 @@ impl ImplicitStep<'_> {
             }
             system.project_free(rhs);
         }
-        let symmetric = self.is_symmetric();
-        let moved;
+        let is_matrix_free = linear.is_matrix_free();
+        let is_symmetrised = !is_matrix_free
+            && self.turns_alone_break_symmetry()
+            && (wanted.used_as == Use::Answer || linear.wants_symmetry());
+        let symmetric = is_symmetrised || self.is_symmetric();
         let positions = if system.kinematics.is_trivial() {
             &rows.positions
         } else {
-            moved = system.block_positions(&rows.positions);
-            &moved
+            system.block_positions_into(&rows.positions, block_positions);
+            &*block_positions
         };
-        let is_matrix_free = linear.is_matrix_free();
         let Assembled { matrix, symmetric: nearby } = if is_matrix_free {
             Assembled { matrix: tangent.assemble_diagonal(&at, scratches), symmetric: None }
         } else {
             tangent.assemble_with_symmetric(&at, scratches)
         };
+        if is_symmetrised {
+            matrix.symmetrise();
+        }
         stages.assembly += clock.elapsed().as_secs_f64();
         let weighted = (0..positions.len())
             .map(|block| (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2));
@@ -344,12 +355,21 @@ impl ImplicitStep<'_> {
 
     /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
     fn is_symmetric(&self) -> bool {
-        !self.system.kinematics.has_rigid_frames()
-            && self.system.kinematics.is_conservative()
+        !self.system.kinematics.has_rigid_frames() && self.is_symmetric_over_rows()
+    }
+
+    /// Whether turning frames are all that makes the tangent not symmetric. About where they coast what they add is of the
+    /// size of the turn in a step: one linearised step may leave it out, as it leaves out what else is of that order.
+    fn turns_alone_break_symmetry(&self) -> bool {
+        self.system.kinematics.has_rigid_frames() && self.is_symmetric_over_rows()
+    }
+
+    fn is_symmetric_over_rows(&self) -> bool {
+        self.system.kinematics.is_conservative()
             && self.system.forces.iter().all(|force| force.declaration().symmetric_tangent)
     }
 
-    /// One linearisation about the start, for backward Euler `(M - h B - h² K) Δv = h (f + h K v)`, the forces' velocity
+    /// One linearisation about the start, with rigid frames turned on as they coast, for backward Euler `(M - h B - h² K) Δv = h (f + h K v)`, the forces' velocity
     /// terms taken about the velocity of the start.
     ///
     /// # Errors
@@ -365,6 +385,7 @@ impl ImplicitStep<'_> {
         self.place_coasting(buffers);
         buffers.q_trial.copy_from_slice(q);
         buffers.v_trial.copy_from_slice(&buffers.velocity_offset);
+        self.coast_turns(buffers);
         self.evaluate(state, ws, buffers);
         if self.system.forces.iter().any(|force| force.declaration().velocity_terms) {
             self.shift_to_start_velocity(state, ws, buffers);
@@ -374,6 +395,7 @@ impl ImplicitStep<'_> {
         let wanted =
             Wanted { constrained, indefinite: Indefinite::Solve, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
+        q.copy_from_slice(&buffers.q_trial);
         self.system.kinematics.retract(q, &buffers.direction);
         Ok(StepReport {
             newton_iterations: 1,
@@ -381,6 +403,26 @@ impl ImplicitStep<'_> {
             linear_residual: solved.residual,
             newton_residual: 0.0,
         })
+    }
+
+    /// Turns rigid frames on as they coast: the one solve is then about there. About where they start it would leave out
+    /// `ω × (ω × a)`, of which `1/h` times the square of the step's turn is left however short the step.
+    fn coast_turns(&self, buffers: &mut ImplicitBuffers) {
+        let kinematics = &self.system.kinematics;
+        if !(self.rates.has_inertia() && kinematics.has_rigid_frames()) {
+            return;
+        }
+        let ImplicitBuffers { coasting, velocity_offset, direction, q_trial, v_trial, .. } = buffers;
+        direction.fill(Vec3::ZERO);
+        for (_, blocks) in kinematics.unknowns().filter(|(kind, _)| *kind == UnknownKind::RigidFrame) {
+            let turn = blocks.start + 1;
+            direction[turn] = (coasting[turn] - velocity_offset[turn]) * (1.0 / self.rates.velocity);
+        }
+        self.system.project_free(direction);
+        kinematics.retract(q_trial, direction);
+        for (velocity, moved) in v_trial.iter_mut().zip(direction.iter()) {
+            *velocity += *moved * self.rates.velocity;
+        }
     }
 
     /// Replaces `f(q, v₀)` in the residual by `f(q, v) - B (v - v₀)`: exact for forces linear in velocity, and
@@ -397,7 +439,7 @@ impl ImplicitStep<'_> {
         damping.resize(ws.row_force.len(), Vec3::ZERO);
         buffers.at_offset.clone_from(&ws.row_force);
         change.copy_from_slice(&ws.rows.velocities);
-        system.place_rows(&buffers.q_start, &buffers.v_start, self.end, &mut ws.rows);
+        system.place_rows(&buffers.q_trial, &buffers.v_start, self.end, &mut ws.rows);
         for (change, start) in change.iter_mut().zip(&ws.rows.velocities) {
             *change = *start - *change;
         }

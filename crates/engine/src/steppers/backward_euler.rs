@@ -3,10 +3,10 @@
 use crate::implicit::{self, ImplicitBuffers, Rates};
 use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::{System, SystemWorkspace};
 
-use super::implicit_formula::{NEWTON, NEWTON_ITERATIONS, NEWTON_TOLERANCE, NewtonMode, Stride, newton_mode};
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::implicit_formula::{NEWTON, NEWTON_ITERATIONS, NEWTON_TOLERANCE, NewtonMode, newton_mode};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// First order, stable at any step, damps what it does not resolve: the energy of a linear oscillation is divided by
 /// `1 + (h ω)²` every step, exactly. What is lost so is in no account of dissipated energy.
@@ -54,20 +54,17 @@ impl Stepper for BackwardEuler {
 
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, timestep, .. } = *step;
         let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
-        let stride = Stride { system, around, start, timestep };
         let rates = Rates::backward_euler(timestep);
-        let taken = stride.take(self.newton, rates, next, ws, &mut buffers, None);
+        let taken = step.solve(self.newton, rates, next, ws, &mut buffers, None);
         ws.implicit = Some(buffers);
         let report = taken?;
-        stride.end(next, ws);
+        step.finish(next, ws);
         Ok(report)
     }
 }

@@ -3,12 +3,12 @@
 use crate::implicit::{self, ImplicitBuffers, Rates};
 use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::{System, SystemWorkspace};
 
 use super::implicit_formula::{
-    Before, NEWTON, NEWTON_ITERATIONS, NEWTON_TOLERANCE, NewtonMode, Stride, newton_mode, refuse_rotations,
+    Before, NEWTON, NEWTON_ITERATIONS, NEWTON_TOLERANCE, NewtonMode, newton_mode, refuse_rotations,
 };
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// Second order, stable at any step, damps what it does not resolve: for long motions in which fast oscillations are
 /// to die, where backward Euler would also slow what is wanted. An oscillation that is resolved keeps its energy but for the
@@ -64,15 +64,12 @@ impl Stepper for Bdf2 {
 
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, timestep, .. } = *step;
         let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
-        let stride = Stride { system, around, start, timestep };
         // v' = (3 d - e)/(2 h),  a' = (3 v' - 4 v + v₋₁)/(2 h), with the displacement e of the step before
         let prepare = |next: &SystemState, before: Before| {
             let Some([e, earlier]) = implicit::carried(&system.kinematics, &next.history) else { return };
@@ -88,9 +85,9 @@ impl Stepper for Bdf2 {
         } else {
             Rates::backward_euler(timestep)
         };
-        let taken = stride.take(self.newton, rates, next, ws, &mut buffers, Some(&prepare));
+        let taken = step.solve(self.newton, rates, next, ws, &mut buffers, Some(&prepare));
         if taken.is_ok() {
-            stride.end(next, ws);
+            step.finish(next, ws);
             let ImplicitBuffers { q_start, v_start, displacement, .. } = &mut buffers;
             system.kinematics.difference(&next.q, q_start, displacement);
             implicit::carry(&system.kinematics, next, [displacement, v_start]);

@@ -4,11 +4,11 @@
 use souple_math::Vec3;
 use souple_solve::reduce;
 
-use crate::inertia::{accelerations_at, sum_placed_forces};
+use crate::inertia::{accelerations_at, sum_placed_forces, take_along};
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::SystemWorkspace;
 
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// `q' = q + h v`, `v' = v + h a(q, v)`: first order; for comparison. The energy of an oscillation grows by
 /// `1 + (h ω)²` every step, exactly and at any step.
@@ -53,18 +53,16 @@ pub(super) enum Drifts {
 impl OneForce {
     pub(super) fn step(
         self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, around, start, timestep } = *step;
         let first = self.before * timestep;
         let rest = timestep - first;
         let are_points = system.kinematics.is_trivial() && system.mass.is_lumped();
         if first == 0.0 && matches!(self.drifts, Drifts::AfterKick) && are_points {
-            return step_points(system, around, start, timestep, next, ws);
+            return step_points(step, next, ws);
         }
         if first > 0.0 {
             system.kinematics.retract_scaled(&mut next.q, &next.v, first);
@@ -74,35 +72,32 @@ impl OneForce {
         let mut acceleration = std::mem::take(&mut ws.blocks[0]);
         acceleration.resize(next.v.len(), Vec3::ZERO);
         let evaluated = accelerations_at(system, around, start + first, next, ws, &mut acceleration);
-        if evaluated.is_ok() {
+        let stepped = evaluated.and_then(|mut report| {
             system.advance_memory(ws, next, around, timestep);
-            match self.drifts {
-                Drifts::BeforeKick => {
-                    system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
-                    kick(&mut next.v, &acceleration, timestep);
-                }
-                Drifts::AfterKick => {
-                    kick(&mut next.v, &acceleration, timestep);
-                    system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
-                }
+            if let Drifts::BeforeKick = self.drifts {
+                system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
             }
-            system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
-        }
+            kick(&mut next.v, &acceleration, timestep);
+            report.merge(&take_along(system, (start, step.end()), &next.q, &mut next.v, ws)?);
+            if let Drifts::AfterKick = self.drifts {
+                system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
+            }
+            system.impose_constraints(&mut next.q, &mut next.v, step.end(), around.load);
+            Ok(report)
+        });
         ws.blocks[0] = acceleration;
-        evaluated
+        stepped
     }
 }
 
 /// `v' = v + h f(q, v)/m`, `q' = q + h v'` of points with lumped masses: the same bits as the stages one by one, in one
 /// pass over the points, whose vectors serve as rows without being copied.
 fn step_points(
-    system: &System,
-    around: &Surroundings,
-    start: f64,
-    timestep: f64,
+    step: &Step,
     next: &mut SystemState,
     ws: &mut SystemWorkspace,
 ) -> Result<StepReport, StepError> {
+    let Step { system, around, start, timestep } = *step;
     let swap = |next: &mut SystemState, ws: &mut SystemWorkspace| {
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);
@@ -124,7 +119,7 @@ fn step_points(
             *q += *v * timestep;
         }
     });
-    system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
+    system.impose_constraints(&mut next.q, &mut next.v, step.end(), around.load);
     Ok(StepReport::default())
 }
 
@@ -145,15 +140,12 @@ impl Stepper for ExplicitEuler {
     // q' = q + h v,  v' = v + h a(q, v)
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let method = OneForce { before: 0.0, drifts: Drifts::BeforeKick };
-        method.step(system, around, start, timestep, next, ws)
+        method.step(step, next, ws)
     }
 }
 
@@ -169,14 +161,11 @@ impl Stepper for SymplecticEuler {
     // v' = v + h a(q, v),  q' = q + h v'
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let method = OneForce { before: 0.0, drifts: Drifts::AfterKick };
-        method.step(system, around, start, timestep, next, ws)
+        method.step(step, next, ws)
     }
 }

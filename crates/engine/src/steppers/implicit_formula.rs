@@ -5,9 +5,9 @@ use souple_table::{Parameter, Range, Value, Values};
 
 use crate::implicit::{ImplicitBuffers, ImplicitStep, Lent, NewtonSettings, Rates};
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::{System, SystemWorkspace};
 
-use super::{StepError, StepReport};
+use super::{Step, StepError, StepReport};
 
 /// How far the nonlinear equation of a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,14 +86,6 @@ pub(super) fn newton_mode(values: &Values) -> NewtonMode {
     if values.text("newton") == "one" { NewtonMode::One } else { NewtonMode::Full(newton_settings(values)) }
 }
 
-/// A step with inertia under way: the system, when it ends, how long it is.
-pub(super) struct Stride<'a> {
-    pub system: &'a System,
-    pub around: &'a Surroundings<'a>,
-    pub start: f64,
-    pub timestep: f64,
-}
-
 /// `v₀` and `p` of [`Rates`], to be written over velocity blocks, and what they follow from.
 pub(super) struct Before<'a> {
     /// Velocity at the start.
@@ -106,10 +98,10 @@ pub(super) struct Before<'a> {
 /// Writes what a formula makes of the state and of what it carries.
 pub(super) type Prepare<'a> = dyn Fn(&SystemState, Before) + 'a;
 
-impl Stride<'_> {
-    /// The step of a formula whose `v₀` and `p` `prepare` writes; it is backward Euler's where nothing is prepared. Buffers
+impl Step<'_> {
+    /// Solves the equation of a formula whose `v₀` and `p` `prepare` writes; it is backward Euler's where nothing is prepared. Buffers
     /// hold the start of the step afterwards, and `p`.
-    pub(super) fn take(
+    pub(super) fn solve(
         &self,
         newton: NewtonMode,
         rates: Rates,
@@ -118,11 +110,11 @@ impl Stride<'_> {
         buffers: &mut ImplicitBuffers,
         prepare: Option<&Prepare>,
     ) -> Result<StepReport, StepError> {
-        let Self { system, around, start, timestep } = *self;
+        let Self { system, around, timestep, .. } = *self;
         let implicit = ImplicitStep {
             system,
             around: *around,
-            end: start + timestep,
+            end: self.end(),
             rates,
             has_potential: system.kinematics.is_trivial()
                 && system.forces.iter().all(|force| force.declaration().conservative),
@@ -149,8 +141,8 @@ impl Stride<'_> {
     }
 
     /// Imposes what is prescribed, and moves memories on.
-    pub(super) fn end(&self, next: &mut SystemState, ws: &mut SystemWorkspace) {
-        let end = self.start + self.timestep;
+    pub(super) fn finish(&self, next: &mut SystemState, ws: &mut SystemWorkspace) {
+        let end = self.end();
         self.system.impose_constraints(&mut next.q, &mut next.v, end, self.around.load);
         self.system.place_rows(&next.q, &next.v, end, &mut ws.rows);
         self.system.advance_memory(ws, next, self.around, self.timestep);

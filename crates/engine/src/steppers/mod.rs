@@ -114,6 +114,24 @@ pub enum Stability {
     Growing { factor: f64, power: i32 },
 }
 
+/// A step to be made: of what, from when, how far.
+#[derive(Clone, Copy)]
+pub struct Step<'a> {
+    pub system: &'a System,
+    pub around: &'a Surroundings<'a>,
+    /// When it begins [s].
+    pub start: f64,
+    /// How long it is [s].
+    pub timestep: f64,
+}
+
+impl Step<'_> {
+    /// When it ends [s].
+    pub fn end(&self) -> f64 {
+        self.start + self.timestep
+    }
+}
+
 /// A way to step.
 pub trait Stepper: Send + Sync {
     /// Its name in the table.
@@ -141,16 +159,13 @@ pub trait Stepper: Send + Sync {
         history.is_empty()
     }
 
-    /// Steps `next`, which holds the state at `start` seconds, on by `timestep` seconds.
+    /// Moves `next`, which holds the state where the step begins, to where it ends.
     ///
     /// # Errors
     /// The step cannot be finished; `next` is then worthless.
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError>;

@@ -6,12 +6,12 @@ use crate::implicit::{self, ImplicitBuffers, Rates};
 use crate::inertia::led_accelerations_at;
 use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::{System, SystemWorkspace};
 
 use super::implicit_formula::{
-    Before, NEWTON, NEWTON_ITERATIONS, NEWTON_TOLERANCE, NewtonMode, Stride, newton_mode, refuse_rotations,
+    Before, NEWTON, NEWTON_ITERATIONS, NEWTON_TOLERANCE, NewtonMode, newton_mode, refuse_rotations,
 };
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// Average acceleration, `β = ¼`, `γ = ½`: second order, stable at any step for linear forces, and what is linear keeps its
 /// energy to rounding; only its phase goes wrong, by `z²/12` of what has passed, `z = h ω`. It damps nothing: what the step
@@ -87,12 +87,12 @@ impl Newmark {
 
     /// `a = M⁻¹ f` at the start of the world.
     fn start(
-        stride: &Stride,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        let Stride { system, around, start, timestep } = *stride;
+        let Step { system, around, start, timestep } = *step;
         let acceleration = &mut buffers.displacement;
         let report = led_accelerations_at(system, around, (start, timestep), next, ws, acceleration)?;
         implicit::carry(&system.kinematics, next, [acceleration]);
@@ -130,19 +130,16 @@ impl Stepper for Newmark {
 
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, timestep, .. } = *step;
         let (Self { beta, gamma, .. }, h) = (self, timestep);
         let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
-        let stride = Stride { system, around, start, timestep };
         let mut report = StepReport::default();
         if implicit::carried::<1>(&system.kinematics, &next.history).is_none() {
-            match Self::start(&stride, next, ws, &mut buffers) {
+            match Self::start(step, next, ws, &mut buffers) {
                 Ok(started) => report = started,
                 Err(error) => {
                     ws.implicit = Some(buffers);
@@ -160,11 +157,11 @@ impl Stepper for Newmark {
                 before.coasting[block] = *v + a[block] * (h * (1.0 - gamma));
             }
         };
-        let taken = stride.take(self.newton, rates, next, ws, &mut buffers, Some(&prepare));
+        let taken = step.solve(self.newton, rates, next, ws, &mut buffers, Some(&prepare));
         if let Ok(taken) = &taken {
             report.merge(taken);
             Self::carry_acceleration(system, rates, next, &mut buffers);
-            stride.end(next, ws);
+            step.finish(next, ws);
         }
         ws.implicit = Some(buffers);
         taken.map(|_| report)

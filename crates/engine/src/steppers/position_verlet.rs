@@ -1,10 +1,10 @@
 //! Störmer–Verlet in its position form: half a drift, a kick, half a drift.
 
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::SystemWorkspace;
 
 use super::explicit::{Drifts, OneForce};
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// `q½ = q + h/2 v`, `v' = v + h a(q½, v)`, `q' = q½ + h/2 v'`: second order and symplectic at one force a
 /// step. Forces that depend on velocity see that of the start, which makes their part first order. Energy swings by
@@ -33,14 +33,11 @@ impl Stepper for PositionVerlet {
     // q½ = q + h/2 v,  v' = v + h a(q½, v),  q' = q½ + h/2 v'
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let method = OneForce { before: 0.5, drifts: Drifts::AfterKick };
-        method.step(system, around, start, timestep, next, ws)
+        method.step(step, next, ws)
     }
 }

@@ -5,9 +5,9 @@ use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
-use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, Stride, newton_settings, settle};
+use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
 use super::static_equilibrium::conserves;
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// A path of equilibria under loads and motions that change in time, each sought from the last: what happens slowly enough
 /// that mass does not resist. Forces see the velocity at which the body follows, so that viscosity and friction act: relaxation
@@ -45,19 +45,19 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
 };
 
 impl QuasiStatic {
-    /// Equilibrium at the end of `stride`, from the configuration in `next`.
+    /// Equilibrium at the end of `step`, from the configuration in `next`.
     fn follow(
         &self,
-        stride: &Stride,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
-        let Stride { system, around, start, timestep } = *stride;
+        let Step { system, around, timestep, .. } = *step;
         let implicit = ImplicitStep {
             system,
             around: *around,
-            end: start + timestep,
+            end: step.end(),
             rates: Rates::creeping(timestep),
             has_potential: conserves(system),
         };
@@ -65,7 +65,7 @@ impl QuasiStatic {
         let report = settle(&implicit, self.newton, next, ws, buffers)?;
         let ImplicitBuffers { q_start, velocity_offset, .. } = buffers;
         implicit.velocity_into(&next.q, q_start, velocity_offset, &mut next.v);
-        stride.end(next, ws);
+        step.finish(next, ws);
         Ok(report)
     }
 }
@@ -93,13 +93,11 @@ impl Stepper for QuasiStatic {
 
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, around, start, timestep } = *step;
         let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
         let mut pairs = std::mem::take(&mut ws.pairs);
         let mut report = StepReport::default();
@@ -110,13 +108,13 @@ impl Stepper for QuasiStatic {
             let to = f64::min(1.0, reached + part);
             let around = Surroundings { load: load_at(to), ..*around };
             pairs.clone_from(&next.pairs);
-            let stride = Stride {
+            let part_of = Step {
                 system,
                 around: &around,
                 start: start + reached * timestep,
                 timestep: (to - reached) * timestep,
             };
-            match self.follow(&stride, next, ws, &mut buffers) {
+            match self.follow(&part_of, next, ws, &mut buffers) {
                 Ok(followed) => {
                     report.merge(&followed);
                     reached = to;

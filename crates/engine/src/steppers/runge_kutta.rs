@@ -2,12 +2,12 @@
 
 use souple_math::Vec3;
 
-use crate::inertia::accelerations_at;
+use crate::inertia::{accelerations_at, take_along};
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::SystemWorkspace;
 
 use super::explicit::kick;
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// Four force evaluations a step; fourth order for points, and for rotations as far as increments from the
 /// step's start commute (their correction `[θ, ω]/2` is left out: second order in the angle turned).
@@ -60,16 +60,11 @@ impl Stepper for RungeKutta2 {
 
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
-        Method::with_buffers(MIDPOINT, ws, |method, ws| {
-            method.step(system, around, start, timestep, next, ws)
-        })
+        Method::with_buffers(MIDPOINT, ws, |method, ws| method.step(step, next, ws))
     }
 }
 
@@ -85,16 +80,11 @@ impl Stepper for RungeKutta4 {
 
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
-        Method::with_buffers(CLASSICAL, ws, |method, ws| {
-            method.step(system, around, start, timestep, next, ws)
-        })
+        Method::with_buffers(CLASSICAL, ws, |method, ws| method.step(step, next, ws))
     }
 }
 
@@ -127,13 +117,11 @@ impl Method {
 
     fn step(
         &mut self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, around, start, timestep } = *step;
         let mut report = StepReport::default();
         let Self { stages, blocks, start_q } = self;
         let [acceleration, velocity, acceleration_sum, velocity_sum, start_v] = blocks;
@@ -152,6 +140,7 @@ impl Method {
                 next.v.copy_from_slice(start_v);
                 system.kinematics.retract_scaled(&mut next.q, velocity, fraction * timestep);
                 kick(&mut next.v, acceleration, fraction * timestep);
+                report.merge(&take_along(system, (start, time), &next.q, &mut next.v, ws)?);
                 system.impose_constraints(&mut next.q, &mut next.v, time, around.load);
                 system.place_rows(&next.q, &next.v, time, &mut ws.rows);
                 system.refresh_pairs(ws, next, around);
@@ -171,7 +160,8 @@ impl Method {
         // q' = q + h Σ b v_i,  v' = v + h Σ b a_i
         system.kinematics.retract_scaled(&mut next.q, velocity_sum, timestep);
         kick(&mut next.v, acceleration_sum, timestep);
-        system.impose_constraints(&mut next.q, &mut next.v, start + timestep, around.load);
+        report.merge(&take_along(system, (start, step.end()), &next.q, &mut next.v, ws)?);
+        system.impose_constraints(&mut next.q, &mut next.v, step.end(), around.load);
         Ok(report)
     }
 }

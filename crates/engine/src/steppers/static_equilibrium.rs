@@ -9,7 +9,7 @@ use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
 use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// Equilibrium at the end of every step: loads and prescribed motion grow over `load_steps` in the first
 /// step from where the world starts; a load step that does not converge is halved.
@@ -98,13 +98,11 @@ impl Stepper for StaticEquilibrium {
 
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, around, start, timestep } = *step;
         let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
         let mut report = StepReport::default();
         // the first step of a world starts from nothing; later ones continue under full load
@@ -115,7 +113,7 @@ impl Stepper for StaticEquilibrium {
         let outcome = loop {
             let load = f64::min(1.0, reached + stride);
             let around = Surroundings { load: if first { load } else { 1.0 }, ..*around };
-            match self.equilibrate(system, around, start + timestep, next, ws, &mut buffers) {
+            match self.equilibrate(system, around, step.end(), next, ws, &mut buffers) {
                 Ok(part) => {
                     report.merge(&part);
                     reached = load;
@@ -136,7 +134,7 @@ impl Stepper for StaticEquilibrium {
         ws.implicit = Some(buffers);
         let report = outcome?;
         next.v.fill(Vec3::ZERO);
-        system.place_rows(&next.q, &next.v, start + timestep, &mut ws.rows);
+        system.place_rows(&next.q, &next.v, step.end(), &mut ws.rows);
         system.advance_memory(ws, next, around, timestep);
         Ok(report)
     }

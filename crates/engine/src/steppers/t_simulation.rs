@@ -5,10 +5,10 @@ use souple_table::{Parameter, Value};
 
 use crate::inertia::accelerations_at;
 use crate::state::SystemState;
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::{System, SystemWorkspace};
 
 use super::explicit::{Drifts, OneForce, kick};
-use super::{Stability, StepError, StepReport, Stepper, StepperEntry};
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// `X' = 2 X - X_before + h² F/m` with `F` of `X` and `X_before` alone: what an input does is seen one step later.
 ///
@@ -61,13 +61,11 @@ impl Stepper for TSimulation {
     // V' = V + h F(X, X - h V)/m,  X' = X + h V'
     fn step(
         &self,
-        system: &System,
-        around: &Surroundings,
-        start: f64,
-        timestep: f64,
+        step: &Step,
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
+        let Step { system, around, start, timestep } = *step;
         if self.start == Start::Trajectory && next.history.is_empty() {
             let mut acceleration = vec![Vec3::ZERO; next.v.len()];
             accelerations_at(system, around, start, next, ws, &mut acceleration)?;
@@ -75,6 +73,6 @@ impl Stepper for TSimulation {
             next.history.push(1.0);
         }
         let method = OneForce { before: 0.0, drifts: Drifts::AfterKick };
-        method.step(system, around, start, timestep, next, ws)
+        method.step(step, next, ws)
     }
 }

@@ -68,6 +68,15 @@ impl Cut {
         }
         (cut != Self::NONE).then_some(cut)
     }
+
+    /// `none`, `all`, or the letters of its axes.
+    pub fn name(self) -> String {
+        match self {
+            Self::NONE => "none".to_owned(),
+            Self::ALL => "all".to_owned(),
+            _ => Axis::ALL.into_iter().filter(|axis| self.has(*axis)).map(Axis::letter).collect(),
+        }
+    }
 }
 
 /// The source's name.
@@ -76,10 +85,7 @@ impl fmt::Display for Cut {
         match *self {
             Self::NONE => f.write_str("DecoupageNon"),
             Self::ALL => f.write_str("DecoupageTout"),
-            _ => {
-                let letters = Axis::ALL.into_iter().filter(|axis| self.has(*axis)).map(Axis::letter);
-                write!(f, "Decoupage{}", letters.collect::<String>())
-            }
+            _ => write!(f, "Decoupage{}", self.name()),
         }
     }
 }

@@ -77,10 +77,12 @@ impl LawError {
         Self { part: part.into(), span, problem: Box::new(problem) }
     }
 
-    /// The message, and under it the place in `text`, which is the text of [`Self::part`].
+    /// The message, and under it, set in, the place in `text`, which is the text of [`Self::part`].
     pub fn explained(&self, text: &str) -> String {
         match self.span {
-            Some(span) if !text.is_empty() => format!("{self}\n{}", span.underline(text)),
+            Some(span) if !text.is_empty() => {
+                format!("{self}\n    {}", span.underline(text).replace('\n', "\n    "))
+            }
             _ => self.to_string(),
         }
     }

@@ -14,6 +14,8 @@ pub struct View {
     pub up: Vec3,
     /// Angle between the upper and the lower border [rad].
     pub field_of_view: f64,
+    /// From the lamp that throws shadows towards the scene, of any length; it hangs over the eye's left shoulder where `None`.
+    pub light: Option<Vec3>,
     /// What must be in the picture; everything drawn where `None`. The same box for all frames of a series
     /// keeps the camera still.
     pub bounds: Option<BoundingBox>,
@@ -29,7 +31,7 @@ impl Default for View {
 impl View {
     /// Everything drawn, seen along a direction.
     pub fn along(direction: Vec3, up: Vec3) -> Self {
-        Self { eye: None, direction, up, field_of_view: 0.5, bounds: None }
+        Self { eye: None, direction, up, field_of_view: 0.5, light: None, bounds: None }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::camera::Frame;
 use super::image::{Anchor, Canvas};
-use super::legend::{labels, ticks};
+use super::legend::scale;
 use super::lettering::text_width;
-use super::{Legend, Palette, Picture};
+use super::{Image, Legend, Palette, Picture, Theme};
 
 /// All in pixels.
 pub(super) struct Layout {
@@ -89,14 +89,10 @@ impl LegendBox {
     fn of(legend: &Legend, (low, high): (f64, f64), size: [usize; 2], letter: f64, margin: f64) -> Self {
         let [width, height] = size.map(|side| side as f64);
         let (top, bottom) = (0.29 * height, 0.71 * height);
-        let values = ticks(low, high, 5);
-        let names = labels(&values);
-        let widest = names.iter().map(|name| text_width(name, letter)).fold(0.0, f64::max);
-        let ticks = values
-            .iter()
-            .map(|value| bottom - (value - low) / (high - low) * (bottom - top))
-            .zip(names)
-            .collect();
+        let names = scale(low, high, 5, 1.8 * letter / (bottom - top));
+        let widest = names.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
+        let place = |value: f64| bottom - (value - low) / (high - low) * (bottom - top);
+        let ticks = names.into_iter().map(|(value, name)| (place(value), name)).collect();
         let title = if legend.unit.is_empty() {
             legend.title.clone()
         } else {
@@ -150,6 +146,26 @@ impl LegendBox {
             let background = palette.background(row as f64, canvas.height);
             canvas.fill(whole(self.edge - 0.8 * letter)..canvas.width, row..row + 1, background, 0.7);
         }
+    }
+}
+
+impl Image {
+    /// The same below a strip with a title, the background of a picture of that theme going on under it.
+    pub fn titled(&self, title: &str, theme: Theme) -> Self {
+        let (palette, width) = (theme.palette(), self.width as f64);
+        let letter = (0.011 * width).max(8.0);
+        let margin = 1.4 * letter;
+        let lines = wrapped(title, letter, width - 2.0 * margin, MOST_LINES);
+        let height = margin + lines.len() as f64 * 1.65 * letter;
+        let mut strip = Canvas::new(self.width, height as usize);
+        strip.fill(0..self.width, 0..strip.height, palette.top, 1.0);
+        for (index, line) in lines.iter().enumerate() {
+            let baseline = margin + (0.8 + 1.65 * index as f64) * letter;
+            strip.text(line, [margin, baseline], letter, Anchor::Left, palette.ink);
+        }
+        let Self { height, mut pixels, .. } = strip.finish();
+        pixels.extend(&self.pixels);
+        Self { width: self.width, height: height + self.height, pixels }
     }
 }
 

@@ -23,11 +23,40 @@ pub(crate) fn ticks(low: f64, high: f64, about: usize) -> Vec<f64> {
         .collect()
 }
 
+/// The names of a scale: round numbers, and both ends; a round number closer to an end than `nearest`, a share of the
+/// whole, gives way to it.
+pub(crate) fn scale(low: f64, high: f64, about: usize, nearest: f64) -> Vec<(f64, String)> {
+    let round = ticks(low, high, about);
+    let span = high - low;
+    if round.len() < 2 || !span.is_finite() {
+        return round.iter().copied().zip(labels(&round)).collect();
+    }
+    let (step, largest) = (round[1] - round[0], low.abs().max(high.abs()));
+    let is_round = |value: f64| round.iter().any(|tick| (tick - value).abs() <= 1e-9 * span);
+    let end = |value: f64| {
+        // an end is told to a digit more than the round numbers between
+        let step = if is_round(value) { step } else { 0.1 * step };
+        (value, labelled(&[value], largest, step).remove(0))
+    };
+    let within: Vec<f64> = round
+        .iter()
+        .copied()
+        .filter(|tick| tick - low > nearest * span && high - tick > nearest * span)
+        .collect();
+    let names = labelled(&within, largest, step);
+    [end(low)].into_iter().chain(within.into_iter().zip(names)).chain([end(high)]).collect()
+}
+
 /// Numbers with as many digits as their steps need; very large and small ones as `3.2e6`.
 pub(crate) fn labels(ticks: &[f64]) -> Vec<String> {
     let largest = ticks.iter().fold(0.0, |largest: f64, tick| largest.max(tick.abs()));
     let step = ticks.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
     let step = if step.is_finite() && step > 0.0 { step } else { largest };
+    labelled(ticks, largest, step)
+}
+
+/// Numbers to the digit of `step`, all with the exponent of the largest.
+fn labelled(ticks: &[f64], largest: f64, step: f64) -> Vec<String> {
     if largest == 0.0 || !largest.is_finite() {
         return ticks.iter().map(|tick| format!("{tick}")).collect();
     }
@@ -40,9 +69,10 @@ pub(crate) fn labels(ticks: &[f64]) -> Vec<String> {
     let exponent = libm::floor(libm::log10(largest) + 1e-9) as i32;
     let scale = libm::pow(10.0, f64::from(exponent));
     let digits = digits_below(scale);
-    let scaled = |tick: &f64| match *tick {
-        0.0 => "0".to_owned(),
-        tick => minus(format!("{:.digits$}e{exponent}", tick / scale)),
+    let scaled = |tick: &f64| {
+        let number = minus(format!("{:.digits$}", tick / scale));
+        let is_zero = number.bytes().all(|digit| matches!(digit, b'0' | b'.'));
+        if is_zero { "0".to_owned() } else { format!("{number}e{exponent}") }
     };
     ticks.iter().map(scaled).collect()
 }
@@ -59,6 +89,23 @@ fn minus(text: String) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Both ends are named, to a digit more than the round numbers, which keep away from them.
+    #[test]
+    fn the_ends_of_a_scale_are_named() {
+        let names = |low: f64, high: f64| -> Vec<String> {
+            scale(low, high, 5, 0.06).into_iter().map(|(_, name)| name).collect()
+        };
+        assert_eq!(names(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(names(0.0, 7.031), ["0", "1", "2", "3", "4", "5", "6", "7.0"]);
+        assert_eq!(names(15803.2, 16531.7), ["15803", "16000", "16200", "16400", "16532"][..].to_vec());
+        assert_eq!(names(0.0, 3.4e-6)[6..], ["3.0e-6", "3.40e-6"]);
+        assert_eq!(names(1e3, 1.71e11)[0], "0");
+        assert_eq!(names(2.0, 2.0), ["2"]);
+        for (low, high) in [(0.0, f64::INFINITY), (f64::NAN, 1.0), (-1e308, 1e308), (1.0, 1.0 + 1e-15)] {
+            assert!(scale(low, high, 5, 0.05).len() < 50);
+        }
+    }
 
     #[test]
     fn ticks_are_round_and_within() {

@@ -1,8 +1,8 @@
-//! Light: three lamps that go with the camera, a sky, and the shade of corners and of contact.
+//! Light: three lamps that go with the camera, of which one may be placed, a sky, and the shade of corners and of contact.
 
 use souple_math::Vec3;
 
-use super::camera::Camera;
+use super::camera::{Camera, View};
 use super::colour::Colour;
 use super::raster::{Sample, Samples};
 
@@ -16,16 +16,16 @@ pub(super) struct Lamps {
 }
 
 impl Lamps {
-    pub fn of(camera: &Camera, up: Vec3) -> Self {
+    pub fn of(camera: &Camera, view: &View) -> Self {
         let towards = |right: f64, above: f64, back: f64| {
             let direction = camera.right * right + camera.up * above - camera.forward * back;
             direction.try_normalised().unwrap_or(Vec3::Z)
         };
         Self {
-            key: towards(-0.55, 0.75, 0.75),
+            key: view.light.and_then(|light| (-light).try_normalised()).unwrap_or(towards(-0.55, 0.75, 0.75)),
             fill: towards(0.9, 0.15, 0.6),
             rim: towards(0.35, 0.7, -0.8),
-            sky: up.try_normalised().unwrap_or(Vec3::Y),
+            sky: view.up.try_normalised().unwrap_or(Vec3::Y),
         }
     }
 

@@ -6,6 +6,7 @@ use souple_math::Vec3;
 use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
 
 use super::surface::{Paint, Surface};
+use super::tubes::along;
 
 /// A place between two points of a mesh: `x = (1 - share) x_from + share x_to`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +21,10 @@ impl Between {
         Self { from: point, to: point, share: 0.0 }
     }
 
-    fn of<T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(&self, values: &[T]) -> T {
+    pub(super) fn of<T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(
+        &self,
+        values: &[T],
+    ) -> T {
         let from = values[self.from as usize];
         // a point of the mesh keeps its bits
         if self.from == self.to {
@@ -147,8 +151,7 @@ impl MeshSurface {
     ) {
         if kind.dimension() == 1 {
             // a triangle without area: its drawn edge is all that is seen of it
-            let (ends, middle) = nodes.split_at(2);
-            for pair in [&[ends[0]], middle, &[ends[1]]].concat().windows(2) {
+            for pair in along(nodes).windows(2) {
                 self.push(mesh, &[pair[0], pair[1], pair[1]], cell, numbers);
                 if let Some(edges) = self.surface.edges.last_mut() {
                     *edges = [true, false, false];

@@ -18,6 +18,7 @@ mod raster;
 mod shadow;
 mod stroke;
 mod surface;
+mod tubes;
 
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
@@ -159,11 +160,12 @@ impl Picture {
         let ground = self.ground.and_then(|ground| ShadedGround::of(ground, &self.surfaces, bounds));
 
         let mut whole = Samples::new(width, height, 0, 1);
-        triangles.iter().for_each(|triangle| whole.draw(triangle));
+        // what is seen through shades no corners
+        triangles.iter().filter(|triangle| !triangle.see_through).for_each(|triangle| whole.draw(triangle));
         let open = light::openness(&whole, &camera, 0.09 * bounds.diagonal().max(f64::MIN_POSITIVE));
         drop(whole);
 
-        let lamps = Lamps::of(&camera, self.view.up);
+        let lamps = Lamps::of(&camera, &self.view);
         let scene = Scene {
             camera,
             shadow: Shadow::of(&self.surfaces, lamps.key()),
@@ -263,6 +265,7 @@ impl Picture {
                     wireframe: surface.edge_style == EdgeStyle::Wireframe,
                     map: self.colours,
                     faces: surface.faces,
+                    see_through: surface.see_through,
                 });
             }
         }

@@ -15,11 +15,18 @@ pub(super) struct Sample {
     pub albedo: Colour,
     /// Whether the inside of the surface is seen.
     pub inside: bool,
+    /// Whether it shows through what is see-through.
+    pub shows_through: bool,
 }
 
 impl Sample {
-    pub const NOTHING: Self =
-        Self { inverse_depth: 0.0, normal: [0.0; 3], albedo: Colour::BLACK, inside: false };
+    pub const NOTHING: Self = Self {
+        inverse_depth: 0.0,
+        normal: [0.0; 3],
+        albedo: Colour::BLACK,
+        inside: false,
+        shows_through: false,
+    };
 }
 
 /// A rectangle of samples: part of a picture, `per_pixel` along each side of a pixel.
@@ -44,6 +51,7 @@ pub(super) struct Painted {
     pub wireframe: bool,
     pub map: ColourMap,
     pub faces: Faces,
+    pub see_through: bool,
 }
 
 /// A colour, or a value that becomes a colour after interpolation.
@@ -85,6 +93,12 @@ impl Samples {
         first as usize..(last + 1.0) as usize
     }
 
+    /// Every second sample, alike in all pixels that have several: these keep what is behind something see-through.
+    fn is_of_pattern(&self, row: usize, column: usize) -> bool {
+        let n = if self.per_pixel > 1 { self.per_pixel } else { 2 };
+        (row % n + column % n).is_multiple_of(2)
+    }
+
     pub fn draw(&mut self, triangle: &Painted) {
         let [a, b, c] = triangle.corners;
         if [a, b, c].iter().any(|corner| corner.inverse_depth <= 0.0) {
@@ -116,8 +130,9 @@ impl Samples {
                     continue;
                 }
                 let inverse_depth = u * a.inverse_depth + v * b.inverse_depth + w * c.inverse_depth;
+                let is_kept = triangle.see_through && self.is_of_pattern(row, column);
                 let slot = &mut self.samples[row * self.width + column];
-                if inverse_depth as f32 <= slot.inverse_depth {
+                if inverse_depth as f32 <= slot.inverse_depth || (is_kept && slot.shows_through) {
                     continue;
                 }
                 // distances to the edges 01, 12, 20 are those of the weights of the opposite corners
@@ -155,7 +170,8 @@ impl Painted {
         if inside {
             normal = normal.map(|component| -component);
         }
-        Sample { inverse_depth, normal: normalised(normal), albedo: self.albedo(weights), inside }
+        let (normal, albedo) = (normalised(normal), self.albedo(weights));
+        Sample { inverse_depth, normal, albedo, inside, shows_through: !self.see_through }
     }
 
     fn albedo(&self, weights: [f32; 3]) -> Colour {

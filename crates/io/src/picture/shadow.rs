@@ -99,12 +99,16 @@ impl Shadow {
         }
         let [x, y, height] = self.axes.map(|axis| axis.dot(place));
         let (x, y) = (self.cell(x, 0), self.cell(y, 1));
+        let reach = SOFTNESS * SIDE as f64;
+        // beside the map nothing hides the lamp
+        if [x, y].iter().any(|along| !(-reach..SIDE as f64 + reach).contains(along)) {
+            return 1.0;
+        }
         // off the surface by what it rises over the border, so that a slanted one does not shade itself
         let slope = (1.0 - facing * facing).max(0.0).sqrt() / facing.max(0.15);
         let bias = self.side * (1.5 / SIDE as f64 + SOFTNESS * slope);
         let turn = std::f64::consts::TAU * (0.754_877_666 * column + 0.569_840_291 * row).fract();
         let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-        let reach = SOFTNESS * SIDE as f64;
         let mut open = 0;
         for [a, b] in self.taps {
             let (column, row) = (x + reach * (a * cos - b * sin), y + reach * (a * sin + b * cos));

@@ -18,6 +18,8 @@ pub struct Surface {
     pub paint: Paint,
     pub edge_style: EdgeStyle,
     pub faces: Faces,
+    /// Other surfaces behind it show through; where there are none, it is solid. Such surfaces come last in a picture.
+    pub see_through: bool,
 }
 
 /// Which sides of a surface are seen.

@@ -48,6 +48,25 @@ fn a_square_covers_its_pixels() {
     }
 }
 
+/// A lamp on the right makes the right half of a ball brighter, one on the left the left half.
+#[test]
+fn the_lamp_stands_where_it_is_put() {
+    let surface = MeshSurface::of(&ball("hex8")).surface;
+    let halves = |light: Vec3| {
+        let view = View { light: Some(light), ..View::along(-Vec3::Z, Vec3::Y) };
+        let picture =
+            Picture { surfaces: vec![surface.clone()], view, size: [200, 200], ..Picture::default() };
+        let image = picture.render().unwrap();
+        let mut sums = [0_u64; 2];
+        for (index, pixel) in image.pixels.iter().enumerate() {
+            sums[index % 200 / 100] += pixel.iter().map(|part| u64::from(*part)).sum::<u64>();
+        }
+        sums
+    };
+    let ([left, right], [left_2, right_2]) = (halves(-Vec3::X), halves(Vec3::X));
+    assert!(right > left && left_2 > right_2, "{left} {right} {left_2} {right_2}");
+}
+
 /// A ball covers a disc: π/4 of the square around it. The silhouette of a ball in perspective is fitted by its
 /// points, and its polygon is smaller than the disc by less than `(π/n)²/6` for `n` points around.
 #[test]

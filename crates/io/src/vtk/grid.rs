@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use souple_math::Vec3;
 use souple_mesh::{Group, MAX_NODES, Mesh};
 
-use super::{CELL_TYPES, GROUP_PREFIX, WITHOUT_VOLUME};
+use super::{CELL_TYPES, EDGE_TYPES, GROUP_PREFIX, WITHOUT_VOLUME};
 use crate::Dataset;
 use crate::dataset::{Destination, Field, Sorter, tidy_groups};
 use crate::error::{Fault, Place};
@@ -80,6 +80,8 @@ impl Grid {
             return Err(Fault::new(place, "the number of cell types", found, "one for each cell"));
         }
         let mut sorter = Sorter::default();
+        let is_edge = |number: &i64| EDGE_TYPES.iter().any(|edge| edge.number == *number);
+        let is_of_edges = self.types.iter().all(is_edge);
         let mut skipped: BTreeMap<i64, usize> = BTreeMap::new();
         let mut destinations = Vec::with_capacity(self.types.len());
         let mut start = 0;
@@ -96,7 +98,8 @@ impl Grid {
                 })?;
             let listed = &self.connectivity[start..end];
             start = end;
-            let Some(cell_type) = cell_type(*number, listed.len()) else {
+            let edge = EDGE_TYPES.iter().find(|edge| is_of_edges && edge.number == *number);
+            let Some(cell_type) = cell_type(*number, listed.len()).or(edge) else {
                 if !WITHOUT_VOLUME.contains(number) {
                     let expected = "5, 8, 9, 22, 23 (facets), 10, 24 (tets), 11, 12, 25 (hexes), 13, 26 (wedges) or 14, 27 (pyramids)";
                     return Err(Fault::new(place, format!("types[{cell}]"), number.to_string(), expected));

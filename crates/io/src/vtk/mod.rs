@@ -51,6 +51,12 @@ const CELL_TYPES: &[CellType] = &[
     CellType { number: 27, kind: ElementKind::Pyramid13, order: PLAIN.split_at(13).0 },
 ];
 
+/// Edges, which are cells where a grid has nothing else, and left out beside other cells.
+const EDGE_TYPES: [CellType; 2] = [
+    CellType { number: 3, kind: ElementKind::Edge2, order: PLAIN.split_at(2).0 },
+    CellType { number: 21, kind: ElementKind::Edge3, order: PLAIN.split_at(3).0 },
+];
+
 /// Nodes of quadratic cells: VTK lists them as we do.
 const PLAIN: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
 
@@ -59,15 +65,9 @@ const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 28, 30, 34, 35, 36];
 
 /// The number of the VTK type of an element.
 fn cell_type_of(kind: ElementKind) -> Option<u8> {
-    match kind {
-        // read as curves around what they bound, written as cells
-        ElementKind::Edge2 => return Some(3),
-        ElementKind::Edge3 => return Some(21),
-        _ => {}
-    }
     let identity =
         |cell: &&CellType| cell.kind == kind && cell.order.iter().enumerate().all(|(i, n)| i == *n);
-    CELL_TYPES.iter().find(identity).map(|cell| cell.number as u8)
+    CELL_TYPES.iter().chain(&EDGE_TYPES).find(identity).map(|cell| cell.number as u8)
 }
 
 /// A group as numbers 0 and 1.

@@ -1,6 +1,6 @@
 //! The tetrahedra of a lattice, level by level of its octree.
 
-use super::lattice::{Background, Lattice, Place, Side};
+use super::lattice::{Background, Lattice, Leaf, Place, Side};
 use crate::element::ElementKind;
 
 /// Gives numbers to lattice points as they are met.
@@ -11,16 +11,8 @@ struct Numbering<'a> {
     background: Background,
 }
 
-/// A cube of the octree: its lowest corner and its edge.
-#[derive(Clone, Copy)]
-struct Leaf {
-    low: Place,
-    edge: u32,
-    level: u8,
-}
-
 impl Leaf {
-    fn centre(&self) -> Place {
+    pub fn centre(&self) -> Place {
         self.low.map(|c| c + self.edge / 2)
     }
 
@@ -37,7 +29,7 @@ impl Leaf {
     }
 }
 
-fn middle(a: Place, b: Place) -> Place {
+pub(super) fn middle(a: Place, b: Place) -> Place {
     [0, 1, 2].map(|axis| u32::midpoint(a[axis], b[axis]))
 }
 
@@ -56,15 +48,10 @@ impl Lattice {
                 tets: Vec::new(),
             },
         };
-        for cube in self.cubes() {
-            let level = self.levels[self.cube(cube)];
-            let unit = 1_usize << level;
-            if cube.iter().all(|index| index.is_multiple_of(unit)) {
-                let leaf = Leaf { low: cube.map(|i| 2 * i as u32), edge: 2 << level, level };
-                for axis in 0..3 {
-                    for upper in 0..2 {
-                        numbering.face(leaf, axis, upper);
-                    }
+        for leaf in self.leaves() {
+            for axis in 0..3 {
+                for upper in 0..2 {
+                    numbering.face(leaf, axis, upper);
                 }
             }
         }
@@ -84,7 +71,7 @@ impl Lattice {
     }
 
     /// Whether a leaf around the edge is smaller than it is long, so that its middle is a lattice point.
-    fn is_halved(&self, a: Place, b: Place, level: u8) -> bool {
+    pub fn is_halved(&self, a: Place, b: Place, level: u8) -> bool {
         let centre = middle(a, b);
         level > 0
             && (0..8).any(|octant| {

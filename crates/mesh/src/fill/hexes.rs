@@ -1,16 +1,17 @@
 //! Hexahedra inside, tetrahedra at the surface, pyramids between.
 //!
-//! Cubes of the lattice with all corners inside or on the surface become hexahedra. On each of their faces towards a
-//! cube that does not stands a pyramid with its apex in that cube's centre, whose sides are those of the lattice's
-//! tetrahedra: the mesh is conforming. A pyramid with its apex outside is cut off like the tetrahedra beside it, and
-//! what is left is cut into cells around its middle. Cubes of which a cell would be too flat, because corners have
-//! moved onto the surface, are filled with tetrahedra after all.
+//! Cubes of the octree with all corners inside or on the surface, and no point of smaller cubes on their edges, become
+//! hexahedra. On each of their faces towards a cube that does not, of the same size or twice as large, stands a
+//! pyramid with its apex in that cube's centre, whose sides are those of the lattice's tetrahedra: the mesh is
+//! conforming. A pyramid with its apex outside is cut off like the tetrahedra beside it, and what is left is cut into
+//! cells around its middle. Cubes of which a cell would be too flat, because corners have moved onto the surface, are
+//! filled with tetrahedra after all.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use souple_math::Vec3;
 
-use super::lattice::{Background, Lattice, Place, Side};
+use super::lattice::{Background, Lattice, Leaf, Place, Side};
 use super::stencil::Stencils;
 use super::warp::{self, Warped};
 use crate::implicit::Shape;
@@ -44,18 +45,28 @@ struct Transition {
     middle: Option<Vec3>,
 }
 
+/// A face of a hexahedron, its normal to the centre of the leaf across, which is none.
+struct OpenFace {
+    face: [u32; 4],
+    /// `None` where the centre is no point of the lattice.
+    apex: Option<u32>,
+    /// The leaf across is larger.
+    is_quarter: bool,
+}
+
 struct Filling<'a> {
     lattice: &'a Lattice,
     background: &'a Background,
     warped: &'a Warped,
     stencils: Stencils<'a>,
     numbers: HashMap<Place, u32>,
+    /// By the first smallest cube of each leaf.
     is_hex: Vec<bool>,
     /// Points beyond those of lattice and cuts.
     middles: Vec<Vec3>,
 }
 
-/// The mesh of a shape on a uniform lattice.
+/// The mesh of a shape on a lattice.
 pub(super) fn hex_dominant(lattice: &Lattice, shape: &dyn Shape) -> Mesh {
     let mut background = lattice.background();
     let warped = warp::warp(&mut background, shape);
@@ -75,17 +86,29 @@ pub(super) fn hex_dominant(lattice: &Lattice, shape: &dyn Shape) -> Mesh {
 }
 
 impl Filling<'_> {
-    fn corners(&self, cube: [usize; 3]) -> Option<[u32; 8]> {
+    fn corners(&self, leaf: &Leaf) -> Option<[u32; 8]> {
         let mut corners = [0; 8];
         for (slot, corner) in corners.iter_mut().zip(CORNERS) {
-            let place = [0, 1, 2].map(|axis| 2 * (cube[axis] as u32 + corner[axis]));
+            let place = [0, 1, 2].map(|axis| leaf.low[axis] + leaf.edge * corner[axis]);
             *slot = *self.numbers.get(&place)?;
         }
         Some(corners)
     }
 
-    fn centre(&self, cube: [usize; 3]) -> Option<u32> {
-        self.numbers.get(&cube.map(|index| 2 * index as u32 + 1)).copied()
+    fn centre(&self, leaf: &Leaf) -> Option<u32> {
+        self.numbers.get(&leaf.centre()).copied()
+    }
+
+    fn index(&self, leaf: &Leaf) -> usize {
+        self.lattice.cube(leaf.low.map(|c| (c / 2) as usize))
+    }
+
+    /// Whether no smaller cube has a point on an edge of the leaf.
+    fn is_plain(&self, leaf: &Leaf) -> bool {
+        let corner = |c: usize| [0, 1, 2].map(|axis| leaf.low[axis] + leaf.edge * CORNERS[c][axis]);
+        let halved = |[a, b]: [usize; 2]| self.lattice.is_halved(corner(a), corner(b), leaf.level);
+        let around = (0..4).flat_map(|i| [[i, (i + 1) % 4], [4 + i, 4 + (i + 1) % 4], [i, i + 4]]);
+        leaf.level == 0 || !around.into_iter().any(halved)
     }
 
     fn side(&self, node: u32) -> Side {
@@ -108,20 +131,22 @@ impl Filling<'_> {
     /// Decides which cubes are hexahedra: all that can be, less those with a bad cell on one of their faces, until
     /// there are none. Deciding against a cube may put a pyramid on its neighbours, so it is looked at these again.
     fn choose(&mut self) {
-        for cube in self.lattice.cubes() {
-            let (Some(corners), Some(centre)) = (self.corners(cube), self.centre(cube)) else { continue };
+        for leaf in self.lattice.leaves() {
+            let (Some(corners), Some(centre)) = (self.corners(&leaf), self.centre(&leaf)) else { continue };
             let is_inside = corners.iter().all(|node| self.side(*node) != Side::Outside)
                 && self.side(centre) == Side::Inside;
-            let index = self.lattice.cube(cube);
-            self.is_hex[index] = is_inside && self.jacobian(ElementKind::Hex8, &corners) > LEAST_JACOBIAN;
+            let is_fit = || self.jacobian(ElementKind::Hex8, &corners) > LEAST_JACOBIAN;
+            let is_hex = is_inside && is_fit() && self.is_plain(&leaf);
+            let index = self.index(&leaf);
+            self.is_hex[index] = is_hex;
         }
         loop {
             let bad: Vec<usize> = self
                 .hexes()
-                .filter(|(cube, corners)| {
-                    self.open_faces(*cube, *corners).any(|(face, apex)| !self.is_good(face, apex))
+                .filter(|(leaf, corners)| {
+                    self.open_faces(leaf, *corners).any(|open| !self.is_good(open.face, open.apex))
                 })
-                .map(|(cube, _)| self.lattice.cube(cube))
+                .map(|(leaf, _)| self.index(&leaf))
                 .collect();
             if bad.is_empty() {
                 return;
@@ -130,23 +155,23 @@ impl Filling<'_> {
         }
     }
 
-    fn hexes(&self) -> impl Iterator<Item = ([usize; 3], [u32; 8])> {
+    fn hexes(&self) -> impl Iterator<Item = (Leaf, [u32; 8])> {
         self.lattice
-            .cubes()
-            .filter(|cube| self.is_hex[self.lattice.cube(*cube)])
-            .filter_map(|cube| Some((cube, self.corners(cube)?)))
+            .leaves()
+            .filter(|leaf| self.is_hex[self.index(leaf)])
+            .filter_map(|leaf| Some((leaf, self.corners(&leaf)?)))
     }
 
-    /// Faces of a hexahedron towards cubes that are none, with the centres of these.
-    fn open_faces(
-        &self,
-        cube: [usize; 3],
-        corners: [u32; 8],
-    ) -> impl Iterator<Item = ([u32; 4], Option<u32>)> {
+    /// Faces of a hexahedron towards leaves that are none, with the centres of these.
+    fn open_faces(&self, leaf: &Leaf, corners: [u32; 8]) -> impl Iterator<Item = OpenFace> {
+        let leaf = *leaf;
         FACES.into_iter().filter_map(move |(face, step)| {
-            let across = self.lattice.beside(cube, step)?;
-            (!self.is_hex[self.lattice.cube(across)])
-                .then(|| (face.map(|corner| corners[corner]), self.centre(across)))
+            let across = self.lattice.across(&leaf, step)?;
+            (!self.is_hex[self.index(&across)]).then(|| OpenFace {
+                face: face.map(|corner| corners[corner]),
+                apex: self.centre(&across),
+                is_quarter: across.level > leaf.level,
+            })
         })
     }
 
@@ -229,23 +254,37 @@ impl Filling<'_> {
         let mut hexes = CellBlock::new(ElementKind::Hex8);
         let mut pyramids = CellBlock::new(ElementKind::Pyramid5);
         let mut transitions = CellBlock::new(ElementKind::Tet4);
-        for (cube, corners) in self.hexes().collect::<Vec<_>>() {
+        // what hexahedra and pyramids stand for: tetrahedra around centres, and those of larger cubes on small faces
+        let mut is_hex_centre = vec![false; self.background.points.len()];
+        let mut on_quarters = HashSet::new();
+        for (leaf, corners) in self.hexes().collect::<Vec<_>>() {
             hexes.nodes.extend(corners);
-            let faces: Vec<_> = self.open_faces(cube, corners).collect();
-            for (face, apex) in faces.into_iter().filter_map(|(face, apex)| Some((face, apex?))) {
+            if let Some(centre) = self.centre(&leaf) {
+                is_hex_centre[centre as usize] = true;
+            }
+            let faces: Vec<_> = self.open_faces(&leaf, corners).collect();
+            for OpenFace { face, apex, is_quarter } in faces {
+                let Some(apex) = apex else { continue };
                 let transition = self.transition(face, apex);
                 pyramids.nodes.extend(transition.pyramids.as_flattened());
                 transitions.nodes.extend(transition.tets.as_flattened());
                 self.middles.extend(transition.middle);
+                if is_quarter {
+                    on_quarters.extend((0..4).map(|left_out| {
+                        let mut tet = face;
+                        tet[left_out] = apex;
+                        tet.sort_unstable();
+                        tet
+                    }));
+                }
             }
         }
-        // tetrahedra with their centres in cubes that are no hexahedra
-        let is_hex_centre = |node: &u32| {
-            let place = self.background.places[*node as usize];
-            !place[0].is_multiple_of(2) && self.is_hex[self.lattice.cube(place.map(|c| (c / 2) as usize))]
+        let stands_for = |tet: &[u32; 4]| {
+            let mut sorted = *tet;
+            sorted.sort_unstable();
+            tet.iter().any(|node| is_hex_centre[*node as usize]) || on_quarters.contains(&sorted)
         };
-        let left = self.background.tets.iter().filter(|tet| !tet.iter().any(is_hex_centre));
-        left.for_each(|tet| self.stencils.fill(*tet));
+        self.background.tets.iter().filter(|tet| !stands_for(tet)).for_each(|tet| self.stencils.fill(*tet));
         let mut tets = CellBlock { kind: ElementKind::Tet4, nodes: self.stencils.tets.into_flattened() };
         tets.nodes.extend(transitions.nodes);
         let cuts = self.warped.cuts.iter().map(|cut| cut.position);

@@ -53,6 +53,14 @@ pub(super) struct Background {
     pub tets: Vec<[u32; 4]>,
 }
 
+/// A cube of the octree: its lowest corner and its edge.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) struct Leaf {
+    pub low: Place,
+    pub edge: u32,
+    pub level: u8,
+}
+
 /// Values of a shape on the smallest cubes, and the cubes that are joined.
 pub(super) struct Lattice {
     /// Numbers of smallest cubes along the axes.
@@ -178,6 +186,28 @@ impl Lattice {
             moved[axis] = index as usize;
         }
         Some(moved)
+    }
+
+    /// All leaves of the octree.
+    pub fn leaves(&self) -> impl Iterator<Item = Leaf> {
+        self.cubes().map(|cube| (cube, self.levels[self.cube(cube)])).filter_map(|(cube, level)| {
+            let is_first = cube.iter().all(|index| index.is_multiple_of(1 << level));
+            is_first.then(|| Leaf { low: cube.map(|i| 2 * i as u32), edge: 2 << level, level })
+        })
+    }
+
+    /// The leaf that holds a smallest cube.
+    pub fn leaf_of(&self, cube: [usize; 3]) -> Leaf {
+        let level = self.levels[self.cube(cube)];
+        Leaf { low: cube.map(|i| 2 * (i >> level << level) as u32), edge: 2 << level, level }
+    }
+
+    /// The leaf across a face, at the face's lowest corner; none beyond the border.
+    pub fn across(&self, leaf: &Leaf, step: [i64; 3]) -> Option<Leaf> {
+        let own = leaf.low.map(|c| (c / 2) as usize);
+        let width = i64::from(leaf.edge / 2);
+        let cube = self.beside(own, step.map(|s| if s > 0 { s * width } else { s }))?;
+        Some(self.leaf_of(cube))
     }
 
     /// The value on a lattice point of the smallest cubes.

@@ -10,6 +10,7 @@
 //! the halves, quarters and half pyramids as they stand.
 
 mod background;
+mod groups;
 mod hexes;
 mod lattice;
 mod options;
@@ -23,7 +24,7 @@ use crate::implicit::Shape;
 use crate::{ElementKind, Group, Mesh};
 
 pub use options::{Options, PARAMETERS};
-pub use surface::{FilledSurface, fill_surface, surface_of};
+pub use surface::{FilledSurface, fill_mesh, fill_surface, surface_of};
 
 use lattice::Lattice;
 use stencil::Stencils;
@@ -75,8 +76,6 @@ pub enum FillError {
     NotANumber { position: [f64; 3] },
     #[error("the shape is inside at {position:?}, on the border of its bounds; expected larger bounds")]
     BeyondBounds { position: [f64; 3] },
-    #[error("hexahedra of several sizes do not meet; expected one size, or tetrahedra")]
-    GradedHexahedra,
     #[error(
         "no point of a lattice of {size} m is inside the shape; expected a smaller size, or a shape with an inside"
     )]
@@ -111,9 +110,6 @@ impl Size {
 /// # Errors
 /// The size, the bounds or a value of the shape cannot be used; nothing of the lattice is inside.
 pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) -> Result<Mesh, FillError> {
-    if cells == Cells::HexDominant && !matches!(size.interior, Interior::Uniform) {
-        return Err(FillError::GradedHexahedra);
-    }
     let lattice = Lattice::new(shape, size)?;
     let mut mesh = match cells {
         Cells::Tetrahedra => tetrahedra(&lattice, shape),
@@ -124,7 +120,7 @@ pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) ->
     }
     mesh.remove_loose_points();
     mesh.groups.insert(
-        "surface".to_owned(),
+        groups::SURFACE.to_owned(),
         Group { points: mesh.boundary_surface().mesh_points, ..Group::default() },
     );
     let centres = mesh.cell_centres();

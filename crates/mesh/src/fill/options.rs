@@ -51,6 +51,11 @@ const LARGEST: f64 = 8.0;
 /// A count is met to this, relative, or as well as so many fillings do.
 const COUNT_TOLERANCE: f64 = 0.03;
 const MOST_FILLINGS: usize = 6;
+/// Below this, a layer of cells more or less is a large part of all.
+const FEW: f64 = 5000.0;
+/// Sizes around the best one that are looked at for few cells, and how far they are apart.
+const LOOKED_AT: usize = 24;
+const STRIDE: f64 = 0.02;
 
 impl Options {
     /// From completed values of [`PARAMETERS`].
@@ -117,13 +122,14 @@ impl Options {
         self.fill(&*body.shape, &parts)
     }
 
-    /// Cells go with the cube of the inverse size: a size, what it gave, a better size.
+    /// Cells go with the cube of the inverse size: a size, what it gave, a better size. Few cells come in jumps, by
+    /// whole layers at once: then sizes around the best one are looked at, too.
     fn fill_by_count(&self, shape: &dyn Shape, parts: &[Part<'_>], count: f64) -> Result<Mesh, MeshError> {
         let extent = shape.bounds().size();
-        let box_volume = extent.x * extent.y * extent.z;
-        let mut size = Size::for_count(box_volume, count);
-        let mut best: Option<(f64, Mesh)> = None;
-        for _ in 0..MOST_FILLINGS {
+        let mut size = Size::for_count(extent.x * extent.y * extent.z, count);
+        let mut best: Option<Attempt> = None;
+        let attempts = if count < FEW { MOST_FILLINGS + LOOKED_AT } else { MOST_FILLINGS };
+        for attempt in 0..attempts {
             let mesh = match fill(shape, &self.size(size), self.cells, parts) {
                 Ok(mesh) => mesh,
                 // nothing was hit: look closer
@@ -135,14 +141,29 @@ impl Options {
             };
             let ratio = mesh.cell_count() as f64 / count;
             let error = ratio.ln().abs();
-            if best.as_ref().is_none_or(|(least, _)| error < *least) {
-                best = Some((error, mesh));
+            if best.as_ref().is_none_or(|best| error < best.error) {
+                best = Some(Attempt { size, error, mesh });
             }
             if (ratio - 1.0).abs() < COUNT_TOLERANCE {
                 break;
             }
-            size *= ratio.cbrt();
+            size = match &best {
+                Some(best) if attempt + 1 >= MOST_FILLINGS => {
+                    // in turn above and below the best, farther and farther
+                    let step = (attempt + 1 - MOST_FILLINGS) / 2 + 1;
+                    let factor = 1.0 + STRIDE * step as f64;
+                    if attempt % 2 == 0 { best.size * factor } else { best.size / factor }
+                }
+                _ => size * ratio.cbrt(),
+            };
         }
-        best.map(|(_, mesh)| mesh).ok_or_else(|| super::FillError::Nothing { size }.into())
+        best.map(|best| best.mesh).ok_or_else(|| super::FillError::Nothing { size }.into())
     }
+}
+
+/// A filling, and by how much it misses the wanted count: the logarithm of the ratio.
+struct Attempt {
+    size: f64,
+    error: f64,
+    mesh: Mesh,
 }

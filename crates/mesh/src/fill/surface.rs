@@ -1,6 +1,6 @@
 //! Fills what triangles enclose: mended first, everything said.
 
-use super::Options;
+use super::{Options, groups};
 use crate::implicit::{Sign, SurfaceShape};
 use crate::repair::{RepairLimits, SurfaceRepairs, repair};
 use crate::{Mesh, MeshError, TriangleSurface};
@@ -33,6 +33,15 @@ pub fn fill_surface(
     limits: RepairLimits,
     options: &Options,
 ) -> Result<FilledSurface, MeshError> {
+    Ok(filled(surface, limits, options)?.0)
+}
+
+/// The filling, and the shape that the mended surface encloses.
+fn filled(
+    surface: &TriangleSurface,
+    limits: RepairLimits,
+    options: &Options,
+) -> Result<(FilledSurface, SurfaceShape), MeshError> {
     let (mended, repairs) = repair(surface, limits);
     let mut notes = repairs.messages();
     let enclosed = mended.enclosed_volume().abs();
@@ -47,13 +56,25 @@ pub fn fill_surface(
     if parts > 1 {
         notes.push(format!("the filling has {parts} parts that share no point"));
     }
-    let filled = mesh.volume();
-    if filled < KEPT * enclosed {
-        let percent = 100.0 * filled / enclosed;
+    let volume = mesh.volume();
+    if volume < KEPT * enclosed {
+        let percent = 100.0 * volume / enclosed;
         notes.push(format!(
-            "the filling holds {filled:.4e} m³ of the {enclosed:.4e} m³ that the surface encloses, {percent:.0} %: \
+            "the filling holds {volume:.4e} m³ of the {enclosed:.4e} m³ that the surface encloses, {percent:.0} %: \
              what is thinner than its cells is lost; take a smaller size"
         ));
     }
-    Ok(FilledSurface { mesh, repairs, notes })
+    Ok((FilledSurface { mesh, repairs, notes }, shape))
+}
+
+/// Fills the surface of a mesh and carries its groups along.
+///
+/// # Errors
+/// The mesh has neither facets nor cells; as [`fill_surface`].
+pub fn fill_mesh(mesh: &Mesh, limits: RepairLimits, options: &Options) -> Result<FilledSurface, MeshError> {
+    let surface = surface_of(mesh).ok_or(MeshError::NoCells)?;
+    let (mut filled, shape) = filled(&surface, limits, options)?;
+    let outward = groups::outward_areas(&surface, &shape);
+    filled.notes.extend(groups::carry(mesh, &surface, &outward, &mut filled.mesh));
+    Ok(filled)
 }

@@ -6,7 +6,7 @@ use crate::{Aabb, AabbTree, TriangleSurface};
 
 /// Pairs of triangles, lower number first, of which an edge of one passes through the other. Triangles that share
 /// an edge are neighbours and do not count; of those that share a corner only the edges across it are looked at.
-pub(super) fn crossings(surface: &TriangleSurface) -> Vec<[u32; 2]> {
+pub fn crossings(surface: &TriangleSurface) -> Vec<[u32; 2]> {
     let boxes: Vec<Aabb> =
         (0..surface.triangles.len() as u32).map(|triangle| Aabb::of(surface.corners(triangle))).collect();
     let tree = AabbTree::build(&boxes);

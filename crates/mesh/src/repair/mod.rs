@@ -15,6 +15,7 @@ use souple_math::Vec3;
 
 use crate::TriangleSurface;
 
+pub(crate) use crossing::crossings;
 pub use diagnose::{Diagnosis, diagnose};
 
 /// What [`repair`] may do.

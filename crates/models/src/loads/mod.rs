@@ -28,7 +28,7 @@ pub use field::{ForceField, UniformForce};
 pub use formula::{FormulaVector, VARIABLES};
 pub use gravity::{Gravity, TIME_VARIABLES};
 pub use ground_springs::{GroundSpring, GroundSprings};
-pub use motion::{Interpolation, KeyFrames, TimeFunction};
+pub use motion::{Interpolation, KeyFrames};
 pub use point_load::PointLoad;
 pub use pressure::{PressedFace, Pressure};
 pub use rigid_motion::{Pose, RigidMotion};

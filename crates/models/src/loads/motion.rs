@@ -1,6 +1,4 @@
-//! Prescribed motions of pinned points: key frames, and any function of time.
-
-use std::fmt;
+//! Prescribed motions of pinned points: key frames (formulas are in `formula.rs`).
 
 use souple_engine::Motion;
 use souple_math::Vec3;
@@ -98,33 +96,5 @@ impl Motion for KeyFrames {
 
     fn velocity(&self, _start: Vec3, time: f64) -> Vec3 {
         self.at(time).1
-    }
-}
-
-/// A motion given by a function of start position and time that answers offset and velocity.
-pub struct TimeFunction<F> {
-    function: F,
-}
-
-impl<F: Fn(Vec3, f64) -> (Vec3, Vec3) + Send + Sync> TimeFunction<F> {
-    /// `function(start, time)` is the offset [m] and its derivative by time [m/s].
-    pub fn new(function: F) -> Self {
-        Self { function }
-    }
-}
-
-impl<F> fmt::Debug for TimeFunction<F> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("TimeFunction")
-    }
-}
-
-impl<F: Fn(Vec3, f64) -> (Vec3, Vec3) + Send + Sync> Motion for TimeFunction<F> {
-    fn offset(&self, start: Vec3, time: f64) -> Vec3 {
-        (self.function)(start, time).0
-    }
-
-    fn velocity(&self, start: Vec3, time: f64) -> Vec3 {
-        (self.function)(start, time).1
     }
 }

@@ -45,6 +45,34 @@ pub struct Chunk {
 }
 
 impl Chunk {
+    /// Samples without nodes, eight to a block, for laws alone: `(volume, parameters)` by block and lane. Lanes past the
+    /// last sample have no volume.
+    pub fn of_samples<'p>(blocks: usize, sample: impl Fn(usize, usize) -> (f64, &'p [f64])) -> Self {
+        let parameters = |block, lane| sample(block, lane).1;
+        let first = parameters(0, 0);
+        let lanes = || (0..blocks).flat_map(|block| (0..LANES).map(move |lane| (block, lane)));
+        let has_one_material = lanes().all(|(block, lane)| parameters(block, lane) == first);
+        let mut chunk = Self {
+            cells: Vec::new(),
+            rows: Vec::new(),
+            connectivity: Vec::new(),
+            samples: vec![LaneBlock::default(); blocks * SAMPLE_LEN],
+            parameters: vec![LaneBlock::default(); first.len() * if has_one_material { 1 } else { blocks }],
+            has_one_material,
+            first_partial: 0,
+        };
+        for (block, lane) in lanes() {
+            let (volume, numbers) = sample(block, lane);
+            chunk.samples[(block + 1) * SAMPLE_LEN - 1].0[lane] = volume;
+            if block == 0 || !has_one_material {
+                for (i, number) in numbers.iter().enumerate() {
+                    chunk.parameters[block * first.len() + i].0[lane] = *number;
+                }
+            }
+        }
+        chunk
+    }
+
     pub fn block_count(&self) -> usize {
         self.cells.len().div_ceil(LANES)
     }

@@ -5,13 +5,13 @@ mod elements;
 mod geometry;
 mod group;
 mod kernel;
-mod layout;
+pub(crate) mod layout;
 mod mass;
 mod output;
 pub(crate) mod parallel;
 mod rayleigh;
 mod row_law;
-mod sample_law;
+pub(crate) mod sample_law;
 mod section;
 mod section_kernel;
 mod staged;
@@ -189,6 +189,22 @@ impl SolidForce {
             section: *section,
             row_laws: materials.iter().map(|material| row_law(&material.law)).collect(),
         })
+    }
+}
+
+/// A law that knows no elements, and how many numbers it has at each sample.
+pub(crate) fn law_of_samples(law: &MaterialLaw) -> (Box<dyn SampleLaw>, usize) {
+    struct Make;
+    impl LawVisitor for Make {
+        type Output = Box<dyn SampleLaw>;
+        fn visit<L: Law>(self, _: L) -> Box<dyn SampleLaw> {
+            Box::new(Compiled::<L>::default())
+        }
+    }
+    match law {
+        MaterialLaw::Known(law) => (law.visit(Make), law.visit(ParameterCount)),
+        // its numbers are constants of its tape
+        MaterialLaw::Text(law) => (Box::new(Taped(Arc::clone(law))), 0),
     }
 }
 

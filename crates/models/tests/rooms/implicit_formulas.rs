@@ -86,6 +86,57 @@ fn formulas_keep_their_order_with_everything_at_once() {
     }
 }
 
+/// Explicit methods keep their order where a led point takes others along by its mass, and agree with implicit ones.
+#[test]
+fn explicit_methods_take_along_what_is_coupled_to_led_points() {
+    let limit = after_a_second(chain(stepper_with("newmark", &TIGHT, "full"), 0.1, 1.0 / 25600.0), 25600);
+    let mut finest = limit.clone();
+    // the error `C hᵖ (1 + c h)` needs finer steps where it is large
+    for (name, order, coarsest) in
+        [("explicit_euler", 1.0, 3200), ("symplectic_euler", 1.0, 800), ("rk2", 2.0, 400), ("rk4", 4.0, 100)]
+    {
+        let after = |steps: u32| {
+            let stepper = stepper_with(name, &[], "");
+            after_a_second(chain(stepper, 0.1, 1.0 / f64::from(steps)), steps)
+        };
+        let [coarse, middle, fine] = [1, 2, 4].map(|finer| after(coarsest * finer));
+        let measured = (distance(&coarse, &middle) / distance(&middle, &fine)).log2();
+        assert!((measured - order).abs() < 0.1, "{name}: order {measured}");
+        finest = fine;
+    }
+    // the limit of the second order has (1 s / 25600)² times derivatives of some 10³ left
+    assert!(distance(&finest, &limit) < 1e-5, "{:e}", distance(&finest, &limit));
+}
+
+/// A frame of three different moments that tumbles freely: its angular momentum is kept to the first order of the step by
+/// backward Euler, solved to the end or once.
+#[test]
+fn tumbling_frames_keep_their_momentum_to_first_order() {
+    let drift = |newton: &str, steps: u32| {
+        let stepper = stepper_with("backward_euler", &TIGHT, newton);
+        let (mut system, _) = points(&[Vec3::ZERO], &[1.0], Vec::new(), stepper);
+        system.kinematics = Kinematics::default();
+        system.kinematics.add_unknowns(UnknownKind::RigidFrame, 1);
+        system.mass = Mass { diagonal: vec![1.0, 1.0, 2.0, 4.0], couplings: Vec::new() };
+        let mut state = system.initial_state(vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+        state.v[1] = Vec3::new(1.0, 1.0, 1.0);
+        let model = souple_engine::Model {
+            period: 1.0 / f64::from(steps),
+            systems: vec![system],
+            ..Default::default()
+        };
+        let mut world = model.start(State { systems: vec![state], ..State::default() });
+        let start = world.momentum().1;
+        (0..steps).for_each(|_| world.step().unwrap());
+        (world.momentum().1 - start).length() / start.length()
+    };
+    for newton in ["one", "full"] {
+        let (coarse, fine) = (drift(newton, 100), drift(newton, 200));
+        let order = (coarse / fine).log2();
+        assert!((order - 1.0).abs() < 0.1 && fine < 0.02, "{newton}: {coarse:e} {fine:e}, order {order}");
+    }
+}
+
 /// Average acceleration keeps the energy of an oscillation to the tolerance of the solver at any step, solved once or to the
 /// end; the second backward differentiation formula loses it to the root of its recursion; `γ > ½` loses more.
 #[test]

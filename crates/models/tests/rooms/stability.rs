@@ -2,7 +2,7 @@
 
 use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
 use souple_engine::stability::{Forecast, forecast};
-use souple_engine::{Force, Model, State, World};
+use souple_engine::{DerivedRow, Feedback, Force, Kinematics, Mass, Model, State, UnknownKind, World};
 use souple_math::Vec3;
 use souple_models::contact::{ContactLaw, ContactPoint, ShapeContact, shape::Plane};
 use souple_models::loads::{
@@ -76,6 +76,53 @@ fn every_spring_is_in_the_forecast() {
         // a few modes far apart: forty iterations converge to rounding
         assert!((found / expected - 1.0).abs() < 1e-9, "{name}: {found} {expected}");
     }
+}
+
+/// A spring on a row that hangs half on each of two masses: `k/4 (δ₁ + δ₂)²` over `m (δ₁² + δ₂²)`, `ω = √(k/(2 m))`; one on
+/// a row that carries a rigid frame's arm `r` turns it too, `k (1/m + r²/I)`; and masses that are coupled count as such.
+#[test]
+fn what_hangs_on_rows_is_in_the_forecast() {
+    let spring = |row: u32, anchor: Vec3| -> Box<dyn Force> {
+        let springs = vec![GroundSpring { row, share: 1.0, anchor }];
+        Box::new(GroundSprings::new("k", springs, STIFFNESS, 0.0).unwrap())
+    };
+    let of = |system: souple_engine::System, q: Vec<Vec3>| {
+        let state = State { systems: vec![system.initial_state(q)], ..State::default() };
+        let model = Model { period: 1e-3, systems: vec![system], ..Model::default() };
+        forecast_of(&mut model.start(state)).highest_frequency
+    };
+    let (mut system, q) = points(
+        &[Vec3::ZERO, Vec3::X],
+        &[0.5, 0.5],
+        vec![spring(2, Vec3::X * 0.5)],
+        stepper("symplectic_euler"),
+    );
+    let parents = vec![(0, 0.5), (1, 0.5)];
+    system.kinematics.add_derived_row(DerivedRow { parents, feedback: Feedback::Transpose }).unwrap();
+    system.mass.diagonal.push(0.0);
+    let found = of(system, q);
+    assert!((found / (STIFFNESS / (2.0 * 0.5)).sqrt() - 1.0).abs() < 1e-9, "hanging: {found}");
+
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::RigidFrame, 1);
+    let arm = 0.3;
+    let parents = vec![(0, 1.0), (1, arm)];
+    kinematics.add_derived_row(DerivedRow { parents, feedback: Feedback::Transpose }).unwrap();
+    let (mut system, _) =
+        points(&[Vec3::ZERO], &[1.0], vec![spring(4, Vec3::X * arm)], stepper("symplectic_euler"));
+    system.kinematics = kinematics;
+    // m at the origin, m_a on each axis: I = 2 m_a about each
+    system.mass = Mass { diagonal: vec![2.0, 0.02, 0.02, 0.02, 0.0], couplings: Vec::new() };
+    let found = of(system, vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+    let expected = (STIFFNESS * (1.0 / 2.0 + arm * arm / 0.04)).sqrt();
+    assert!((found / expected - 1.0).abs() < 1e-9, "frame: {found} {expected}");
+
+    let (mut system, q) =
+        points(&[Vec3::ZERO, Vec3::X], &[0.5, 0.5], vec![spring(0, Vec3::ZERO)], stepper("symplectic_euler"));
+    system.mass.couplings = vec![(0, 1, 0.25)];
+    // the inverse of [[½, ¼], [¼, ½]] begins with 8/3
+    let (found, expected) = (of(system, q), (STIFFNESS * 8.0 / 3.0).sqrt());
+    assert!((found / expected - 1.0).abs() < 1e-9, "consistent: {found} {expected}");
 }
 
 /// A net of springs that its weight presses on the ground, a nanometre off its balance: with steps of the forecast it stays

@@ -5,12 +5,11 @@ use souple_io::picture::{
     Colour, ColourMap, Cut, EdgeStyle, Legend, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface,
     Theme, View,
 };
-use souple_math::Vec3;
-use souple_mesh::BoundingBox;
 use souple_scene::spec::picture::PictureView;
 
+use super::common::Common;
 use super::quantity::Quantity;
-use super::{BodyMoment, Moment, Show, ShowError};
+use super::{BodyMoment, Moment, Show, ShowError, vectors};
 
 /// Everything that a person may ask of a picture of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,31 +61,18 @@ impl Default for Figure {
     }
 }
 
-/// What all pictures of a show have in common, so that neither camera nor colours jump.
-#[derive(Clone, Copy, Debug)]
-struct Common {
-    bounds: BoundingBox,
-    range: Option<(f64, f64)>,
-    arrow_scale: f64,
-}
-
-/// Values that differ by less than this part of the largest are one value: solvers stop some digits before rounding.
-const ONE_VALUE: f64 = 1e-6;
-
-/// The range of colours for values from `low` to `high`: from zero where all are one value but for rounding.
-fn spread((low, high): (f64, f64)) -> (f64, f64) {
-    let most = low.abs().max(high.abs());
-    if high - low > ONE_VALUE * most { (low, high) } else { (low.min(0.0), high.max(0.0)) }
-}
-
 /// Bodies in colours of their own, where no field colours them.
 const BODIES: [[u8; 3]; 5] =
     [[214, 122, 104], [112, 150, 196], [160, 178, 96], [206, 168, 96], [160, 128, 184]];
 const ARROW: [u8; 3] = [40, 44, 52];
+/// Axes x, y, z of frames.
+const AXES: [[u8; 3]; 3] = [[200, 48, 48], [40, 150, 70], [50, 90, 210]];
+/// Their length next to all that is seen.
+const AXIS: f64 = 0.03;
 /// Most arrows of a body: more hide it.
 const MOST_ARROWS: usize = 400;
-/// Most lines or dots of a body.
-const MOST_LINES: usize = 100_000;
+/// Most dots of a body.
+const MOST_DOTS: usize = 100_000;
 
 impl Figure {
     /// Pictures of all moments of a show, in one frame and one range of colours.
@@ -95,7 +81,7 @@ impl Figure {
     /// A field that no body has.
     pub fn pictures(&self, show: &Show) -> Result<Vec<Picture>, ShowError> {
         let moments: Vec<&Moment> = show.moments.iter().collect();
-        let common = self.common(show, &moments)?;
+        let common = Common::of(self, show, &moments)?;
         Ok(moments.into_iter().map(|moment| self.picture_in(show, moment, &common)).collect())
     }
 
@@ -104,64 +90,22 @@ impl Figure {
     /// # Errors
     /// A field that no body has.
     pub fn picture(&self, show: &Show, moment: &Moment) -> Result<Picture, ShowError> {
-        let common = self.common(show, &[moment])?;
+        let common = Common::of(self, show, &[moment])?;
         Ok(self.picture_in(show, moment, &common))
     }
 
-    fn common(&self, show: &Show, moments: &[&Moment]) -> Result<Common, ShowError> {
-        let bodies = || moments.iter().flat_map(|moment| &moment.bodies).filter(|body| body.is_finite());
-        let mut bounds = BoundingBox::of(bodies().flat_map(|body| body.positions.iter().copied()));
-        for moment in moments {
-            if let Some(shapes) = show.stage.bounds(moment.time, bounds) {
-                bounds = bounds.union(shapes);
-            }
-        }
-        // exploded bodies are larger about their middles; those of all bodies together are near enough
-        if self.explode > 0.0 {
-            bounds = bounds.grown(0.5 * self.explode * bounds.diagonal() / 3f64.sqrt());
-        }
-        let mut range = self.range;
-        if let Some(quantity) = self.quantity() {
-            if let Some(first) = moments.first() {
-                quantity.check(first)?;
-            }
-            let values =
-                bodies().filter_map(|body| quantity.at_points(body)).flatten().filter(|v| v.is_finite());
-            let of_values = values.fold(None, |range: Option<(f64, f64)>, value| match range {
-                None => Some((value, value)),
-                Some((low, high)) => Some((low.min(value), high.max(value))),
-            });
-            range = range.or(of_values.map(spread));
-            if let (ColourMap::Diverging, None, Some((low, high))) = (self.colours, self.range, range) {
-                let most = low.abs().max(high.abs());
-                range = Some((-most, most));
-            }
-        }
-        let mut arrow_scale = 1.0;
-        if let Some(arrows) = &self.arrows {
-            if let Some(first) = moments.first() {
-                vectors_of(first, &arrows.field)?;
-            }
-            let lengths =
-                bodies().filter_map(|body| vectors(body, &arrows.field)).flatten().map(|v| v.length());
-            let longest = lengths.filter(|length| length.is_finite()).fold(0.0, f64::max);
-            let fitted = if longest > 0.0 { bounds.diagonal() / (6.0 * longest) } else { 1.0 };
-            arrow_scale = arrows.scale.unwrap_or(fitted);
-        }
-        Ok(Common { bounds, range, arrow_scale })
-    }
-
-    fn quantity(&self) -> Option<Quantity<'_>> {
+    pub(super) fn quantity(&self) -> Option<Quantity<'_>> {
         self.colour_by.as_deref().map(Quantity::parse)
     }
 
     fn picture_in(&self, show: &Show, moment: &Moment, common: &Common) -> Picture {
         let mut surfaces = Vec::new();
         let mut strokes = Vec::new();
-        for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_finite()) {
-            surfaces.push(self.surface(body, index).surface);
+        for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_drawable()) {
+            surfaces.push(self.surface(body, index, common).surface);
             strokes.extend(self.arrows_of(body, common.arrow_scale));
-            strokes.extend(self.lines_of(body, index, common.range));
+            strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
+            strokes.extend(self.dots_of(body, index, common.range));
         }
         let coloured = surfaces.iter().any(|surface| !matches!(surface.paint, Paint::Plain(_)));
         surfaces.extend(show.stage.surfaces(moment.time, common.bounds));
@@ -187,13 +131,17 @@ impl Figure {
         }
     }
 
-    fn surface(&self, body: &BodyMoment, index: usize) -> MeshSurface {
+    fn surface(&self, body: &BodyMoment, index: usize, common: &Common) -> MeshSurface {
         let mut surface = match self.cut {
+            _ if body.is_of_edges() => body.tubes(common, self.cut),
             Some(cut) => MeshSurface::cut(&body.mesh, &body.positions, cut),
             None if self.explode > 0.0 => MeshSurface::of_cells(&body.mesh),
             None => MeshSurface::of(&body.mesh),
         };
-        surface.move_to(&body.positions);
+        if !body.is_of_edges() {
+            surface.move_to(&body.positions);
+            surface.surface.edge_style = self.edges;
+        }
         if self.cut.is_none() && self.explode > 0.0 {
             surface.explode(self.explode);
         }
@@ -201,14 +149,12 @@ impl Figure {
             Some(values) => surface.paint_points(&values),
             None => surface.surface.paint = Paint::Plain(Colour::from_screen(BODIES[index % BODIES.len()])),
         }
-        surface.surface.edge_style = self.edges;
         surface
     }
 
-    /// Edges as lines, and points that are in no cell as dots: surfaces show nothing of them.
-    fn lines_of(&self, body: &BodyMoment, index: usize, range: Option<(f64, f64)>) -> Vec<Stroke> {
-        let is_of_edges = body.mesh.dimension() == 1;
-        if !is_of_edges && body.mesh.cell_count() > 0 {
+    /// Masses that no edge joins, as dots; what edges join is drawn as tubes.
+    fn dots_of(&self, body: &BodyMoment, index: usize, range: Option<(f64, f64)>) -> Vec<Stroke> {
+        if !body.is_of_edges() && body.mesh.cell_count() > 0 {
             return Vec::new();
         }
         let values = self.quantity().and_then(|quantity| quantity.at_points(body));
@@ -219,25 +165,17 @@ impl Figure {
             }
             None => Colour::from_screen(BODIES[index % BODIES.len()]),
         };
-        let at = |point: u32| body.positions[point as usize];
-        let mut is_dot = vec![true; body.positions.len()];
-        let mut strokes = Vec::new();
-        let every = body.mesh.cell_count().div_ceil(MOST_LINES).max(1);
-        for (number, cell) in body.mesh.cells().enumerate() {
-            cell.nodes.iter().for_each(|node| is_dot[*node as usize] = false);
-            if number % every == 0 {
-                let shape = StrokeShape::Line(vec![at(cell.nodes[0]), at(cell.nodes[1])]);
-                strokes.push(Stroke { shape, colour: colour(cell.nodes[0]), width: 1.5 });
-            }
+        let mut is_loose = vec![true; body.positions.len()];
+        for node in body.mesh.cells().flat_map(|cell| cell.nodes) {
+            is_loose[*node as usize] = false;
         }
-        let dots = (0..body.positions.len() as u32).filter(|point| is_dot[*point as usize]);
-        let every = dots.clone().count().div_ceil(MOST_LINES).max(1);
-        strokes.extend(dots.step_by(every).map(|point| Stroke {
-            shape: StrokeShape::Dot(at(point)),
-            colour: colour(point),
-            width: 8.0,
-        }));
-        strokes
+        let loose = (0..body.positions.len() as u32).filter(|point| is_loose[*point as usize]);
+        let every = loose.clone().count().div_ceil(MOST_DOTS).max(1);
+        let dot = |point: u32| {
+            let shape = StrokeShape::Dot(body.positions[point as usize]);
+            Stroke { shape, colour: colour(point), width: 8.0 }
+        };
+        loose.step_by(every).map(dot).collect()
     }
 
     fn arrows_of(&self, body: &BodyMoment, scale: f64) -> Vec<Stroke> {
@@ -256,16 +194,19 @@ impl Figure {
 
     /// The boundaries of all bodies and shapes over all moments, coloured as at the last.
     pub fn animation(&self, show: &Show) -> Result<Animation, ShowError> {
-        let moments: Vec<&Moment> = show.moments.iter().collect();
-        let common = self.common(show, &moments)?;
+        let moments: Vec<&Moment> = show.moments.iter().filter(|moment| moment.is_drawable()).collect();
+        let common = Common::of(self, show, &moments)?;
         let count = moments.last().map_or(0, |moment| moment.bodies.len());
         let mut surfaces = Vec::new();
         for index in 0..count {
             let bodies: Vec<&BodyMoment> =
                 moments.iter().filter_map(|moment| moment.bodies.get(index)).collect();
             let Some(last) = bodies.last() else { continue };
-            let of = MeshSurface::of(&last.mesh);
+            let of = if last.is_of_edges() { last.tubes(&common, None) } else { MeshSurface::of(&last.mesh) };
             let frame = |body: &&BodyMoment| {
+                if body.is_of_edges() {
+                    return body.tubes(&common, None).surface.points;
+                }
                 let mut surface = of.clone();
                 surface.move_to(&body.positions);
                 surface.surface.points
@@ -307,22 +248,13 @@ impl Figure {
     }
 }
 
-/// A field of three numbers on the points.
-fn vectors(body: &BodyMoment, name: &str) -> Option<Vec<Vec3>> {
-    let field = body.point_fields.iter().find(|field| field.name == name && field.components == 3)?;
-    Some(field.values.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect())
-}
-
-/// Refuses a vector field that no body has.
-fn vectors_of(moment: &Moment, name: &str) -> Result<(), ShowError> {
-    if moment.bodies.iter().any(|body| vectors(body, name).is_some()) {
-        return Ok(());
-    }
-    let fields =
-        moment.bodies.iter().flat_map(|body| &body.point_fields).filter(|field| field.components == 3);
-    let mut known: Vec<&str> = fields.map(|field| field.name.as_str()).collect();
-    known.sort_unstable();
-    known.dedup();
-    let expected = format!("a vector of each point: {}", known.join(", "));
-    Err(ShowError::UnknownField { name: name.to_owned(), expected })
+/// The frames that carry a body, as three arrows each.
+fn axes_of(body: &BodyMoment, length: f64) -> impl Iterator<Item = Stroke> + '_ {
+    body.frames.iter().flat_map(move |[origin, axes @ ..]| {
+        axes.iter().zip(AXES).map(move |(axis, colour)| Stroke {
+            shape: StrokeShape::Arrow(*origin, *origin + *axis * length),
+            colour: Colour::from_screen(colour),
+            width: 2.0,
+        })
+    })
 }

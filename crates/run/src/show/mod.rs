@@ -2,6 +2,7 @@
 //!
 //! A [`Show`] is read from the frames of a run's folder; [`Figure`] says how it is drawn.
 
+mod common;
 mod figure;
 mod film;
 mod quantity;
@@ -37,6 +38,8 @@ pub struct BodyMoment {
     pub positions: Vec<Vec3>,
     pub point_fields: Vec<Field>,
     pub cell_fields: Vec<Field>,
+    /// Origin and axes of the frames that carry it, where they are known: files of a run hold points alone.
+    pub frames: Vec<[Vec3; 4]>,
 }
 
 /// A run's moments on their stage.
@@ -113,9 +116,12 @@ impl Show {
         self
     }
 
-    /// The moment nearest to a time [s]; the last for none.
+    /// The moment nearest to a time [s]; for none the last that can be drawn, or the last if none can.
     pub fn at(&self, time: Option<f64>) -> Option<&Moment> {
-        let Some(time) = time else { return self.moments.last() };
+        let Some(time) = time else {
+            let drawable = self.moments.iter().rev().find(|moment| moment.is_drawable());
+            return drawable.or(self.moments.last());
+        };
         self.moments.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
     }
 
@@ -127,27 +133,51 @@ impl Show {
     }
 }
 
+/// Size of a body that can be drawn, in sizes of its mesh.
+const MOST_GROWTH: f64 = 100.0;
+
+/// A field of three numbers on the points.
+fn vectors(body: &BodyMoment, name: &str) -> Option<Vec<Vec3>> {
+    let field = body.point_fields.iter().find(|field| field.name == name && field.components == 3)?;
+    Some(field.values.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect())
+}
+
 impl Moment {
-    /// The present state of a world.
-    pub fn of_world(world: &World, bodies: &[BodyInfo]) -> Self {
-        let body = |info: &BodyInfo| {
+    /// Whether all of it can be drawn.
+    pub fn is_drawable(&self) -> bool {
+        self.bodies.iter().all(BodyMoment::is_drawable)
+    }
+
+    /// The present state of a world; meshes are those of a moment before, where there is one.
+    pub fn of_world(world: &World, bodies: &[BodyInfo], before: Option<&Self>) -> Self {
+        let body = |(index, info): (usize, &BodyInfo)| {
             let (point_fields, cell_fields) = crate::frames::fields(world, info);
+            let known = before.and_then(|before| before.bodies.get(index));
             BodyMoment {
                 name: info.name.clone(),
-                mesh: Arc::new(info.mesh.clone()),
+                mesh: known.map_or_else(|| Arc::new(info.mesh.clone()), |body| Arc::clone(&body.mesh)),
                 positions: world.rows(info.system).positions[info.rows.clone()].to_vec(),
                 point_fields,
                 cell_fields,
+                frames: frames_of(world, info),
             }
         };
-        Self { time: world.time(), bodies: bodies.iter().map(body).collect() }
+        Self { time: world.time(), bodies: bodies.iter().enumerate().map(body).collect() }
     }
+}
+
+fn frames_of(world: &World, info: &BodyInfo) -> Vec<[Vec3; 4]> {
+    let positions = &world.rows(info.system).positions;
+    let rows = info.frames.iter().flat_map(|frames| &frames.rows);
+    rows.map(|row| std::array::from_fn(|k| positions[*row as usize + k])).collect()
 }
 
 impl BodyMoment {
     /// `known`: the mesh of a frame before, taken again where the cells are the same.
     fn of_file(name: &str, path: &Path, known: Option<&Arc<Mesh>>) -> Result<Self, IoError> {
         let Dataset { mesh, point_fields, cell_fields, .. } = read_dataset(path)?;
+        // the cells of a sheet are read as facets, fields on them in the same order
+        let mesh = if mesh.cell_count() == 0 { mesh.facets_as_cells() } else { mesh };
         let positions = mesh.points.clone();
         let mesh = match known {
             Some(known) if known.blocks == mesh.blocks && known.points.len() == mesh.points.len() => {
@@ -155,11 +185,16 @@ impl BodyMoment {
             }
             _ => Arc::new(mesh),
         };
-        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields })
+        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields, frames: Vec::new() })
     }
 
-    /// Whether it can be drawn.
-    fn is_finite(&self) -> bool {
-        self.positions.iter().all(|x| x.is_finite())
+    /// Whether it can be drawn: it is finite, and has not grown beyond all bounds; of one that has, a point or two
+    /// would be seen.
+    fn is_drawable(&self) -> bool {
+        let extent = |points: &[Vec3]| BoundingBox::of(points.iter().copied()).diagonal();
+        let rest = extent(&self.mesh.points);
+        // masses that start at one place may go anywhere
+        let has_run_away = rest > 0.0 && extent(&self.positions) > MOST_GROWTH * rest;
+        self.positions.iter().all(|x| x.is_finite()) && !has_run_away
     }
 }

@@ -63,6 +63,26 @@ impl<'a> Quantity<'a> {
         Some(sums.into_iter().map(|(sum, count)| sum / count).collect())
     }
 
+    /// What rounding makes of zero in a body of a stiffness [Pa]; zero where that is not known of the quantity.
+    pub fn noise(&self, body: &BodyMoment, stiffness: f64) -> f64 {
+        // positions and gradients of them are rounded: strains by this, of bodies not too far from the origin
+        const ROUNDING: f64 = 1e-12;
+        let scale = match self.field {
+            "stress" | "von_mises" => stiffness,
+            // a difference of energies of the size of the stiffness
+            "strain_energy_density" => 1e-3 * stiffness,
+            "displacement" => body.positions.iter().map(|x| x.length()).fold(0.0, f64::max),
+            _ => 0.0,
+        };
+        // a component is as uncertain as the greatest of them
+        let fields = body.point_fields.iter().chain(&body.cell_fields);
+        let of_components = fields
+            .filter(|field| field.name == self.field && self.component.is_some())
+            .flat_map(|field| field.values.iter().filter(|value| value.is_finite()))
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        ROUNDING * scale.max(of_components)
+    }
+
     fn scalars(&self, field: &Field) -> Option<Vec<f64>> {
         let n = field.components;
         let tuples = field.values.chunks_exact(n.max(1));

@@ -7,8 +7,10 @@ use souple_engine::obstacle::{Form, Obstacle, Side};
 use souple_io::picture::{Colour, EdgeStyle, Faces, Ground, Paint, Surface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
-use souple_scene::Scene;
 use souple_scene::spec::picture::{PictureSpec, PictureView};
+use souple_scene::{BodyInfo, Scene};
+
+use crate::frames::solid_of;
 
 /// The surroundings of a scene.
 #[derive(Clone, Debug)]
@@ -16,6 +18,8 @@ pub struct Stage {
     pub title: String,
     /// From where the scene is seen, and what is up.
     pub view: PictureView,
+    /// Stress for each unit of strain of the stiffest body [Pa]; zero where it is not known.
+    pub stiffness: f64,
     obstacles: Vec<Obstacle>,
 }
 
@@ -23,17 +27,17 @@ impl Default for Stage {
     /// Nothing stands around; `y` is up.
     fn default() -> Self {
         let view = PictureSpec::default().view(Vec3::ZERO);
-        Self { title: String::new(), view, obstacles: Vec::new() }
+        Self { title: String::new(), view, stiffness: 0.0, obstacles: Vec::new() }
     }
 }
 
 impl Stage {
     pub fn of(scene: &Scene) -> Self {
-        Self { title: scene.title.clone(), ..Self::of_model(&scene.model, scene.picture) }
+        Self { title: scene.title.clone(), ..Self::of_model(&scene.model, &scene.bodies, scene.picture) }
     }
 
     /// Without a title.
-    pub fn of_model(model: &Model, view: PictureView) -> Self {
+    pub fn of_model(model: &Model, bodies: &[BodyInfo], view: PictureView) -> Self {
         let forces = model.systems.iter().flat_map(|system| &system.forces);
         let mut obstacles: Vec<Obstacle> = Vec::new();
         for obstacle in forces.filter_map(|force| force.obstacle()) {
@@ -42,7 +46,8 @@ impl Stage {
                 obstacles.push(obstacle);
             }
         }
-        Self { title: String::new(), view, obstacles }
+        let stiffness = bodies.iter().filter_map(|body| stiffness(model, body)).fold(0.0, f64::max);
+        Self { title: String::new(), view, stiffness, obstacles }
     }
 
     /// The stage of the scene that a run's report names; the default, and why, where it cannot be had.
@@ -94,6 +99,8 @@ impl Stage {
                 paint: hard(),
                 edge_style: EdgeStyle::Hidden,
                 faces: if *bodies == Side::Inside { Faces::Front } else { Faces::Both },
+                // a tool does not hide what it touches
+                see_through: true,
                 ..Surface::default()
             }),
         });
@@ -109,6 +116,25 @@ impl Stage {
         });
         boxes.reduce(BoundingBox::union)
     }
+}
+
+/// Strains by which the stiffness of a body is felt: all stretches, so that cables are taut, and not alike, so that
+/// there is shear.
+const FEELERS: [f64; 3] = [1e-3, 2e-3, 4e-3];
+/// Cells of a body at which its stiffness is felt.
+const FELT_CELLS: usize = 8;
+
+/// Stress for each unit of strain of a body, to an order of magnitude [Pa]; `None` where its force tells no stress.
+fn stiffness(model: &Model, body: &BodyInfo) -> Option<f64> {
+    let solid = solid_of(model, body)?;
+    let mut positions = vec![Vec3::ZERO; body.rows.end];
+    for (position, rest) in positions[body.rows.clone()].iter_mut().zip(&body.mesh.points) {
+        *position = *rest + Vec3::new(FEELERS[0] * rest.x, FEELERS[1] * rest.y, FEELERS[2] * rest.z);
+    }
+    let count = body.mesh.cell_count();
+    let felt = (0..count).step_by(count.div_ceil(FELT_CELLS).max(1));
+    let stresses = felt.filter_map(|cell| Some(solid.cell_field(cell, &positions)?.von_mises));
+    stresses.filter(|stress| stress.is_finite()).map(|stress| stress / FEELERS[0]).reduce(f64::max)
 }
 
 /// Cosine of 45 degrees: steeper planes are walls.

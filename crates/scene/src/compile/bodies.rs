@@ -5,6 +5,7 @@ use std::ops::Range;
 use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
+use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
@@ -12,8 +13,9 @@ use souple_models::solids::{
 };
 
 use super::boundary::constant_vector;
+use super::frames::PlacedFrames;
 use super::network::PlacedLinks;
-use super::{Draft, network, shape};
+use super::{Draft, frames, network, shape};
 use crate::diagnostic::Code;
 use crate::spec::body::{Body, Damping, MassKind};
 use crate::spec::world::SystemSpec;
@@ -26,8 +28,31 @@ pub struct Placed<'a> {
     pub mesh: Mesh,
     /// The number that each point had in its file, ascending.
     pub point_numbers: Vec<u32>,
+    pub materials: BodyMaterials,
     /// Which masses the links of a network join, table after table.
     pub links: Vec<PlacedLinks>,
+    /// What carries it, where that is not its points.
+    pub frames: Option<PlacedFrames>,
+}
+
+impl Placed<'_> {
+    /// Rows that its mass is on: those of its frames, or its points.
+    pub fn mass_rows(&self) -> Range<usize> {
+        self.frames.as_ref().map_or_else(|| self.rows.clone(), PlacedFrames::row_range)
+    }
+}
+
+/// The materials of a body, and which of them each cell has.
+#[derive(Default)]
+pub struct BodyMaterials {
+    pub all: Vec<Material>,
+    pub of_cell: Vec<u16>,
+}
+
+impl BodyMaterials {
+    pub fn of(&self, cell: usize) -> &Material {
+        &self.all[usize::from(self.of_cell[cell])]
+    }
 }
 
 /// Name of the elastic force of a body.
@@ -38,7 +63,6 @@ pub fn solid_name(body: &str) -> String {
 /// Builds all meshes and gives out rows; `None` where one was refused.
 pub fn place(draft: &mut Draft) -> Option<()> {
     let spec = draft.spec;
-    let mut next_row = vec![0; spec.systems.len()];
     // every mesh is looked at, so that each refused one is reported
     for body in &spec.bodies {
         let built = match &body.network {
@@ -50,28 +74,71 @@ pub fn place(draft: &mut Draft) -> Option<()> {
             continue;
         };
         draft.warnings.extend(shape.warnings);
-        let first = next_row[system];
-        next_row[system] += shape.mesh.points.len();
-        let rows = first..next_row[system];
-        draft.bodies.push(Placed {
-            spec: body,
-            system,
-            rows,
-            mesh: shape.mesh,
-            point_numbers: shape.point_numbers,
-            links,
-        });
+        let (mesh, point_numbers) = (shape.mesh, shape.point_numbers);
+        let materials = BodyMaterials::default();
+        let mut placed =
+            Placed { spec: body, system, rows: 0..0, mesh, point_numbers, materials, links, frames: None };
+        if let Some(materials) = materials_of(draft, &placed) {
+            placed.materials = materials;
+        }
+        if body.frames.is_some() {
+            let mut warnings = Vec::new();
+            let BodyMaterials { all, of_cell } = &placed.materials;
+            placed.frames = frames::place(draft, body, &placed.mesh, all, of_cell, &mut warnings);
+            draft.warnings.extend(warnings);
+        }
+        draft.bodies.push(placed);
     }
-    (draft.bodies.len() == spec.bodies.len() && draft.log.is_empty()).then_some(())
+    let is_complete = |body: &Placed| body.spec.frames.is_some() == body.frames.is_some();
+    if draft.bodies.len() < spec.bodies.len()
+        || !draft.bodies.iter().all(is_complete)
+        || !draft.log.is_empty()
+    {
+        return None;
+    }
+    give_rows(&mut draft.bodies, spec.systems.len());
+    Some(())
+}
+
+/// Rows of unknowns come first: points of meshes, then frames; points that frames carry follow.
+fn give_rows(bodies: &mut [Placed], systems: usize) {
+    let mut next = vec![0; systems];
+    let mut give = |system: usize, count: usize| {
+        let first = next[system];
+        next[system] += count;
+        first..next[system]
+    };
+    for body in bodies.iter_mut().filter(|body| body.frames.is_none()) {
+        body.rows = give(body.system, body.mesh.points.len());
+    }
+    for body in bodies.iter_mut() {
+        if let Some(frames) = &mut body.frames {
+            frames.give_rows(give(body.system, ROWS_OF_FRAME * frames.frames.len()).start);
+        }
+    }
+    for body in bodies.iter_mut().filter(|body| body.frames.is_some()) {
+        body.rows = give(body.system, body.mesh.points.len());
+    }
+}
+
+/// The unknowns of a system and what hangs on them, in the order of [`give_rows`].
+fn kinematics(draft: &Draft, index: usize) -> Kinematics {
+    let bodies = || draft.bodies.iter().filter(|body| body.system == index);
+    let mut kinematics = Kinematics::default();
+    let points = bodies().filter(|body| body.frames.is_none()).map(|body| body.mesh.points.len()).sum();
+    kinematics.add_unknowns(UnknownKind::Point, points);
+    for frames in bodies().filter_map(|body| body.frames.as_ref()) {
+        kinematics.add_unknowns(frames.kind, frames.frames.len());
+    }
+    bodies().filter_map(|body| body.frames.as_ref()).for_each(|frames| frames.add_points(&mut kinematics));
+    kinematics
 }
 
 /// A system with masses, elastic forces, gravity and damping of its bodies.
 pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> {
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
-    let mut kinematics = Kinematics::default();
-    let row_count = bodies().map(|body| body.mesh.points.len()).sum();
-    kinematics.add_unknowns(UnknownKind::Point, row_count);
-    let mut mass = Mass::new(row_count);
+    let kinematics = kinematics(draft, index);
+    let mut mass = Mass::new(kinematics.row_count());
     let mut forces: Vec<Box<dyn Force>> = Vec::new();
     for body in bodies() {
         if let Some(network) = &body.spec.network {
@@ -79,13 +146,17 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             network::add_forces(draft, body, network, spec, &mut forces);
             continue;
         }
-        let Some((materials, material_of_cell)) = materials_of(draft, body) else { continue };
+        let materials = &body.materials;
         let section = body.spec.section();
-        if !suits(draft, body, &materials) {
+        if !suits(draft, body, &materials.all) {
             continue;
         }
-        let density =
-            |cell: usize| materials[usize::from(material_of_cell[cell])].density * section.measure();
+        let density = |cell: usize| materials.of(cell).density * section.measure();
+        if let (Some(frames), Some(spec)) = (&body.frames, &body.spec.frames) {
+            frames.add_mass(body.spec.mass, &density, &mut mass);
+            forces.push(frames.force(body, spec, &materials.all, &materials.of_cell));
+            continue;
+        }
         match body.spec.mass {
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
@@ -94,8 +165,8 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             name: solid_name(&body.spec.name),
             mesh: &body.mesh,
             first_row: body.rows.start,
-            materials: &materials,
-            material_of_cell: &material_of_cell,
+            materials: &materials.all,
+            material_of_cell: &materials.of_cell,
             quadrature: body.spec.quadrature,
             section,
         };
@@ -180,7 +251,7 @@ fn add_outer_forces(
                     let message = format!("gravity is ({x}, {y}, {z}) at t = 0");
                     draft.log.add(
                         Code::NotFinite,
-                        &world.site,
+                        &world.gravity_site,
                         message,
                         "formulas that are finite at the start",
                     );
@@ -191,7 +262,7 @@ fn add_outer_forces(
             Some(constant) => match Gravity::new("gravity", constant, mass, kinematics) {
                 Ok(gravity) => forces.push(Box::new(gravity)),
                 Err(error) => {
-                    draft.log.add(Code::OutOfRange, &world.site, error.to_string(), "finite numbers")
+                    draft.log.add(Code::OutOfRange, &world.gravity_site, error.to_string(), "finite numbers")
                 }
             },
         }
@@ -200,7 +271,7 @@ fn add_outer_forces(
         let (name, damping) = (&body.spec.name, body.spec.damping);
         let mut added: Vec<Result<Box<dyn Force>, LoadError>> = Vec::new();
         if damping.rayleigh_mass > 0.0 {
-            let part = part_of_mass(mass, &body.rows);
+            let part = part_of_mass(mass, &body.mass_rows());
             let force = MassDamping::new(format!("{name}.rayleigh_mass"), part, damping.rayleigh_mass);
             added.push(force.map(|force| Box::new(force) as _));
         }
@@ -259,8 +330,7 @@ pub fn point_areas(surface: &TriangleSurface) -> Vec<f64> {
     areas
 }
 
-/// The materials of a body and the number of each cell's among them.
-fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>)> {
+fn materials_of(draft: &Draft, body: &Placed) -> Option<BodyMaterials> {
     let main = body.spec.material.as_ref()?;
     // tried when the scene was read
     let mut materials = vec![(main.entry.build)(&main.values).ok()?];
@@ -280,14 +350,22 @@ fn materials_of(draft: &Draft, body: &Placed) -> Option<(Vec<Material>, Vec<u16>
             material_of_cell[cell as usize] = number;
         }
     }
-    Some((materials, material_of_cell))
+    Some(BodyMaterials { all: materials, of_cell: material_of_cell })
 }
 
 /// Rest positions and initial velocities. Pinned points stand where their pins want them, but for steppers that look for
 /// equilibrium: those lead them there with all others, from rest.
 pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemState {
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
-    let q: Vec<Vec3> = bodies().flat_map(|body| body.mesh.points.iter().copied()).collect();
+    let mut q = vec![Vec3::ZERO; system.kinematics.free_row_count()];
+    for body in bodies() {
+        match &body.frames {
+            Some(frames) => {
+                q[frames.row_range()].iter_mut().zip(frames.configuration()).for_each(|(q, row)| *q = row);
+            }
+            None => q[body.rows.clone()].copy_from_slice(&body.mesh.points),
+        }
+    }
     let mut state = system.initial_state(q);
     for body in bodies() {
         // v + ω × (x - c)
@@ -296,8 +374,17 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
             Some(_) => points.iter().copied().sum::<Vec3>() / points.len() as f64,
             None => body.mesh.centroid(),
         };
-        for (row, x) in body.rows.clone().zip(&body.mesh.points) {
-            state.v[row] = body.spec.velocity + body.spec.angular_velocity.cross(*x - centre);
+        let (velocity, angular_velocity) = (body.spec.velocity, body.spec.angular_velocity);
+        match &body.frames {
+            Some(frames) => {
+                let motion = [velocity, angular_velocity, centre];
+                frames.start_velocity(&system.kinematics, motion, &mut state.v);
+            }
+            None => {
+                for (row, x) in body.rows.clone().zip(points) {
+                    state.v[row] = velocity + angular_velocity.cross(*x - centre);
+                }
+            }
         }
         if let Some(network) = &body.spec.network {
             network::add_velocities(body, network, &mut state.v);

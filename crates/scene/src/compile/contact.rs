@@ -25,6 +25,13 @@ struct Touching {
     mean_area: f64,
 }
 
+impl Touching {
+    /// Rows of the points with their shares of the stiffness.
+    fn shares(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.points.iter().map(|point| (point.row, point.share))
+    }
+}
+
 /// All contacts.
 pub fn add(draft: &mut Draft) {
     let mut added: Vec<(usize, Box<dyn Force>)> = Vec::new();
@@ -88,14 +95,36 @@ fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching>
     Some(Touching { points: chosen.into_iter().map(contact_point).collect(), mean_area })
 }
 
-fn law(body: &Placed, contact: &Contact, mean_area: f64) -> ContactLaw {
-    let stiffness = contact.stiffness.unwrap_or_else(|| {
-        let material =
-            body.spec.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok());
-        let modulus = material.map_or(0.0, |material| youngs_modulus(&material.small_strain));
-        // the material behind a point resists over about the width of an element
-        penalty_stiffness(modulus, mean_area, mean_area.sqrt())
-    });
+/// Young's modulus behind points of a body, given as rows and shares: the mean over the cells around them [Pa].
+fn modulus_behind(body: &Placed, points: impl Iterator<Item = (u32, f64)>) -> f64 {
+    let mut sums = vec![(0.0, 0_u32); body.mesh.points.len()];
+    for (index, cell) in body.mesh.cells().enumerate() {
+        let modulus = youngs_modulus(&body.materials.of(index).small_strain);
+        for node in cell.nodes {
+            let (sum, count) = &mut sums[*node as usize];
+            *sum += modulus;
+            *count += 1;
+        }
+    }
+    let (mut weighted, mut shares) = (0.0, 0.0);
+    for (row, share) in points {
+        let (sum, count) = sums[row as usize - body.rows.start];
+        weighted += share * sum / f64::from(count);
+        shares += share;
+    }
+    weighted / shares
+}
+
+/// The modulus of two bodies that press on each other: their layers of one thickness give way in series [Pa].
+fn modulus_between(a: f64, b: f64) -> f64 {
+    2.0 * a * b / (a + b)
+}
+
+/// `modulus`: of what gives way [Pa].
+fn law(contact: &Contact, modulus: f64, mean_area: f64) -> ContactLaw {
+    // the material behind a point resists over about the width of an element
+    let stiffness =
+        contact.stiffness.unwrap_or_else(|| penalty_stiffness(modulus, mean_area, mean_area.sqrt()));
     ContactLaw {
         stiffness,
         damping: contact.damping,
@@ -147,7 +176,7 @@ fn against_shape(
         );
         return None;
     }
-    let law = law(body, contact, touching.mean_area);
+    let law = law(contact, modulus_behind(body, touching.shares()), touching.mean_area);
     let joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
     match ShapeContact::new(contact.name.clone(), touching.points, built, motion, law) {
         Ok(force) => Some((force, joints)),
@@ -179,13 +208,16 @@ fn against_body(
     let surfaces = bodies.map(|placed| placed.mesh.boundary_surface());
     let reach = f64::max(mean_edge(&surfaces[0]), mean_edge(&surfaces[1])) + contact.thickness;
     let mut sides = bodies.iter().zip(surfaces).map(|(placed, surface)| {
-        let areas = super::bodies::point_areas(&surface);
-        let mean = areas.iter().sum::<f64>() / areas.len() as f64;
+        // one stiffness for each area on both sides, of which a point of the region's mean area has the whole
+        let shares =
+            super::bodies::point_areas(&surface).iter().map(|area| area / touching.mean_area).collect();
         let first = placed.rows.start as u32;
         let rows = surface.mesh_points.iter().map(|point| first + point).collect();
-        ContactSurface { rows, shares: areas.iter().map(|area| area / mean).collect(), surface }
+        ContactSurface { rows, shares, surface }
     });
     let (mut a, b) = (sides.next()?, sides.next()?);
+    let facing = b.rows.iter().copied().zip(b.shares.iter().copied());
+    let modulus = modulus_between(modulus_behind(body, touching.shares()), modulus_behind(other, facing));
     // points outside the region do not touch by themselves
     let chosen: std::collections::BTreeSet<u32> = touching.points.iter().map(|point| point.row).collect();
     for (row, share) in a.rows.iter().zip(&mut a.shares) {
@@ -193,7 +225,7 @@ fn against_body(
             *share = 0.0;
         }
     }
-    let law = law(body, contact, touching.mean_area);
+    let law = law(contact, modulus, touching.mean_area);
     match SurfaceContact::new(contact.name.clone(), a, b, law, reach) {
         Ok(force) => Some(force),
         Err(error) => refuse(error.to_string(), "bodies with closed surfaces"),
@@ -201,7 +233,7 @@ fn against_body(
 }
 
 /// Mean length of the edges of a surface [m].
-fn mean_edge(surface: &TriangleSurface) -> f64 {
+pub fn mean_edge(surface: &TriangleSurface) -> f64 {
     let mut sum = 0.0;
     for triangle in 0..surface.triangles.len() as u32 {
         let [a, b, c] = surface.corners(triangle);

@@ -3,16 +3,20 @@
 use souple_engine::System;
 use souple_engine::linear::Method;
 use souple_mesh::Order;
-use souple_models::materials::{Lame, Material};
+use souple_models::materials::{Build, Lame, Material};
+use souple_table::{Value, readable};
 
 use super::Draft;
-use crate::diagnostic::Site;
+use crate::diagnostic::Code;
+use crate::reader::Chosen;
 use crate::spec::body::Body;
 
 /// Young's moduli of matter [Pa]: the softest gels have tens of pascals, diamond 1.2·10¹².
 const MODULI: [f64; 2] = [20.0, 2e12];
 /// Densities of matter [kg/m³]: aerogels have a few, osmium 22 600.
 const DENSITIES: [f64; 2] = [1.0, 3e4];
+/// Moduli and densities in SI units that can be computed with, and more than there are.
+const ABSURD: [f64; 2] = [1e-30, 1e30];
 /// Sizes of bodies [m].
 const SIZES: [f64; 2] = [1e-5, 500.0];
 /// `λ/μ` beyond which elements with linear shape functions are markedly too stiff: they have fewer freedoms than
@@ -33,24 +37,49 @@ pub fn warn(draft: &mut Draft) {
             warnings.push(format!("{place}: body `{}` is {size:.3e} m across: {hint}", body.spec.name));
         }
         let is_linear = body.mesh.blocks.iter().any(|block| block.kind.order() == Order::Linear);
-        for (site, material) in materials(body.spec) {
+        for (chosen, material) in materials(body.spec) {
             let doubts = of_material(&material, is_linear);
-            warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(site))));
+            warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(&chosen.site))));
         }
     }
     draft.warnings.extend(warnings);
+}
+
+/// Refuses materials like nothing in the world: their numbers would overflow in what is computed of them.
+pub fn refuse(draft: &Draft) {
+    for body in &draft.bodies {
+        for (chosen, material) in materials(body.spec) {
+            let modulus = youngs_modulus(&material.small_strain);
+            let written = |key: &str, computed: f64| match chosen.values.get(key) {
+                Some(Value::Number(number)) => number,
+                _ => computed,
+            };
+            for (key, name, computed, [low, high]) in [
+                ("youngs_modulus", "Young's modulus", modulus, MODULI),
+                ("density", "the density", material.density, DENSITIES),
+            ] {
+                let value = written(key, computed);
+                if !within(value, ABSURD) {
+                    let message = format!("{name} is {}", readable(value));
+                    let expected =
+                        format!("that of some matter, usually {low:e} to {high:e}; is the unit right?");
+                    draft.log.add(Code::OutOfRange, chosen.site_of(key), message, expected);
+                }
+            }
+        }
+    }
 }
 
 fn within(value: f64, [low, high]: [f64; 2]) -> bool {
     (low..=high).contains(&value)
 }
 
-/// The materials of a body and where they are written.
-fn materials(body: &Body) -> Vec<(&Site, Material)> {
+/// The materials of a body as they are written and as they are.
+fn materials(body: &Body) -> Vec<(&Chosen<Build>, Material)> {
     let parts = body.regions.iter().map(|part| &part.material);
     let chosen = [&body.material].into_iter().chain(parts).flatten();
     // what cannot be built was refused where it was read
-    chosen.filter_map(|chosen| Some((&chosen.site, (chosen.entry.build)(&chosen.values).ok()?))).collect()
+    chosen.filter_map(|chosen| Some((chosen, (chosen.entry.build)(&chosen.values).ok()?))).collect()
 }
 
 /// `is_linear`: some of its elements have linear shape functions.
@@ -88,10 +117,8 @@ pub fn of_solver(system: &System) -> Option<String> {
             "`cg` solves symmetric systems, but the stiffness of `{name}` is not symmetric: `gmres` takes its place"
         ));
     }
-    let asked = settings.preconditioner;
-    let is_plain = ["auto", "block_jacobi"].contains(&asked);
-    (settings.matrix_free && !is_plain)
-        .then(|| format!("without a stored matrix there is no `{asked}`: `block_jacobi` takes its place"))
+    let (asked, taken) = (settings.preconditioner, settings.preconditioner_instead()?);
+    Some(format!("without a stored matrix there is no `{asked}`: `{taken}` takes its place"))
 }
 
 /// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].

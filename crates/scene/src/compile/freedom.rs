@@ -187,7 +187,10 @@ fn free_motions(
         let body = bodies().find(|body| body.rows.contains(&row));
         body.map_or(Vec3::ZERO, |body| body.mesh.points[row - body.rows.start])
     };
-    let rows = || (0..part_of_row.len()).filter(|row| group.binary_search(&part_of_row[*row]).is_ok());
+    // rows of frames belong to no mesh
+    let is_of_body = |row: &usize| bodies().any(|body| body.rows.contains(row));
+    let in_group = |row: &usize| group.binary_search(&part_of_row[*row]).is_ok();
+    let rows = || (0..part_of_row.len()).filter(in_group).filter(is_of_body);
     // lengths relative to the group's size about its middle, so that shifts and turns weigh alike
     let bounds = souple_mesh::BoundingBox::of(rows().map(place));
     let (centre, size) = (bounds.centre(), bounds.diagonal());

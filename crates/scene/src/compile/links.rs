@@ -3,10 +3,13 @@
 use souple_engine::coupling::{CouplingSpring, DRIVEN_LEN};
 use souple_math::Vec3;
 use souple_mesh::CellLocator;
+use souple_models::frames::layer_stiffness;
 use souple_models::loads::{Attachments, Combination, Link as LoadLink};
 
 use super::Draft;
 use super::bodies::Placed;
+use super::doubts::youngs_modulus;
+use super::frames::cross_sections;
 use super::freedom::Joint;
 use crate::diagnostic::Code;
 use crate::spec::interaction::Link;
@@ -82,7 +85,8 @@ pub fn attach(draft: &mut Draft) {
             );
             continue;
         }
-        match Attachments::new(format!("attachments[{index}]"), links, link.stiffness, link.damping) {
+        let stiffness = link.stiffness.unwrap_or_else(|| layer_between(from, to, &links));
+        match Attachments::new(format!("attachments[{index}]"), links, stiffness, link.damping) {
             Ok(force) => added.push((from.system, force)),
             Err(error) => draft.log.add(Code::OutOfRange, &link.site, error.to_string(), "finite numbers"),
         }
@@ -91,6 +95,24 @@ pub fn attach(draft: &mut Draft) {
     for (system, force) in added {
         draft.systems[system].forces.push(Box::new(force));
     }
+}
+
+/// Stiffness of each spring between two bodies: together that of a thin layer whose modulus is the harmonic mean of
+/// theirs, each spring on the mean cross-section of its point [N/m].
+fn layer_between(from: &Placed, to: &Placed, links: &[LoadLink]) -> f64 {
+    let modulus = |body: &Placed| {
+        let material = body.spec.material.as_ref();
+        let built = material.and_then(|chosen| (chosen.entry.build)(&chosen.values).ok());
+        built.map_or(0.0, |material| youngs_modulus(&material.small_strain))
+    };
+    let [a, b] = [from, to].map(modulus);
+    let smallest =
+        |body: &Placed| body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
+    let size = f64::min(smallest(from), smallest(to));
+    let areas = cross_sections(&from.mesh);
+    let rows = links.iter().flat_map(|link| link.a.rows());
+    let area: f64 = rows.map(|(row, _)| areas[*row as usize - from.rows.start]).sum();
+    layer_stiffness(2.0 * a * b / (a + b), size) * area / links.len() as f64
 }
 
 /// The spring of a point, and what it hinders; `None` beyond reach.
@@ -151,7 +173,8 @@ pub fn couple(draft: &mut Draft) {
                 fast_row: fast.1,
                 slow_system: slow.0,
                 slow_row: slow.1,
-                stiffness: link.stiffness,
+                // couplings must say theirs
+                stiffness: link.stiffness.unwrap_or(f64::NAN),
                 damping: link.damping,
                 driven: springs.len() * DRIVEN_LEN,
             });

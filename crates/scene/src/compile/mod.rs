@@ -3,7 +3,9 @@
 mod bodies;
 mod boundary;
 mod contact;
+mod depth;
 mod doubts;
+mod frames;
 mod freedom;
 mod links;
 mod memory;
@@ -13,10 +15,12 @@ mod pins;
 mod selection;
 mod shape;
 
-pub(crate) use bodies::solid_name;
+pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;
+pub(crate) use frames::hold_name;
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use souple_engine::{Model, State, System};
 
@@ -28,7 +32,6 @@ use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
 
-use bodies::Placed;
 use freedom::Joint;
 use selection::Selector;
 
@@ -93,6 +96,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     };
     bodies::place(&mut draft)?;
     memory::check_placed(spec, &draft.bodies, log);
+    doubts::refuse(&draft);
     if !log.is_empty() {
         return None;
     }
@@ -127,12 +131,12 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     if !log.is_empty() {
         return None;
     }
+    depth::warn(&mut draft);
     let Draft { bodies, systems, mut model, state, warnings, .. } = draft;
     model.systems = systems;
-    let bodies =
-        bodies.into_iter().map(|body| BodyInfo::new(&body.spec.name, body.system, body.rows, body.mesh));
+    let bodies = bodies.into_iter().map(BodyInfo::new);
     Some(Scene {
-        title: spec.title.clone(),
+        title: title(spec, sources),
         description: spec.description.clone(),
         shows: spec.shows.clone(),
         bodies: bodies.collect(),
@@ -147,6 +151,16 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         inputs: Inputs::default(),
         warnings,
     })
+}
+
+/// The scene's title, or what its file is called.
+fn title(spec: &Spec, sources: &Sources) -> String {
+    if !spec.title.is_empty() {
+        return spec.title.clone();
+    }
+    let path = Path::new(&sources.get(0).name);
+    let folder = path.parent().and_then(Path::file_name).filter(|_| path.ends_with("scene.toml"));
+    folder.or(path.file_stem()).unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// Forces are told apart by their names, which contacts may choose.

@@ -7,9 +7,10 @@ use std::sync::Arc;
 use souple_engine::{Constraint, Motion};
 use souple_math::{Mat3, Vec3};
 
-use super::Draft;
 use super::bodies::Placed;
+use super::freedom::Joint;
 use super::motion::{AxisMotions, motion_of_pin};
+use super::{Draft, frames};
 use crate::diagnostic::Code;
 use crate::spec::boundary::{MotionSpec, Pin};
 
@@ -42,7 +43,7 @@ const SAME: f64 = 1e-9;
 /// All pins of all bodies.
 pub fn add(draft: &mut Draft) {
     let mut added: Vec<(usize, Constraint)> = Vec::new();
-    let mut torn = Vec::new();
+    let (mut torn, mut holding, mut joints) = (Vec::new(), Vec::new(), Vec::new());
     for body in &draft.bodies {
         let system = &draft.systems[body.system];
         let mut holds = holds(draft, body);
@@ -55,6 +56,12 @@ pub fn add(draft: &mut Draft) {
         }
         if system.stepper.has_inertia() {
             torn.extend(torn_at_start(draft, body, &holds));
+        }
+        if body.frames.is_some() {
+            let (force, held) = held_by_springs(body, holds);
+            holding.extend(force.map(|force| (body.system, force)));
+            joints.extend(held);
+            continue;
         }
         for (point, hold) in holds {
             let start = body.mesh.points[point as usize];
@@ -69,9 +76,34 @@ pub fn add(draft: &mut Draft) {
         }
     }
     draft.warnings.extend(torn);
+    draft.joints.extend(joints);
     for (system, constraint) in added {
         draft.systems[system].constraints.push(constraint);
     }
+    for (system, force) in holding {
+        draft.systems[system].forces.push(Box::new(force));
+    }
+}
+
+/// What holds the points of a body of frames, which are no unknowns: stiff springs along the pinned axes.
+fn held_by_springs(
+    body: &Placed,
+    holds: BTreeMap<u32, Hold>,
+) -> (Option<souple_models::frames::Hold>, Vec<Joint>) {
+    let mut joints = Vec::new();
+    let mut held = Vec::new();
+    for (point, Hold { by }) in holds {
+        let axes = Vec3::from_array([0, 1, 2].map(|axis: usize| if by[axis].is_some() { 1.0 } else { 0.0 }));
+        let ends = vec![(body.rows.start as u32 + point, 1.0)];
+        for axis in (0..3).filter(|axis| by[*axis].is_some()) {
+            let direction = Some(Vec3::AXES[axis]);
+            joints.push(Joint { system: body.system, ends: ends.clone(), direction });
+        }
+        let motions = by.map(|led| led.and_then(|led| led.motion));
+        let leads = motions.iter().any(Option::is_some);
+        held.push((point, axes, leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>)));
+    }
+    (frames::hold(body, held), joints)
 }
 
 /// Pins whose points are elsewhere at the start than at rest, in words: what moves starts at rest all around them.

@@ -1,6 +1,6 @@
 //! From a mesh specification to a mesh that has passed every check, placed where the body starts.
 
-use souple_mesh::fill::{FillError, fill_surface, surface_of};
+use souple_mesh::fill::{FillError, fill_mesh};
 use souple_mesh::repair::RepairLimits;
 use souple_mesh::{Conformity, Mesh, MeshError, Repairs};
 
@@ -20,6 +20,9 @@ pub struct Shape {
 /// Points of a plane body lie in one plane up to this part of its size: rounding of files in single precision.
 const FLAT: f64 = 1e-6;
 
+/// Least size of a body, as a part of its distance from the origin: positions keep a millionth of it then.
+const NEAREST: f64 = 1e-10;
+
 /// The mesh of a body; `None` where it was refused.
 pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
     let spec = body.mesh.as_ref()?;
@@ -37,19 +40,21 @@ pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
         MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, &mut warnings)?),
         MeshSpec::Filled { file, scale, options, .. } => {
             let mesh = read(draft, spec.site(), file, *scale, &mut warnings)?;
-            let surface = surface_of(&mesh).ok_or(MeshError::NoCells);
-            surface.and_then(|surface| fill_surface(&surface, RepairLimits::default(), options)).map(
-                |filled| {
-                    warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
-                    filled.mesh
-                },
-            )
+            fill_mesh(&mesh, RepairLimits::default(), options).map(|filled| {
+                warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
+                filled.mesh
+            })
         }
     };
     let mut mesh = match built {
         Ok(mesh) => mesh,
         Err(error @ (MeshError::TooManyCells { .. } | MeshError::Fill(FillError::TooManyPoints { .. }))) => {
-            log.add(Code::TooLarge, site, error.to_string(), "fewer cells");
+            log.add(Code::TooLarge, spec.site_of("cells"), error.to_string(), "fewer cells");
+            return None;
+        }
+        Err(MeshError::Parameter { name, value, expected }) => {
+            let message = format!("`{name}` is {value}, of which no mesh can be made");
+            log.add(Code::Mesh, spec.site_of(name), message, expected);
             return None;
         }
         Err(error) => return refuse(error.to_string(), "a mesh that can be made"),
@@ -95,12 +100,15 @@ pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
     drop_facets_of_loose_points(&mut mesh);
     // points without mass would fall through every law: they go, and the others keep their numbers in the scene
     let point_numbers = mesh.remove_loose_points();
+    let size = mesh.bounds().diagonal();
     mesh.points.iter_mut().for_each(|point| *point = body.placement.place(*point));
-    if mesh.points.iter().any(|point| !point.is_finite()) {
-        return refuse(
-            "placed, the mesh has points that are not finite".to_owned(),
-            "a smaller scale or translation",
+    let farthest = mesh.points.iter().flat_map(|point| point.to_array()).map(f64::abs).fold(0.0, f64::max);
+    if farthest * NEAREST > size || mesh.points.iter().any(|point| !point.is_finite()) {
+        let message = format!(
+            "placed {farthest:.3e} m from the origin, this body of {size:.3e} m is lost in the rounding of its positions"
         );
+        log.add(Code::Mesh, &body.placement.site, message, "a place nearer to the origin");
+        return None;
     }
     if section.is_plane() {
         let bounds = mesh.bounds();

@@ -11,7 +11,8 @@ mod reaction;
 use souple_engine::World;
 use souple_math::Vec3;
 
-use crate::compile::{Draft, solid_name};
+use crate::compile::{Draft, hold_name, solid_name};
+use crate::diagnostic::Code;
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
     BodyQuantity, CellQuantity, Momentum, PointQuantity, Rank, Reduction, Subject, WorldQuantity,
@@ -57,6 +58,8 @@ struct Part {
     contact: Option<String>,
     /// The place that moments are taken about [m]; the body's centre of mass where `None`.
     about: Option<Vec3>,
+    /// The force that holds its pinned points, of a body of frames.
+    hold: Option<String>,
 }
 
 /// Cells of the solid of this name.
@@ -98,9 +101,11 @@ impl ProbeInfo {
             (Subject::BodyOrWorld(momentum), None) => {
                 Target::WorldMomentum(momentum, probe.about.unwrap_or(Vec3::ZERO))
             }
-            (Subject::BodyOrWorld(momentum), Some(_)) => Target::BodyMomentum(momentum, part(probe, draft)?),
+            (Subject::BodyOrWorld(momentum), Some(_)) => {
+                Target::BodyMomentum(momentum, matter(probe, draft)?)
+            }
             (Subject::Points(quantity), _) => Target::Points(quantity, part(probe, draft)?),
-            (Subject::Body(quantity), _) => Target::Body(quantity, part(probe, draft)?),
+            (Subject::Body(quantity), _) => Target::Body(quantity, matter(probe, draft)?),
             (Subject::Cells(quantity), _) => Target::Cells(quantity, cell_part(probe, draft)?),
         };
         Some(Self {
@@ -180,10 +185,32 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         system: body.system,
         rows: points.iter().map(|point| body.rows.start as u32 + point).collect(),
         starts: points.iter().map(|point| body.mesh.points[*point as usize]).collect(),
-        whole: body.rows.clone(),
+        whole: body.mass_rows(),
         contact: probe.contact.clone(),
         about: probe.about,
+        hold: body.frames.is_some().then(|| hold_name(&body.spec.name)),
     })
+}
+
+/// The rows that hold the mass of what a probe is of; `None` for a part of a body of frames, whose mass is not parted.
+fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
+    let part = part(probe, draft)?;
+    let body = draft.body(probe.body.as_deref()?)?;
+    if body.frames.is_none() {
+        return Some(part);
+    }
+    if let Some(region) = &probe.region {
+        let message =
+            format!("body `{}` is carried by frames, which hold its mass as a whole", body.spec.name);
+        draft.log.add(
+            Code::Conflict,
+            &region.site,
+            message,
+            "this quantity of the whole body, without a region",
+        );
+        return None;
+    }
+    Some(Part { rows: body.mass_rows().map(|row| row as u32).collect(), ..part })
 }
 
 /// The cells that a probe is of.

@@ -34,6 +34,12 @@ pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
                 reactions[row as usize] = constraint.constrained() * balance[row as usize];
             }
         }
+        // points that frames carry are held by springs: what these pull with is the reaction
+        let hold = part.hold.as_ref().and_then(|name| system.forces.iter().position(|f| f.name() == name));
+        if let Some(index) = hold {
+            let at = system.view(index, &ws.rows, state, around);
+            system.forces[index].add_force(&at, &mut ws.scratches[index], &mut reactions);
+        }
         part.rows.iter().map(|row| reactions[*row as usize]).collect()
     })
 }

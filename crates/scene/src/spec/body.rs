@@ -6,6 +6,7 @@ use souple_models::solids::{BuildSection, Quadrature, SECTIONS, Section};
 use souple_table::{Range, Value};
 
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
+use super::frames::{FRAMES, FramesSpec};
 use super::mesh::{MESH, MeshSpec};
 use super::network::Network;
 use super::region::{Region, direction};
@@ -62,6 +63,7 @@ pub(crate) static BODY: Keys = Keys::new(
             Shape::Entry(SECTION),
             "what its cells are sections of, where they are no volumes: a plane body, a membrane, a bar, a cable",
         ),
+        Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new("mass", Shape::Choice(&["lumped", "consistent"]), "how mass is spread over points")
             .or(Value::Text("lumped")),
@@ -98,6 +100,8 @@ pub struct Body {
     pub material: Option<Chosen<materials::Build>>,
     /// What its cells are sections of; volumes where left out.
     pub section: Option<Chosen<BuildSection>>,
+    /// What carries it; the points of its mesh where left out.
+    pub frames: Option<FramesSpec>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
@@ -145,7 +149,7 @@ pub struct Damping {
 }
 
 /// Where a rest shape stands: turned by `rotation` about `centre`, then moved.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Placement {
     /// Axis times angle [rad].
     pub rotation: Vec3,
@@ -153,6 +157,8 @@ pub struct Placement {
     pub centre: Vec3,
     /// [m]
     pub translation: Vec3,
+    /// Of what moves it, or of the body.
+    pub site: Site,
 }
 
 impl Placement {
@@ -166,7 +172,9 @@ impl Placement {
     }
 
     pub(crate) fn read(reader: &Reader) -> Self {
-        let mut placement = Self { translation: reader.vector("translate"), ..Self::default() };
+        let written = reader.written(&["translate", "rotate"]);
+        let site = written.first().map_or_else(|| reader.site(), |key| reader.site_of(key));
+        let mut placement = Self { translation: reader.vector("translate"), site, ..Self::default() };
         if let Some(rotation) = reader.table("rotate")
             && let Some(axis) = direction(&rotation, "axis")
         {
@@ -194,6 +202,7 @@ impl Body {
             mesh: MeshSpec::read(reader),
             material: read_material(reader),
             section: reader.entry("section", &SECTIONS),
+            frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
             quadrature: if reader.choice("quadrature") == "full" {

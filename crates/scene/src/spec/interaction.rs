@@ -14,7 +14,12 @@ pub(crate) static ATTACHMENT: Keys = Keys::new(
         Key::new("from", Shape::Text, "the body whose points are attached").required(),
         Key::new("region", Shape::Region, "which of its points").required(),
         Key::new("to", Shape::Text, "the body they are attached to").required(),
-        Key::number("stiffness", "N/m", Range::POSITIVE, "of each point's spring").required(),
+        Key::number(
+            "stiffness",
+            "N/m",
+            Range::POSITIVE,
+            "of each point's spring; that of a thin layer of both materials where left out",
+        ),
         Key::number("damping", "N s/m", Range::NOT_NEGATIVE, "of each point's spring").or(Value::Number(0.0)),
         Key::number("reach", "m", Range::NOT_NEGATIVE, "points further from the other body stay free"),
     ],
@@ -38,8 +43,8 @@ pub struct Link {
     pub from: String,
     pub region: Option<Region>,
     pub to: String,
-    /// Of each point's spring [N/m].
-    pub stiffness: f64,
+    /// Of each point's spring [N/m]; that of a thin layer of both materials where `None`.
+    pub stiffness: Option<f64>,
     /// Of each point's spring [N s/m].
     pub damping: f64,
     /// Attached points are at most this far from the other body [m].
@@ -61,7 +66,7 @@ impl Link {
             from: reader.text("from"),
             region: Region::read(reader, "region"),
             to: reader.text("to"),
-            stiffness: reader.number("stiffness"),
+            stiffness: reader.maybe_number("stiffness"),
             damping: reader.number("damping"),
             reach: f64::INFINITY,
             site: reader.site(),

@@ -112,6 +112,15 @@ impl MeshSpec {
         }
     }
 
+    /// Where a parameter of a generator or a shape is written, or the whole.
+    pub fn site_of(&self, parameter: &str) -> &Site {
+        match self {
+            Self::Generated(chosen) => chosen.site_of(parameter),
+            Self::Shape { shape, .. } => shape.site_of(parameter),
+            Self::File { .. } | Self::Filled { .. } => self.site(),
+        }
+    }
+
     /// `{ generate = "bar", … }`, `{ file = "bar.msh" }`, `{ shape = "liver", … }`, `{ fill = "liver.stl", … }`, or
     /// the file alone.
     pub(crate) fn read(reader: &Reader) -> Option<Self> {

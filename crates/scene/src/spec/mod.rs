@@ -4,6 +4,7 @@ pub mod body;
 pub mod boundary;
 pub mod contact;
 pub mod expect;
+pub mod frames;
 pub mod interaction;
 pub mod mesh;
 pub mod network;
@@ -15,7 +16,7 @@ pub mod world;
 
 use souple_formal::Formula;
 use souple_math::Vec3;
-use souple_table::Range;
+use souple_table::{Range, readable};
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node, Table};
@@ -141,7 +142,13 @@ impl Spec {
             title: String::new(),
             description: String::new(),
             shows: Vec::new(),
-            world: WorldSpec { period: f64::NAN, gravity: None, site },
+            world: WorldSpec {
+                period: f64::NAN,
+                period_site: site.clone(),
+                gravity: None,
+                gravity_site: site.clone(),
+                site,
+            },
             systems: Vec::new(),
             bodies: Vec::new(),
             shapes: Vec::new(),
@@ -233,9 +240,9 @@ impl Spec {
     fn check_times(&self, log: &Log) {
         let periods = self.run.duration / self.world.period;
         if periods > PERIODS_MAX {
-            let message = format!("the run has {periods:.1e} periods of {} s", self.world.period);
+            let message = format!("the run has {periods:.1e} periods of {} s", readable(self.world.period));
             let expected = format!("at most {PERIODS_MAX:.0e} periods in the duration of a run");
-            log.add(Code::TooLarge, &self.world.site, message, expected);
+            log.add(Code::TooLarge, &self.world.period_site, message, expected);
         }
     }
 

@@ -231,6 +231,7 @@ impl Network {
             pins,
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
+            frames: None,
             network: Some(network),
             site: reader.site(),
         }

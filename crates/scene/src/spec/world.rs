@@ -64,8 +64,10 @@ pub(crate) static RUN: Keys = Keys::new(
 pub struct WorldSpec {
     /// [s]
     pub period: f64,
+    pub period_site: Site,
     /// Of the time; `None`: there is none [m/s²].
     pub gravity: Option<[Formula; 3]>,
+    pub gravity_site: Site,
     pub site: Site,
 }
 
@@ -95,7 +97,9 @@ impl WorldSpec {
     pub(crate) fn read(reader: &Reader) -> Self {
         Self {
             period: reader.number("period"),
+            period_site: reader.site_of("period"),
             gravity: reader.maybe_vector_formula("gravity"),
+            gravity_site: reader.site_of("gravity"),
             site: reader.site(),
         }
     }
@@ -118,7 +122,7 @@ impl SystemSpec {
     pub(crate) fn default_system(site: Site) -> Self {
         let entry = steppers::TABLE.find(DEFAULT_STEPPER).expect("the default stepper is in its table");
         let values = entry.values(souple_table::Values::new()).expect("the default stepper needs no values");
-        let stepper = Some(Chosen { entry, values, site: site.clone() });
+        let stepper = Some(Chosen { entry, values, site: site.clone(), written: Vec::new() });
         Self { name: DEFAULT_SYSTEM.to_owned(), stepper, steps_per_period: 1, site }
     }
 }

@@ -15,6 +15,9 @@ pub struct Arguments {
     settings: Vec<String>,
     #[arg(long)]
     pub json: bool,
+    /// Warnings and errors alone
+    #[arg(long)]
+    quiet: bool,
 }
 
 pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
@@ -71,6 +74,15 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         print_json(&document);
         return Ok(end_of(&errors));
     }
+    for warning in &warnings {
+        print_note(format_args!("warning: {warning}"));
+    }
+    for error in &errors {
+        print_note(format_args!("error: {}", error["message"].as_str().unwrap_or_default()));
+    }
+    if arguments.quiet {
+        return Ok(end_of(&errors));
+    }
     print_line(format_args!(
         "{title}: {}",
         if errors.is_empty() { "valid" } else { "its first step is refused" }
@@ -95,12 +107,6 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         seconds_per_step * steps as f64,
         world.bytes() as f64 * 1e-6
     ));
-    for warning in &warnings {
-        print_note(format_args!("warning: {warning}"));
-    }
-    for error in &errors {
-        print_note(format_args!("error: {}", error["message"].as_str().unwrap_or_default()));
-    }
     Ok(end_of(&errors))
 }
 

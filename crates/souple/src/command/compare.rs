@@ -91,7 +91,8 @@ fn difference(a: &Named, b: &Named) -> Value {
         .iter()
         .enumerate()
         .fold((0, 0.0), |best, (i, d)| if *d > best.1 || d.is_nan() { (i, *d) } else { best });
-    let norm = |numbers: &[f64]| numbers.iter().map(|n| n * n).sum::<f64>().sqrt();
+    // a sum of nothing is -0
+    let norm = |numbers: &[f64]| numbers.iter().fold(0.0, |sum, n| sum + n * n).sqrt();
     let (difference, scale) = (norm(&differences), norm(&a.numbers));
     let count = differences.len().max(1) as f64;
     json!({

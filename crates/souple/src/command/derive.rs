@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use souple_formal::element::{Axis, Cut, Derived, ElementExpressions};
 use souple_formal::emit::{ElementCode, Latex, Style, Text, write};
 use souple_formal::graph::{Expr, Operations};
-use souple_formal::law::{EnergyLaw, LawText};
+use souple_formal::law::{EnergyLaw, LawProblem, LawText};
 use souple_mesh::ElementKind;
 use souple_models::derive::{MapKind, element_data, source_constant_count, source_law_name};
 use souple_models::materials::{WRITTEN_LAWS, WrittenLaw, law_text};
@@ -64,7 +64,13 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     let law = EnergyLaw::compile(&text).map_err(|error| {
         let definition = text.definitions.iter().find(|(name, _)| *name == error.part);
         let written = definition.map_or(text.energy.as_str(), |(_, text)| text.as_str());
-        Refusal::request("law", text.energy.clone(), "a hyperelastic law", error.explained(written))
+        let expected = match &*error.problem {
+            LawProblem::UnknownName { name, .. } => format!(
+                "a hyperelastic law whose constants are given, as by `--parameter {name}=\"10 kPa\"` or `--define {name}=TEXT`"
+            ),
+            _ => "a hyperelastic law".to_owned(),
+        };
+        Refusal::request("law", text.energy.clone(), expected, error.explained(written))
     })?;
     let compiled_seconds = clock.elapsed().as_secs_f64();
     let kind = ElementKind::from_name(&arguments.element).map_err(|unknown| {
@@ -102,7 +108,8 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     let mut derived = element
         .derive(&law, cut)
         .map_err(|error| Refusal::request("law", &arguments.law, "a law of invariants", error.to_string()))?;
-    for warning in &law.warnings {
+    // what is known of the laws of the table is on their pages
+    for warning in law.warnings.iter().filter(|_| name == TEXT) {
         print_note(format_args!("warning: {warning}"));
     }
     let derived_seconds = clock.elapsed().as_secs_f64();
@@ -131,6 +138,9 @@ fn emit_text(text: &str, language: &str, as_json: bool) {
     }
 }
 
+/// The name of a law that is given as text.
+const TEXT: &str = "text";
+
 /// The law of that name, or the text.
 fn law_of(arguments: &Arguments) -> Result<(String, LawText), Refusal> {
     let pairs = |list: &[String]| -> Result<Vec<(String, String)>, Refusal> {
@@ -156,12 +166,13 @@ fn law_of(arguments: &Arguments) -> Result<(String, LawText), Refusal> {
             arguments.law,
             did_you_mean(&arguments.law, names.iter().copied())
         );
-        let expected = format!("an energy density, or one of {}", names.join(", "));
+        let expected =
+            format!("an energy density, or a law that `souple list laws` prints: {}", names.join(", "));
         return Err(Refusal::request("unknown_law", &arguments.law, expected, message));
     }
     let text = law_text(&arguments.law, &parameters, &definitions)
         .map_err(|error| Refusal::request("parameter", "", "a quantity or direction", error.to_string()))?;
-    Ok(("text".to_owned(), text))
+    Ok((TEXT.to_owned(), text))
 }
 
 struct Report<'a> {
@@ -219,8 +230,9 @@ impl Report<'_> {
             }
             let _ = writeln!(text, "  {symbol} = {result}\n");
         }
-        let name = source_law_name(self.name) + &derived.name;
-        let _ = writeln!(text, "on {}, {} samples: {name}", self.kind, self.samples);
+        let samples =
+            if self.samples == 1 { "1 sample".to_owned() } else { format!("{} samples", self.samples) };
+        let _ = writeln!(text, "on {}, {samples}, expressions cut: {}", self.kind, derived.cut.name());
         let _ = writeln!(text, "  F = I + U_xi X_xi^-1, f_n = -sum w det(X_xi) P X_xi^-T dN_n/dxi\n");
         let _ = writeln!(
             text,
@@ -282,8 +294,9 @@ impl Report<'_> {
             "law": self.name,
             "element": self.kind.name(),
             "samples": self.samples,
+            // as the source names such a pair
             "association": source_law_name(self.name) + &derived.name,
-            "cut": derived.cut.to_string(),
+            "cut": derived.cut.name(),
             "cut_axes": Axis::ALL.iter().filter(|axis| derived.cut.has(**axis)).count(),
             "energy": expression(self.law.energy),
             "stress": expression(self.law.stress),

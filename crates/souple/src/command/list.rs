@@ -2,14 +2,15 @@
 
 use serde_json::{Value, json};
 use souple_engine::linear;
+use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
 use souple_table::{Entry, Kind, Parameter, Table};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct ListArguments {
-    /// materials, elements, sections, links, steppers, solvers, preconditioners, generators, bodies, shapes, formats, quantities,
-    /// functions, units, colour_maps
+    /// materials, laws, elements, sections, links, placements, weights, points, steppers, solvers, preconditioners,
+    /// generators, bodies, shapes, formats, quantities, functions, units, colour_maps
     ///
     /// The kinds themselves if left out.
     kind: Option<String>,
@@ -68,6 +69,19 @@ fn functions() -> Vec<Page> {
     functions.chain(constants).collect()
 }
 
+/// Laws as text, for `souple derive` and for scenes to begin with.
+fn laws() -> Vec<Page> {
+    let page = |law: &WrittenLaw| {
+        let constants: Vec<String> =
+            law.parameters.iter().map(|(name, value)| format!("{name} = \"{value}\"")).collect();
+        let definitions = law.definitions.iter().map(|(name, text)| format!("{name} = {text}"));
+        let with: Vec<String> = definitions.chain(constants).collect();
+        let summary = format!("{}: {}; {}", law.summary, law.energy, with.join(", "));
+        Page { kind: "law", name: law.name.to_owned(), summary, source: law.source, parameters: &[] }
+    };
+    WRITTEN_LAWS.iter().map(page).collect()
+}
+
 /// Units, with the prefixes they take.
 fn units() -> Vec<Page> {
     let page = |entry: souple_formal::UnitEntry| Page {
@@ -87,9 +101,13 @@ fn units() -> Vec<Page> {
 fn tables() -> Vec<(&'static str, Vec<Page>)> {
     vec![
         ("materials", pages_of(&souple_models::materials::TABLE)),
+        ("laws", laws()),
         ("elements", pages_of(&souple_mesh::ELEMENTS)),
         ("sections", pages_of(&souple_models::solids::SECTIONS)),
         ("links", pages_of(&souple_models::network::LINKS)),
+        ("placements", pages_of(&souple_models::frames::PLACEMENTS)),
+        ("weights", pages_of(&souple_models::frames::WEIGHTS)),
+        ("points", pages_of(&souple_models::frames::POINTS)),
         ("steppers", pages_of(&souple_engine::steppers::TABLE)),
         ("solvers", pages_chosen_by(&linear::SOLVER, &souple_solve::solvers::TABLE)),
         ("preconditioners", pages_chosen_by(&linear::PRECONDITIONER, &souple_solve::precondition::TABLE)),
@@ -139,6 +157,10 @@ pub fn list(arguments: &ListArguments) -> Result<End, Refusal> {
 }
 
 pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
+    if arguments.name.trim().is_empty() {
+        let (expected, message) = ("a name that `souple list` prints", "no name is given");
+        return Err(Refusal::request("unknown_name", "", expected, message));
+    }
     let tables = tables();
     let pages: Vec<&Page> = tables.iter().flat_map(|(_, pages)| pages).collect();
     let found: Vec<&&Page> = pages.iter().filter(|page| page.name == arguments.name).collect();

@@ -2,10 +2,12 @@
 
 mod fill;
 mod parameters;
+mod summary;
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value as Json, json};
+use souple_mesh::fill::surface_of;
 use souple_mesh::repair::diagnose;
 use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
 use souple_table::Parameter;
@@ -81,17 +83,20 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
         Action::Generate { generator, out, parameters, json } => {
             let mesh = generate(&generator, &parameters)?;
             write(&out, &mesh)?;
-            report(&mesh, &[], json)
+            report(&out, &mesh, &[], json);
+            Ok(End::Done)
         }
         Action::Fill { input, out, parameters, json } => {
             let (mesh, notes) = fill::fill(&input, &parameters)?;
             write(&out, &mesh)?;
-            report(&mesh, &notes, json)
+            report(&out, &mesh, &notes, json);
+            Ok(End::Done)
         }
         Action::Simplify { input, out, parameters, json } => {
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
             write(&out, &mesh)?;
-            report(&mesh, &notes, json)
+            report(&out, &mesh, &notes, json);
+            Ok(End::Done)
         }
         Action::Convert { input, out, json } => {
             let (mesh, mut notes) = read(&input)?;
@@ -100,17 +105,20 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             notes.extend(souple_io::losses(&out, &souple_io::Output::new(&mesh))?);
             let written = match souple_io::read_mesh(&out) {
                 Ok((written, _)) => written,
-                // a format that is only written
-                Err(souple_io::IoError::Unsupported { .. }) => mesh,
+                // a format that is only written, and for surfaces
+                Err(souple_io::IoError::Unsupported { .. }) => {
+                    surface_of(&mesh).map_or(mesh, |surface| fill::mesh_of(&surface))
+                }
                 Err(error) => return Err(error.into()),
             };
-            report(&written, &notes, json)
+            report(&out, &written, &notes, json);
+            Ok(End::Done)
         }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
-            // a surface is measured as one; cells, or nothing at all, are validated
-            if let (0, Some(surface)) = (mesh.cell_count(), mesh.facet_surface()) {
-                report_surface(&mesh, &surface, &notes, json);
+            // cells, or nothing at all, are validated
+            if mesh.cell_count() == 0 && mesh.facet_count() > 0 {
+                report(&input, &mesh, &notes, json);
                 return Ok(End::Done);
             }
             let repairs = mesh.validate();
@@ -123,7 +131,8 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
                 )
             };
             notes.extend(repairs.map_err(refuse)?.messages());
-            report(&mesh, &notes, json)
+            report(&input, &mesh, &notes, json);
+            Ok(End::Done)
         }
     }
 }
@@ -147,7 +156,21 @@ fn write(path: &Path, mesh: &Mesh) -> Result<(), Refusal> {
     Ok(souple_io::write_mesh(path, mesh)?)
 }
 
-fn report(mesh: &Mesh, notes: &[String], as_json: bool) -> Result<End, Refusal> {
+/// Tells what a file holds: cells, or triangles that are measured as a surface.
+fn report(path: &Path, mesh: &Mesh, notes: &[String], as_json: bool) {
+    let surface = mesh.facet_surface().filter(|_| mesh.cell_count() == 0);
+    let document = match surface {
+        Some(surface) => of_surface(mesh, &surface, notes),
+        None => of_cells(mesh, notes),
+    };
+    if as_json {
+        print_json(&document);
+    } else {
+        summary::sentences(&path.display().to_string(), &document).iter().for_each(print_line);
+    }
+}
+
+fn of_cells(mesh: &Mesh, notes: &[String]) -> Json {
     let conforming = mesh.faces().conforming().err().map(|error| error.to_string());
     let quality = mesh.quality();
     let bounds = mesh.bounds();
@@ -173,29 +196,18 @@ fn report(mesh: &Mesh, notes: &[String], as_json: bool) -> Result<End, Refusal> 
     if !quality.is_empty() {
         document["quality"] = shapes(mesh, &quality);
     }
-    print(&document, as_json);
-    Ok(End::Done)
-}
-
-fn print(document: &Json, as_json: bool) {
-    if as_json {
-        print_json(document);
-    } else if let Json::Object(entries) = document {
-        for (name, value) in entries {
-            print_line(format_args!("{name}: {value}"));
-        }
-    }
+    document
 }
 
 /// Triangles without cells: their shapes, and whether they enclose a volume.
-fn report_surface(mesh: &Mesh, surface: &TriangleSurface, notes: &[String], as_json: bool) {
+fn of_surface(mesh: &Mesh, surface: &TriangleSurface, notes: &[String]) -> Json {
     let quality = surface.quality();
     let least = |pick: fn(&TriangleQuality) -> f64| quality.iter().map(pick).fold(f64::INFINITY, f64::min);
     let greatest = quality.iter().map(|triangle| triangle.largest_angle).fold(0.0, f64::max);
     let flat = quality.iter().filter(|triangle| triangle.area == 0.0).count();
     let open = surface.check_closed().err().map(|error| error.to_string());
     let bounds = surface.bounds();
-    let document = json!({
+    json!({
         "points": mesh.points.len(),
         "facets": mesh.facet_count(),
         "triangles": surface.triangles.len(),
@@ -212,8 +224,7 @@ fn report_surface(mesh: &Mesh, surface: &TriangleSurface, notes: &[String], as_j
         "problem": open,
         "faults": faults(surface),
         "notes": notes,
-    });
-    print(&document, as_json);
+    })
 }
 
 /// Bins of ten degrees from 0 to 180.

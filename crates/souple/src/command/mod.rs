@@ -7,6 +7,7 @@ mod derive;
 mod list;
 mod mesh;
 mod modes;
+mod progress;
 mod render;
 mod replay;
 mod run;
@@ -23,7 +24,7 @@ use serde_json::{Value, json};
 
 /// A simulator of soft things.
 #[derive(Parser)]
-#[command(name = "souple", version, about, disable_help_subcommand = true)]
+#[command(name = "souple", version, about)]
 pub struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -203,11 +204,11 @@ impl From<souple_run::RunError> for Refusal {
             | RunError::Edit { .. }
             | RunError::Change { .. }
             | RunError::TooManySteps { .. }
-            | RunError::NoStep { .. }
-            | RunError::FileName { .. } => Self::request("run", "", "", error.to_string()),
+            | RunError::NoStep { .. } => Self::request("run", "", "", error.to_string()),
             RunError::Output(output) => match output {
                 OutputError::Foreign { .. }
                 | OutputError::WouldLoseResults { .. }
+                | OutputError::InUse { .. }
                 | OutputError::List { .. } => Self::request(
                     "output",
                     "",
@@ -268,11 +269,17 @@ fn exit_code(ended: Result<End, Refusal>, as_json: bool) -> ExitCode {
 
 /// Help and version go out as they are; wrong arguments are a wrong request.
 pub fn refuse_arguments(error: &clap::Error) -> ExitCode {
+    let wants_json = std::env::args().any(|argument| argument == "--json");
     if !error.use_stderr() {
-        let _ = error.print();
+        match error.kind() {
+            clap::error::ErrorKind::DisplayVersion if wants_json => {
+                print_json(&json!({ "name": "souple", "version": env!("CARGO_PKG_VERSION") }));
+            }
+            _ => drop(error.print()),
+        }
         return ExitCode::SUCCESS;
     }
-    if std::env::args().any(|argument| argument == "--json") {
+    if wants_json {
         let refusal = Refusal::request("arguments", "", "see `souple --help`", error.to_string().trim());
         print_json(&json!({ "errors": refusal.errors }));
     }
@@ -312,6 +319,19 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
 /// Whether progress can be drawn over itself.
 pub fn on_terminal() -> bool {
     std::io::stderr().is_terminal()
+}
+
+/// A whole number on the command line, at least `N`.
+pub fn count<const N: u64>(text: &str) -> Result<u64, String> {
+    let number = text.parse().ok().filter(|number| *number >= N);
+    number.ok_or_else(|| format!("expected a whole number of at least {N}"))
+}
+
+/// A time on the command line [s]: a number of seconds, or a quantity such as `5 ms`.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    let number = text.parse().or_else(|_| souple_formal::quantity_in(text, "s"));
+    let number: f64 = number.map_err(|error| error.to_string())?;
+    if number.is_finite() { Ok(number) } else { Err(format!("{number} is no time")) }
 }
 
 /// Reads a scene file.

@@ -5,6 +5,8 @@ use serde_json::{Value, json};
 use super::{End, Refusal, print_json, print_line, read_scene};
 
 #[derive(clap::Args)]
+// `--near -3` is a wrong frequency, not an argument of that name
+#[command(allow_negative_numbers = true)]
 pub struct Arguments {
     /// Scene file, or a folder with a scene.toml
     scene: String,
@@ -34,12 +36,12 @@ pub fn modes(arguments: &Arguments) -> Result<End, Refusal> {
             message,
         ));
     }
-    if !arguments.near.is_finite() {
-        let message = format!("a frequency of {} Hz is none", arguments.near);
+    if !(arguments.near >= 0.0 && arguments.near.is_finite()) {
+        let message = format!("`--near` is {} Hz, which is no frequency", arguments.near);
         return Err(Refusal::request(
             "near",
             arguments.near.to_string(),
-            "a finite frequency in Hz",
+            "a finite frequency of at least 0 Hz",
             message,
         ));
     }

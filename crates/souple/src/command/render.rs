@@ -1,6 +1,7 @@
 //! `souple render`: pictures, contact sheets, films and animated surfaces of a scene or of a run's folder.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 use serde_json::json;
@@ -9,11 +10,12 @@ use souple_io::picture::{
 };
 use souple_math::Vec3;
 use souple_run::Options;
-use souple_run::show::{Arrows, Figure, FilmError, Show, ShowError, Stage, write_film};
+use souple_run::show::{Arrows, Figure, FilmError, Moment, Show, ShowError, Stage, write_film};
 use souple_scene::spec::picture::PictureSpec;
 
+use super::progress::Meter;
 use super::run::play;
-use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path, use_threads};
+use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path, seconds, use_threads};
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
@@ -26,8 +28,8 @@ pub struct Arguments {
     /// Width and height in pixels
     #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = list::<2>, allow_hyphen_values = true)]
     size: Option<[f64; 2]>,
-    /// Moment to show [s], to the nearest frame; the last by default
-    #[arg(long, conflicts_with = "sheet")]
+    /// Moment to show, as `0.5` or `500 ms`, to the nearest frame; the last by default
+    #[arg(long, conflicts_with = "sheet", value_parser = seconds)]
     time: Option<f64>,
     /// Several moments in one picture
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100))]
@@ -74,6 +76,9 @@ pub struct Arguments {
     /// What is up in the picture; the scene's if left out
     #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
     up: Option<[f64; 3]>,
+    /// From the lamp that throws shadows towards the bodies; over the eye's left shoulder if left out
+    #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
+    light: Option<[f64; 3]>,
     /// Angle between the upper and the lower border [deg]
     #[arg(long, default_value_t = 28.65)]
     field_of_view: f64,
@@ -85,9 +90,9 @@ pub struct Arguments {
     /// A PNG of at most 255 colours, a third of the size
     #[arg(long)]
     compact: bool,
-    /// Samples along each side of a pixel
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u64).range(1..=8))]
-    samples: u64,
+    /// Samples along each side of a pixel; 3 by default, 2 where there are several pictures
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=8))]
+    samples: Option<u64>,
     /// Changes a value of the scene, as with `souple run`
     #[arg(long = "set", value_name = "PATH=VALUE")]
     settings: Vec<String>,
@@ -145,8 +150,8 @@ impl From<ShowError> for Refusal {
 pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let kind = kind_of(&arguments.out)?;
-    let figure = figure(arguments)?;
-    let (show, notes) = show(arguments, kind)?;
+    let figure = figure(arguments, kind)?;
+    let (show, mut notes) = show(arguments, kind)?;
     let view = view(arguments, &show.stage)?;
     let figure = Figure { view: Some(view), ..figure };
     let out = arguments.out.as_path();
@@ -160,18 +165,24 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
         Kind::Picture if arguments.sheet.is_some() => {
             let show = show.thinned(arguments.sheet.unwrap_or(1) as usize);
             count = show.moments.len();
-            let images = images(&figure.pictures(&show)?)?;
-            write_picture(arguments, &Image::sheet(&images, columns(count)))?;
+            // one title for all of them
+            let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
+            let figure = Figure { title: Some(String::new()), ..figure };
+            let images = images(&figure.pictures(&show)?, arguments.quiet)?;
+            let sheet = Image::sheet(&images, columns(count));
+            let sheet = if title.is_empty() { sheet } else { sheet.titled(&title, figure.theme) };
+            write_picture(arguments, &sheet)?;
         }
         Kind::Picture => {
             let moment =
                 show.at(arguments.time).ok_or_else(|| Refusal::work("render", "the run has no frame"))?;
+            notes.extend(other_moment(arguments.time, moment, &show));
             write_picture(arguments, &figure.picture(&show, moment)?.render()?)?;
         }
         Kind::Gif | Kind::AnimatedPng | Kind::Film => {
             let show = show.thinned(arguments.frames as usize);
             count = show.moments.len();
-            let images = images(&figure.pictures(&show)?)?;
+            let images = images(&figure.pictures(&show)?, arguments.quiet)?;
             write_moving(kind, out, &images, seconds_per_frame(arguments, &show)?)?;
         }
     }
@@ -243,7 +254,7 @@ impl Drop for Scratch {
     }
 }
 
-fn figure(arguments: &Arguments) -> Result<Figure, Refusal> {
+fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
     let map = COLOUR_MAPS
         .find(&arguments.map)
         .map_err(|error| Refusal::request("map", arguments.map.clone(), "", error.to_string()))?;
@@ -277,6 +288,8 @@ fn figure(arguments: &Arguments) -> Result<Figure, Refusal> {
     }
     let size =
         arguments.size.unwrap_or(if arguments.sheet.is_some() { [640.0, 480.0] } else { [1280.0, 800.0] });
+    let is_one = kind == Kind::Picture && arguments.sheet.is_none();
+    let samples = arguments.samples.unwrap_or(if is_one { 3 } else { 2 });
     let cut = arguments.cut.map(|[x, y, z, d]| {
         let normal = Vec3::new(x, y, z);
         Cut { point: normal * (d / normal.length_sq().max(f64::MIN_POSITIVE)), normal }
@@ -288,7 +301,7 @@ fn figure(arguments: &Arguments) -> Result<Figure, Refusal> {
     Ok(Figure {
         // what is no size of a picture is refused where it is drawn
         size: size.map(|side| side.round().clamp(0.0, 1e9) as usize),
-        samples_per_pixel: arguments.samples as usize,
+        samples_per_pixel: samples as usize,
         theme: if arguments.dark { Theme::Dark } else { Theme::Light },
         title: arguments.title.clone(),
         view: None,
@@ -336,12 +349,37 @@ fn view(arguments: &Arguments, stage: &Stage) -> Result<View, Refusal> {
         ));
     }
     view.field_of_view = arguments.field_of_view.to_radians();
+    view.light = arguments.light.map(|light| unit("light", Vec3::from_array(light))).transpose()?;
     Ok(view)
 }
 
+/// What to say of a picture of another moment than one may think.
+fn other_moment(wanted: Option<f64>, shown: &Moment, show: &Show) -> Option<String> {
+    let last = show.moments.last().map_or(shown.time, |moment| moment.time);
+    match wanted {
+        None if shown.time < last => Some(format!(
+            "the bodies have run away: of {:.6} s is the last frame that can be drawn",
+            shown.time
+        )),
+        Some(time) if time > last => {
+            Some(format!("there is nothing at {time} s: the last frame, of {last:.6} s, is shown"))
+        }
+        Some(time) if time < 0.0 => {
+            Some(format!("there is nothing at {time} s: the first frame, of {:.6} s, is shown", shown.time))
+        }
+        _ => None,
+    }
+}
+
 /// Pictures drawn side by side on all threads.
-fn images(pictures: &[Picture]) -> Result<Vec<Image>, Refusal> {
-    Ok(pictures.par_iter().map(Picture::render).collect::<Result<Vec<_>, _>>()?)
+fn images(pictures: &[Picture], quiet: bool) -> Result<Vec<Image>, Refusal> {
+    let (meter, done) = (Meter::new("pictures", quiet), AtomicU64::new(0));
+    let draw = |picture: &Picture| {
+        let image = picture.render();
+        meter.show(done.fetch_add(1, Ordering::Relaxed) + 1, pictures.len() as u64, "");
+        image
+    };
+    Ok(pictures.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?)
 }
 
 fn write_picture(arguments: &Arguments, image: &Image) -> Result<(), Refusal> {

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status};
 use souple_scene::Scene;
 
+use super::progress::Meter;
 use super::{
-    End, Refusal, on_terminal, print_json, print_line, print_note, read_scene, scene_path, use_threads,
+    End, Refusal, count, print_json, print_line, print_note, read_scene, scene_path, seconds, use_threads,
 };
 
 #[derive(clap::Args)]
@@ -21,7 +21,7 @@ pub struct Arguments {
     #[arg(long)]
     out: Option<PathBuf>,
     /// World periods to step; by default, to the end of the scene's duration
-    #[arg(long, conflicts_with = "duration")]
+    #[arg(long, conflicts_with = "duration", value_parser = count::<0>)]
     steps: Option<u64>,
     /// Time to simulate, as `2 s` or `500 ms`; rounded to whole periods, with a warning
     #[arg(long)]
@@ -34,16 +34,16 @@ pub struct Arguments {
     #[arg(long)]
     threads: Option<usize>,
     /// Recorded with the run, though nothing is random yet; the scene's by default
-    #[arg(long)]
+    #[arg(long, value_parser = count::<0>)]
     seed: Option<u64>,
     /// Frames of the series; the scene's number by default
-    #[arg(long)]
+    #[arg(long, value_parser = count::<0>)]
     frames: Option<u64>,
     /// Steps between hashes of the state
-    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "STEPS", value_parser = count::<1>)]
     hash_every: Option<u64>,
     /// Steps between snapshots
-    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u64).range(1..), requires = "out")]
+    #[arg(long, value_name = "STEPS", value_parser = count::<1>, requires = "out")]
     snapshot_every: Option<u64>,
     /// Continues from a snapshot to the scene's end; --steps and --duration then count from the snapshot
     #[arg(long, value_name = "FILE")]
@@ -129,29 +129,22 @@ fn read_resumed(path: &Path, scene_sha256: &str) -> Result<souple_run::Snapshot,
 pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Refusal> {
     // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
     let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
-    let target =
-        if quiet || !on_terminal() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
-    let bar = ProgressBar::with_draw_target(None, target);
-    if let Ok(style) = ProgressStyle::with_template("{bar:32} {pos}/{len} steps  {msg}  {elapsed} left {eta}")
-    {
-        bar.set_style(style);
-    }
-    let lines = !quiet && !on_terminal();
-    let mut next_line = 5.0;
+    let meter = Meter::new("steps", quiet);
     let mut watch = |progress: &Progress| {
-        bar.set_length(progress.steps);
-        bar.set_position(progress.step);
         let factor = progress.simulated_seconds / progress.wall_seconds.max(1e-9);
-        bar.set_message(format!("{factor:.2} x real time"));
-        if lines && progress.wall_seconds >= next_line {
-            next_line += 5.0;
-            print_note(format_args!("{}/{} steps, {factor:.2} x real time", progress.step, progress.steps));
-        }
+        meter.show(progress.step, progress.steps, format_args!("{factor:.2} x real time"));
         if INTERRUPTED.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
     };
-    let outcome = souple_run::run(scene, options, &mut watch);
-    bar.finish_and_clear();
-    Ok(outcome?)
+    let outcome = souple_run::run(scene, options, &mut watch)?;
+    drop(meter);
+    if let (false, 1.., Some(out)) = (quiet, outcome.replaced, &options.out) {
+        print_note(format_args!(
+            "note: {} files of an earlier run in {} were replaced",
+            outcome.replaced,
+            out.display()
+        ));
+    }
+    Ok(outcome)
 }
 
 /// Where the results of a run are told.
@@ -222,14 +215,10 @@ fn print_summary(report: &Report, out: Option<&Path>) {
 }
 
 fn parse_duration(text: &str) -> Result<f64, Refusal> {
-    let seconds = match text.parse::<f64>() {
-        Ok(seconds) => Ok(seconds),
-        Err(_) => souple_formal::quantity_in(text, "s").map_err(|error| error.to_string()),
-    };
     let refuse = |message: String| {
         Refusal::request("duration", text, "a time above 0, such as `2 s` or `500 ms`", message)
     };
-    match seconds {
+    match seconds(text) {
         Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
         Ok(seconds) => Err(refuse(format!("a duration of {seconds} s cannot be run"))),
         Err(message) => Err(refuse(message)),

@@ -97,6 +97,11 @@ impl Timed {
         self.figure(name, times, held, ("ms/step", false))
     }
 
+    pub fn steps_per_second(&self, name: &str, held: &Held) -> Figure {
+        let rates = self.seconds.iter().map(|seconds| 1.0 / seconds).collect();
+        self.figure(name, rates, held, ("steps/s", true))
+    }
+
     fn figure(
         &self,
         name: &str,

@@ -2,7 +2,7 @@
 
 use crate::{Case, Reading, Tolerance};
 
-pub(super) const CASES: &[Case] = &[Case {
+const WEIGHT: Case = Case {
     id: "liver_weight_10k",
     capabilities: &["DEB-56"],
     what: "pull of the ligaments on the organ of ten thousand tetrahedra at rest: its weight",
@@ -16,4 +16,19 @@ pub(super) const CASES: &[Case] = &[Case {
     tolerance: Tolerance::Relative(0.02),
     source: "density times gravity times the volume of a filling of 100,000 tetrahedra",
     mutation: "bodies.liver.material.density=1200",
-}];
+};
+
+pub(super) const CASES: &[Case] = &[
+    WEIGHT,
+    Case {
+        id: "liver_weight_mixed",
+        capabilities: &["DEB-56", "FAU-53", "FAU-59"],
+        what: "the same on hexahedra inside, pyramids and tetrahedra around them",
+        settings: &[
+            "bodies.liver.mesh.size=0",
+            "bodies.liver.mesh.count=10000",
+            "bodies.liver.mesh.element=\"hex_dominant\"",
+        ],
+        ..WEIGHT
+    },
+];

@@ -8,6 +8,7 @@ mod elements;
 mod energy;
 mod explicit;
 mod filling;
+mod frames;
 mod frequencies;
 mod implicit;
 mod motion;
@@ -43,6 +44,7 @@ pub const TABLES: &[&[Case]] = &[
     contact::CASES,
     network::CASES,
     rheometer::CASES,
+    frames::CASES,
 ];
 
 /// Every case.

@@ -33,12 +33,17 @@ const EXPLICIT_SHARE: f64 = 0.1;
 pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip {
     let system = &world.model().systems[body.system];
     let masses = &system.mass.diagonal;
-    let body_mass: f64 = masses[body.rows.clone()].iter().sum();
+    // points that frames carry have no mass of their own
+    let body_mass: f64 = match &body.frames {
+        Some(frames) => frames.rows.iter().map(|row| masses[*row as usize]).sum(),
+        None => masses[body.rows.clone()].iter().sum(),
+    };
     let mut stiffness = strength * body_mass * FREQUENCY * FREQUENCY;
     let mut damping = stiffness * DAMPING_TIME;
     if !matches!(system.stepper.stability(), Stability::Unconditional) {
         let timestep = world.model().timestep(body.system);
-        let lightest = rows.iter().map(|row| masses[*row as usize]).fold(f64::INFINITY, f64::min);
+        let carriers = body.frames.as_ref().map_or(rows, |frames| &frames.rows);
+        let lightest = carriers.iter().map(|row| masses[*row as usize]).fold(f64::INFINITY, f64::min);
         // k/n < 0.1 m/h², c/n < 0.1 m/h: well within what the step bears
         let bearable = EXPLICIT_SHARE * lightest * rows.len() as f64 / timestep;
         stiffness = stiffness.min(bearable / timestep);

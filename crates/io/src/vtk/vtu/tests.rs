@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use souple_mesh::ElementKind;
+use souple_math::Vec3;
+use souple_mesh::{ElementKind, Mesh};
 
 use super::*;
 use crate::testing::survives_faults;
@@ -215,4 +216,22 @@ fn overlapping_appended_arrays_are_refused() {
     }
     more.extend(&bytes[head_end..]);
     assert!(read(&more).unwrap_err().found.contains("other arrays have already"));
+}
+
+/// A mesh of nothing but edges is one of cells; beside other cells edges are left out, as before.
+#[test]
+fn meshes_of_edges_come_back() {
+    let folder = crate::testing::TemporaryFolder::new("edges");
+    let points: Vec<Vec3> = (0..5).map(|k| Vec3::new(f64::from(k), 0.5, 0.0)).collect();
+    for (kind, nodes) in
+        [(ElementKind::Edge2, vec![0, 1, 1, 4]), (ElementKind::Edge3, vec![0, 2, 1, 2, 4, 3])]
+    {
+        let mesh = Mesh::new(points.clone(), kind, nodes);
+        for name in ["edges.vtu", "edges.vtk"] {
+            let path = folder.path(name);
+            crate::write_mesh(&path, &mesh).unwrap();
+            let (read, notes) = crate::read_mesh(&path).unwrap();
+            assert_eq!((&read.blocks, &read.points), (&mesh.blocks, &mesh.points), "{name}: {notes:?}");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_mesh::fill::{Options, PARAMETERS, fill_surface, surface_of};
+use souple_mesh::fill::{Options, PARAMETERS, fill_mesh, surface_of};
 use souple_mesh::implicit::SHAPES;
 use souple_mesh::repair::{RepairLimits, repair};
 use souple_mesh::simplify::{Goal, simplify};
@@ -30,21 +30,42 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     }
     let own: &[Parameter] = shape.map_or(&[SCALE], |entry| entry.parameters);
     let known: Vec<&Parameter> = PARAMETERS.iter().chain(own).collect();
-    let (filling, others) = parameters::split(parameters::values(texts, &known)?, PARAMETERS);
+    let given = parameters::values(texts, &known)?;
+    parameters::refuse_unknown(&given, &known)?;
+    let (filling, others) = parameters::split(given, PARAMETERS);
+    let wanted = match filling.get("count") {
+        Some(Value::Integer(count)) => count,
+        _ => 0,
+    };
     let options = filling.completed(PARAMETERS).map_err(MeshError::from);
     let options = options.and_then(|values| Options::from_values(&values)).map_err(refuse)?;
     if let Some(entry) = shape {
         let body = entry.values(others).map_err(MeshError::from).and_then(|values| (entry.build)(&values));
         let mesh = body.and_then(|body| options.fill_body(&body)).map_err(refuse)?;
-        return Ok((mesh, Vec::new()));
+        let notes = missed(wanted, &mesh).into_iter().collect();
+        return Ok((mesh, notes));
     }
     let scale = others.completed(&[SCALE]).map_err(|error| refuse(error.into()))?.number("scale");
     let (mut mesh, mut notes) = read(Path::new(input))?;
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
-    let surface = surface_of(&mesh).ok_or(MeshError::NoCells).map_err(refuse)?;
-    let filled = fill_surface(&surface, RepairLimits::default(), &options).map_err(refuse)?;
+    let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
+    notes.extend(missed(wanted, &filled.mesh));
     Ok((filled.mesh, notes))
+}
+
+/// A count is met within this part of it, or else it is said.
+const MET: f64 = 0.1;
+/// Fewer cells than this lie in layers of which each is a good part of all.
+const FEW: f64 = 2000.0;
+
+/// What to say of a filling that has not about as many cells as were wanted (0: any number).
+fn missed(wanted: i64, mesh: &Mesh) -> Option<String> {
+    let (wanted, cells) = (wanted as f64, mesh.cell_count());
+    (wanted > 0.0 && (cells as f64 / wanted - 1.0).abs() > MET).then(|| {
+        let few = if wanted < FEW { ": of few cells, whole layers come and go at once" } else { "" };
+        format!("{cells} cells are as near to {wanted} as was found{few}")
+    })
 }
 
 const SIMPLIFY: &[Parameter] = &[
@@ -67,6 +88,7 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
     };
     let known: Vec<&Parameter> = SIMPLIFY.iter().collect();
     let values: Values = parameters::values(texts, &known)?;
+    parameters::refuse_unknown(&values, &known)?;
     let values = values.completed(SIMPLIFY).map_err(|error| refuse(error.into()))?;
     let (distance, triangles) = (values.number("distance"), values.integer("triangles") as usize);
     let goal = match (distance > 0.0, triangles > 0) {
@@ -89,11 +111,17 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
         surface.triangles.len(),
         simple.distance
     ));
+    if simple.crossings > 0 {
+        notes.push(format!(
+            "{} pairs of triangles pass through each other, as in the given surface",
+            simple.crossings
+        ));
+    }
     Ok((mesh_of(&simple.surface), notes))
 }
 
 /// A mesh of facets alone.
-fn mesh_of(surface: &TriangleSurface) -> Mesh {
+pub fn mesh_of(surface: &TriangleSurface) -> Mesh {
     let mut mesh = Mesh { points: surface.points.clone(), ..Mesh::default() };
     surface.triangles.iter().for_each(|corners| mesh.push_facet(ElementKind::Tri3, corners));
     mesh

@@ -2,7 +2,7 @@
 
 use souple_table::{Kind, Parameter, Value, Values};
 
-use crate::command::Refusal;
+use crate::command::{Refusal, did_you_mean};
 
 /// Reads each text as the parameter it names; numbers may carry their unit. Names that are unknown stay in, for the
 /// entry to refuse.
@@ -40,6 +40,15 @@ pub fn values(texts: &[String], known: &[&Parameter]) -> Result<Values, Refusal>
         values.set(key.to_owned(), value);
     }
     Ok(values)
+}
+
+/// Refuses names that are not known, the first of them.
+pub fn refuse_unknown(values: &Values, known: &[&Parameter]) -> Result<(), Refusal> {
+    let names = || known.iter().map(|parameter| parameter.name);
+    let Some(name) = values.names().find(|name| !names().any(|known| known == *name)) else { return Ok(()) };
+    let message = format!("there is no parameter `{name}`{}", did_you_mean(name, names()));
+    let expected = format!("one of {}", names().collect::<Vec<_>>().join(", "));
+    Err(Refusal::request("parameter", name, expected, message))
 }
 
 /// The values of some parameters, and those of all others.

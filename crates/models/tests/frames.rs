@@ -1,0 +1,540 @@
+//! Bodies of frames: rigid motion (BOS-1), forces against energy and tangents against forces (BOS-2), frames on a line and
+//! in a plane (BOS-3), mass, weights that know the shape.
+
+#![allow(non_snake_case)] // symbols of the mathematics: F
+
+use souple_engine::{Configuration, Force, Mass, TangentWeights};
+use souple_math::{Mat3, Vec3, eigen_symmetric, exponential};
+use souple_mesh::Mesh;
+use souple_models::frames::{
+    self, Carried, Frame, FramesDescription, FramesForce, PLACEMENTS, POINTS, Sample, Shape, TangentKind,
+    WEIGHTS, Weights,
+};
+use souple_models::materials::{self, Material};
+use souple_solve::{BlockMatrix, Pattern};
+use souple_table::{Value, Values};
+
+fn bar(size: [f64; 3], cells: [f64; 3], element: &'static str) -> Mesh {
+    let values = Values::new()
+        .with("size", Value::Vector(size))
+        .with("cells", Value::Vector(cells))
+        .with("element", Value::Text(element));
+    souple_mesh::generate("bar", values).unwrap()
+}
+
+fn material(name: &str) -> Material {
+    let entry = materials::TABLE.find(name).unwrap();
+    let mut values = Values::new().with("density", Value::Number(900.0));
+    for parameter in entry.parameters {
+        let value = match parameter.name {
+            "youngs_modulus" => 2e4,
+            "poissons_ratio" => 0.35,
+            "bulk_modulus" => 3e4,
+            "c10" | "c01" => 2e3,
+            _ => continue,
+        };
+        values.set(parameter.name, Value::Number(value));
+    }
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
+fn text_law() -> Material {
+    let entry = materials::TABLE.find("hyperelastic").unwrap();
+    let parameters = [("mu".to_owned(), "8 kPa".to_owned()), ("k".to_owned(), "20 kPa".to_owned())];
+    let values = Values::new()
+        .with("energy", Value::Text("mu/2*(I1_bar - 3) + k/2*(J - 1)^2"))
+        .with("parameters", Value::Texts(&parameters))
+        .with("density", Value::Number(900.0));
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
+/// A body of frames whose rows start at row 2.
+struct Body {
+    frames: Vec<Frame>,
+    samples: Vec<Sample>,
+    carried: Vec<Carried>,
+    rows: Vec<u32>,
+}
+
+const FIRST: u32 = 2;
+
+fn weights_of<'a>(name: &str, shape: &Shape<'a>) -> Box<dyn Weights + 'a> {
+    let entry = WEIGHTS.find(name).unwrap();
+    (entry.build)(&entry.values(Values::new()).unwrap(), shape).unwrap()
+}
+
+impl Body {
+    fn new(mesh: &Mesh, frames: Vec<Frame>, weights: &str) -> Self {
+        let stiffness = vec![1.0; mesh.cell_count()];
+        let shape = Shape { frames: &frames, mesh, stiffness_of_cell: &stiffness };
+        let weights = weights_of(weights, &shape);
+        let entry = POINTS.find("cells").unwrap();
+        let samples = (entry.build)(&entry.values(Values::new()).unwrap(), mesh, &vec![0; mesh.cell_count()]);
+        let carried = samples
+            .iter()
+            .map(|sample| Carried::new(&frames, &weights.shares(sample.position), sample.position))
+            .collect();
+        let rows = (0..frames.len() as u32).map(|frame| FIRST + 4 * frame).collect();
+        drop(weights);
+        Self { samples, carried, rows, frames }
+    }
+
+    fn force(&self, mesh: &Mesh, materials: &[Material], tangent: TangentKind) -> FramesForce {
+        let material_of_cell: Vec<u16> =
+            (0..mesh.cell_count()).map(|cell| (cell * materials.len() / mesh.cell_count()) as u16).collect();
+        FramesForce::new(FramesDescription {
+            name: "body".into(),
+            row_of_frame: &self.rows,
+            samples: &self.samples,
+            carried: &self.carried,
+            carried_cells: Vec::new(),
+            cell_volumes: mesh.cell_volumes(),
+            materials,
+            material_of_cell: &material_of_cell,
+            tangent,
+        })
+    }
+
+    fn row_count(&self) -> usize {
+        FIRST as usize + 4 * self.frames.len()
+    }
+
+    /// Rows of the frames moved by `x -> turn x + shift`.
+    fn moved(&self, turn: &Mat3, shift: Vec3) -> Vec<Vec3> {
+        let mut rows = vec![Vec3::ZERO; FIRST as usize];
+        for frame in &self.frames {
+            rows.push(*turn * frame.origin + shift);
+            rows.extend(frame.axes.columns.map(|axis| *turn * axis));
+        }
+        rows
+    }
+
+    /// Rows bent, twisted and stretched by some percent.
+    fn strained(&self) -> Vec<Vec3> {
+        let mut rows = self.moved(&Mat3::IDENTITY, Vec3::ZERO);
+        for (row, position) in rows.iter_mut().enumerate().skip(FIRST as usize) {
+            let number = |k: f64| (row as f64 * 1.7 + k).sin();
+            *position += Vec3::new(number(0.0), number(1.0), number(2.0)) * 0.03;
+        }
+        rows
+    }
+}
+
+fn at(positions: &[Vec3]) -> Configuration<'_> {
+    Configuration {
+        positions,
+        velocities: positions,
+        time: 0.0,
+        load: 1.0,
+        memory: &[],
+        pairs: &[],
+        driven: &[],
+        fields: &[],
+    }
+}
+
+fn energy(force: &dyn Force, positions: &[Vec3]) -> f64 {
+    force.energy(&at(positions), &mut force.new_scratch()).stored
+}
+
+fn force_of(force: &dyn Force, positions: &[Vec3]) -> Vec<Vec3> {
+    let mut out = vec![Vec3::ZERO; positions.len()];
+    force.add_force(&at(positions), &mut force.new_scratch(), &mut out);
+    out
+}
+
+fn differential(force: &dyn Force, positions: &[Vec3], delta: &[Vec3]) -> Vec<Vec3> {
+    let mut out = vec![Vec3::ZERO; positions.len()];
+    let weights = TangentWeights { position: 1.0, velocity: 0.0 };
+    force.add_differential(&at(positions), weights, delta, &mut force.new_scratch(), &mut out);
+    out
+}
+
+fn norm(vectors: &[Vec3]) -> f64 {
+    vectors.iter().map(|v| v.length_sq()).sum::<f64>().sqrt()
+}
+
+fn line(count: usize) -> Vec<Frame> {
+    let axes = exponential(Vec3::new(0.3, -0.2, 0.5));
+    (0..count).map(|i| Frame { origin: Vec3::new(i as f64 / (count - 1) as f64, 0.1, 0.1), axes }).collect()
+}
+
+const SIZE: [f64; 3] = [1.0, 0.2, 0.2];
+
+/// BOS-1: a rigid motion of all frames strains no sample, whatever the weights, the frames and their rest axes.
+#[test]
+fn rigid_motion_strains_nothing() {
+    let mesh = bar(SIZE, [9.0, 2.0, 2.0], "tet4");
+    for weights in WEIGHTS.names() {
+        for frames in [line(5), line(2)] {
+            let body = Body::new(&mesh, frames, weights);
+            let turn = exponential(Vec3::new(1.0, -2.0, 0.7));
+            let rows = body.moved(&turn, Vec3::new(3.0, 1.0, -2.0));
+            for carried in &body.carried {
+                let mut F = Mat3::ZERO;
+                for (frame, gradients) in carried.frames.iter().zip(&carried.rows) {
+                    let first = body.rows[*frame as usize] as usize;
+                    for (row, (_, gradient)) in rows[first..].iter().zip(gradients) {
+                        F += row.outer(*gradient);
+                    }
+                }
+                let strain = F.transpose_mul(&F) - Mat3::IDENTITY;
+                // positions of some metres times gradients of at most 1e2 /m: rounding of their sum
+                assert!(strain.largest_entry() < 1e-12, "{weights}: {strain:?}");
+            }
+            let force = body.force(&mesh, &[material("neo_hookean")], TangentKind::Full);
+            let largest = norm(&force_of(&force, &rows));
+            let scale = norm(&force_of(&force, &body.strained()));
+            assert!(largest < 1e-9 * scale, "{weights}: {largest} of {scale}");
+        }
+    }
+}
+
+/// Weights sum to one and their gradients to zero; gradients are the derivatives of the weights.
+#[test]
+fn weights_are_a_partition_of_unity() {
+    let mesh = bar(SIZE, [10.0, 2.0, 2.0], "hex8");
+    let frames = line(4);
+    let stiffness: Vec<f64> =
+        mesh.cell_centres().iter().map(|centre| if centre.x > 0.5 { 50.0 } else { 1.0 }).collect();
+    let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &stiffness };
+    for name in WEIGHTS.names() {
+        let weights = weights_of(name, &shape);
+        // inside cells, away from their faces, where harmonic weights have a kink
+        for point in [Vec3::new(0.33, 0.07, 0.12), Vec3::new(0.87, 0.03, 0.15), Vec3::new(0.51, 0.13, 0.04)] {
+            let shares = weights.shares(point);
+            let sum: f64 = shares.iter().map(|share| share.weight).sum();
+            let slope: Vec3 = shares.iter().map(|share| share.gradient).sum();
+            // gradients of at most some hundred per metre cancel
+            assert!((sum - 1.0).abs() < 1e-13 && slope.length() < 1e-11, "{name}: {sum} {slope:?}");
+            let step = 1e-6;
+            for share in &shares {
+                for axis in 0..3 {
+                    let shifted = |sign: f64| {
+                        let mut moved = point;
+                        moved[axis] += sign * step;
+                        let there = weights.shares(moved);
+                        there
+                            .iter()
+                            .find(|other| other.frame == share.frame)
+                            .map_or(0.0, |other| other.weight)
+                    };
+                    let numeric = (shifted(1.0) - shifted(-1.0)) / (2.0 * step);
+                    // third derivatives of some 1e4 /m³ times the step squared, rounding 1e-16 over the step
+                    assert!((numeric - share.gradient[axis]).abs() < 1e-6, "{name}: {numeric} {share:?}");
+                }
+            }
+        }
+    }
+}
+
+/// BOS-2: forces are minus the gradient of the energy, and differentials and blocks their derivatives, for laws compiled
+/// and written, and bodies of two materials.
+#[test]
+fn forces_are_gradients_and_tangents_their_derivatives() {
+    let mesh = bar(SIZE, [6.0, 2.0, 2.0], "tet4");
+    let laws = [
+        vec![material("st_venant_kirchhoff")],
+        vec![material("neo_hookean"), material("corotational")],
+        vec![text_law(), material("neo_hookean")],
+    ];
+    for laws in laws {
+        let body = Body::new(&mesh, line(4), "wendland");
+        let force = body.force(&mesh, &laws, TangentKind::Full);
+        let rows = body.strained();
+        let delta: Vec<Vec3> =
+            (0..rows.len()).map(|row| Vec3::new((row as f64).cos(), (2.0 * row as f64).sin(), 0.4)).collect();
+        let shifted = |step: f64| -> Vec<Vec3> {
+            rows.iter().zip(&delta).map(|(row, delta)| *row + *delta * step).collect()
+        };
+        let step = 1e-5;
+        let slope = (energy(&force, &shifted(step)) - energy(&force, &shifted(-step))) / (2.0 * step);
+        let work: f64 = force_of(&force, &rows).iter().zip(&delta).map(|(f, d)| f.dot(*d)).sum();
+        // a third derivative of order one relative, times 1e-10; rounding 1e-16/1e-5 relative
+        assert!((slope + work).abs() < 1e-6 * work.abs(), "{slope} {work}");
+        let product = differential(&force, &rows, &delta);
+        let (plus, minus) = (force_of(&force, &shifted(step)), force_of(&force, &shifted(-step)));
+        let numeric: Vec<Vec3> = plus.iter().zip(&minus).map(|(p, m)| (*p - *m) / (2.0 * step)).collect();
+        let apart: Vec<Vec3> = numeric.iter().zip(&product).map(|(n, p)| *n - *p).collect();
+        assert!(norm(&apart) < 1e-6 * norm(&product), "{} of {}", norm(&apart), norm(&product));
+        check_blocks(&force, &rows, &delta);
+        check_blocks(&body.force(&mesh, &laws, TangentKind::Material), &rows, &delta);
+    }
+}
+
+/// Blocks times a displacement are the differential, to rounding; blocks are symmetric to the last bit.
+fn check_blocks(force: &FramesForce, rows: &[Vec3], delta: &[Vec3]) {
+    let mut cliques: Vec<Vec<u32>> = Vec::new();
+    force.visit_cliques(&[], &mut |clique| cliques.push(clique.to_vec()));
+    let pattern = Pattern::from_cliques(rows.len(), cliques.iter().map(Vec::as_slice)).unwrap();
+    let mut matrix = BlockMatrix::zeros(std::sync::Arc::new(pattern));
+    let weights = TangentWeights { position: 1.0, velocity: 0.0 };
+    force.add_blocks(&at(rows), weights, &mut force.new_scratch(), &mut matrix);
+    assert_eq!(matrix.asymmetry(), 0.0);
+    let mut product = vec![Vec3::ZERO; rows.len()];
+    souple_solve::LinearOperator::apply(&matrix, delta, &mut product);
+    let expected = differential(force, rows, delta);
+    let apart: Vec<Vec3> = product.iter().zip(&expected).map(|(a, b)| *a - *b).collect();
+    assert!(norm(&apart) < 1e-11 * norm(&expected), "{} of {}", norm(&apart), norm(&expected));
+}
+
+/// The tangent of the material alone is that of the whole at rest, and positive where compression makes that indefinite.
+#[test]
+fn material_tangents_stay_positive_under_compression() {
+    let mesh = bar(SIZE, [8.0, 2.0, 2.0], "tet4");
+    let body = Body::new(&mesh, line(5), "wendland");
+    let rest = body.moved(&Mat3::IDENTITY, Vec3::ZERO);
+    let laws = [material("st_venant_kirchhoff")];
+    let [full, alone] = [TangentKind::Full, TangentKind::Material].map(|kind| body.force(&mesh, &laws, kind));
+    let bend: Vec<Vec3> = (0..rest.len()).map(|row| Vec3::new(0.0, (row as f64).sin(), 0.0)).collect();
+    let (a, b) = (differential(&full, &rest, &bend), differential(&alone, &rest, &bend));
+    let apart: Vec<Vec3> = a.iter().zip(&b).map(|(a, b)| *a - *b).collect();
+    assert!(norm(&apart) < 1e-12 * norm(&a));
+    // shortened by a third along x: origins sideways in turn cost less than nothing
+    let shrink = Mat3::from_diagonal(Vec3::new(0.6, 1.0, 1.0));
+    let mut short = body.moved(&Mat3::IDENTITY, Vec3::ZERO);
+    short.iter_mut().skip(FIRST as usize).for_each(|row| *row = shrink * *row);
+    let sideways: Vec<Vec3> = (0..short.len())
+        .map(|row| {
+            let origin = row >= FIRST as usize && (row - FIRST as usize).is_multiple_of(4);
+            if origin { Vec3::Y * if (row / 4).is_multiple_of(2) { 1.0 } else { -1.0 } } else { Vec3::ZERO }
+        })
+        .collect();
+    let curvature = |force: &FramesForce| -> f64 {
+        let change = differential(force, &short, &sideways);
+        -change.iter().zip(&sideways).map(|(f, d)| f.dot(*d)).sum::<f64>()
+    };
+    assert!(curvature(&alone) > 0.0 && curvature(&full) < curvature(&alone));
+}
+
+/// Kinetic energy of rigid and affine motions is that of the points, for consistent and lumped mass alike; of any motion
+/// for the consistent one.
+#[test]
+fn masses_have_the_energy_of_their_points() {
+    let mesh = bar(SIZE, [8.0, 2.0, 2.0], "tet4");
+    let body = Body::new(&mesh, line(5), "gaussian");
+    let masses: Vec<f64> = body.samples.iter().map(|sample| 900.0 * sample.volume).collect();
+    let mut consistent = Mass::new(body.row_count());
+    frames::consistent_mass(&body.carried, &masses, &body.rows, &mut consistent);
+    consistent.seal();
+    let mut lumped = Mass::new(body.row_count());
+    frames::lumped_mass(&body.frames, &body.samples, &body.carried, &masses, &body.rows, &mut lumped);
+    lumped.seal();
+    let of_points = |velocities: &[Vec3]| -> f64 {
+        let of = |(carried, m): (&Carried, &f64)| {
+            let v: Vec3 =
+                carried.weights(&body.rows).map(|(row, weight)| velocities[row as usize] * weight).sum();
+            0.5 * m * v.length_sq()
+        };
+        body.carried.iter().zip(&masses).map(of).sum()
+    };
+    let affine =
+        Mat3::from_columns(Vec3::new(0.2, 1.0, 0.3), Vec3::new(-1.0, 0.1, 0.5), Vec3::new(0.4, -0.6, 0.2));
+    let mut velocities = body.moved(&affine, Vec3::new(0.3, -0.2, 0.9));
+    let expected = of_points(&velocities);
+    for mass in [&consistent, &lumped] {
+        assert!((mass.kinetic_energy(&velocities) - expected).abs() < 1e-12 * expected);
+    }
+    velocities = body.strained();
+    let expected = of_points(&velocities);
+    assert!((consistent.kinetic_energy(&velocities) - expected).abs() < 1e-12 * expected);
+}
+
+/// BOS-3: on a line of five frames and in a plane of twelve the moment matrix of moving least squares,
+/// `Σ_i φ_i p p^T` with `p = (1, x, y, z)`, is singular, and the stiffness of frames is not: six motions that cost nothing,
+/// as a body in space has, and no more.
+#[test]
+fn frames_on_a_line_and_in_a_plane_are_well_posed() {
+    let grid = |nx: usize, ny: usize| -> Vec<Frame> {
+        let at = |i: usize, j: usize| {
+            Vec3::new(i as f64 / (nx - 1) as f64, 0.6 * j as f64 / (ny - 1) as f64, 0.02)
+        };
+        let frames = (0..nx * ny).map(|k| Frame { origin: at(k % nx, k / nx), axes: Mat3::IDENTITY });
+        frames.collect()
+    };
+    let cases = [
+        (bar(SIZE, [16.0, 3.0, 3.0], "tet4"), line(5)),
+        (bar([1.0, 0.6, 0.04], [16.0, 10.0, 2.0], "tet4"), grid(4, 3)),
+    ];
+    for (mesh, frames) in cases {
+        let count = frames.len();
+        let middle = frames.iter().map(|frame| frame.origin).sum::<Vec3>() / count as f64;
+        let moments: Mat3 = frames
+            .iter()
+            .map(|frame| (frame.origin - middle).outer(frame.origin - middle))
+            .fold(Mat3::ZERO, |sum, part| sum + part);
+        let values = eigen_symmetric(&moments).values.to_array();
+        let (least, most) = values.iter().fold((f64::MAX, 0.0_f64), |(l, m), v| (l.min(v.abs()), m.max(*v)));
+        assert!(least < 1e-15 * most, "moving least squares would have a condition of {:e}", most / least);
+        let body = Body::new(&mesh, frames, "wendland");
+        let force = body.force(&mesh, &[material("neo_hookean")], TangentKind::Full);
+        let rest = body.moved(&Mat3::IDENTITY, Vec3::ZERO);
+        // stiffness over shifts and turns of the frames
+        let velocity = |frame: usize, motion: usize| {
+            let mut rows = vec![Vec3::ZERO; rest.len()];
+            let first = body.rows[frame] as usize;
+            if motion < 3 {
+                rows[first] = Vec3::AXES[motion];
+            } else {
+                let turn = Vec3::AXES[motion - 3] * 5.0;
+                (1..4).for_each(|axis| rows[first + axis] = turn.cross(rest[first + axis]));
+            }
+            rows
+        };
+        let motions: Vec<Vec<Vec3>> = (0..6 * count).map(|index| velocity(index / 6, index % 6)).collect();
+        let n = motions.len();
+        let mut matrix = vec![0.0; n * n];
+        for (column, motion) in motions.iter().enumerate() {
+            let change = differential(&force, &rest, motion);
+            for (row, other) in motions.iter().enumerate() {
+                matrix[row * n + column] = -change.iter().zip(other).map(|(f, d)| f.dot(*d)).sum::<f64>();
+            }
+        }
+        let mut values = eigenvalues(&mut matrix, n);
+        values.sort_by(f64::total_cmp);
+        let most = values[n - 1];
+        assert!(values[5].abs() < 1e-10 * most, "six motions cost nothing: {:?}", &values[..8]);
+        assert!(values[6] > 1e-6 * most, "all others do: {:?}", &values[..8]);
+    }
+}
+
+/// Eigenvalues of a symmetric matrix, by cyclic Jacobi.
+fn eigenvalues(a: &mut [f64], n: usize) -> Vec<f64> {
+    for _ in 0..12 {
+        for p in 0..n {
+            for q in p + 1..n {
+                let off = a[p * n + q];
+                if off == 0.0 {
+                    continue;
+                }
+                let theta = (a[q * n + q] - a[p * n + p]) / (2.0 * off);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let t = if theta == 0.0 { 1.0 } else { t };
+                let c = 1.0 / (t * t + 1.0).sqrt();
+                let s = t * c;
+                for k in 0..n {
+                    let (x, y) = (a[k * n + p], a[k * n + q]);
+                    (a[k * n + p], a[k * n + q]) = (c * x - s * y, s * x + c * y);
+                }
+                for k in 0..n {
+                    let (x, y) = (a[p * n + k], a[q * n + k]);
+                    (a[p * n + k], a[q * n + k]) = (c * x - s * y, s * x + c * y);
+                }
+            }
+        }
+    }
+    (0..n).map(|i| a[i * n + i]).collect()
+}
+
+/// Harmonic weights do not cross a slit: two arms that meet at their root only, closer to each other than frames reach.
+#[test]
+fn harmonic_weights_keep_the_sides_of_a_slit_apart() {
+    // a bar of eight by four cells, cut along its middle from x = 0.5 to its end
+    let whole = bar([1.0, 0.4, 0.1], [16.0, 8.0, 1.0], "hex8");
+    let mut mesh = whole.clone();
+    let mut twins = std::collections::BTreeMap::new();
+    for (point, x) in whole.points.iter().enumerate() {
+        if (x.y - 0.2).abs() < 1e-9 && x.x > 0.51 {
+            twins.insert(point as u32, mesh.points.len() as u32);
+            mesh.points.push(*x);
+        }
+    }
+    let centres = whole.cell_centres();
+    for (cell, nodes) in mesh.blocks[0].nodes.chunks_mut(8).enumerate() {
+        if centres[cell].y > 0.2 {
+            nodes.iter_mut().for_each(|node| *node = *twins.get(node).unwrap_or(node));
+        }
+    }
+    let frame = |x: f64, y: f64| Frame { origin: Vec3::new(x, y, 0.05), axes: Mat3::IDENTITY };
+    let frames = [frame(0.1, 0.2), frame(0.9, 0.1), frame(0.9, 0.3)];
+    let stiffness = vec![1.0; mesh.cell_count()];
+    let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &stiffness };
+    let point = Vec3::new(0.85, 0.17, 0.05);
+    let share = |name: &str| {
+        let shares = weights_of(name, &shape).shares(point);
+        shares.iter().find(|share| share.frame == 2).map_or(0.0, |share| share.weight)
+    };
+    assert!(share("wendland") > 0.1, "{}", share("wendland"));
+    // by way of the root: the arm is three times as long as it is wide
+    assert!(share("harmonic") < 0.05, "{}", share("harmonic"));
+}
+
+/// A stiff inclusion moves as one: harmonic weights are nearly constant in it, and not without its stiffness.
+#[test]
+fn harmonic_weights_are_flat_where_matter_is_stiff() {
+    let mesh = bar([1.0, 0.1, 0.1], [40.0, 2.0, 2.0], "hex8");
+    let frames = [0.0, 1.0].map(|x| Frame { origin: Vec3::new(x, 0.05, 0.05), axes: Mat3::IDENTITY });
+    let range = |contrast: f64| {
+        let stiff = |centre: &Vec3| if (0.3..0.7).contains(&centre.x) { contrast } else { 1.0 };
+        let stiffness: Vec<f64> = mesh.cell_centres().iter().map(stiff).collect();
+        let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &stiffness };
+        let weights = weights_of("harmonic", &shape);
+        let at = |x: f64| weights.shares(Vec3::new(x, 0.05, 0.05))[0].weight;
+        at(0.32) - at(0.68)
+    };
+    // between cores of 0.2: resistances 0.2 / (0.6 - 0.4 + 0.4 / contrast) of the whole, 0.36/0.6 and about 0.0036/0.2036
+    assert!(range(1.0) > 0.5 && range(100.0) < 0.03, "{} {}", range(1.0), range(100.0));
+}
+
+/// Placements give what they are asked for: as many frames, inside or near the matter, all apart; Lloyd's by compliance
+/// puts more of them where matter is soft.
+#[test]
+fn placements_spread() {
+    let mesh = bar(SIZE, [20.0, 4.0, 4.0], "tet4");
+    let entry = POINTS.find("cells").unwrap();
+    let samples = (entry.build)(&entry.values(Values::new()).unwrap(), &mesh, &vec![0; mesh.cell_count()]);
+    let stiffness: Vec<f64> =
+        samples.iter().map(|sample| if sample.position.x > 0.5 { 100.0 } else { 1.0 }).collect();
+    let matter = frames::Matter { samples: &samples, stiffness: &stiffness, bounds: mesh.bounds() };
+    let place = |name: &str, by: &'static str| {
+        let entry = PLACEMENTS.find(name).unwrap();
+        let mut values = Values::new().with("count", Value::Integer(12));
+        if !by.is_empty() {
+            values.set("by", Value::Text(by));
+        }
+        (entry.build)(&entry.values(values).unwrap(), &matter).unwrap()
+    };
+    for (name, by) in [("farthest_point", ""), ("lloyd", "volume")] {
+        let frames = place(name, by);
+        assert_eq!(frames.len(), 12);
+        let unit = vec![1.0; mesh.cell_count()];
+        let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &unit };
+        // twelve in a bar of 0.04 m³ have some 0.1 m each
+        assert!(frames::spacings(&shape).iter().all(|spacing| *spacing > 0.05), "{name}");
+    }
+    let soft = place("lloyd", "compliance").iter().filter(|frame| frame.origin.x < 0.5).count();
+    assert!(soft >= 8, "{soft} of 12 in the soft half");
+}
+
+/// Bodies of frames that cannot be say so, with what to change.
+#[test]
+fn faults_are_said_in_words() {
+    let mesh = bar(SIZE, [8.0, 1.0, 1.0], "tet4");
+    let unit = vec![1.0; mesh.cell_count()];
+    let frame = |x: f64| Frame { origin: Vec3::new(x, 0.1, 0.1), axes: Mat3::IDENTITY };
+    let said = |frames: &[Frame]| {
+        let shape = Shape { frames, mesh: &mesh, stiffness_of_cell: &unit };
+        if let Err(error) = frames::check_apart(&shape) {
+            return error.to_string();
+        }
+        let weights = weights_of("wendland", &shape);
+        match frames::check_reach(&shape, weights.as_ref(), mesh.points.iter().copied()) {
+            Err(error) => error.to_string(),
+            Ok(()) => String::new(),
+        }
+    };
+    assert!(said(&[]).contains("there are no frames"));
+    assert!(said(&[frame(0.2), frame(0.2)]).contains("frames 0 and 1 are on top of each other"));
+    assert!(said(&[frame(0.0), frame(0.1)]).contains("wider support"));
+    let shape = Shape { frames: &[frame(0.5), frame(0.51)], mesh: &mesh, stiffness_of_cell: &unit };
+    let entry = WEIGHTS.find("harmonic").unwrap();
+    let error = (entry.build)(&entry.values(Values::new()).unwrap(), &shape).err().unwrap().to_string();
+    assert!(error.contains("finer mesh"), "{error}");
+    // one sample of all the body: nothing resists a turn
+    let frames = [frame(0.5)];
+    let sample = Sample { position: Vec3::new(0.5, 0.1, 0.1), volume: 0.04, cell: 0 };
+    let shares = [frames::Share { frame: 0, weight: 1.0, gradient: Vec3::ZERO }];
+    let carried = [Carried::new(&frames, &shares, sample.position)];
+    let error = frames::check_inertia(&frames, &[sample], &carried, false).unwrap_err().to_string();
+    assert!(error.contains("lies on a point"), "{error}");
+}

@@ -1,0 +1,177 @@
+//! The course of a run: its steps, and what is written between and after them.
+//!
+//! Whatever goes wrong once the first step is due ends the run as failed, and costs neither the report nor anything
+//! else that can still be written.
+
+use std::iter::Peekable;
+use std::time::Instant;
+
+use souple_engine::{Command, World};
+use souple_scene::spec::expect::Expect;
+use souple_scene::spec::picture::PictureView;
+
+use crate::expect::Span;
+use crate::frames::Frames;
+use crate::output::{OutputError, OutputFolder};
+use crate::{Change, Control, Options, Outcome, Progress, Report, RunError, Session, Status, Trace, Verdict};
+use crate::{picture, report, snapshot_name};
+
+/// A run on its way.
+pub(crate) struct Course {
+    pub session: Session,
+    /// Where its files go; nothing is written where `None`.
+    pub folder: Option<OutputFolder>,
+    pub frames: Frames,
+    pub traces: Vec<Trace>,
+}
+
+/// What of a scene is looked at when its run is over.
+pub(crate) struct Aims {
+    pub expects: Vec<Expect>,
+    /// End of the scene [s].
+    pub scene_end: f64,
+    pub view: PictureView,
+}
+
+/// What is done to the world along the way, in order.
+struct Dues<'a, C: Iterator<Item = &'a Command>> {
+    commands: Peekable<C>,
+    changes: Peekable<std::slice::Iter<'a, Change>>,
+}
+
+impl<'a, C: Iterator<Item = &'a Command>> Dues<'a, C> {
+    /// What is due before the next step.
+    fn make(&mut self, session: &mut Session) -> Result<(), RunError> {
+        let now = session.world.state().period;
+        while let Some(change) = self.changes.next_if(|change| change.period <= now) {
+            let error = |error| RunError::Change { period: change.period, error };
+            session.change(&change.setting).map_err(error)?;
+        }
+        while let Some(command) = self.commands.next_if(|command| command.period <= now) {
+            let error = |error| RunError::Edit { period: command.period, error };
+            session.edit(command.edit.clone()).map_err(error)?;
+        }
+        Ok(())
+    }
+}
+
+impl Course {
+    /// All steps, and what is left of them.
+    pub fn run(
+        mut self,
+        steps: u64,
+        options: &Options,
+        aims: &Aims,
+        watch: &mut dyn FnMut(&Progress) -> Control,
+    ) -> Outcome {
+        let mut status = match self.steps(steps, options, watch) {
+            Ok(status) => status,
+            Err(error) => self.session.fail(&error),
+        };
+        if let Err(error) = self.frames.close(self.folder.as_mut(), &self.session.world, &self.session.bodies)
+        {
+            status = self.session.fail(&error.into());
+        }
+        let report = self.conclude(status, aims);
+        let recording = self.session.recording();
+        let replaced = self.folder.as_ref().map_or(0, OutputFolder::replaced);
+        let Session { world, bodies, .. } = self.session;
+        Outcome { report, traces: self.traces, recording, world, bodies, replaced }
+    }
+
+    /// # Errors
+    /// A change or a command does not fit, a frame or a snapshot cannot be written.
+    fn steps(
+        &mut self,
+        steps: u64,
+        options: &Options,
+        watch: &mut dyn FnMut(&Progress) -> Control,
+    ) -> Result<Status, RunError> {
+        let Self { session, folder, frames, traces } = self;
+        let period = session.world.model().period;
+        let commands = commands_left(options, &session.world).peekable();
+        let mut dues = Dues { commands, changes: options.changes.iter().peekable() };
+        session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+        frames.write(folder.as_mut(), &session.world, &session.bodies, 0)?;
+        for step in 1..=steps {
+            dues.make(session)?;
+            if !session.step() {
+                return Ok(Status::Failed);
+            }
+            session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+            let last = step == steps;
+            let write_clock = Instant::now();
+            if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
+                session.push_hash();
+            }
+            frames.write(folder.as_mut(), &session.world, &session.bodies, step)?;
+            let wall_seconds = session.clock.elapsed().as_secs_f64();
+            let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
+            let stops = watch(&progress) == Control::Stop && !last;
+            if let (Some(every), Some(folder)) = (options.snapshot_every, &mut *folder)
+                && (last || stops || step.is_multiple_of(every))
+            {
+                let path = folder.claim(&snapshot_name(session.world.state().period))?;
+                session.write_snapshot(&path).map_err(OutputError::from)?;
+            }
+            session.around.write += write_clock.elapsed().as_secs_f64();
+            if stops {
+                session.push_hash();
+                return Ok(Status::Interrupted);
+            }
+        }
+        Ok(Status::Done)
+    }
+
+    /// The report, written with tables and pictures where the run has a folder.
+    fn conclude(&mut self, status: Status, aims: &Aims) -> Report {
+        let Self { session, folder, traces, frames } = self;
+        let drawable = folder.as_ref().and_then(|_| frames.drawable(&session.world, &session.bodies));
+        if let Some(moment) = &drawable
+            && moment.time < session.world.time()
+        {
+            session.warnings.push(format!(
+                "the bodies have run away: the picture shows {:.6} s, the last frame that can be drawn",
+                moment.time
+            ));
+        }
+        let period = session.world.model().period;
+        let measured = (session.first_step as f64 * period, session.world.time());
+        let span = Span { scene_end: aims.scene_end, period, status, measured };
+        let mut report = Report {
+            probes: traces.iter().map(Trace::summary).collect(),
+            expectations: aims.expects.iter().map(|expect| Verdict::of(expect, traces, &span)).collect(),
+            ..session.report(status)
+        };
+        let Some(folder) = folder else { return report };
+        // numbers first: should the program be ended while it draws, they are there
+        let written = [
+            report::write_report(folder, &report),
+            report::write_tables(folder, &report, traces),
+            picture::write_plots(folder, traces),
+            drawable.map_or(Ok(()), |moment| {
+                picture::write_last(folder, &report.title, aims.view, session, &moment)
+            }),
+        ];
+        let errors: Vec<OutputError> = written.into_iter().filter_map(Result::err).collect();
+        if errors.is_empty() {
+            return report;
+        }
+        for error in errors {
+            report.status = session.fail(&error.into());
+        }
+        (report.failure, report.warnings) = (session.failure.clone(), session.warnings.clone());
+        // where even this cannot be written, the failure at hand tells of it
+        let _ = report::write_report(folder, &report);
+        report
+    }
+}
+
+/// Commands that the world has not seen: those after its state, and those at its state's period that came later
+/// than what its log holds.
+fn commands_left<'a>(options: &'a Options, world: &World) -> impl Iterator<Item = &'a Command> + use<'a> {
+    let now = world.state().period;
+    let done = world.log().iter().filter(|command| command.period == now).count();
+    let from = if options.resume.is_some() { now } else { 0 };
+    options.commands.iter().filter(move |command| command.period >= from).skip(done)
+}

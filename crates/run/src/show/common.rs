@@ -1,0 +1,140 @@
+//! What all pictures of a show have in common, so that neither camera nor colours jump.
+
+use souple_io::picture::{ColourMap, Cut, MeshSurface};
+use souple_mesh::BoundingBox;
+
+use super::figure::Figure;
+use super::{BodyMoment, Moment, Show, ShowError, vectors};
+
+/// Camera, colours and sizes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Common {
+    pub bounds: BoundingBox,
+    /// About as much as a pixel shows [m].
+    pub pixel: f64,
+    pub range: Option<(f64, f64)>,
+    pub arrow_scale: f64,
+}
+
+/// Values that differ by less than this part of the largest are one value: solvers stop some digits before rounding.
+const ONE_VALUE: f64 = 1e-6;
+/// Part of the lesser side of a picture that bodies fill.
+const FILLED: f64 = 0.7;
+/// Radii of tubes, as parts of the diagonal of the picture: thin, and as thick as they get.
+const TUBES: [f64; 2] = [0.0012, 0.0035];
+/// Radius of tubes, as a part of the mean length of edges, between those bounds.
+const OF_EDGE: f64 = 0.12;
+
+/// The range of colours for values from `low` to `high`: from zero where all are one value but for rounding, and to
+/// `noise`, what rounding makes of zero, where there is nothing more.
+fn spread((low, high): (f64, f64), noise: f64) -> (f64, f64) {
+    let most = low.abs().max(high.abs());
+    if most <= noise {
+        return (if low < 0.0 { -noise } else { 0.0 }, noise);
+    }
+    if high - low > (ONE_VALUE * most).max(noise) { (low, high) } else { (low.min(0.0), high.max(0.0)) }
+}
+
+/// Least and greatest of finite values.
+fn extremes(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.filter(|value| value.is_finite()).fold(None, |range: Option<(f64, f64)>, value| match range {
+        None => Some((value, value)),
+        Some((low, high)) => Some((low.min(value), high.max(value))),
+    })
+}
+
+impl Common {
+    pub fn of(figure: &Figure, show: &Show, moments: &[&Moment]) -> Result<Self, ShowError> {
+        let bodies = || moments.iter().flat_map(|moment| &moment.bodies).filter(|body| body.is_drawable());
+        let mut bounds = BoundingBox::of(bodies().flat_map(|body| body.positions.iter().copied()));
+        for moment in moments {
+            if let Some(shapes) = show.stage.bounds(moment.time, bounds) {
+                bounds = bounds.union(shapes);
+            }
+        }
+        // exploded bodies are larger about their middles; those of all bodies together are near enough
+        if figure.explode > 0.0 {
+            bounds = bounds.grown(0.5 * figure.explode * bounds.diagonal() / 3f64.sqrt());
+        }
+        let mut range = figure.range;
+        if let (Some(quantity), None) = (figure.quantity(), range) {
+            if let Some(first) = moments.first() {
+                quantity.check(first)?;
+            }
+            let noise = bodies().map(|body| quantity.noise(body, show.stage.stiffness)).fold(0.0, f64::max);
+            let found = extremes(bodies().filter_map(|body| quantity.at_points(body)).flatten());
+            range = found.map(|range| spread(range, noise));
+            if let (ColourMap::Diverging, Some((low, high))) = (figure.colours, range) {
+                let most = low.abs().max(high.abs());
+                range = Some((-most, most));
+            }
+        }
+        let mut arrow_scale = 1.0;
+        if let Some(arrows) = &figure.arrows {
+            if let Some(first) = moments.first() {
+                refuse_unknown_vectors(first, &arrows.field)?;
+            }
+            let lengths =
+                bodies().filter_map(|body| vectors(body, &arrows.field)).flatten().map(|v| v.length());
+            let longest = lengths.filter(|length| length.is_finite()).fold(0.0, f64::max);
+            let fitted = if longest > 0.0 { bounds.diagonal() / (6.0 * longest) } else { 1.0 };
+            arrow_scale = arrows.scale.unwrap_or(fitted);
+        }
+        let pixels = FILLED * figure.size[0].min(figure.size[1]).max(1) as f64;
+        Ok(Self { bounds, pixel: bounds.diagonal() / pixels, range, arrow_scale })
+    }
+}
+
+impl BodyMoment {
+    /// Whether its cells are edges, which have no surface.
+    pub(super) fn is_of_edges(&self) -> bool {
+        self.mesh.dimension() == 1
+    }
+
+    /// Its edges, thick enough to be seen and thin enough to be told apart where pixels allow it.
+    pub(super) fn tubes(&self, common: &Common, cut: Option<Cut>) -> MeshSurface {
+        let whole = common.bounds.diagonal();
+        let cells = self.mesh.cell_count().max(1) as f64;
+        let length: f64 = self
+            .mesh
+            .cells()
+            .map(|cell| {
+                let [from, to] = [0, 1].map(|end: usize| self.mesh.points[cell.nodes[end] as usize]);
+                (to - from).length()
+            })
+            .sum();
+        let [thin, thick] = TUBES.map(|part| part * whole);
+        let radius = (OF_EDGE * length / cells).clamp(thin, thick).max(common.pixel);
+        MeshSurface::tubes(&self.mesh, &self.positions, radius, cut)
+    }
+}
+
+/// Refuses a vector field that no body has.
+fn refuse_unknown_vectors(moment: &Moment, name: &str) -> Result<(), ShowError> {
+    if moment.bodies.iter().any(|body| vectors(body, name).is_some()) {
+        return Ok(());
+    }
+    let fields =
+        moment.bodies.iter().flat_map(|body| &body.point_fields).filter(|field| field.components == 3);
+    let mut known: Vec<&str> = fields.map(|field| field.name.as_str()).collect();
+    known.sort_unstable();
+    known.dedup();
+    let expected = format!("a vector of each point: {}", known.join(", "));
+    Err(ShowError::UnknownField { name: name.to_owned(), expected })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values are spread over the colours; one value has its colour between zero and itself; what rounding makes of
+    /// zero is near zero.
+    #[test]
+    fn rounding_has_no_colours() {
+        assert_eq!(spread((2.0, 3.0), 1e-9), (2.0, 3.0));
+        assert_eq!(spread((3.0, 3.0 + 1e-9), 1e-12), (0.0, 3.0 + 1e-9));
+        assert_eq!(spread((1e-12, 8e-12), 1e-9), (0.0, 1e-9));
+        assert_eq!(spread((-1e-12, 8e-12), 1e-9), (-1e-9, 1e-9));
+        assert_eq!(spread((0.0, 0.0), 0.0), (0.0, 0.0));
+    }
+}

@@ -1,0 +1,244 @@
+//! Bodies of frames: frames are placed, given weights, and asked what they have to say at every point of the body.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use souple_engine::{DerivedRow, Feedback, Force, Kinematics, Mass, Motion, UnknownKind};
+use souple_math::Vec3;
+use souple_mesh::Mesh;
+use souple_models::frames::{
+    self, Carried, Frame, FrameError, FramesDescription, FramesForce, HeldPoint, Hold, Matter, POINTS,
+    ROWS_OF_FRAME, Sample, Shape, WEIGHTS, Weights, layer_stiffness,
+};
+use souple_models::materials::Material;
+use souple_models::solids::{Section, lumped_mass};
+use souple_table::{Entry, Values};
+
+use super::Draft;
+use super::bodies::{Placed, solid_name};
+use super::doubts::youngs_modulus;
+use crate::diagnostic::Code;
+use crate::spec::body::{Body, MassKind};
+use crate::spec::frames::FramesSpec;
+
+/// The frames of a body and what they have to say at its points.
+pub struct PlacedFrames {
+    pub kind: UnknownKind,
+    pub frames: Vec<Frame>,
+    /// Row of each frame's origin.
+    pub rows: Vec<u32>,
+    pub samples: Vec<Sample>,
+    pub carried: Vec<Carried>,
+    pub carried_cells: Vec<Carried>,
+    /// At the points of the mesh.
+    pub carried_points: Vec<Carried>,
+}
+
+/// A frame reached by more than these rows of others makes steps slow, which is said.
+const MANY: f64 = 24.0;
+
+impl PlacedFrames {
+    /// Rows of all frames.
+    pub fn row_range(&self) -> Range<usize> {
+        let first = self.rows.first().map_or(0, |row| *row as usize);
+        first..first + ROWS_OF_FRAME * self.frames.len()
+    }
+
+    pub fn give_rows(&mut self, first: usize) {
+        self.rows = (0..self.frames.len()).map(|frame| (first + ROWS_OF_FRAME * frame) as u32).collect();
+    }
+
+    /// Origins and axes at rest, as rows.
+    pub fn configuration(&self) -> impl Iterator<Item = Vec3> + '_ {
+        self.frames.iter().flat_map(|frame| {
+            let [x, y, z] = frame.axes.columns;
+            [frame.origin, x, y, z]
+        })
+    }
+
+    /// Appends the points of the mesh to the rows, each carried by its frames.
+    pub fn add_points(&self, kinematics: &mut Kinematics) {
+        for carried in &self.carried_points {
+            let parents = carried.weights(&self.rows).filter(|(_, weight)| *weight != 0.0).collect();
+            let row = DerivedRow { parents, feedback: Feedback::Transpose };
+            // weights are finite, and frames come before points
+            kinematics.add_derived_row(row).unwrap_or_else(|error| unreachable!("{error}"));
+        }
+    }
+
+    pub fn add_mass(&self, kind: MassKind, density_of_cell: &dyn Fn(usize) -> f64, mass: &mut Mass) {
+        let masses: Vec<f64> =
+            self.samples.iter().map(|sample| density_of_cell(sample.cell as usize) * sample.volume).collect();
+        match kind {
+            MassKind::Consistent => frames::consistent_mass(&self.carried, &masses, &self.rows, mass),
+            MassKind::Lumped => {
+                frames::lumped_mass(&self.frames, &self.samples, &self.carried, &masses, &self.rows, mass);
+            }
+        }
+    }
+
+    /// The elastic force of the body; takes what only it reads.
+    pub fn force(
+        &self,
+        body: &Placed,
+        spec: &FramesSpec,
+        materials: &[Material],
+        material_of_cell: &[u16],
+    ) -> Box<dyn Force> {
+        Box::new(FramesForce::new(FramesDescription {
+            name: solid_name(&body.spec.name),
+            row_of_frame: &self.rows,
+            samples: &self.samples,
+            carried: &self.carried,
+            carried_cells: self.carried_cells.clone(),
+            cell_volumes: body.mesh.cell_volumes(),
+            materials,
+            material_of_cell,
+            tangent: spec.tangent,
+        }))
+    }
+
+    /// Velocity blocks of a motion `v + ω × (x - c)` of the whole: origins move, axes turn.
+    pub fn start_velocity(&self, kinematics: &Kinematics, motion: [Vec3; 3], v: &mut [Vec3]) {
+        let [velocity, spin, centre] = motion;
+        for (row, frame) in self.rows.iter().zip(&self.frames) {
+            let block = kinematics.block_of(*row) as usize;
+            v[block] = velocity + spin.cross(frame.origin - centre);
+            match self.kind {
+                UnknownKind::RigidFrame => v[block + 1] = spin,
+                UnknownKind::AffineFrame => {
+                    for (k, axis) in frame.axes.columns.iter().enumerate() {
+                        v[block + 1 + k] = spin.cross(*axis);
+                    }
+                }
+                UnknownKind::Point => {}
+            }
+        }
+    }
+}
+
+fn chosen_or<'a, B: Copy>(
+    chosen: &'a Option<crate::reader::Chosen<B>>,
+    default: &'static Entry<B>,
+    defaults: &'a Values,
+) -> (B, &'a Values) {
+    chosen.as_ref().map_or((default.build, defaults), |chosen| (chosen.entry.build, &chosen.values))
+}
+
+/// Places the frames of a body; `None` where that was refused.
+pub fn place(
+    draft: &Draft,
+    body: &Body,
+    mesh: &Mesh,
+    materials: &[Material],
+    material_of_cell: &[u16],
+    warnings: &mut Vec<String>,
+) -> Option<PlacedFrames> {
+    let spec = body.frames.as_ref()?;
+    if body.section() != Section::Solid {
+        let message = "frames carry volumes, and this body is a section";
+        draft.log.add(Code::Conflict, &spec.site, message, "a mesh of volume cells, without `section`");
+        return None;
+    }
+    if body.damping.rayleigh_stiffness > 0.0 || body.damping.viscosity > 0.0 {
+        let message = "a body of frames has no damping by strain";
+        draft.log.add(Code::Conflict, &spec.site, message, "`rayleigh_mass`, or `drag`");
+        return None;
+    }
+    match placed(spec, mesh, materials, material_of_cell) {
+        Ok(placed) => {
+            let per_point = placed.carried.iter().map(|carried| carried.frames.len() as f64).sum::<f64>()
+                / placed.carried.len() as f64;
+            if per_point > MANY {
+                warnings.push(format!(
+                    "{}: {per_point:.0} frames reach each point of body `{}` on the average: a step costs as the square \
+                     of that; a smaller `support` of the weights is faster",
+                    draft.place(&spec.site),
+                    body.name
+                ));
+            }
+            Some(placed)
+        }
+        Err(error) => {
+            let expected = "frames that reach all of the body, each with matter of its own";
+            draft.log.add(Code::Conflict, &spec.site, error.to_string(), expected);
+            None
+        }
+    }
+}
+
+fn placed(
+    spec: &FramesSpec,
+    mesh: &Mesh,
+    materials: &[Material],
+    material_of_cell: &[u16],
+) -> Result<PlacedFrames, FrameError> {
+    let stiffness_of_cell: Vec<f64> = material_of_cell
+        .iter()
+        .map(|number| youngs_modulus(&materials[usize::from(*number)].small_strain))
+        .collect();
+    let defaults = Values::new();
+    let (build, values) = chosen_or(&spec.points, POINTS.entries[0], &defaults);
+    let samples = build(values, mesh, material_of_cell);
+    let stiffness: Vec<f64> = samples.iter().map(|sample| stiffness_of_cell[sample.cell as usize]).collect();
+    let matter = Matter { samples: &samples, stiffness: &stiffness, bounds: mesh.bounds() };
+    let placement = spec.placement.as_ref().ok_or(FrameError::NoFrames)?;
+    let frames = (placement.entry.build)(&placement.values, &matter)?;
+    let shape = Shape { frames: &frames, mesh, stiffness_of_cell: &stiffness_of_cell };
+    frames::check_apart(&shape)?;
+    // the entry's own defaults, which its parameters all have
+    let wendland = WEIGHTS.entries[0].values(Values::new()).unwrap_or_default();
+    let (build, values) = chosen_or(&spec.weights, WEIGHTS.entries[0], &wendland);
+    let weights = build(values, &shape)?;
+    let centres = mesh.cell_centres();
+    let places = || samples.iter().map(|sample| sample.position).chain(mesh.points.iter().copied());
+    frames::check_reach(&shape, weights.as_ref(), places().chain(centres.iter().copied()))?;
+    let at = |weights: &dyn Weights, point: Vec3| Carried::new(&frames, &weights.shares(point), point);
+    let carried: Vec<Carried> = samples.iter().map(|sample| at(weights.as_ref(), sample.position)).collect();
+    let carried_cells = centres.iter().map(|centre| at(weights.as_ref(), *centre)).collect();
+    let carried_points = mesh.points.iter().map(|point| at(weights.as_ref(), *point)).collect();
+    drop(weights);
+    let is_affine = spec.kind == UnknownKind::AffineFrame;
+    frames::check_inertia(&frames, &samples, &carried, is_affine)?;
+    Ok(PlacedFrames {
+        kind: spec.kind,
+        frames,
+        rows: Vec::new(),
+        samples,
+        carried,
+        carried_cells,
+        carried_points,
+    })
+}
+
+/// Name of what holds the pinned points of a body of frames.
+pub fn hold_name(body: &str) -> String {
+    format!("{body}.pins")
+}
+
+/// Springs that hold the points of a body of frames: each as stiff as a thin layer of the material around it.
+pub fn hold(body: &Placed, held: Vec<(u32, Vec3, Option<Arc<dyn Motion>>)>) -> Option<Hold> {
+    let material =
+        body.spec.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok())?;
+    let modulus = youngs_modulus(&material.small_strain);
+    let size = body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
+    let areas = cross_sections(&body.mesh);
+    if held.is_empty() {
+        return None;
+    }
+    let points = held.into_iter().map(|(point, axes, motion)| HeldPoint {
+        row: body.rows.start as u32 + point,
+        stiffness: layer_stiffness(modulus, size) * areas[point as usize],
+        start: body.mesh.points[point as usize],
+        axes,
+        motion,
+    });
+    Some(Hold::new(hold_name(&body.spec.name), points.collect()))
+}
+
+/// Of each point of a mesh: the area of its share of the volume, seen from any side [m²].
+pub fn cross_sections(mesh: &Mesh) -> Vec<f64> {
+    let mut volumes = Mass::new(mesh.points.len());
+    lumped_mass(mesh, 0, &|_| 1.0, &mut volumes);
+    volumes.diagonal.iter().map(|volume| volume.cbrt().powi(2)).collect()
+}

@@ -1,0 +1,76 @@
+//! Contacts of scenes: their stiffness where none is given, and bodies that start inside what they touch.
+
+use std::path::Path;
+
+use souple_models::contact::{ContactLaw, ShapeContact, SurfaceContact};
+use souple_scene::{Scene, read_text};
+
+const BLOCK: &str = r#"format = 1
+[world]
+period = "10 ms"
+[bodies.block]
+mesh = { generate = "box", size = [1, 1, 1], cells = [2, 2, 2], element = "hex8" }
+material = { name = "neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
+"#;
+
+fn scene(text: &str) -> Scene {
+    read_text("scene.toml", text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn law(scene: &Scene) -> ContactLaw {
+    let forces = scene.model.systems[0].forces.iter();
+    let of = |force: &dyn std::any::Any| {
+        let shape = force.downcast_ref::<ShapeContact>().map(ShapeContact::law);
+        shape.or_else(|| force.downcast_ref::<SurfaceContact>().map(SurfaceContact::law)).copied()
+    };
+    forces.map(|force| force.as_any()).find_map(of).expect("a contact")
+}
+
+fn on_floor(height: f64) -> String {
+    format!(
+        "{BLOCK}[shapes.floor]\nshape = {{ name = \"plane\", point = [0, {height}, 0] }}\n[[contacts]]\nname = \
+         \"floor\"\nbody = \"block\"\nshape = \"floor\"\nregion = \"y_min\"\n"
+    )
+}
+
+/// `E √A` of the points that touch, with the modulus of the cells behind them: nine points have the face of one square
+/// metre and half of the lower cells of the sides; a lower half that is four times as stiff counts alone.
+#[test]
+fn stiffness_is_that_of_the_matter_behind() {
+    let width = (2.0_f64 / 9.0).sqrt();
+    assert!((law(&scene(&on_floor(0.0))).stiffness - 1e6 * width).abs() < 1e-9 * 1e6);
+    let layered = on_floor(0.0)
+        + "[bodies.block.regions.sole]\nregion = { half_space = { point = [0, 0.5, 0], normal = [0, 1, 0] } }\nmaterial = \
+           { name = \"neo_hookean\", youngs_modulus = \"4 MPa\", poissons_ratio = 0.3, density = 1000 }\n";
+    assert!((law(&scene(&layered)).stiffness - 4e6 * width).abs() < 1e-9 * 4e6);
+}
+
+/// Two bodies give way in series, the same whichever is named first.
+#[test]
+fn stiffness_between_bodies_is_symmetric() {
+    let other = BLOCK[BLOCK.find("[bodies.block]").expect("a body")..]
+        .replace("block", "other")
+        .replace("1 MPa", "3 MPa")
+        .replace("density = 1000 }", "density = 1000 }\ntranslate = [0, 1.1, 0]");
+    let pair = |first: &str, second: &str| {
+        let contact = format!("[[contacts]]\nname = \"pair\"\nbody = \"{first}\"\nother = \"{second}\"\n");
+        law(&scene(&format!("{BLOCK}{other}{contact}"))).stiffness
+    };
+    // 2 E₁ E₂ / (E₁ + E₂) √A, six square metres over 26 points
+    let expected = 1.5e6 * (6.0_f64 / 26.0).sqrt();
+    for stiffness in [pair("block", "other"), pair("other", "block")] {
+        assert!((stiffness - expected).abs() < 1e-9 * expected, "{stiffness} for {expected}");
+    }
+}
+
+/// A start on the floor or a little in it is a touch; half an element deep is told with the place.
+#[test]
+fn starts_deep_inside_are_told() {
+    for height in [-0.1, 0.0, 0.1] {
+        let warnings = scene(&on_floor(height)).warnings;
+        assert!(warnings.is_empty(), "{height}: {warnings:?}");
+    }
+    let warnings = scene(&on_floor(0.45)).warnings;
+    assert!(warnings.iter().any(|said| said.contains("9 points start deep inside")), "{warnings:?}");
+    assert!(warnings.iter().any(|said| said.contains("by 0.4500 m")), "{warnings:?}");
+}

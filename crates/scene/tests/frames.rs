@@ -1,0 +1,162 @@
+//! Bodies of frames in scenes: steps as long as wanted (BOS-5), Newton's order, what integrators keep (BOS-6), tissue between
+//! organs (BOS-9), the same bits for any number of threads.
+
+use std::path::Path;
+
+use souple_engine::{StepError, World};
+use souple_math::Vec3;
+use souple_scene::{Scene, read_text};
+
+fn scene(name: &str, overrides: &[&str]) -> Scene {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+    let text = std::fs::read_to_string(folder.join("scene.toml")).expect("the scene");
+    let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
+    read_text(name, &text, &folder, &overrides).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn world(name: &str, overrides: &[&str]) -> World {
+    let scene = scene(name, overrides);
+    scene.model.start(scene.state)
+}
+
+fn steps(world: &mut World, count: usize) -> Result<(), String> {
+    (0..count).try_for_each(|_| world.step().map_err(|error| error.to_string()))
+}
+
+const SYMPLECTIC: &str = "systems.main.stepper={ name = \"symplectic_euler\" }";
+
+/// BOS-5: backward Euler takes 20 ms at which explicit steps, whose longest is forecast far shorter, blow up.
+#[test]
+fn implicit_steps_may_be_long() {
+    let period = "world.period=\"20 ms\"";
+    let mut implicit = world("ligament", &[period]);
+    steps(&mut implicit, 50).expect("backward Euler is stable");
+    let stored = implicit.energy().total();
+    let mut explicit = world("ligament", &[period, SYMPLECTIC]);
+    let longest = explicit.with_system(0, |system, state, around, ws| {
+        souple_engine::stability::forecast(system, state, around, ws).longest_step
+    });
+    assert!(longest < 5e-3, "{longest}");
+    let exploded = match steps(&mut explicit, 50) {
+        Err(_) => true,
+        Ok(()) => explicit.energy().total().abs() > 1e3 * stored.abs(),
+    };
+    assert!(exploded, "{} next to {stored}", explicit.energy().total());
+}
+
+/// Residuals of one Newton run of a bending, turning ligament, stopped earlier and earlier.
+fn residuals(tangent: &str) -> Vec<f64> {
+    let of = |iterations: usize| {
+        let stepper = format!(
+            "systems.main.stepper={{ name = \"backward_euler\", newton_tolerance = 1e-30, newton_iterations = {iterations} }}"
+        );
+        let tangent = format!("bodies.ligament.frames.tangent=\"{tangent}\"");
+        let mut world =
+            world("ligament", &[&stepper, &tangent, "world.gravity=[0, -300, 50]", "world.period=\"20 ms\""]);
+        match world.step().map_err(|error| error.error) {
+            Err(StepError::NewtonStalled { residual, .. }) => residual,
+            Err(error) => panic!("{error}"),
+            Ok(_) => 0.0,
+        }
+    };
+    (1..=5).map(of).collect()
+}
+
+/// BOS-5: with the full tangent the number of right digits doubles, down to rounding; with that of the material alone it
+/// grows by a constant.
+#[test]
+fn newton_is_quadratic_with_the_full_tangent() {
+    let full = residuals("full");
+    let orders: Vec<f64> = full
+        .windows(3)
+        .filter(|triple| triple[2] > 1e-12)
+        .map(|triple| (triple[2] / triple[1]).ln() / (triple[1] / triple[0]).ln())
+        .collect();
+    let best = orders.iter().copied().fold(0.0, f64::max);
+    assert!(best > 1.7, "{full:?}: {orders:?}");
+    let material = residuals("material");
+    assert!(material[4] > full[4], "{material:?} {full:?}");
+}
+
+fn momentum(world: &World) -> (Vec3, Vec3) {
+    world.momentum()
+}
+
+/// BOS-6: what each integrator promises for a bar that spins freely. Affine frames live in a linear space, where symplectic
+/// steps keep both momenta to rounding; fourth order keeps those of rigid frames; backward Euler never gains energy.
+#[test]
+fn integrators_keep_what_they_promise() {
+    let mut affine = world("frames_spinning", &[]);
+    let (start, energy) = (momentum(&affine), affine.energy().total());
+    steps(&mut affine, 400).expect("stable");
+    let end = momentum(&affine);
+    // 400 steps of rounding of 1e-16
+    assert!((end.0 - start.0).length() < 1e-12 * start.0.length());
+    assert!((end.1 - start.1).length() < 1e-11 * start.1.length());
+    // the energy of symplectic steps swings by (h ω)² and does not drift
+    assert!((affine.energy().total() / energy - 1.0).abs() < 0.01);
+
+    let rigid = "bodies.bar.frames.kind=\"rigid\"";
+    let drift = |period: &str| {
+        let mut world = world(
+            "frames_spinning",
+            &[rigid, "systems.main.stepper=\"rk4\"", &format!("world.period=\"{period}\"")],
+        );
+        let (start, energy) = (momentum(&world).1, world.energy().total());
+        let count = if period == "1 ms" { 200 } else { 100 };
+        steps(&mut world, count).expect("stable");
+        (
+            (momentum(&world).1 - start).length() / start.length(),
+            (world.energy().total() / energy - 1.0).abs(),
+        )
+    };
+    let (coarse, fine) = (drift("2 ms"), drift("1 ms"));
+    // of fourth order: sixteen times less, or rounding
+    assert!(fine.0 < coarse.0 / 8.0 || fine.0 < 1e-10, "{coarse:?} {fine:?}");
+    assert!(fine.0 < 1e-5 && fine.1 < 1e-5, "{fine:?}");
+
+    let implicit = "systems.main.stepper={ name = \"backward_euler\", newton_tolerance = 1e-9 }";
+    let mut damped = world("frames_spinning", &[rigid, implicit, "world.period=\"5 ms\""]);
+    let mut last = damped.energy().total();
+    for _ in 0..40 {
+        steps(&mut damped, 1).expect("stable");
+        let now = damped.energy().total();
+        assert!(now <= last * (1.0 + 1e-9), "{now} after {last}");
+        last = now;
+    }
+}
+
+/// BOS-9: the lower organ follows the upper one through the tissue, and pulls back on it; nothing gains energy once the
+/// hand that leads rests.
+#[test]
+fn tissue_ties_two_organs() {
+    let mut tied = world("tied_organs", &[]);
+    let mut alone = world("tied_organs", &["bodies.upper.pins=[{ region = \"y_max\" }]"]);
+    let top_of_lower =
+        |world: &World| world.rows(0).positions[..7 * 3 * 7].iter().map(|x| x.y).fold(0.0, f64::max);
+    steps(&mut tied, 120).expect("stable");
+    steps(&mut alone, 120).expect("stable");
+    let lifted = top_of_lower(&tied) - top_of_lower(&alone);
+    assert!(lifted > 2e-3, "{lifted}");
+    let mut last = tied.energy().total();
+    for _ in 0..20 {
+        steps(&mut tied, 1).expect("stable");
+        let now = tied.energy().total();
+        assert!(now <= last + 1e-9 * last.abs(), "{now} after {last}");
+        last = now;
+    }
+}
+
+/// The same bits with one thread and with three.
+#[test]
+fn threads_change_no_bit() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| {
+            let mut world = world("ligament", &["bodies.ligament.mesh.cells=[40, 4, 4]"]);
+            steps(&mut world, 5).expect("stable");
+            world.state().systems[0].q.clone()
+        })
+    };
+    assert_eq!(run(1), run(3));
+}

@@ -1,0 +1,127 @@
+//! What is told of a mesh or a surface, in sentences: the same as in the JSON document, without its brackets.
+
+use serde_json::Value as Json;
+
+/// Lines for people of a document of `souple mesh`; `name` is the file's.
+pub fn sentences(name: &str, document: &Json) -> Vec<String> {
+    let mut lines = vec![format!("{name}: {}", contents(document))];
+    let mut say = |what: &str, text: String| {
+        if !text.is_empty() {
+            lines.push(format!("  {what:9}{text}"));
+        }
+    };
+    say("groups", names(&document["groups"]));
+    say("bounds", bounds(&document["bounds"]));
+    if document["area"].is_number() {
+        say("area", format!("{} m²", number(&document["area"])));
+        let enclosed = &document["enclosed_volume"];
+        let closed = if enclosed.is_number() {
+            format!("encloses {} m³", number(enclosed))
+        } else {
+            "is open".to_owned()
+        };
+        say("surface", closed);
+        say(
+            "angles",
+            format!(
+                "{} to {} degrees",
+                number(&document["smallest_angle_degrees"]),
+                number(&document["largest_angle_degrees"])
+            ),
+        );
+    } else {
+        say("volume", format!("{} m³", number(&document["volume"])));
+        say("quality", quality(document));
+    }
+    lines.extend(document["problem"].as_str().map(|problem| format!("  problem  {problem}")));
+    for list in [&document["faults"]["messages"], &document["notes"]] {
+        lines.extend(texts(list).map(|note| format!("  note     {note}")));
+    }
+    lines
+}
+
+/// `20 points, 24 tet4 in one part`.
+fn contents(document: &Json) -> String {
+    let mut parts = vec![format!("{} points", document["points"])];
+    let cells = document["cells"].as_object().into_iter().flatten();
+    parts.extend(cells.map(|(kind, count)| format!("{count} {kind}")));
+    if let Some(facets @ 1..) = document["facets"].as_u64() {
+        parts.push(format!("{facets} facets"));
+    }
+    let components = document["components"].as_u64().or(document["faults"]["components"].as_u64());
+    let in_parts = match components {
+        Some(1) => " in one part".to_owned(),
+        Some(several @ 2..) => format!(" in {several} parts"),
+        _ => String::new(),
+    };
+    parts.join(", ") + &in_parts
+}
+
+fn quality(document: &Json) -> String {
+    let quality = &document["quality"];
+    if quality.is_null() {
+        return String::new();
+    }
+    let inverted = match quality["inverted_cells"].as_u64() {
+        Some(count @ 1..) => format!("{count} cells are inverted; "),
+        _ => String::new(),
+    };
+    format!(
+        "{inverted}scaled Jacobian at least {}, dihedral angles {} to {} degrees, aspect ratio {} on average, {} at worst",
+        number(&document["smallest_scaled_jacobian"]),
+        number(&quality["dihedral_degrees"]["min"]),
+        number(&quality["dihedral_degrees"]["max"]),
+        number(&quality["aspect_ratio"]["mean"]),
+        number(&quality["aspect_ratio"]["worst"]),
+    )
+}
+
+fn bounds(corners: &Json) -> String {
+    let corner = |index: usize| {
+        let numbers: Vec<String> = corners[index].as_array().into_iter().flatten().map(number).collect();
+        numbers.join(", ")
+    };
+    format!("({}) to ({}) m", corner(0), corner(1))
+}
+
+/// Four digits are as many as a person compares.
+fn number(value: &Json) -> String {
+    let Some(number) = value.as_f64() else { return "—".to_owned() };
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    // no minus before zero
+    souple_table::readable(rounded + 0.0)
+}
+
+fn names(list: &Json) -> String {
+    texts(list).collect::<Vec<_>>().join(", ")
+}
+
+fn texts(list: &Json) -> impl Iterator<Item = &str> {
+    list.as_array().into_iter().flatten().filter_map(Json::as_str)
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn meshes_are_told_in_words() {
+        let document = json!({
+            "points": 20, "cells": {"tet4": 24}, "facets": 0, "groups": ["x_max", "x_min"], "components": 1,
+            "volume": 0.009_999_999_999_998, "bounds": [[0.0, 0.0, 0.0], [1.0, 0.1, 1e-7]],
+            "smallest_scaled_jacobian": null, "problem": null, "notes": ["a note"],
+        });
+        assert_eq!(
+            sentences("bar.msh", &document),
+            [
+                "bar.msh: 20 points, 24 tet4 in one part",
+                "  groups   x_max, x_min",
+                "  bounds   (0, 0, 0) to (1, 0.1, 1e-7) m",
+                "  volume   0.01 m³",
+                "  note     a note",
+            ]
+        );
+    }
+}

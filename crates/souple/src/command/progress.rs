@@ -1,0 +1,57 @@
+//! Progress of long work: a bar on a terminal, a line every few seconds elsewhere, nothing where it is to be quiet.
+
+use std::fmt::Display;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::{on_terminal, print_note};
+
+/// Time between lines.
+const LINES: Duration = Duration::from_secs(5);
+
+/// Tells how far some work is.
+pub struct Meter {
+    bar: ProgressBar,
+    /// What is counted: `steps`.
+    unit: &'static str,
+    /// When the next line is due; `None` where none is written.
+    next_line: Option<Mutex<Instant>>,
+}
+
+impl Meter {
+    pub fn new(unit: &'static str, quiet: bool) -> Self {
+        let is_drawn = !quiet && on_terminal();
+        let target = if is_drawn { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(None, target);
+        let template = format!("{{bar:32}} {{pos}}/{{len}} {unit}  {{msg}}  {{elapsed}} left {{eta}}");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        let next_line = (!quiet && !is_drawn).then(|| Mutex::new(Instant::now() + LINES));
+        Self { bar, unit, next_line }
+    }
+
+    /// `done` of `all` is done; `message` says more, or nothing.
+    pub fn show(&self, done: u64, all: u64, message: impl Display) {
+        self.bar.set_length(all);
+        self.bar.set_position(done);
+        let message = message.to_string();
+        // a line that another thread is writing is line enough
+        if let Some(Ok(mut next)) = self.next_line.as_ref().map(Mutex::try_lock)
+            && Instant::now() >= *next
+        {
+            *next = Instant::now() + LINES;
+            let more = if message.is_empty() { String::new() } else { format!(", {message}") };
+            print_note(format_args!("{done}/{all} {}{more}", self.unit));
+        }
+        self.bar.set_message(message);
+    }
+}
+
+impl Drop for Meter {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

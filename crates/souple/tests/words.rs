@@ -1,0 +1,103 @@
+//! What the program says: to people in sentences, of wrong requests where they are and what would be right.
+
+mod common;
+
+use common::{CUBE, Folder, souple, souple_in};
+
+/// Meshes are told in sentences; JSON is for those who ask for it.
+#[test]
+fn meshes_are_told_in_sentences() {
+    let folder = Folder::new("sentences");
+    let mesh = folder.at("box.msh");
+    let told =
+        souple(["mesh", "generate", "box", &mesh, "size=1,1,1", "cells=2,2,2", "element=tet4"]).ends(0);
+    assert!(told.stdout.contains("box.msh: 27 points, ") && told.stdout.contains(" tet4"), "{told:#?}");
+    assert!(!told.stdout.contains(['{', '[', '"']), "{told:#?}");
+    // formats of surfaces hold the boundary: 6 sides of 2 x 2 squares of two triangles
+    for file in ["box.stl", "box.glb"] {
+        let told = souple(["mesh", "convert", &mesh, &folder.at(file)]).ends(0);
+        assert!(told.stdout.contains("48 facets") && told.stdout.contains("area"), "{told:#?}");
+        assert!(told.stdout.contains("does not keep"), "{told:#?}");
+        let told = souple(["mesh", "quality", &mesh, "--json"]).ends(0).json();
+        assert_eq!(told["volume"].as_f64().map(|volume| (volume * 1e9).round()), Some(1e9));
+    }
+}
+
+/// Every wrong word of a command is answered with what would be right.
+#[test]
+fn wrong_words_are_answered() {
+    let folder = Folder::new("words");
+    let scene = folder.write("cube.toml", CUBE);
+    let text = folder.write("notes.xyz", "nothing");
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["modes", &scene, "--near", "-3"], &["`--near` is -3 Hz", "at least 0 Hz"]),
+        (&["run", &scene, "--steps", "-1"], &["--steps", "a whole number of at least 0"]),
+        (&["run", &scene, "--hash-every", "0"], &["--hash-every", "a whole number of at least 1"]),
+        (&["describe", ""], &["no name is given"]),
+        (&["mesh", "fill", "ellipsoid", "out.msh", "conut=100"], &["did you mean `count`?"]),
+        (&["mesh", "quality", &text], &["one of msh"]),
+        (
+            &["derive", "--law", "m/2*(I1-3)", "--element", "tet4"],
+            &["    m/2*(I1-3)\n    ^", "--parameter m="],
+        ),
+        (&["derive", "--law", "neo_hokean", "--element", "tet4"], &["did you mean `neo_hookean`?"]),
+    ];
+    for (call, words) in cases {
+        let answer = souple_in(folder.path(), *call).ends(2);
+        assert!(words.iter().all(|word| answer.stderr.contains(word)), "{words:?}: {answer:#?}");
+    }
+    let unreadable = souple(["mesh", "quality", &text]).ends(2);
+    assert!(!unreadable.stderr.contains("glb"), "glTF is only written: {unreadable:#?}");
+}
+
+/// What a setting made wrong is shown in the setting.
+#[test]
+fn settings_are_to_blame_for_what_they_make() {
+    let folder = Folder::new("blame");
+    let scene = folder.write("cube.toml", CUBE);
+    for (setting, words) in [
+        ("bodies.cube.translate=[1e200, 0, 0]", "lost in the rounding of its positions"),
+        ("bodies.cube.mesh.cells=[0, 1, 1]", "three whole numbers of at least 1"),
+        ("bodies.cube.mesh.cells=[1000000, 1000000, 1]", "expected fewer cells"),
+        ("bodies.cube.material.youngs_modulus=1e300", "is the unit right?"),
+        ("world.gravity=[\"1/0\", 0, 0]", "finite"),
+        ("parameters.stiffness=3", "the scene has none"),
+    ] {
+        let answer = souple(["check", &scene, "--set", setting]).ends(2);
+        assert!(answer.stderr.starts_with("--set:1:") && answer.stderr.contains(words), "{answer:#?}");
+    }
+    let answer = souple(["check", &scene, "--set", "world.period=1e-300"]).ends(2);
+    assert!(answer.stderr.contains("periods of 1e-300 s"), "{answer:#?}");
+}
+
+/// Help and version in every manner; a scene without a title is called as its file; quiet checks say what is wrong.
+#[test]
+fn small_courtesies() {
+    assert!(souple(["help"]).ends(0).stdout.contains("render"));
+    assert_eq!(souple(["--version", "--json"]).ends(0).json()["version"], env!("CARGO_PKG_VERSION"));
+    let folder = Folder::new("courtesies");
+    let untitled: String =
+        CUBE.lines().filter(|line| !line.starts_with("title")).map(|l| format!("{l}\n")).collect();
+    let scene = folder.write("falling.toml", untitled);
+    assert!(souple(["check", &scene]).ends(0).stdout.starts_with("falling: valid"));
+    assert_eq!(souple(["check", &scene, "--quiet"]).ends(0).stdout, "");
+    let same = ["compare", &folder.at("a.vtu"), &folder.at("a.vtu")];
+    souple(["mesh", "generate", "box", &folder.at("a.vtu"), "size=1,1,1", "cells=1,1,1"]).ends(0);
+    assert!(!souple(same).ends(0).stdout.contains("-0"));
+}
+
+/// Laws that `derive` knows can be listed and described; their names are those of this program.
+#[test]
+fn laws_are_listed() {
+    for law in souple(["list", "laws", "--json"]).ends(0).json().as_array().expect("laws") {
+        let name = law["name"].as_str().expect("a name");
+        souple(["describe", name]).ends(0);
+        let derived = souple(["derive", "--law", name, "--element", "tet4"]);
+        // laws of principal stretches are for scenes alone, which is said
+        assert!(derived.status == Some(0) || derived.stderr.contains("principal stretches"), "{derived:#?}");
+        assert!(
+            !derived.stderr.contains("inverted") && !derived.stdout.contains("Decoupage"),
+            "{derived:#?}"
+        );
+    }
+}
