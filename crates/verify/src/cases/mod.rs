@@ -14,6 +14,7 @@ mod implicit;
 mod motion;
 mod network;
 mod patch;
+mod rheometer;
 mod rubber;
 mod skins;
 mod soft_cube;
@@ -43,6 +44,7 @@ pub const TABLES: &[&[Case]] = &[
     soft_cube::IMPLICIT_STEPS,
     contact::CASES,
     network::CASES,
+    rheometer::CASES,
     frames::CASES,
     skins::CASES,
 ];

@@ -1,0 +1,421 @@
+//! Every law of links on the virtual rheometer, against the vectors of the specification.
+
+use super::network::OSCILLATOR;
+use crate::{Case, Reading, Tolerance};
+
+const PULL: Reading = Reading::component("pull", 0);
+
+const PLASTIC: Case = Case {
+    id: "",
+    capabilities: &["JIM-50"],
+    what: "",
+    scene: "rheometer",
+    reading: PULL.after(5),
+    tolerance: Tolerance::Absolute(1e-9),
+    source: "specification §8.1, elasto-plastic with hardening: places are decimals, rounding times k",
+    mutation: "networks.sample.links[0].law.hardening=251",
+    ..OSCILLATOR
+};
+
+const TE: &str = "world.period=0.0033333333333333335";
+
+const MAXWELL: Case = Case {
+    capabilities: &["JIM-52", "JIM-56"],
+    settings: &[
+        TE,
+        r#"networks.sample.links[0].law={ name = "maxwell", stiffness = 1000, viscosity = 100 }"#,
+        "networks.sample.pins[0].motion={ times = [0, 0.0033333333333333335], offsets = [[0, 0, 0], [-0.01, 0, 0]] }",
+    ],
+    tolerance: Tolerance::Relative(1e-12),
+    source: "specification §8.1, Maxwell: a step of elongation, held",
+    mutation: "networks.sample.links[0].law.viscosity=101",
+    ..PLASTIC
+};
+
+const BINGHAM: Case = Case {
+    capabilities: &["JIM-54", "JIM-56"],
+    settings: &[
+        TE,
+        r#"networks.sample.links[0].law={ name = "bingham", stiffness = 1000, viscosity = 100, traction = 10, compression = 10 }"#,
+        // 199 steps of 0.5 m/s, then held
+        "networks.sample.pins[0].motion={ times = [0, 0.6633333333333333], offsets = [[0, 0, 0], [-0.33166666666666667, 0, 0]] }",
+    ],
+    tolerance: Tolerance::Relative(1e-11),
+    source: "specification §8.1, Bingham: stretched at 0.5 m/s, then held",
+    ..MAXWELL
+};
+
+const BURGER: Case = Case {
+    capabilities: &["JIM-53", "JIM-56"],
+    settings: &[
+        TE,
+        r#"networks.sample.links[0].law={ name = "burger", solid_stiffness = 1000, solid_viscosity = 50, fluid_stiffness = 2000, fluid_viscosity = 500 }"#,
+        "networks.sample.pins[0].motion={ times = [0, 0.2], offsets = [[0, 0, 0], [-0.02, 0, 0]] }",
+    ],
+    // as many digits as are printed
+    tolerance: Tolerance::Absolute(5e-9),
+    source: "specification §8.1, Burger: stretched at 0.1 m/s to 0.02 m, then held",
+    mutation: "networks.sample.links[0].law.solid_viscosity=51",
+    ..MAXWELL
+};
+
+/// A law read at a length led to within one step.
+const CURVE: Case = Case {
+    capabilities: &["JIM-25"],
+    reading: PULL.after(2),
+    tolerance: Tolerance::Relative(1e-12),
+    source: "specification §2.10",
+    ..PLASTIC
+};
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "rheometer_kelvin_voigt",
+        capabilities: &["JIM-49", "JIM-56"],
+        what: "a spring beside a damper pulled at 0.5 m/s: k q + z q'",
+        settings: &[
+            TE,
+            r#"networks.sample.links[0].law={ name = "spring_damper", stiffness = 1000, damping = 100 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 1], offsets = [[0, 0, 0], [-0.5, 0, 0]] }",
+        ],
+        reading: PULL.after(100),
+        reference: 216.666_666_666_666_67,
+        tolerance: Tolerance::Relative(1e-11),
+        source: "k 0.5 m/s 100 Te + z 0.5 m/s",
+        mutation: "networks.sample.links[0].law.damping=101",
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_plastic_hardened",
+        what: "an elasto-plastic link pulled to 1.03 m",
+        reference: 14.0,
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_plastic_pushed",
+        what: "the same unloaded and pushed to yield at 1 m",
+        reading: PULL.after(10),
+        reference: -11.2,
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_plastic_pushed_far",
+        what: "the same pushed to 0.98 m",
+        reading: PULL.after(12),
+        reference: -15.2,
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_plastic_loop",
+        capabilities: &["JIM-50", "JIM-18", "JIM-56"],
+        what: "the same pulled again to 1.01 m: the loop remembers",
+        reading: PULL.after(15),
+        reference: 14.16,
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_plastic_again",
+        what: "the same pulled to 1.03 m at last",
+        reading: PULL.after(16),
+        reference: 18.16,
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_perfect_plasticity",
+        what: "the same without hardening: a plateau at the threshold",
+        settings: &["networks.sample.links[0].law.hardening=0"],
+        reference: 10.0,
+        mutation: "networks.sample.links[0].law.traction=10.1",
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_asymmetric",
+        capabilities: &["JIM-58"],
+        what: "the same with a compression threshold of 5 N, pushed to 1 m: f = A S2 + B q",
+        settings: &["networks.sample.links[0].law.compression=5"],
+        reading: PULL.after(10),
+        // -4 - 0.2 x 6 = -5.2 at 1.010 m, whence S = 1.0152 m and S2 = -5.2 mm; then -0.8 x 5.2 - 0.2 x 15.2
+        reference: -7.2,
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_torn",
+        capabilities: &["JIM-51"],
+        what: "a link that tears at 13.5 N pulls no more at 1.03 m",
+        settings: &["networks.sample.links[0].law.rupture=13.5"],
+        reference: 0.0,
+        mutation: "networks.sample.links[0].law.rupture=30",
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_torn_pushes",
+        capabilities: &["JIM-51"],
+        what: "torn at 1.015 m, it still resists compression: -k (1 - 0.99) at 0.99 m",
+        settings: &["networks.sample.links[0].law.rupture=13.5"],
+        reading: PULL.after(11),
+        reference: -10.0,
+        mutation: "networks.sample.links[0].law.rupture=30",
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_maxwell_struck",
+        what: "Maxwell's link at the first step of a held elongation of 0.01 m",
+        reading: PULL.after(1),
+        reference: 9.677_419_354_838_719,
+        ..MAXWELL
+    },
+    Case {
+        id: "rheometer_maxwell_next",
+        what: "the same a step later",
+        reading: PULL.after(2),
+        reference: 9.365_244_536_940_695,
+        ..MAXWELL
+    },
+    Case {
+        id: "rheometer_maxwell_relaxed",
+        what: "the same thirty steps later: it has let go 1/B a step",
+        reading: PULL.after(31),
+        reference: 3.618_648_398_297_034_3,
+        ..MAXWELL
+    },
+    Case {
+        id: "rheometer_maxwell_flown",
+        what: "the same sixty steps later",
+        reading: PULL.after(61),
+        reference: 1.353_110_343_818_093_8,
+        ..MAXWELL
+    },
+    Case {
+        id: "rheometer_bingham_10",
+        what: "a paste after ten steps of stretching at 0.5 m/s",
+        reading: PULL.after(10),
+        reference: 16.146_097_381_651_256,
+        ..BINGHAM
+    },
+    Case {
+        id: "rheometer_bingham_60",
+        what: "the same after sixty",
+        reading: PULL.after(60),
+        reference: 51.488_888_262_672_79,
+        ..BINGHAM
+    },
+    Case {
+        id: "rheometer_bingham_199",
+        what: "the same after 199: it flows at nearly Qe + z v = 60 N",
+        reading: PULL.after(199),
+        reference: 59.910_758_830_055_06,
+        ..BINGHAM
+    },
+    Case {
+        id: "rheometer_bingham_held",
+        what: "held for 200 steps it keeps nearly its threshold of 10 N",
+        reading: PULL.after(399),
+        reference: 10.070_811_916_714_876,
+        ..BINGHAM
+    },
+    Case {
+        id: "rheometer_bingham_is_maxwell",
+        what: "without a threshold the paste is Maxwell's fluid",
+        capabilities: &["JIM-54"],
+        settings: &[
+            TE,
+            r#"networks.sample.links[0].law={ name = "bingham", stiffness = 1000, viscosity = 100, traction = 0, compression = 0 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.0033333333333333335], offsets = [[0, 0, 0], [-0.01, 0, 0]] }",
+        ],
+        reading: PULL.after(61),
+        reference: 1.353_110_343_818_093_8,
+        ..MAXWELL
+    },
+    Case {
+        id: "rheometer_bingham_is_plastic",
+        what: "without viscosity the paste is a perfectly plastic link",
+        capabilities: &["JIM-54"],
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "bingham", stiffness = 1000, viscosity = 0, traction = 10, compression = 10 }"#,
+        ],
+        reference: 10.0,
+        mutation: "networks.sample.links[0].law.traction=10.1",
+        ..PLASTIC
+    },
+    Case {
+        id: "rheometer_burger_30",
+        what: "Burger's link half way through a pull",
+        reading: PULL.after(30),
+        reference: 7.919_819_93,
+        ..BURGER
+    },
+    Case {
+        id: "rheometer_burger_60",
+        what: "the same at its end",
+        reading: PULL.after(60),
+        reference: 12.955_157_33,
+        ..BURGER
+    },
+    Case {
+        id: "rheometer_burger_120",
+        what: "the same held for sixty steps",
+        reading: PULL.after(120),
+        reference: 8.325_071_88,
+        ..BURGER
+    },
+    Case {
+        id: "rheometer_burger_599",
+        what: "the same held for long",
+        reading: PULL.after(599),
+        reference: 1.091_081_5,
+        tolerance: Tolerance::Absolute(5e-8),
+        ..BURGER
+    },
+    Case {
+        id: "cohesion_pull",
+        what: "a cohesive pair 1.1 m apart pulls with k_a (S2 - S)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "cohesion", hard = 0.95, distance = 1, peak = 1.1, range = 1.5, repulsion = 10000, cohesion = 1000 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.1, 0, 0]] }",
+        ],
+        reference: 100.0,
+        mutation: "networks.sample.links[0].law.cohesion=1001",
+        ..CURVE
+    },
+    Case {
+        id: "cohesion_push",
+        what: "the same pair 0.9 m apart pushes along its steep piece",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "cohesion", hard = 0.95, distance = 1, peak = 1.1, range = 1.5, repulsion = 10000, cohesion = 1000 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [0.1, 0, 0]] }",
+        ],
+        reference: -550.0,
+        mutation: "networks.sample.links[0].law.repulsion=10010",
+        ..CURVE
+    },
+    Case {
+        id: "piecewise_value",
+        capabilities: &["JIM-17", "JIM-16"],
+        what: "a characteristic of four pieces at 1.4 m",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "piecewise_linear", thresholds = [0.9, 1.2, 1.6], slopes = [-10, -2, 1, 0], zero = 0 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.4, 0, 0]] }",
+        ],
+        reference: 9.4,
+        source: "specification §2.8.3",
+        mutation: "networks.sample.links[0].law.slopes=[-10, -2, 2, 0]",
+        ..CURVE
+    },
+    Case {
+        id: "lennard_jones_strongest",
+        what: "strongest attraction of the family's member n = 6, at r0 (13/7)^(1/6)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "lennard_jones", depth = 1, distance = 1, exponent = 6 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [-0.1086834179687215, 0, 0]] }",
+        ],
+        reference: 2.689_900_897_204_72,
+        source: "specification §2.10, the row of n = 6 in closed form",
+        mutation: "networks.sample.links[0].law.exponent=7",
+        ..CURVE
+    },
+    Case {
+        id: "ball_push",
+        capabilities: &["JIM-21"],
+        what: "two balls 0.9 m apart whose radii are a metre together push with k 0.1 m",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "ball", threshold = 1, stiffness = 1000 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [0.1, 0, 0]] }",
+        ],
+        reference: -100.0,
+        source: "φ = K (S - D) for D < S",
+        mutation: "networks.sample.links[0].law.threshold=1.01",
+        ..CURVE
+    },
+    Case {
+        id: "exponential_stop_push",
+        capabilities: &["JIM-24"],
+        what: "an exponential stop one depth inside pushes with k d (e - 1)",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "exponential_stop", threshold = 1, stiffness = 1000, depth = 0.1 }"#,
+            "networks.sample.pins[0].motion={ times = [0, 0.01], offsets = [[0, 0, 0], [0.1, 0, 0]] }",
+        ],
+        // -100 (e - 1)
+        reference: -171.828_182_845_904_5,
+        source: "specification §2.9.3",
+        mutation: "networks.sample.links[0].law.depth=0.101",
+        ..CURVE
+    },
+    Case {
+        id: "torn_state",
+        capabilities: &["JIM-10", "JIM-19"],
+        what: "fracture as a finite-state link: torn beyond 1.02 m it pulls no more",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { whole = "-k * (D - L0)", torn = "0" }, transitions = { "whole -> torn" = "D - L0 > 0.021" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 0.0,
+        source: "specification §2.7: fracture",
+        mutation: r#"networks.sample.links[0].law.transitions={ "whole -> torn" = "D > 2" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "glued_state",
+        capabilities: &["JIM-10", "JIM-19"],
+        what: "glue: joined below 0.985 m with the length of that moment, k (1.03 - 0.98) at the end",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { free = "0", glued = "-k * (D - L0)" }, transitions = { "free -> glued" = "D < 0.985" }, entries = { glued = "L0 = D" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 50.0,
+        source: "specification §2.7: gluing",
+        mutation: r#"networks.sample.links[0].law.entries={ glued = "L0 = 1" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "plastic_state",
+        capabilities: &["JIM-10"],
+        what: "step plasticity: past 12.5 mm the rest length jumps to the present one, twice on the way to 1.03 m and back",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { elastic = "-k * (D - L0)", jumps = "-k * (D - L0)" }, transitions = { "elastic -> jumps" = "D - L0 > 0.0125", "jumps -> elastic" = "D > 0" }, entries = { jumps = "L0 = D" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(6),
+        reference: -5.0,
+        source: "specification §2.7: step plasticity; 1.015 m, then 1.03 m, and back to 1.025 m",
+        mutation: "networks.sample.links[0].law.parameters.k=1001",
+        ..PLASTIC
+    },
+    Case {
+        id: "gripped_state",
+        capabilities: &["JIM-10"],
+        what: "a grip on command at 55 ms holds the length of that moment",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { open = "0", closed = "-k * (D - L0)" }, transitions = { "open -> closed" = "t > 0.055" }, entries = { closed = "L0 = D" }, parameters = { k = 1000 } }"#,
+        ],
+        reading: PULL.after(12),
+        reference: -45.0,
+        source: "specification §2.7: grip on command, at 1.025 m, then at 0.98 m",
+        mutation: r#"networks.sample.links[0].law.transitions={ "open -> closed" = "t > 0.065" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "last_condition_wins",
+        capabilities: &["JIM-10", "JIM-19"],
+        what: "of two conditions that hold the one written last leads on",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "finite_state", states = { a = "0", b = "-1", c = "-2" }, transitions = { "a -> b" = "D > 1.001", "a -> c" = "D > 1.002" } }"#,
+        ],
+        reading: PULL.after(2),
+        reference: 2.0,
+        source: "specification §2.7: the last one met wins",
+        mutation: r#"networks.sample.links[0].law.transitions={ "a -> c" = "D > 1.002", "a -> b" = "D > 1.001" }"#,
+        ..PLASTIC
+    },
+    Case {
+        id: "written_law",
+        capabilities: &["JIM-15"],
+        what: "a cubic spring written as an energy, k (0.03 m)³ at 1.03 m",
+        settings: &[
+            r#"networks.sample.links[0].law={ name = "formula", energy = "k/4 * (D - L0)^4", parameters = { k = "1e6" } }"#,
+        ],
+        reading: PULL.after(16),
+        reference: 27.0,
+        source: "φ = -dE/dD",
+        mutation: "networks.sample.links[0].law.parameters.k=1000001",
+        ..PLASTIC
+    },
+];
