@@ -34,7 +34,7 @@ pub struct PlacedFrames {
     pub carried_points: Vec<Carried>,
 }
 
-/// A frame reached by more than these rows of others makes steps slow, which is said.
+/// Frames at a point beyond which steps are slow, which is said.
 const MANY: f64 = 24.0;
 
 impl PlacedFrames {
@@ -77,7 +77,7 @@ impl PlacedFrames {
         }
     }
 
-    /// The elastic force of the body; takes what only it reads.
+    /// The elastic force of the body.
     pub fn force(
         &self,
         body: &Placed,
@@ -216,11 +216,11 @@ pub fn hold_name(body: &str) -> String {
     format!("{body}.pins")
 }
 
-/// A point that pins hold: its number, the directions that are held, how it is led.
-pub type Held = (u32, Vec3, Option<Arc<dyn Motion>>);
+/// A point of the mesh, 1 along its held axes, and how it is led.
+pub type HeldAxes = (u32, Vec3, Option<Arc<dyn Motion>>);
 
 /// Springs that hold the points of a body of frames: each as stiff as a thin layer of the material around it.
-pub fn hold(body: &Placed, held: Vec<Held>) -> Option<Hold> {
+pub fn hold(body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
     let material =
         body.spec.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok())?;
     let modulus = youngs_modulus(&material.small_strain);

@@ -93,46 +93,22 @@ impl Arguments {
 pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
     match arguments.action {
         Action::Generate { generator, out, parameters, json } => {
-            let mesh = generate(&generator, &parameters)?;
-            write(&out, &mesh)?;
-            report(&out, &mesh, &[], json);
-            Ok(End::Done)
+            write(&out, generate(&generator, &parameters)?, Vec::new(), json)
         }
         Action::Fill { input, out, parameters, json } => {
             let (mesh, notes) = fill::fill(&input, &parameters)?;
-            write(&out, &mesh)?;
-            report(&out, &mesh, &notes, json);
-            Ok(End::Done)
+            write(&out, mesh, notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
-            write(&out, &mesh)?;
-            report(&out, &mesh, &notes, json);
-            Ok(End::Done)
+            write(&out, mesh, notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
-            let mesh = skin::dressed(&input, &parameters)?;
-            write(&out, &mesh)?;
-            if let Some(surface) = mesh.facet_surface() {
-                report_surface(&mesh, &surface, &[], json);
-            }
-            Ok(End::Done)
+            write(&out, skin::dressed(&input, &parameters)?, Vec::new(), json)
         }
         Action::Convert { input, out, json } => {
-            let (mesh, mut notes) = read(&input)?;
-            write(&out, &mesh)?;
-            // a format may hold less than what was read: what was written is told
-            notes.extend(souple_io::losses(&out, &souple_io::Output::new(&mesh))?);
-            let written = match souple_io::read_mesh(&out) {
-                Ok((written, _)) => written,
-                // a format that is only written, and for surfaces
-                Err(souple_io::IoError::Unsupported { .. }) => {
-                    surface_of(&mesh).map_or(mesh, |surface| fill::mesh_of(&surface))
-                }
-                Err(error) => return Err(error.into()),
-            };
-            report(&out, &written, &notes, json);
-            Ok(End::Done)
+            let (mesh, notes) = read(&input)?;
+            write(&out, mesh, notes, json)
         }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
@@ -172,8 +148,20 @@ fn read(path: &Path) -> Result<(Mesh, Vec<String>), Refusal> {
     Ok(souple_io::read_mesh(path)?)
 }
 
-fn write(path: &Path, mesh: &Mesh) -> Result<(), Refusal> {
-    Ok(souple_io::write_mesh(path, mesh)?)
+/// Writes a mesh and tells what the file holds, which may be less: a format may know surfaces alone, or no groups.
+fn write(path: &Path, mesh: Mesh, mut notes: Vec<String>, as_json: bool) -> Result<End, Refusal> {
+    souple_io::write_mesh(path, &mesh)?;
+    notes.extend(souple_io::losses(path, &souple_io::Output::new(&mesh))?);
+    let written = match souple_io::read_mesh(path) {
+        Ok((written, _)) => written,
+        // a format that is only written, and for surfaces
+        Err(souple_io::IoError::Unsupported { .. }) => {
+            surface_of(&mesh).map_or(mesh, |surface| fill::mesh_of(&surface))
+        }
+        Err(error) => return Err(error.into()),
+    };
+    report(path, &written, &notes, as_json);
+    Ok(End::Done)
 }
 
 /// Tells what a file holds: cells, or triangles that are measured as a surface.
