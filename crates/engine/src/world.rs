@@ -132,6 +132,12 @@ impl Model {
         let mut world =
             World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
         world.place_all_rows();
+        if world.state.period == 0 {
+            // couplings hold what they are stretched by from the start on
+            let mut state = std::mem::take(&mut world.state);
+            world.publish_slow_points(0.0, &mut state);
+            world.state = state;
+        }
         world
     }
 
