@@ -63,7 +63,7 @@ impl Verdict {
             Some(Component::Length) => ".length",
             None => "",
         };
-        let text = format!("{}{component} at {moment} s: {} {unit}", expect.probe, expect.bound);
+        let mut text = format!("{}{component} at {moment} s: {} {unit}", expect.probe, expect.bound);
         let not_judged = |why: String| Self {
             finding: Finding::NotJudged,
             text: text.clone(),
@@ -85,7 +85,7 @@ impl Verdict {
         if moment < first - slack {
             return not_judged(format!("the run began at {first} s"));
         }
-        let Some(value) = trace.and_then(|trace| trace.at(moment)) else {
+        let Some((time, value)) = trace.and_then(|trace| trace.at(moment)) else {
             return not_judged(format!("probe `{}` has no value", expect.probe));
         };
         let measured = match *value {
@@ -93,6 +93,9 @@ impl Verdict {
             [number, ..] => Measurement::Number(number),
             [] => Measurement::Number(f64::NAN),
         };
+        if (time - moment).abs() > 1e-6 * span.period {
+            text += &format!(" (of the step at {time} s, the nearest)");
+        }
         let finding = if expect.accepts(measured) { Finding::Holds } else { Finding::Fails };
         Self { finding, text, value: Some(expect.part_of(measured).numbers()), unit, why: None }
     }

@@ -57,11 +57,11 @@ impl Trace {
         self.value(self.times.len().checked_sub(1)?)
     }
 
-    /// The value at the step nearest to a time.
-    pub fn at(&self, time: f64) -> Option<&[f64]> {
+    /// The time of the step nearest to a time, and the value there.
+    pub fn at(&self, time: f64) -> Option<(f64, &[f64])> {
         let nearest = (0..self.times.len())
             .min_by(|a, b| (self.times[*a] - time).abs().total_cmp(&(self.times[*b] - time).abs()))?;
-        self.value(nearest)
+        Some((self.times[nearest], self.value(nearest)?))
     }
 
     pub fn summary(&self) -> Summary {

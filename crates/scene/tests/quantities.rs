@@ -161,6 +161,17 @@ fn stretched_cells() {
     assert!(read("max_principal_stress") > read("min_principal_stress"));
 }
 
+const SKIN: &str = r#"[skins.ball]
+voxel = 0.1
+[[skins.ball.parts]]
+part = "point"
+at = [0, 0, 0]
+radius = 0.5
+[[skins.ball.terms]]
+term = "attraction"
+strength = 1.0
+"#;
+
 /// Every quantity of the table can be measured, and gives what its rank says; none is not finite at rest.
 #[test]
 fn every_quantity_is_measured() {
@@ -175,7 +186,10 @@ fn every_quantity_is_measured() {
             } else {
                 body
             };
-        let (mut world, probes) = start(&format!("{CUBE}{head}quantity = \"{}\"\n", entry.name));
+        // of a skin, which stands alone
+        let skin = "[probes.q]\nskin = \"ball\"\n";
+        let head = if entry.name.starts_with("skin.") { skin } else { head };
+        let (mut world, probes) = start(&format!("{CUBE}{SKIN}{head}quantity = \"{}\"\n", entry.name));
         let measured = probes[0].measure(&mut world);
         assert!(measured.numbers().iter().all(|number| number.is_finite()), "{}: {measured:?}", entry.name);
         assert_eq!(matches!(measured, Measurement::Vector(_)), probes[0].gives_vector(), "{}", entry.name);

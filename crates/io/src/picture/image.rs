@@ -33,7 +33,8 @@ impl Image {
 }
 
 impl Image {
-    /// Several images as one, row by row, each in a cell as large as the largest; what is left free is white.
+    /// Several images as one, row by row, each in a cell as large as the largest; cells that are left free take the
+    /// background of the first image, as its left border has it.
     pub fn sheet(images: &[Self], columns: usize) -> Self {
         let columns = columns.clamp(1, images.len().max(1));
         let side = |of: fn(&Self) -> usize| images.iter().map(of).max().unwrap_or(1);
@@ -50,6 +51,15 @@ impl Image {
                 let to = (top + row) * sheet.width + left;
                 let from = row * image.width;
                 sheet.pixels[to..to + image.width].copy_from_slice(&image.pixels[from..from + image.width]);
+            }
+        }
+        if let Some(first) = images.first() {
+            for index in images.len()..rows * columns {
+                let (left, top) = (index % columns * width, index / columns * height);
+                for row in 0..first.height {
+                    let to = (top + row) * sheet.width + left;
+                    sheet.pixels[to..to + width].fill(first.pixels[row * first.width]);
+                }
             }
         }
         sheet

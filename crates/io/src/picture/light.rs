@@ -43,6 +43,9 @@ impl Lamps {
         const EARTH: Colour = Colour([0.62, 0.56, 0.52]);
         let [x, y, z] = sample.normal.map(f64::from);
         let normal = Vec3::new(x, y, z);
+        // where the key lamp only grazes, a map of shadows shows its own grain; little light is at stake there
+        let grazing = (((normal.dot(self.key) - 0.02) / 0.18).clamp(0.0, 1.0)) as f32;
+        let lit = 1.0 - (1.0 - lit) * grazing;
         let facing = |lamp: Vec3| normal.dot(lamp).max(0.0) as f32;
         // wrapped a little around the terminator: soft matter scatters light beneath its surface
         let wrapped = |lamp: Vec3| ((normal.dot(lamp) + 0.25) / 1.25).max(0.0) as f32;

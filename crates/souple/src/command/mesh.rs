@@ -8,6 +8,7 @@ mod summary;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value as Json, json};
+use souple_io::{Dataset, Output};
 use souple_mesh::fill::surface_of;
 use souple_mesh::repair::diagnose;
 use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
@@ -93,22 +94,24 @@ impl Arguments {
 pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
     match arguments.action {
         Action::Generate { generator, out, parameters, json } => {
-            write(&out, generate(&generator, &parameters)?, Vec::new(), json)
+            write(&out, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
         }
         Action::Fill { input, out, parameters, json } => {
             let (mesh, notes) = fill::fill(&input, &parameters)?;
-            write(&out, mesh, notes, json)
+            write(&out, &Output::new(&mesh), notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
-            write(&out, mesh, notes, json)
+            write(&out, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
-            write(&out, skin::dressed(&input, &parameters)?, Vec::new(), json)
+            write(&out, &Output::new(&skin::dressed(&input, &parameters)?), Vec::new(), json)
         }
         Action::Convert { input, out, json } => {
-            let (mesh, notes) = read(&input)?;
-            write(&out, mesh, notes, json)
+            let Dataset { mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
+            let output =
+                Output { point_fields: &point_fields, cell_fields: &cell_fields, ..Output::new(&mesh) };
+            write(&out, &output, notes, json)
         }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
@@ -149,14 +152,14 @@ fn read(path: &Path) -> Result<(Mesh, Vec<String>), Refusal> {
 }
 
 /// Writes a mesh and tells what the file holds, which may be less: a format may know surfaces alone, or no groups.
-fn write(path: &Path, mesh: Mesh, mut notes: Vec<String>, as_json: bool) -> Result<End, Refusal> {
-    souple_io::write_mesh(path, &mesh)?;
-    notes.extend(souple_io::losses(path, &souple_io::Output::new(&mesh))?);
+fn write(path: &Path, output: &Output, mut notes: Vec<String>, as_json: bool) -> Result<End, Refusal> {
+    souple_io::write_dataset(path, output)?;
+    notes.extend(souple_io::losses(path, output)?);
     let written = match souple_io::read_mesh(path) {
         Ok((written, _)) => written,
         // a format that is only written, and for surfaces
         Err(souple_io::IoError::Unsupported { .. }) => {
-            surface_of(&mesh).map_or(mesh, |surface| fill::mesh_of(&surface))
+            surface_of(output.mesh).map_or_else(|| output.mesh.clone(), |surface| fill::mesh_of(&surface))
         }
         Err(error) => return Err(error.into()),
     };
