@@ -127,6 +127,14 @@ impl Show {
         self.moments.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
     }
 
+    /// Whether a body has a field of this name at some moment, on points or cells.
+    pub fn has_field(&self, name: &str) -> bool {
+        let bodies = self.moments.iter().flat_map(|moment| &moment.bodies);
+        bodies
+            .flat_map(|body| body.point_fields.iter().chain(&body.cell_fields))
+            .any(|field| field.name == name)
+    }
+
     /// Of all bodies at all moments.
     pub fn bounds(&self) -> BoundingBox {
         let positions =

@@ -40,9 +40,10 @@ pub struct Arguments {
     /// Frames of a film per second; in real time if left out
     #[arg(long)]
     per_second: Option<f64>,
-    /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, …, `none`
-    #[arg(long, default_value = "von_mises")]
-    colour: String,
+    /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, …, `none`; `von_mises` if left out,
+    /// where there is stress
+    #[arg(long)]
+    colour: Option<String>,
     /// sequential, diverging, grey
     #[arg(long, default_value = "sequential")]
     map: String,
@@ -153,7 +154,10 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     let figure = figure(arguments, kind)?;
     let (show, mut notes) = show(arguments, kind)?;
     let view = view(arguments, &show.stage)?;
-    let figure = Figure { view: Some(view), ..figure };
+    let mut figure = Figure { view: Some(view), ..figure };
+    if arguments.colour.is_none() && !show.has_field(STRESS) {
+        figure.colour_by = None;
+    }
     let out = arguments.out.as_path();
     let mut count = 1;
     match kind {
@@ -254,7 +258,11 @@ impl Drop for Scratch {
     }
 }
 
+/// What colours show where nothing else is asked for.
+const STRESS: &str = "von_mises";
+
 fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
+    let colour = arguments.colour.as_deref().unwrap_or(STRESS);
     let map = COLOUR_MAPS
         .find(&arguments.map)
         .map_err(|error| Refusal::request("map", arguments.map.clone(), "", error.to_string()))?;
@@ -305,7 +313,7 @@ fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         theme: if arguments.dark { Theme::Dark } else { Theme::Light },
         title: arguments.title.clone(),
         view: None,
-        colour_by: (arguments.colour != "none").then(|| arguments.colour.clone()),
+        colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
         colours: map.build,
         range: arguments.range.map(|[low, high]| (low, high)),
         cut,

@@ -27,7 +27,7 @@ const LIGAMENT: Case = Case {
     reference: -0.01,
     tolerance: Tolerance::Absolute(2e-4),
     source: "the motion of the pin",
-    mutation: "run.duration=1",
+    mutation: r#"bodies.ligament.pins[1].rotation.offsets[2]=["170 deg", 0, 0]"#,
     ..BAR
 };
 

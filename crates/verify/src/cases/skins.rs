@@ -48,7 +48,7 @@ pub(super) const CASES: &[Case] = &[
         }),
         reference: 2.0,
         tolerance: Tolerance::Absolute(0.3),
-        mutation: "skins.ball.start[0].formula=\"1.05 - sqrt(x^2 + y^2 + z^2)\"",
+        mutation: "skins.ball.start[0].formula=\"0.95 - sqrt(x^2 + y^2 + z^2)\"",
         ..SKIN
     },
     Case {
