@@ -25,7 +25,7 @@ pub enum TangentKind {
     /// The exact one: Newton's method is quadratic.
     #[default]
     Full,
-    /// Without the stiffness of the stress itself, see [`tangents`].
+    /// Without the stiffness of the stress itself.
     Material,
 }
 
