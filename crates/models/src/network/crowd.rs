@@ -6,7 +6,6 @@
 use std::any::Any;
 use std::ops::Range;
 
-use souple_engine::tangent::add_block;
 use souple_engine::{Configuration, ContactPoint, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
@@ -14,6 +13,7 @@ use souple_solve::BlockMatrix;
 use super::friction::{Friction, Hook};
 use super::kernel::LinkKernel;
 use super::law::{Reach, Response};
+use super::pair_tangent::{add_change, add_pair_blocks};
 
 /// Numbers of a pair that belong to friction; those of the law follow.
 const HOOK: usize = 4;
@@ -204,12 +204,7 @@ impl Force for Crowd {
         _: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        self.visit_tangents(at, weights, |[a, b], block| {
-            let (a, b) = (a as usize, b as usize);
-            let change = block * (delta[a] - delta[b]);
-            out[a] += change;
-            out[b] -= change;
-        });
+        self.visit_tangents(at, weights, |ends, block| add_change(ends, &block, delta, out));
     }
 
     fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
@@ -223,13 +218,7 @@ impl Force for Crowd {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        self.visit_tangents(at, weights, |[a, b], block| {
-            let (a, b) = (a as usize, b as usize);
-            add_block(matrix, a, a, &block);
-            add_block(matrix, b, b, &block);
-            add_block(matrix, a, b, &-block);
-            add_block(matrix, b, a, &-block);
-        });
+        self.visit_tangents(at, weights, |ends, block| add_pair_blocks(ends, &block, matrix));
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], pairs: &mut [Pair]) {

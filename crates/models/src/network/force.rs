@@ -2,7 +2,6 @@
 
 use std::any::Any;
 
-use souple_engine::tangent::add_block;
 use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
@@ -10,6 +9,7 @@ use souple_solve::BlockMatrix;
 use super::kernel::{LinkKernel, Moving};
 use super::law::Reach;
 use super::layout::{Ends, LANES, Layout, Part};
+use super::pair_tangent::{add_change, add_pair_blocks};
 use super::written::WRITTEN_MEMORY;
 use crate::solids::parallel;
 
@@ -259,12 +259,7 @@ impl Force for Links {
         _scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        self.visit_tangents(at, weights, |[a, b], block| {
-            let (a, b) = (a as usize, b as usize);
-            let change = block * (delta[a] - delta[b]);
-            out[a] += change;
-            out[b] -= change;
-        });
+        self.visit_tangents(at, weights, |ends, block| add_change(ends, &block, delta, out));
     }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
@@ -282,13 +277,7 @@ impl Force for Links {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        self.visit_tangents(at, weights, |[a, b], block| {
-            let (a, b) = (a as usize, b as usize);
-            add_block(matrix, a, a, &block);
-            add_block(matrix, b, b, &block);
-            add_block(matrix, a, b, &-block);
-            add_block(matrix, b, a, &-block);
-        });
+        self.visit_tangents(at, weights, |ends, block| add_pair_blocks(ends, &block, matrix));
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {

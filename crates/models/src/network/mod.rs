@@ -10,6 +10,7 @@ pub mod kernel;
 pub mod law;
 pub mod laws;
 mod layout;
+mod pair_tangent;
 pub mod written;
 
 pub use crowd::{Crowd, CrowdDescription, PAIR_MEMORY};

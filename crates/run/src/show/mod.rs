@@ -21,7 +21,7 @@ use crate::Session;
 
 pub use figure::{Arrows, Figure};
 pub use film::{FilmError, write_film};
-pub use stage::Stage;
+pub use stage::{Stage, obstacles_of};
 
 /// All bodies and skins at one time.
 #[derive(Clone, Debug)]

@@ -31,6 +31,18 @@ impl Default for Stage {
     }
 }
 
+/// What bodies may touch, each once though several bodies touch it.
+pub fn obstacles_of(model: &Model) -> Vec<Obstacle> {
+    let forces = model.systems.iter().flat_map(|system| &system.forces);
+    let mut obstacles: Vec<Obstacle> = Vec::new();
+    for obstacle in forces.filter_map(|force| force.obstacle()) {
+        if !obstacles.iter().any(|known| known.form == obstacle.form) {
+            obstacles.push(obstacle);
+        }
+    }
+    obstacles
+}
+
 impl Stage {
     pub fn of(scene: &Scene) -> Self {
         Self { title: scene.title.clone(), ..Self::of_model(&scene.model, &scene.bodies, scene.picture) }
@@ -38,14 +50,7 @@ impl Stage {
 
     /// Without a title.
     pub fn of_model(model: &Model, bodies: &[BodyInfo], view: PictureView) -> Self {
-        let forces = model.systems.iter().flat_map(|system| &system.forces);
-        let mut obstacles: Vec<Obstacle> = Vec::new();
-        for obstacle in forces.filter_map(|force| force.obstacle()) {
-            // several bodies may touch one shape
-            if !obstacles.iter().any(|known| known.form == obstacle.form) {
-                obstacles.push(obstacle);
-            }
-        }
+        let obstacles = obstacles_of(model);
         let stiffness = bodies.iter().filter_map(|body| stiffness(model, body)).fold(0.0, f64::max);
         Self { title: String::new(), view, stiffness, obstacles }
     }

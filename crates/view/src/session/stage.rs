@@ -8,6 +8,7 @@ use souple_engine::obstacle::{Form, Obstacle, Side};
 use souple_engine::{Edit, StageTimes};
 use souple_io::picture::COLOUR_MAPS;
 use souple_math::{Mat3, Vec3};
+use souple_run::show::obstacles_of;
 use souple_run::{Options, Session};
 use souple_scene::spec::picture::PictureView;
 use souple_scene::{Adjustable, Scene};
@@ -61,7 +62,7 @@ impl Stage {
             number,
             description,
             view,
-            obstacles: bounded_and_planes(&session),
+            obstacles: obstacles_of(session.world.model()),
             cells: session.bodies.iter().map(SurfaceCells::new).collect(),
             hands: Hands::default(),
             fields: BTreeMap::new(),
@@ -368,22 +369,10 @@ impl Stage {
     /// The scene is another world now; this one goes on as it was.
     pub fn change(&mut self, scene: Scene, setting: &str, hub: &Hub) -> Result<(), String> {
         self.session.take_over(scene, setting).map_err(|error| error.to_string())?;
-        self.obstacles = bounded_and_planes(&self.session);
+        self.obstacles = obstacles_of(self.session.world.model());
         hub.tell_all(&self.adjustables());
         Ok(())
     }
-}
-
-/// What bodies may touch, each once though several bodies touch it.
-fn bounded_and_planes(session: &Session) -> Vec<Obstacle> {
-    let forces = session.world.model().systems.iter().flat_map(|system| &system.forces);
-    let mut obstacles: Vec<Obstacle> = Vec::new();
-    for obstacle in forces.filter_map(|force| force.obstacle()) {
-        if !obstacles.iter().any(|known| known.form == obstacle.form) {
-            obstacles.push(obstacle);
-        }
-    }
-    obstacles
 }
 
 /// How an obstacle stands at a time: the axes of its shape, and where its origin is.
