@@ -30,7 +30,7 @@ use souple_table::readable;
 pub use command::{command_from_json, command_to_json};
 pub use duration::{Periods, periods_in};
 pub use expect::{Finding, Verdict, summary};
-pub use failure::{Cause, Failure};
+pub use failure::{Cause, Failure, Part, Spot};
 pub use frames::solid_of;
 pub use frequencies::{FrequencyError, NaturalFrequencies, natural_frequencies};
 pub use machine::{binary, instruction_set, peak_bytes};

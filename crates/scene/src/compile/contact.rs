@@ -179,7 +179,7 @@ fn against_shape(
     let law = law(contact, modulus_behind(body, touching.shares()), touching.mean_area);
     let joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
     match ShapeContact::new(contact.name.clone(), touching.points, built, motion, law) {
-        Ok(force) => Some((force, joints)),
+        Ok(force) => Some((force.against(&shape.name), joints)),
         Err(error) => {
             draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
             None
