@@ -113,14 +113,13 @@ impl Stage {
         walls.chain(bounded).collect()
     }
 
-    /// Bounds of the bounded shapes that are not much larger than the bodies.
-    pub(super) fn bounds(&self, time: f64, bodies: BoundingBox) -> Option<BoundingBox> {
-        let boxes = self.obstacles.iter().filter_map(|obstacle| {
-            let bounds = BoundingBox::of(points_of(obstacle, time));
-            let is_bounded = matches!(obstacle.form, Form::Surface { .. });
-            (is_bounded && bounds.diagonal() < MUCH_LARGER * bodies.diagonal()).then_some(bounds)
-        });
-        boxes.reduce(BoundingBox::union)
+    /// Points of the bounded shapes that are not much larger than the bodies.
+    pub(super) fn points_near(&self, time: f64, bodies: BoundingBox) -> Vec<Vec3> {
+        let shapes = self.obstacles.iter().map(|obstacle| points_of(obstacle, time));
+        let is_near = |points: &Vec<Vec3>| {
+            BoundingBox::of(points.iter().copied()).diagonal() < MUCH_LARGER * bodies.diagonal()
+        };
+        shapes.filter(|points| !points.is_empty()).filter(is_near).flatten().collect()
     }
 }
 
