@@ -40,7 +40,7 @@ use section_kernel::SectionKernel;
 use staged::Staged;
 
 pub use layout::FlatCell;
-pub use mass::{consistent_mass, lumped_mass};
+pub use mass::{consistent_mass, lumped_mass, uniform_mass};
 pub use rayleigh::RayleighDamping;
 pub use section::{BuildSection, SECTIONS, Section};
 pub use viscosity::Viscosity;

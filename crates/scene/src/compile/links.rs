@@ -9,7 +9,6 @@ use souple_table::counted;
 
 use super::Draft;
 use super::bodies::Placed;
-use super::doubts::youngs_modulus;
 use super::frames::cross_sections;
 use super::freedom::Joint;
 use crate::diagnostic::Code;
@@ -104,7 +103,7 @@ fn layer_between(from: &Placed, to: &Placed, links: &[LoadLink]) -> f64 {
     let modulus = |body: &Placed| {
         let material = body.spec.material.as_ref();
         let built = material.and_then(|chosen| (chosen.entry.build)(&chosen.values).ok());
-        built.map_or(0.0, |material| youngs_modulus(&material.small_strain))
+        built.map_or(0.0, |material| material.small_strain.youngs_modulus())
     };
     let [a, b] = [from, to].map(modulus);
     let smallest =
