@@ -22,6 +22,7 @@ mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
 mod traction;
+mod wall_cube;
 
 use crate::Case;
 
@@ -43,6 +44,7 @@ pub const TABLES: &[&[Case]] = &[
     implicit::CASES,
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
+    wall_cube::CASES,
     contact::CASES,
     network::CASES,
     rheometer::CASES,
