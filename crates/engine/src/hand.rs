@@ -106,10 +106,6 @@ impl Hand {
         Self { name: hand_name(hand), grip }
     }
 
-    pub(crate) fn with_place(&self, place: Vec3) -> Self {
-        Self { name: self.name.clone(), grip: Grip { place, ..self.grip.clone() } }
-    }
-
     pub fn grip(&self) -> &Grip {
         &self.grip
     }
@@ -198,6 +194,10 @@ impl Force for Hand {
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
         let speed_sq = |held: &Held| held.share * at.velocities[held.row as usize].length_sq();
         memory[0] += timestep * self.grip.damping * self.grip.points.iter().map(speed_sq).sum::<f64>();
+    }
+
+    fn lead(&mut self, place: Vec3) {
+        self.grip.place = place;
     }
 
     fn bytes(&self) -> usize {
