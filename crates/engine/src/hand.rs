@@ -94,6 +94,11 @@ pub fn hand_name(hand: u32) -> String {
     format!("hand[{hand}]")
 }
 
+/// Whether a force is that of a hand, by its name.
+pub fn is_hand_name(name: &str) -> bool {
+    name.starts_with("hand[")
+}
+
 /// `f_i = share_i (k (place + offset_i - x_i) - c ẋ_i)` on each point held.
 #[derive(Clone, Debug)]
 pub struct Hand {

@@ -14,6 +14,7 @@ mod protocol;
 mod server;
 mod session;
 mod socket;
+mod tools;
 
 pub use catalogue::Catalogue;
 pub use server::{Options, ViewError, Viewer};

@@ -42,9 +42,9 @@ fn paths_and_sites() {
 #[test]
 fn foreign_pages_stay_out() {
     let world = World::open();
-    assert!(Page::try_open(&world, Some("http://evil.example"), "souple.v1").is_err());
+    assert!(Page::try_open(&world, Some("http://evil.example"), "souple.v2").is_err());
     assert!(Page::try_open(&world, None, "souple.v999").is_err());
-    assert!(Page::try_open(&world, Some(&format!("http://{}", world.host())), "souple.v1").is_ok());
+    assert!(Page::try_open(&world, Some(&format!("http://{}", world.host())), "souple.v2").is_ok());
 }
 
 /// All pages see the same scene, and what one of them changes.

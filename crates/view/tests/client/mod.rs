@@ -111,13 +111,22 @@ pub struct Page {
 }
 
 /// What a test looks at in a frame.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Frame {
     pub number: u32,
     pub time: f64,
     pub hands: u32,
+    /// Of the hands, those with a tool.
+    pub tools: u32,
     /// Of each body.
     pub point_counts: Vec<u32>,
+    /// Least height of the points of each body [m].
+    pub lowest: Vec<f32>,
+    /// Frames that carry each body.
+    pub frame_counts: Vec<u32>,
+    /// Links that do not hold.
+    pub torn: usize,
+    pub skin_triangles: Vec<u32>,
 }
 
 impl Frame {
@@ -126,23 +135,39 @@ impl Frame {
         if bytes[0] != 2 {
             return None;
         }
-        let (hands, poses) = (u32_at(60), u32_at(64));
-        let mut at = 68 + 44 * hands as usize + 48 * poses as usize;
-        let mut point_counts = Vec::new();
+        let (hands, poses, skins) = (u32_at(60), u32_at(64), u32_at(68));
+        let mut at = 72 + 48 * hands as usize + 48 * poses as usize;
+        let mut frame = Self { number: u32_at(24), hands, ..Self::default() };
+        frame.time = f64::from_le_bytes(bytes[16..24].try_into().unwrap());
+        frame.tools = (0..hands).filter(|hand| u32_at(72 + 48 * *hand as usize + 8) == 1).count() as u32;
         for _ in 0..u16::from_le_bytes([bytes[2], bytes[3]]) {
-            let (points, fields) = (u32_at(at), u32_at(at + 4));
-            at += 8 + 12 * points as usize + fields as usize * (4 + 4 * points as usize);
-            point_counts.push(points);
+            let [points, fields, arrows, links, frames] = [0, 4, 8, 12, 16].map(|offset| u32_at(at + offset));
+            at += 20;
+            let float = |place: usize| f32::from_le_bytes(bytes[place..place + 4].try_into().unwrap());
+            frame.lowest.push((0..points as usize).map(|k| float(at + 12 * k + 4)).fold(f32::MAX, f32::min));
+            at += 12 * points as usize;
+            for _ in 0..fields {
+                at += 8 + 4 * u32_at(at + 4) as usize;
+            }
+            at += arrows as usize * (4 + 12 * points as usize);
+            frame.torn += bytes[at..at + links as usize].iter().filter(|state| **state == 0).count();
+            at += (links as usize).next_multiple_of(4) + 48 * frames as usize;
+            frame.point_counts.push(points);
+            frame.frame_counts.push(frames);
+        }
+        for _ in 0..skins {
+            let (points, triangles) = (u32_at(at), u32_at(at + 4));
+            at += 8 + 24 * points as usize + 12 * triangles as usize;
+            frame.skin_triangles.push(triangles);
         }
         assert_eq!(at, bytes.len(), "the frame has its length");
-        let time = f64::from_le_bytes(bytes[16..24].try_into().unwrap());
-        Some(Self { number: u32_at(24), time, hands, point_counts })
+        Some(frame)
     }
 }
 
 impl Page {
     pub fn open(world: &World) -> Self {
-        Self::try_open(world, None, "souple.v1").unwrap_or_else(|error| panic!("{error}"))
+        Self::try_open(world, None, "souple.v2").unwrap_or_else(|error| panic!("{error}"))
     }
 
     pub fn try_open(world: &World, origin: Option<&str>, protocol: &str) -> Result<Self, String> {
