@@ -5,10 +5,12 @@
 //! do holds up the world. The protocol is in `docs/protocol.md`.
 
 mod catalogue;
+mod dropped;
 mod fields;
 mod guard;
 mod http;
 mod hub;
+pub mod measure;
 mod page;
 mod protocol;
 mod server;

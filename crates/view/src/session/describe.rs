@@ -9,6 +9,7 @@ use souple_run::Session;
 use souple_scene::{Adjustable, BodyInfo, ProbeInfo, SkinInfo};
 use souple_table::{Entry, Kind};
 
+use super::shown::has_inside;
 use super::stage::Stage;
 use crate::fields::{ARROWS, ArrowKind, FIELDS, Field};
 use crate::hub::Outgoing;
@@ -70,7 +71,7 @@ impl Stage {
                 "is_network": !shown.links.is_empty() || !body.radii.is_empty(),
                 "is_sheet": shown.is_sheet,
                 "is_worn": is_worn(body),
-                "has_inside": body.mesh.dimension() == 3,
+                "has_inside": has_inside(&body.mesh),
             })
         };
         let skin = |skin: &SkinInfo| {

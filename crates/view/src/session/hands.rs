@@ -54,7 +54,7 @@ pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip
 }
 
 /// Stiffness of a tool at each of the points of some bodies that it may meet: a twentieth of them, pressed, bear the
-/// bodies as firmly as a hand of ten times the strength; in an explicit system, as much as its step bears [N/m].
+/// bodies as firmly as a hand of a hundred times the strength; in an explicit system, as much as its step bears [N/m].
 pub fn tool_stiffness<'a>(
     world: &World,
     bodies: impl Iterator<Item = &'a BodyInfo>,
@@ -74,7 +74,7 @@ pub fn tool_stiffness<'a>(
         }
     }
     let pressed = (point_count as f64 / 20.0).max(1.0);
-    (10.0 * strength * mass * FREQUENCY * FREQUENCY / pressed).min(bearable)
+    (100.0 * strength * mass * FREQUENCY * FREQUENCY / pressed).min(bearable)
 }
 
 /// Rows that have the mass of a body: points that frames carry have none of their own.

@@ -18,6 +18,7 @@ use souple_scene::Scene;
 
 pub use question::{Answer, Question};
 pub use shown::Shown;
+pub use stage::Stage;
 
 use crate::catalogue::Catalogue;
 use crate::http::Rejection;
@@ -25,7 +26,6 @@ use crate::hub::{Hub, PageId};
 use crate::protocol::{Wish, document, refusal};
 use compile::{Compiled, Compiler, Purpose};
 use pace::Pace;
-use stage::Stage;
 
 /// What reaches the world from outside.
 pub enum Input {

@@ -37,9 +37,7 @@ impl Shown {
         let mut is_listed = vec![false; mesh.points.len()];
         points.iter().for_each(|point| is_listed[*point as usize] = true);
         points.extend((0..mesh.points.len() as u32).filter(|point| !is_listed[*point as usize]));
-        // of edges and masses there is no inside
-        let is_solid = mesh.dimension() == 3;
-        let outer_count = if is_solid { mesh_points.len() } else { points.len() };
+        let outer_count = if has_inside(mesh) { mesh_points.len() } else { points.len() };
         let outer_cells = CellsAbout::new(mesh, &points[..outer_count]);
         let mut shown = Self {
             points,
@@ -84,7 +82,7 @@ impl Shown {
 
     /// `None` of what has no inside. Curved cells count by their corners.
     pub fn inside(&self, mesh: &Mesh) -> Option<Inside> {
-        if mesh.dimension() != 3 {
+        if !has_inside(mesh) {
             return None;
         }
         let number = self.numbers();
@@ -106,6 +104,11 @@ impl Shown {
         }
         Some(inside)
     }
+}
+
+/// Whether there are cells with a volume; edges, sheets and loose masses are all outside.
+pub fn has_inside(mesh: &Mesh) -> bool {
+    mesh.dimension() == 3 && mesh.cell_count() > 0
 }
 
 /// The cells about each of some points of a mesh.

@@ -105,6 +105,7 @@ class Page {
         this.maps = message.colour_maps;
         this.display.setMaps(this.maps);
         this.scenes.set(message.scenes);
+        this.scenes.page = message.page;
         this.hand.setTools(message.tools);
         this.asked = { field: null, arrows: null, inside: false };
         this.grab?.forget();
@@ -173,7 +174,7 @@ class Page {
     this.hasBegun = true;
     this.picture.begin(info, this.surfaces, this.networks);
     this.picture.fit();
-    this.display.setArrows(info.arrows, "frames" in info.counts);
+    this.display.setArrows(info.arrows, info.counts["rigid_frames"] !== undefined || info.counts["affine_frames"] !== undefined);
     this.display.setFields(info.fields);
   }
 
@@ -229,6 +230,7 @@ class Page {
         this.legend.show(this.picture.range);
         document.body.dataset.frame = String(frame.number);
         document.body.dataset.time = String(frame.time);
+        document.body.dataset.cells = String(this.picture.cellCount);
       }
     }
     this.picture.draw();

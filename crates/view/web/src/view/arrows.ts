@@ -1,6 +1,7 @@
 // Vectors at points, as arrows in one scale.
 
 import { Group } from "three";
+import type { Plane } from "three";
 import type { BodyFrame } from "../protocol";
 import { Instances } from "./instances";
 import { linearOf } from "./palette";
@@ -42,6 +43,11 @@ export class Arrows {
     this.sticks.end();
     this.tips.end();
     this.group.visible = count > 0;
+  }
+
+  setCut(planes: Plane[]): void {
+    this.sticks.setClipping(planes);
+    this.tips.setClipping(planes);
   }
 
   dispose(): void {

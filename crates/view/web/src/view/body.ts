@@ -113,6 +113,11 @@ export class Body {
     this.setVisible();
   }
 
+  /** Cells whose shapes have come. */
+  get cellCount(): number {
+    return this.inside ? this.info.cells : 0;
+  }
+
   /** What a ray may meet. */
   get targets(): Object3D[] {
     return this.network ? this.network.targets : [this.mesh];

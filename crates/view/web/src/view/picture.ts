@@ -16,7 +16,7 @@ import {
   Vector3,
   WebGLRenderer,
 } from "three";
-import type { BufferGeometry, Object3D } from "three";
+import type { BufferGeometry, Object3D, Texture } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
 import type { Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
@@ -27,6 +27,7 @@ import { Hands } from "./hands";
 import { Obstacles } from "./obstacles";
 import { linearColours } from "./palette";
 import type { Range } from "./palette";
+import { Quality } from "./quality";
 import { Skin } from "./skin";
 import { Tools } from "./tools";
 
@@ -66,6 +67,8 @@ export class Picture {
   private readonly key = new DirectionalLight(0xfff4e6, 2.4);
   private readonly sky = new HemisphereLight(0xeef4ff, 0x8a7f78, 0.7);
   private readonly hands: Hands;
+  private readonly quality = new Quality(() => this.simplify());
+  private readonly reflections: Texture;
   private readonly ray = new Raycaster();
   private obstacles: Obstacles | null = null;
   private skins: Skin[] = [];
@@ -104,7 +107,7 @@ export class Picture {
     place.append(labels);
     this.hands = new Hands(labels, () => this.size);
     const environment = new PMREMGenerator(renderer);
-    this.scene.environment = environment.fromScene(new RoomEnvironment(), 0.04).texture;
+    this.reflections = environment.fromScene(new RoomEnvironment(), 0.04).texture;
     this.scene.environmentIntensity = 0.45;
     environment.dispose();
     this.key.castShadow = true;
@@ -119,7 +122,7 @@ export class Picture {
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
     new ResizeObserver(() => this.resize()).observe(place);
-    this.resize();
+    this.simplify();
   }
 
   /** Another scene: bodies first among the surfaces, then obstacles. */
@@ -225,6 +228,7 @@ export class Picture {
     }
     this.bodies.forEach((body) => body.setCut(cut ? this.cutPlane : null));
     this.skins.forEach((skin) => skin.setCut(cut ? [this.cutPlane] : []));
+    this.arrows.setCut(cut ? [this.cutPlane] : []);
   }
 
   /** Looks at all bodies as they stand, from where the scene wants to be seen. */
@@ -256,6 +260,17 @@ export class Picture {
     this.controls.update();
     this.renderer.render(this.scene, this.camera);
     this.hands.placeLabels(this.camera, this.place.clientWidth, this.place.clientHeight);
+    this.quality.drawn(performance.now());
+  }
+
+  /** Draws as well as the machine can. */
+  private simplify(): void {
+    const { shadows, reflections } = this.quality.now;
+    this.key.castShadow = shadows;
+    this.scene.environment = reflections ? this.reflections : null;
+    // what reflections give of light
+    this.sky.intensity = reflections ? 0.7 : 2;
+    this.resize();
   }
 
   /** The body under a place of the screen. */
@@ -287,6 +302,11 @@ export class Picture {
     };
     const all = this.bodies.map((body) => [distance(body), body] as const).sort((a, b) => a[0] - b[0]);
     return all[0]?.[1] ?? null;
+  }
+
+  /** Cells that are known, of bodies that somebody looks into. */
+  get cellCount(): number {
+    return this.bodies.reduce((sum, body) => sum + body.cellCount, 0);
   }
 
   /** Towards the eye, unit. */
@@ -355,7 +375,8 @@ export class Picture {
   private resize(): void {
     const width = Math.max(this.place.clientWidth, 1);
     const height = Math.max(this.place.clientHeight, 1);
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    const { pixels } = this.quality.now;
+    this.renderer.setPixelRatio(pixels < 1 ? pixels : Math.min(devicePixelRatio, pixels));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
