@@ -64,6 +64,9 @@ pub struct BodyInfo {
     pub force: String,
     /// What carries it, where that is not its points.
     pub frames: Option<FramesInfo>,
+    /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
+    /// where no body is a network.
+    pub radii: Vec<f64>,
 }
 
 /// The frames that carry a body.
@@ -103,7 +106,7 @@ impl SkinInfo {
 }
 
 impl BodyInfo {
-    pub(crate) fn new(placed: Placed) -> Self {
+    pub(crate) fn new(placed: Placed, radii: Vec<f64>) -> Self {
         let Placed { spec, system, rows, mesh, frames, .. } = placed;
         let surface = mesh.boundary_surface();
         let force = crate::compile::solid_name(&spec.name);
@@ -119,7 +122,7 @@ impl BodyInfo {
                 rows: frames.rows,
             }
         });
-        Self { name: spec.name.clone(), system, rows, mesh, surface, force, frames }
+        Self { name: spec.name.clone(), system, rows, mesh, surface, force, frames, radii }
     }
 }
 

@@ -3,6 +3,7 @@
 mod frames;
 mod links;
 mod timing;
+mod view;
 
 use std::fmt;
 use std::time::Instant;
@@ -141,6 +142,16 @@ pub const BENCHES: &[Bench] = &[
         name: "springs_lattice_1m",
         what: "the same with 70 masses along each edge (1,014,300 damped springs) [links/s]",
         run: |effort| links::springs_lattice("springs_lattice_1m", 70, None, effort),
+    },
+    Bench {
+        name: "view_frame_20k",
+        what: "a frame for the browser of a bar with 20,800 triangles, coloured, on the thread of the world [ms]",
+        run: view::frame_20k,
+    },
+    Bench {
+        name: "view_rate",
+        what: "frames that a client on this machine gets of the falling block, and from its hand to the frame [frames/s, ms]",
+        run: view::rate,
     },
     Bench {
         name: "static_100k",

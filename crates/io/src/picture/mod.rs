@@ -2,6 +2,7 @@
 //! legend, edges, arrows, dots, a ground that shows contact. The same bits on every run.
 
 mod animated_png;
+mod balls;
 mod camera;
 mod colour;
 mod colour_map;

@@ -333,6 +333,10 @@ impl Force for ShapeContact {
         }
     }
 
+    fn lead(&mut self, place: Vec3) {
+        self.motion = RigidMotion::at(place);
+    }
+
     fn obstacle(&self) -> Option<Obstacle> {
         let form = match (self.shape.as_plane(), self.shape.outline()) {
             (Some((point, normal)), _) => Form::Plane { point, normal },

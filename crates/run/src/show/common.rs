@@ -6,6 +6,7 @@ use souple_mesh::BoundingBox;
 
 use super::figure::Figure;
 use super::{BodyMoment, Moment, Show, ShowError, vectors};
+use crate::links::{LINK_STATE, RADIUS};
 
 /// Camera, colours and sizes.
 #[derive(Clone, Debug)]
@@ -150,8 +151,9 @@ impl BodyMoment {
         self.mesh.dimension() == 1
     }
 
-    /// Its edges, thick enough to be seen and thin enough to be told apart where pixels allow it.
-    pub(super) fn tubes(&self, common: &Common, cut: Option<Cut>) -> MeshSurface {
+    /// Its edges, thick enough to be seen and thin enough to be told apart where pixels allow it; those of links in one
+    /// state, or all that hold their ends together.
+    pub(super) fn tubes(&self, common: &Common, cut: Option<Cut>, state: Option<f64>) -> MeshSurface {
         let whole = common.bounds.diagonal();
         let cells = self.mesh.cell_count().max(1) as f64;
         let length: f64 = self
@@ -164,7 +166,25 @@ impl BodyMoment {
             .sum();
         let [thin, thick] = TUBES.map(|part| part * whole);
         let radius = (OF_EDGE * length / cells).clamp(thin, thick).max(common.pixel);
-        MeshSurface::tubes(&self.mesh, &self.positions, radius, cut)
+        let states = self.link_states();
+        let is_drawn = |cell: usize| {
+            let own = states.map_or(0.0, |states| states[cell]);
+            state.map_or(own >= 0.0, |state| own == state)
+        };
+        let of_cell = |cell: usize| if is_drawn(cell) { radius } else { 0.0 };
+        MeshSurface::tubes(&self.mesh, &self.positions, of_cell, cut)
+    }
+
+    /// Of each link, see [`LINK_STATE`]; `None` of a body that is no network.
+    pub(super) fn link_states(&self) -> Option<&[f64]> {
+        let field = self.cell_fields.iter().find(|field| field.name == LINK_STATE)?;
+        (field.values.len() == self.mesh.cell_count()).then_some(field.values.as_slice())
+    }
+
+    /// Of each point that is a ball [m]; `None` where none is.
+    pub(super) fn radii(&self) -> Option<&[f64]> {
+        let field = self.point_fields.iter().find(|field| field.name == RADIUS)?;
+        (field.values.len() == self.positions.len()).then_some(field.values.as_slice())
     }
 }
 

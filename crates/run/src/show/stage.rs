@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use souple_engine::Model;
 use souple_engine::obstacle::{Form, Obstacle, Side};
+use souple_engine::{Force, Model};
 use souple_io::picture::{Colour, EdgeStyle, Faces, Ground, Paint, Surface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
@@ -32,9 +32,8 @@ impl Default for Stage {
     }
 }
 
-/// What bodies may touch, each once though several bodies touch it.
-pub fn obstacles_of(model: &Model) -> Vec<Obstacle> {
-    let forces = model.systems.iter().flat_map(|system| &system.forces);
+/// What some forces keep bodies away from, each once though several bodies touch it.
+pub fn obstacles_of<'a>(forces: impl Iterator<Item = &'a Box<dyn Force>>) -> Vec<Obstacle> {
     let mut obstacles: Vec<Obstacle> = Vec::new();
     for obstacle in forces.filter_map(|force| force.obstacle()) {
         if !obstacles.iter().any(|known| known.name == obstacle.name) {
@@ -51,7 +50,7 @@ impl Stage {
 
     /// Without a title.
     pub fn of_model(model: &Model, bodies: &[BodyInfo], view: PictureView) -> Self {
-        let obstacles = obstacles_of(model);
+        let obstacles = obstacles_of(model.systems.iter().flat_map(|system| &system.forces));
         let stiffness = bodies.iter().filter_map(|body| stiffness(model, body)).fold(0.0, f64::max);
         Self { title: String::new(), view, stiffness, obstacles }
     }

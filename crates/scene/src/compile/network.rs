@@ -20,6 +20,7 @@ use super::shape::Shape;
 use super::{Draft, memory};
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
+use crate::spec::Spec;
 use crate::spec::body::Body;
 use crate::spec::network::{CrowdSpec, Network};
 use crate::spec::world::SystemSpec;
@@ -207,6 +208,28 @@ fn crowd(
         slow: friction.speed * timestep,
     });
     Some(Crowd::new(CrowdDescription { name, law, first, second, range, friction, timestep }))
+}
+
+/// Half the distance at which balls of a group keep from each other, or from those of another group, for each mass [m];
+/// zero where nothing keeps off. Empty of a body that is no network.
+pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
+    let Some(network) = &body.spec.network else { return Vec::new() };
+    let timestep = spec.world.period / f64::from(spec.systems[body.system].steps_per_period);
+    let distance = |crowd: &CrowdSpec| {
+        let chosen = crowd.law.as_ref()?;
+        (chosen.entry.build)(&Making { values: &chosen.values, timestep }).ok()?.rest_distance()
+    };
+    let is_in =
+        |crowd: &CrowdSpec, group: &str| crowd.of.is_empty() || crowd.of.iter().any(|name| name == group);
+    // those of one group among themselves tell more than those with another
+    let radius = |group: &MassGroup| {
+        let of = |crowd: &&CrowdSpec| is_in(crowd, &group.name);
+        let alone = network.crowds.iter().filter(of).find(|crowd| crowd.of.len() < 2);
+        let found = alone.or_else(|| network.crowds.iter().find(of));
+        found.and_then(distance).map_or(0.0, |distance| 0.5 * distance)
+    };
+    let each = network.masses.iter().map(|group| (radius(group), group.positions.len()));
+    each.flat_map(|(radius, count)| std::iter::repeat_n(radius, count)).collect()
 }
 
 /// Warns of masses whose links are too stiff for an explicit step: at a mass `2 Σ H` over links to free masses and `Σ H`

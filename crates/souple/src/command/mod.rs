@@ -226,7 +226,14 @@ impl From<souple_run::RunError> for Refusal {
 /// Runs a command and gives its exit status.
 pub fn execute(cli: Cli) -> ExitCode {
     let Some(command) = cli.command else {
-        return exit_code(run::run_default_scene(), false);
+        // without the page the scene runs headless
+        return match souple_view::missing_page() {
+            None => exit_code(view::view_default_scene(), false),
+            Some(problem) => {
+                print_note(format_args!("there is no page to show it on: {problem}"));
+                exit_code(run::run_default_scene(), false)
+            }
+        };
     };
     let (ended, as_json) = match command {
         Command::View(arguments) => (view::view(&arguments), false),

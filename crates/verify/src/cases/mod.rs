@@ -14,6 +14,7 @@ mod implicit;
 mod motion;
 mod network;
 mod patch;
+mod rheology;
 mod rheometer;
 mod rubber;
 mod skins;
@@ -47,6 +48,7 @@ pub const TABLES: &[&[Case]] = &[
     contact::CASES,
     network::CASES,
     rheometer::CASES,
+    rheology::CASES,
     frames::CASES,
     skins::CASES,
 ];

@@ -1,0 +1,55 @@
+//! Tools that a hand may push with: shapes of the table of shapes, in a size and held from a direction.
+
+use souple_math::Vec3;
+use souple_table::{Entry, Table};
+
+/// How a tool of a size [m] is made, held from where `direction` points to: the name of its shape, and its values.
+#[derive(Clone, Copy)]
+pub struct Making {
+    pub shape: &'static str,
+    pub values: fn(size: f64, direction: Vec3) -> Vec<(String, Vec<f64>)>,
+}
+
+const fn entry(
+    name: &'static str,
+    summary: &'static str,
+    shape: &'static str,
+    values: fn(f64, Vec3) -> Vec<(String, Vec<f64>)>,
+) -> Entry<Making> {
+    Entry { name, summary, source: "", parameters: &[], build: Making { shape, values } }
+}
+
+/// All tools; adding one is a line.
+pub static TOOLS: Table<Making> = Table {
+    kind: "tool",
+    entries: &[
+        &entry("ball", "round: presses evenly", "sphere", |size, _| vec![number("radius", 0.5 * size)]),
+        &entry("finger", "a rod with a round end: pokes", "capsule", |size, direction| {
+            let back = direction.try_normalised().unwrap_or(Vec3::Y) * (LENGTH * size);
+            vec![number("radius", 0.25 * size), vector("from", Vec3::ZERO), vector("to", back)]
+        }),
+        &entry("block", "a cube: presses flat, with edges", "box", |size, _| {
+            vec![vector("size", Vec3::new(size, size, size))]
+        }),
+        &entry("plate", "thin, across the view: pushes widely", "box", |size, direction| {
+            // boxes stand along the axes
+            let along = direction.to_array().map(f64::abs);
+            let thin = (0..3).max_by(|a, b| along[*a].total_cmp(&along[*b])).unwrap_or(0);
+            let sides = [0, 1, 2].map(|axis| if axis == thin { THIN * size } else { 2.0 * size });
+            vec![vector("size", Vec3::from_array(sides))]
+        }),
+    ],
+};
+
+/// Of a finger, in its size.
+const LENGTH: f64 = 5.0;
+/// Of a plate, in its size.
+const THIN: f64 = 0.15;
+
+fn number(name: &str, value: f64) -> (String, Vec<f64>) {
+    (name.to_owned(), vec![value])
+}
+
+fn vector(name: &str, value: Vec3) -> (String, Vec<f64>) {
+    (name.to_owned(), value.to_array().to_vec())
+}
