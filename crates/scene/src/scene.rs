@@ -74,6 +74,8 @@ pub struct BodyInfo {
 pub struct FramesInfo {
     /// Row of each frame's origin; the rows of its axes follow.
     pub rows: Vec<u32>,
+    /// Origin and axes of each frame at rest, in the order of the rows.
+    pub rest: Vec<Vec3>,
     /// Of each point of the mesh: the weight of the frame that is shown.
     pub influence: Vec<f64>,
 }
@@ -114,7 +116,11 @@ impl BodyInfo {
                 let place = carried.frames.binary_search(&shown);
                 place.map_or(0.0, |place| carried.rows[place][0].0)
             };
-            FramesInfo { influence: frames.carried_points.iter().map(weight).collect(), rows: frames.rows }
+            FramesInfo {
+                influence: frames.carried_points.iter().map(weight).collect(),
+                rest: frames.configuration().collect(),
+                rows: frames.rows,
+            }
         });
         Self { name: spec.name.clone(), system, rows, mesh, surface, force, frames, radii }
     }

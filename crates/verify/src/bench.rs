@@ -11,6 +11,7 @@ use std::time::Instant;
 use serde_json::{Value, json};
 use souple_run::{Control, Options};
 use souple_scene::Scene;
+use souple_table::counted;
 
 use timing::{Held, Timing, as_it_is, bend, median, scene, with_threads};
 
@@ -48,7 +49,7 @@ pub struct Figure {
     pub higher_is_better: bool,
     /// How wrong the result is that this speed gives.
     pub error: f64,
-    /// What the error is of.
+    /// What the error is of; empty where there is nothing to be wrong.
     pub error_of: String,
     /// What it is held against.
     pub baseline: Option<f64>,
@@ -188,17 +189,19 @@ impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{:38} {:>12.4} {} (spread {:.0} %, {} threads, {} samples, {:.1} MB; error {:.1e} of {})",
+            "{:38} {:>12.4} {} (spread {:.0} %, {}, {}, {:.1} MB",
             self.name,
             self.value,
             self.unit,
             100.0 * self.spread,
-            self.threads,
-            self.samples,
+            counted(self.threads as u64, "thread"),
+            counted(self.samples as u64, "sample"),
             self.bytes as f64 * 1e-6,
-            self.error,
-            self.error_of
-        )
+        )?;
+        if !self.error_of.is_empty() {
+            write!(f, "; error {:.1e} of {}", self.error, self.error_of)?;
+        }
+        write!(f, ")")
     }
 }
 
@@ -465,7 +468,7 @@ fn startup(effort: Effort) -> Result<Vec<Figure>, String> {
         unit: "ms",
         higher_is_better: false,
         error: 0.0,
-        error_of: "nothing: a list has no error".to_owned(),
+        error_of: String::new(),
         baseline: None,
         threads: 1,
         samples: count,

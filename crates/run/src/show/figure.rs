@@ -122,6 +122,7 @@ impl Figure {
             surfaces,
             strokes,
             ground: show.stage.ground(moment.time),
+            framed: if view.bounds.is_some() { Vec::new() } else { common.framed.clone() },
             view: View { bounds: view.bounds.or(Some(common.bounds)), ..view },
             size: self.size,
             samples_per_pixel: self.samples_per_pixel,

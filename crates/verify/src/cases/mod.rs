@@ -14,6 +14,7 @@ mod implicit;
 mod motion;
 mod network;
 mod patch;
+mod rheology;
 mod rheometer;
 mod rubber;
 mod skins;
@@ -21,6 +22,7 @@ mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
 mod traction;
+mod wall_cube;
 
 use crate::Case;
 
@@ -42,9 +44,11 @@ pub const TABLES: &[&[Case]] = &[
     implicit::CASES,
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
+    wall_cube::CASES,
     contact::CASES,
     network::CASES,
     rheometer::CASES,
+    rheology::CASES,
     frames::CASES,
     skins::CASES,
 ];
