@@ -8,30 +8,33 @@ use souple_table::{Entry, Table};
 pub struct Making {
     pub shape: &'static str,
     pub values: fn(size: f64, direction: Vec3) -> Vec<(String, Vec<f64>)>,
+    /// How far its front is from its origin, in its size.
+    pub front: f64,
 }
 
 const fn entry(
     name: &'static str,
     summary: &'static str,
+    front: f64,
     shape: &'static str,
     values: fn(f64, Vec3) -> Vec<(String, Vec<f64>)>,
 ) -> Entry<Making> {
-    Entry { name, summary, source: "", parameters: &[], build: Making { shape, values } }
+    Entry { name, summary, source: "", parameters: &[], build: Making { shape, values, front } }
 }
 
 /// All tools; adding one is a line.
 pub static TOOLS: Table<Making> = Table {
     kind: "tool",
     entries: &[
-        &entry("ball", "round: presses evenly", "sphere", |size, _| vec![number("radius", 0.5 * size)]),
-        &entry("finger", "a rod with a round end: pokes", "capsule", |size, direction| {
+        &entry("ball", "round: presses evenly", 0.5, "sphere", |size, _| vec![number("radius", 0.5 * size)]),
+        &entry("finger", "a rod with a round end: pokes", 0.25, "capsule", |size, direction| {
             let back = direction.try_normalised().unwrap_or(Vec3::Y) * (LENGTH * size);
             vec![number("radius", 0.25 * size), vector("from", Vec3::ZERO), vector("to", back)]
         }),
-        &entry("block", "a cube: presses flat, with edges", "box", |size, _| {
+        &entry("block", "a cube: presses flat, with edges", 0.5, "box", |size, _| {
             vec![vector("size", Vec3::new(size, size, size))]
         }),
-        &entry("plate", "thin, across the view: pushes widely", "box", |size, direction| {
+        &entry("plate", "flat, across the view: pushes widely", 0.25, "box", |size, direction| {
             // boxes stand along the axes
             let along = direction.to_array().map(f64::abs);
             let thin = (0..3).max_by(|a, b| along[*a].total_cmp(&along[*b])).unwrap_or(0);
@@ -43,8 +46,8 @@ pub static TOOLS: Table<Making> = Table {
 
 /// Of a finger, in its size.
 const LENGTH: f64 = 5.0;
-/// Of a plate, in its size.
-const THIN: f64 = 0.15;
+/// Of a plate, in its size: of what is pressed beyond the middle of a plate, its other side would get rid.
+const THIN: f64 = 0.5;
 
 fn number(name: &str, value: f64) -> (String, Vec<f64>) {
     (name.to_owned(), vec![value])

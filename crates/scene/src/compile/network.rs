@@ -22,7 +22,7 @@ use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::spec::Spec;
 use crate::spec::body::Body;
-use crate::spec::network::{CrowdSpec, Network};
+use crate::spec::network::{CrowdSpec, MassGroup, Network};
 use crate::spec::world::SystemSpec;
 
 /// Which masses the links of a table join, and how long they are at rest.
@@ -228,7 +228,7 @@ pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
         let found = alone.or_else(|| network.crowds.iter().find(of));
         found.and_then(distance).map_or(0.0, |distance| 0.5 * distance)
     };
-    let each = network.masses.iter().map(|group| (radius(group), group.positions.len()));
+    let each = network.masses.iter().map(|group| (radius(group), group.places.count() as usize));
     each.flat_map(|(radius, count)| std::iter::repeat_n(radius, count)).collect()
 }
 

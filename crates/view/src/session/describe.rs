@@ -14,7 +14,7 @@ use super::stage::Stage;
 use crate::fields::{ARROWS, ArrowKind, FIELDS, Field};
 use crate::hub::Outgoing;
 use crate::protocol::{self, document};
-use crate::tools::TOOLS;
+use crate::tools::{Making, TOOLS};
 
 impl Stage {
     /// All that a page must know before its first frame.
@@ -179,5 +179,6 @@ pub fn colour_maps() -> Value {
 
 /// What a hand may push with.
 pub fn tools() -> Value {
-    TOOLS.entries.iter().map(|tool| json!({"name": tool.name, "summary": tool.summary})).collect()
+    let tool = |tool: &&Entry<Making>| json!({"name": tool.name, "summary": tool.summary, "front": tool.build.front});
+    TOOLS.entries.iter().map(tool).collect()
 }

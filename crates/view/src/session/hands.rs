@@ -24,6 +24,10 @@ struct Holding {
     start: Vec3,
     /// Where it is [m].
     place: Vec3,
+    /// Where it is led to [m].
+    goal: Vec3,
+    /// How fast it goes there [m/s]; what gives way itself goes at once.
+    speed: f64,
 }
 
 /// The frequency at which a whole body would swing on a hand of strength 1 [rad/s]: it follows within a quarter of a
@@ -31,6 +35,8 @@ struct Holding {
 const FREQUENCY: f64 = 14.0;
 /// Time over which a hand's damping takes the speed of what it holds [s].
 const DAMPING_TIME: f64 = 0.02;
+/// How fast a tool goes, in its size a second: a mouse jumps, and what is hard must not.
+const TOOL_SPEED: f64 = 4.0;
 /// Share of the stable step's stiffness that a hand may take in an explicit system.
 const EXPLICIT_SHARE: f64 = 0.1;
 
@@ -54,7 +60,7 @@ pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip
 }
 
 /// Stiffness of a tool at each of the points of some bodies that it may meet: a twentieth of them, pressed, bear the
-/// bodies as firmly as a hand of a hundred times the strength; in an explicit system, as much as its step bears [N/m].
+/// bodies as firmly as a hand of ten times the strength; in an explicit system, as much as its step bears [N/m].
 pub fn tool_stiffness<'a>(
     world: &World,
     bodies: impl Iterator<Item = &'a BodyInfo>,
@@ -74,7 +80,7 @@ pub fn tool_stiffness<'a>(
         }
     }
     let pressed = (point_count as f64 / 20.0).max(1.0);
-    (100.0 * strength * mass * FREQUENCY * FREQUENCY / pressed).min(bearable)
+    (10.0 * strength * mass * FREQUENCY * FREQUENCY / pressed).min(bearable)
 }
 
 /// Rows that have the mass of a body: points that frames carry have none of their own.
@@ -95,36 +101,56 @@ impl Hands {
     /// The edits by which a hand takes hold.
     pub fn grab(&mut self, page: PageId, hand: u32, system: usize, grip: Grip) -> Vec<Edit> {
         let mut edits = self.release(page, hand);
-        let number = self.hold(page, hand, Holds::Body, vec![system], grip.place);
+        let number = self.hold(page, hand, Holds::Body, vec![system], (grip.place, f64::INFINITY));
         edits.push(Edit::Grab { system, hand: number, grip });
         edits
     }
 
-    /// The edits by which a hand takes a tool, in each system one.
-    pub fn touch(&mut self, page: PageId, hand: u32, tools: Vec<(usize, Tool)>) -> Vec<Edit> {
+    /// The edits by which a hand takes a tool of a size [m], in each system one.
+    pub fn touch(&mut self, page: PageId, hand: u32, size: f64, tools: Vec<(usize, Tool)>) -> Vec<Edit> {
         let mut edits = self.release(page, hand);
         let Some((_, first)) = tools.first() else { return edits };
         let systems = tools.iter().map(|(system, _)| *system).collect();
-        let number = self.hold(page, hand, Holds::Tool, systems, first.place);
+        let number = self.hold(page, hand, Holds::Tool, systems, (first.place, TOOL_SPEED * size));
         edits.extend(tools.into_iter().map(|(system, tool)| Edit::Touch { system, hand: number, tool }));
         edits
     }
 
-    fn hold(&mut self, page: PageId, hand: u32, holds: Holds, systems: Vec<usize>, place: Vec3) -> u32 {
+    fn hold(
+        &mut self,
+        page: PageId,
+        hand: u32,
+        holds: Holds,
+        systems: Vec<usize>,
+        (place, speed): (Vec3, f64),
+    ) -> u32 {
         // the first number that no hand has
         let number =
             (0..).find(|number| self.held.iter().all(|held| held.number != *number)).unwrap_or(u32::MAX);
-        self.held.push(Holding { page, hand, holds, systems, number, start: place, place });
+        let goal = place;
+        self.held.push(Holding { page, hand, holds, systems, number, start: place, place, goal, speed });
         number
     }
 
-    pub fn lead(&mut self, page: PageId, hand: u32, offset: Vec3) -> Vec<Edit> {
-        let Some(held) = self.held.iter_mut().find(|held| (held.page, held.hand) == (page, hand)) else {
-            return Vec::new();
-        };
-        held.place = held.start + offset;
-        let (hand, place) = (held.number, held.place);
-        held.systems.iter().map(|system| Edit::MoveHand { system: *system, hand, place }).collect()
+    /// Says where a hand is to go; see [`Hands::advance`].
+    pub fn lead(&mut self, page: PageId, hand: u32, offset: Vec3) {
+        if let Some(held) = self.held.iter_mut().find(|held| (held.page, held.hand) == (page, hand)) {
+            held.goal = held.start + offset;
+        }
+    }
+
+    /// The edits by which hands come nearer to where they are to go, in a time [s].
+    pub fn advance(&mut self, duration: f64) -> Vec<Edit> {
+        let mut edits = Vec::new();
+        for held in self.held.iter_mut().filter(|held| held.place != held.goal) {
+            let way = held.goal - held.place;
+            let most = held.speed * duration;
+            held.place =
+                if way.length() <= most { held.goal } else { held.place + way * (most / way.length()) };
+            let (hand, place) = (held.number, held.place);
+            edits.extend(held.systems.iter().map(|system| Edit::MoveHand { system: *system, hand, place }));
+        }
+        edits
     }
 
     pub fn release(&mut self, page: PageId, hand: u32) -> Vec<Edit> {

@@ -193,6 +193,8 @@ impl Stage {
     /// # Errors
     /// The step is refused: says which and why.
     pub fn step(&mut self, hub: &Hub) -> Result<(), String> {
+        let edits = self.hands.advance(self.session.world.model().period);
+        self.edit(edits)?;
         if !self.session.step() {
             return Err(self.session.failure.as_ref().map_or_else(String::new, souple_run::Failure::message));
         }
@@ -262,8 +264,7 @@ impl Stage {
             Wish::Touch { .. } => self.touch(page, &wish, hub)?,
             Wish::Move { hand, offset } => {
                 // a hand that let go may still be told to move
-                let edits = self.hands.lead(page, *hand, *offset);
-                self.edit(edits)?;
+                self.hands.lead(page, *hand, *offset);
             }
             Wish::Release(hand) => {
                 let released = self.hands.release(page, *hand);
@@ -308,7 +309,7 @@ impl Stage {
             let (shape, values) = (entry.build.shape.to_owned(), values.clone());
             tools.push((system, Tool { shape, values, place: *place, stiffness, rows }));
         }
-        let edits = self.hands.touch(page, *hand, tools);
+        let edits = self.hands.touch(page, *hand, *size, tools);
         self.take(page, *hand, edits)?;
         let shape = self.tool_shape(page, *hand);
         shape.into_iter().for_each(|message| hub.tell_all(&Outgoing::Binary(message.into())));

@@ -82,6 +82,19 @@ fn links_tear() {
     assert!(page.frame_where(|frame| frame.torn == 0).time < 0.5);
 }
 
+/// Links whose law is written in the scene are apart in a state without force that nothing leads out of.
+#[test]
+fn written_links_end() {
+    let law = r#"law = { name = "elasto_plastic", stiffness = 100, hardening = 10, traction = "0.5 N", rupture = "1 N" }"#;
+    let written = r#"law = { name = "finite_state", states = { whole = "-100 * (D - L0)", slack = "0", gone = "0" }, transitions = { "whole -> slack" = "D > 1.1 * L0", "slack -> whole" = "D < L0", "slack -> gone" = "D > 1.5 * L0" } }"#;
+    assert!(TEARING.contains(law));
+    let world = World::of(&TEARING.replace(law, written));
+    let mut page = Page::open(&world);
+    // slack from 0.05 s on, and gone from 0.25 s
+    let ended = page.frame_where(|frame| frame.torn == 4);
+    assert!(ended.time > 0.2, "{ended:?}");
+}
+
 /// Frames that carry a body are in every frame, and the weight of one of them can be asked for.
 #[test]
 fn frames_are_shown() {
@@ -142,9 +155,10 @@ fn tools_press() {
     let refused = page.document_where("refused", |refused| refused["about"] == "touch");
     assert!(refused["message"].as_str().unwrap().contains("ball, finger, block, plate"), "{refused}");
     let start = page.frame().height[0];
-    page.wish(touch("ball"));
-    page.wish(json!({"do": "move", "hand": 0, "offset": [0, -0.04, 0]}));
-    let pressed = other.frame_where(|frame| frame.tools == 1 && frame.height[0] < start - 1e-3);
+    page.wish(touch("plate"));
+    // its lower side, 25 mm below its middle, from above the block to 25 mm into it
+    page.wish(json!({"do": "move", "hand": 0, "offset": [0, -0.05, 0]}));
+    let pressed = other.frame_where(|frame| frame.tools == 1 && frame.height[0] < start - 2e-3);
     assert_eq!(other.tool_count, 1);
     page.wish(json!({"do": "release", "hand": 0}));
     other.frame_where(|frame| frame.tools == 0 && frame.time > pressed.time + 0.1);

@@ -18,12 +18,19 @@ export interface CatalogueEntry {
   description: string;
 }
 
+export interface ToolInfo {
+  name: string;
+  summary: string;
+  /** How far its front is from its origin, in its size. */
+  front: number;
+}
+
 export interface Hello {
   kind: "hello";
   page: number;
   version: string;
   colour_maps: ColourMap[];
-  tools: { name: string; summary: string }[];
+  tools: ToolInfo[];
   scenes: CatalogueEntry[];
 }
 

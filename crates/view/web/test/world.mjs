@@ -13,7 +13,7 @@ const root = resolve(fileURLToPath(import.meta.url), "../../../../..");
 const program = process.env.SOUPLE_PROGRAM ?? "souple";
 const pictures = process.env.SOUPLE_PICTURES;
 /** Machines that draw by software, several at once, are slow. */
-const PATIENCE = Number(process.env.SOUPLE_PATIENCE ?? 60_000);
+const PATIENCE = Number(process.env.SOUPLE_PATIENCE ?? 120_000);
 
 /** The program showing a scene. */
 export class Program {

@@ -1,6 +1,7 @@
 // How the hand takes hold and what it pushes with.
 
 import { label } from "../format";
+import type { ToolInfo } from "../protocol";
 import { element, panel } from "./dom";
 
 export interface Handling {
@@ -9,16 +10,19 @@ export interface Handling {
   tool: string;
   /** In the size of all bodies. */
   size: number;
+  /** How far the front of the tool is from its origin, in its size. */
+  front: number;
   /** Whether a tool stays where the hand leaves it. */
   stays: boolean;
 }
 
 export class HandPanel {
   readonly root: HTMLElement;
-  readonly handling: Handling = { strength: 1, tool: "", size: 0.12, stays: false };
+  readonly handling: Handling = { strength: 1, tool: "", size: 0.16, front: 0.5, stays: false };
+  private tools: ToolInfo[] = [];
   private readonly strength = element("input", { type: "range", id: "strength", min: -1.5, max: 1.5, step: 0.05, value: 0 });
   private readonly tool = element("select", { id: "tool" });
-  private readonly size = element("input", { type: "range", id: "tool-size", min: -1.7, max: -0.3, step: 0.02, value: -0.9 });
+  private readonly size = element("input", { type: "range", id: "tool-size", min: -1.7, max: -0.3, step: 0.02, value: -0.8 });
   private readonly stays = element("input", { type: "checkbox", id: "tool-stays" });
 
   constructor(
@@ -40,7 +44,8 @@ export class HandPanel {
     );
   }
 
-  setTools(tools: { name: string; summary: string }[]): void {
+  setTools(tools: ToolInfo[]): void {
+    this.tools = tools;
     const before = this.tool.value;
     this.tool.replaceChildren(
       ...tools.map(({ name, summary }) => element("option", { value: name, title: summary }, label(name))),
@@ -55,6 +60,7 @@ export class HandPanel {
     handling.size = 10 ** Number(this.size.value);
     handling.tool = this.tool.value;
     handling.stays = this.stays.checked;
+    handling.front = this.tools.find(({ name }) => name === handling.tool)?.front ?? 0.5;
     this.changed(handling);
   }
 }

@@ -32,7 +32,7 @@ const WHEEL_STEP = 0.012;
 
 export class Grab {
   tool: Tool = "pull";
-  handling: Handling = { strength: 1, tool: "ball", size: 0.12, stays: false };
+  handling: Handling = { strength: 1, tool: "ball", size: 0.16, front: 0.5, stays: false };
   private readonly held = new Map<number, Held>();
   /** Tools that were left where they are. */
   private readonly left: Held[] = [];
@@ -122,11 +122,13 @@ export class Grab {
     }
   }
 
-  /** Puts a tool before a body, so that it just touches; where that is. */
-  private put(hand: number, { point, normal }: Hit): Vector3 {
-    const { tool, strength } = this.handling;
+  /** Puts a tool before the nearest point of a body, which is what meets it; where that is. */
+  private put(hand: number, hit: Hit): Vector3 {
+    const { tool, strength, front } = this.handling;
     const size = this.handling.size * this.picture.size;
-    const place = point.clone().addScaledVector(normal, 0.55 * size);
+    const nearest = this.patch(hit)[0];
+    const point = nearest === undefined ? hit.point : new Vector3().fromArray(hit.body.positions, 3 * nearest);
+    const place = point.clone().addScaledVector(hit.normal, 1.02 * front * size);
     const direction = this.picture.towardsEye.toArray() as Vector;
     this.send({ do: "touch", hand, tool, size, place: place.toArray() as Vector, direction, strength });
     return place;

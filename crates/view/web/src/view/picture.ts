@@ -68,7 +68,8 @@ export class Picture {
   private readonly sky = new HemisphereLight(0xeef4ff, 0x8a7f78, 0.7);
   private readonly hands: Hands;
   private readonly quality = new Quality(() => this.simplify());
-  private readonly reflections: Texture;
+  /** Made when they are first wanted: it takes a while on a machine that is slow. */
+  private reflections: Texture | null = null;
   private readonly ray = new Raycaster();
   private obstacles: Obstacles | null = null;
   private skins: Skin[] = [];
@@ -106,10 +107,7 @@ export class Picture {
     labels.className = "labels";
     place.append(labels);
     this.hands = new Hands(labels, () => this.size);
-    const environment = new PMREMGenerator(renderer);
-    this.reflections = environment.fromScene(new RoomEnvironment(), 0.04).texture;
     this.scene.environmentIntensity = 0.45;
-    environment.dispose();
     this.key.castShadow = true;
     this.key.shadow.mapSize.set(2048, 2048);
     this.key.shadow.radius = 5;
@@ -267,6 +265,11 @@ export class Picture {
   private simplify(): void {
     const { shadows, reflections } = this.quality.now;
     this.key.castShadow = shadows;
+    if (reflections && !this.reflections) {
+      const environment = new PMREMGenerator(this.renderer);
+      this.reflections = environment.fromScene(new RoomEnvironment(), 0.04).texture;
+      environment.dispose();
+    }
     this.scene.environment = reflections ? this.reflections : null;
     // what reflections give of light
     this.sky.intensity = reflections ? 0.7 : 2;
