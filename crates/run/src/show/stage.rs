@@ -234,7 +234,7 @@ mod tests {
         let scene =
             read_text("spheres", &text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
         let names: Vec<String> =
-            obstacles_of(&scene.model).into_iter().map(|obstacle| obstacle.name).collect();
+            Stage::of(&scene).obstacles.into_iter().map(|obstacle| obstacle.name).collect();
         assert_eq!(names, ["still", "moving"]);
     }
 }
