@@ -52,7 +52,10 @@ fn foreign_results_are_not_overwritten() {
     std::fs::create_dir(folder.path().join("out")).expect("a folder");
     folder.write("out/report.json", "mine");
     let answer = souple(["run", &scene, "--quiet", "--out", &folder.at("out")]).ends(2);
-    assert!(answer.stderr.contains("report.json` would be overwritten, and no run has written it"), "{answer:#?}");
+    assert!(
+        answer.stderr.contains("report.json` would be overwritten, and no run has written it"),
+        "{answer:#?}"
+    );
     assert_eq!(below(&folder, "out"), ["report.json"]);
 }
 
