@@ -15,7 +15,7 @@ mod text;
 
 use curve::Curve;
 
-pub use text::{RheologyError, read};
+pub use text::read;
 
 use super::written::WRITTEN_MEMORY;
 
