@@ -7,7 +7,7 @@ use souple_math::Vec3;
 use crate::constraint::Constraint;
 use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
-use crate::force::Scratch;
+use crate::force::{Configuration, Force, Scratch};
 use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
 use crate::steppers::{Step, StepError, StepReport};
@@ -430,6 +430,16 @@ impl World {
                 (sum.0 + linear, sum.1 + angular)
             },
         )
+    }
+
+    /// A force of a system by its name, and what it sees of the committed state.
+    pub fn force_named(&self, system: usize, name: &str) -> Option<(&dyn Force, Configuration<'_>)> {
+        let model = &self.model.systems[system];
+        let index = model.forces.iter().position(|force| force.name() == name)?;
+        let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
+        let rows = &self.workspace.systems[system].rows;
+        let at = model.view(index, rows, &self.state.systems[system], &around);
+        Some((model.forces[index].as_ref(), at))
     }
 
     /// Lends system `index`, its state and its workspace to a reader (probes, forecasts).
