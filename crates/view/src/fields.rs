@@ -118,9 +118,8 @@ impl Field {
                 Some(points.map(|point| value(world, body, *point as usize) as f32).collect())
             }
             Source::Cells(value) => {
-                let solid = souple_run::solid_of(world.model(), body)?;
-                let positions = &world.rows(body.system).positions;
-                let of_cell = |cell: &u32| Some(value(&solid.cell_field(*cell as usize, positions)?));
+                let (solid, at) = world.force_named(body.system, &body.force)?;
+                let of_cell = |cell: &u32| Some(value(&solid.cell_field_at(*cell as usize, &at)?));
                 let values: Option<Vec<f64>> = cells.cells.par_iter().map(of_cell).collect();
                 let values = values?;
                 let mean = |range: &[u32]| {

@@ -120,7 +120,7 @@ impl Force for Viscosity {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
+        let SolidScratch { partials, assembly, .. } = SolidScratch::of(scratch);
         assembly.add_blocks(
             &self.elements,
             [at.positions, at.velocities],
