@@ -46,7 +46,7 @@ pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
 pub use difference::DifferencedForce;
 pub use formulation::{BuildFormulation, FORMULATIONS, FormulationError};
 pub use layout::FlatCell;
-pub use mass::{consistent_mass, lumped_mass};
+pub use mass::{consistent_mass, lumped_mass, uniform_mass};
 pub use rayleigh::RayleighDamping;
 pub use section::{BuildSection, SECTIONS, Section};
 pub use viscosity::Viscosity;
@@ -111,8 +111,12 @@ struct SolidScratch {
 }
 
 impl SolidScratch {
-    fn boxed(symmetry: Symmetry) -> Scratch {
-        Box::new(Self { partials: Vec::new(), assembly: Assembly::new(symmetry), displacements: Vec::new() })
+    fn boxed() -> Scratch {
+        Box::new(Self {
+            partials: Vec::new(),
+            assembly: Assembly::new(Symmetry::Symmetric),
+            displacements: Vec::new(),
+        })
     }
 
     fn of(scratch: &mut Scratch) -> &mut Self {
@@ -283,7 +287,7 @@ impl Force for SolidForce {
     }
 
     fn new_scratch(&self) -> Scratch {
-        SolidScratch::boxed(Symmetry::Symmetric)
+        SolidScratch::boxed()
     }
 
     fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {

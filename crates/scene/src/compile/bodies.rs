@@ -10,7 +10,7 @@ use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
     Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, Section,
-    SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
+    SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
 };
 
 use super::boundary::constant_vector;
@@ -162,6 +162,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         match body.spec.mass {
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
+            MassKind::Uniform => uniform_mass(&body.mesh, body.rows.start, &density, &mut mass),
         }
         let description = SolidDescription {
             name: solid_name(&body.spec.name),

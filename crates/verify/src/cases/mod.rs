@@ -17,6 +17,7 @@ mod long_beam;
 mod motion;
 mod network;
 mod patch;
+mod rheology;
 mod rheometer;
 mod rubber;
 mod skins;
@@ -24,6 +25,7 @@ mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
 mod traction;
+mod wall_cube;
 
 use crate::Case;
 
@@ -48,9 +50,11 @@ pub const TABLES: &[&[Case]] = &[
     long_beam::CASES,
     adaptive::CASES,
     formulations::CASES,
+    wall_cube::CASES,
     contact::CASES,
     network::CASES,
     rheometer::CASES,
+    rheology::CASES,
     frames::CASES,
     skins::CASES,
 ];
