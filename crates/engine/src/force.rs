@@ -112,6 +112,15 @@ pub struct CellField {
     pub current_volume: f64,
 }
 
+/// What law a cell has, of a force whose cells change theirs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adapted {
+    /// 0 for the first law, 1 for the second.
+    pub law: f64,
+    /// The greatest criterion over its threshold: above 1 the second law is wanted.
+    pub excess: f64,
+}
+
 /// A point that touches, and what that does to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint<'a> {
@@ -246,6 +255,16 @@ pub trait Force: Send + Sync {
 
     /// Stress and energy of cell number `cell` at row positions, of a force that deforms cells.
     fn cell_field(&self, _cell: usize, _positions: &[Vec3]) -> Option<CellField> {
+        None
+    }
+
+    /// The same where what the force remembers of the cell matters.
+    fn cell_field_at(&self, cell: usize, at: &Configuration) -> Option<CellField> {
+        self.cell_field(cell, at.positions)
+    }
+
+    /// Which law cell number `cell` has, of a force whose cells change theirs.
+    fn adapted(&self, _cell: usize, _at: &Configuration) -> Option<Adapted> {
         None
     }
 

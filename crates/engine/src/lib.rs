@@ -28,8 +28,8 @@ pub mod world;
 pub use constraint::{Constraint, Motion};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
-    CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown, LinkState,
-    ParameterError, Scratch, TangentWeights,
+    Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown,
+    LinkState, ParameterError, Scratch, TangentWeights,
 };
 pub use hand::{Grip, Hand, Held};
 pub use hash::Fingerprint;

@@ -2,6 +2,7 @@
 
 /// `(name, text)` of every scene in `scenes/`.
 pub const SCENES: &[(&str, &str)] = &[
+    ("adaptive_bar", include_str!("../../../scenes/adaptive_bar/scene.toml")),
     ("block_on_springs", include_str!("../../../scenes/block_on_springs/scene.toml")),
     ("blown_strip", include_str!("../../../scenes/blown_strip/scene.toml")),
     ("cantilever", include_str!("../../../scenes/cantilever/scene.toml")),
@@ -11,6 +12,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("fascia", include_str!("../../../scenes/fascia/scene.toml")),
     ("frames_cantilever", include_str!("../../../scenes/frames_cantilever/scene.toml")),
     ("frames_spinning", include_str!("../../../scenes/frames_spinning/scene.toml")),
+    ("half_turn", include_str!("../../../scenes/half_turn/scene.toml")),
     ("hanging_cable", include_str!("../../../scenes/hanging_cable/scene.toml")),
     ("hanging_cube", include_str!("../../../scenes/hanging_cube/scene.toml")),
     ("harmonic_cube", include_str!("../../../scenes/harmonic_cube/scene.toml")),
@@ -18,6 +20,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
     ("ligament", include_str!("../../../scenes/ligament/scene.toml")),
     ("liver", include_str!("../../../scenes/liver/scene.toml")),
+    ("long_beam", include_str!("../../../scenes/long_beam/scene.toml")),
     ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
     ("network_collision", include_str!("../../../scenes/network_collision/scene.toml")),
     ("network_free_fall", include_str!("../../../scenes/network_free_fall/scene.toml")),
@@ -31,6 +34,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("rubber_as_text", include_str!("../../../scenes/rubber_as_text/scene.toml")),
     ("rubber_pulled", include_str!("../../../scenes/rubber_pulled/scene.toml")),
     ("rubber_spread", include_str!("../../../scenes/rubber_spread/scene.toml")),
+    ("sagging_strip", include_str!("../../../scenes/sagging_strip/scene.toml")),
     ("sand_heap", include_str!("../../../scenes/sand_heap/scene.toml")),
     ("skin_at_rest", include_str!("../../../scenes/skin_at_rest/scene.toml")),
     ("skin_dresses", include_str!("../../../scenes/skin_dresses/scene.toml")),

@@ -9,16 +9,16 @@ use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
-    FlatCell, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass,
-    lumped_mass, uniform_mass,
+    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, Section,
+    SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
 };
 
 use super::boundary::constant_vector;
 use super::frames::PlacedFrames;
 use super::network::PlacedLinks;
 use super::{Draft, frames, network, shape};
-use crate::diagnostic::Code;
-use crate::spec::body::{Body, Damping, MassKind};
+use crate::diagnostic::{Code, Site};
+use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
 
 /// A body with its mesh and its rows in a system.
@@ -153,6 +153,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             continue;
         }
         let density = |cell: usize| materials.of(cell).density * section.measure();
+        check_together(draft, body.spec);
         if let (Some(frames), Some(spec)) = (&body.frames, &body.spec.frames) {
             frames.add_mass(body.spec.mass, &density, &mut mass);
             forces.push(frames.force(body, spec, &materials.all, &materials.of_cell));
@@ -173,8 +174,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             section,
         };
         if let Err(error) = add_solid(body.spec, description, &mut forces) {
-            let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
-            draft.log.add(Code::Mesh, site, error.to_string(), "cells with volume");
+            report(draft, body.spec, &error);
         }
     }
     mass.seal();
@@ -221,8 +221,19 @@ fn add_solid(
     body: &Body,
     description: SolidDescription,
     forces: &mut Vec<Box<dyn Force>>,
-) -> Result<(), FlatCell> {
-    forces.push(Box::new(SolidForce::new(&description)?));
+) -> Result<(), FormulationError> {
+    let elastic: Box<dyn Force> = match (&body.formulation, adapted(body)) {
+        (Some(chosen), _) => (chosen.entry.build)(&description)?,
+        (None, Some((second, adaptation))) => {
+            let laws = [description.materials[0].clone(), second];
+            Box::new(AdaptiveForce::new(&description, laws, adaptation)?)
+        }
+        (None, None) => Box::new(SolidForce::new(&description)?),
+    };
+    forces.push(match body.tangent {
+        TangentKind::Exact => elastic,
+        TangentKind::Difference => Box::new(DifferencedForce::new(elastic, description.mesh)),
+    });
     let Damping { rayleigh_stiffness, viscosity, .. } = body.damping;
     if rayleigh_stiffness > 0.0 {
         let name = format!("{}.rayleigh_stiffness", body.name);
@@ -234,6 +245,51 @@ fn add_solid(
         forces.push(Box::new(Viscosity::new(&description, viscosity)?));
     }
     Ok(())
+}
+
+/// The law that takes over in a body that adapts, and when.
+fn adapted(body: &Body) -> Option<(Material, Adaptation)> {
+    let adapt = body.adapt.as_ref()?;
+    let chosen = adapt.material.as_ref()?;
+    // tried when the scene was read
+    Some(((chosen.entry.build)(&chosen.values).ok()?, adapt.adaptation.clone()))
+}
+
+/// Reports what a body cannot have together.
+fn check_together(draft: &Draft, body: &Body) {
+    let report = |site: &Site, message: String, expected: &str| {
+        draft.log.add(Code::Conflict, site, message, expected);
+    };
+    if let (Some(chosen), Some(_)) = (&body.formulation, &body.frames) {
+        let message = format!("frames carry body `{}`, whose forces are those of its points", body.name);
+        report(&chosen.site, message, "a formulation of a body without frames");
+    }
+    let Some(adapt) = &body.adapt else { return };
+    let others = [
+        ("frames", body.frames.is_some()),
+        ("section", body.section.is_some()),
+        ("regions", !body.regions.is_empty()),
+        ("formulation", body.formulation.is_some()),
+    ];
+    for (other, _) in others.into_iter().filter(|(_, is_there)| *is_there) {
+        let message = format!("body `{}` has `{other}`, and its elements cannot adapt besides", body.name);
+        report(&adapt.site, message, "`adapt` in a body of volumes with one material");
+    }
+}
+
+/// Reports why a body has no such force.
+fn report(draft: &Draft, body: &Body, error: &FormulationError) {
+    let (code, site, expected) = match error {
+        FormulationError::Flat(_) => {
+            (Code::Mesh, body.mesh.as_ref().map(|mesh| mesh.site()), "cells with volume")
+        }
+        _ => (
+            Code::Conflict,
+            body.formulation.as_ref().map(|chosen| &chosen.site),
+            "another formulation: `samples` takes all laws on all elements",
+        ),
+    };
+    draft.log.add(code, site.unwrap_or(&body.site), error.to_string(), expected);
 }
 
 /// Gravity of the whole system, drag and damping of its bodies.

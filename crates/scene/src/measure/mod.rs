@@ -225,6 +225,11 @@ fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
 /// The cells that a probe is of.
 fn cell_part(probe: &Probe, draft: &Draft) -> Option<CellPart> {
     let body = draft.body(probe.body.as_deref()?)?;
+    if probe.quantity.build.is_of_adaptation() && body.spec.adapt.is_none() {
+        let message = format!("the elements of body `{}` keep their law", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body with `adapt`");
+        return None;
+    }
     let cells = match &probe.region {
         Some(region) => draft.selector(body).cells(region),
         None => (0..body.mesh.cell_count() as u32).collect(),

@@ -2,9 +2,10 @@
 
 use souple_math::Vec3;
 use souple_models::materials;
-use souple_models::solids::{BuildSection, Quadrature, SECTIONS, Section};
+use souple_models::solids::{BuildFormulation, BuildSection, FORMULATIONS, Quadrature, SECTIONS, Section};
 use souple_table::{Range, Value};
 
+use super::adapt::{ADAPT, AdaptSpec};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::frames::{FRAMES, FramesSpec};
 use super::mesh::{MESH, MeshSpec};
@@ -20,6 +21,9 @@ pub(crate) const MATERIAL: EntryShape =
 
 pub(crate) const SECTION: EntryShape =
     EntryShape { tag: "name", kind: "section", outlines: || outlines(&SECTIONS), instead: &[] };
+
+pub(crate) const FORMULATION: EntryShape =
+    EntryShape { tag: "name", kind: "formulation", outlines: || outlines(&FORMULATIONS), instead: &[] };
 
 pub(crate) static DAMPING: Keys = Keys::new(
     "damping",
@@ -78,6 +82,18 @@ pub(crate) static BODY: Keys = Keys::new(
             "samples in an element: the cheapest of full rank, or exact ones for quadratic stress",
         )
         .or(Value::Text("default")),
+        Key::new(
+            "formulation",
+            Shape::Entry(FORMULATION),
+            "how its forces are evaluated; sample by sample where left out",
+        ),
+        Key::new(
+            "tangent",
+            Shape::Choice(&["exact", "difference"]),
+            "products with its stiffness in solvers without a matrix: derived, or by differences of forces",
+        )
+        .or(Value::Text("exact")),
+        Key::new("adapt", Shape::Table(&ADAPT), "a second law for the elements that need one while it runs"),
         Key::new("damping", Shape::Table(&DAMPING), "what takes energy from it"),
         Key::number(
             "drag",
@@ -111,6 +127,11 @@ pub struct Body {
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
+    /// How its forces are evaluated; sample by sample where left out.
+    pub formulation: Option<Chosen<BuildFormulation>>,
+    pub tangent: TangentKind,
+    /// A second law for the elements that need one.
+    pub adapt: Option<AdaptSpec>,
     pub damping: Damping,
     /// Of the whole body against a medium at rest [N s/m].
     pub drag: f64,
@@ -145,6 +166,13 @@ pub enum MassKind {
     Consistent,
     /// To all points alike.
     Uniform,
+}
+
+/// How products with the stiffness are made where no matrix is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TangentKind {
+    Exact,
+    Difference,
 }
 
 /// What takes energy from a body.
@@ -224,6 +252,13 @@ impl Body {
             } else {
                 Quadrature::Default
             },
+            formulation: reader.entry("formulation", &FORMULATIONS),
+            tangent: if reader.choice("tangent") == "difference" {
+                TangentKind::Difference
+            } else {
+                TangentKind::Exact
+            },
+            adapt: reader.table("adapt").map(|table| AdaptSpec::read(&table)),
             damping,
             drag: reader.number("drag"),
             placement: Placement::read(reader),
@@ -248,7 +283,7 @@ impl Body {
 
 /// The material, built once on trial: a law as text may be wrong where its table is right, and numbers that are each in their
 /// range may make no body together.
-fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
+pub(super) fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
     let chosen = reader.entry("material", &materials::TABLE)?;
     let Err(error) = (chosen.entry.build)(&chosen.values) else { return Some(chosen) };
     let (mut site, mut node) = (chosen.site.clone(), reader.reading("material").map(|reading| reading.node));

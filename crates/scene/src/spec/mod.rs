@@ -1,5 +1,6 @@
 //! The specification of a scene: what its text says, checked key by key, before anything is built.
 
+pub mod adapt;
 pub mod body;
 pub mod boundary;
 pub mod contact;

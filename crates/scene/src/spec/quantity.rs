@@ -88,6 +88,8 @@ pub enum CellQuantity {
     StrainEnergyDensity,
     Volume,
     VolumeRatio,
+    Law,
+    Excess,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +128,11 @@ impl Quantity {
         )
     }
 
+    /// Whether it is of bodies whose elements change their law.
+    pub fn is_of_adaptation(&self) -> bool {
+        matches!(self.subject, Subject::Cells(CellQuantity::Law | CellQuantity::Excess))
+    }
+
     /// Whether it is of contacts, of which a probe may choose one.
     pub fn is_of_contact(&self) -> bool {
         matches!(
@@ -145,6 +152,7 @@ const KINEMATICS: &str = "kinematics of points";
 const CONTACT: &str = "Wriggers 2006, §5";
 const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
+const ADAPTATION: &str = "Faure 2014, §6.4";
 const MECHANICS: &str = "balance of momentum";
 
 const fn entry(
@@ -280,6 +288,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         "volume over rest volume of each cell",
         KINEMATICS,
         cells("", Mean, CellQuantity::VolumeRatio),
+    ),
+    &entry(
+        "law",
+        "of each cell of a body that adapts: 0 for the first, 1 for the second",
+        ADAPTATION,
+        cells("", Mean, CellQuantity::Law),
+    ),
+    &entry(
+        "excess",
+        "of each cell of a body that adapts: its greatest criterion over the threshold",
+        ADAPTATION,
+        cells("", Max, CellQuantity::Excess),
     ),
     &entry(
         "mass",
