@@ -11,7 +11,7 @@ use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::mass::Mass;
 use crate::state::{FieldState, Pair, SystemState, merge_pairs, pairs_of};
-use crate::steppers::{StepError, Stepper};
+use crate::steppers::{StaggeredBuffers, StepError, Stepper};
 use crate::tangent::Tangent;
 
 /// The constant part of a system.
@@ -57,6 +57,7 @@ pub struct SystemWorkspace {
     pub tangent: Tangent,
     pub linear: LinearSolver,
     pub implicit: Option<ImplicitBuffers>,
+    pub staggered: StaggeredBuffers,
     pub stages: StageTimes,
 }
 
@@ -149,6 +150,7 @@ impl System {
             tangent: Tangent::default(),
             linear: LinearSolver::new(self.stepper.solver_settings()),
             implicit: None,
+            staggered: StaggeredBuffers::default(),
             stages: StageTimes::default(),
         }
     }
