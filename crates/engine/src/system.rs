@@ -105,6 +105,17 @@ impl SystemWorkspace {
 }
 
 impl System {
+    /// Why its stepper cannot step it, in words that name what stands in the way.
+    pub fn refused(&self) -> Option<String> {
+        let levels = self.forces.iter().find(|force| force.levels().is_some());
+        match levels.filter(|_| !self.stepper.steps_levels()) {
+            Some(force) => {
+                Some(format!("`{}` has levels, of which only some points move by themselves", force.name()))
+            }
+            None => self.stepper.refuses(self),
+        }
+    }
+
     /// Where each force's numbers stand in [`SystemState::memory`].
     pub fn memory_ranges(&self) -> Vec<Range<usize>> {
         let mut start = 0;

@@ -145,7 +145,7 @@ fn precision_for(positions: &[Vec3]) -> Precision {
     if fits { Precision::Single } else { Precision::Double }
 }
 
-/// Displacement and velocity of every point, and the weight of the frame that is shown; stress and energy density of every cell.
+/// Displacement and velocity of every point, the weight of the frame that is shown, the level at work; stress and energy density of every cell.
 pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let positions = &world.rows(body.system).positions[body.rows.clone()];
     let velocities = &world.rows(body.system).velocities[body.rows.clone()];
@@ -157,6 +157,9 @@ pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     ];
     point_fields
         .extend(body.frames.as_ref().map(|frames| Field::new("influence", 1, frames.influence.clone())));
+    let levels = body.level_of_point(world);
+    point_fields
+        .extend(levels.map(|levels| Field::new("level", 1, levels.iter().map(|l| f64::from(*l)).collect())));
     (point_fields, cell_fields(world, body))
 }
 

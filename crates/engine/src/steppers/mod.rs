@@ -144,6 +144,11 @@ pub trait Stepper: Send + Sync {
         None
     }
 
+    /// Whether it steps bodies of which only some points move by themselves, see [`crate::Levels`].
+    fn steps_levels(&self) -> bool {
+        false
+    }
+
     fn stability(&self) -> Stability;
 
     /// Whether mass resists acceleration in its steps; statics knows no inertia.

@@ -14,8 +14,8 @@ use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// A step is `2^halvings` ticks. At each tick the points of the highest rate are pushed, and of one other rate at most, in
 /// turn: no tick has much more to do than another. All points move at every tick with the velocity they have, so that
-/// those pushed seldom are seen where they are. Forces from outside that couple rows act at every tick; those that do
-/// not, which nothing can make stiff, act once a step.
+/// those pushed seldom are seen where they are. Forces from outside act at every tick; those that couple no rows, which
+/// nothing can make stiff, are evaluated once a step.
 #[derive(Debug)]
 pub struct Staggered {
     pub halvings: u32,
@@ -88,6 +88,8 @@ pub struct StaggeredBuffers {
     is_watched: Vec<bool>,
     /// Rows of no body with levels.
     others: Vec<Range<usize>>,
+    /// Impulses of a tick that stay the same throughout the step.
+    steady: Vec<Vec3>,
 }
 
 fn bodies(system: &System) -> impl Iterator<Item = (usize, &dyn Levels)> {
@@ -111,8 +113,7 @@ impl StaggeredBuffers {
             });
         }
         self.watched.clear();
-        self.watched
-            .extend((0..state.q.len() as u32).filter(|row| self.is_watched[*row as usize]));
+        self.watched.extend((0..state.q.len() as u32).filter(|row| self.is_watched[*row as usize]));
         self.others.clear();
         let mut next = 0;
         // bodies have their rows one after the other
@@ -131,15 +132,13 @@ struct Stage<'a, 'b> {
     division: Division,
     next: &'a mut SystemState,
     ws: &'a mut SystemWorkspace,
-    buffers: &'a StaggeredBuffers,
+    buffers: &'a mut StaggeredBuffers,
 }
 
 impl Stage<'_, '_> {
-    /// Pushes by the forces from outside that couple rows, or by those that do not.
-    fn push_from_outside(&mut self, coupling: bool, timestep: f64) {
-        let Step { system, around, .. } = *self.step;
-        let clock = std::time::Instant::now();
-        let ws = &mut *self.ws;
+    /// Sums the forces from outside that couple rows, or those that do not; whether there is any.
+    fn sum_outside(&mut self, coupling: bool) -> bool {
+        let (Step { system, around, .. }, ws) = (*self.step, &mut *self.ws);
         let mut is_any = false;
         for (index, force) in system.forces.iter().enumerate() {
             if force.levels().is_none() && couples(force.as_ref(), self.next) == coupling {
@@ -148,18 +147,45 @@ impl Stage<'_, '_> {
                 is_any = true;
             }
         }
-        if is_any {
-            let who = if coupling { Followers::These(&self.buffers.watched) } else { Followers::All };
-            ws.row_force.iter_mut().for_each(|force| *force = *force * timestep);
-            for (index, levels) in bodies(system) {
-                levels.give_back(who, &ws.scratches[index], &mut ws.row_force);
-                let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
-                levels.kick(Push::Outer, &self.division, &ws.scratches[index], impulses, velocities);
+        is_any
+    }
+
+    /// What forces that couple no rows do in a tick: the same throughout the step.
+    fn hold_steady(&mut self, tick: f64) {
+        self.sum_outside(false);
+        for (index, levels) in bodies(self.step.system) {
+            levels.give_back(Followers::All, &self.ws.scratches[index], &mut self.ws.row_force);
+        }
+        let steady = &mut self.buffers.steady;
+        steady.clear();
+        steady.extend(self.ws.row_force.iter().map(|force| *force * tick));
+        self.ws.row_force.fill(Vec3::ZERO);
+    }
+
+    /// Pushes by all forces from outside.
+    fn push_from_outside(&mut self, tick: f64) {
+        let clock = std::time::Instant::now();
+        let couples = self.sum_outside(true);
+        let (system, ws, buffers) = (self.step.system, &mut *self.ws, &*self.buffers);
+        if couples {
+            for row in &buffers.watched {
+                ws.row_force[*row as usize] = ws.row_force[*row as usize] * tick;
             }
-            for row in self.buffers.others.iter().flat_map(Clone::clone) {
-                ws.rows.velocities[row] += ws.row_force[row] / system.mass.diagonal[row];
-                ws.row_force[row] = Vec3::ZERO;
+        }
+        for (index, levels) in bodies(system) {
+            let scratch = &ws.scratches[index];
+            if couples {
+                levels.give_back(Followers::These(&buffers.watched), scratch, &mut ws.row_force);
             }
+            for row in levels.active(scratch) {
+                ws.row_force[*row as usize] += buffers.steady[*row as usize];
+            }
+            let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
+            levels.kick(Push::Outer, &self.division, scratch, impulses, velocities);
+        }
+        for row in buffers.others.iter().flat_map(Clone::clone) {
+            let impulse = std::mem::replace(&mut ws.row_force[row], Vec3::ZERO) + buffers.steady[row];
+            ws.rows.velocities[row] += impulse / system.mass.diagonal[row];
         }
         ws.stages.forces += clock.elapsed().as_secs_f64();
     }
@@ -195,15 +221,6 @@ impl Stage<'_, '_> {
         rows.time = end;
     }
 
-    fn follow(&mut self, who: Followers) {
-        let rows = &mut self.ws.rows;
-        for (index, levels) in bodies(self.step.system) {
-            let scratch = &self.ws.scratches[index];
-            levels.follow(who, Kinematic::Position, scratch, &mut rows.positions);
-            levels.follow(who, Kinematic::Velocity, scratch, &mut rows.velocities);
-        }
-    }
-
     fn run(&mut self, schedule: Schedule) {
         let Step { system, around, start, timestep } = *self.step;
         for (index, levels) in bodies(system) {
@@ -212,21 +229,29 @@ impl Stage<'_, '_> {
             levels.adapt(&self.division, &mut self.ws.rows, memory, scratch);
         }
         self.ws.row_force.fill(Vec3::ZERO);
-        self.push_from_outside(false, timestep);
         let ticks = self.division.ticks();
         let tick_length = timestep / f64::from(ticks);
+        self.hold_steady(tick_length);
         for tick in 0..ticks {
-            self.push_from_outside(true, tick_length);
+            self.push_from_outside(tick_length);
             self.push_from_inside(tick, schedule);
             system.advance_memory(self.ws, self.next, around, tick_length);
             self.drift(tick_length, start + f64::from(tick + 1) * tick_length);
-            self.follow(Followers::Ghosts);
-            self.follow(Followers::These(&self.buffers.watched));
+            follow(system, Followers::Ghosts, self.ws);
+            follow(system, Followers::These(&self.buffers.watched), self.ws);
         }
-        self.follow(Followers::All);
+        follow(system, Followers::All, self.ws);
         // what is held is where it is held, also where coarser points carry it
         let rows = &mut self.ws.rows;
         system.impose_constraints(&mut rows.positions, &mut rows.velocities, self.step.end(), around.load);
+    }
+}
+
+fn follow(system: &System, who: Followers, ws: &mut SystemWorkspace) {
+    for (index, levels) in bodies(system) {
+        let scratch = &ws.scratches[index];
+        levels.follow(who, Kinematic::Position, scratch, &mut ws.rows.positions);
+        levels.follow(who, Kinematic::Velocity, scratch, &mut ws.rows.velocities);
     }
 }
 
@@ -239,6 +264,10 @@ impl Stepper for Staggered {
         let has_levels = bodies(system).next().is_some();
         (!has_levels || !system.kinematics.is_trivial() || !system.mass.is_lumped())
             .then(|| "it steps points with lumped masses, of bodies with `levels`".to_owned())
+    }
+
+    fn steps_levels(&self) -> bool {
+        true
     }
 
     /// Points choose their intervals by themselves.
@@ -259,7 +288,7 @@ impl Stepper for Staggered {
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);
         ws.rows.time = step.start;
-        Stage { step, division, next: &mut *next, ws: &mut *ws, buffers: &buffers }.run(self.schedule);
+        Stage { step, division, next: &mut *next, ws: &mut *ws, buffers: &mut buffers }.run(self.schedule);
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);
         ws.staggered = buffers;

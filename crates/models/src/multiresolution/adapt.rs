@@ -17,7 +17,13 @@ const SAMPLES_PER_POINT: usize = 6;
 
 impl LevelsForce {
     /// Moves the set of subdivided points on, in `memory`.
-    pub(super) fn choose(&self, division: &Division, positions: &[Vec3], memory: &mut [f64], work: &mut Work) {
+    pub(super) fn choose(
+        &self,
+        division: &Division,
+        positions: &[Vec3],
+        memory: &mut [f64],
+        work: &mut Work,
+    ) {
         work.refresh(self, memory);
         match &self.choice {
             Choice::Fixed(level) => {
@@ -48,8 +54,10 @@ impl LevelsForce {
             variation[point] = criterion.measure.at(hierarchy, point, positions);
         }
         // what is wanted most comes first; equal ones by number
-        let mut wanted: Vec<u32> = Vec::new();
-        let mut unwanted: Vec<(f64, u32)> = Vec::new();
+        let (mut wanted, mut unwanted) =
+            (std::mem::take(&mut work.wanted), std::mem::take(&mut work.unwanted));
+        wanted.clear();
+        unwanted.clear();
         for points in &hierarchy.levels[..hierarchy.finest()] {
             for point in points.clone() {
                 match work.roles.of_point[point] {
@@ -69,9 +77,12 @@ impl LevelsForce {
         for (_, point) in unwanted.iter().filter(|(greatest, _)| *greatest < criterion.coarsen) {
             self.subdivide(memory, *point as usize, false);
         }
-        wanted.sort_by(|a, b| variation[*b as usize].total_cmp(&variation[*a as usize]).then(a.cmp(b)));
+        wanted.sort_unstable_by(|a, b| {
+            variation[*b as usize].total_cmp(&variation[*a as usize]).then(a.cmp(b))
+        });
         work.variation = variation;
         self.spend(division, &wanted, &mut unwanted, memory, work);
+        (work.wanted, work.unwanted) = (wanted, unwanted);
     }
 
     /// Subdivides as far as the budget goes; where it is overdrawn, regroups what needs it least.
@@ -106,7 +117,7 @@ impl LevelsForce {
         let overload = memory.len() - 1;
         memory[overload] = if cost > budget { memory[overload] + 1.0 } else { 0.0 };
         if memory[overload] > PATIENCE {
-            unwanted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            unwanted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             for (_, point) in unwanted {
                 if cost <= budget {
                     break;

@@ -44,8 +44,7 @@ pub struct Values<'a> {
 impl LawMemory {
     pub fn new(matter: &Matter, answer: Answer) -> Self {
         let memory = |group: &Group| {
-            let mut memory =
-                vec![LaneBlock::default(); group.law.places(answer).memory_len.div_ceil(LANES)];
+            let mut memory = vec![LaneBlock::default(); group.law.places(answer).memory_len.div_ceil(LANES)];
             group.law.prepare(answer, bytemuck::cast_slice_mut(&mut memory));
             memory
         };

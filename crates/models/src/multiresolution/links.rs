@@ -98,7 +98,9 @@ pub enum LevelsError {
     Kind { level: usize, kind: &'static str },
     #[error("cell {cell} of level {level} has the volume {volume:e} m³; expected more than zero")]
     Flat { level: usize, cell: usize, volume: f64 },
-    #[error("level {level} has {count} points, the finer one after it {finer}; expected levels from coarse to fine")]
+    #[error(
+        "level {level} has {count} points, the finer one after it {finer}; expected levels from coarse to fine"
+    )]
     Order { level: usize, count: usize, finer: usize },
     #[error(
         "point {point} of level {level}, at {position:?}, carries {mass:e} kg of the finest mesh; expected some matter around each point: a coarse mesh that follows the shape"
@@ -157,12 +159,16 @@ impl Hierarchy {
 
     /// What carries a point while it stands for nothing and coarser points are at work.
     pub fn parent(&self, point: usize) -> &Carrier {
-        self.parents[point].as_ref().unwrap_or_else(|| unreachable!("points of the coarsest mesh are present"))
+        self.parents[point]
+            .as_ref()
+            .unwrap_or_else(|| unreachable!("points of the coarsest mesh are present"))
     }
 
     /// What carries a point while finer points are in its place.
     pub fn child_tet(&self, point: usize) -> &Carrier {
-        self.child_tets[point].as_ref().unwrap_or_else(|| unreachable!("the finest points are not subdivided"))
+        self.child_tets[point]
+            .as_ref()
+            .unwrap_or_else(|| unreachable!("the finest points are not subdivided"))
     }
 
     fn add_meshes(&mut self, meshes: &[&Mesh]) -> Result<(), LevelsError> {
@@ -211,7 +217,8 @@ impl Hierarchy {
             }
             for point in coarse {
                 let carrier = carrier(&in_fine, meshes[level], fine.start, self.rest[point]);
-                successors.extend(carrier.iter().flat_map(|c| c.corners).map(|corner| (point as u32, corner)));
+                successors
+                    .extend(carrier.iter().flat_map(|c| c.corners).map(|corner| (point as u32, corner)));
                 self.child_tets[point] = carrier;
             }
         }

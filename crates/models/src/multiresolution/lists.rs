@@ -1,7 +1,7 @@
 //! What a step goes through: made anew when other points become active, or when steps are divided otherwise.
 
 use souple_engine::levels::{Division, Filter};
-use souple_math::{Mat3, Vec3};
+use souple_math::Mat3;
 
 use super::elastic::{ALL_CORNERS, Due, LawMemory};
 use super::roles::{Following, Roles};
@@ -41,13 +41,17 @@ pub struct Work {
     pub brakes: Vec<Mat3>,
     /// How much the deformation varies around each active point.
     pub variation: Vec<f64>,
+    /// Points to be subdivided, those most in need first.
+    pub wanted: Vec<u32>,
+    /// Points that may be regrouped, with the greatest variation around those in their place.
+    pub unwanted: Vec<(f64, u32)>,
+    /// The points that were active before.
+    pub before: Vec<u32>,
     pub stress: LawMemory,
     stiffness: Vec<f64>,
     damping: Vec<f64>,
     rate_of_slot: Vec<u8>,
     is_marked: Vec<bool>,
-    /// Impulses or displacements of all points, while they are made.
-    pub spare: Vec<Vec3>,
 }
 
 /// A point's interval is at most this part of the longest that is stable by the bound.
@@ -73,12 +77,14 @@ impl Work {
             ghosts: Vec::new(),
             brakes: Vec::new(),
             variation: Vec::new(),
+            wanted: Vec::new(),
+            unwanted: Vec::new(),
+            before: Vec::new(),
             stress: LawMemory::new(&force.matter, Answer::Stress),
             stiffness: Vec::new(),
             damping: Vec::new(),
             rate_of_slot: Vec::new(),
             is_marked: Vec::new(),
-            spare: vec![Vec3::ZERO; force.hierarchy.point_count()],
         }
     }
 
@@ -212,13 +218,13 @@ impl Work {
         }
     }
 
-    /// The longest interval that half of the active points can take [s].
-    pub fn middle_interval(&mut self, force: &LevelsForce) -> f64 {
+    /// The longest intervals of the active points, ascending [s].
+    pub fn intervals(&mut self, force: &LevelsForce) -> Vec<f64> {
         self.bound_stiffness(force);
         let interval = |point: &u32| self.longest_interval(*point as usize, Filter::None);
         let mut intervals: Vec<f64> = self.active.iter().map(interval).collect();
-        let middle = intervals.len() / 2;
-        *intervals.select_nth_unstable_by(middle, f64::total_cmp).1
+        intervals.sort_by(f64::total_cmp);
+        intervals
     }
 
     fn choose_rates(&mut self, force: &LevelsForce, division: &Division) {
@@ -251,6 +257,9 @@ impl Work {
         self.due.resize_with(rates, Vec::new);
         self.due.iter_mut().for_each(Vec::clear);
         for block in 0..force.matter.block_count() {
+            if self.acting[block * LANES..(block + 1) * LANES].iter().all(|volume| *volume == 0.0) {
+                continue;
+            }
             for rate in 0..rates {
                 let mut due = Due { block: block as u32, corners: [0; LANES] };
                 for lane in 0..LANES {
@@ -336,7 +345,8 @@ impl Work {
             let tet = &hierarchy.tets[sample.tet as usize];
             let moduli = &matter.material(sample).small_strain;
             for (corner, g) in tet.corners.iter().zip(tet.gradients) {
-                let stiffness = (g.outer(g) * (moduli.lambda + moduli.mu)).plus_diagonal(moduli.mu * g.length_sq());
+                let stiffness =
+                    (g.outer(g) * (moduli.lambda + moduli.mu)).plus_diagonal(moduli.mu * g.length_sq());
                 self.brakes[*corner as usize] += stiffness * *volume;
             }
         }
@@ -353,13 +363,13 @@ impl Work {
     pub fn bytes(&self) -> usize {
         let numbers = [&self.known, &self.shares, &self.acting, &self.masses, &self.carried];
         let numbers = numbers.into_iter().chain([&self.stiffness, &self.damping, &self.variation]);
-        let points = [&self.active, &self.active_rows, &self.ghosts].into_iter();
-        let points = points.chain(&self.pushed).chain(&self.of_rate);
+        let points = [&self.active, &self.active_rows, &self.ghosts, &self.wanted, &self.before];
+        let points = points.into_iter().chain(&self.pushed).chain(&self.of_rate);
         8 * numbers.map(Vec::capacity).sum::<usize>()
             + 4 * points.map(Vec::capacity).sum::<usize>()
             + size_of::<Due>() * self.due.iter().map(Vec::capacity).sum::<usize>()
             + size_of::<Mat3>() * self.brakes.capacity()
-            + size_of::<Vec3>() * self.spare.capacity()
+            + 16 * self.unwanted.capacity()
             + self.following.bytes()
             + self.stress.bytes()
             + self.roles.of_point.capacity()

@@ -9,8 +9,8 @@ use souple_mesh::{CellLocator, Mesh, recursive_bisection};
 
 use super::links::Hierarchy;
 use crate::materials::Material;
-use crate::solids::layout::{Chunk, LANES};
 use crate::solids::law_of_samples;
+use crate::solids::layout::{Chunk, LANES};
 use crate::solids::sample_law::SampleLaw;
 
 /// The part of one material that a tetrahedron stands for.

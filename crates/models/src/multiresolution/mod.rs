@@ -105,6 +105,8 @@ pub struct LevelsForce {
     whole_masses: Vec<f64>,
     /// Of each level, were it alone at work: the longest interval of half of its points [s].
     intervals: Vec<f64>,
+    /// Of all points, were their level alone at work: the shortest that is longest for one of them [s].
+    shortest_interval: f64,
 }
 
 impl LevelsForce {
@@ -125,12 +127,17 @@ impl LevelsForce {
             finest_masses: Vec::new(),
             whole_masses: Vec::new(),
             intervals: Vec::new(),
+            shortest_interval: f64::INFINITY,
             hierarchy,
             matter,
         };
         force.weigh();
         force.check_masses()?;
-        force.intervals = (0..force.hierarchy.level_count()).map(|level| force.interval_of(level)).collect();
+        for level in 0..force.hierarchy.level_count() {
+            let intervals = force.intervals_of(level);
+            force.intervals.push(intervals[intervals.len() / 2]);
+            force.shortest_interval = force.shortest_interval.min(intervals[0]);
+        }
         Ok(force)
     }
 
@@ -138,9 +145,9 @@ impl LevelsForce {
         &self.hierarchy
     }
 
-    /// Of each level, were it alone at work: the longest stable interval of half of its points [s].
-    pub fn intervals(&self) -> &[f64] {
-        &self.intervals
+    /// The shortest interval that some point needs, whichever level is at work [s].
+    pub fn shortest_interval(&self) -> f64 {
+        self.shortest_interval
     }
 
     /// The masses of the points of the finest mesh [kg].
@@ -182,18 +189,17 @@ impl LevelsForce {
         Ok(())
     }
 
-    /// The longest interval of half of the points of a level, were it alone at work.
-    fn interval_of(&self, level: usize) -> f64 {
-        let finest = self.hierarchy.finest();
+    /// The longest stable intervals of the points of a level, were it alone at work, ascending [s].
+    fn intervals_of(&self, level: usize) -> Vec<f64> {
         let mut memory = vec![0.0; self.memory_len()];
-        for points in &self.hierarchy.levels[..finest] {
+        for points in &self.hierarchy.levels[..self.hierarchy.finest()] {
             for point in points.clone() {
                 self.subdivide(&mut memory, point, usize::from(self.hierarchy.level_of[point]) < level);
             }
         }
         let mut work = Work::new(self);
         work.refresh(self, &memory);
-        work.middle_interval(self)
+        work.intervals(self)
     }
 
     /// Whether finer points are to take the place of a point.
@@ -279,9 +285,15 @@ impl Force for LevelsForce {
         let values = Values { positions: self.own(at.positions), variation: &[] };
         let mut stored = 0.0;
         let mut memory = LawMemory::new(&self.matter, Answer::Energy);
-        memory.ask((&self.hierarchy, &self.matter), Answer::Energy, &due, values, |slot, _, _, _, density| {
-            stored += work.shares[slot] * density.columns[0].x;
-        });
+        memory.ask(
+            (&self.hierarchy, &self.matter),
+            Answer::Energy,
+            &due,
+            values,
+            |slot, _, _, _, density| {
+                stored += work.shares[slot] * density.columns[0].x;
+            },
+        );
         Energy { stored, dissipated: 0.0 }
     }
 
@@ -344,7 +356,8 @@ impl Force for LevelsForce {
         let finest = self.hierarchy.tets_of_level.last()?.clone();
         let tet = self.hierarchy.tets[finest].get(cell)?;
         let material = &self.matter.materials[usize::from(self.matter.material_of_cell[cell])];
-        let F = tet.gradient(self.own(positions));
+        // rows of the finest mesh are enough
+        let F = tet.gradient(&positions[self.first_row..]);
         let P = material.stress(&F);
         let cauchy = cauchy_stress(&P, &F).unwrap_or(Mat3::ZERO);
         let deviator = cauchy.plus_diagonal(-cauchy.trace() / 3.0);

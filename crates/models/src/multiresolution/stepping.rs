@@ -22,7 +22,10 @@ fn for_each(force: &LevelsForce, work: &Work, who: Followers, mut visit: impl Fn
         Followers::Ghosts => work.ghosts.iter().for_each(|point| visit(*point as usize)),
         Followers::These(rows) => {
             let own = force.rows();
-            rows.iter().map(|row| *row as usize).filter(|row| own.contains(row)).for_each(|row| visit(row - own.start));
+            rows.iter()
+                .map(|row| *row as usize)
+                .filter(|row| own.contains(row))
+                .for_each(|row| visit(row - own.start));
         }
         Followers::All => (0..force.hierarchy.point_count()).for_each(visit),
     }
@@ -71,10 +74,9 @@ impl Levels for LevelsForce {
     fn adapt(&self, division: &Division, rows: &mut Rows, memory: &mut [f64], scratch: &mut Scratch) {
         let work = self.work(scratch);
         work.refresh(self, memory);
-        let before = std::mem::take(&mut work.active);
-        work.active.clone_from(&before);
+        work.before.clone_from(&work.active);
         self.choose(division, self.own(&rows.positions), memory, work);
-        if work.active != before {
+        if work.active != work.before {
             self.change_over(rows, work);
         }
         work.divide(self, division);

@@ -11,6 +11,7 @@ mod filling;
 mod frames;
 mod frequencies;
 mod implicit;
+mod levels;
 mod motion;
 mod network;
 mod patch;
@@ -46,6 +47,7 @@ pub const TABLES: &[&[Case]] = &[
     network::CASES,
     rheometer::CASES,
     frames::CASES,
+    levels::CASES,
     skins::CASES,
 ];
 
