@@ -89,6 +89,19 @@ pub trait Levels: Send + Sync {
     /// Rows of the active points, ascending.
     fn active<'a>(&self, scratch: &'a Scratch) -> &'a [u32];
 
+    /// Moves active points by `x += h v`, after their velocities have faded as long.
+    fn drift(&self, timestep: f64, scratch: &Scratch, rows: &mut Rows);
+
+    /// `v += interval · a` of the active points of a rate.
+    fn accelerate(
+        &self,
+        rate: u32,
+        division: &Division,
+        scratch: &Scratch,
+        accelerations: &[Vec3],
+        velocities: &mut [Vec3],
+    );
+
     /// Brings followers to where those are that they follow.
     fn follow(&self, who: Followers, kind: Kinematic, scratch: &Scratch, values: &mut [Vec3]);
 

@@ -1,6 +1,7 @@
 //! Benchmarks: speed with its error beside it, on scenes anyone can run.
 
 mod frames;
+mod levels;
 mod links;
 mod timing;
 
@@ -140,6 +141,11 @@ pub const BENCHES: &[Bench] = &[
         name: "springs_lattice_1m",
         what: "the same with 70 masses along each edge (1,014,300 damped springs) [links/s]",
         run: |effort| links::springs_lattice("springs_lattice_1m", 70, None, effort),
+    },
+    Bench {
+        name: "adaptive_saving",
+        what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
+        run: levels::adaptive_saving,
     },
     Bench {
         name: "static_100k",

@@ -14,8 +14,8 @@ use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// A step is `2^halvings` ticks. At each tick the points of the highest rate are pushed, and of one other rate at most, in
 /// turn: no tick has much more to do than another. All points move at every tick with the velocity they have, so that
-/// those pushed seldom are seen where they are. Forces from outside act at every tick; those that couple no rows, which
-/// nothing can make stiff, are evaluated once a step.
+/// those pushed seldom are seen where they are. Forces from outside act at every tick, but those that couple no rows:
+/// nothing can make them stiff, they are evaluated once a step and act at each point's own dates.
 #[derive(Debug)]
 pub struct Staggered {
     pub halvings: u32,
@@ -88,7 +88,7 @@ pub struct StaggeredBuffers {
     is_watched: Vec<bool>,
     /// Rows of no body with levels.
     others: Vec<Range<usize>>,
-    /// Impulses of a tick that stay the same throughout the step.
+    /// Accelerations that stay the same throughout the step.
     steady: Vec<Vec3>,
 }
 
@@ -150,44 +150,47 @@ impl Stage<'_, '_> {
         is_any
     }
 
-    /// What forces that couple no rows do in a tick: the same throughout the step.
-    fn hold_steady(&mut self, tick: f64) {
+    /// Accelerations by forces that couple no rows: the same throughout the step. They come with the elastic forces, at
+    /// each point's own dates, so that what is in balance does not quiver.
+    fn hold_steady(&mut self) {
         self.sum_outside(false);
-        for (index, levels) in bodies(self.step.system) {
-            levels.give_back(Followers::All, &self.ws.scratches[index], &mut self.ws.row_force);
-        }
-        let steady = &mut self.buffers.steady;
+        let (ws, steady) = (&mut *self.ws, &mut self.buffers.steady);
         steady.clear();
-        steady.extend(self.ws.row_force.iter().map(|force| *force * tick));
-        self.ws.row_force.fill(Vec3::ZERO);
+        steady.resize(ws.row_force.len(), Vec3::ZERO);
+        for (index, levels) in bodies(self.step.system) {
+            let scratch = &ws.scratches[index];
+            levels.give_back(Followers::All, scratch, &mut ws.row_force);
+            levels.kick(Push::Outer, &self.division, scratch, &mut ws.row_force, steady);
+        }
+        for row in self.buffers.others.iter().flat_map(Clone::clone) {
+            steady[row] =
+                std::mem::replace(&mut ws.row_force[row], Vec3::ZERO) / self.step.system.mass.diagonal[row];
+        }
     }
 
-    /// Pushes by all forces from outside.
+    /// Pushes by the forces from outside that couple rows.
     fn push_from_outside(&mut self, tick: f64) {
         let clock = std::time::Instant::now();
-        let couples = self.sum_outside(true);
-        let (system, ws, buffers) = (self.step.system, &mut *self.ws, &*self.buffers);
-        if couples {
+        if self.sum_outside(true) {
+            let (system, ws, buffers) = (self.step.system, &mut *self.ws, &*self.buffers);
             for row in &buffers.watched {
                 ws.row_force[*row as usize] = ws.row_force[*row as usize] * tick;
             }
-        }
-        for (index, levels) in bodies(system) {
-            let scratch = &ws.scratches[index];
-            if couples {
+            for (index, levels) in bodies(system) {
+                let scratch = &ws.scratches[index];
                 levels.give_back(Followers::These(&buffers.watched), scratch, &mut ws.row_force);
+                let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
+                levels.kick(Push::Outer, &self.division, scratch, impulses, velocities);
             }
-            for row in levels.active(scratch) {
-                ws.row_force[*row as usize] += buffers.steady[*row as usize];
+            for row in buffers.others.iter().flat_map(Clone::clone) {
+                let impulse = std::mem::replace(&mut ws.row_force[row], Vec3::ZERO);
+                ws.rows.velocities[row] += impulse / system.mass.diagonal[row];
             }
-            let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
-            levels.kick(Push::Outer, &self.division, scratch, impulses, velocities);
         }
-        for row in buffers.others.iter().flat_map(Clone::clone) {
-            let impulse = std::mem::replace(&mut ws.row_force[row], Vec3::ZERO) + buffers.steady[row];
-            ws.rows.velocities[row] += impulse / system.mass.diagonal[row];
+        for row in self.buffers.others.iter().flat_map(Clone::clone) {
+            self.ws.rows.velocities[row] += self.buffers.steady[row] * tick;
         }
-        ws.stages.forces += clock.elapsed().as_secs_f64();
+        self.ws.stages.forces += clock.elapsed().as_secs_f64();
     }
 
     /// Pushes by elastic forces of the rates that are due.
@@ -197,6 +200,8 @@ impl Stage<'_, '_> {
         for rate in schedule.due(tick, self.division.halvings) {
             for (index, levels) in bodies(system) {
                 let scratch = &mut ws.scratches[index];
+                let steady = &self.buffers.steady;
+                levels.accelerate(rate, &self.division, scratch, steady, &mut ws.rows.velocities);
                 levels.add_impulses(rate, &self.division, &ws.rows, scratch, &mut ws.row_force);
                 let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
                 levels.kick(Push::Elastic { rate }, &self.division, scratch, impulses, velocities);
@@ -210,9 +215,7 @@ impl Stage<'_, '_> {
         let Step { system, around, .. } = *self.step;
         let rows = &mut self.ws.rows;
         for (index, levels) in bodies(system) {
-            for row in levels.active(&self.ws.scratches[index]) {
-                rows.positions[*row as usize] += rows.velocities[*row as usize] * timestep;
-            }
+            levels.drift(timestep, &self.ws.scratches[index], rows);
         }
         for row in self.buffers.others.iter().flat_map(Clone::clone) {
             rows.positions[row] += rows.velocities[row] * timestep;
@@ -231,7 +234,7 @@ impl Stage<'_, '_> {
         self.ws.row_force.fill(Vec3::ZERO);
         let ticks = self.division.ticks();
         let tick_length = timestep / f64::from(ticks);
-        self.hold_steady(tick_length);
+        self.hold_steady();
         for tick in 0..ticks {
             self.push_from_outside(tick_length);
             self.push_from_inside(tick, schedule);

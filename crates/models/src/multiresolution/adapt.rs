@@ -143,7 +143,7 @@ impl LevelsForce {
             let is_empty = |point: &&u32| {
                 let point = **point as usize;
                 usize::from(self.hierarchy.level_of[point]) < self.hierarchy.finest()
-                    && work.carried[point] < LEAST_MASS * self.whole_masses[point]
+                    && work.carried[point] <= LEAST_MASS * self.whole_masses[point]
             };
             let mut found = false;
             for point in work.active.iter().filter(is_empty) {

@@ -21,6 +21,11 @@ pub struct Tet {
 }
 
 impl Tet {
+    /// Barycentric coordinates of a place at rest.
+    fn weights(&self, rest: &[Vec3], place: Vec3) -> [f64; 4] {
+        [0, 1, 2, 3].map(|i: usize| 1.0 + self.gradients[i].dot(place - rest[self.corners[i] as usize]))
+    }
+
     /// `Σ value · gradientᵀ`: of positions, the deformation gradient.
     pub fn gradient(&self, values: &[Vec3]) -> Mat3 {
         let mut sum = Mat3::ZERO;
@@ -212,11 +217,11 @@ impl Hierarchy {
             let nearest = Nearest::new(&self.rest[coarse.clone()]);
             for point in fine.clone() {
                 let position = self.rest[point];
-                self.parents[point] = carrier(&in_coarse, meshes[level - 1], coarse.start, position);
+                self.parents[point] = self.carrier(&in_coarse, level - 1, position);
                 children.push(((coarse.start + nearest.to(position)) as u32, point as u32));
             }
             for point in coarse {
-                let carrier = carrier(&in_fine, meshes[level], fine.start, self.rest[point]);
+                let carrier = self.carrier(&in_fine, level, self.rest[point]);
                 successors
                     .extend(carrier.iter().flat_map(|c| c.corners).map(|corner| (point as u32, corner)));
                 self.child_tets[point] = carrier;
@@ -228,6 +233,29 @@ impl Hierarchy {
         successors.dedup();
         self.children = Lists::of(self.rest.len(), &children);
         self.successors = Lists::of(self.rest.len(), &successors);
+    }
+}
+
+impl Hierarchy {
+    /// The tetrahedron of a level that carries a position. Outside of all, of those around the closest one that with the
+    /// least extrapolation: a flat tetrahedron at the border has wild weights a little way off.
+    fn carrier(&self, locator: &CellLocator, level: usize, position: Vec3) -> Option<Carrier> {
+        let location = locator.carrier(position)?;
+        let found = self.tets_of_level[level].start + location.cell as usize;
+        let least = |tet: usize| self.tets[tet].weights(&self.rest, position).into_iter().fold(1.0, f64::min);
+        let mut best = (least(found), found);
+        if location.distance > 0.0 {
+            for corner in self.tets[found].corners {
+                for tet in self.tets_of_point.get(corner as usize) {
+                    let weight = least(*tet as usize);
+                    if weight > best.0 {
+                        best = (weight, *tet as usize);
+                    }
+                }
+            }
+        }
+        let tet = &self.tets[best.1];
+        Some(Carrier { corners: tet.corners, weights: tet.weights(&self.rest, position) })
     }
 }
 
@@ -248,17 +276,6 @@ fn check(meshes: &[&Mesh]) -> Result<(), LevelsError> {
         }
     }
     Ok(())
-}
-
-/// The tetrahedron of a mesh that carries a position; its points are numbered from `first`.
-fn carrier(locator: &CellLocator, mesh: &Mesh, first: usize, position: Vec3) -> Option<Carrier> {
-    let location = locator.carrier(position)?;
-    let nodes = mesh.cell(location.cell)?.nodes;
-    let weights = location.weights();
-    Some(Carrier {
-        corners: [0, 1, 2, 3].map(|corner: usize| nodes[corner] + first as u32),
-        weights: [0, 1, 2, 3].map(|corner: usize| weights[corner]),
-    })
 }
 
 /// Finds the nearest of some points; of several, the first.

@@ -148,7 +148,14 @@ impl Work {
         }
         self.masses.clear();
         match force.coupling {
-            Coupling::Transpose => self.masses.extend_from_slice(&self.carried),
+            Coupling::Transpose => {
+                // weights of extrapolated followers may be negative: a point is never left without mass
+                for point in &self.active {
+                    let carried = &mut self.carried[*point as usize];
+                    *carried = carried.max(super::LEAST_MASS * force.whole_masses[*point as usize]);
+                }
+                self.masses.extend_from_slice(&self.carried);
+            }
             Coupling::OneWay => {
                 self.masses.extend_from_slice(&force.whole_masses);
                 for (carried, whole) in self.carried.iter_mut().zip(&self.masses) {

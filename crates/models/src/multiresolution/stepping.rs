@@ -86,6 +86,31 @@ impl Levels for LevelsForce {
         &read(scratch).active_rows
     }
 
+    fn accelerate(
+        &self,
+        rate: u32,
+        division: &Division,
+        scratch: &Scratch,
+        accelerations: &[Vec3],
+        velocities: &mut [Vec3],
+    ) {
+        let interval = division.interval(rate);
+        for point in &read(scratch).of_rate[rate as usize] {
+            let row = self.first_row + *point as usize;
+            velocities[row] += accelerations[row] * interval;
+        }
+    }
+
+    fn drift(&self, timestep: f64, scratch: &Scratch, rows: &mut Rows) {
+        // in every tick: a velocity that quivers about zero would fade unevenly at its own dates
+        let fading = libm::exp(-self.mass_damping * timestep);
+        for row in &read(scratch).active_rows {
+            let row = *row as usize;
+            rows.velocities[row] = rows.velocities[row] * fading;
+            rows.positions[row] += rows.velocities[row] * timestep;
+        }
+    }
+
     fn follow(&self, who: Followers, kind: Kinematic, scratch: &Scratch, values: &mut [Vec3]) {
         self.place(read(scratch), who, kind, &mut values[self.row_range()]);
     }
@@ -148,14 +173,6 @@ impl Levels for LevelsForce {
             Push::Elastic { rate } => rate,
         };
         give(&work.pushed[rate as usize], &work.masses);
-        let interval = division.interval(rate);
-        if self.mass_damping > 0.0 {
-            let fading = libm::exp(-self.mass_damping * interval);
-            work.of_rate[rate as usize].iter().for_each(|point| {
-                let v = &mut velocities[*point as usize];
-                *v = *v * fading;
-            });
-        }
         if division.filter == Filter::SemiImplicit {
             work.of_rate[rate as usize].iter().for_each(|point| {
                 let v = &mut velocities[*point as usize];
