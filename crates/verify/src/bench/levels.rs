@@ -51,7 +51,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// All fine over adaptive; errors of the force and of the surface, over the size of the body.
 pub fn adaptive_saving(effort: Effort) -> Result<Vec<Figure>, String> {
     // a little before the tool draws back
-    let periods = effort.choose(130, 195);
+    let periods = effort.choose(60, 95);
     let adaptive = poke(&[], periods)?;
     let fine = poke(&["bodies.liver.levels.fixed=\"2\"".to_owned()], periods)?;
     let force = distance(adaptive.force, fine.force) / distance(fine.force, [0.0; 3]);
