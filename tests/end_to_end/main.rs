@@ -10,7 +10,7 @@ use serde_json::Value;
 /// Steps compared bit for bit; a snapshot is taken in their middle.
 const STEPS: u64 = 20;
 
-/// Every scene ends with status 0 (its `expect` lines hold), finite energies, and complete files.
+/// Every scene ends with status 0 (its `expect` lines hold), finite energies and probes, and complete files.
 #[test]
 fn every_scene_runs() {
     let folder = scratch("every_scene_runs");
@@ -27,14 +27,29 @@ fn every_scene_runs() {
         assert_eq!(run.status, Some(0), "{scene}: {}", run.errors);
         let report = run.json();
         assert_eq!(report["status"], "done", "{scene}");
-        for end in ["initial", "final"] {
-            let total = report["energy"][end]["total"].as_f64();
-            assert!(total.is_some_and(f64::is_finite), "{scene}: the {end} energy is {total:?}");
+        let expectations = report["expectations"].as_array().expect("the report has expectations");
+        // of a whole run none is left without a judgement
+        let hold = expectations.iter().all(|expectation| expectation["status"] == "holds");
+        assert!(!expectations.is_empty() && hold, "{scene}: {expectations:#?}");
+        for part in ["energy", "momentum", "probes", "counts", "stages_ms", "solver"] {
+            assert_finite(&format!("{scene}: {part}"), &report[part]);
         }
         let written: Value =
             serde_json::from_str(&read(&out.join("report.json"))).expect("report.json is JSON");
         assert_eq!(written["hashes"], report["hashes"], "{scene}: report.json is not the report printed");
         assert!(read(&out.join("probes.csv")).lines().count() > 1, "{scene}: no rows in probes.csv");
+    }
+}
+
+/// All numbers below a value; `null` stands for one that is not finite.
+fn assert_finite(name: &str, value: &Value) {
+    match value {
+        Value::Null => panic!("{name} is not finite"),
+        Value::Array(list) => list.iter().for_each(|value| assert_finite(name, value)),
+        Value::Object(object) => {
+            object.iter().for_each(|(key, value)| assert_finite(&format!("{name}.{key}"), value));
+        }
+        _ => {}
     }
 }
 

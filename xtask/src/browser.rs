@@ -9,6 +9,8 @@ use crate::tree::{Tree, run};
 
 const WEB: &str = "crates/view/web";
 const NODE: &str = "install Node.js 20 or later with npm";
+const MISSING: &str =
+    "there is no Chromium: install it (`apt-get install chromium`), or name it by SOUPLE_CHROMIUM";
 /// Names under which systems know the browser.
 const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
@@ -27,11 +29,24 @@ pub fn check(tree: &Tree) -> Result<(), Failure> {
     run(&mut tests, program::REMEDY)
 }
 
-/// The browser that is named, or found by name.
+/// The browser that is named, or found by name; where there is none, the one that the system's packages have.
 fn browser() -> Result<PathBuf, Failure> {
     if let Some(named) = std::env::var_os("SOUPLE_CHROMIUM") {
         return Ok(named.into());
     }
+    if let Some(found) = find() {
+        return Ok(found);
+    }
+    // whatever comes of it, what counts is whether the browser is there then
+    let _ = run(Command::new("apt-get").args(["update", "-q"]), MISSING);
+    let _ = run(
+        Command::new("apt-get").args(["install", "-y", "-q", "--no-install-recommends", "chromium"]),
+        MISSING,
+    );
+    find().ok_or_else(|| Failure::Faults(vec![MISSING.to_owned()]))
+}
+
+fn find() -> Option<PathBuf> {
     let folders: Vec<PathBuf> = std::env::var_os("PATH")
         .iter()
         .flat_map(|path| std::env::split_paths(path).collect::<Vec<_>>())
@@ -40,7 +55,5 @@ fn browser() -> Result<PathBuf, Failure> {
         let file = PathBuf::from(name).with_extension(std::env::consts::EXE_EXTENSION);
         folders.iter().map(move |folder| folder.join(&file))
     });
-    let missing =
-        "there is no Chromium: install it (`apt-get install chromium`), or name it by SOUPLE_CHROMIUM";
-    found.into_iter().find(|path| path.is_file()).ok_or_else(|| Failure::Faults(vec![missing.to_owned()]))
+    found.into_iter().find(|path| path.is_file())
 }

@@ -57,6 +57,11 @@ const STEPS: &[Step] = &[
     Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
     Step { name: "reference", summary: "docs/reference is what the tables say", run: reference::check },
     Step { name: "snippets", summary: "every command and scene in README and docs/", run: snippets::check },
+    Step {
+        name: "browser",
+        summary: "the page of the released program in a headless Chromium",
+        run: browser::check,
+    },
     Step { name: "verify", summary: "the validation cases of the released program", run: program::verify },
     Step { name: "mutations", summary: "every validation case fails where it must", run: program::mutations },
 ];
@@ -72,7 +77,6 @@ fn main() -> ExitCode {
         "test" => {}
         "gallery" => return written(gallery::make(&tree, names)),
         "reference" => return written(reference::make(&tree)),
-        "browser" => return written(browser::check(&tree)),
         _ => {
             eprintln!("there is no chore `{command}`\n\n{}", usage());
             return ExitCode::from(2);
@@ -102,7 +106,6 @@ fn usage() -> String {
     let mut text = "cargo xtask gallery         docs/gallery.md and its pictures, by the released program\n\
                     cargo xtask gallery NAME…   the pictures of some scenes\n\
                     cargo xtask reference       docs/reference, by the released program\n\
-                    cargo xtask browser         the page of the released program in a headless Chromium\n\
                     cargo xtask test            every check, in this order\n\
                     cargo xtask test NAME…      some of them\n\n"
         .to_owned();

@@ -33,14 +33,31 @@ pub fn souple(tree: &Tree, arguments: &[&str]) -> Command {
 
 /// Runs all validation cases: every row passes, and rows that `docs/capabilities.md` names prove what it says.
 pub fn verify(tree: &Tree) -> Result<(), Failure> {
-    let mut command = souple(tree, &["verify", "--json"]);
+    let capabilities = tree.read(capabilities::FILE)?;
+    rows(tree, &["verify", "--json"], |rows| {
+        let mut faults: Vec<String> = rows.iter().filter_map(row_fault).collect();
+        faults.extend(capabilities::unproven(&capabilities, rows));
+        faults
+    })
+}
+
+/// Runs all validation cases with the fault that each must find.
+pub fn mutations(tree: &Tree) -> Result<(), Failure> {
+    rows(tree, &["verify", "--mutations", "--json"], |rows| rows.iter().filter_map(blindness).collect())
+}
+
+/// Runs cases and asks for the faults of their rows.
+fn rows(
+    tree: &Tree,
+    arguments: &[&str],
+    faults: impl FnOnce(&[Value]) -> Vec<String>,
+) -> Result<(), Failure> {
+    let mut command = souple(tree, arguments);
     let (status, text) = answer(&mut command, REMEDY)?;
     let fail = |what: String| Failure::Answer { command: typed(&command), what };
     let rows: Value = serde_json::from_str(&text).map_err(|error| fail(error.to_string()))?;
     let rows = rows.as_array().ok_or_else(|| fail("no list of rows".to_owned()))?;
-    let mut faults: Vec<String> = rows.iter().filter_map(row_fault).collect();
-    faults.extend(capabilities::unproven(&tree.read(capabilities::FILE)?, rows));
-    Failure::unless_empty(faults)?;
+    Failure::unless_empty(faults(rows))?;
     if !status.success() {
         return Err(Failure::Command { command: typed(&command), status });
     }
@@ -48,9 +65,11 @@ pub fn verify(tree: &Tree) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Runs all validation cases with the fault that each must find.
-pub fn mutations(tree: &Tree) -> Result<(), Failure> {
-    run(&mut souple(tree, &["verify", "--mutations"]), REMEDY)
+fn field(row: &Value, name: &str) -> String {
+    match &row[name] {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
 }
 
 /// A row that did not pass, in words.
@@ -58,19 +77,32 @@ fn row_fault(row: &Value) -> Option<String> {
     if row["pass"] == Value::Bool(true) {
         return None;
     }
-    let field = |name: &str| match &row[name] {
-        Value::String(text) => text.clone(),
-        other => other.to_string(),
-    };
+    let field = |name| field(row, name);
+    let id = field("id");
+    if row["problem"].is_string() {
+        return Some(format!("{id} failed: {}: {}", field("what"), field("problem")));
+    }
     Some(format!(
-        "{} failed: {}: {} {} was measured, the reference is {} within {}",
-        field("id"),
+        "{id} failed: {}: {} {} was measured, the reference is {} within {}",
         field("what"),
         field("measured"),
         field("unit"),
         field("reference"),
         field("tolerance")
     ))
+}
+
+/// A row that its mutation does not make fail, in words.
+fn blindness(row: &Value) -> Option<String> {
+    let field = |name| field(row, name);
+    let (id, mutation) = (field("id"), field("mutation"));
+    if row["problem"].is_string() {
+        Some(format!("{id} has no number under its mutation {mutation}: {}", field("problem")))
+    } else if row["pass"] == Value::Bool(true) {
+        Some(format!("{id} still holds under its mutation {mutation}: {} was measured", field("measured")))
+    } else {
+        None
+    }
 }
 
 #[cfg(test)]
@@ -85,7 +117,21 @@ mod tests {
         });
         let text = "bar_tip failed: tip of the bar: 1.5 m was measured, the reference is 1.0 within 0.1";
         assert_eq!(row_fault(&row).as_deref(), Some(text));
+        row["problem"] = "no such probe".into();
+        assert_eq!(row_fault(&row).as_deref(), Some("bar_tip failed: tip of the bar: no such probe"));
         row["pass"] = Value::Bool(true);
         assert_eq!(row_fault(&row), None);
+    }
+
+    #[test]
+    fn a_mutation_must_be_seen() {
+        let mut row = serde_json::json!({"id": "bar_tip", "measured": 1.5, "mutation": "x=2", "pass": false});
+        assert_eq!(blindness(&row), None);
+        row["pass"] = Value::Bool(true);
+        let holds = "bar_tip still holds under its mutation x=2: 1.5 was measured";
+        assert_eq!(blindness(&row).as_deref(), Some(holds));
+        row["problem"] = "blew up".into();
+        let broken = "bar_tip has no number under its mutation x=2: blew up";
+        assert_eq!(blindness(&row).as_deref(), Some(broken));
     }
 }

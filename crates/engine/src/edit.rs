@@ -5,10 +5,11 @@ use std::ops::Range;
 use souple_math::Vec3;
 
 use crate::constraint::Constraint;
-use crate::force::ParameterError;
+use crate::force::{Force, ParameterError};
 use crate::hand::{Grip, GripError, Hand, check_place, hand_name};
 use crate::state::{State, SystemState};
 use crate::system::System;
+use crate::tool::Tool;
 use crate::world::Model;
 
 /// One change.
@@ -29,7 +30,9 @@ pub enum Edit {
     Push { system: usize, blocks: Range<u32>, velocity: Vec3 },
     /// Takes hold of points (see [`Hand`]); a hand that held something lets go of it.
     Grab { system: usize, hand: u32, grip: Grip },
-    /// Leads a hand to a place [m].
+    /// Takes a tool (see [`Tool`]); a hand that held something lets go of it.
+    Touch { system: usize, hand: u32, tool: Tool },
+    /// Leads a hand, or the tool in it, to a place [m].
     MoveHand { system: usize, hand: u32, place: Vec3 },
     /// Lets go.
     Release { system: usize, hand: u32 },
@@ -59,6 +62,8 @@ pub enum EditError {
     NoHand { system: String, hand: u32 },
     #[error("`{stepper}` cannot step system `{system}` with this: {why}")]
     Refused { system: String, stepper: &'static str, why: String },
+    #[error("a tool in hand {hand}: {why}")]
+    Tool { hand: u32, why: String },
     #[error(transparent)]
     Grip(#[from] GripError),
     #[error(transparent)]
@@ -75,6 +80,7 @@ impl Edit {
             | Self::SetVelocity { system, .. }
             | Self::Push { system, .. }
             | Self::Grab { system, .. }
+            | Self::Touch { system, .. }
             | Self::MoveHand { system, .. }
             | Self::Release { system, .. } => *system,
         }
@@ -149,15 +155,21 @@ impl Edit {
                 // what is held stays
                 system.impose_constraints(&mut state.q, &mut state.v, time, 1.0);
             }
-            Self::Grab { hand, grip, .. } => grab(system, state, *hand, grip)?,
+            Self::Grab { hand, grip, .. } => {
+                grip.check(system.kinematics.row_count())?;
+                take(system, state, *hand, Box::new(Hand::new(*hand, grip.clone())))?;
+            }
+            Self::Touch { hand, tool, .. } => {
+                let why = |why| EditError::Tool { hand: *hand, why };
+                tool.check(system.kinematics.row_count()).map_err(why)?;
+                let toolbox = model.toolbox.as_ref().ok_or_else(|| why("this world has none".to_owned()))?;
+                let force = toolbox.make(hand_name(*hand), tool).map_err(why)?;
+                take(system, state, *hand, force)?;
+            }
             Self::MoveHand { hand, place, .. } => {
                 check_place("place", *place)?;
                 let force = find_hand(system, *hand)?;
-                let moved =
-                    system.forces[force].as_any().downcast_ref().map(|held: &Hand| held.with_place(*place));
-                if let Some(moved) = moved {
-                    system.forces[force] = Box::new(moved);
-                }
+                system.forces[force].lead(*place);
             }
             Self::Release { hand, .. } => {
                 let force = find_hand(system, *hand)?;
@@ -168,17 +180,23 @@ impl Edit {
     }
 }
 
-/// Adds the force of a hand. Hands come after all other forces: those keep their numbers, which pairs hold.
-fn grab(system: &mut System, state: &mut SystemState, hand: u32, grip: &Grip) -> Result<(), EditError> {
-    grip.check(system.kinematics.row_count())?;
+/// Adds the force of a hand or tool. Hands come after all other forces: those keep their numbers, which pairs hold.
+fn take(
+    system: &mut System,
+    state: &mut SystemState,
+    hand: u32,
+    force: Box<dyn Force>,
+) -> Result<(), EditError> {
     let held = find_hand(system, hand).ok();
-    system.forces.push(Box::new(Hand::new(hand, grip.clone())));
+    let mut memory = vec![0.0; force.memory_len()];
+    force.initial_memory(&mut memory);
+    system.forces.push(force);
     if let Some(why) = system.stepper.refuses(system) {
         system.forces.pop();
         let (system, stepper) = (system.name.clone(), system.stepper.name());
         return Err(EditError::Refused { system, stepper, why });
     }
-    state.memory.push(0.0);
+    state.memory.extend(memory);
     if let Some(held) = held {
         release(system, state, held);
     }

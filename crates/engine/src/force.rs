@@ -128,6 +128,24 @@ pub struct ContactPoint<'a> {
     pub friction: Vec3,
 }
 
+/// A link between two rows as it stands, for pictures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkShown {
+    pub ends: [u32; 2],
+    pub state: LinkState,
+    /// Positive where it pushes its ends apart [N].
+    pub push: f64,
+}
+
+/// What holds the ends of a link together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkState {
+    /// Nothing: it is torn, or its ends are out of its reach.
+    Apart,
+    /// Its law, in the state of this number; 0 is that of the start.
+    In(u8),
+}
+
 /// Buffers of one force, kept between calls; made by [`Force::new_scratch`], opaque to everyone else.
 pub type Scratch = Box<dyn Any + Send + Sync>;
 
@@ -239,6 +257,12 @@ pub trait Force: Send + Sync {
     fn levels(&self) -> Option<&dyn Levels> {
         None
     }
+
+    /// Calls `visit` for every link, in the order they were made in; never where the force is none of links.
+    fn visit_links(&self, _at: &Configuration, _visit: &mut dyn FnMut(&LinkShown)) {}
+
+    /// Leads what a hand holds to a place [m]; forces that no hand holds stay where they are.
+    fn lead(&mut self, _place: Vec3) {}
 
     /// What this force keeps bodies away from, where that is something rigid, for pictures.
     fn obstacle(&self) -> Option<Obstacle> {

@@ -94,6 +94,11 @@ pub fn hand_name(hand: u32) -> String {
     format!("hand[{hand}]")
 }
 
+/// Whether a force is that of a hand, by its name.
+pub fn is_hand_name(name: &str) -> bool {
+    name.starts_with("hand[")
+}
+
 /// `f_i = share_i (k (place + offset_i - x_i) - c ẋ_i)` on each point held.
 #[derive(Clone, Debug)]
 pub struct Hand {
@@ -104,10 +109,6 @@ pub struct Hand {
 impl Hand {
     pub fn new(hand: u32, grip: Grip) -> Self {
         Self { name: hand_name(hand), grip }
-    }
-
-    pub(crate) fn with_place(&self, place: Vec3) -> Self {
-        Self { name: self.name.clone(), grip: Grip { place, ..self.grip.clone() } }
     }
 
     pub fn grip(&self) -> &Grip {
@@ -198,6 +199,10 @@ impl Force for Hand {
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
         let speed_sq = |held: &Held| held.share * at.velocities[held.row as usize].length_sq();
         memory[0] += timestep * self.grip.damping * self.grip.points.iter().map(speed_sq).sum::<f64>();
+    }
+
+    fn lead(&mut self, place: Vec3) {
+        self.grip.place = place;
     }
 
     fn bytes(&self) -> usize {

@@ -232,6 +232,12 @@ impl Kinematics {
         self.carriers[free_row as usize].0
     }
 
+    /// The first free row that a velocity block moves; `None` beyond the last block.
+    pub fn row_of_block(&self, block: u32) -> Option<u32> {
+        let row = self.carriers.partition_point(|(own, _)| *own < block);
+        (self.carriers.get(row)?.0 == block).then_some(row as u32)
+    }
+
     /// The position block of a point unknown, or `None` for rows of frames and derived rows.
     pub fn point_block(&self, row: u32) -> Option<u32> {
         let run = self.runs.iter().find(|run| {

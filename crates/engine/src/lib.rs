@@ -23,13 +23,14 @@ pub mod state;
 pub mod steppers;
 pub mod system;
 pub mod tangent;
+pub mod tool;
 pub mod world;
 
 pub use constraint::{Constraint, Motion};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
-    CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, ParameterError, Scratch,
-    TangentWeights,
+    CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown, LinkState,
+    ParameterError, Scratch, TangentWeights,
 };
 pub use hand::{Grip, Hand, Held};
 pub use hash::Fingerprint;
@@ -41,4 +42,5 @@ pub use snapshot::SnapshotError;
 pub use state::{FieldName, FieldRef, FieldState, Pair, Place, State, SystemState};
 pub use steppers::{Step, StepError, StepReport, Stepper};
 pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
+pub use tool::{Tool, Toolbox};
 pub use world::{CommittedRows, EnergyReport, Field, Model, ResumeError, Workspace, World, WorldError};

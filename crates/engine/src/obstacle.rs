@@ -9,6 +9,8 @@ use crate::Motion;
 /// A rigid thing that bodies may touch.
 #[derive(Clone, Debug)]
 pub struct Obstacle {
+    /// Forces against one and the same thing give it one name.
+    pub name: String,
     /// As it is written, before it moves.
     pub form: Form,
     /// How its points are carried along.

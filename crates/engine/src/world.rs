@@ -1,5 +1,6 @@
 //! The world: its constant model, its state, its scratch, and the step that joins them.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use souple_math::Vec3;
@@ -7,11 +8,12 @@ use souple_math::Vec3;
 use crate::constraint::Constraint;
 use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
-use crate::force::Scratch;
+use crate::force::{Configuration, Force, Scratch};
 use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
 use crate::steppers::{Step, StepError, StepReport};
 use crate::system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
+use crate::tool::Toolbox;
 
 /// A field on a grid: steps itself in State from what rows did, and acts through ordinary forces that read
 /// the committed grid.
@@ -66,6 +68,8 @@ pub struct Model {
     pub systems: Vec<System>,
     pub couplings: Vec<CouplingSpring>,
     pub fields: Vec<Box<dyn Field>>,
+    /// What makes the tools that a hand may take; none where bodies can only be held.
+    pub toolbox: Option<Arc<dyn Toolbox>>,
     /// Counts the edits that made this model from the first.
     pub generation: u64,
 }
@@ -255,8 +259,8 @@ impl World {
         Ok(self.resume(state)?)
     }
 
-    /// A scratch for each force, and matrices of what they couple. Only hands come and go, after all other forces, and
-    /// theirs hold nothing.
+    /// A scratch for each force, and matrices of what they couple. Only hands and tools come and go, after all other
+    /// forces, and theirs hold nothing.
     fn fit_workspace(&mut self) {
         for (system, ws) in self.model.systems.iter().zip(&mut self.workspace.systems) {
             if ws.scratches.len() != system.forces.len() {
@@ -430,6 +434,15 @@ impl World {
                 (sum.0 + linear, sum.1 + angular)
             },
         )
+    }
+
+    /// Calls `visit` for every force of a system with what it reads of the committed state.
+    pub fn visit_forces(&self, system: usize, visit: &mut dyn FnMut(&dyn Force, &Configuration)) {
+        let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
+        let (model, rows) = (&self.model.systems[system], &self.workspace.systems[system].rows);
+        for (index, force) in model.forces.iter().enumerate() {
+            visit(force.as_ref(), &model.view(index, rows, &self.state.systems[system], &around));
+        }
     }
 
     /// Lends system `index`, its state and its workspace to a reader (probes, forecasts).

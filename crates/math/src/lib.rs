@@ -17,7 +17,7 @@ pub use decomposition::{Eigen, Polar, Svd, eigen_symmetric, polar, project_psd, 
 pub use dual::Dual;
 pub use lanes::Lanes;
 pub use matrix::Mat3;
-pub use padded::Padded;
+pub use padded::{Padded, prefetch};
 pub use real::Real;
 pub use rotation::{exponential, logarithm, orthonormalised};
 pub use vector::Vec3;

@@ -5,12 +5,12 @@
 use souple_math::Vec3;
 use souple_table::{Value, Values};
 
-use crate::fill::{FillError, Options, PARAMETERS, fill_mesh};
+use crate::fill::{Options, PARAMETERS, fill_mesh};
 use crate::repair::RepairLimits;
 use crate::{ElementKind, Mesh, MeshError};
 
-/// Sizes that are tried, relative to the one asked for.
-const TRIED: [f64; 7] = [1.0, 0.98, 1.02, 0.96, 1.04, 0.94, 1.06];
+/// Other sizes that are tried, relative to the one asked for.
+const OTHERS: [f64; 6] = [0.98, 1.02, 0.96, 1.04, 0.94, 1.06];
 
 /// Shapes of all tetrahedra of a mesh: three times the inscribed over the circumscribed radius, 1 for a regular one.
 pub fn radius_ratios(mesh: &Mesh) -> Vec<f64> {
@@ -38,24 +38,27 @@ fn radius_ratio([a, b, c, d]: [Vec3; 4]) -> f64 {
 /// # Errors
 /// None of the sizes can be filled: the last failure.
 pub fn coarser(mesh: &Mesh, size: f64) -> Result<Mesh, MeshError> {
-    let mut best: Option<([f64; 2], Mesh)> = None;
-    let mut failure = MeshError::Fill(FillError::Nothing { size });
-    for factor in TRIED {
-        let values = Values::new().with("size", Value::Number(factor * size)).completed(PARAMETERS);
-        let options = Options::from_values(&values.unwrap_or_else(|error| unreachable!("{error}")))?;
-        match fill_mesh(mesh, RepairLimits::default(), &options) {
-            Ok(filled) => {
-                let ratios = radius_ratios(&filled.mesh);
-                let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-                let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-                if best.as_ref().is_none_or(|(quality, _)| [worst, mean] > *quality) {
-                    best = Some(([worst, mean], filled.mesh));
-                }
-            }
-            Err(error) => failure = error,
-        }
+    let mut best = attempt(mesh, size);
+    for factor in OTHERS {
+        let other = attempt(mesh, factor * size);
+        best = match (best, other) {
+            (Ok(best), Ok(other)) if other.0 > best.0 => Ok(other),
+            (Err(_), other) => other,
+            (best, _) => best,
+        };
     }
-    best.map(|(_, mesh)| mesh).ok_or(failure)
+    best.map(|(_, mesh)| mesh)
+}
+
+/// The least and the mean radius ratio of a filling, and the filling.
+fn attempt(mesh: &Mesh, size: f64) -> Result<([f64; 2], Mesh), MeshError> {
+    let values = Values::new().with("size", Value::Number(size)).completed(PARAMETERS);
+    let options = Options::from_values(&values.unwrap_or_else(|error| unreachable!("{error}")))?;
+    let filled = fill_mesh(mesh, RepairLimits::default(), &options)?.mesh;
+    let ratios = radius_ratios(&filled);
+    let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    Ok(([worst, mean], filled))
 }
 
 /// Mean length of the edges of all cells, each counted once for each of its cells [m].

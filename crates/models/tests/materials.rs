@@ -643,10 +643,20 @@ fn moduli() {
         let lame = Lame::from_young_poisson(1.0, ratio);
         let (bulk, longitudinal) =
             (1.0 / (3.0 * (1.0 - 2.0 * ratio)), (1.0 - ratio) / ((1.0 + ratio) * (1.0 - 2.0 * ratio)));
+        // and back, but for the digits that a small 1 + ν or 1 - 2ν does not have
+        assert!((lame.youngs_modulus() - 1.0).abs() <= 1e-12, "{}", lame.youngs_modulus());
+        assert!((lame.poissons_ratio() - ratio).abs() <= 1e-12, "{}", lame.poissons_ratio());
         // 1 - 2ν loses the digits that it does not have
         assert!((lame.bulk_modulus() - bulk).abs() <= 1e-14 * longitudinal);
         assert!((lame.longitudinal_modulus() - longitudinal).abs() <= 1e-14 * longitudinal);
     }
+    // V-02: μ falls from E/2 to E/3 while λ rises from 0 beyond all bounds
+    let of = |ratio: f64| Lame::from_young_poisson(1.0, ratio);
+    assert_eq!((of(0.0).mu, of(0.0).lambda), (0.5, 0.0));
+    assert!((of(0.5 - 1e-9).mu - 1.0 / 3.0).abs() < 1e-9 && of(0.5 - 1e-9).lambda > 1e8);
+    // ν = λ/2(λ + μ) = 50/101
+    let hundred = of(50.0 / 101.0);
+    assert!((hundred.lambda / hundred.mu - 100.0).abs() < 1e-11, "{}", hundred.lambda / hundred.mu);
 }
 
 /// `σ = P Fᵀ / J` is symmetric for objective laws, and absent where there is no volume.

@@ -17,7 +17,7 @@ use souple_mesh::Mesh;
 use souple_models::materials::{self, AnyLaw, Material};
 use souple_models::solids::{
     Quadrature, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass,
-    lumped_mass,
+    lumped_mass, uniform_mass,
 };
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
@@ -363,7 +363,7 @@ fn masses_add_up() {
     for element in ELEMENTS {
         let mesh = bar([1.0, 0.4, 0.3], [4.0, 2.0, 2.0], element);
         let expected = 1000.0 * 0.12;
-        for make in [lumped_mass, consistent_mass] {
+        for make in [lumped_mass, consistent_mass, uniform_mass] {
             let mut mass = Mass::new(mesh.points.len());
             make(&mesh, 0, &|_| 1000.0, &mut mass);
             mass.seal();
@@ -371,6 +371,9 @@ fn masses_add_up() {
             assert!((energy - 0.5 * expected * 4.0).abs() <= 1e-12 * energy, "{element}: {energy}");
             assert!(mass.diagonal.iter().all(|m| *m > 0.0), "{element}");
         }
+        let mut mass = Mass::new(mesh.points.len());
+        uniform_mass(&mesh, 0, &|_| 1000.0, &mut mass);
+        assert!(mass.diagonal.iter().all(|m| *m == mass.diagonal[0]), "{element}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Commands as text, in recordings and snapshots.
 
 use serde_json::{Value, json};
-use souple_engine::{Command, Edit, Grip, Held};
+use souple_engine::{Command, Edit, Grip, Held, Tool};
 use souple_math::Vec3;
 
 /// A command as it stands in recordings and snapshots.
@@ -28,6 +28,13 @@ pub fn command_to_json(command: &Command) -> Value {
             json!({
                 "kind": "grab", "system": system, "hand": hand, "place": place.to_array(),
                 "stiffness": stiffness, "damping": damping, "points": points.iter().map(held).collect::<Vec<_>>(),
+            })
+        }
+        Edit::Touch { system, hand, tool } => {
+            let Tool { shape, values, place, stiffness, rows } = tool;
+            json!({
+                "kind": "touch", "system": system, "hand": hand, "shape": shape, "values": values,
+                "place": place.to_array(), "stiffness": stiffness, "rows": rows,
             })
         }
         Edit::MoveHand { system, hand, place } => {
@@ -76,6 +83,20 @@ pub fn command_from_json(value: &Value) -> Result<Command, String> {
             let grip = Grip { points, place: vector("place")?, stiffness, damping };
             Edit::Grab { system, hand: index("hand")?, grip }
         }
+        Some("touch") => {
+            let rows = edit["rows"].as_array().ok_or("a command has no list `rows`")?;
+            let row = |row: &Value| row.as_u64().and_then(|row| u32::try_from(row).ok());
+            let rows: Option<Vec<u32>> = rows.iter().map(row).collect();
+            let values = edit["values"].as_array().ok_or("a command has no list `values`")?;
+            let tool = Tool {
+                shape: text("shape")?,
+                values: values.iter().map(tool_value_from_json).collect::<Result<_, String>>()?,
+                place: vector("place")?,
+                stiffness: number("stiffness")?,
+                rows: rows.ok_or("`rows` of a command holds something that is not a row")?,
+            };
+            Edit::Touch { system, hand: index("hand")?, tool }
+        }
         Some("move_hand") => Edit::MoveHand { system, hand: index("hand")?, place: vector("place")? },
         Some("release") => Edit::Release { system, hand: index("hand")? },
         other => return Err(format!("there is no command of kind {other:?}")),
@@ -95,6 +116,14 @@ fn held_from_json(value: &Value) -> Result<Held, String> {
     let row = value[0].as_u64().and_then(|row| u32::try_from(row).ok()).ok_or_else(wrong)?;
     let share = value[1].as_f64().ok_or_else(wrong)?;
     Ok(Held { row, share, offset: vector_of(&value[2], "offset")? })
+}
+
+/// `[name, numbers]`.
+fn tool_value_from_json(value: &Value) -> Result<(String, Vec<f64>), String> {
+    let wrong = || "a value of a tool is not `[name, numbers]`".to_owned();
+    let name = value[0].as_str().ok_or_else(wrong)?;
+    let numbers = value[1].as_array().ok_or_else(wrong)?.iter().map(Value::as_f64);
+    Ok((name.to_owned(), numbers.collect::<Option<_>>().ok_or_else(wrong)?))
 }
 
 #[cfg(test)]
@@ -119,6 +148,17 @@ mod tests {
                     0.3,
                     1e-3,
                 ),
+            },
+            Edit::Touch {
+                system: 1,
+                hand: 0,
+                tool: Tool {
+                    shape: "capsule".into(),
+                    values: vec![("radius".into(), vec![0.1]), ("to".into(), vec![0.0, 1.0 / 3.0, -5e-324])],
+                    place: Vec3::new(0.1, 0.7, -1.0 / 3.0),
+                    stiffness: 1e3 / 7.0,
+                    rows: vec![0, 7, 3],
+                },
             },
             Edit::Push { system: 0, blocks: 2..7, velocity: Vec3::new(0.1, -2.0, 3e-7) },
             Edit::MoveHand { system: 0, hand: 3, place: Vec3::new(0.1, -2.0, 3e-7) },

@@ -71,8 +71,14 @@ impl Course {
         if let Err(error) = self.frames.close(self.folder.as_mut(), &self.session) {
             status = self.session.fail(&error.into());
         }
-        let report = self.conclude(status, aims);
+        if let Err(error) = self.session.check_growth() {
+            status = self.session.fail(&error);
+        }
         let recording = self.session.recording();
+        if let Some(Err(error)) = options.record.as_ref().map(|path| recording.write(path)) {
+            status = self.session.fail(&RunError::Recording(error));
+        }
+        let report = self.conclude(status, aims);
         let replaced = self.folder.as_ref().map_or(0, OutputFolder::replaced);
         let Session { world, bodies, skins, .. } = self.session;
         Outcome { report, traces: self.traces, recording, world, bodies, skins, replaced }

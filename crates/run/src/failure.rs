@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use souple_engine::{StepError, World, WorldError};
 use souple_math::Vec3;
+use souple_models::frames::ROWS_OF_FRAME;
 use souple_scene::BodyInfo;
 
 /// What ended a run early.
@@ -22,8 +23,36 @@ pub struct Failure {
     pub period: u64,
     pub force: Option<String>,
     pub body: Option<String>,
-    /// Point of the body, and where it stood before the refused step [m].
-    pub point: Option<(usize, Vec3)>,
+    /// Where in the body.
+    pub spot: Option<Spot>,
+}
+
+/// What of a body a step is refused for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    pub part: Part,
+    /// Where it stood before the refused step [m].
+    pub position: Vec3,
+}
+
+/// A part of a body, by its number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Part {
+    Point(usize),
+    /// One of those that carry the body.
+    Frame(usize),
+}
+
+impl Part {
+    /// The part of a body that a row of its system is of, and the row of its place.
+    fn of_row(row: usize, body: &BodyInfo) -> Option<(Self, usize)> {
+        if body.rows.contains(&row) {
+            return Some((Self::Point(row - body.rows.start), row));
+        }
+        let origins = body.frames.as_ref()?.rows.iter().map(|origin| *origin as usize);
+        let of_frame = |(_, origin): &(usize, usize)| (*origin..*origin + ROWS_OF_FRAME).contains(&row);
+        origins.enumerate().find(of_frame).map(|(frame, origin)| (Self::Frame(frame), origin))
+    }
 }
 
 impl Failure {
@@ -36,7 +65,7 @@ impl Failure {
         };
         let row_of = |system: usize, block: usize| {
             let block = u32::try_from(block).ok()?;
-            world.model().systems[system].kinematics.point_block_row(block).map(|row| row as usize)
+            world.model().systems[system].kinematics.row_of_block(block).map(|row| row as usize)
         };
         let row = system.and_then(|system| match error.error.cause() {
             StepError::NewtonStalled { block, .. } => row_of(system, *block),
@@ -47,29 +76,36 @@ impl Failure {
             }
             _ => None,
         });
-        let body = row.and_then(|row| {
-            bodies.iter().find(|body| Some(body.system) == system && body.rows.contains(&row))
+        let found = row.and_then(|row| {
+            let mut own = bodies.iter().filter(|body| Some(body.system) == system);
+            own.find_map(|body| Some((body, Part::of_row(row, body)?)))
         });
         let force = match error.error.cause() {
             StepError::ForceNotFinite { force, .. } => Some(force.clone()),
             _ => None,
         };
-        let point =
-            body.zip(row).map(|(body, row)| (row - body.rows.start, world.rows(body.system).positions[row]));
-        let (period, body) = (world.state().period, body.map(|body| body.name.clone()));
-        Self { cause: Cause::Step(error), period, force, body, point }
+        let spot = found.map(|(body, (part, row))| {
+            let position = world.rows(body.system).positions[row];
+            Spot { part, position }
+        });
+        let (period, body) = (world.state().period, found.map(|(body, _)| body.name.clone()));
+        Self { cause: Cause::Step(error), period, force, body, spot }
     }
 
     /// Between two steps.
     pub fn between(message: String, period: u64) -> Self {
-        Self { cause: Cause::Between(message), period, force: None, body: None, point: None }
+        Self { cause: Cause::Between(message), period, force: None, body: None, spot: None }
     }
 
     /// One sentence, with the body and its point where they are known.
     pub fn message(&self) -> String {
-        let place = match (&self.body, self.point) {
-            (Some(body), Some((point, x))) => {
-                format!("; worst at point {point} of body `{body}`, at ({:.4}, {:.4}, {:.4})", x.x, x.y, x.z)
+        let place = match (&self.body, self.spot) {
+            (Some(body), Some(Spot { part, position: x })) => {
+                let part = match part {
+                    Part::Point(point) => format!("point {point}"),
+                    Part::Frame(frame) => format!("frame {frame}"),
+                };
+                format!("; worst at {part} of body `{body}`, at ({:.4}, {:.4}, {:.4})", x.x, x.y, x.z)
             }
             _ => String::new(),
         };
@@ -97,8 +133,45 @@ impl Failure {
             },
             "force": self.force,
             "body": self.body,
-            "point": self.point.map(|(point, _)| point),
-            "position": self.point.map(|(_, position)| position.to_array()),
+            "point": self.spot.and_then(|spot| match spot.part {
+                Part::Point(point) => Some(point),
+                Part::Frame(_) => None,
+            }),
+            "frame": self.spot.and_then(|spot| match spot.part {
+                Part::Frame(frame) => Some(frame),
+                Part::Point(_) => None,
+            }),
+            "position": self.spot.map(|spot| spot.position.to_array()),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// What a body of frames fails of is a frame of it: where the force is largest, where numbers end.
+    #[test]
+    fn failures_of_frames_name_their_body() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/ligament");
+        let text = std::fs::read_to_string(folder.join("scene.toml")).expect("the scene");
+        let failure = |stepper: &str| {
+            let settings = [format!("systems.main.stepper={stepper}"), "world.period=\"50 ms\"".to_owned()];
+            let scene = souple_scene::read_text("ligament", &text, &folder, &settings);
+            let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+            let mut world = scene.model.start(scene.state);
+            let error = (0..1000).find_map(|_| world.step().err()).expect("a refused step");
+            Failure::of_step(error, &world, &scene.bodies)
+        };
+        let stalled = "{ name = \"backward_euler\", newton_tolerance = 1e-300, newton_iterations = 1 }";
+        for stepper in [stalled, "\"symplectic_euler\""] {
+            let failure = failure(stepper);
+            assert_eq!(failure.body.as_deref(), Some("ligament"), "{failure:?}");
+            assert!(matches!(failure.spot, Some(Spot { part: Part::Frame(_), .. })), "{failure:?}");
+            assert!(failure.message().contains("of body `ligament`, at ("), "{}", failure.message());
+            assert!(failure.to_json()["frame"].is_u64());
+        }
     }
 }

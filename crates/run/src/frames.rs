@@ -145,7 +145,8 @@ fn precision_for(positions: &[Vec3]) -> Precision {
     if fits { Precision::Single } else { Precision::Double }
 }
 
-/// Displacement and velocity of every point, the weight of the frame that is shown, the level at work; stress and energy density of every cell.
+/// Displacement and velocity of every point, the weight of the frame that is shown, the level at work, the radius of a ball; stress and
+/// energy density of every cell, state and force of every link.
 pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let positions = &world.rows(body.system).positions[body.rows.clone()];
     let velocities = &world.rows(body.system).velocities[body.rows.clone()];
@@ -160,7 +161,11 @@ pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let levels = body.level_of_point(world);
     point_fields
         .extend(levels.map(|levels| Field::new("level", 1, levels.iter().map(|l| f64::from(*l)).collect())));
-    (point_fields, cell_fields(world, body))
+    let (radius, of_links) = crate::links::fields(world, body);
+    point_fields.extend(radius);
+    let mut of_cells = cell_fields(world, body);
+    of_cells.extend(of_links);
+    (point_fields, of_cells)
 }
 
 fn flat(vectors: &[Vec3]) -> Vec<f64> {

@@ -10,6 +10,7 @@ mod expect;
 mod failure;
 mod frames;
 mod frequencies;
+mod links;
 mod machine;
 mod output;
 mod picture;
@@ -30,9 +31,10 @@ use souple_table::readable;
 pub use command::{command_from_json, command_to_json};
 pub use duration::{Periods, periods_in};
 pub use expect::{Finding, Verdict, summary};
-pub use failure::{Cause, Failure};
+pub use failure::{Cause, Failure, Part, Spot};
 pub use frames::solid_of;
 pub use frequencies::{FrequencyError, NaturalFrequencies, natural_frequencies};
+pub use links::links_of;
 pub use machine::{binary, instruction_set, peak_bytes};
 pub use output::{MANIFEST, OutputError};
 pub use recording::{Divergence, Hashed, Recording, RecordingError};
@@ -58,6 +60,8 @@ pub struct Options {
     pub hash_every: Option<u64>,
     /// Periods between snapshots.
     pub snapshot_every: Option<u64>,
+    /// Where a recording of the run goes, if anywhere.
+    pub record: Option<PathBuf>,
     /// Continue from this state, with the edits before it.
     pub resume: Option<Snapshot>,
     /// Commands to re-execute, in order of their periods; those before the snapshot that is resumed are skipped.
@@ -98,6 +102,12 @@ pub enum RunError {
     Change { period: u64, error: ChangeError },
     #[error(transparent)]
     Output(#[from] OutputError),
+    #[error("the recording is lost: {0}")]
+    Recording(souple_io::IoError),
+    #[error(
+        "the simulation has blown up: body `{body}` is {growth:.0e} times as large as at rest; take shorter steps, an implicit stepper, or more damping"
+    )]
+    BlownUp { body: String, growth: f64 },
     #[error(
         "a duration of {} s is {share:.3e} of a period of {} s: no step would be made; a run lasts at least half a period",
         readable(*.duration), readable(*.period)
@@ -209,7 +219,5 @@ pub fn forecast_warnings(world: &mut World) -> Vec<String> {
             ));
         }
     }
-    let period = world.model().period;
-    warnings.extend(world.model().couplings.iter().filter_map(|coupling| coupling.forecast(period)));
     warnings
 }

@@ -24,15 +24,23 @@ pub const FRAMES: &str = "frames";
 pub enum OutputError {
     #[error("the folder `{}` cannot be made: {source}", .path.display())]
     Folder { path: PathBuf, source: std::io::Error },
-    #[error("`{}` is no folder; results go into one, made where there is nothing", .path.display())]
+    #[error(
+        "`{}` is a file, and results go into a folder; choose another name, it is made if missing",
+        .path.display()
+    )]
     NoFolder { path: PathBuf },
     #[error(
-        "`{}` was not written by a run (it is not listed in `{MANIFEST}` beside it) and would be overwritten; move it away or choose another folder",
+        "`{}` would be overwritten, and no run has written it: `{MANIFEST}` of its folder does not list it; move it away, or choose a folder without it",
         .path.display()
     )]
     Foreign { path: PathBuf },
     #[error(
-        "`{}` holds results of an earlier run (`{example}`), which a resumed run would replace by its own part; choose another folder",
+        "`{}` is no list of what a run has written, and a run would put its own there; move it away, or choose a folder without it",
+        .path.display()
+    )]
+    ForeignList { path: PathBuf },
+    #[error(
+        "`{}` holds results of an earlier run (`{example}`), which a resumed run would replace by its own part; choose a folder without results",
         .folder.display()
     )]
     WouldLoseResults { folder: PathBuf, example: String },
@@ -168,13 +176,13 @@ fn read_list(root: &Path) -> Result<BTreeSet<String>, OutputError> {
     let text = match fs::read_to_string(&path) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::InvalidData => {
-            return Err(OutputError::Foreign { path });
+            return Err(OutputError::ForeignList { path });
         }
         Err(_) => return Ok(BTreeSet::new()),
     };
     let mut lines = text.lines();
     if lines.next() != Some(HEADER) {
-        return Err(OutputError::Foreign { path });
+        return Err(OutputError::ForeignList { path });
     }
     let mut names = BTreeSet::new();
     for (index, name) in lines.enumerate() {
@@ -264,7 +272,7 @@ mod tests {
         assert!(matches!(OutputFolder::open(&folder.0, &plan), Err(OutputError::Foreign { .. })));
         assert_eq!(folder.names(), [MANIFEST, "probes.csv", "report.json"]);
         folder.write(MANIFEST);
-        assert!(matches!(OutputFolder::open(&folder.0, &ANY), Err(OutputError::Foreign { .. })));
+        assert!(matches!(OutputFolder::open(&folder.0, &ANY), Err(OutputError::ForeignList { .. })));
     }
 
     /// A resumed run keeps what it goes on from, and does not take the place of other results.

@@ -11,9 +11,11 @@ use souple_scene::{
 };
 
 use crate::failure::Failure;
+use crate::frames::solid_of;
 use crate::machine::peak_bytes;
 use crate::recording::Recording;
 use crate::report::{AroundSteps, Report, Status, counts};
+use crate::show::{MOST_GROWTH, growth};
 use crate::snapshot_file::{snapshot_bytes, write_snapshot};
 use crate::{Options, RunError, forecast_warnings};
 
@@ -116,6 +118,21 @@ impl Session {
             Err(error) => self.failure = Some(Failure::of_step(error, &self.world, &self.bodies)),
         }
         self.failure.is_none()
+    }
+
+    /// Whether all solids are of a size that a solid may have; masses of a network may fly apart as they like.
+    ///
+    /// # Errors
+    /// The first that has blown up: its points are no results, though they are finite.
+    pub(crate) fn check_growth(&self) -> Result<(), RunError> {
+        for body in self.bodies.iter().filter(|body| solid_of(self.world.model(), body).is_some()) {
+            let positions = &self.world.rows(body.system).positions[body.rows.clone()];
+            let growth = growth(&body.mesh.points, positions);
+            if growth > MOST_GROWTH {
+                return Err(RunError::BlownUp { body: body.name.clone(), growth });
+            }
+        }
+        Ok(())
     }
 
     /// Notes what ends the run between two steps; what comes after a first failure is a warning.

@@ -3,7 +3,11 @@
 //! Each has the path that `--set` takes. What is not listed can be set too, as long as the world it makes has the same
 //! unknowns and memories.
 
+use std::collections::BTreeSet;
+
+use souple_formal::Formula;
 use souple_math::Vec3;
+use souple_models::network::BuildLink;
 use souple_table::{Kind, Parameter, Range, Value};
 
 use crate::compile::constant_vector;
@@ -11,7 +15,9 @@ use crate::keys::{Key, Keys, Shape};
 use crate::reader::Chosen;
 use crate::spec::Spec;
 use crate::spec::body::{BODY, Body, DAMPING};
+use crate::spec::boundary::{LOAD, LoadKind, SPRING};
 use crate::spec::contact::CONTACT;
+use crate::spec::network::Network;
 use crate::spec::world::WORLD;
 
 /// A value that may be set.
@@ -75,6 +81,23 @@ fn of_body(body: &Body) -> Vec<Adjustable> {
             all.extend(of_chosen(material, &format!("{path}.regions.{}.material", region.name), &group));
         }
     }
+    for (index, load) in body.loads.iter().enumerate() {
+        all.extend(
+            load.kind.as_ref().and_then(|kind| of_load(kind, &format!("{path}.loads[{index}]"), &body.name)),
+        );
+    }
+    for (index, spring) in body.springs.iter().enumerate() {
+        let (path, group) = (format!("{path}.springs[{index}]"), format!("{}: spring {index}", body.name));
+        all.extend(of_key(&SPRING, "stiffness", &path, &group, Some(number(spring.stiffness))));
+        all.extend(of_key(&SPRING, "damping", &path, &group, Some(number(spring.damping))));
+    }
+    // laws where they are written: of several tables of links that share one, once
+    let mut seen = BTreeSet::new();
+    for law in body.network.iter().flat_map(laws_of) {
+        if seen.insert(law.site.path.clone()) {
+            all.extend(of_chosen(law, &law.site.path, &format!("{}: {}", body.name, law.entry.name)));
+        }
+    }
     // damping that was not there before would be a force that the state has no memory of
     let group = format!("{}: damping", body.name);
     let damping = body.damping;
@@ -92,6 +115,28 @@ fn of_body(body: &Body) -> Vec<Adjustable> {
         }
     }
     all
+}
+
+/// A load of numbers; formulas are not for panels.
+fn of_load(kind: &LoadKind, path: &str, body: &str) -> Option<Adjustable> {
+    let constant = |formula: &Formula| {
+        let count = formula.variables().len();
+        (!(0..count).any(|variable| formula.depends_on(variable)))
+            .then(|| formula.evaluate(&vec![0.0; count]))
+    };
+    let (name, value) = match kind {
+        LoadKind::Force(formulas, _) => ("force", vector(constant_vector(formulas)?)),
+        LoadKind::Traction(formulas) => ("traction", vector(constant_vector(formulas)?)),
+        LoadKind::BodyForce(formulas) => ("body_force", vector(constant_vector(formulas)?)),
+        LoadKind::Pressure(formula) => ("pressure", number(constant(formula)?)),
+    };
+    of_key(&LOAD, name, path, &format!("{body}: load"), Some(value))
+}
+
+/// The laws of links and crowds.
+fn laws_of(network: &Network) -> impl Iterator<Item = &Chosen<BuildLink>> {
+    let of_crowds = network.crowds.iter().filter_map(|crowd| crowd.law.as_ref());
+    network.links.iter().filter_map(|table| table.law.as_ref()).chain(of_crowds)
 }
 
 /// The parameters of a chosen thing that are numbers, choices and the like; formulas are not for panels.

@@ -64,6 +64,9 @@ pub struct BodyInfo {
     pub force: String,
     /// What carries it, where that is not its points.
     pub frames: Option<FramesInfo>,
+    /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
+    /// where no body is a network.
+    pub radii: Vec<f64>,
 }
 
 /// The frames that carry a body.
@@ -71,6 +74,8 @@ pub struct BodyInfo {
 pub struct FramesInfo {
     /// Row of each frame's origin; the rows of its axes follow.
     pub rows: Vec<u32>,
+    /// Origin and axes of each frame at rest, in the order of the rows.
+    pub rest: Vec<Vec3>,
     /// Of each point of the mesh: the weight of the frame that is shown.
     pub influence: Vec<f64>,
 }
@@ -115,7 +120,7 @@ impl BodyInfo {
         Some(census(world, self.system, &self.force)?.level_of_point)
     }
 
-    pub(crate) fn new(placed: Placed) -> Self {
+    pub(crate) fn new(placed: Placed, radii: Vec<f64>) -> Self {
         let Placed { spec, system, rows, mesh, frames, .. } = placed;
         let surface = mesh.boundary_surface();
         let force = crate::compile::solid_name(&spec.name);
@@ -125,9 +130,13 @@ impl BodyInfo {
                 let place = carried.frames.binary_search(&shown);
                 place.map_or(0.0, |place| carried.rows[place][0].0)
             };
-            FramesInfo { influence: frames.carried_points.iter().map(weight).collect(), rows: frames.rows }
+            FramesInfo {
+                influence: frames.carried_points.iter().map(weight).collect(),
+                rest: frames.configuration().collect(),
+                rows: frames.rows,
+            }
         });
-        Self { name: spec.name.clone(), system, rows, mesh, surface, force, frames }
+        Self { name: spec.name.clone(), system, rows, mesh, surface, force, frames, radii }
     }
 }
 

@@ -145,11 +145,16 @@ impl<'a> Reading<'a> {
         let Content::Text(text) = &self.node.content else {
             return self.number(unit, Range::ANY, expected).map(Formula::constant);
         };
-        if let Ok(number) = quantity_in(text, unit) {
-            return Some(Formula::constant(number));
-        }
+        let wrong_unit = match quantity_in(text, unit) {
+            Ok(number) => return Some(Formula::constant(number)),
+            Err(error) => error,
+        };
         match Formula::compile(text, variables) {
             Ok(formula) => Some(formula),
+            // a number with a unit, and not one of those that are wanted
+            Err(_) if parse_quantity(text).is_ok() => {
+                self.refuse(Code::WrongUnit, wrong_unit.to_string(), expected)
+            }
             Err(error) => self.refuse(Code::BadFormula, error.to_string(), expected),
         }
     }

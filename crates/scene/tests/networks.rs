@@ -77,6 +77,29 @@ fn wrong_networks_are_refused_in_words() {
     );
 }
 
+/// What no memory holds is refused before it is made, in all the ways that a network grows.
+#[test]
+fn networks_that_no_memory_holds_are_refused() {
+    let lattice = |name: &str, counts: &str| {
+        format!(
+            "[networks.n.masses.{name}]\nlattice = {{ spacing = 1e-9, counts = {counts} }}\nmass = 1e-9\n"
+        )
+    };
+    let cube = lattice("a", "[100, 100, 100]");
+    let links = |how: &str| format!("{cube}[[networks.n.links]]\n{SPRING}\n{how}\n");
+    refused(
+        &format!("{}{}", lattice("a", "[1000, 1000, 60]"), lattice("b", "[1000, 1000, 60]")),
+        &["120000000 masses", "at most 1e8"],
+    );
+    // 5e11 links of 80 bytes
+    refused(&links("all = true"), &["needs at least 40000.5 GB", "1000000 masses", "499999500000 links"]);
+    refused(&links("reach = 1"), &["links of at most 1 m", "a shorter reach"]);
+    let crowd = "[[networks.n.crowds]]\nlaw = { name = \"ball\", threshold = 1, stiffness = 1 }\n";
+    refused(&format!("{cube}{crowd}"), &["more pairs", "a shorter range"]);
+    refused(&linked(&format!("{SPRING}\nchain = false")), &["`chain = false` joins nothing"]);
+    refused(&linked(&format!("{SPRING}\nreach = 1e-300")), &["no masses are joined"]);
+}
+
 /// Two free masses of 2 kg on a spring bear `k Te² < 2 · 2 kg`.
 #[test]
 fn unstable_networks_are_warned_of() {

@@ -452,7 +452,7 @@ fn faulty_requests() {
         (&["run", "cube.toml", "--out", "out", "--set", "world.period=abc"], 2, "world.period"),
         (&["run", "cube.toml", "--out", "out", "--set", "world.period=-1"], 2, "world.period"),
         (&["run", "cube.toml", "other.toml"], 2, "other.toml"),
-        (&["run", "cube.toml", "--out", "file"], 1, "file"),
+        (&["run", "cube.toml", "--out", "file"], 2, "file"),
         (&["run", "cube.toml", "--out", "file/below"], 1, "file/below"),
         (&["run", "cube.toml", "--quiet", "--record", "nowhere/run.json"], 1, "nowhere/run.json"),
         (&["run", "cube.toml", "--quiet", "--record", "made"], 1, "made"),

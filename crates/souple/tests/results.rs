@@ -52,7 +52,10 @@ fn foreign_results_are_not_overwritten() {
     std::fs::create_dir(folder.path().join("out")).expect("a folder");
     folder.write("out/report.json", "mine");
     let answer = souple(["run", &scene, "--quiet", "--out", &folder.at("out")]).ends(2);
-    assert!(answer.stderr.contains("report.json` was not written by a run"), "{answer:#?}");
+    assert!(
+        answer.stderr.contains("report.json` would be overwritten, and no run has written it"),
+        "{answer:#?}"
+    );
     assert_eq!(below(&folder, "out"), ["report.json"]);
 }
 
@@ -74,7 +77,7 @@ fn resumed_runs_end_with_their_scene() {
     assert_eq!(longer["steps"], 8);
     let before = below(&folder, "out");
     let answer = souple(resume.iter().chain(&["--out", &out])).ends(2);
-    assert!(answer.stderr.contains("choose another folder"), "{answer:#?}");
+    assert!(answer.stderr.contains("choose a folder without results"), "{answer:#?}");
     assert_eq!(below(&folder, "out"), before);
     let end = folder.at("out/snapshot_00000010.souple");
     let answer = souple(["run", &scene, "--json", "--quiet", "--resume", &end]).ends(0);

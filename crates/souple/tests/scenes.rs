@@ -1,23 +1,9 @@
-//! Every shipped scene, through the program: it runs, its energies are finite, what it says must be observed is.
-//!
-//! Long scenes are cut after some steps here; with `SOUPLE_SLOW=1` in the environment all run as they are.
+//! Every shipped scene is in the table of the validation cases and valid, and expectations are judged and reported. That
+//! scenes run, and that what they expect is observed, is tested from outside, in `tests/end_to_end`.
 
 mod common;
 
-use common::{assert_finite, assert_report, scene_names, scenes, souple};
-
-/// Scenes that take too long for every day, and the steps they are cut after.
-const CUT: &[(&str, u64)] = &[
-    ("cantilever_dynamic", 25),
-    ("collision", 1500),
-    ("hanging_cube", 5),
-    ("incline_slides", 20),
-    ("incline_sticks", 20),
-    ("liver", 10),
-    ("soft_block", 10),
-    ("twisted_bar", 10),
-    ("two_materials", 25),
-];
+use common::{scene_names, scenes, souple};
 
 /// What is legal and doubtful in a scene, and said.
 const WARNS: &[(&str, &str)] = &[("rubber_as_text", "inverted elements have no energy")];
@@ -29,10 +15,6 @@ fn assert_warnings(name: &str, warnings: &serde_json::Value) {
     let known: Vec<&str> = WARNS.iter().filter(|(scene, _)| *scene == name).map(|(_, text)| *text).collect();
     let fits = said.len() == known.len() && said.iter().zip(&known).all(|(said, known)| said.contains(known));
     assert!(fits, "{name} warns {said:?}");
-}
-
-fn runs_whole() -> bool {
-    std::env::var_os("SOUPLE_SLOW").is_some_and(|value| value == "1")
 }
 
 /// The folder and the table of the validation cases hold the same scenes.
@@ -51,9 +33,6 @@ fn every_scene_is_in_the_table() {
             "{name} is not what was compiled"
         );
     }
-    for (name, _) in CUT {
-        assert!(table.contains(name), "there is no scene {name} to cut");
-    }
 }
 
 /// Each scene is valid, says what it shows, and expects something.
@@ -70,40 +49,6 @@ fn every_scene_is_valid() {
             assert!(text.contains(wanted), "{name} has no `{wanted}`");
         }
     }
-}
-
-/// Each scene ends `done`, without warnings, with finite energies and probes; whole, its `expect` lines hold.
-#[test]
-fn every_scene_runs() {
-    let mut failures = Vec::new();
-    for name in scene_names() {
-        let path = scenes().join(&name).display().to_string();
-        let cut = CUT.iter().find(|(cut, _)| *cut == name).map(|(_, steps)| *steps).filter(|_| !runs_whole());
-        let mut arguments = vec!["run".to_owned(), path, "--json".to_owned(), "--quiet".to_owned()];
-        if let Some(steps) = cut {
-            arguments.extend(["--steps".to_owned(), steps.to_string()]);
-        }
-        let answer = souple(&arguments);
-        if answer.status != Some(0) {
-            failures.push(format!("{name}: status {:?}: {}", answer.status, answer.stderr));
-            continue;
-        }
-        let report = answer.json();
-        assert_report(&report);
-        assert_eq!(report["status"], "done", "{name}");
-        assert_warnings(&name, &report["warnings"]);
-        if let Some(steps) = cut {
-            assert_eq!(report["steps"], steps, "{name}");
-        }
-        // of a whole run no expectation is left without a judgement
-        let expectations = report["expectations"].as_array().cloned().unwrap_or_default();
-        let holds = expectations.iter().all(|expectation| expectation["status"] == "holds");
-        assert!(!expectations.is_empty() && (cut.is_some() || holds), "{name}: {expectations:#?}");
-        for part in ["energy", "momentum", "probes", "counts", "stages_ms", "solver"] {
-            assert_finite(&format!("{name}.{part}"), &report[part]);
-        }
-    }
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
 /// An `expect` line that does not hold ends a whole run with status 1 and says so; a run cut before its moment

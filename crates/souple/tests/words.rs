@@ -86,6 +86,22 @@ fn small_courtesies() {
     assert!(!souple(same).ends(0).stdout.contains("-0"));
 }
 
+/// A law as text is described with its moduli at small strain, both ways: λ = 20 kPa and μ = 10 kPa are
+/// `E = μ(3λ + 2μ)/(λ + μ) = 80/3 kPa` and `ν = λ/2(λ + μ) = 1/3`.
+#[test]
+fn laws_are_described_with_their_moduli() {
+    let told = souple(["describe", "st_venant_kirchhoff"]).ends(0);
+    let line = "at small strain: lambda = 20000 Pa, mu = 10000 Pa; E = 26667 Pa, nu = 0.333333";
+    assert!(told.stdout.contains(line), "{told:#?}");
+    let pages = souple(["describe", "neo_hookean", "--json"]).ends(0).json();
+    let law = pages.as_array().and_then(|pages| pages.iter().find(|page| page["kind"] == "law"));
+    let moduli = &law.expect("the law")["small_strain"];
+    let number = |key: &str| moduli[key].as_f64().expect("a number");
+    // the tangent at rest is derived by machine, in doubles
+    assert!((number("youngs_modulus") / (80e3 / 3.0) - 1.0).abs() < 1e-12, "{moduli}");
+    assert!((number("poissons_ratio") - 1.0 / 3.0).abs() < 1e-12, "{moduli}");
+}
+
 /// Laws that `derive` knows can be listed and described; their names are those of this program.
 #[test]
 fn laws_are_listed() {

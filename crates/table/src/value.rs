@@ -25,6 +25,12 @@ pub fn readable(number: f64) -> String {
     if is_plain { number.to_string() } else { format!("{number:e}") }
 }
 
+/// A count with its noun: `1 step`, `2 steps`.
+pub fn counted(count: u64, noun: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{ending}")
+}
+
 impl fmt::Display for Value<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

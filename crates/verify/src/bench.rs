@@ -4,6 +4,7 @@ mod frames;
 mod levels;
 mod links;
 mod timing;
+mod view;
 
 use std::fmt;
 use std::time::Instant;
@@ -11,6 +12,7 @@ use std::time::Instant;
 use serde_json::{Value, json};
 use souple_run::{Control, Options};
 use souple_scene::Scene;
+use souple_table::counted;
 
 use timing::{Held, Timing, as_it_is, bend, median, scene, with_threads};
 
@@ -48,7 +50,7 @@ pub struct Figure {
     pub higher_is_better: bool,
     /// How wrong the result is that this speed gives.
     pub error: f64,
-    /// What the error is of.
+    /// What the error is of; empty where there is nothing to be wrong.
     pub error_of: String,
     /// What it is held against.
     pub baseline: Option<f64>,
@@ -148,6 +150,16 @@ pub const BENCHES: &[Bench] = &[
         run: levels::adaptive_saving,
     },
     Bench {
+        name: "view_frame_20k",
+        what: "a frame for the browser of a bar with 20,800 triangles, coloured, on the thread of the world [ms]",
+        run: view::frame_20k,
+    },
+    Bench {
+        name: "view_rate",
+        what: "frames that a client on this machine gets of the falling block, and from its hand to the frame [frames/s, ms]",
+        run: view::rate,
+    },
+    Bench {
         name: "static_100k",
         what: "equilibrium of the reference bar, n = 12, St. Venant-Kirchhoff, to 1e-8 [s]",
         run: static_100k,
@@ -183,17 +195,19 @@ impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{:38} {:>12.4} {} (spread {:.0} %, {} threads, {} samples, {:.1} MB; error {:.1e} of {})",
+            "{:38} {:>12.4} {} (spread {:.0} %, {}, {}, {:.1} MB",
             self.name,
             self.value,
             self.unit,
             100.0 * self.spread,
-            self.threads,
-            self.samples,
+            counted(self.threads as u64, "thread"),
+            counted(self.samples as u64, "sample"),
             self.bytes as f64 * 1e-6,
-            self.error,
-            self.error_of
-        )
+        )?;
+        if !self.error_of.is_empty() {
+            write!(f, "; error {:.1e} of {}", self.error, self.error_of)?;
+        }
+        write!(f, ")")
     }
 }
 
@@ -460,7 +474,7 @@ fn startup(effort: Effort) -> Result<Vec<Figure>, String> {
         unit: "ms",
         higher_is_better: false,
         error: 0.0,
-        error_of: "nothing: a list has no error".to_owned(),
+        error_of: String::new(),
         baseline: None,
         threads: 1,
         samples: count,

@@ -136,6 +136,7 @@ impl Case {
             "reference": self.reference,
             "tolerance": self.tolerance.absolute(self.reference),
             "source": self.source,
+            "mutation": self.mutation,
         });
         if let Some(refinement) = &self.refinement {
             row["order_of"] = json!(refinement.size_of);

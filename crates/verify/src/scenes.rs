@@ -51,6 +51,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("traction", include_str!("../../../scenes/traction/scene.toml")),
     ("twisted_bar", include_str!("../../../scenes/twisted_bar/scene.toml")),
     ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
+    ("wall_cube", include_str!("../../../scenes/wall_cube/scene.toml")),
 ];
 
 /// The text of a scene.

@@ -1,11 +1,14 @@
-//! What surfaces may be coloured by.
+//! What bodies may be coloured by, and what arrows may show.
 
 use rayon::prelude::*;
-use souple_engine::{CellField, World};
+use souple_engine::{CellField, LinkShown, World};
+use souple_math::Vec3;
 use souple_scene::BodyInfo;
 use souple_table::{Entry, Table};
 
-/// A number at each point of a surface.
+use crate::session::Shown;
+
+/// A number at each point of a body, or of each of its links.
 #[derive(Clone, Copy)]
 pub struct Field {
     pub unit: &'static str,
@@ -15,121 +18,165 @@ pub struct Field {
 /// Where the number comes from.
 #[derive(Clone, Copy)]
 pub enum Source {
-    /// Of a point, by its number in the body.
+    /// Of a point, by its number in the mesh.
     Point(fn(&World, &BodyInfo, usize) -> f64),
+    /// Of each point of the mesh, where the body has such a thing.
+    Weights(fn(&BodyInfo) -> Option<&[f64]>),
     /// Of the cells about a point, in the mean.
     Cells(fn(&CellField) -> f64),
+    /// Of a link.
+    Links(fn(&LinkShown) -> f64),
+}
+
+const fn entry(
+    name: &'static str,
+    unit: &'static str,
+    source: Source,
+    summary: &'static str,
+) -> Entry<Field> {
+    Entry { name, summary, source: "", parameters: &[], build: Field { unit, source } }
 }
 
 /// All fields; adding one is a line.
 pub static FIELDS: Table<Field> = Table {
     kind: "field",
     entries: &[
+        &entry("displacement", "m", Source::Point(displacement), "how far points are from where they rest"),
+        &entry("speed", "m/s", Source::Point(speed), "how fast points move"),
         &Entry {
-            name: "displacement",
-            summary: "how far points are from where they rest",
-            source: "",
-            parameters: &[],
-            build: Field { unit: "m", source: Source::Point(displacement) },
-        },
-        &Entry {
-            name: "speed",
-            summary: "how fast points move",
-            source: "",
-            parameters: &[],
-            build: Field { unit: "m/s", source: Source::Point(speed) },
-        },
-        &Entry {
-            name: "von_mises",
-            summary: "von Mises stress",
             source: "von Mises 1913",
-            parameters: &[],
-            build: Field { unit: "Pa", source: Source::Cells(|field| field.von_mises) },
+            ..entry("von_mises", "Pa", Source::Cells(|field| field.von_mises), "von Mises stress")
         },
-        &Entry {
-            name: "strain_energy_density",
-            summary: "stored energy per volume at rest",
-            source: "",
-            parameters: &[],
-            build: Field { unit: "J/m³", source: Source::Cells(|field| field.energy_density) },
-        },
-        &Entry {
-            name: "volume_ratio",
-            summary: "volume over volume at rest",
-            source: "",
-            parameters: &[],
-            build: Field { unit: "", source: Source::Cells(|field| field.current_volume / field.volume) },
-        },
+        &entry(
+            "strain_energy_density",
+            "J/m³",
+            Source::Cells(|field| field.energy_density),
+            "stored energy per volume at rest",
+        ),
+        &entry(
+            "volume_ratio",
+            "",
+            Source::Cells(|field| field.current_volume / field.volume),
+            "volume over volume at rest",
+        ),
+        &entry(
+            "influence",
+            "",
+            Source::Weights(|body| body.frames.as_ref().map(|frames| frames.influence.as_slice())),
+            "the weight of one of the frames that carry a body",
+        ),
+        &entry(
+            "link_force",
+            "N",
+            Source::Links(|link| link.push),
+            "of links, positive where they push their ends apart",
+        ),
     ],
 };
 
+/// A vector at each point of a body.
+pub type Vectors = fn(&World, &BodyInfo) -> Vec<Vec3>;
+
+/// All that arrows show; adding one is a line. Vectors are those of all points of the mesh.
+pub static ARROWS: Table<ArrowKind> = Table {
+    kind: "arrow",
+    entries: &[
+        &arrow("displacement", "m", displacements, "from where points rest to where they are"),
+        &arrow("velocity", "m/s", |world, body| rows(world, body).1.to_vec(), "how points move"),
+        &arrow("contact_force", "N", contact_forces, "of all that points touch, on them"),
+    ],
+};
+
+/// What arrows show.
+#[derive(Clone, Copy)]
+pub struct ArrowKind {
+    pub unit: &'static str,
+    pub vectors: Vectors,
+}
+
+const fn arrow(
+    name: &'static str,
+    unit: &'static str,
+    vectors: Vectors,
+    summary: &'static str,
+) -> Entry<ArrowKind> {
+    Entry { name, summary, source: "", parameters: &[], build: ArrowKind { unit, vectors } }
+}
+
+/// Positions and velocities of a body's points.
+fn rows<'a>(world: &'a World, body: &BodyInfo) -> (&'a [Vec3], &'a [Vec3]) {
+    let rows = world.rows(body.system);
+    (&rows.positions[body.rows.clone()], &rows.velocities[body.rows.clone()])
+}
+
 fn displacement(world: &World, body: &BodyInfo, point: usize) -> f64 {
-    (world.rows(body.system).positions[body.rows.start + point] - body.mesh.points[point]).length()
+    (rows(world, body).0[point] - body.mesh.points[point]).length()
 }
 
 fn speed(world: &World, body: &BodyInfo, point: usize) -> f64 {
-    world.rows(body.system).velocities[body.rows.start + point].length()
+    rows(world, body).1[point].length()
 }
 
-/// The cells about the points of a body's surface.
-pub struct SurfaceCells {
-    /// Each once.
-    cells: Vec<u32>,
-    /// Where those of each point begin in `of_points`, and the end of the last.
-    starts: Vec<u32>,
-    /// Places in `cells`.
-    of_points: Vec<u32>,
+fn displacements(world: &World, body: &BodyInfo) -> Vec<Vec3> {
+    rows(world, body).0.iter().zip(&body.mesh.points).map(|(now, rest)| *now - *rest).collect()
 }
 
-impl SurfaceCells {
-    pub fn new(body: &BodyInfo) -> Self {
-        let mut surface_point = vec![u32::MAX; body.mesh.points.len()];
-        for (index, point) in body.surface.mesh_points.iter().enumerate() {
-            surface_point[*point as usize] = index as u32;
+fn contact_forces(world: &World, body: &BodyInfo) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; body.rows.len()];
+    let mut add = |row: u32, force: Vec3| {
+        if body.rows.contains(&(row as usize)) {
+            sums[row as usize - body.rows.start] += force;
         }
-        let mut cells = Vec::new();
-        let mut pairs = Vec::new();
-        for (number, cell) in body.mesh.cells().enumerate() {
-            let on_surface = cell.nodes.iter().map(|node| surface_point[*node as usize]);
-            let before = pairs.len();
-            pairs.extend(
-                on_surface.filter(|point| *point != u32::MAX).map(|point| (point, cells.len() as u32)),
-            );
-            if pairs.len() > before {
-                cells.push(number as u32);
-            }
-        }
-        pairs.sort_unstable();
-        let mut starts = vec![0; body.surface.mesh_points.len() + 1];
-        pairs.iter().for_each(|(point, _)| starts[*point as usize + 1] += 1);
-        for point in 1..starts.len() {
-            starts[point] += starts[point - 1];
-        }
-        Self { cells, starts, of_points: pairs.into_iter().map(|(_, cell)| cell).collect() }
-    }
+    };
+    world.visit_forces(body.system, &mut |force, at| {
+        force.visit_contacts(at, &mut |point| {
+            let force = point.normal_force + point.friction;
+            add(point.row, force);
+            point.against.iter().for_each(|(row, weight)| add(*row, -force * *weight));
+        });
+    });
+    sums
 }
 
 impl Field {
-    /// A value at each point of a body's surface; `None` where the body has no such field.
-    pub fn at_surface(&self, world: &World, body: &BodyInfo, cells: &SurfaceCells) -> Option<Vec<f32>> {
+    /// A value at each point that is shown of a body, or at each of its `links`; `None` where it has no such field.
+    pub fn values(
+        &self,
+        world: &World,
+        body: &BodyInfo,
+        shown: &Shown,
+        with_inside: bool,
+        links: &[LinkShown],
+    ) -> Option<Vec<f32>> {
+        let points = &shown.points[..shown.count(with_inside)];
         match self.source {
             Source::Point(value) => {
-                let points = body.surface.mesh_points.iter();
-                Some(points.map(|point| value(world, body, *point as usize) as f32).collect())
+                Some(points.iter().map(|point| value(world, body, *point as usize) as f32).collect())
+            }
+            Source::Weights(weights) => {
+                let weights = weights(body)?;
+                Some(points.iter().map(|point| weights[*point as usize] as f32).collect())
             }
             Source::Cells(value) => {
                 let solid = souple_run::solid_of(world.model(), body)?;
                 let positions = &world.rows(body.system).positions;
                 let of_cell = |cell: &u32| Some(value(&solid.cell_field(*cell as usize, positions)?));
-                let values: Option<Vec<f64>> = cells.cells.par_iter().map(of_cell).collect();
-                let values = values?;
-                let mean = |range: &[u32]| {
-                    let about = &cells.of_points[range[0] as usize..range[1] as usize];
-                    let sum: f64 = about.iter().map(|cell| values[*cell as usize]).sum();
-                    (sum / about.len() as f64) as f32
-                };
-                Some(cells.starts.windows(2).map(mean).collect())
+                let about = shown.cells_about(body, with_inside);
+                let values: Option<Vec<f64>> = about.cells.par_iter().map(of_cell).collect();
+                Some(about.means(&values?))
             }
+            Source::Links(value) if !links.is_empty() => {
+                Some(links.iter().map(|link| value(link) as f32).collect())
+            }
+            Source::Links(_) => None,
+        }
+    }
+
+    /// What the values belong to, for pages.
+    pub fn of(&self) -> &'static str {
+        match self.source {
+            Source::Links(_) => "links",
+            Source::Point(_) | Source::Weights(_) | Source::Cells(_) => "points",
         }
     }
 }

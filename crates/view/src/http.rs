@@ -9,6 +9,8 @@ const HEAD_MAX: usize = 16 * 1024;
 const HEADERS_MAX: usize = 64;
 /// How long a client may take to say what it wants.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// How long it may take to send a file.
+const BODY_PATIENCE: Duration = Duration::from_secs(60);
 
 /// The head of a request.
 #[derive(Clone, Debug, Default)]
@@ -103,6 +105,39 @@ impl Request {
             .find(|(key, _)| *key == name)
             .map(|pair| pair.1)
     }
+
+    /// Reads what comes after the head, of the length that it says.
+    ///
+    /// # Errors
+    /// No length, one beyond `most`, or a client that does not send so much.
+    pub fn body(&mut self, stream: &mut TcpStream, most: usize) -> Result<Vec<u8>, Rejection> {
+        let length = self.header("content-length").and_then(|text| text.trim().parse::<usize>().ok());
+        let length = length.ok_or_else(|| Rejection::new(411, "there is no Content-Length"))?;
+        if length > most {
+            return Err(Rejection::new(
+                413,
+                format!("{length} bytes are more than the {most} that are taken"),
+            ));
+        }
+        let mut body = std::mem::take(&mut self.rest);
+        let deadline = Instant::now() + BODY_PATIENCE;
+        let mut buffer = vec![0; 64 * 1024];
+        while body.len() < length {
+            let left = deadline.saturating_duration_since(Instant::now());
+            let cut_off = || Rejection::new(400, "the file broke off");
+            if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
+                return Err(cut_off());
+            }
+            match stream.read(&mut buffer) {
+                Ok(0) => return Err(cut_off()),
+                Ok(count) => body.extend_from_slice(&buffer[..count]),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(_) => return Err(cut_off()),
+            }
+        }
+        body.truncate(length);
+        Ok(body)
+    }
 }
 
 /// What is sent back.
@@ -122,6 +157,8 @@ fn reason(status: u16) -> &'static str {
         403 => "Forbidden",
         404 => "Not Found",
         405 => "Method Not Allowed",
+        411 => "Length Required",
+        413 => "Content Too Large",
         426 => "Upgrade Required",
         431 => "Request Header Fields Too Large",
         _ => "Service Unavailable",

@@ -5,15 +5,18 @@
 //! do holds up the world. The protocol is in `docs/protocol.md`.
 
 mod catalogue;
+mod dropped;
 mod fields;
 mod guard;
 mod http;
 mod hub;
+pub mod measure;
 mod page;
 mod protocol;
 mod server;
 mod session;
 mod socket;
+mod tools;
 
 pub use catalogue::Catalogue;
 pub use server::{Options, ViewError, Viewer};

@@ -9,9 +9,11 @@ use std::time::Duration;
 use souple_scene::Scene;
 
 use crate::catalogue::Catalogue;
+use crate::dropped::{DropFolder, FILE_MAX, scene_of};
 use crate::guard::Guard;
 use crate::http::{Rejection, Request, Response};
-use crate::hub::Hub;
+use crate::hub::{Hub, PageId};
+use crate::protocol::Wish;
 use crate::session::{Answer, Input, Question, Start};
 use crate::{page, socket};
 
@@ -48,6 +50,7 @@ pub enum ViewError {
 pub struct Viewer {
     address: String,
     inputs: SyncSender<Input>,
+    dropped: Arc<DropFolder>,
 }
 
 struct Server {
@@ -55,6 +58,7 @@ struct Server {
     hub: Arc<Hub>,
     inputs: SyncSender<Input>,
     connections: AtomicUsize,
+    dropped: Arc<DropFolder>,
 }
 
 impl Viewer {
@@ -66,7 +70,9 @@ impl Viewer {
         let wanted = SocketAddr::new(options.host, options.port);
         let bind = |error| ViewError::Bind { address: wanted, error };
         let listener = TcpListener::bind(wanted).map_err(bind)?;
-        let guard = Guard::new(listener.local_addr().map_err(bind)?).map_err(ViewError::Token)?;
+        let local = listener.local_addr().map_err(bind)?;
+        let port = local.port();
+        let guard = Guard::new(local).map_err(ViewError::Token)?;
         let address = guard.address();
         let (hub, (inputs, inbox)) = (Arc::new(Hub::default()), sync_channel(INPUTS_MAX));
         let start = Start {
@@ -79,10 +85,17 @@ impl Viewer {
         };
         let thread = |name: &str| std::thread::Builder::new().name(name.to_owned());
         thread("world").spawn(move || start.run()).map_err(ViewError::Thread)?;
-        let server =
-            Arc::new(Server { guard, hub, inputs: inputs.clone(), connections: AtomicUsize::new(0) });
+        let dropped = Arc::new(DropFolder::new(port));
+        let server = Server {
+            guard,
+            hub,
+            inputs: inputs.clone(),
+            connections: AtomicUsize::new(0),
+            dropped: Arc::clone(&dropped),
+        };
+        let server = Arc::new(server);
         thread("listener").spawn(move || server.listen(&listener)).map_err(ViewError::Thread)?;
-        Ok(Self { address, inputs })
+        Ok(Self { address, inputs, dropped })
     }
 
     /// Where a person finds the page.
@@ -93,6 +106,7 @@ impl Viewer {
     /// Ends the world.
     pub fn close(self) {
         let _ = self.inputs.send(Input::Stop);
+        self.dropped.clear();
     }
 }
 
@@ -120,7 +134,7 @@ impl Server {
 
     /// Whatever goes wrong on a connection ends that connection, and nothing else.
     fn serve(&self, mut stream: TcpStream) {
-        let request = match Request::read(&mut stream) {
+        let mut request = match Request::read(&mut stream) {
             Ok(Some(request)) => request,
             Ok(None) => return,
             Err(rejection) => {
@@ -143,7 +157,12 @@ impl Server {
             }
             return;
         }
-        match self.answer(&request) {
+        let answer = if request.path == "/mesh" && request.method == "POST" {
+            self.take_mesh(&mut request, &mut stream)
+        } else {
+            self.answer(&request)
+        };
+        match answer {
             Ok(answer) => {
                 let response = Response {
                     status: 200,
@@ -159,11 +178,29 @@ impl Server {
         }
     }
 
+    /// Takes a mesh, and lets the world go on with a scene of it.
+    fn take_mesh(&self, request: &mut Request, stream: &mut TcpStream) -> Result<Answer, Rejection> {
+        self.guard.check_site(request)?;
+        self.guard.check_token(request)?;
+        let wrong = |message: String| Rejection::new(400, message);
+        let name = request.query_value("name").unwrap_or("mesh").to_owned();
+        let page = request.query_value("page").and_then(|page| page.parse().ok());
+        let content = request.body(stream, FILE_MAX)?;
+        let path = self.dropped.keep(&name, &content).map_err(wrong)?;
+        let text = scene_of(&path).map_err(wrong)?;
+        let wish = Wish::LoadText { name, text };
+        let gone = || Rejection::new(503, "the world does not answer");
+        // a client that is no page is told nothing of what becomes of it
+        let page = page.unwrap_or(PageId::MAX);
+        self.inputs.send(Input::Said(page, wish)).map_err(|_| gone())?;
+        Ok(Answer::json(&serde_json::json!({"taken": content.len()})))
+    }
+
     fn answer(&self, request: &Request) -> Result<Answer, Rejection> {
         if !matches!(request.method.as_str(), "GET" | "HEAD") {
             return Err(Rejection::new(
                 405,
-                format!("`{}` is not understood; GET and HEAD are", request.method),
+                format!("`{}` is not understood here; GET and HEAD are", request.method),
             ));
         }
         self.guard.check_site(request)?;
@@ -178,7 +215,7 @@ impl Server {
             return Ok(Answer::json(&health));
         }
         let Some(question) = Question::of_path(&request.path) else {
-            let known = "/, /health, /report, /recording, /snapshot, /socket";
+            let known = "/, /health, /report, /recording, /snapshot, /socket, /mesh for POST";
             return Err(Rejection::new(404, format!("there is no `{}`; there are {known}", request.path)));
         };
         let (answer, answered) = sync_channel(1);

@@ -40,7 +40,7 @@ pub fn accept(request: &Request) -> Result<String, Rejection> {
     }
     if !request.header_has("sec-websocket-protocol", SUBPROTOCOL) {
         return Err(upgrade(
-            "the subprotocol must be `souple.v1`: this page is of another version, load it again",
+            "the subprotocol must be `souple.v2`: this page is of another version, load it again",
         ));
     }
     let key = request.header("sec-websocket-key").ok_or_else(|| upgrade("there is no Sec-WebSocket-Key"))?;

@@ -52,6 +52,28 @@ fn laws() -> Vec<EnergyLaw> {
     all
 }
 
+/// The table of conversions of the source: what a text writes with differences, quotients and powers is a commutative
+/// expression, the same in whatever order it was written. Equal ones cancel as they are read, node for node.
+#[test]
+fn texts_convert_to_commutative_expressions() {
+    let difference = |first: &str, second: &str| {
+        let [first, second] =
+            [first, second].map(|text| text.replace('a', "F11").replace('b', "F12").replace('c', "F13"));
+        let read = super::read::read(&text(&format!("mu*(({first}) - ({second}))"), &[("mu", 2.0)]));
+        let read = read.unwrap_or_else(|error| panic!("{error:?}"));
+        read.graph.value(read.energy)
+    };
+    for (written, converted) in [
+        ("a - (b + c)", "-(b + c) + a"),
+        ("(a + b)/(a - b)", "(-b + a)^(-1)*(b + a)"),
+        ("2*(a + b)^2", "(b + a)^2*2"),
+        ("(a - b*(b + a)^2)/(a + b)^2", "(a + b)^(-2)*(-((a + b)^2*b) + a)"),
+    ] {
+        assert_eq!(difference(written, converted), Some(0.0), "{written} and {converted}");
+    }
+    assert_eq!(difference("a - (b + c)", "a - (b - c)"), None);
+}
+
 /// `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF` against central differences, also with equal stretches.
 #[test]
 fn derivatives_are_differences() {

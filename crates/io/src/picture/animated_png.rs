@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::image::Image;
+use super::image::{Image, cause};
 use crate::{IoError, write_file};
 
 /// Images of one size, each shown for `seconds`, over and over.
@@ -17,11 +17,11 @@ pub fn write_animated_png(path: &Path, images: &[Image], seconds: f64) -> Result
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_animated(images.len() as u32, 0)?;
         encoder.set_frame_delay((seconds * 1000.0).round() as u16, 1000)?;
-        let mut writer = encoder.write_header()?;
+        let mut writer = encoder.write_header().map_err(cause)?;
         for image in images {
-            writer.write_image_data(image.pixels.as_flattened())?;
+            writer.write_image_data(image.pixels.as_flattened()).map_err(cause)?;
         }
-        Ok(writer.finish()?)
+        writer.finish().map_err(cause)
     })
 }
 

@@ -40,6 +40,13 @@ impl Colour {
         Self([r + x, g + y, b + z])
     }
 
+    /// How well one can be read on the other: 1 not at all, 21 black on white (WCAG 2.2).
+    pub fn contrast(self, other: Self) -> f32 {
+        let luminance = |Self([red, green, blue]): Self| 0.2126 * red + 0.7152 * green + 0.0722 * blue + 0.05;
+        let (a, b) = (luminance(self), luminance(other));
+        a.max(b) / a.min(b)
+    }
+
     /// The numbers of a screen.
     pub fn to_screen(self) -> [u8; 3] {
         self.0.map(|value| {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::animated_png::check;
-use super::image::Image;
+use super::image::{Image, cause};
 use crate::{IoError, write_file};
 
 /// Images of one size, each shown for `seconds` (to a hundredth), over and over.
@@ -73,9 +73,9 @@ impl Image {
             encoder.set_compression(png::Compression::High);
             // differences of numbers of colours mean nothing
             encoder.set_filter(png::Filter::NoFilter);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(&indices)?;
-            Ok(writer.finish()?)
+            let mut writer = encoder.write_header().map_err(cause)?;
+            writer.write_image_data(&indices).map_err(cause)?;
+            writer.finish().map_err(cause)
         })
     }
 }

@@ -25,10 +25,18 @@ impl Image {
             encoder.set_depth(png::BitDepth::Eight);
             encoder.set_compression(png::Compression::High);
             encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(self.pixels.as_flattened())?;
-            Ok(writer.finish()?)
+            let mut writer = encoder.write_header().map_err(cause)?;
+            writer.write_image_data(self.pixels.as_flattened()).map_err(cause)?;
+            writer.finish().map_err(cause)
         })
+    }
+}
+
+/// What the system said, which tells a full disk from other trouble.
+pub(super) fn cause(error: png::EncodingError) -> std::io::Error {
+    match error {
+        png::EncodingError::IoError(error) => error,
+        other => other.into(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Where title, legend and subject stand in a picture, and the writing of the first two.
 
 use super::camera::Frame;
+use super::colour::Colour;
 use super::image::{Anchor, Canvas};
 use super::legend::scale;
 use super::lettering::text_width;
@@ -67,6 +68,16 @@ impl Layout {
     }
 
     pub fn write(&self, picture: &Picture, palette: &Palette, canvas: &mut Canvas) {
+        let widths = |lines: &[String], letter: f64| {
+            lines.iter().map(|line| text_width(line, letter)).fold(0.0, f64::max)
+        };
+        let width = widths(&self.title, self.title_letter).max(widths(&self.subtitle, self.letter));
+        let height = self.title.len() as f64 * 1.65 * self.title_letter
+            + self.subtitle.len() as f64 * 1.8 * self.letter;
+        let (pad, edge) = (0.6 * self.letter, self.margin);
+        if height > 0.0 {
+            veil(canvas, palette, [edge - pad, edge + width + pad], [edge - pad, edge + height]);
+        }
         let mut baseline = self.margin + 0.8 * self.title_letter;
         for line in &self.title {
             canvas.text(line, [self.margin, baseline], self.title_letter, Anchor::Left, palette.ink);
@@ -82,6 +93,30 @@ impl Layout {
         if let Some(legend) = &self.legend {
             legend.write(picture, self.letter, palette, canvas);
         }
+    }
+}
+
+/// Contrast from which on letters can be read (WCAG 2.2, 1.4.3).
+const LEGIBLE: f32 = 4.5;
+/// Part of the background in a veil.
+const VEIL: f32 = 0.8;
+
+/// A veil of the background where letters are to stand on something on which they could not be read: a subject that is
+/// seen from a camera that someone placed, a shape that is larger than the bodies.
+fn veil(canvas: &mut Canvas, palette: &Palette, columns: [f64; 2], rows: [f64; 2]) {
+    let range = |[from, to]: [f64; 2], most: usize| {
+        let clip = |value: f64| value.clamp(0.0, most as f64) as usize;
+        clip(from)..clip(to)
+    };
+    let (columns, rows) = (range(columns, canvas.width), range(rows, canvas.height));
+    let is_legible = |colour: &Colour| palette.ink.contrast(*colour) >= LEGIBLE;
+    let pixels = |row: usize| &canvas.pixels[row * canvas.width..][columns.clone()];
+    if rows.clone().all(|row| pixels(row).iter().all(is_legible)) {
+        return;
+    }
+    for row in rows {
+        let background = palette.background(row as f64, canvas.height);
+        canvas.fill(columns.clone(), row..row + 1, background, VEIL);
     }
 }
 
@@ -112,10 +147,9 @@ impl LegendBox {
         let whole = |value: f64| value.max(0.0) as usize;
         let (left, right) = (whole(self.left), whole(self.right));
         let (top, bottom) = (whole(self.top), whole(self.bottom));
-        // only a camera that someone placed may have put the subject here
-        if picture.view.eye.is_some() {
-            self.write_panel(letter, palette, canvas);
-        }
+        let above = (1.4 + 1.6 * self.title.len() as f64) * letter;
+        let rows = [self.top - above, self.bottom + 1.2 * letter];
+        veil(canvas, palette, [self.edge - 0.8 * letter, canvas.width as f64], rows);
         canvas.fill(left.saturating_sub(1)..right + 1, top.saturating_sub(1)..bottom + 1, palette.ink, 0.8);
         for row in top..bottom {
             let share = 1.0 - (row - top) as f64 / ((bottom - top).max(2) as f64 - 1.0);
@@ -135,16 +169,6 @@ impl LegendBox {
         for (index, line) in self.title.iter().rev().enumerate() {
             let y = self.top - 1.4 * letter - 1.6 * letter * index as f64;
             canvas.text(line, [middle, y], letter, Anchor::Middle, palette.ink);
-        }
-    }
-
-    /// A veil of the background between the legend and what reaches under it.
-    fn write_panel(&self, letter: f64, palette: &Palette, canvas: &mut Canvas) {
-        let whole = |value: f64| value.max(0.0) as usize;
-        let top = self.top - (1.4 + 1.6 * self.title.len() as f64) * letter;
-        for row in whole(top)..whole(self.bottom + 1.2 * letter).min(canvas.height) {
-            let background = palette.background(row as f64, canvas.height);
-            canvas.fill(whole(self.edge - 0.8 * letter)..canvas.width, row..row + 1, background, 0.7);
         }
     }
 }
@@ -215,6 +239,23 @@ mod tests {
         assert!(cut.len() == 2 && cut[1].ends_with('…') && text_width(&cut[1], 10.0) <= 300.0);
         assert!(text_width(&wrapped("incomprehensibilities", 10.0, 60.0, 2)[0], 10.0) <= 60.0);
         assert!(wrapped("", 10.0, 60.0, 2).is_empty());
+    }
+
+    /// Letters on a dark wall that fills the picture are veiled from it; on the background alone nothing is.
+    #[test]
+    fn letters_can_be_read_on_anything() {
+        let palette = Theme::Light.palette();
+        let veiled = |colour: Colour| {
+            let mut canvas = Canvas::new(40, 30);
+            canvas.fill(0..40, 0..30, colour, 1.0);
+            veil(&mut canvas, &palette, [10.0, 20.0], [5.0, 12.0]);
+            canvas.pixels
+        };
+        assert!(veiled(Colour::WHITE).iter().all(|pixel| *pixel == Colour::WHITE));
+        for (index, pixel) in veiled(Colour::BLACK).iter().enumerate() {
+            let is_inside = (10..20).contains(&(index % 40)) && (5..12).contains(&(index / 40));
+            assert_eq!(palette.ink.contrast(*pixel) >= LEGIBLE, is_inside, "{index}");
+        }
     }
 
     /// However wide its numbers and its title: the legend is within the picture and the subject beside it.

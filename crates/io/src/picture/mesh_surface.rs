@@ -17,7 +17,7 @@ pub struct Between {
 }
 
 impl Between {
-    fn at(point: u32) -> Self {
+    pub(super) fn at(point: u32) -> Self {
         Self { from: point, to: point, share: 0.0 }
     }
 

@@ -2,6 +2,7 @@
 //! legend, edges, arrows, dots, a ground that shows contact. The same bits on every run.
 
 mod animated_png;
+mod balls;
 mod camera;
 mod colour;
 mod colour_map;
@@ -51,6 +52,8 @@ pub struct Picture {
     pub strokes: Vec<Stroke>,
     pub ground: Option<Ground>,
     pub view: View,
+    /// Points that the camera stands back for; the bounds of the view where there are none.
+    pub framed: Vec<Vec3>,
     /// Width and height [pixels].
     pub size: [usize; 2],
     /// Samples along each side of a pixel: 1 is rough, 2 good, 3 fine.
@@ -89,6 +92,7 @@ impl Default for Picture {
             strokes: Vec::new(),
             ground: None,
             view: View::default(),
+            framed: Vec::new(),
             size: [1280, 800],
             samples_per_pixel: 2,
             theme: Theme::default(),
@@ -220,7 +224,9 @@ impl Picture {
 
     fn camera(&self, bounds: BoundingBox, layout: &Layout) -> Camera {
         let height = self.size[1] as f64;
+        let framed = self.framed.iter().copied().filter(|point| point.is_finite());
         match self.view.bounds {
+            _ if framed.clone().next().is_some() => Camera::fitted(&self.view, framed, layout.frame, height),
             Some(_) => Camera::fitted(&self.view, corners_of(bounds), layout.frame, height),
             None => Camera::fitted(&self.view, self.shown_points(), layout.frame, height),
         }

@@ -12,13 +12,14 @@ const AROUND: u32 = 8;
 const RINGS: [[f64; 2]; 2] = [[0.707, 0.707], [0.0, 1.0]];
 
 impl MeshSurface {
-    /// The edges of a mesh, its points standing at `positions`, as tubes of a radius [m]; of a cut, what it leaves.
-    pub fn tubes(mesh: &Mesh, positions: &[Vec3], radius: f64, cut: Option<Cut>) -> Self {
+    /// The edges of a mesh, its points standing at `positions`, as tubes, each cell with its radius [m]; of a cut, what it
+    /// leaves. A tube of no radius is not seen, and has its triangles all the same.
+    pub fn tubes(mesh: &Mesh, positions: &[Vec3], radius: impl Fn(usize) -> f64, cut: Option<Cut>) -> Self {
         let mut of = Self::default();
         for (cell, view) in mesh.cells().enumerate().filter(|(_, view)| view.kind.dimension() == 1) {
             for pair in along(view.nodes).windows(2) {
                 if let Some(shares) = left_of([pair[0], pair[1]], positions, cut) {
-                    of.push_tube([pair[0], pair[1]], shares, positions, radius, cell as u32);
+                    of.push_tube([pair[0], pair[1]], shares, positions, radius(cell), cell as u32);
                 }
             }
         }
@@ -108,7 +109,7 @@ mod tests {
     #[test]
     fn tubes_are_closed_and_look_outward() {
         let (mesh, radius) = (chain(), 0.1);
-        let of = MeshSurface::tubes(&mesh, &mesh.points, radius, None);
+        let of = MeshSurface::tubes(&mesh, &mesh.points, |_| radius, None);
         let corner = |index: u32| of.surface.points[index as usize];
         let volume: f64 = of
             .surface
@@ -128,13 +129,13 @@ mod tests {
     fn cut_tubes_end_at_the_plane() {
         let mesh = chain();
         let cut = Cut { point: Vec3::new(2.0, 0.0, 0.0), normal: Vec3::X };
-        let mut of = MeshSurface::tubes(&mesh, &mesh.points, 1e-3, Some(cut));
+        let mut of = MeshSurface::tubes(&mesh, &mesh.points, |_| 1e-3, Some(cut));
         let reach = of.surface.points.iter().map(|point| point.x).fold(0.0, f64::max);
         assert!((reach - 2.001).abs() < 1e-12);
         of.paint_points(&[0.0, 10.0, 30.0]);
         let super::super::Paint::PointScalar(values) = &of.surface.paint else { panic!("painted") };
         assert!((values.iter().copied().fold(0.0, f64::max) - 20.0).abs() < 1e-12);
         let all = Cut { point: -Vec3::X, normal: Vec3::X };
-        assert!(MeshSurface::tubes(&mesh, &mesh.points, 1e-3, Some(all)).points.is_empty());
+        assert!(MeshSurface::tubes(&mesh, &mesh.points, |_| 1e-3, Some(all)).points.is_empty());
     }
 }

@@ -96,7 +96,8 @@ impl Lattice {
         let wanted = extent.to_array().map(|length| (length / size.surface).ceil() + 2.0);
         let requested = wanted.iter().map(|count| count + unit as f64).product::<f64>() * 2.0;
         if requested > MAX_POINTS {
-            return Err(FillError::TooManyPoints { size: size.surface, requested, limit: MAX_POINTS });
+            let (size, extent) = (size.surface, extent.to_array());
+            return Err(FillError::TooManyPoints { size, extent, requested, limit: MAX_POINTS });
         }
         let counts = wanted.map(|count| (count as usize).next_multiple_of(unit));
         let whole = Vec3::from_array(counts.map(|count| count as f64 * size.surface));

@@ -69,17 +69,30 @@ pub enum FillError {
     #[error("the shape's bounds go from {low:?} to {high:?}; expected a box of finite size")]
     Bounds { low: [f64; 3], high: [f64; 3] },
     #[error(
-        "cells of {size} m ask for {requested:.3e} lattice points; expected at most {limit:e}: a larger size"
+        "cells of {size} m in a shape that measures {} ask for {requested:.3e} lattice points; expected at most {limit:e}: a larger size",
+        metres(.extent)
     )]
-    TooManyPoints { size: f64, requested: f64, limit: f64 },
+    TooManyPoints { size: f64, extent: [f64; 3], requested: f64, limit: f64 },
     #[error("the shape has no value at {position:?}; expected a number: negative inside, positive outside")]
     NotANumber { position: [f64; 3] },
     #[error("the shape is inside at {position:?}, on the border of its bounds; expected larger bounds")]
     BeyondBounds { position: [f64; 3] },
     #[error(
-        "no point of a lattice of {size} m is inside the shape; expected a smaller size, or a shape with an inside"
+        "no point of a lattice of {size} m is inside the shape, which measures {}; expected a smaller size, or a shape with an inside",
+        metres(.extent)
     )]
-    Nothing { size: f64 },
+    Nothing { size: f64, extent: [f64; 3] },
+    #[error(
+        "the surface is open, {edges} of its edges have one triangle only, and it winds around nothing that a lattice of {size} m meets; expected a closed surface, or one with small holes"
+    )]
+    Open { size: f64, edges: usize },
+}
+
+/// Lengths along the axes, in words.
+fn metres(extent: &[f64; 3]) -> String {
+    let written = |length: f64| if length >= 0.1 { format!("{length:.3}") } else { format!("{length:.3e}") };
+    let [x, y, z] = extent.map(written);
+    format!("{x} x {y} x {z} m")
 }
 
 impl Size {
@@ -116,7 +129,7 @@ pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) ->
         Cells::HexDominant => hexes::hex_dominant(&lattice, shape),
     };
     if mesh.cell_count() == 0 {
-        return Err(FillError::Nothing { size: size.surface });
+        return Err(FillError::Nothing { size: size.surface, extent: shape.bounds().size().to_array() });
     }
     mesh.remove_loose_points();
     mesh.groups.insert(

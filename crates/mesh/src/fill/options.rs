@@ -101,13 +101,28 @@ impl Options {
         Size { surface, interior }
     }
 
+    /// Cells inside are not smaller than at the surface.
+    fn check_largest(&self, size: f64) -> Result<(), MeshError> {
+        match self.largest {
+            Some(largest) if largest < size => {
+                let expected =
+                    format!("at least the size of cells at the surface, {size} m; or 0 for eight times that");
+                Err(MeshError::Parameter { name: "largest", value: format!("{largest} m"), expected })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Fills a shape.
     ///
     /// # Errors
     /// As [`fill`].
     pub fn fill(&self, shape: &dyn Shape, parts: &[Part<'_>]) -> Result<Mesh, MeshError> {
         match self.wanted {
-            Wanted::Size(size) => Ok(fill(shape, &self.size(size), self.cells, parts)?),
+            Wanted::Size(size) => {
+                self.check_largest(size)?;
+                Ok(fill(shape, &self.size(size), self.cells, parts)?)
+            }
             Wanted::Count(count) => self.fill_by_count(shape, parts, count),
         }
     }
@@ -157,7 +172,11 @@ impl Options {
                 _ => size * ratio.cbrt(),
             };
         }
-        best.map(|best| best.mesh).ok_or_else(|| super::FillError::Nothing { size }.into())
+        let Some(best) = best else {
+            return Err(super::FillError::Nothing { size, extent: extent.to_array() }.into());
+        };
+        self.check_largest(best.size)?;
+        Ok(best.mesh)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Fills what triangles enclose: mended first, everything said.
 
-use super::{Options, groups};
+use super::{FillError, Options, groups};
 use crate::implicit::{Sign, SurfaceShape};
 use crate::repair::{RepairLimits, SurfaceRepairs, repair};
 use crate::{Mesh, MeshError, TriangleSurface};
@@ -51,7 +51,13 @@ fn filled(
         notes
             .push("the surface is not simple: its inside is where it winds around more than half".to_owned());
     }
-    let mesh = options.fill(&shape, &[])?;
+    let open = shape.diagnosis().open_edges.len();
+    let mesh = options.fill(&shape, &[]).map_err(|error| match error {
+        MeshError::Fill(FillError::Nothing { size, .. }) if open > 0 => {
+            FillError::Open { size, edges: open }.into()
+        }
+        other => other,
+    })?;
     let parts = mesh.components().1;
     if parts > 1 {
         notes.push(format!("the filling has {parts} parts that share no point"));

@@ -11,8 +11,10 @@ mod shape_contact;
 mod surface_contact;
 #[cfg(test)]
 mod tests;
+mod toolbox;
 
 pub use law::{ContactForce, ContactLaw, penalty_stiffness};
 pub use shape::{Nearest, Outline, SHAPES, Shape, ShapeError};
 pub use shape_contact::{ContactPoint, ShapeContact, Touch};
 pub use surface_contact::{ContactSurface, SurfaceContact, SurfaceContactError, SurfaceTouch};
+pub use toolbox::ShapeToolbox;

@@ -38,6 +38,8 @@ pub struct ShapeContact {
     name: String,
     points: Vec<ContactPoint>,
     shape: Box<dyn Shape>,
+    /// What other contacts with the same shape call it too.
+    shape_name: String,
     motion: RigidMotion,
     law: ContactLaw,
 }
@@ -85,7 +87,13 @@ impl ShapeContact {
             }
         }
         law.check()?;
-        Ok(Self { name: name.into(), points, shape, motion, law })
+        let name = name.into();
+        Ok(Self { shape_name: name.clone(), name, points, shape, motion, law })
+    }
+
+    /// With the name of the shape, by which one that several bodies touch is known as one.
+    pub fn against(self, shape_name: impl Into<String>) -> Self {
+        Self { shape_name: shape_name.into(), ..self }
     }
 
     pub fn law(&self) -> &ContactLaw {
@@ -325,6 +333,10 @@ impl Force for ShapeContact {
         }
     }
 
+    fn lead(&mut self, place: Vec3) {
+        self.motion = RigidMotion::at(place);
+    }
+
     fn obstacle(&self) -> Option<Obstacle> {
         let form = match (self.shape.as_plane(), self.shape.outline()) {
             (Some((point, normal)), _) => Form::Plane { point, normal },
@@ -333,7 +345,7 @@ impl Force for ShapeContact {
             }
             (None, None) => return None,
         };
-        Some(Obstacle { form, motion: Arc::new(self.motion.clone()) })
+        Some(Obstacle { name: self.shape_name.clone(), form, motion: Arc::new(self.motion.clone()) })
     }
 
     fn as_any(&self) -> &dyn Any {

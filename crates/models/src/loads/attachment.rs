@@ -107,6 +107,14 @@ impl Stretch {
     }
 }
 
+/// `block` between the ends of a link, with opposite signs across.
+fn add_link(link: &Link, block: Mat3, matrix: &mut BlockMatrix) {
+    link.a.add_blocks(&link.a, &block, matrix);
+    link.b.add_blocks(&link.b, &block, matrix);
+    link.a.add_blocks(&link.b, &-block, matrix);
+    link.b.add_blocks(&link.a, &-block, matrix);
+}
+
 impl Force for Attachments {
     fn name(&self) -> &str {
         &self.name
@@ -179,13 +187,19 @@ impl Force for Attachments {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        for link in &self.links {
-            let block = self.tangent(link, at, weights);
-            link.a.add_blocks(&link.a, &block, matrix);
-            link.b.add_blocks(&link.b, &block, matrix);
-            link.a.add_blocks(&link.b, &-block, matrix);
-            link.b.add_blocks(&link.a, &-block, matrix);
-        }
+        self.links.iter().for_each(|link| add_link(link, self.tangent(link, at, weights), matrix));
+    }
+
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        // both ends have one block, so its symmetric part is that of the whole
+        let of = |link: &Link| self.tangent(link, at, weights).symmetric_part();
+        self.links.iter().for_each(|link| add_link(link, of(link), matrix));
     }
 
     // heat: ∫ c |ḋ|² dt, or c (n·ḋ)² where the damper lies along the line

@@ -29,7 +29,26 @@ pub struct Pose {
     pub angular_velocity: Vec3,
 }
 
+/// A place that does not change.
+#[derive(Clone, Copy, Debug)]
+struct Still(Vec3);
+
+impl Motion for Still {
+    fn offset(&self, _start: Vec3, _time: f64) -> Vec3 {
+        self.0
+    }
+
+    fn velocity(&self, _start: Vec3, _time: f64) -> Vec3 {
+        Vec3::ZERO
+    }
+}
+
 impl RigidMotion {
+    /// Carried off once and for all [m].
+    pub fn at(offset: Vec3) -> Self {
+        Self { translation: Some(Arc::new(Still(offset))), ..Self::default() }
+    }
+
     pub fn pose(&self, time: f64) -> Pose {
         let pivot = self.pivot;
         let (offset, velocity) = prescribed(&self.translation, pivot, time);

@@ -7,11 +7,12 @@ use souple_engine::{
 };
 use souple_formal::Formula;
 use souple_math::Vec3;
-use souple_mesh::ElementKind;
+use souple_mesh::{ElementKind, Mesh};
 use souple_solve::{BlockMatrix, Pattern};
 
 use super::battery::{Setting, assert_force, direction, dot, multiply, stepper, stepper_of, world};
 use super::*;
+use crate::solids::{Quadrature, Section, SolidDescription, Viscosity};
 
 fn positions() -> Vec<Vec3> {
     (0..5).map(|i| Vec3::new(0.3 * i as f64, 0.1 + (i as f64).sin(), (1.7 * i as f64).cos())).collect()
@@ -133,7 +134,19 @@ fn symmetric_blocks_are_the_symmetric_part() {
     let (faces, corners) = pyramid();
     let varying = Formula::compile("1 + x * y - z", &VARIABLES).unwrap();
     let field = FormulaVector::compile("[-y * t, x + z^2, 1 + x * y]").unwrap();
-    let forces: [Box<dyn Force>; 3] = [
+    let mesh = Mesh::new(corners.clone(), ElementKind::Pyramid5, vec![0, 1, 2, 3, 4]);
+    let description = SolidDescription {
+        name: "viscosity".to_owned(),
+        mesh: &mesh,
+        first_row: 0,
+        materials: &[],
+        material_of_cell: &[0],
+        quadrature: Quadrature::Default,
+        section: Section::Solid,
+    };
+    let forces: [Box<dyn Force>; 5] = [
+        Box::new(Viscosity::new(&description, 0.8).unwrap()),
+        Box::new(Attachments::new("damped", vec![link(0.7)], 30.0, 4.0).unwrap()),
         Box::new(Pressure::new("open", faces[1..].to_vec(), Formula::constant(3.0)).unwrap()),
         Box::new(Pressure::new("varying", faces, varying).unwrap()),
         Box::new(PointLoad::new("by place", vec![(1, 0.25), (3, 0.75)], Arc::new(field)).unwrap()),

@@ -168,7 +168,7 @@ impl TextLaw {
     }
 
     /// Moduli at rest: of an anisotropic law the mean shear modulus, and the stiffest longitudinal one.
-    fn small_strain(&self) -> Lame {
+    pub(crate) fn small_strain(&self) -> Lame {
         let entry = |a: usize, b: usize| self.law.stiffness[9 * a + b];
         // entries (0,1), (1,2), (2,0) of F lie at 3, 7, 2
         let mu = (entry(3, 3) + entry(7, 7) + entry(2, 2)) / 3.0;

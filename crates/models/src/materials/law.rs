@@ -86,6 +86,16 @@ impl Lame {
         Self { mu: shear, lambda: bulk - 2.0 / 3.0 * shear }
     }
 
+    /// Pull of a slender rod over cross-section and strain, `E = μ(3λ + 2μ)/(λ + μ)` [Pa].
+    pub fn youngs_modulus(&self) -> f64 {
+        self.mu * (3.0 * self.lambda + 2.0 * self.mu) / (self.lambda + self.mu)
+    }
+
+    /// Narrowing of the rod over its strain, `ν = λ/2(λ + μ)`.
+    pub fn poissons_ratio(&self) -> f64 {
+        0.5 * self.lambda / (self.lambda + self.mu)
+    }
+
     /// Stiffness against longitudinal waves, `λ + 2μ` [Pa]: the fastest waves run at `√((λ + 2μ)/ρ)`.
     pub fn longitudinal_modulus(&self) -> f64 {
         self.lambda + 2.0 * self.mu

@@ -2,7 +2,7 @@
 
 use souple_formal::law::LawText;
 
-use super::{MaterialError, law_text};
+use super::{Lame, MaterialError, TextLaw, law_text};
 
 /// A law as one writes it in a scene.
 #[derive(Clone, Copy, Debug)]
@@ -105,5 +105,13 @@ impl WrittenLaw {
             list.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
         };
         law_text(self.energy, &owned(self.parameters), &owned(self.definitions))
+    }
+
+    /// Moduli at rest with these values; of an anisotropic law the mean shear modulus.
+    ///
+    /// # Errors
+    /// The text is no law; those here all are.
+    pub fn small_strain(&self) -> Result<Lame, MaterialError> {
+        Ok(TextLaw::compile(self.text()?)?.small_strain())
     }
 }

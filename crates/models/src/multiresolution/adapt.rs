@@ -12,8 +12,6 @@ use super::{Choice, Coupling, LEAST_MASS, LevelsForce};
 const FULL: f64 = 0.95;
 /// Steps above the budget before points are regrouped against their criterion.
 const PATIENCE: f64 = 2.0;
-/// Samples around a point of a good mesh: 23 tetrahedra, each shared by four points.
-const SAMPLES_PER_POINT: usize = 6;
 
 impl LevelsForce {
     /// Moves the set of subdivided points on, in `memory`.
@@ -98,42 +96,32 @@ impl LevelsForce {
             wanted.iter().for_each(|point| self.subdivide(memory, *point as usize, true));
             return;
         };
-        work.divide(self, division);
-        let mut cost = work.evaluations(division) as f64;
-        let cost_of = |point: usize, work: &Work| {
-            let successors = self.hierarchy.successors.get(point);
-            let new = successors.iter().filter(|child| !work.roles.is_active(**child as usize)).count();
-            let level = usize::from(self.hierarchy.level_of[point]) + 1;
-            let rate = self.nominal_rate(level, division);
-            (new * SAMPLES_PER_POINT) as f64 * f64::from(1_u32 << rate)
+        let cost = |memory: &[f64], work: &mut Work| {
+            work.refresh(self, memory);
+            work.divide(self, division);
+            work.evaluations(division) as f64
         };
-        for point in wanted {
-            let more = cost_of(*point as usize, work);
-            if cost + more <= FULL * budget {
-                cost += more;
-                self.subdivide(memory, *point as usize, true);
-            }
+        let before = cost(memory, work);
+        // what is refined is counted, not guessed: half of it is taken back until it fits
+        let mut accepted = if before < FULL * budget { wanted.len() } else { 0 };
+        wanted[..accepted].iter().for_each(|point| self.subdivide(memory, *point as usize, true));
+        while accepted > 0 && cost(memory, work) > FULL * budget {
+            wanted[accepted / 2..accepted]
+                .iter()
+                .for_each(|point| self.subdivide(memory, *point as usize, false));
+            accepted /= 2;
         }
         let overload = memory.len() - 1;
-        memory[overload] = if cost > budget { memory[overload] + 1.0 } else { 0.0 };
+        memory[overload] = if before > budget { memory[overload] + 1.0 } else { 0.0 };
         if memory[overload] > PATIENCE {
             unwanted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             for (_, point) in unwanted {
-                if cost <= budget {
+                self.subdivide(memory, *point as usize, false);
+                if cost(memory, work) <= budget {
                     break;
                 }
-                let successors = self.hierarchy.successors.get(*point as usize).len() * SAMPLES_PER_POINT;
-                let level = usize::from(self.hierarchy.level_of[*point as usize]) + 1;
-                cost -= successors as f64 * f64::from(1_u32 << self.nominal_rate(level, division));
-                self.subdivide(memory, *point as usize, false);
             }
         }
-    }
-
-    /// The rate of most points of a level.
-    fn nominal_rate(&self, level: usize, division: &Division) -> u32 {
-        let longest = self.intervals[level];
-        (0..division.halvings).find(|rate| division.interval(*rate) <= longest).unwrap_or(division.halvings)
     }
 
     /// A point whose matter finer points stand for has nothing to move: it is subdivided too.

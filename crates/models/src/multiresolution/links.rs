@@ -107,10 +107,6 @@ pub enum LevelsError {
         "level {level} has {count} points, the finer one after it {finer}; expected levels from coarse to fine"
     )]
     Order { level: usize, count: usize, finer: usize },
-    #[error(
-        "point {point} of level {level}, at {position:?}, carries {mass:e} kg of the finest mesh; expected some matter around each point: a coarse mesh that follows the shape"
-    )]
-    NoMass { level: usize, point: usize, position: [f64; 3], mass: f64 },
 }
 
 /// More levels than this are of no use: eight times the points for each.

@@ -225,13 +225,11 @@ impl Work {
         }
     }
 
-    /// The longest intervals of the active points, ascending [s].
-    pub fn intervals(&mut self, force: &LevelsForce) -> Vec<f64> {
+    /// The shortest interval that an active point needs [s].
+    pub fn shortest_interval(&mut self, force: &LevelsForce) -> f64 {
         self.bound_stiffness(force);
         let interval = |point: &u32| self.longest_interval(*point as usize, Filter::None);
-        let mut intervals: Vec<f64> = self.active.iter().map(interval).collect();
-        intervals.sort_by(f64::total_cmp);
-        intervals
+        self.active.iter().map(interval).fold(f64::INFINITY, f64::min)
     }
 
     fn choose_rates(&mut self, force: &LevelsForce, division: &Division) {

@@ -103,8 +103,8 @@ pub struct LevelsForce {
     finest_masses: Vec<f64>,
     /// Of each point of all meshes, were its level alone at work [kg].
     whole_masses: Vec<f64>,
-    /// Of each level, were it alone at work: the longest interval of half of its points [s].
-    intervals: Vec<f64>,
+    /// Points that never have anything to move: finer ones are always in their place.
+    is_empty: Vec<bool>,
     /// Of all points, were their level alone at work: the shortest that is longest for one of them [s].
     shortest_interval: f64,
 }
@@ -126,17 +126,15 @@ impl LevelsForce {
             budget: description.budget,
             finest_masses: Vec::new(),
             whole_masses: Vec::new(),
-            intervals: Vec::new(),
+            is_empty: Vec::new(),
             shortest_interval: f64::INFINITY,
             hierarchy,
             matter,
         };
         force.weigh();
-        force.check_masses()?;
+        force.find_empty_points();
         for level in 0..force.hierarchy.level_count() {
-            let intervals = force.intervals_of(level);
-            force.intervals.push(intervals[intervals.len() / 2]);
-            force.shortest_interval = force.shortest_interval.min(intervals[0]);
+            force.shortest_interval = force.shortest_interval.min(force.shortest_of(level));
         }
         Ok(force)
     }
@@ -178,19 +176,22 @@ impl LevelsForce {
         self.whole_masses = masses;
     }
 
-    fn check_masses(&self) -> Result<(), LevelsError> {
-        let hierarchy = &self.hierarchy;
-        for (level, points) in hierarchy.levels.iter().enumerate() {
-            if let Some(point) = points.clone().find(|point| self.whole_masses[*point] <= 0.0) {
-                let (position, mass) = (hierarchy.rest[point].to_array(), self.whole_masses[point]);
-                return Err(LevelsError::NoMass { level, point: point - points.start, position, mass });
-            }
-        }
-        Ok(())
+    /// Coarse points outside of the shape, around which there is next to nothing of the finest mesh.
+    fn find_empty_points(&mut self) {
+        let (hierarchy, matter) = (&self.hierarchy, &self.matter);
+        let density = self.finest_masses.iter().sum::<f64>() / matter.cell_volumes.iter().sum::<f64>();
+        let is_empty = |point: usize| {
+            let around =
+                hierarchy.tets_of_point.get(point).iter().map(|tet| hierarchy.tets[*tet as usize].volume);
+            self.whole_masses[point] < LEAST_MASS * density * 0.25 * around.sum::<f64>()
+        };
+        self.is_empty = (0..hierarchy.point_count())
+            .map(|point| usize::from(hierarchy.level_of[point]) < hierarchy.finest() && is_empty(point))
+            .collect();
     }
 
-    /// The longest stable intervals of the points of a level, were it alone at work, ascending [s].
-    fn intervals_of(&self, level: usize) -> Vec<f64> {
+    /// The shortest interval that a point of a level needs, were that alone at work [s].
+    fn shortest_of(&self, level: usize) -> f64 {
         let mut memory = vec![0.0; self.memory_len()];
         for points in &self.hierarchy.levels[..self.hierarchy.finest()] {
             for point in points.clone() {
@@ -199,12 +200,12 @@ impl LevelsForce {
         }
         let mut work = Work::new(self);
         work.refresh(self, &memory);
-        work.intervals(self)
+        work.shortest_interval(self)
     }
 
     /// Whether finer points are to take the place of a point.
     fn is_subdivided(&self, memory: &[f64], point: usize) -> bool {
-        point >= self.finest_count() && memory[point - self.finest_count()] != 0.0
+        point >= self.finest_count() && (self.is_empty[point] || memory[point - self.finest_count()] != 0.0)
     }
 
     fn subdivide(&self, memory: &mut [f64], point: usize, is_subdivided: bool) {

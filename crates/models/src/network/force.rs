@@ -2,7 +2,7 @@
 
 use std::any::Any;
 
-use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
+use souple_engine::{Configuration, Declaration, Energy, Force, LinkShown, Pair, Scratch, TangentWeights};
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
@@ -289,6 +289,16 @@ impl Force for Links {
             let (heat, numbers) = own.split_at_mut(1);
             heat[0] += self.law.advance(part, moving, numbers);
         });
+    }
+
+    fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {
+        for (number, slot) in &self.place_of {
+            let (part, slot) = (&self.layout.parts[*number as usize], *slot as usize);
+            let memory = self.remembered(part, slot, self.of_part(*number as usize, at.memory));
+            let Standing { rows, reach, .. } = self.standing(part, slot, at);
+            let push = self.law.respond(&reach, at.time, &memory).push;
+            visit(&LinkShown { ends: rows, state: self.law.state(&reach, &memory), push });
+        }
     }
 
     fn bytes(&self) -> usize {

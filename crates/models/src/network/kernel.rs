@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 
 use pulp::{Arch, Simd, WithSimd};
+use souple_engine::LinkState;
 use souple_math::{Dual, Lanes, Real, Vec3};
 
 use super::law::{LinkLaw, MEMORY, Reach, Response};
@@ -36,6 +37,12 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn range(&self) -> f64 {
         f64::INFINITY
     }
+    /// See [`LinkLaw::rest_distance`].
+    fn rest_distance(&self) -> Option<f64> {
+        None
+    }
+    /// What holds a link together.
+    fn state(&self, reach: &Reach, memory: &[f64]) -> LinkState;
     /// `sums[row] += f` over the rows of a part.
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]);
     /// Forces on first ends, `[block][lane]`.
@@ -79,6 +86,14 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
 
     fn range(&self) -> f64 {
         self.0.range()
+    }
+
+    fn rest_distance(&self) -> Option<f64> {
+        self.0.rest_distance()
+    }
+
+    fn state(&self, reach: &Reach, memory: &[f64]) -> LinkState {
+        if reach.length < self.0.range() { self.0.state(reach.rest, memory) } else { LinkState::Apart }
     }
 
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]) {

@@ -5,6 +5,7 @@
 
 use std::fmt::Debug;
 
+use souple_engine::LinkState;
 use souple_formal::ParseError;
 use souple_math::Real;
 use souple_table::{Entry, Values};
@@ -59,6 +60,16 @@ pub trait LinkLaw: Debug + Send + Sync + 'static {
     /// Beyond it there is no force [m]; infinite where there always is.
     fn range(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// How far balls are apart that this law keeps from each other [m]: twice their radius in pictures; none where it does not.
+    fn rest_distance(&self) -> Option<f64> {
+        None
+    }
+
+    /// What holds a link of this rest length together that remembers this.
+    fn state(&self, _rest: f64, _memory: &[f64]) -> LinkState {
+        LinkState::In(0)
     }
 }
 

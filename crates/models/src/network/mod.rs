@@ -11,6 +11,7 @@ pub mod law;
 pub mod laws;
 mod layout;
 mod pair_tangent;
+mod rheology;
 pub mod written;
 
 pub use crowd::{Crowd, CrowdDescription, PAIR_MEMORY};

@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use souple_engine::LinkState;
 use souple_formal::{Formula, parse_quantity};
 use souple_math::Vec3;
 
@@ -24,6 +25,10 @@ pub trait WrittenLaw: Debug + Send + Sync + 'static {
     fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2];
     /// See [`super::LinkLaw::stiffest`]; of a link of this rest length.
     fn stiffest(&self, rest: f64) -> f64;
+    /// What holds a link together that remembers this.
+    fn state(&self, _memory: &[f64]) -> LinkState {
+        LinkState::In(0)
+    }
 }
 
 /// [`LinkKernel`] of a written law.
@@ -70,6 +75,10 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
 
     fn stiffest(&self, rest: f64) -> f64 {
         self.0.stiffest(rest)
+    }
+
+    fn state(&self, _: &Reach, memory: &[f64]) -> LinkState {
+        self.0.state(&memory[..self.0.memory_len()])
     }
 
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]) {

@@ -40,7 +40,17 @@ impl Symmetry {
         (0..nodes).flat_map(move |a| (first(a)..nodes).map(move |b| (a, b)))
     }
 
-    fn pair_count(self, nodes: usize) -> usize {
+    /// Where the block of a pair stands among those of an element; `None` where the transpose of another is it.
+    #[inline(always)]
+    pub fn place(self, nodes: usize, a: usize, b: usize) -> Option<usize> {
+        match self {
+            Self::General => Some(a * nodes + b),
+            // rows before `a` hold `nodes`, `nodes - 1`, … pairs
+            Self::Symmetric => (a <= b).then(|| a * nodes - a * (a + 1) / 2 + b),
+        }
+    }
+
+    pub fn pair_count(self, nodes: usize) -> usize {
         match self {
             Self::Symmetric => nodes * (nodes + 1) / 2,
             Self::General => nodes * nodes,
@@ -305,5 +315,24 @@ fn add_to_sums(blocks: &[f64], places: &[u16], sums: &mut [Mat3]) {
                 Mat3::from_columns(row(0), row(1), row(2))
             };
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Blocks are found where they are listed.
+    #[test]
+    fn pairs_have_places() {
+        for symmetry in [Symmetry::Symmetric, Symmetry::General] {
+            for nodes in [2, 4, 8] {
+                let places: Vec<_> =
+                    symmetry.pairs(nodes).map(|(a, b)| symmetry.place(nodes, a, b)).collect();
+                let expected: Vec<_> = (0..symmetry.pair_count(nodes)).map(Some).collect();
+                assert_eq!(places, expected, "{symmetry:?} {nodes}");
+            }
+        }
+        assert_eq!(Symmetry::Symmetric.place(4, 2, 1), None);
     }
 }

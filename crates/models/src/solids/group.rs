@@ -55,6 +55,14 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
         Lanes::load(self.simd, &block.0[self.lane..self.lane + S::F64_LANES])
     }
 
+    /// Asks for the samples of the block `ahead` of this one, once for all groups of a block.
+    #[inline(always)]
+    pub fn prefetch(&self, ahead: usize) {
+        if self.lane == 0 {
+            self.chunk.prefetch(self.block + ahead, self.samples);
+        }
+    }
+
     /// `X_ξ⁻¹` and the volume at a sample.
     #[inline(always)]
     pub fn sample(&self, sample: usize) -> (Mat3<Lanes<S>>, Lanes<S>) {

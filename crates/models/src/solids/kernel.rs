@@ -15,6 +15,10 @@ use super::group::{Group, for_each_group};
 use super::layout::{Chunk, LANES};
 use crate::materials::Law;
 
+/// Blocks between the one that is computed and the one that is asked for from memory: two take about as long as that
+/// takes to answer.
+const AHEAD: usize = 2;
+
 /// The loops for one law on one element, behind a pointer so that a body may mix both.
 pub trait Kernel: Send + Sync {
     /// `forces[n] += f_n` over the chunk's nodes.
@@ -146,6 +150,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Forces<'_, L, G, N> {
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
+            group.prefetch(AHEAD);
             let x = group.gather(self.positions);
             let mut f = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
@@ -179,6 +184,7 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Differential<'_, L, G, N>
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
+            group.prefetch(AHEAD);
             let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
             let mut df = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();

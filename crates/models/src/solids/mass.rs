@@ -37,6 +37,20 @@ pub fn lumped_mass(mesh: &Mesh, first_row: usize, density_of_cell: &dyn Fn(usize
     }
 }
 
+/// Adds the whole mass in equal parts to the points of the cells, whatever their share of the volume: what one simulates
+/// to compare with programs that know no other mass. Call [`Mass::seal`] when all bodies are in.
+pub fn uniform_mass(mesh: &Mesh, first_row: usize, density_of_cell: &dyn Fn(usize) -> f64, mass: &mut Mass) {
+    let mut of_points = Mass::new(mesh.points.len());
+    lumped_mass(mesh, 0, density_of_cell, &mut of_points);
+    // points of no cell have no part
+    let count = of_points.diagonal.iter().filter(|share| **share > 0.0).count();
+    let share = of_points.diagonal.iter().sum::<f64>() / count as f64;
+    for (point, _) in of_points.diagonal.iter().enumerate().filter(|(_, own)| **own > 0.0) {
+        let row = (first_row + point) as u32;
+        mass.add(row, row, share);
+    }
+}
+
 /// Adds `∫ρ N_a N_b dV` of every cell. Call [`Mass::seal`] when all bodies are in.
 pub fn consistent_mass(
     mesh: &Mesh,

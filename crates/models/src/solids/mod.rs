@@ -40,7 +40,7 @@ use section_kernel::SectionKernel;
 use staged::Staged;
 
 pub use layout::FlatCell;
-pub use mass::{consistent_mass, lumped_mass};
+pub use mass::{consistent_mass, lumped_mass, uniform_mass};
 pub use rayleigh::RayleighDamping;
 pub use section::{BuildSection, SECTIONS, Section};
 pub use viscosity::Viscosity;
@@ -100,8 +100,8 @@ struct SolidScratch {
 }
 
 impl SolidScratch {
-    fn boxed(symmetry: Symmetry) -> Scratch {
-        Box::new(Self { partials: Vec::new(), assembly: Assembly::new(symmetry) })
+    fn boxed() -> Scratch {
+        Box::new(Self { partials: Vec::new(), assembly: Assembly::new(Symmetry::Symmetric) })
     }
 
     fn of(scratch: &mut Scratch) -> &mut Self {
@@ -237,7 +237,7 @@ impl Force for SolidForce {
     }
 
     fn new_scratch(&self) -> Scratch {
-        SolidScratch::boxed(Symmetry::Symmetric)
+        SolidScratch::boxed()
     }
 
     fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {

@@ -7,7 +7,6 @@ use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentW
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 
-use super::assembly::Symmetry;
 use super::elements::Elements;
 use super::kernel::Kernel;
 use super::{ByLaw, FlatCell, SolidDescription, SolidScratch};
@@ -71,7 +70,7 @@ impl Force for RayleighDamping {
     }
 
     fn new_scratch(&self) -> Scratch {
-        SolidScratch::boxed(Symmetry::Symmetric)
+        SolidScratch::boxed()
     }
 
     fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {

@@ -8,12 +8,12 @@ use souple_math::Vec3;
 use souple_mesh::{ElementKind, MAX_NODES};
 use souple_solve::BlockMatrix;
 
-use super::assembly::Symmetry;
+use super::SolidDescription;
+use super::assembly::{Assembly, Symmetry};
 use super::elements::{Elements, Sorting};
 use super::geometry::{AnyElement, Tetrahedron};
 use super::layout::FlatCell;
 use super::viscous_kernel::{Flow, StrainRate, ViscousKernel};
-use super::{SolidDescription, SolidScratch};
 
 /// `P = F S`, `S = 2 η Ė`, `Ė = sym(Fᵀ Ḟ)`, with the viscosity `η` [Pa s]. Memory keeps account of the heat,
 /// `∫∫ 2 η Ė:Ė dV dt` [J].
@@ -52,6 +52,43 @@ impl Viscosity {
         let elements = Elements::new(description, &Alike([2.0 * viscosity]))?;
         Ok(Self { name: description.name.clone(), elements })
     }
+
+    fn assemble(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        symmetry: Symmetry,
+        (assembly, partials): (&mut Assembly, &mut Vec<Vec3>),
+        matrix: &mut BlockMatrix,
+    ) {
+        assembly.add_blocks(
+            &self.elements,
+            [at.positions, at.velocities],
+            partials,
+            matrix,
+            |batch, chunk, blocks, [positions, velocities], out| {
+                let flow = Flow { chunk, reference: &batch.reference, positions, velocities };
+                batch.kernel.blocks(flow, blocks, weights, symmetry, out);
+            },
+        );
+    }
+}
+
+/// Lists and sums of both kinds of blocks, kept between calls.
+struct ViscousScratch {
+    partials: Vec<Vec3>,
+    general: Assembly,
+    symmetric: Assembly,
+}
+
+impl ViscousScratch {
+    fn of(scratch: &mut Scratch) -> &mut Self {
+        scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
+    }
+
+    fn bytes(&self) -> usize {
+        24 * self.partials.capacity() + self.general.bytes() + self.symmetric.bytes()
+    }
 }
 
 impl Force for Viscosity {
@@ -73,7 +110,11 @@ impl Force for Viscosity {
     }
 
     fn new_scratch(&self) -> Scratch {
-        SolidScratch::boxed(Symmetry::General)
+        Box::new(ViscousScratch {
+            partials: Vec::new(),
+            general: Assembly::new(Symmetry::General),
+            symmetric: Assembly::new(Symmetry::Symmetric),
+        })
     }
 
     fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
@@ -81,7 +122,7 @@ impl Force for Viscosity {
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
-        let (partials, inputs) = (&mut SolidScratch::of(scratch).partials, [at.positions, at.velocities]);
+        let (partials, inputs) = (&mut ViscousScratch::of(scratch).partials, [at.positions, at.velocities]);
         self.elements.add_sums(inputs, partials, out, |batch, chunk, [positions, velocities], sums| {
             let flow = Flow { chunk, reference: &batch.reference, positions, velocities };
             batch.kernel.forces(flow, sums);
@@ -96,7 +137,7 @@ impl Force for Viscosity {
         scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        let partials = &mut SolidScratch::of(scratch).partials;
+        let partials = &mut ViscousScratch::of(scratch).partials;
         let inputs = [at.positions, at.velocities, delta];
         self.elements.add_sums(
             inputs,
@@ -120,17 +161,19 @@ impl Force for Viscosity {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
-        assembly.add_blocks(
-            &self.elements,
-            [at.positions, at.velocities],
-            partials,
-            matrix,
-            |batch, chunk, blocks, [positions, velocities], out| {
-                let flow = Flow { chunk, reference: &batch.reference, positions, velocities };
-                batch.kernel.blocks(flow, blocks, weights, out);
-            },
-        );
+        let ViscousScratch { partials, general, .. } = ViscousScratch::of(scratch);
+        self.assemble(at, weights, Symmetry::General, (general, partials), matrix);
+    }
+
+    fn add_symmetric_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        let ViscousScratch { partials, symmetric, .. } = ViscousScratch::of(scratch);
+        self.assemble(at, weights, Symmetry::Symmetric, (symmetric, partials), matrix);
     }
 
     // heat: ∫∫ 2 η Ė:Ė dV dt
@@ -147,7 +190,7 @@ impl Force for Viscosity {
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
-        SolidScratch::bytes(scratch)
+        scratch.downcast_ref().map_or(0, ViscousScratch::bytes)
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -10,6 +10,7 @@ use pulp::{Arch, Simd, WithSimd};
 use souple_engine::TangentWeights;
 use souple_math::{Mat3, Padded, Real, Vec3};
 
+use super::assembly::Symmetry;
 use super::geometry::Geometry;
 use super::group::{Group, for_each_group};
 use super::layout::{Chunk, LANES};
@@ -33,8 +34,16 @@ pub trait ViscousKernel: Send + Sync {
     fn differential(&self, flow: Flow, delta: &[Padded], weights: TangentWeights, forces: &mut [Padded]);
     /// `∫ 2 η Ė:Ė dV` of the chunk [W].
     fn power(&self, flow: Flow) -> f64;
-    /// `a ∂f_i/∂x_j + b ∂f_i/∂v_j` of the elements of some blocks of lanes, `[block][(i, j)][entry by columns][lane]`.
-    fn blocks(&self, flow: Flow, blocks: Range<usize>, weights: TangentWeights, out: &mut [f64]);
+    /// `a ∂f_i/∂x_j + b ∂f_i/∂v_j`, or the symmetric part of it, of the elements of some blocks of lanes,
+    /// `[block][(i, j)][entry by columns][lane]`.
+    fn blocks(
+        &self,
+        flow: Flow,
+        blocks: Range<usize>,
+        weights: TangentWeights,
+        symmetry: Symmetry,
+        out: &mut [f64],
+    );
 }
 
 /// [`ViscousKernel`] on elements of geometry `G` with at most `N` nodes.
@@ -70,12 +79,21 @@ impl<G: Geometry, const N: usize> ViscousKernel for StrainRate<G, N> {
         Arch::new().dispatch(Power::<G, N> { flow, nodes: self.nodes, geometry: PhantomData })
     }
 
-    fn blocks(&self, flow: Flow, blocks: Range<usize>, weights: TangentWeights, out: &mut [f64]) {
-        for (block, out) in blocks.zip(out.chunks_exact_mut(self.nodes * self.nodes * 9 * LANES)) {
+    fn blocks(
+        &self,
+        flow: Flow,
+        blocks: Range<usize>,
+        weights: TangentWeights,
+        symmetry: Symmetry,
+        out: &mut [f64],
+    ) {
+        let block_len = symmetry.pair_count(self.nodes) * 9 * LANES;
+        for (block, out) in blocks.zip(out.chunks_exact_mut(block_len)) {
             Arch::new().dispatch(Blocks::<G, N> {
                 flow,
                 block,
                 weights,
+                symmetry,
                 out,
                 nodes: self.nodes,
                 geometry: PhantomData,
@@ -101,6 +119,21 @@ fn stress_differential<R: Real>(
     let by_position = *d * *S + *F * stress(modulus, d, rate);
     let by_velocity = *F * stress(modulus, F, d);
     by_position.scaled(modulus.splat(weights.position)) + by_velocity.scaled(modulus.splat(weights.velocity))
+}
+
+/// The symmetric part of [`stress_differential`], as a form over `δF` and a trial gradient: of `F 2η sym(δFᵀ Ḟ)` that is
+/// `(F 2η sym(δFᵀ Ḟ) + Ḟ 2η sym(Fᵀ δF))/2`, the rest is symmetric as it is.
+#[inline(always)]
+fn symmetric_differential<R: Real>(
+    modulus: R,
+    [F, rate, S]: [&Mat3<R>; 3],
+    d: &Mat3<R>,
+    weights: TangentWeights,
+) -> Mat3<R> {
+    let strain = stress(modulus, F, d);
+    let turning = (*F * stress(modulus, d, rate) + *rate * strain).scaled(modulus.splat(0.5));
+    (*d * *S + turning).scaled(modulus.splat(weights.position))
+        + (*F * strain).scaled(modulus.splat(weights.velocity))
 }
 
 struct Forces<'a, G, const N: usize> {
@@ -208,6 +241,7 @@ struct Blocks<'a, G, const N: usize> {
     flow: Flow<'a>,
     block: usize,
     weights: TangentWeights,
+    symmetry: Symmetry,
     out: &'a mut [f64],
     nodes: usize,
     geometry: PhantomData<G>,
@@ -236,12 +270,17 @@ impl<G: Geometry, const N: usize> WithSimd for Blocks<'_, G, N> {
                     for k in 0..3 {
                         // the force on a, -V dP g_a, for a unit displacement of b along axis k
                         let d = axes[k].outer(gradients[b]);
-                        let dP = stress_differential(modulus, [&F, &rate, &stress], &d, self.weights);
+                        let at_hand = [&F, &rate, &stress];
+                        let dP = match self.symmetry {
+                            Symmetry::General => stress_differential(modulus, at_hand, &d, self.weights),
+                            Symmetry::Symmetric => symmetric_differential(modulus, at_hand, &d, self.weights),
+                        };
                         let dP = dP.scaled(-volume);
                         for a in 0..nodes {
+                            let Some(place) = self.symmetry.place(nodes, a, b) else { break };
                             let column = (dP * gradients[a]).to_array();
                             for i in 0..3 {
-                                let at = ((a * nodes + b) * 9 + 3 * k + i) * LANES;
+                                let at = (place * 9 + 3 * k + i) * LANES;
                                 group.add_or_put(sample, column[i], &mut self.out[at..at + LANES]);
                             }
                         }

@@ -1,15 +1,19 @@
 //! What all pictures of a show have in common, so that neither camera nor colours jump.
 
 use souple_io::picture::{ColourMap, Cut, MeshSurface};
+use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 
 use super::figure::Figure;
 use super::{BodyMoment, Moment, Show, ShowError, vectors};
+use crate::links::{LINK_STATE, RADIUS};
 
 /// Camera, colours and sizes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Common {
     pub bounds: BoundingBox,
+    /// What is farthest out in any direction, at any moment; none where the bounds must do.
+    pub framed: Vec<Vec3>,
     /// About as much as a pixel shows [m].
     pub pixel: f64,
     pub range: Option<(f64, f64)>,
@@ -43,18 +47,74 @@ fn extremes(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
+/// Directions in which points are farthest out: what lies between two of them is at most `1 - cos 12°`, two hundredths of
+/// the size, farther, which the margin of pictures has room for.
+const DIRECTIONS: usize = 96;
+
+/// The points that are farthest out in each of many directions: a camera that has them in its picture has all.
+struct Outermost(Vec<Farthest>);
+
+/// The point that is farthest out in a direction.
+struct Farthest {
+    direction: Vec3,
+    /// [m]; infinitely far back before the first point.
+    along: f64,
+    point: Vec3,
+}
+
+impl Default for Outermost {
+    /// Directions on a spiral, as far from each other as so many can be.
+    fn default() -> Self {
+        let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+        let nothing_yet = |index: usize| {
+            let z = 1.0 - (2 * index + 1) as f64 / DIRECTIONS as f64;
+            let (sin, cos) = libm::sincos(golden * index as f64);
+            let across = (1.0 - z * z).sqrt();
+            let direction = Vec3::new(across * cos, across * sin, z);
+            Farthest { direction, along: f64::NEG_INFINITY, point: Vec3::ZERO }
+        };
+        Self((0..DIRECTIONS).map(nothing_yet).collect())
+    }
+}
+
+impl Outermost {
+    fn add(&mut self, points: &[Vec3]) {
+        for point in points.iter().filter(|point| point.is_finite()) {
+            for farthest in &mut self.0 {
+                let along = farthest.direction.dot(*point);
+                if along > farthest.along {
+                    (farthest.along, farthest.point) = (along, *point);
+                }
+            }
+        }
+    }
+
+    fn points(self) -> Vec<Vec3> {
+        let met = self.0.into_iter().filter(|farthest| farthest.along.is_finite());
+        let mut points: Vec<Vec3> = met.map(|farthest| farthest.point).collect();
+        points.dedup();
+        points
+    }
+}
+
 impl Common {
     pub fn of(figure: &Figure, show: &Show, moments: &[&Moment]) -> Result<Self, ShowError> {
         let bodies = || moments.iter().flat_map(|moment| &moment.bodies).filter(|body| body.is_drawable());
         let mut bounds = BoundingBox::of(bodies().flat_map(|body| body.positions.iter().copied()));
+        let mut framed = Outermost::default();
+        bodies().for_each(|body| framed.add(&body.positions));
         for moment in moments {
-            if let Some(shapes) = show.stage.bounds(moment.time, bounds) {
-                bounds = bounds.union(shapes);
+            let shapes = show.stage.points_near(moment.time, bounds);
+            framed.add(&shapes);
+            if !shapes.is_empty() {
+                bounds = bounds.union(BoundingBox::of(shapes));
             }
         }
+        let mut framed = framed.points();
         // exploded bodies are larger about their middles; those of all bodies together are near enough
         if figure.explode > 0.0 {
             bounds = bounds.grown(0.5 * figure.explode * bounds.diagonal() / 3f64.sqrt());
+            framed.clear();
         }
         let mut range = figure.range;
         if let (Some(quantity), None) = (figure.quantity(), range) {
@@ -81,7 +141,7 @@ impl Common {
             arrow_scale = arrows.scale.unwrap_or(fitted);
         }
         let pixels = FILLED * figure.size[0].min(figure.size[1]).max(1) as f64;
-        Ok(Self { bounds, pixel: bounds.diagonal() / pixels, range, arrow_scale })
+        Ok(Self { framed, bounds, pixel: bounds.diagonal() / pixels, range, arrow_scale })
     }
 }
 
@@ -91,8 +151,9 @@ impl BodyMoment {
         self.mesh.dimension() == 1
     }
 
-    /// Its edges, thick enough to be seen and thin enough to be told apart where pixels allow it.
-    pub(super) fn tubes(&self, common: &Common, cut: Option<Cut>) -> MeshSurface {
+    /// Its edges, thick enough to be seen and thin enough to be told apart where pixels allow it; those of links in one
+    /// state, or all that hold their ends together.
+    pub(super) fn tubes(&self, common: &Common, cut: Option<Cut>, state: Option<f64>) -> MeshSurface {
         let whole = common.bounds.diagonal();
         let cells = self.mesh.cell_count().max(1) as f64;
         let length: f64 = self
@@ -105,7 +166,25 @@ impl BodyMoment {
             .sum();
         let [thin, thick] = TUBES.map(|part| part * whole);
         let radius = (OF_EDGE * length / cells).clamp(thin, thick).max(common.pixel);
-        MeshSurface::tubes(&self.mesh, &self.positions, radius, cut)
+        let states = self.link_states();
+        let is_drawn = |cell: usize| {
+            let own = states.map_or(0.0, |states| states[cell]);
+            state.map_or(own >= 0.0, |state| own == state)
+        };
+        let of_cell = |cell: usize| if is_drawn(cell) { radius } else { 0.0 };
+        MeshSurface::tubes(&self.mesh, &self.positions, of_cell, cut)
+    }
+
+    /// Of each link, see [`LINK_STATE`]; `None` of a body that is no network.
+    pub(super) fn link_states(&self) -> Option<&[f64]> {
+        let field = self.cell_fields.iter().find(|field| field.name == LINK_STATE)?;
+        (field.values.len() == self.mesh.cell_count()).then_some(field.values.as_slice())
+    }
+
+    /// Of each point that is a ball [m]; `None` where none is.
+    pub(super) fn radii(&self) -> Option<&[f64]> {
+        let field = self.point_fields.iter().find(|field| field.name == RADIUS)?;
+        (field.values.len() == self.positions.len()).then_some(field.values.as_slice())
     }
 }
 
@@ -126,6 +205,30 @@ fn refuse_unknown_vectors(moment: &Moment, name: &str) -> Result<(), ShowError> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of a ball, no point is farther out than those kept by more than two hundredths; of a box all corners are kept.
+    #[test]
+    fn the_outermost_points_are_kept() {
+        let ball = |i: usize| {
+            let (z, turn) = (1.0 - (2 * i + 1) as f64 / 5000.0, 2.4 * i as f64);
+            Vec3::new((1.0 - z * z).sqrt() * turn.cos(), (1.0 - z * z).sqrt() * turn.sin(), z)
+        };
+        let points: Vec<Vec3> = (0..5000).map(ball).collect();
+        let mut outermost = Outermost::default();
+        outermost.add(&points);
+        let kept = outermost.points();
+        for direction in &points {
+            let farthest = kept.iter().map(|point| point.dot(*direction)).fold(0.0, f64::max);
+            assert!(farthest > 0.975, "{farthest} along {direction:?}");
+        }
+        let corners: Vec<Vec3> = (0..8)
+            .map(|i| Vec3::new((i & 1) as f64, (i >> 1 & 1) as f64 * 0.3, (i >> 2) as f64 * 2.0))
+            .collect();
+        let mut outermost = Outermost::default();
+        outermost.add(&[&corners[..], &[Vec3::new(0.5, 0.1, 1.0)]].concat());
+        let kept = outermost.points();
+        assert!(corners.iter().all(|corner| kept.contains(corner)), "{kept:?}");
+    }
 
     /// Values are spread over the colours; one value has its colour between zero and itself; what rounding makes of
     /// zero is near zero.

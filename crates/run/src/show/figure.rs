@@ -64,6 +64,8 @@ impl Default for Figure {
 /// Bodies in colours of their own, where no field colours them.
 const BODIES: [[u8; 3]; 5] =
     [[214, 122, 104], [112, 150, 196], [160, 178, 96], [206, 168, 96], [160, 128, 184]];
+/// Links in a state beyond that of the start: yielded ones are amber.
+const STATES: [[u8; 3]; 5] = [[230, 170, 40], [88, 164, 120], [170, 96, 180], [60, 130, 190], [190, 90, 60]];
 const ARROW: [u8; 3] = [40, 44, 52];
 /// Axes x, y, z of frames.
 const AXES: [[u8; 3]; 3] = [[200, 48, 48], [40, 150, 70], [50, 90, 210]];
@@ -102,7 +104,7 @@ impl Figure {
         let mut surfaces = Vec::new();
         let mut strokes = Vec::new();
         for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_drawable()) {
-            surfaces.push(self.surface(body, index, common).surface);
+            surfaces.extend(self.surfaces(body, index, common));
             strokes.extend(self.arrows_of(body, common.arrow_scale));
             strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
             strokes.extend(self.dots_of(body, index, common.range));
@@ -120,6 +122,7 @@ impl Figure {
             surfaces,
             strokes,
             ground: show.stage.ground(moment.time),
+            framed: if view.bounds.is_some() { Vec::new() } else { common.framed.clone() },
             view: View { bounds: view.bounds.or(Some(common.bounds)), ..view },
             size: self.size,
             samples_per_pixel: self.samples_per_pixel,
@@ -131,9 +134,33 @@ impl Figure {
         }
     }
 
-    fn surface(&self, body: &BodyMoment, index: usize, common: &Common) -> MeshSurface {
+    /// What is seen of a body: its surface, or its links, those of each state in a colour, and its balls.
+    fn surfaces(&self, body: &BodyMoment, index: usize, common: &Common) -> Vec<Surface> {
+        let values = self.quantity().and_then(|quantity| quantity.at_points(body));
+        let painted = |mut of: MeshSurface, state: u8| {
+            match &values {
+                Some(values) => of.paint_points(values),
+                None => of.surface.paint = Paint::Plain(colour_of(index, state)),
+            }
+            of.surface
+        };
+        let mut surfaces = match body.link_states().filter(|_| values.is_none()) {
+            Some(states) => {
+                let present = |state: &u8| states.contains(&f64::from(*state));
+                let tubes = |state: u8| painted(body.tubes(common, self.cut, Some(f64::from(state))), state);
+                (0..=u8::MAX).filter(present).map(tubes).collect()
+            }
+            None => vec![painted(self.surface(body, common), 0)],
+        };
+        if let Some(radii) = body.radii() {
+            surfaces.push(painted(MeshSurface::balls(&body.positions, radii, self.cut), 0));
+        }
+        surfaces
+    }
+
+    fn surface(&self, body: &BodyMoment, common: &Common) -> MeshSurface {
         let mut surface = match self.cut {
-            _ if body.is_of_edges() => body.tubes(common, self.cut),
+            _ if body.is_of_edges() => body.tubes(common, self.cut, None),
             Some(cut) => MeshSurface::cut(&body.mesh, &body.positions, cut),
             None if self.explode > 0.0 => MeshSurface::of_cells(&body.mesh),
             None => MeshSurface::of(&body.mesh),
@@ -145,14 +172,10 @@ impl Figure {
         if self.cut.is_none() && self.explode > 0.0 {
             surface.explode(self.explode);
         }
-        match self.quantity().and_then(|quantity| quantity.at_points(body)) {
-            Some(values) => surface.paint_points(&values),
-            None => surface.surface.paint = Paint::Plain(Colour::from_screen(BODIES[index % BODIES.len()])),
-        }
         surface
     }
 
-    /// Masses that no edge joins, as dots; what edges join is drawn as tubes.
+    /// Masses without a size that no edge joins, as dots; what edges join is drawn as tubes.
     fn dots_of(&self, body: &BodyMoment, index: usize, range: Option<(f64, f64)>) -> Vec<Stroke> {
         if !body.is_of_edges() && body.mesh.cell_count() > 0 {
             return Vec::new();
@@ -163,9 +186,10 @@ impl Figure {
             Some(values) => {
                 self.colours.colour((values[point as usize] - low) / (high - low).max(f64::MIN_POSITIVE))
             }
-            None => Colour::from_screen(BODIES[index % BODIES.len()]),
+            None => colour_of(index, 0),
         };
-        let mut is_loose = vec![true; body.positions.len()];
+        let is_ball = |point: usize| body.radii().is_some_and(|radii| radii[point] > 0.0);
+        let mut is_loose: Vec<bool> = (0..body.positions.len()).map(|point| !is_ball(point)).collect();
         for node in body.mesh.cells().flat_map(|cell| cell.nodes) {
             is_loose[*node as usize] = false;
         }
@@ -202,10 +226,14 @@ impl Figure {
             let bodies: Vec<&BodyMoment> =
                 moments.iter().filter_map(|moment| moment.bodies.get(index)).collect();
             let Some(last) = bodies.last() else { continue };
-            let of = if last.is_of_edges() { last.tubes(&common, None) } else { MeshSurface::of(&last.mesh) };
+            let of = if last.is_of_edges() {
+                last.tubes(&common, None, None)
+            } else {
+                MeshSurface::of(&last.mesh)
+            };
             let frame = |body: &&BodyMoment| {
                 if body.is_of_edges() {
-                    return body.tubes(&common, None).surface.points;
+                    return body.tubes(&common, None, None).surface.points;
                 }
                 let mut surface = of.clone();
                 surface.move_to(&body.positions);
@@ -219,7 +247,7 @@ impl Figure {
                 name: last.name.clone(),
                 triangles: of.surface.triangles.clone(),
                 frames: bodies.iter().map(frame).collect(),
-                colour: Colour::from_screen(BODIES[index % BODIES.len()]),
+                colour: colour_of(index, 0),
                 point_colours: values.map_or_else(Vec::new, |values| {
                     of.points.iter().map(|point| colour(values[point.from as usize])).collect()
                 }),
@@ -246,6 +274,12 @@ impl Figure {
             up: show.stage.view.up,
         })
     }
+}
+
+/// The colour of a body, or of those of its links that are in another state than at the start.
+fn colour_of(body: usize, state: u8) -> Colour {
+    let of_state = usize::from(state).checked_sub(1).map(|number| STATES[number % STATES.len()]);
+    Colour::from_screen(of_state.unwrap_or(BODIES[body % BODIES.len()]))
 }
 
 /// The frames that carry a body, as three arrows each.

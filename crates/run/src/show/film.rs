@@ -13,9 +13,7 @@ pub enum FilmError {
     Missing(std::io::Error),
     #[error("`ffmpeg` did not make {}: {message}", .path.display())]
     Failed { path: PathBuf, message: String },
-    #[error(
-        "the size of a film is {width} x {height}; expected even numbers of pixels, which its compression asks for"
-    )]
+    #[error("a film of {width} x {height} pixels cannot be compressed")]
     Odd { width: usize, height: usize },
 }
 

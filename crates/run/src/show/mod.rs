@@ -143,8 +143,16 @@ impl Show {
     }
 }
 
-/// Size of a body that can be drawn, in sizes of its mesh.
-const MOST_GROWTH: f64 = 100.0;
+/// Size of a body that can be drawn, and of a solid that has not blown up, in sizes of its mesh.
+pub(crate) const MOST_GROWTH: f64 = 100.0;
+
+/// How large a body is, in sizes of its mesh; 1 where the mesh has none: masses that start at one place may go
+/// anywhere.
+pub(crate) fn growth(mesh: &[Vec3], positions: &[Vec3]) -> f64 {
+    let extent = |points: &[Vec3]| BoundingBox::of(points.iter().copied()).diagonal();
+    let rest = extent(mesh);
+    if rest > 0.0 { extent(positions) / rest } else { 1.0 }
+}
 
 /// A field of three numbers on the points.
 fn vectors(body: &BodyMoment, name: &str) -> Option<Vec<Vec3>> {
@@ -226,10 +234,7 @@ impl BodyMoment {
     /// Whether it can be drawn: it is finite, and has not grown beyond all bounds; of one that has, a point or two
     /// would be seen.
     fn is_drawable(&self) -> bool {
-        let extent = |points: &[Vec3]| BoundingBox::of(points.iter().copied()).diagonal();
-        let rest = extent(&self.mesh.points);
-        // masses that start at one place may go anywhere
-        let has_run_away = rest > 0.0 && extent(&self.positions) > MOST_GROWTH * rest;
-        self.positions.iter().all(|x| x.is_finite()) && !has_run_away
+        self.positions.iter().all(|x| x.is_finite())
+            && growth(&self.mesh.points, &self.positions) <= MOST_GROWTH
     }
 }

@@ -41,6 +41,8 @@ impl<'a> Quantity<'a> {
             "velocity" => "m/s",
             "stress" | "von_mises" => "Pa",
             "strain_energy_density" => "J/m³",
+            "link_force" => "N",
+            "radius" => "m",
             _ => "",
         }
     }

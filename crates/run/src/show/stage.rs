@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use souple_engine::Model;
 use souple_engine::obstacle::{Form, Obstacle, Side};
+use souple_engine::{Force, Model};
 use souple_io::picture::{Colour, EdgeStyle, Faces, Ground, Paint, Surface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
+use souple_models::frames::ROWS_OF_FRAME;
 use souple_scene::spec::picture::{PictureSpec, PictureView};
 use souple_scene::{BodyInfo, Scene};
 
@@ -31,12 +32,11 @@ impl Default for Stage {
     }
 }
 
-/// What bodies may touch, each once though several bodies touch it.
-pub fn obstacles_of(model: &Model) -> Vec<Obstacle> {
-    let forces = model.systems.iter().flat_map(|system| &system.forces);
+/// What some forces keep bodies away from, each once though several bodies touch it.
+pub fn obstacles_of<'a>(forces: impl Iterator<Item = &'a Box<dyn Force>>) -> Vec<Obstacle> {
     let mut obstacles: Vec<Obstacle> = Vec::new();
     for obstacle in forces.filter_map(|force| force.obstacle()) {
-        if !obstacles.iter().any(|known| known.form == obstacle.form) {
+        if !obstacles.iter().any(|known| known.name == obstacle.name) {
             obstacles.push(obstacle);
         }
     }
@@ -50,7 +50,7 @@ impl Stage {
 
     /// Without a title.
     pub fn of_model(model: &Model, bodies: &[BodyInfo], view: PictureView) -> Self {
-        let obstacles = obstacles_of(model);
+        let obstacles = obstacles_of(model.systems.iter().flat_map(|system| &system.forces));
         let stiffness = bodies.iter().filter_map(|body| stiffness(model, body)).fold(0.0, f64::max);
         Self { title: String::new(), view, stiffness, obstacles }
     }
@@ -112,14 +112,13 @@ impl Stage {
         walls.chain(bounded).collect()
     }
 
-    /// Bounds of the bounded shapes that are not much larger than the bodies.
-    pub(super) fn bounds(&self, time: f64, bodies: BoundingBox) -> Option<BoundingBox> {
-        let boxes = self.obstacles.iter().filter_map(|obstacle| {
-            let bounds = BoundingBox::of(points_of(obstacle, time));
-            let is_bounded = matches!(obstacle.form, Form::Surface { .. });
-            (is_bounded && bounds.diagonal() < MUCH_LARGER * bodies.diagonal()).then_some(bounds)
-        });
-        boxes.reduce(BoundingBox::union)
+    /// Points of the bounded shapes that are not much larger than the bodies.
+    pub(super) fn points_near(&self, time: f64, bodies: BoundingBox) -> Vec<Vec3> {
+        let shapes = self.obstacles.iter().map(|obstacle| points_of(obstacle, time));
+        let is_near = |points: &Vec<Vec3>| {
+            BoundingBox::of(points.iter().copied()).diagonal() < MUCH_LARGER * bodies.diagonal()
+        };
+        shapes.filter(|points| !points.is_empty()).filter(is_near).flatten().collect()
     }
 }
 
@@ -133,8 +132,15 @@ const FELT_CELLS: usize = 8;
 fn stiffness(model: &Model, body: &BodyInfo) -> Option<f64> {
     let solid = solid_of(model, body)?;
     let mut positions = vec![Vec3::ZERO; body.rows.end];
+    let stretched =
+        |rest: &Vec3| *rest + Vec3::new(FEELERS[0] * rest.x, FEELERS[1] * rest.y, FEELERS[2] * rest.z);
     for (position, rest) in positions[body.rows.clone()].iter_mut().zip(&body.mesh.points) {
-        *position = *rest + Vec3::new(FEELERS[0] * rest.x, FEELERS[1] * rest.y, FEELERS[2] * rest.z);
+        *position = stretched(rest);
+    }
+    if let Some(frames) = &body.frames {
+        // axes are stretched with the origins: all points are then, whatever the weights
+        let rows = frames.rows.iter().flat_map(|origin| *origin as usize..*origin as usize + ROWS_OF_FRAME);
+        rows.zip(&frames.rest).for_each(|(row, rest)| positions[row] = stretched(rest));
     }
     let count = body.mesh.cell_count();
     let felt = (0..count).step_by(count.div_ceil(FELT_CELLS).max(1));
@@ -173,5 +179,62 @@ fn wall(point: Vec3, normal: Vec3, bodies: BoundingBox) -> Surface {
         paint: Paint::Plain(Colour::from_screen([226, 229, 235])),
         faces: Faces::Front,
         ..Surface::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use souple_scene::read_text;
+
+    use super::*;
+
+    fn shipped(name: &str, setting: &str) -> Scene {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+        let text = std::fs::read_to_string(folder.join("scene.toml")).expect("the scene");
+        read_text(name, &text, &folder, &[setting.to_owned()]).unwrap_or_else(|errors| panic!("{errors}"))
+    }
+
+    /// Under one stretch a body of affine frames has the stress of the body of its mesh, to the last digits.
+    #[test]
+    fn frames_are_as_stiff_as_their_matter() {
+        let stiffness = |scene: Scene| Stage::of(&scene).stiffness;
+        let frames = stiffness(shipped("frames_cantilever", "title=\"frames\""));
+        let points = stiffness(shipped("cantilever", "bodies.bar.material.name=\"st_venant_kirchhoff\""));
+        assert!((frames / points - 1.0).abs() < 1e-9, "{frames} {points}");
+    }
+
+    /// Two shapes of one form are two; one that two bodies touch is one.
+    #[test]
+    fn shapes_are_told_apart_by_name() {
+        let body = |name: &str, x: f64| {
+            let mesh =
+                "mesh = { generate = \"box\", size = [1, 1, 1], cells = [1, 1, 1], element = \"hex8\" }";
+            let material =
+                "material = { name = \"linear\", youngs_modulus = 1e4, poissons_ratio = 0, density = 1 }";
+            format!("[bodies.{name}]\n{mesh}\n{material}\ntranslate = [{x}, 0, 0]\n")
+        };
+        let shape = |name: &str, motion: &str| {
+            format!(
+                "[shapes.{name}]\nshape = {{ name = \"sphere\", centre = [0, 9, 0], radius = 1 }}\n{motion}\n"
+            )
+        };
+        let touch = |body: &str, shape: &str| {
+            format!("[[contacts]]\nname = \"{body}_{shape}\"\nbody = \"{body}\"\nshape = \"{shape}\"\n")
+        };
+        let text = format!(
+            "format = 1\n[world]\nperiod = 1\n{}{}{}{}{}{}{}",
+            body("a", 0.0),
+            body("b", 5.0),
+            shape("still", ""),
+            shape("moving", "motion = { formula = [\"t\", \"0\", \"0\"] }"),
+            touch("a", "still"),
+            touch("b", "still"),
+            touch("a", "moving"),
+        );
+        let scene =
+            read_text("spheres", &text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+        let names: Vec<String> =
+            obstacles_of(&scene.model).into_iter().map(|obstacle| obstacle.name).collect();
+        assert_eq!(names, ["still", "moving"]);
     }
 }

@@ -9,7 +9,8 @@ use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
-    FlatCell, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass,
+    FlatCell, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass,
+    lumped_mass, uniform_mass,
 };
 
 use super::boundary::constant_vector;
@@ -192,6 +193,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         match body.spec.mass {
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
+            MassKind::Uniform => uniform_mass(&body.mesh, body.rows.start, &density, &mut mass),
         }
         if let Some(coarser) = &body.levels {
             forces.extend(levels::force(draft, body, coarser));

@@ -12,7 +12,6 @@ use souple_models::loads::RigidMotion;
 
 use super::Draft;
 use super::bodies::Placed;
-use super::doubts::youngs_modulus;
 use super::freedom::{Joint, touching_joints};
 use super::motion::motion;
 use crate::diagnostic::Code;
@@ -99,7 +98,7 @@ fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching>
 fn modulus_behind(body: &Placed, points: impl Iterator<Item = (u32, f64)>) -> f64 {
     let mut sums = vec![(0.0, 0_u32); body.mesh.points.len()];
     for (index, cell) in body.mesh.cells().enumerate() {
-        let modulus = youngs_modulus(&body.materials.of(index).small_strain);
+        let modulus = body.materials.of(index).small_strain.youngs_modulus();
         for node in cell.nodes {
             let (sum, count) = &mut sums[*node as usize];
             *sum += modulus;
@@ -179,7 +178,7 @@ fn against_shape(
     let law = law(contact, modulus_behind(body, touching.shares()), touching.mean_area);
     let joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
     match ShapeContact::new(contact.name.clone(), touching.points, built, motion, law) {
-        Ok(force) => Some((force, joints)),
+        Ok(force) => Some((force.against(&shape.name), joints)),
         Err(error) => {
             draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
             None

@@ -3,7 +3,7 @@
 use souple_engine::System;
 use souple_engine::linear::Method;
 use souple_mesh::Order;
-use souple_models::materials::{Build, Lame, Material};
+use souple_models::materials::{Build, Material};
 use souple_table::{Value, readable};
 
 use super::Draft;
@@ -49,7 +49,7 @@ pub fn warn(draft: &mut Draft) {
 pub fn refuse(draft: &Draft) {
     for body in &draft.bodies {
         for (chosen, material) in materials(body.spec) {
-            let modulus = youngs_modulus(&material.small_strain);
+            let modulus = material.small_strain.youngs_modulus();
             let written = |key: &str, computed: f64| match chosen.values.get(key) {
                 Some(Value::Number(number)) => number,
                 _ => computed,
@@ -84,7 +84,7 @@ fn materials(body: &Body) -> Vec<(&Chosen<Build>, Material)> {
 
 /// `is_linear`: some of its elements have linear shape functions.
 fn of_material(material: &Material, is_linear: bool) -> impl Iterator<Item = String> {
-    let (density, modulus) = (material.density, youngs_modulus(&material.small_strain));
+    let (density, modulus) = (material.density, material.small_strain.youngs_modulus());
     let ratio = material.small_strain.lambda / material.small_strain.mu;
     let modulus_doubt = (!within(modulus, MODULI)).then(|| {
         let hint = if modulus < MODULI[0] { "did you mean kPa or MPa?" } else { "did you mean Pa or kPa?" };
@@ -119,9 +119,4 @@ pub fn of_solver(system: &System) -> Option<String> {
     }
     let (asked, taken) = (settings.preconditioner, settings.preconditioner_instead()?);
     Some(format!("without a stored matrix there is no `{asked}`: `{taken}` takes its place"))
-}
-
-/// `E = μ (3λ + 2μ) / (λ + μ)` [Pa].
-pub fn youngs_modulus(lame: &Lame) -> f64 {
-    lame.mu * (3.0 * lame.lambda + 2.0 * lame.mu) / (lame.lambda + lame.mu)
 }

@@ -16,7 +16,6 @@ use souple_table::{Entry, Values};
 
 use super::Draft;
 use super::bodies::{Placed, solid_name};
-use super::doubts::youngs_modulus;
 use crate::diagnostic::Code;
 use crate::spec::body::{Body, MassKind};
 use crate::spec::frames::FramesSpec;
@@ -71,7 +70,8 @@ impl PlacedFrames {
             self.samples.iter().map(|sample| density_of_cell(sample.cell as usize) * sample.volume).collect();
         match kind {
             MassKind::Consistent => frames::consistent_mass(&self.carried, &masses, &self.rows, mass),
-            MassKind::Lumped => {
+            // refused where frames are placed: points that frames carry have no mass of their own
+            MassKind::Lumped | MassKind::Uniform => {
                 frames::lumped_mass(&self.frames, &self.samples, &self.carried, &masses, &self.rows, mass);
             }
         }
@@ -145,6 +145,11 @@ pub fn place(
         draft.log.add(Code::Conflict, &spec.site, message, "`rayleigh_mass`, or `drag`");
         return None;
     }
+    if body.mass == MassKind::Uniform {
+        let message = "a body of frames has its mass in its frames, not in points that are alike";
+        draft.log.add(Code::Conflict, &spec.site, message, "`mass = \"lumped\"` or `mass = \"consistent\"`");
+        return None;
+    }
     match placed(spec, mesh, materials, material_of_cell) {
         Ok(placed) => {
             let per_point = placed.carried.iter().map(|carried| carried.frames.len() as f64).sum::<f64>()
@@ -175,7 +180,7 @@ fn placed(
 ) -> Result<PlacedFrames, FrameError> {
     let stiffness_of_cell: Vec<f64> = material_of_cell
         .iter()
-        .map(|number| youngs_modulus(&materials[usize::from(*number)].small_strain))
+        .map(|number| materials[usize::from(*number)].small_strain.youngs_modulus())
         .collect();
     let defaults = Values::new();
     let (build, values) = chosen_or(&spec.points, POINTS.entries[0], &defaults);
@@ -223,7 +228,7 @@ pub type HeldAxes = (u32, Vec3, Option<Arc<dyn Motion>>);
 pub fn hold(body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
     let material =
         body.spec.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok())?;
-    let modulus = youngs_modulus(&material.small_strain);
+    let modulus = material.small_strain.youngs_modulus();
     let size = body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
     let areas = cross_sections(&body.mesh);
     if held.is_empty() {

@@ -5,10 +5,10 @@ use souple_math::Vec3;
 use souple_mesh::CellLocator;
 use souple_models::frames::layer_stiffness;
 use souple_models::loads::{Attachments, Combination, Link as LoadLink};
+use souple_table::counted;
 
 use super::Draft;
 use super::bodies::Placed;
-use super::doubts::youngs_modulus;
 use super::frames::cross_sections;
 use super::freedom::Joint;
 use crate::diagnostic::Code;
@@ -103,7 +103,7 @@ fn layer_between(from: &Placed, to: &Placed, links: &[LoadLink]) -> f64 {
     let modulus = |body: &Placed| {
         let material = body.spec.material.as_ref();
         let built = material.and_then(|chosen| (chosen.entry.build)(&chosen.values).ok());
-        built.map_or(0.0, |material| youngs_modulus(&material.small_strain))
+        built.map_or(0.0, |material| material.small_strain.youngs_modulus())
     };
     let [a, b] = [from, to].map(modulus);
     let smallest =
@@ -146,6 +146,24 @@ fn attachment(
     Some((LoadLink { a, b: Combination::new(rows).ok()?, rest_length }, joint))
 }
 
+/// What to expect of couplings: one line for the springs of each, which are alike.
+fn forecasts(springs: &[CouplingSpring], period: f64) -> Vec<String> {
+    let of_coupling = springs.chunk_by(|a, b| coupling_of(a) == coupling_of(b));
+    of_coupling
+        .filter_map(|springs| {
+            let forecast = springs.first()?.forecast(period)?;
+            let others = springs.len() - 1;
+            let more = || format!("{forecast} (and {} more of it)", counted(others as u64, "spring"));
+            Some(if others > 0 { more() } else { forecast.clone() })
+        })
+        .collect()
+}
+
+/// The name of a spring without that of its point.
+fn coupling_of(spring: &CouplingSpring) -> &str {
+    spring.name.rsplit_once('.').map_or(&spring.name, |(coupling, _)| coupling)
+}
+
 /// Coupling springs from points of one body to the nearest points of a body in another system.
 pub fn couple(draft: &mut Draft) {
     let (mut springs, mut joints) = (Vec::new(), Vec::new());
@@ -182,9 +200,7 @@ pub fn couple(draft: &mut Draft) {
     }
     draft.joints.extend(joints);
     let period = draft.spec.world.period;
-    // one line for many springs of one coupling that say the same
-    let forecast = springs.iter().find_map(|spring| spring.forecast(period));
-    draft.warnings.extend(forecast);
+    draft.warnings.extend(forecasts(&springs, period));
     draft.state.driven = vec![0.0; springs.len() * DRIVEN_LEN];
     for spring in springs {
         draft.systems[spring.fast_system].forces.push(spring.fast_end());

@@ -4,12 +4,15 @@
 //! The estimate counts what every scene of that size needs, and no more: it refuses what cannot fit, and lets pass
 //! what may. Contacts, factors of direct solvers and pictures come on top.
 
+use souple_engine::Pair;
 use souple_mesh::MeshSize;
 
 use super::bodies::Placed;
+use super::network::size as network_size;
 use crate::diagnostic::{Code, Log, Site};
 use crate::source::Sources;
 use crate::spec::Spec;
+use crate::spec::body::Body;
 use crate::spec::mesh::MeshSpec;
 
 /// Vectors of three numbers that a point has: configuration and velocity of two states, four of rows, twelve of
@@ -25,6 +28,13 @@ const BLOCK: u64 = 2 * (72 + 4);
 /// What a tetrahedron, the smallest cell, has: nodes in two meshes, gradients, volume and law, places and forces of
 /// its corners.
 const CELL: u64 = 250;
+/// What a link has: its ends in two lists and as a cell of two meshes, two lengths; with its force, its ends and length
+/// once more, and where it stands in four orders.
+const LINK: u64 = 80;
+/// What a pair of a crowd has: in two states, and in the list that is merged into the next.
+const PAIR: u64 = 3 * size_of::<Pair>() as u64;
+/// Links are told apart by 32 bits.
+const LINKS_MAX: u64 = 500_000_000;
 
 /// What a body needs.
 struct Needs<'a> {
@@ -33,6 +43,17 @@ struct Needs<'a> {
     bytes: u64,
     /// How large it is, in words.
     size: String,
+}
+
+impl<'a> Needs<'a> {
+    fn of_network(body: &'a Body, size: MeshSize, spec: &Spec) -> Self {
+        Self {
+            body: &body.name,
+            site: &body.site,
+            bytes: bytes_of(size, LINK, matrix_of(spec, &body.system)),
+            size: format!("{} masses and at least {} links", size.points, size.cells),
+        }
+    }
 }
 
 /// Whether the stepper of a body stores a matrix.
@@ -45,11 +66,14 @@ enum Matrix {
 /// Refuses generated meshes, and files, that cannot fit, before they are made.
 pub fn check_specified(spec: &Spec, sources: &Sources, log: &Log) {
     let needs = spec.bodies.iter().filter_map(|body| {
+        if let Some(network) = &body.network {
+            return Some(Needs::of_network(body, network_size(network), spec));
+        }
         let mesh = body.mesh.as_ref()?;
         let (bytes, size) = match mesh {
             MeshSpec::Generated(chosen) => {
                 let size = (chosen.entry.build.size)(&chosen.values).ok()?;
-                (bytes_of(size, matrix_of(spec, &body.system)), counts(size))
+                (bytes_of(size, CELL, matrix_of(spec, &body.system)), counts(size))
             }
             // no more is known of a file than that it is read as a whole
             MeshSpec::File { file, site, .. } | MeshSpec::Filled { file, site, .. } => {
@@ -70,23 +94,36 @@ pub fn check_placed(spec: &Spec, bodies: &[Placed], log: &Log) {
     let needs = bodies.iter().map(|body| {
         let mesh = &body.mesh;
         let size = MeshSize { points: mesh.points.len() as u64, cells: mesh.cell_count() as u64 };
+        if body.spec.network.is_some() {
+            return Needs::of_network(body.spec, size, spec);
+        }
         Needs {
             body: &body.spec.name,
             site: body.spec.mesh.as_ref().map_or(&body.spec.site, MeshSpec::site),
-            bytes: bytes_of(size, matrix_of(spec, &body.spec.system)),
+            bytes: bytes_of(size, CELL, matrix_of(spec, &body.spec.system)),
             size: counts(size),
         }
     });
     check(&needs.collect::<Vec<_>>(), available(), log);
 }
 
-/// What a body of that size needs at least [bytes].
-fn bytes_of(size: MeshSize, matrix: Matrix) -> u64 {
+/// Links for which there is memory.
+pub fn links_that_fit() -> usize {
+    available().map_or(LINKS_MAX, |bytes| LINKS_MAX.min(bytes / LINK)) as usize
+}
+
+/// Pairs of a crowd for which there is memory.
+pub fn pairs_that_fit() -> usize {
+    available().map_or(u64::MAX, |bytes| bytes / PAIR) as usize
+}
+
+/// What a body of that size needs at least, with so many bytes for each cell [bytes].
+fn bytes_of(size: MeshSize, cell: u64, matrix: Matrix) -> u64 {
     let of_point = match matrix {
         Matrix::None => VECTORS_OF_POINT * VECTOR,
         Matrix::Stored => (VECTORS_OF_POINT + VECTORS_OF_IMPLICIT_POINT) * VECTOR + BLOCKS_OF_ROW * BLOCK,
     };
-    size.points * of_point + size.cells * CELL
+    size.points.saturating_mul(of_point).saturating_add(size.cells.saturating_mul(cell))
 }
 
 fn counts(size: MeshSize) -> String {
@@ -94,7 +131,7 @@ fn counts(size: MeshSize) -> String {
 }
 
 fn check(needs: &[Needs], available: Option<u64>, log: &Log) {
-    let total: u64 = needs.iter().map(|needs| needs.bytes).sum();
+    let total = needs.iter().fold(0_u64, |sum, needs| sum.saturating_add(needs.bytes));
     let (Some(largest), Some(available)) = (needs.iter().max_by_key(|needs| needs.bytes), available) else {
         return;
     };
@@ -164,7 +201,7 @@ mod tests {
         let site = Site::default();
         let needs = |body, points, matrix| {
             let size = MeshSize { points, cells: 5 * points };
-            Needs { body, site: &site, bytes: bytes_of(size, matrix), size: counts(size) }
+            Needs { body, site: &site, bytes: bytes_of(size, CELL, matrix), size: counts(size) }
         };
         let explicit = needs("small", 1000, Matrix::None);
         assert_eq!(explicit.bytes, 1000 * 22 * 24 + 5000 * 250);

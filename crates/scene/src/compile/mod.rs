@@ -23,8 +23,10 @@ pub(crate) use frames::hold_name;
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use souple_engine::{Model, State, System};
+use souple_models::contact::ShapeToolbox;
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::inputs::Inputs;
@@ -92,7 +94,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         log,
         bodies: Vec::new(),
         systems: Vec::new(),
-        model: Model { period: spec.world.period, ..Model::default() },
+        model: Model { period: spec.world.period, toolbox: Some(Arc::new(ShapeToolbox)), ..Model::default() },
         state: State::default(),
         warnings: Vec::new(),
         joints: Vec::new(),
@@ -139,7 +141,10 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     depth::warn(&mut draft);
     let Draft { bodies, systems, mut model, state, warnings, skins, .. } = draft;
     model.systems = systems;
-    let bodies = bodies.into_iter().map(BodyInfo::new);
+    let bodies = bodies.into_iter().map(|body| {
+        let radii = network::radii(&body, spec);
+        BodyInfo::new(body, radii)
+    });
     Some(Scene {
         title: title(spec, sources),
         description: spec.description.clone(),

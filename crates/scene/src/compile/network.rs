@@ -1,6 +1,10 @@
 //! Networks become points with masses, and links of one law one force each.
 
-use std::collections::HashMap;
+mod ends;
+
+pub use ends::size;
+
+use std::ops::Range;
 
 use souple_engine::steppers::Stability;
 use souple_engine::{Force, Mass};
@@ -11,13 +15,14 @@ use souple_models::network::{
     PAIR_MEMORY,
 };
 
-use super::Draft;
 use super::bodies::Placed;
 use super::shape::Shape;
+use super::{Draft, memory};
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
+use crate::spec::Spec;
 use crate::spec::body::Body;
-use crate::spec::network::{CrowdSpec, Join, LinkTable, MassGroup, Network};
+use crate::spec::network::{CrowdSpec, MassGroup, Network};
 use crate::spec::world::SystemSpec;
 
 /// Which masses the links of a table join, and how long they are at rest.
@@ -30,18 +35,12 @@ pub struct PlacedLinks {
     pub lengths: Vec<f64>,
 }
 
-/// Links of a network, at most.
-const LINKS_MAX: usize = 500_000_000;
-
 /// Masses as points, links as edges, groups of masses as groups; `None` where something was refused.
 pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Vec<PlacedLinks>)> {
-    let (mut points, mut groups) = (Vec::new(), Vec::new());
-    for group in &network.masses {
-        let first = points.len() as u32;
-        points.extend(group.positions.iter().map(|place| body.placement.place(*place)));
-        groups.push((group, first..points.len() as u32));
-    }
-    if let Some(point) = points.iter().position(|point: &Vec3| !point.is_finite()) {
+    let starts =
+        network.masses.iter().flat_map(|group| (0..group.places.count()).map(|i| group.places.place(i)));
+    let points: Vec<Vec3> = starts.map(|place| body.placement.place(place)).collect();
+    if let Some(point) = points.iter().position(|point| !point.is_finite()) {
         let message = format!("mass {point} starts at no finite place");
         draft.log.add(Code::NotFinite, &body.site, message, "finite numbers");
         return None;
@@ -50,11 +49,13 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
         draft.log.add(Code::EmptyRegion, &body.site, "the network has no masses", "at least one");
         return None;
     }
+    let mut room = memory::links_that_fit();
     let links: Vec<PlacedLinks> = network
         .links
         .iter()
         .filter_map(|table| {
-            let ends = ends_of(table, &groups, &points, draft)?;
+            let ends = ends::of_table(table, network, &points, room, draft.log)?;
+            room -= ends.len();
             let length = |[a, b]: &[u32; 2]| (points[*a as usize] - points[*b as usize]).length();
             let lengths: Vec<f64> = ends.iter().map(length).collect();
             let rest_lengths = lengths.iter().map(|length| table.rest_length.unwrap_or(*length)).collect();
@@ -68,9 +69,9 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
     let nodes = links.iter().flat_map(|links| links.ends.iter().flatten().copied()).collect();
     let mut mesh = Mesh::new(points, ElementKind::Edge2, nodes);
     mesh.blocks.retain(|block: &CellBlock| !block.is_empty());
-    for (group, numbers) in groups {
-        let points = Group { points: numbers.collect(), ..Group::default() };
-        mesh.groups.insert(group.name.clone(), points);
+    for name in network.masses.iter().map(|group| &group.name) {
+        let points = network.numbers_of(name).into_iter().flatten().collect();
+        mesh.groups.insert(name.clone(), Group { points, ..Group::default() });
     }
     let point_numbers = (0..mesh.points.len() as u32).collect();
     Some((Shape { mesh, point_numbers, warnings }, links))
@@ -99,121 +100,23 @@ fn coincident(
         .collect()
 }
 
-type Groups<'a> = [(&'a MassGroup, std::ops::Range<u32>)];
-
-/// The masses that a table of links joins; `None` where it was refused.
-fn ends_of(table: &LinkTable, groups: &Groups, points: &[Vec3], draft: &Draft) -> Option<Vec<[u32; 2]>> {
-    let find =
-        |name: &String| groups.iter().find(|(group, _)| group.name == *name).map(|(_, range)| range.clone());
-    let (first, last) = match &table.of[..] {
-        [] => (0..points.len() as u32, 0..points.len() as u32),
-        [one] => (find(one)?, find(one)?),
-        [one, other, ..] => (find(one)?, find(other)?),
-    };
-    let is_one = first == last;
-    // pairs of one group once, those of two all
-    let is_pair = |a: u32, b: u32| if is_one { a < b } else { a != b };
-    let mut ends: Vec<[u32; 2]> = match table.join.as_ref()? {
-        Join::Chain => first.clone().zip(first.clone().skip(1)).map(|(a, b)| [a, b]).collect(),
-        Join::All => {
-            let count = first.len() * last.len() / if is_one { 2 } else { 1 };
-            if count > LINKS_MAX {
-                let message = format!("{count} links between every pair");
-                draft.log.add(Code::TooLarge, &table.site, message, "`reach`, which joins neighbours only");
-                return None;
-            }
-            let of = |a: u32| last.clone().filter(move |b| is_pair(a, *b)).map(move |b| [a, b]);
-            first.clone().flat_map(of).collect()
-        }
-        Join::Reach(reach) => near(points, first.clone(), last.clone(), *reach, &is_pair),
-        Join::Ends(from, to) => {
-            let mut ends = Vec::with_capacity(from.len());
-            for (index, (a, b)) in from.iter().zip(to).enumerate() {
-                for (key, number, group) in [("from", a, &first), ("to", b, &last)] {
-                    if *number as usize >= group.len() {
-                        let message =
-                            format!("{key}[{index}] is mass {number}, but the group has {}", group.len());
-                        let expected = format!("numbers below {}", group.len());
-                        draft.log.add(Code::OutOfRange, &table.site, message, expected);
-                        return None;
-                    }
-                }
-                let pair = [first.start + a, last.start + b];
-                if pair[0] == pair[1] {
-                    let message = format!("link {index} joins mass {a} to itself");
-                    draft.log.add(
-                        Code::Conflict,
-                        &table.site,
-                        message,
-                        "two masses for the two ends of a link",
-                    );
-                    return None;
-                }
-                ends.push(pair);
-            }
-            ends
-        }
-    };
-    if ends.is_empty() {
-        draft.log.add(
-            Code::EmptyRegion,
-            &table.site,
-            "no masses are joined",
-            "a longer reach, or other groups",
-        );
-        return None;
-    }
-    ends.shrink_to_fit();
-    Some(ends)
-}
-
-/// Pairs of one range and another at most `reach` apart, in the order of the first, then of the second.
-fn near(
-    points: &[Vec3],
-    first: std::ops::Range<u32>,
-    last: std::ops::Range<u32>,
-    reach: f64,
-    is_pair: &impl Fn(u32, u32) -> bool,
-) -> Vec<[u32; 2]> {
-    let cell = |point: Vec3| point.to_array().map(|x| (x / reach).floor() as i64);
-    let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    for b in last {
-        cells.entry(cell(points[b as usize])).or_default().push(b);
-    }
-    let mut ends = Vec::new();
-    for a in first {
-        let (from, start) = (points[a as usize], ends.len());
-        let [x, y, z] = cell(from);
-        for (i, j, k) in (0..27).map(|n| (n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)) {
-            let Some(others) = cells.get(&[x + i, y + j, z + k]) else { continue };
-            let near =
-                |b: &&u32| is_pair(a, **b) && (points[**b as usize] - from).length_sq() <= reach * reach;
-            ends.extend(others.iter().filter(near).map(|b| [a, *b]));
-        }
-        ends[start..].sort_unstable();
-    }
-    ends
-}
-
 /// Puts the masses of a network where they belong among the rows.
 pub fn add_masses(body: &Placed, network: &Network, mass: &mut Mass) {
-    let masses = network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.mass));
-    for (row, own) in body.rows.clone().zip(masses) {
+    for (row, own) in body.rows.clone().zip(network.of_each(|group| group.mass)) {
         mass.diagonal[row] = own;
     }
 }
 
 /// Adds the velocities that groups of masses have of their own.
 pub fn add_velocities(body: &Placed, network: &Network, velocities: &mut [Vec3]) {
-    let own = network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.velocity));
-    for (row, own) in body.rows.clone().zip(own) {
+    for (row, own) in body.rows.clone().zip(network.of_each(|group| group.velocity)) {
         velocities[row] += own;
     }
 }
 
 /// Rows that a medium brakes, with their drag [N s/m].
 pub fn drags(body: &Placed, network: &Network) -> Vec<(u32, f64)> {
-    let own = network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.drag));
+    let own = network.of_each(|group| group.drag);
     (body.rows.start as u32..).zip(own).filter(|(_, drag)| *drag > 0.0).collect()
 }
 
@@ -286,23 +189,17 @@ fn crowd(
         );
         return None;
     }
-    let rows = |name: &str| {
-        let mut first = body.rows.start as u32;
-        for group in &network.masses {
-            let end = first + group.positions.len() as u32;
-            if group.name == name {
-                return Some(first..end);
-            }
-            first = end;
-        }
-        None
+    let (first, second) = ends::groups(&spec.of, network)?;
+    if !ends::may_crowd(first.clone(), second.clone(), range, &body.mesh.points) {
+        let message = format!("more pairs are within {range} m of each other at the start than memory holds");
+        draft.log.add(Code::TooLarge, &spec.site, message, "a shorter range, or fewer masses");
+        return None;
+    }
+    let rows = |numbers: Range<u32>| {
+        let base = body.rows.start as u32;
+        base + numbers.start..base + numbers.end
     };
-    let all = body.rows.start as u32..body.rows.end as u32;
-    let (first, second) = match &spec.of[..] {
-        [] => (all.clone(), all),
-        [one] => (rows(one)?, rows(one)?),
-        [one, other, ..] => (rows(one)?, rows(other)?),
-    };
+    let (first, second) = (rows(first), rows(second));
     let friction = spec.friction.map(|friction| Friction {
         stiffness: friction.stiffness,
         damping: friction.damping / timestep,
@@ -311,6 +208,28 @@ fn crowd(
         slow: friction.speed * timestep,
     });
     Some(Crowd::new(CrowdDescription { name, law, first, second, range, friction, timestep }))
+}
+
+/// Half the distance at which balls of a group keep from each other, or from those of another group, for each mass [m];
+/// zero where nothing keeps off. Empty of a body that is no network.
+pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
+    let Some(network) = &body.spec.network else { return Vec::new() };
+    let timestep = spec.world.period / f64::from(spec.systems[body.system].steps_per_period);
+    let distance = |crowd: &CrowdSpec| {
+        let chosen = crowd.law.as_ref()?;
+        (chosen.entry.build)(&Making { values: &chosen.values, timestep }).ok()?.rest_distance()
+    };
+    let is_in =
+        |crowd: &CrowdSpec, group: &str| crowd.of.is_empty() || crowd.of.iter().any(|name| name == group);
+    // those of one group among themselves tell more than those with another
+    let radius = |group: &MassGroup| {
+        let of = |crowd: &&CrowdSpec| is_in(crowd, &group.name);
+        let alone = network.crowds.iter().filter(of).find(|crowd| crowd.of.len() < 2);
+        let found = alone.or_else(|| network.crowds.iter().find(of));
+        found.and_then(distance).map_or(0.0, |distance| 0.5 * distance)
+    };
+    let each = network.masses.iter().map(|group| (radius(group), group.places.count() as usize));
+    each.flat_map(|(radius, count)| std::iter::repeat_n(radius, count)).collect()
 }
 
 /// Warns of masses whose links are too stiff for an explicit step: at a mass `2 Σ H` over links to free masses and `Σ H`
@@ -324,8 +243,7 @@ pub fn warn_of_steps(draft: &mut Draft) {
         }
         let spec = &draft.spec.systems[body.system];
         let timestep = draft.spec.world.period / f64::from(spec.steps_per_period);
-        let is_fixed: Vec<bool> =
-            network.masses.iter().flat_map(|group| group.positions.iter().map(|_| group.is_fixed)).collect();
+        let is_fixed: Vec<bool> = network.of_each(|group| group.is_fixed).collect();
         let mut loads = vec![0.0; body.mesh.points.len()];
         for (index, links) in body.links.iter().enumerate() {
             let name = format!("{}.links[{index}]", body.spec.name);

@@ -68,8 +68,12 @@ pub(crate) static BODY: Keys = Keys::new(
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
         Key::new("levels", Shape::Table(&LEVELS), "coarser meshes that are at work where little happens"),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
-        Key::new("mass", Shape::Choice(&["lumped", "consistent"]), "how mass is spread over points")
-            .or(Value::Text("lumped")),
+        Key::new(
+            "mass",
+            Shape::Choice(&["lumped", "consistent", "uniform"]),
+            "how mass is spread over points",
+        )
+        .or(Value::Text("lumped")),
         Key::new(
             "quadrature",
             Shape::Choice(&["default", "full"]),
@@ -139,8 +143,12 @@ pub struct BodyRegion {
 /// How mass is spread over points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MassKind {
+    /// To each point that of the matter around it.
     Lumped,
+    /// As the shape functions carry it.
     Consistent,
+    /// To all points alike.
+    Uniform,
 }
 
 /// What takes energy from a body.
@@ -211,7 +219,11 @@ impl Body {
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
-            mass: if reader.choice("mass") == "consistent" { MassKind::Consistent } else { MassKind::Lumped },
+            mass: match reader.choice("mass") {
+                "consistent" => MassKind::Consistent,
+                "uniform" => MassKind::Uniform,
+                _ => MassKind::Lumped,
+            },
             quadrature: if reader.choice("quadrature") == "full" {
                 Quadrature::Full
             } else {

@@ -1,5 +1,7 @@
 //! Networks of masses and interactions: what stands for a body where matter is points and links.
 
+use std::iter::repeat_n;
+
 use souple_math::Vec3;
 use souple_models::network::{BuildLink, LINKS};
 use souple_models::solids::Quadrature;
@@ -15,7 +17,7 @@ use crate::reader::{Chosen, Reader};
 const LINK: EntryShape =
     EntryShape { tag: "name", kind: "link", outlines: || outlines(&LINKS), instead: &[] };
 
-/// Masses of a group, at most.
+/// Masses of a network, at most.
 const MASSES_MAX: f64 = 1e8;
 
 static LINE: Keys = Keys::new(
@@ -140,8 +142,7 @@ pub struct Network {
 /// Masses of one kind.
 pub struct MassGroup {
     pub name: String,
-    /// Where they start [m].
-    pub positions: Vec<Vec3>,
+    pub places: Places,
     /// Of each [kg].
     pub mass: f64,
     pub is_fixed: bool,
@@ -150,6 +151,17 @@ pub struct MassGroup {
     /// Of each against a medium at rest [N s/m].
     pub drag: f64,
     pub site: Site,
+}
+
+/// Where masses start: told, not made, so that they can be counted before there is memory for them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Places {
+    /// One by one [m].
+    Listed(Vec<Vec3>),
+    /// At equal distances on a line, both ends included.
+    Line { from: Vec3, to: Vec3, count: u64 },
+    /// x counts fastest, then y.
+    Lattice { origin: Vec3, spacing: f64, counts: [u64; 3] },
 }
 
 /// Links of one law.
@@ -212,6 +224,7 @@ impl Network {
             keeps_account: reader.boolean("account"),
         };
         network.check_groups(reader);
+        network.check_count(reader);
         let held = network.masses.iter().filter(|group| group.is_fixed).map(MassGroup::pin);
         let pins = held.chain(reader.tables("pins").iter().map(Pin::read)).collect();
         Body {
@@ -235,6 +248,34 @@ impl Network {
             levels: None,
             network: Some(network),
             site: reader.site(),
+        }
+    }
+
+    pub fn mass_count(&self) -> u64 {
+        self.masses.iter().map(|group| group.places.count()).sum()
+    }
+
+    /// What each mass has of its group, in the order of the masses' numbers.
+    pub fn of_each<'a, T: Clone + 'a>(
+        &'a self,
+        of: impl Fn(&MassGroup) -> T + 'a,
+    ) -> impl Iterator<Item = T> + 'a {
+        self.masses.iter().flat_map(move |group| repeat_n(of(group), group.places.count() as usize))
+    }
+
+    /// The numbers of a group's masses.
+    pub fn numbers_of(&self, name: &str) -> Option<std::ops::Range<u32>> {
+        let index = self.masses.iter().position(|group| group.name == name)?;
+        let first = self.masses[..index].iter().map(|group| group.places.count() as u32).sum();
+        Some(first..first + self.masses[index].places.count() as u32)
+    }
+
+    fn check_count(&self, reader: &Reader) {
+        let count = self.mass_count();
+        if count as f64 > MASSES_MAX {
+            let message = format!("the network has {count} masses");
+            let expected = format!("at most {MASSES_MAX:.0e} masses in all groups together");
+            reader.log().add(Code::TooLarge, &reader.site_of("masses"), message, expected);
         }
     }
 
@@ -268,19 +309,19 @@ impl MassGroup {
 
     fn read(name: String, reader: &Reader) -> Self {
         let written = reader.written(&["positions", "line", "lattice"]);
-        let positions = match written[..] {
-            ["positions"] => reader.vectors("positions"),
-            ["line"] => reader.table("line").map_or_else(Vec::new, |line| on_line(&line)),
-            ["lattice"] => reader.table("lattice").map_or_else(Vec::new, |lattice| on_lattice(&lattice)),
+        let places = match written[..] {
+            ["positions"] => Some(Places::Listed(reader.vectors("positions"))),
+            ["line"] => reader.table("line").map(|line| Places::on_line(&line)),
+            ["lattice"] => reader.table("lattice").and_then(|lattice| Places::on_lattice(&lattice)),
             _ => {
                 let message = format!("masses start in one way, these say {}", written.len());
                 reader.log().add(Code::WrongType, &reader.site(), message, "one of positions, line, lattice");
-                Vec::new()
+                None
             }
         };
         Self {
             name,
-            positions,
+            places: places.unwrap_or(Places::Listed(Vec::new())),
             mass: reader.number("mass"),
             is_fixed: reader.boolean("fixed"),
             velocity: reader.vector("velocity"),
@@ -290,32 +331,44 @@ impl MassGroup {
     }
 }
 
-fn on_line(reader: &Reader) -> Vec<Vec3> {
-    let (from, to) = (reader.vector("from"), reader.vector("to"));
-    let count = reader.maybe_integer("count").unwrap_or(2);
-    (0..count).map(|i| from + (to - from) * (i as f64 / (count - 1) as f64)).collect()
-}
-
-fn on_lattice(reader: &Reader) -> Vec<Vec3> {
-    let counts = reader.vector("counts");
-    let is_count = |number: f64| number >= 1.0 && number.fract() == 0.0;
-    if !counts.to_array().into_iter().all(is_count) || counts.x * counts.y * counts.z > MASSES_MAX {
-        let message = format!("a lattice of ({}, {}, {}) masses", counts.x, counts.y, counts.z);
-        let expected = format!("three whole numbers from 1, at most {MASSES_MAX:.0e} masses together");
-        reader.log().add(Code::OutOfRange, &reader.site_of("counts"), message, expected);
-        return Vec::new();
+impl Places {
+    fn on_line(reader: &Reader) -> Self {
+        let count = reader.maybe_integer("count").unwrap_or(2) as u64;
+        Self::Line { from: reader.vector("from"), to: reader.vector("to"), count }
     }
-    let (spacing, origin) = (reader.number("spacing"), reader.vector("origin"));
-    let [nx, ny, nz] = counts.to_array().map(|count| count as u64);
-    let mut places = Vec::with_capacity((nx * ny * nz) as usize);
-    for k in 0..nz {
-        for j in 0..ny {
-            for i in 0..nx {
-                places.push(origin + Vec3::new(i as f64, j as f64, k as f64) * spacing);
+
+    fn on_lattice(reader: &Reader) -> Option<Self> {
+        let counts = reader.vector("counts");
+        let is_count = |number: f64| number >= 1.0 && number.fract() == 0.0;
+        if !counts.to_array().into_iter().all(is_count) || counts.x * counts.y * counts.z > MASSES_MAX {
+            let message = format!("a lattice of ({}, {}, {}) masses", counts.x, counts.y, counts.z);
+            let expected = format!("three whole numbers from 1, at most {MASSES_MAX:.0e} masses together");
+            reader.log().add(Code::OutOfRange, &reader.site_of("counts"), message, expected);
+            return None;
+        }
+        let counts = counts.to_array().map(|count| count as u64);
+        Some(Self::Lattice { origin: reader.vector("origin"), spacing: reader.number("spacing"), counts })
+    }
+
+    pub fn count(&self) -> u64 {
+        match self {
+            Self::Listed(places) => places.len() as u64,
+            Self::Line { count, .. } => *count,
+            Self::Lattice { counts: [x, y, z], .. } => x * y * z,
+        }
+    }
+
+    /// Where one of them starts [m].
+    pub fn place(&self, index: u64) -> Vec3 {
+        match self {
+            Self::Listed(places) => places[index as usize],
+            Self::Line { from, to, count } => *from + (*to - *from) * (index as f64 / (count - 1) as f64),
+            Self::Lattice { origin, spacing, counts: [x, y, _] } => {
+                let steps = [index % x, index / x % y, index / (x * y)];
+                *origin + Vec3::from_array(steps.map(|step| step as f64)) * *spacing
             }
         }
     }
-    places
 }
 
 impl LinkTable {
@@ -333,8 +386,12 @@ impl LinkTable {
                 refuse("chain", "a chain is of one group", "one group in `of`");
                 None
             }
-            ["chain"] => reader.boolean("chain").then_some(Join::Chain),
-            ["all"] => reader.boolean("all").then_some(Join::All),
+            [key @ ("chain" | "all")] if !reader.boolean(key) => {
+                refuse(key, &format!("`{key} = false` joins nothing"), "true, or another way to join");
+                None
+            }
+            ["chain"] => Some(Join::Chain),
+            ["all"] => Some(Join::All),
             ["reach"] => reader.maybe_number("reach").map(Join::Reach),
             ["from", "to"] => {
                 let ends = reader.maybe_indices("from").zip(reader.maybe_indices("to"));

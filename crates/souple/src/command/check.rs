@@ -102,9 +102,10 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         ));
     }
     print_line(format_args!(
-        "  about {:.2} ms per step, {:.1} s for {steps} steps, {:.1} MB of forces and matrices",
+        "  about {:.2} ms per step, {:.1} s for {}, {:.1} MB of forces and matrices",
         1e3 * seconds_per_step,
         seconds_per_step * steps as f64,
+        souple_table::counted(steps, "step"),
         world.bytes() as f64 * 1e-6
     ));
     Ok(end_of(&errors))

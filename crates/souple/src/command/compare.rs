@@ -12,8 +12,9 @@ use super::{End, Refusal, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// A snapshot, or a file with fields (VTU, VTK)
+    /// A snapshot (.souple), or a file with fields (VTU, VTK) or a mesh alone
     a: PathBuf,
+    /// Another of the same kind
     b: PathBuf,
     /// Largest relative difference of a field (norm of the difference over norm of the first) that is accepted: beyond
     /// it, or where a field is in one result only, the status is 1; 0 wants equal numbers
@@ -70,10 +71,19 @@ pub fn compare(arguments: &Arguments) -> Result<End, Refusal> {
                 row["rms"].as_f64().unwrap_or_default(),
                 row["relative"].as_f64().unwrap_or_default()
             )),
-            None => print_line(format_args!("{name}: {}", row)),
+            None => print_line(format_args!("{name}: {}", why_not_compared(row))),
         }
     }
     Ok(end)
+}
+
+/// Why the numbers of a field are not held against each other, in words.
+fn why_not_compared(row: &Value) -> String {
+    match (row["only_in"].as_str(), row["lengths"].as_array().map(Vec::as_slice)) {
+        (Some(only), _) => format!("only in {only}"),
+        (None, Some([a, b])) => format!("{a} numbers in the first, {b} in the second"),
+        (None, _) => "differences that are not finite".to_owned(),
+    }
 }
 
 fn parse_tolerance(text: &str) -> Result<f64, String> {
@@ -121,7 +131,14 @@ fn read(path: &Path) -> Result<Vec<Named>, Refusal> {
             .map(|(name, field)| Named { name: name.clone(), numbers: field.numbers() })
             .collect());
     }
-    let dataset = souple_io::read_dataset(path)?;
+    let dataset = souple_io::read_dataset(path).map_err(|error| match error {
+        souple_io::IoError::Extension { found, expected, .. } => {
+            let message = format!("`{name}`: results of the extension `{found}` cannot be compared");
+            let expected = format!("a snapshot (.souple), or a mesh with or without fields: {expected}");
+            Refusal::request("result", name.clone(), expected, message)
+        }
+        other => other.into(),
+    })?;
     let positions = dataset.mesh.points.iter().flat_map(|point| point.to_array()).collect();
     let mut fields = vec![Named { name: "positions".to_owned(), numbers: positions }];
     fields.extend(

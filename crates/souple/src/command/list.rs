@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 use souple_engine::linear;
-use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
-use souple_table::{Entry, Kind, Parameter, Table};
+use souple_models::materials::{Lame, WRITTEN_LAWS, WrittenLaw};
+use souple_table::{Entry, Kind, Parameter, Table, readable};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line};
 
@@ -175,12 +175,31 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         ));
     }
     if arguments.json {
-        print_json(&Value::Array(found.iter().map(|page| to_json(page)).collect()));
+        let described = found.iter().map(|page| {
+            let mut document = to_json(page);
+            if let Some(moduli) = moduli_of(page) {
+                document["small_strain"] = json!({
+                    "lambda": moduli.lambda, "mu": moduli.mu,
+                    "youngs_modulus": moduli.youngs_modulus(), "poissons_ratio": moduli.poissons_ratio(),
+                });
+            }
+            document
+        });
+        print_json(&Value::Array(described.collect()));
         return Ok(End::Done);
     }
     for page in found {
         print_line(format_args!("{} ({})", page.name, page.kind));
         print_line(format_args!("  {}", page.summary));
+        if let Some(moduli) = moduli_of(page) {
+            print_line(format_args!(
+                "  at small strain: lambda = {} Pa, mu = {} Pa; E = {} Pa, nu = {:.6}",
+                readable(moduli.lambda.round()),
+                readable(moduli.mu.round()),
+                readable(moduli.youngs_modulus().round()),
+                moduli.poissons_ratio()
+            ));
+        }
         if !page.source.is_empty() {
             print_line(format_args!("  source: {}", page.source));
         }
@@ -191,6 +210,15 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         }
     }
     Ok(End::Done)
+}
+
+/// What a law as text is at small strain, with its parameters as printed.
+fn moduli_of(page: &Page) -> Option<Lame> {
+    if page.kind != "law" {
+        return None;
+    }
+    // each law of the table is one, as its tests see to
+    WrittenLaw::find(&page.name)?.small_strain().ok()
 }
 
 fn to_json(page: &Page) -> Value {

@@ -205,20 +205,19 @@ impl From<souple_run::RunError> for Refusal {
             | RunError::Change { .. }
             | RunError::TooManySteps { .. }
             | RunError::NoStep { .. } => Self::request("run", "", "", error.to_string()),
+            // what is found out after steps, and told by the report
+            RunError::Recording(_) | RunError::BlownUp { .. } => Self::work("run", error.to_string()),
             RunError::Output(output) => match output {
+                // the messages say what would be right
                 OutputError::Foreign { .. }
+                | OutputError::ForeignList { .. }
+                | OutputError::NoFolder { .. }
                 | OutputError::WouldLoseResults { .. }
                 | OutputError::InUse { .. }
-                | OutputError::List { .. } => Self::request(
-                    "output",
-                    "",
-                    "a folder of its own, or that of an earlier run",
-                    error.to_string(),
-                ),
-                OutputError::Folder { .. }
-                | OutputError::NoFolder { .. }
-                | OutputError::NotRemoved { .. }
-                | OutputError::Io(_) => Self::work("io", error.to_string()),
+                | OutputError::List { .. } => Self::request("output", "", "", error.to_string()),
+                OutputError::Folder { .. } | OutputError::NotRemoved { .. } | OutputError::Io(_) => {
+                    Self::work("io", error.to_string())
+                }
             },
         }
     }
@@ -227,7 +226,14 @@ impl From<souple_run::RunError> for Refusal {
 /// Runs a command and gives its exit status.
 pub fn execute(cli: Cli) -> ExitCode {
     let Some(command) = cli.command else {
-        return exit_code(run::run_default_scene(), false);
+        // without the page the scene runs headless
+        return match souple_view::missing_page() {
+            None => exit_code(view::view_default_scene(), false),
+            Some(problem) => {
+                print_note(format_args!("there is no page to show it on: {problem}"));
+                exit_code(run::run_default_scene(), false)
+            }
+        };
     };
     let (ended, as_json) = match command {
         Command::View(arguments) => (view::view(&arguments), false),

@@ -158,6 +158,15 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     if arguments.colour.is_none() && !show.has_field(STRESS) {
         figure.colour_by = None;
     }
+    if let Some(cut) = figure.cut {
+        let is_one = kind == Kind::Picture && arguments.sheet.is_none();
+        let shown = if is_one {
+            show.at(arguments.time).map_or(&[][..], std::slice::from_ref)
+        } else {
+            &show.moments
+        };
+        notes.extend(all_cut_away(cut, shown));
+    }
     let out = arguments.out.as_path();
     let mut count = 1;
     match kind {
@@ -377,6 +386,21 @@ fn other_moment(wanted: Option<f64>, shown: &Moment, show: &Show) -> Option<Stri
         }
         _ => None,
     }
+}
+
+/// What to say where a cut leaves nothing of any body at any of the moments.
+fn all_cut_away(cut: Cut, shown: &[Moment]) -> Option<String> {
+    let points = shown.iter().flat_map(|moment| &moment.bodies).flat_map(|body| &body.positions);
+    let normal = cut.normal * (1.0 / cut.normal.length());
+    let along = points.filter(|x| x.is_finite()).map(|x| normal.dot(*x));
+    let [low, high] =
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], d| [low.min(d), high.max(d)]);
+    let plane = normal.dot(cut.point);
+    (low > plane).then(|| {
+        format!(
+            "the cut leaves nothing: along its normal, bodies reach from {low:.4} m to {high:.4} m, and what lies beyond {plane:.4} m is cut away"
+        )
+    })
 }
 
 /// Pictures drawn side by side on all threads.

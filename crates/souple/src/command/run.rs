@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status};
 use souple_scene::Scene;
+use souple_table::counted;
 
 use super::progress::Meter;
 use super::{
@@ -84,6 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         frames: arguments.frames,
         hash_every: arguments.hash_every,
         snapshot_every: arguments.snapshot_every,
+        record: arguments.record.clone(),
         scene_name: scene_path(&arguments.scene).display().to_string(),
         seed: arguments.seed,
         ..Options::default()
@@ -92,9 +94,6 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         options.resume = Some(read_resumed(path, &scene.scene_sha256)?);
     }
     let outcome = play(scene, &options, arguments.quiet)?;
-    if let Some(path) = &arguments.record {
-        outcome.recording.write(path).map_err(|error| Refusal::work("io", error.to_string()))?;
-    }
     // a scene that was changed may well behave otherwise than its author expects
     let usual = if arguments.settings.is_empty() { Strictness::Strict } else { Strictness::Warn };
     let manner = Manner {
@@ -139,8 +138,8 @@ pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Ref
     drop(meter);
     if let (false, 1.., Some(out)) = (quiet, outcome.replaced, &options.out) {
         print_note(format_args!(
-            "note: {} files of an earlier run in {} were replaced",
-            outcome.replaced,
+            "note: {} of an earlier run in {} replaced",
+            counted(outcome.replaced as u64, "file"),
             out.display()
         ));
     }
@@ -198,9 +197,9 @@ pub fn conclude(outcome: &Outcome, manner: &Manner) -> End {
 
 fn print_summary(report: &Report, out: Option<&Path>) {
     print_line(format_args!(
-        "{}: {} steps, {:.4} s simulated in {:.2} s ({:.2} x real time)",
+        "{}: {}, {:.4} s simulated in {:.2} s ({:.2} x real time)",
         report.status.as_str(),
-        report.steps,
+        counted(report.steps, "step"),
         report.simulated_seconds,
         report.wall_seconds,
         report.real_time_factor()

@@ -34,23 +34,27 @@ pub fn verify(arguments: &Arguments) -> Result<End, Refusal> {
         }
         return Ok(End::Done);
     }
+    // under its mutation a case that still holds, or that has no number at all, sees nothing
+    let is_as_wanted =
+        |row: &Row| if arguments.mutations { !row.pass && row.problem.is_none() } else { row.pass };
+    let verdict = if arguments.mutations { "seen" } else { "ok" };
     let mut rows: Vec<Row> = Vec::new();
     for case in cases {
         let row = if arguments.mutations { case.run_mutated() } else { case.run() };
         if !arguments.json {
-            print_line(&row);
+            print_line(format_args!("{:4} {row}", if is_as_wanted(&row) { verdict } else { "FAIL" }));
         }
         rows.push(row);
     }
-    // under its mutation a case that still holds, or that has no number at all, sees nothing
-    let is_as_wanted =
-        |row: &Row| if arguments.mutations { !row.pass && row.problem.is_none() } else { row.pass };
-    let failed = rows.iter().filter(|row| !is_as_wanted(row)).count();
+    let failed: Vec<&str> = rows.iter().filter(|row| !is_as_wanted(row)).map(|row| row.case.id).collect();
     if arguments.json {
         print_json(&Value::Array(rows.iter().map(Row::to_json).collect()));
     } else {
         let verb = if arguments.mutations { "fail under their mutation, as they must" } else { "hold" };
-        print_line(format_args!("{} of {} rows {verb}", rows.len() - failed, rows.len()));
+        print_line(format_args!("{} of {} rows {verb}", rows.len() - failed.len(), rows.len()));
+        if !failed.is_empty() {
+            print_line(format_args!("not so: {}", failed.join(", ")));
+        }
     }
-    Ok(if failed == 0 { End::Done } else { End::Failed })
+    Ok(if failed.is_empty() { End::Done } else { End::Failed })
 }

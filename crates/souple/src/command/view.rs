@@ -1,6 +1,6 @@
 //! `souple view`: a scene live in the browser.
 
-use std::net::IpAddr;
+use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
 use std::sync::mpsc::channel;
 
@@ -17,16 +17,18 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     settings: Vec<String>,
     /// Port of the page; 0 picks a free one
-    #[arg(long, default_value_t = 7878)]
+    #[arg(long, default_value_t = PORT)]
     port: u16,
     /// Address to listen on; beyond this machine (0.0.0.0) a token is asked for, which is part of the address printed
-    #[arg(long, default_value = "127.0.0.1")]
+    #[arg(long, default_value_t = LOOPBACK)]
     host: IpAddr,
     /// Worker threads; the results do not depend on it
     #[arg(long)]
     threads: Option<usize>,
 }
 
+const PORT: u16 = 7878;
+const LOOPBACK: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 /// The scene of `souple view` alone, as it is in the repository.
 const DEFAULT_SCENE: &str = include_str!("../../../../scenes/liver/scene.toml");
 /// Where other scenes are looked for, from the current folder.
@@ -37,20 +39,45 @@ pub fn view(arguments: &Arguments) -> Result<End, Refusal> {
         return Err(Refusal::work("page", format!("this program was built without the page: {problem}")));
     }
     use_threads(arguments.threads)?;
+    let viewer = open(arguments, arguments.port)?.map_err(refuse)?;
+    // the first line is the address
+    print_line(viewer.address());
+    print_note("open it in a browser; Ctrl-C ends");
+    watch(viewer)
+}
+
+/// Greets, shows the default scene, and says what to try next: what the program does without arguments. Where the port
+/// is taken any other serves.
+pub fn view_default_scene() -> Result<End, Refusal> {
+    let arguments =
+        Arguments { scene: None, settings: Vec::new(), port: PORT, host: LOOPBACK, threads: None };
+    let viewer = match open(&arguments, arguments.port)? {
+        Err(ViewError::Bind { .. }) => open(&arguments, 0)?,
+        opened => opened,
+    };
+    let viewer = viewer.map_err(refuse)?;
+    print_line(viewer.address());
+    print_note(
+        "Souple, a simulator of soft things. Open this address in a browser: a liver hangs from its ligaments; pull it.\n\
+         Ctrl-C ends. Try next:\n  \
+         souple list materials\n  \
+         souple check scenes/cantilever\n  \
+         souple run scenes/twisted_bar --out out/twisted_bar",
+    );
+    watch(viewer)
+}
+
+fn open(arguments: &Arguments, port: u16) -> Result<Result<Viewer, ViewError>, Refusal> {
     let (scene, scene_name) = read(arguments)?;
     for warning in &scene.warnings {
         print_note(format_args!("warning: {warning}"));
     }
-    let options = Options {
-        host: arguments.host,
-        port: arguments.port,
-        scene_name,
-        catalogue: Catalogue::of_folder(Path::new(SCENES)),
-    };
-    let viewer = Viewer::open(scene, options).map_err(refuse)?;
-    // the first line is the address
-    print_line(viewer.address());
-    print_note("open it in a browser; Ctrl-C ends");
+    let catalogue = Catalogue::of_folder(Path::new(SCENES));
+    Ok(Viewer::open(scene, Options { host: arguments.host, port, scene_name, catalogue }))
+}
+
+/// Until somebody ends it.
+fn watch(viewer: Viewer) -> Result<End, Refusal> {
     let (stop, stopped) = channel();
     // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
     let _ = ctrlc::set_handler(move || {

@@ -205,18 +205,3 @@ pub fn assert_errors(document: &Value) {
         assert!(error["message"].as_str().is_some_and(|text| !text.is_empty()), "{error:#}");
     }
 }
-
-/// All numbers below a value, with their paths; `null` stands for a number that is not finite.
-#[track_caller]
-pub fn assert_finite(name: &str, value: &Value) {
-    match value {
-        Value::Null => panic!("{name} is not finite"),
-        Value::Array(list) => {
-            list.iter().enumerate().for_each(|(i, v)| assert_finite(&format!("{name}[{i}]"), v))
-        }
-        Value::Object(object) => {
-            object.iter().for_each(|(key, v)| assert_finite(&format!("{name}.{key}"), v))
-        }
-        _ => {}
-    }
-}

@@ -60,11 +60,7 @@ pub fn springs_lattice(
             Timed { seconds: timed.seconds.iter().map(|s| s / STEPS_PER_PERIOD as f64).collect(), ..timed };
         let moved = own.cells * BYTES_OF_LINK + n.pow(3) * BYTES_OF_MASS;
         let triad = super::timing::with_threads(own.threads, triad_gigabytes_per_second)?;
-        let bandwidth = Held {
-            error: 0.0,
-            error_of: "nothing: the baseline is the triad's bandwidth on the same threads".to_owned(),
-            baseline: Some(triad),
-        };
+        let bandwidth = Held { error: 0.0, error_of: String::new(), baseline: Some(triad) };
         figures.push(own.links_per_second(name, &held));
         figures.push(own.gigabytes_per_second(&format!("{name}_bandwidth"), moved, &bandwidth));
     }

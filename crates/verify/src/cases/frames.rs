@@ -101,6 +101,7 @@ pub(super) const CASES: &[Case] = &[
         reference: -0.005,
         tolerance: Tolerance::Absolute(6e-4),
         source: "twist is even along a prism",
+        mutation: r#"bodies.ligament.pins[1].rotation.offsets[2]=["90 deg", 0, 0]"#,
         ..LIGAMENT
     },
     Case {

@@ -15,6 +15,7 @@ mod levels;
 mod motion;
 mod network;
 mod patch;
+mod rheology;
 mod rheometer;
 mod rubber;
 mod skins;
@@ -22,6 +23,7 @@ mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
 mod traction;
+mod wall_cube;
 
 use crate::Case;
 
@@ -43,9 +45,11 @@ pub const TABLES: &[&[Case]] = &[
     implicit::CASES,
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
+    wall_cube::CASES,
     contact::CASES,
     network::CASES,
     rheometer::CASES,
+    rheology::CASES,
     frames::CASES,
     levels::CASES,
     skins::CASES,

@@ -37,7 +37,60 @@ const SERIES: Case = Case {
     ..FREE
 };
 
+/// The reference bar as one straight spring of `n` cells, struck along its axis and braked by strain rate alone. With ν = 0
+/// the damping is `η/μ` of the stiffness, so a mode of frequency ω decays as `exp(-η ω² t/2μ)`; of several modes the first is
+/// left after a second.
+const STRUCK: Case = Case {
+    capabilities: &["DEB-4"],
+    scene: "cantilever_dynamic",
+    reading: Reading::component("tip", 0),
+    // strains of 2e-5 are what Green's rate of strain differs by
+    tolerance: Tolerance::Relative(1e-4),
+    source: "v/ω' exp(-η ω² t/2μ) sin ω't, ω'² = ω² - (η ω²/2μ)², over the modes of a chain of n masses",
+    mutation: "bodies.bar.damping.viscosity=1001",
+    ..FREE
+};
+
+/// [`STRUCK`] with so many cells.
+macro_rules! struck {
+    ($cells:literal) => {
+        &[
+            r#"world.period="1 ms""#,
+            "world.gravity=[0, 0, 0]",
+            r#"systems.main.stepper="rk4""#,
+            concat!("bodies.bar.mesh.cells=[", $cells, ", 1, 1]"),
+            r#"bodies.bar.mesh.element="hex8""#,
+            r#"bodies.bar.material.name="linear""#,
+            r#"bodies.bar.material.youngs_modulus="1 MPa""#,
+            "bodies.bar.material.poissons_ratio=0",
+            "bodies.bar.damping.viscosity=1000",
+            "bodies.bar.velocity=[0.001, 0, 0]",
+        ]
+    };
+}
+
 pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "viscous_decay_1",
+        what: "a bar of one cell, struck along its axis, after a second of strain-rate damping",
+        settings: struck!("1"),
+        reference: 1.938_282_502_777_552_5e-6,
+        ..STRUCK
+    },
+    Case {
+        id: "viscous_decay_4",
+        what: "the same with four cells",
+        settings: struck!("4"),
+        reference: -1.842_334_098_014_447_8e-6,
+        ..STRUCK
+    },
+    Case {
+        id: "viscous_decay_8",
+        what: "the same with eight cells",
+        settings: struck!("8"),
+        reference: -1.465_990_354_639_281_4e-6,
+        ..STRUCK
+    },
     Case {
         id: "free_fall",
         capabilities: &["FAU-48", "DEB-50"],

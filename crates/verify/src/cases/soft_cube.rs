@@ -4,6 +4,8 @@ use crate::{Case, Reading, Tolerance};
 
 const SYMPLECTIC_5_MS: &[&str] = &[r#"world.period="5 ms""#, r#"systems.main.stepper="symplectic_euler""#];
 
+const UNIFORM_MASS: &[&str] = &[r#"bodies.cube.mass="uniform""#];
+
 // digits as printed
 const HANGING: Case = Case {
     id: "",
@@ -90,6 +92,26 @@ pub(super) const CASES: &[Case] = &[
         what: "greatest displacement of EXP-17's cube",
         reading: Reading::last("farthest"),
         reference: 0.3214,
+        ..HANGING
+    },
+    Case {
+        id: "exp17_uniform_x",
+        capabilities: &["FAU-47"],
+        what: "mean displacement of the free face of EXP-17's cube with the same mass at every node",
+        settings: UNIFORM_MASS,
+        reading: Reading::component("face", 0),
+        reference: -0.04914,
+        source: "specification, EXP-17 oracle with uniform nodal mass",
+        ..HANGING
+    },
+    Case {
+        id: "exp17_uniform_y",
+        capabilities: &["FAU-47"],
+        what: "the same, downward",
+        settings: UNIFORM_MASS,
+        reference: -0.29443,
+        source: "specification, EXP-17 oracle with uniform nodal mass",
+        mutation: r#"bodies.cube.mass="lumped""#,
         ..HANGING
     },
     Case {

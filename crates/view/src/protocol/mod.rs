@@ -1,27 +1,27 @@
-//! What goes over the wire, version 1: see `docs/protocol.md`.
+//! What goes over the wire, version 2: see `docs/protocol.md`.
 //!
 //! Documents and wishes are JSON in text messages; surfaces, frames and samples are little-endian numbers in binary ones.
 
 mod frame;
 mod samples;
-mod surface;
+mod shapes;
 mod wish;
 
 use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-pub use frame::{Frame, FrameBody, HandShown};
+pub use frame::{Frame, FrameBody, FrameSkin, HandShown, Holds};
 pub use samples::Samples;
-pub use surface::surface;
+pub use shapes::{inside, network, surface, tool};
 pub use wish::Wish;
 
 use crate::hub::Outgoing;
 
 /// Asked for and given in the handshake: pages of another version are told to load again.
-pub const SUBPROTOCOL: &str = "souple.v1";
+pub const SUBPROTOCOL: &str = "souple.v2";
 /// Version of the documents and of binary messages.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 
 /// Kinds of binary messages.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,9 @@ pub enum Kind {
     Surface = 1,
     Frame = 2,
     Samples = 3,
+    Network = 4,
+    Inside = 5,
+    Tool = 6,
 }
 
 /// A document of a kind.

@@ -29,11 +29,27 @@ pub enum Wish {
     },
     /// Colours by the field of this name; by none.
     Colour(Option<String>),
+    /// Shows vectors of this name as arrows; none.
+    Arrows(Option<String>),
+    /// Whether the page looks inside bodies.
+    Inside(bool),
     /// Takes hold of points of a body's surface.
     Grab {
         hand: u32,
         body: usize,
         points: Vec<u32>,
+        strength: f64,
+    },
+    /// Presses on bodies with a tool of the table of tools.
+    Touch {
+        hand: u32,
+        tool: String,
+        /// [m]
+        size: f64,
+        /// [m]
+        place: Vec3,
+        /// From the bodies to whoever holds it.
+        direction: Vec3,
         strength: f64,
     },
     /// Leads a hand this far from where it took hold [m].
@@ -81,6 +97,17 @@ impl Wish {
             "set" => Self::Set { path: read.text("path")?, value: read.text("value")? },
             "colour" if wish["field"].is_null() => Self::Colour(None),
             "colour" => Self::Colour(Some(read.text("field")?)),
+            "arrows" if wish["of"].is_null() => Self::Arrows(None),
+            "arrows" => Self::Arrows(Some(read.text("of")?)),
+            "inside" => Self::Inside(wish["is_shown"].as_bool().ok_or("`is_shown` must be true or false")?),
+            "touch" => Self::Touch {
+                hand: read.hand()?,
+                tool: read.text("tool")?,
+                size: read.number("size", 1e-9, 1e9)?,
+                place: read.vector("place")?,
+                direction: read.vector("direction")?,
+                strength: read.number("strength", 0.0, 1e4)?,
+            },
             "grab" => Self::Grab {
                 hand: read.hand()?,
                 body: read.index("body")?,

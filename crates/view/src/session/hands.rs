@@ -2,23 +2,32 @@
 
 use souple_engine::hand::hand_name;
 use souple_engine::steppers::Stability;
-use souple_engine::{Edit, Grip, Hand, World};
+use souple_engine::{Edit, Force, Grip, Hand, Tool, World};
 use souple_math::Vec3;
 use souple_scene::BodyInfo;
 
+use super::Shown;
 use crate::hub::PageId;
-use crate::protocol::{HandShown, Wish};
+use crate::protocol::{HandShown, Holds, Wish};
 
 /// A hand that holds something.
-#[derive(Clone, Copy, Debug)]
-pub struct Holding {
-    pub page: PageId,
-    pub hand: u32,
-    pub system: usize,
+#[derive(Clone, Debug)]
+struct Holding {
+    page: PageId,
+    hand: u32,
+    holds: Holds,
+    /// Systems that its force acts in.
+    systems: Vec<usize>,
     /// Number in the world.
-    pub number: u32,
+    number: u32,
     /// Where it took hold [m].
     start: Vec3,
+    /// Where it is [m].
+    place: Vec3,
+    /// Where it is led to [m].
+    goal: Vec3,
+    /// How fast it goes there [m/s]; what gives way itself goes at once.
+    speed: f64,
 }
 
 /// The frequency at which a whole body would swing on a hand of strength 1 [rad/s]: it follows within a quarter of a
@@ -26,6 +35,8 @@ pub struct Holding {
 const FREQUENCY: f64 = 14.0;
 /// Time over which a hand's damping takes the speed of what it holds [s].
 const DAMPING_TIME: f64 = 0.02;
+/// How fast a tool goes, in its size a second: a mouse jumps, and what is hard must not.
+const TOOL_SPEED: f64 = 4.0;
 /// Share of the stable step's stiffness that a hand may take in an explicit system.
 const EXPLICIT_SHARE: f64 = 0.1;
 
@@ -33,11 +44,7 @@ const EXPLICIT_SHARE: f64 = 0.1;
 pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip {
     let system = &world.model().systems[body.system];
     let masses = &system.mass.diagonal;
-    // points that frames carry have no mass of their own
-    let body_mass: f64 = match &body.frames {
-        Some(frames) => frames.rows.iter().map(|row| masses[*row as usize]).sum(),
-        None => masses[body.rows.clone()].iter().sum(),
-    };
+    let body_mass: f64 = mass_rows(body).iter().map(|row| masses[*row as usize]).sum();
     let mut stiffness = strength * body_mass * FREQUENCY * FREQUENCY;
     let mut damping = stiffness * DAMPING_TIME;
     if !matches!(system.stepper.stability(), Stability::Unconditional) {
@@ -52,6 +59,38 @@ pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip
     Grip::on(rows, &world.rows(body.system).positions, stiffness, damping)
 }
 
+/// Stiffness of a tool at each of the points of some bodies that it may meet: a twentieth of them, pressed, bear the
+/// bodies as firmly as a hand of ten times the strength; in an explicit system, as much as its step bears [N/m].
+pub fn tool_stiffness<'a>(
+    world: &World,
+    bodies: impl Iterator<Item = &'a BodyInfo>,
+    point_count: usize,
+    strength: f64,
+) -> f64 {
+    let (mut mass, mut bearable) = (0.0, f64::INFINITY);
+    for body in bodies {
+        let system = &world.model().systems[body.system];
+        let rows = mass_rows(body);
+        let masses = rows.iter().map(|row| system.mass.diagonal[*row as usize]);
+        mass += masses.clone().sum::<f64>();
+        if !matches!(system.stepper.stability(), Stability::Unconditional) {
+            let timestep = world.model().timestep(body.system);
+            let lightest = masses.filter(|mass| *mass > 0.0).fold(f64::INFINITY, f64::min);
+            bearable = f64::min(bearable, EXPLICIT_SHARE * lightest / (timestep * timestep));
+        }
+    }
+    let pressed = (point_count as f64 / 20.0).max(1.0);
+    (10.0 * strength * mass * FREQUENCY * FREQUENCY / pressed).min(bearable)
+}
+
+/// Rows that have the mass of a body: points that frames carry have none of their own.
+fn mass_rows(body: &BodyInfo) -> Vec<u32> {
+    match &body.frames {
+        Some(frames) => frames.rows.clone(),
+        None => (body.rows.start as u32..body.rows.end as u32).collect(),
+    }
+}
+
 /// What hands hold.
 #[derive(Debug, Default)]
 pub struct Hands {
@@ -59,60 +98,127 @@ pub struct Hands {
 }
 
 impl Hands {
-    /// The edit by which a hand takes hold.
+    /// The edits by which a hand takes hold.
     pub fn grab(&mut self, page: PageId, hand: u32, system: usize, grip: Grip) -> Vec<Edit> {
-        let mut edits: Vec<Edit> = self.release(page, hand).into_iter().collect();
-        // the first number that no hand has
-        let number =
-            (0..).find(|number| self.held.iter().all(|held| held.number != *number)).unwrap_or(u32::MAX);
-        self.held.push(Holding { page, hand, system, number, start: grip.place });
+        let mut edits = self.release(page, hand);
+        let number = self.hold(page, hand, Holds::Body, vec![system], (grip.place, f64::INFINITY));
         edits.push(Edit::Grab { system, hand: number, grip });
         edits
     }
 
-    pub fn lead(&self, page: PageId, hand: u32, offset: Vec3) -> Option<Edit> {
-        let held = self.held.iter().find(|held| (held.page, held.hand) == (page, hand))?;
-        Some(Edit::MoveHand { system: held.system, hand: held.number, place: held.start + offset })
+    /// The edits by which a hand takes a tool of a size [m], in each system one.
+    pub fn touch(&mut self, page: PageId, hand: u32, size: f64, tools: Vec<(usize, Tool)>) -> Vec<Edit> {
+        let mut edits = self.release(page, hand);
+        let Some((_, first)) = tools.first() else { return edits };
+        let systems = tools.iter().map(|(system, _)| *system).collect();
+        let number = self.hold(page, hand, Holds::Tool, systems, (first.place, TOOL_SPEED * size));
+        edits.extend(tools.into_iter().map(|(system, tool)| Edit::Touch { system, hand: number, tool }));
+        edits
     }
 
-    pub fn release(&mut self, page: PageId, hand: u32) -> Option<Edit> {
-        let at = self.held.iter().position(|held| (held.page, held.hand) == (page, hand))?;
-        let Holding { system, number, .. } = self.held.remove(at);
-        Some(Edit::Release { system, hand: number })
+    fn hold(
+        &mut self,
+        page: PageId,
+        hand: u32,
+        holds: Holds,
+        systems: Vec<usize>,
+        (place, speed): (Vec3, f64),
+    ) -> u32 {
+        // the first number that no hand has
+        let number =
+            (0..).find(|number| self.held.iter().all(|held| held.number != *number)).unwrap_or(u32::MAX);
+        let goal = place;
+        self.held.push(Holding { page, hand, holds, systems, number, start: place, place, goal, speed });
+        number
+    }
+
+    /// Says where a hand is to go; see [`Hands::advance`].
+    pub fn lead(&mut self, page: PageId, hand: u32, offset: Vec3) {
+        if let Some(held) = self.held.iter_mut().find(|held| (held.page, held.hand) == (page, hand)) {
+            held.goal = held.start + offset;
+        }
+    }
+
+    /// The edits by which hands come nearer to where they are to go, in a time [s].
+    pub fn advance(&mut self, duration: f64) -> Vec<Edit> {
+        let mut edits = Vec::new();
+        for held in self.held.iter_mut().filter(|held| held.place != held.goal) {
+            let way = held.goal - held.place;
+            let most = held.speed * duration;
+            held.place =
+                if way.length() <= most { held.goal } else { held.place + way * (most / way.length()) };
+            let (hand, place) = (held.number, held.place);
+            edits.extend(held.systems.iter().map(|system| Edit::MoveHand { system: *system, hand, place }));
+        }
+        edits
+    }
+
+    pub fn release(&mut self, page: PageId, hand: u32) -> Vec<Edit> {
+        let Some(at) = self.held.iter().position(|held| (held.page, held.hand) == (page, hand)) else {
+            return Vec::new();
+        };
+        let Holding { systems, number, .. } = self.held.remove(at);
+        systems.into_iter().map(|system| Edit::Release { system, hand: number }).collect()
     }
 
     /// The edits by which a page that left lets go.
     pub fn release_all(&mut self, page: PageId) -> Vec<Edit> {
         let hands: Vec<u32> =
             self.held.iter().filter(|held| held.page == page).map(|held| held.hand).collect();
-        hands.into_iter().filter_map(|hand| self.release(page, hand)).collect()
+        hands.into_iter().flat_map(|hand| self.release(page, hand)).collect()
+    }
+
+    /// Page and hand of each tool.
+    pub fn tools(&self) -> impl Iterator<Item = (PageId, u32)> {
+        let tools = self.held.iter().filter(|held| held.holds == Holds::Tool);
+        tools.map(|held| (held.page, held.hand))
+    }
+
+    /// The force of a hand, of several the first.
+    pub fn force_of<'w>(&self, world: &'w World, page: PageId, hand: u32) -> Option<&'w dyn Force> {
+        let held = self.held.iter().find(|held| (held.page, held.hand) == (page, hand))?;
+        let name = hand_name(held.number);
+        let forces = &world.model().systems[*held.systems.first()?].forces;
+        forces.iter().rev().find(|force| force.name() == name).map(AsRef::as_ref)
     }
 
     /// What there is to see of them.
     pub fn shown(&self, world: &World) -> Vec<HandShown> {
         let shown = |held: &Holding| {
-            let name = hand_name(held.number);
-            let forces = &world.model().systems[held.system].forces;
-            let force = forces.iter().rev().find(|force| force.name() == name)?;
-            let hand: &Hand = force.as_any().downcast_ref()?;
-            let rows = world.rows(held.system);
-            Some(HandShown {
-                page: held.page,
-                hand: held.hand,
-                held: hand.middle(&rows.positions),
-                place: hand.grip().place,
-                force: hand.pull(&rows.positions, &rows.velocities),
-            })
+            let Holding { page, hand, holds, place, .. } = *held;
+            let seen = HandShown { page, hand, holds, held: place, place, force: Vec3::ZERO };
+            match holds {
+                Holds::Tool => Some(HandShown { force: pressed(held, world), ..seen }),
+                Holds::Body => {
+                    let hand: &Hand = self.force_of(world, page, hand)?.as_any().downcast_ref()?;
+                    let rows = world.rows(*held.systems.first()?);
+                    let force = hand.pull(&rows.positions, &rows.velocities);
+                    Some(HandShown { held: hand.middle(&rows.positions), force, ..seen })
+                }
+            }
         };
         self.held.iter().filter_map(shown).collect()
     }
 }
 
+/// What a tool does to all bodies [N].
+fn pressed(held: &Holding, world: &World) -> Vec3 {
+    let (name, mut sum) = (hand_name(held.number), Vec3::ZERO);
+    for system in &held.systems {
+        world.visit_forces(*system, &mut |force, at| {
+            if force.name() == name {
+                force.visit_contacts(at, &mut |point| sum += point.normal_force + point.friction);
+            }
+        });
+    }
+    sum
+}
+
 /// Edits that need no memory of hands.
-pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo) -> Vec<Edit> {
+pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo, shown: &Shown) -> Vec<Edit> {
     let system = body.system;
     let blocks = |points: &[u32]| {
-        let row = |point: &u32| (body.rows.start as u32) + body.surface.mesh_points[*point as usize];
+        let row = |point: &u32| body.rows.start as u32 + shown.points[*point as usize];
         let kinematics = &world.model().systems[system].kinematics;
         points.iter().map(row).filter_map(|row| kinematics.point_block(row)).collect::<Vec<u32>>()
     };

@@ -1,9 +1,12 @@
 //! The thread of the world: steps in real time, does what pages wish, says what they are to know.
 
 mod compile;
+mod describe;
 mod hands;
 mod pace;
+mod picture;
 mod question;
+mod shown;
 mod stage;
 
 use std::sync::Arc;
@@ -14,6 +17,8 @@ use serde_json::{Value, json};
 use souple_scene::Scene;
 
 pub use question::{Answer, Question};
+pub use shown::Shown;
+pub use stage::Stage;
 
 use crate::catalogue::Catalogue;
 use crate::http::Rejection;
@@ -21,7 +26,6 @@ use crate::hub::{Hub, PageId};
 use crate::protocol::{Wish, document, refusal};
 use compile::{Compiled, Compiler, Purpose};
 use pace::Pace;
-use stage::Stage;
 
 /// What reaches the world from outside.
 pub enum Input {
@@ -247,7 +251,8 @@ impl Live {
         let hello = json!({
             "page": page,
             "version": env!("CARGO_PKG_VERSION"),
-            "colour_maps": stage::colour_maps(),
+            "colour_maps": describe::colour_maps(),
+            "tools": describe::tools(),
             "scenes": self.catalogue.to_json(),
         });
         self.hub.tell(page, document("hello", hello));
@@ -336,10 +341,13 @@ impl Live {
             Purpose::Reset | Purpose::Set(_) => self.stage.name().to_owned(),
         };
         let stage = Stage::new(scene, name, self.stage.number() + 1, &self.hub)?;
-        let chosen = self.stage.chosen_fields();
+        let looks = self.stage.looks().clone();
         self.stage = stage;
-        self.stage.choose_fields(chosen);
+        self.stage.set_looks(looks);
         self.stage.describe(&mut |message| self.hub.tell_all(&message));
+        if self.stage.wanted().inside {
+            self.stage.describe_inside(&mut |message| self.hub.tell_all(&message));
+        }
         if matches!(self.mode, Mode::Failed(_)) {
             self.mode = Mode::Playing;
         }
@@ -360,7 +368,10 @@ fn about(wish: &Wish) -> &'static str {
         Wish::Load(_) | Wish::LoadText { .. } => "load",
         Wish::Set { .. } => "set",
         Wish::Colour(_) => "colour",
+        Wish::Arrows(_) => "arrows",
+        Wish::Inside(_) => "inside",
         Wish::Grab { .. } => "grab",
+        Wish::Touch { .. } => "touch",
         Wish::Move { .. } => "move",
         Wish::Release(_) => "release",
         Wish::Pin { .. } => "pin",

@@ -1,23 +1,24 @@
-//! A scene on its stage: the session, and what pages need to see it.
+//! A scene on its stage: the session, what pages wish of it, and what they want to see.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
-use serde_json::{Value, json};
-use souple_engine::obstacle::{Form, Obstacle, Side};
-use souple_engine::{Edit, StageTimes};
-use souple_io::picture::COLOUR_MAPS;
-use souple_math::{Mat3, Vec3};
+use souple_engine::hand::is_hand_name;
+use souple_engine::obstacle::{Form, Obstacle};
+use souple_engine::{Edit, Model, StageTimes, Tool};
 use souple_run::show::obstacles_of;
 use souple_run::{Options, Session};
+use souple_scene::Scene;
 use souple_scene::spec::picture::PictureView;
-use souple_scene::{Adjustable, Scene};
-use souple_table::Kind;
+use souple_table::Table;
 
+use super::Shown;
 use super::hands::{self, Hands};
-use crate::fields::{FIELDS, SurfaceCells};
+use super::picture::Wanted;
+use crate::fields::{ARROWS, FIELDS};
 use crate::hub::{Hub, Outgoing, PageId};
-use crate::protocol::{self, Frame, FrameBody, Wish, document};
+use crate::protocol::{self, Wish};
+use crate::tools::TOOLS;
 
 /// A scene that is shown.
 pub struct Stage {
@@ -27,10 +28,9 @@ pub struct Stage {
     description: String,
     view: PictureView,
     obstacles: Vec<Obstacle>,
-    cells: Vec<SurfaceCells>,
+    shown: Vec<Shown>,
     hands: Hands,
-    /// Numbers of the fields that pages colour by.
-    fields: BTreeMap<PageId, usize>,
+    looks: Looks,
     frames: u32,
     /// Wall times and iterations at the last frame, and the period of it.
     before: (StageTimes, u64),
@@ -42,10 +42,28 @@ pub struct Stage {
     row: Vec<f64>,
 }
 
+/// How each page looks at the world.
+#[derive(Clone, Debug, Default)]
+pub struct Looks {
+    /// Numbers of fields to colour by.
+    fields: BTreeMap<PageId, usize>,
+    /// Numbers of kinds of arrows.
+    arrows: BTreeMap<PageId, usize>,
+    /// Pages that look inside bodies.
+    inside: BTreeSet<PageId>,
+}
+
 /// Samples closer than this are not told apart in a plot [s].
 const SAMPLE_DISTANCE: f64 = 4e-3;
 /// Columns of samples before those of the probes.
 const ENERGY_COLUMNS: [&str; 4] = ["time", "kinetic", "stored", "dissipated"];
+
+/// What stands around the bodies; tools come and go, and are told of on their own.
+fn scenery_of(model: &Model) -> Vec<Obstacle> {
+    obstacles_of(
+        model.systems.iter().flat_map(|system| &system.forces).filter(|force| !is_hand_name(force.name())),
+    )
+}
 
 impl Stage {
     /// # Errors
@@ -62,10 +80,10 @@ impl Stage {
             number,
             description,
             view,
-            obstacles: obstacles_of(session.world.model()),
-            cells: session.bodies.iter().map(SurfaceCells::new).collect(),
+            obstacles: scenery_of(session.world.model()),
+            shown: session.bodies.iter().map(Shown::new).collect(),
             hands: Hands::default(),
-            fields: BTreeMap::new(),
+            looks: Looks::default(),
             frames: 0,
             before: (StageTimes::default(), 0),
             iterations: [0; 2],
@@ -96,9 +114,45 @@ impl Stage {
         &self.session.scene_name
     }
 
+    pub fn description(&self) -> &str {
+        &self.description
+    }
+
+    pub fn view(&self) -> PictureView {
+        self.view
+    }
+
+    pub fn obstacles(&self) -> &[Obstacle] {
+        &self.obstacles
+    }
+
+    pub fn shown(&self) -> &[Shown] {
+        &self.shown
+    }
+
+    pub fn hands(&self) -> &Hands {
+        &self.hands
+    }
+
+    /// Milliseconds of a step by stage, over the last steps.
+    pub fn stage_times(&self) -> [f64; 5] {
+        self.stages
+    }
+
+    /// Of a step: Newton's, the linear solver's.
+    pub fn iterations(&self) -> [f64; 2] {
+        self.iterations_per_step
+    }
+
+    /// The number of the next frame.
+    pub fn next_frame(&mut self) -> u32 {
+        self.frames = self.frames.wrapping_add(1);
+        self.frames
+    }
+
     /// The scene's name for files: the folder of a `scene.toml`, or the file without its ending.
     pub fn short_name(&self) -> String {
-        let path = std::path::Path::new(self.name());
+        let path = Path::new(self.name());
         let is_in_folder = path.file_name().is_some_and(|name| name == "scene.toml");
         let name =
             if is_in_folder { path.parent().and_then(|folder| folder.file_name()) } else { path.file_stem() };
@@ -116,12 +170,22 @@ impl Stage {
         (self.session.world.state().period + 1) as f64 * self.session.world.model().period
     }
 
-    pub fn chosen_fields(&self) -> BTreeMap<PageId, usize> {
-        self.fields.clone()
+    pub fn looks(&self) -> &Looks {
+        &self.looks
     }
 
-    pub fn choose_fields(&mut self, chosen: BTreeMap<PageId, usize>) {
-        self.fields = chosen;
+    /// Goes on being looked at as another stage was.
+    pub fn set_looks(&mut self, looks: Looks) {
+        self.looks = looks;
+    }
+
+    /// What any page wants to see.
+    pub fn wanted(&self) -> Wanted {
+        let all = |chosen: &BTreeMap<PageId, usize>| {
+            chosen.values().copied().collect::<BTreeSet<usize>>().into_iter().collect()
+        };
+        let Looks { fields, arrows, inside } = &self.looks;
+        Wanted { fields: all(fields), arrows: all(arrows), inside: !inside.is_empty() }
     }
 
     /// Steps a period.
@@ -129,6 +193,8 @@ impl Stage {
     /// # Errors
     /// The step is refused: says which and why.
     pub fn step(&mut self, hub: &Hub) -> Result<(), String> {
+        let edits = self.hands.advance(self.session.world.model().period);
+        self.edit(edits)?;
         if !self.session.step() {
             return Err(self.session.failure.as_ref().map_or_else(String::new, souple_run::Failure::message));
         }
@@ -153,52 +219,8 @@ impl Stage {
         hub.samples().push(&self.row);
     }
 
-    /// The world as it stands, for pages.
-    pub fn frame(&mut self, real_time_factor: f64) -> Vec<u8> {
-        self.average();
-        self.frames = self.frames.wrapping_add(1);
-        let world = &self.session.world;
-        let time = world.time();
-        let mut wanted: Vec<usize> = self.fields.values().copied().collect();
-        wanted.sort_unstable();
-        wanted.dedup();
-        let values = |body: usize| {
-            let info = &self.session.bodies[body];
-            let at = |field: &usize| FIELDS.entries[*field].build.at_surface(world, info, &self.cells[body]);
-            wanted.iter().filter_map(|field| Some((*field as u32, at(field)?))).collect::<Vec<_>>()
-        };
-        let mut positions: Vec<_> = self
-            .session
-            .bodies
-            .iter()
-            .map(|body| {
-                let rows = &world.rows(body.system).positions[body.rows.clone()];
-                body.surface.mesh_points.iter().map(move |point| rows[*point as usize])
-            })
-            .collect();
-        let bodies = positions.iter_mut().enumerate().map(|(body, positions)| FrameBody {
-            point_count: positions.len(),
-            positions,
-            fields: values(body),
-        });
-        let is_bounded = |obstacle: &&Obstacle| matches!(obstacle.form, Form::Surface { .. });
-        let frame = Frame {
-            scene: self.number,
-            number: self.frames,
-            period: world.state().period,
-            time,
-            real_time_factor,
-            stages: self.stages,
-            iterations: self.iterations_per_step,
-            hands: self.hands.shown(world),
-            poses: self.obstacles.iter().filter(is_bounded).map(|obstacle| pose(obstacle, time)).collect(),
-            bodies: bodies.collect(),
-        };
-        frame.encode()
-    }
-
     /// Wall times and iterations of a step since the last frame.
-    fn average(&mut self) {
+    pub fn average(&mut self) {
         let (now, period) = (self.session.world.stages(), self.session.world.state().period);
         let (before, last) = self.before;
         let steps = period.saturating_sub(last);
@@ -215,138 +237,115 @@ impl Stage {
         self.before = (now, period);
     }
 
-    /// All that a page must know before its first frame.
-    pub fn describe(&self, tell: &mut dyn FnMut(Outgoing)) {
-        tell(document("scene", self.to_json()));
-        let of_bodies =
-            self.session.bodies.iter().map(|body| (&body.surface.points, &body.surface.triangles));
-        let of_obstacles = self.obstacles.iter().filter_map(|obstacle| match &obstacle.form {
-            Form::Surface { points, triangles, .. } => Some((points, triangles)),
-            Form::Plane { .. } => None,
-        });
-        for (index, (points, triangles)) in of_bodies.chain(of_obstacles).enumerate() {
-            let message = protocol::surface(self.number, index as u16, points, triangles);
-            tell(Outgoing::Binary(Arc::from(message)));
-        }
-        tell(self.adjustables());
-        tell(self.pins());
-    }
-
-    fn to_json(&self) -> Value {
-        let Session { title, bodies, probes, warnings, world, .. } = &self.session;
-        let body = |body: &souple_scene::BodyInfo| {
-            json!({
-                "name": body.name,
-                "points": body.mesh.points.len(),
-                "cells": body.mesh.cell_count(),
-                "surface_points": body.surface.points.len(),
-                "surface_triangles": body.surface.triangles.len(),
-            })
-        };
-        let probe = |probe: &souple_scene::ProbeInfo| {
-            json!({
-                "name": probe.name, "unit": probe.unit, "quantity": probe.quantity,
-                "components": if probe.gives_vector() { 3 } else { 1 },
-            })
-        };
-        let field = |field: &&souple_table::Entry<crate::fields::Field>| json!({"name": field.name, "summary": field.summary, "unit": field.build.unit});
-        json!({
-            "scene": self.number,
-            "name": self.name(),
-            "title": title,
-            "description": self.description,
-            "period": world.model().period,
-            "up": self.view.up.to_array(),
-            "direction": self.view.direction.to_array(),
-            "bodies": bodies.iter().map(body).collect::<Vec<_>>(),
-            "obstacles": self.obstacles.iter().map(obstacle_to_json).collect::<Vec<_>>(),
-            "probes": probes.iter().map(probe).collect::<Vec<_>>(),
-            "fields": FIELDS.entries.iter().map(field).collect::<Vec<_>>(),
-            "counts": souple_run::counts(world, bodies),
-            "warnings": warnings,
-        })
-    }
-
-    /// What may be set, as it is now, and the command that comes to the same scene.
-    pub fn adjustables(&self) -> Outgoing {
-        let all: Vec<Value> = self.session.adjustables.iter().map(adjustable_to_json).collect();
-        let command = json!({"adjustables": all, "settings": self.session.inputs().settings});
-        document("adjustables", command)
-    }
-
-    /// Which points of surfaces are held.
-    fn pins(&self) -> Outgoing {
-        let world = &self.session.world;
-        let of_body = |body: &souple_scene::BodyInfo| -> Vec<u32> {
-            let system = &world.model().systems[body.system];
-            let row = |block: u32| system.kinematics.point_block_row(block).map(|row| row as usize);
-            let mut held = vec![false; body.mesh.points.len()];
-            for row in system.constraints.iter().filter_map(|constraint| row(constraint.block)) {
-                if body.rows.contains(&row) {
-                    held[row - body.rows.start] = true;
-                }
-            }
-            let points = body.surface.mesh_points.iter().enumerate();
-            points.filter(|(_, point)| held[**point as usize]).map(|(index, _)| index as u32).collect()
-        };
-        document("pins", json!({"pins": self.session.bodies.iter().map(of_body).collect::<Vec<_>>()}))
-    }
-
     /// What a page does to the world.
     ///
     /// # Errors
     /// It names what is not there, or the world cannot take it.
     pub fn fulfil(&mut self, page: PageId, wish: Wish, hub: &Hub) -> Result<(), String> {
         match &wish {
-            Wish::Colour(None) => {
-                self.fields.remove(&page);
+            Wish::Colour(name) => choose(&FIELDS, name.as_deref(), page, &mut self.looks.fields)?,
+            Wish::Arrows(name) => choose(&ARROWS, name.as_deref(), page, &mut self.looks.arrows)?,
+            Wish::Inside(true) => {
+                self.describe_inside(&mut |message| hub.tell(page, message));
+                self.looks.inside.insert(page);
             }
-            Wish::Colour(Some(name)) => {
-                let found = FIELDS.entries.iter().position(|entry| entry.name == name);
-                let unknown = || FIELDS.find(name).err().map_or_else(String::new, |error| error.to_string());
-                self.fields.insert(page, found.ok_or_else(unknown)?);
+            Wish::Inside(false) => {
+                self.looks.inside.remove(&page);
             }
             Wish::Grab { hand, body, points, strength } => {
                 self.check_points(*body, points)?;
-                let info = &self.session.bodies[*body];
-                let row = |point: &u32| info.rows.start as u32 + info.surface.mesh_points[*point as usize];
+                let (info, shown) = (&self.session.bodies[*body], &self.shown[*body]);
+                let row = |point: &u32| info.rows.start as u32 + shown.points[*point as usize];
                 let rows: Vec<u32> = points.iter().map(row).collect();
                 let grip = hands::grip(&self.session.world, info, &rows, *strength);
                 let edits = self.hands.grab(page, *hand, info.system, grip);
-                if let Err(message) = self.edit(edits) {
-                    self.hands.release(page, *hand);
-                    return Err(message);
-                }
+                self.take(page, *hand, edits)?;
             }
+            Wish::Touch { .. } => self.touch(page, &wish, hub)?,
             Wish::Move { hand, offset } => {
                 // a hand that let go may still be told to move
-                self.edit(self.hands.lead(page, *hand, *offset).into_iter().collect())?;
+                self.hands.lead(page, *hand, *offset);
             }
             Wish::Release(hand) => {
                 let released = self.hands.release(page, *hand);
-                self.edit(released.into_iter().collect())?;
+                self.edit(released)?;
             }
             Wish::Pin { body, points } | Wish::Unpin { body, points } => {
                 self.check_points(*body, points)?;
-                self.edit(hands::edits_of(&wish, &self.session.world, &self.session.bodies[*body]))?;
+                self.edit(self.edits_of(*body, &wish))?;
                 hub.tell_all(&self.pins());
             }
             Wish::Throw { body, .. } => {
                 self.check_points(*body, &[])?;
-                self.edit(hands::edits_of(&wish, &self.session.world, &self.session.bodies[*body]))?;
+                self.edit(self.edits_of(*body, &wish))?;
             }
             _ => {}
         }
         Ok(())
     }
 
+    fn edits_of(&self, body: usize, wish: &Wish) -> Vec<Edit> {
+        hands::edits_of(wish, &self.session.world, &self.session.bodies[body], &self.shown[body])
+    }
+
+    /// Presses on all bodies with a tool; pages are told its shape.
+    fn touch(&mut self, page: PageId, wish: &Wish, hub: &Hub) -> Result<(), String> {
+        let Wish::Touch { hand, tool, size, place, direction, strength } = wish else { return Ok(()) };
+        let entry = TOOLS.find(tool).map_err(|error| error.to_string())?;
+        let values = (entry.build.values)(*size, *direction);
+        let mut tools = Vec::new();
+        for system in 0..self.session.world.model().systems.len() {
+            let mut rows = Vec::new();
+            let bodies = self.session.bodies.iter().zip(&self.shown);
+            for (body, shown) in bodies.filter(|(body, _)| body.system == system) {
+                let first = body.rows.start as u32;
+                rows.extend(shown.points[..shown.outer_count].iter().map(|point| first + point));
+            }
+            if rows.is_empty() {
+                continue;
+            }
+            let bodies = self.session.bodies.iter().filter(|body| body.system == system);
+            let stiffness = hands::tool_stiffness(&self.session.world, bodies, rows.len(), *strength);
+            let (shape, values) = (entry.build.shape.to_owned(), values.clone());
+            tools.push((system, Tool { shape, values, place: *place, stiffness, rows }));
+        }
+        let edits = self.hands.touch(page, *hand, *size, tools);
+        self.take(page, *hand, edits)?;
+        let shape = self.tool_shape(page, *hand);
+        shape.into_iter().for_each(|message| hub.tell_all(&Outgoing::Binary(message.into())));
+        Ok(())
+    }
+
+    /// Makes the edits by which a hand takes something; a hand whose edits are refused holds nothing.
+    fn take(&mut self, page: PageId, hand: u32, edits: Vec<Edit>) -> Result<(), String> {
+        self.edit(edits).inspect_err(|_| {
+            let released = self.hands.release(page, hand);
+            // of several systems some may have taken it
+            released.into_iter().for_each(|edit| drop(self.session.edit(edit)));
+        })
+    }
+
+    /// The message of the shape of each tool.
+    pub fn tools(&self) -> Vec<Vec<u8>> {
+        self.hands.tools().filter_map(|(page, hand)| self.tool_shape(page, hand)).collect()
+    }
+
+    fn tool_shape(&self, page: PageId, hand: u32) -> Option<Vec<u8>> {
+        let force = self.hands.force_of(&self.session.world, page, hand)?;
+        let Form::Surface { points, triangles, .. } = force.obstacle()?.form else { return None };
+        Some(protocol::tool(self.number, [page, hand], &points, &triangles))
+    }
+
     fn check_points(&self, body: usize, points: &[u32]) -> Result<(), String> {
-        let bodies = &self.session.bodies;
-        let count = bodies.len();
-        let info = bodies.get(body).ok_or_else(|| format!("there is no body {body}; there are {count}"))?;
-        let count = info.surface.mesh_points.len();
+        let count = self.shown.len();
+        let shown =
+            self.shown.get(body).ok_or_else(|| format!("there is no body {body}; there are {count}"))?;
+        let count = shown.outer_count;
         match points.iter().find(|point| **point as usize >= count) {
-            Some(point) => Err(format!("`{}` has no surface point {point}; it has {count}", info.name)),
+            Some(point) => {
+                let name = &self.session.bodies[body].name;
+                Err(format!("`{name}` has no surface point {point}; it has {count}"))
+            }
             None => Ok(()),
         }
     }
@@ -357,7 +356,9 @@ impl Stage {
 
     /// A page has gone: its hands let go.
     pub fn forget(&mut self, page: PageId) {
-        self.fields.remove(&page);
+        self.looks.fields.remove(&page);
+        self.looks.arrows.remove(&page);
+        self.looks.inside.remove(&page);
         let edits = self.hands.release_all(page);
         // what a hand held is there to be let go of
         let _ = self.edit(edits);
@@ -369,52 +370,24 @@ impl Stage {
     /// The scene is another world now; this one goes on as it was.
     pub fn change(&mut self, scene: Scene, setting: &str, hub: &Hub) -> Result<(), String> {
         self.session.take_over(scene, setting).map_err(|error| error.to_string())?;
-        self.obstacles = obstacles_of(self.session.world.model());
+        self.obstacles = scenery_of(self.session.world.model());
         hub.tell_all(&self.adjustables());
         Ok(())
     }
 }
 
-/// How an obstacle stands at a time: the axes of its shape, and where its origin is.
-fn pose(obstacle: &Obstacle, time: f64) -> (Mat3, Vec3) {
-    let axis = |axis: Vec3| obstacle.direction(Vec3::ZERO, axis, time);
-    (Mat3::from_columns(axis(Vec3::X), axis(Vec3::Y), axis(Vec3::Z)), obstacle.place(Vec3::ZERO, time))
-}
-
-fn obstacle_to_json(obstacle: &Obstacle) -> Value {
-    match &obstacle.form {
-        Form::Plane { point, normal } => {
-            json!({"form": "plane", "point": point.to_array(), "normal": normal.to_array()})
-        }
-        Form::Surface { bodies, .. } => json!({"form": "surface", "is_around": *bodies == Side::Inside}),
-    }
-}
-
-fn adjustable_to_json(adjustable: &Adjustable) -> Value {
-    let Adjustable { path, group, name, summary, unit, kind, range, value } = adjustable;
-    let (kind, choices) = match kind {
-        Kind::Number => ("number", &[][..]),
-        Kind::Integer => ("integer", &[][..]),
-        Kind::Boolean => ("boolean", &[][..]),
-        Kind::Vector => ("vector", &[][..]),
-        Kind::Choice(choices) => ("choice", *choices),
-        Kind::Text | Kind::Texts | Kind::Numbers => ("text", &[][..]),
+/// Notes which entry of a table a page wants to see.
+fn choose<B>(
+    table: &'static Table<B>,
+    name: Option<&str>,
+    page: PageId,
+    chosen: &mut BTreeMap<PageId, usize>,
+) -> Result<(), String> {
+    let Some(name) = name else {
+        chosen.remove(&page);
+        return Ok(());
     };
-    let finite = |number: f64| number.is_finite().then_some(number);
-    json!({
-        "path": path, "group": group, "name": name, "summary": summary, "unit": unit, "type": kind,
-        "choices": choices, "low": finite(range.low), "high": finite(range.high), "value": value,
-    })
-}
-
-/// Colour maps as 256 colours of six hexadecimal digits, the same as in pictures.
-pub fn colour_maps() -> Value {
-    let map = |entry: &&souple_table::Entry<souple_io::picture::ColourMap>| {
-        let colour = |step: i32| {
-            let [red, green, blue] = entry.build.colour(f64::from(step) / 255.0).to_screen();
-            format!("{red:02x}{green:02x}{blue:02x}")
-        };
-        json!({"name": entry.name, "summary": entry.summary, "colours": (0..256).map(colour).collect::<String>()})
-    };
-    COLOUR_MAPS.entries.iter().map(map).collect()
+    table.find(name).map_err(|error| error.to_string())?;
+    chosen.extend(table.names().position(|known| known == name).map(|number| (page, number)));
+    Ok(())
 }

@@ -1,9 +1,9 @@
 // The connection to the world: comes back by itself when it was lost.
 
 import { decode, SUBPROTOCOL } from "./protocol";
-import type { Document, Frame, Samples, Surface, Wish } from "./protocol";
+import type { Binary, Document, Wish } from "./protocol";
 
-export type Message = Document | Surface | Frame | Samples;
+export type Message = Document | Binary;
 export type Link = "connecting" | "open" | "lost";
 
 const RETRY_MS = 1000;

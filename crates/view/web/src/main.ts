@@ -4,9 +4,10 @@ import "uplot/dist/uPlot.min.css";
 import "../style.css";
 import { Connection } from "./connection";
 import type { Link, Message } from "./connection";
-import type { ColourMap, Frame, SceneInfo, Status, Surface, Wish } from "./protocol";
+import type { ColourMap, Frame, NetworkShape, SceneInfo, Status, Surface, Wish } from "./protocol";
 import { Display } from "./ui/display";
 import { element, panel, remember, remembered } from "./ui/dom";
+import { HandPanel } from "./ui/handling";
 import { Legend } from "./ui/legend";
 import { Notes } from "./ui/notes";
 import { Parameters } from "./ui/parameters";
@@ -32,6 +33,12 @@ class Page {
     fit: () => this.picture.fit(),
     theme: () => this.setDark(!this.dark),
   });
+  private readonly hand = new HandPanel(
+    (handling) => {
+      if (this.grab) this.grab.handling = handling;
+    },
+    () => this.grab?.putAway(),
+  );
   private readonly parameters = new Parameters(
     (wish) => this.send(wish),
     (text) => this.notes.say("note", text),
@@ -50,19 +57,23 @@ class Page {
   private maps: ColourMap[] = [];
   private info: SceneInfo | null = null;
   private surfaces: Surface[] = [];
+  private networks: (NetworkShape | undefined)[] = [];
   private hasBegun = false;
   private frame: Frame | null = null;
-  private chosenField: string | null = null;
+  /** What the world was asked to send along. */
+  private asked: { field: string | null; arrows: string | null; inside: boolean } = { field: null, arrows: null, inside: false };
   private dark = remembered("theme") === null ? matchMedia("(prefers-color-scheme: dark)").matches : remembered("theme") === "dark";
 
   constructor() {
     this.picture = new Picture(place("stage"), (picture) => {
       this.grab = new Grab(picture, (wish) => this.send(wish));
+      this.grab.handling = this.hand.handling;
     });
     place("top").append(element("div", { class: "name" }, this.title, this.link), this.transport.root);
     place("side").append(
       panel("About", false, this.description),
       this.display.root,
+      this.hand.root,
       this.parameters.root,
       this.plots.root,
       this.scenes.root,
@@ -94,11 +105,17 @@ class Page {
         this.maps = message.colour_maps;
         this.display.setMaps(this.maps);
         this.scenes.set(message.scenes);
-        this.chosenField = null;
+        this.scenes.page = message.page;
+        this.hand.setTools(message.tools);
+        this.asked = { field: null, arrows: null, inside: false };
+        this.grab?.forget();
         break;
       case "scene":
         this.info = message;
         this.surfaces = [];
+        this.networks = [];
+        this.picture.tools.clear();
+        this.grab?.forget();
         this.hasBegun = false;
         this.describe(message);
         this.begin();
@@ -106,6 +123,15 @@ class Page {
       case "surface":
         if (message.scene === this.info?.scene) this.surfaces[message.index] = message;
         this.begin();
+        break;
+      case "network":
+        if (message.scene === this.info?.scene) this.networks[message.index] = message;
+        break;
+      case "inside":
+        if (message.scene === this.info?.scene) this.picture.setInside(message);
+        break;
+      case "tool":
+        if (message.scene === this.info?.scene) this.picture.addTool(message);
         break;
       case "adjustables":
         this.parameters.set(message);
@@ -146,8 +172,9 @@ class Page {
     const count = info.bodies.length + info.obstacles.filter(({ form }) => form === "surface").length;
     if (this.surfaces.filter(Boolean).length < count) return;
     this.hasBegun = true;
-    this.picture.begin(info, this.surfaces);
+    this.picture.begin(info, this.surfaces, this.networks);
     this.picture.fit();
+    this.display.setArrows(info.arrows, info.counts["rigid_frames"] !== undefined || info.counts["affine_frames"] !== undefined);
     this.display.setFields(info.fields);
   }
 
@@ -156,15 +183,18 @@ class Page {
     const map = this.maps.find(({ name }) => name === look.map) ?? this.maps[0];
     const fields = this.info?.fields ?? [];
     const index = fields.findIndex(({ name }) => name === look.field);
-    if (look.field !== this.chosenField) {
-      this.chosenField = look.field;
-      this.send({ do: "colour", field: look.field });
-    }
+    const { asked } = this;
+    const inside = look.cut !== null || look.explode > 0;
+    if (look.field !== asked.field) this.send({ do: "colour", field: look.field });
+    if (look.arrows !== asked.arrows) this.send({ do: "arrows", of: look.arrows });
+    if (inside !== asked.inside) this.send({ do: "inside", is_shown: inside });
+    this.asked = { field: look.field, arrows: look.arrows, inside };
     if (map) this.picture.setColours(index, map, null);
     this.legend.set(fields[index] ?? null, map);
     this.picture.setStyle(look.style, this.dark);
     this.picture.setCut(look.cut);
-    if (this.grab) this.grab.strength = look.strength;
+    const arrows = (this.info?.arrows ?? []).findIndex(({ name }) => name === look.arrows);
+    this.picture.setExtras({ arrows, explode: look.explode, axes: look.axes });
   }
 
   private setStatus(status: Status): void {
@@ -200,6 +230,7 @@ class Page {
         this.legend.show(this.picture.range);
         document.body.dataset.frame = String(frame.number);
         document.body.dataset.time = String(frame.time);
+        document.body.dataset.cells = String(this.picture.cellCount);
       }
     }
     this.picture.draw();
@@ -222,10 +253,16 @@ class Page {
       g: () => this.transport.take("pull"),
       p: () => this.transport.take("pin"),
       t: () => this.transport.take("throw"),
+      o: () => this.transport.take("push"),
       w: () => this.display.nextStyle(),
       f: () => this.picture.fit(),
     };
-    const action = actions[event.key.toLowerCase()];
+    const name = event.key.toLowerCase();
+    if (this.grab?.key(name)) {
+      event.preventDefault();
+      return;
+    }
+    const action = actions[name];
     if (!action || (event.key === " " && target.tagName === "BUTTON")) return;
     event.preventDefault();
     action();

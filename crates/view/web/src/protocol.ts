@@ -1,7 +1,7 @@
-// What comes over the wire and how it is read: version 1, see docs/protocol.md.
+// What comes over the wire and how it is read: version 2, see docs/protocol.md.
 
-export const SUBPROTOCOL = "souple.v1";
-const VERSION = 1;
+export const SUBPROTOCOL = "souple.v2";
+const VERSION = 2;
 
 export type Vector = [number, number, number];
 
@@ -18,11 +18,19 @@ export interface CatalogueEntry {
   description: string;
 }
 
+export interface ToolInfo {
+  name: string;
+  summary: string;
+  /** How far its front is from its origin, in its size. */
+  front: number;
+}
+
 export interface Hello {
   kind: "hello";
   page: number;
   version: string;
   colour_maps: ColourMap[];
+  tools: ToolInfo[];
   scenes: CatalogueEntry[];
 }
 
@@ -32,6 +40,19 @@ export interface BodyInfo {
   cells: number;
   surface_points: number;
   surface_triangles: number;
+  links: number;
+  /** Masses, and links between them if any. */
+  is_network: boolean;
+  /** Both sides of its triangles are seen. */
+  is_sheet: boolean;
+  /** A skin hides it. */
+  is_worn: boolean;
+  has_inside: boolean;
+}
+
+export interface SkinInfo {
+  name: string;
+  worn_by: number | null;
 }
 
 export type ObstacleInfo =
@@ -49,6 +70,13 @@ export interface FieldInfo {
   name: string;
   summary: string;
   unit: string;
+  of: "points" | "links";
+}
+
+export interface ArrowInfo {
+  name: string;
+  summary: string;
+  unit: string;
 }
 
 export interface SceneInfo {
@@ -61,9 +89,11 @@ export interface SceneInfo {
   up: Vector;
   direction: Vector;
   bodies: BodyInfo[];
+  skins: SkinInfo[];
   obstacles: ObstacleInfo[];
   probes: ProbeInfo[];
   fields: FieldInfo[];
+  arrows: ArrowInfo[];
   counts: Record<string, number>;
   warnings: string[];
 }
@@ -117,7 +147,10 @@ export type Wish =
   | { do: "load_text"; name: string; text: string }
   | { do: "set"; path: string; value: string }
   | { do: "colour"; field: string | null }
+  | { do: "arrows"; of: string | null }
+  | { do: "inside"; is_shown: boolean }
   | { do: "grab"; hand: number; body: number; points: number[]; strength: number }
+  | { do: "touch"; hand: number; tool: string; size: number; place: Vector; direction: Vector; strength: number }
   | { do: "move"; hand: number; offset: Vector }
   | { do: "release"; hand: number }
   | { do: "pin" | "unpin"; body: number; points: number[] }
@@ -131,9 +164,40 @@ export interface Surface {
   triangles: Uint32Array;
 }
 
+/** What joins the points of a body, and how large they are. */
+export interface NetworkShape {
+  kind: "network";
+  scene: number;
+  index: number;
+  /** Pairs of points. */
+  links: Uint32Array;
+  radii: Float32Array;
+}
+
+/** The cells of a body. */
+export interface InsideShape {
+  kind: "inside";
+  scene: number;
+  index: number;
+  /** Four points and the cell, each. */
+  tetrahedra: Uint32Array;
+  /** Three points and the cell, each; those of a cell one after the other. */
+  triangles: Uint32Array;
+}
+
+export interface ToolShape {
+  kind: "tool";
+  scene: number;
+  page: number;
+  hand: number;
+  points: Float32Array;
+  triangles: Uint32Array;
+}
+
 export interface HandShown {
   page: number;
   hand: number;
+  holds: "body" | "tool";
   held: Float32Array;
   place: Float32Array;
   force: Float32Array;
@@ -142,6 +206,17 @@ export interface HandShown {
 export interface BodyFrame {
   positions: Float32Array;
   fields: Map<number, Float32Array>;
+  arrows: Map<number, Float32Array>;
+  /** Of each link: 0 where it does not hold, else its law's state and one; empty where none ever changes. */
+  linkStates: Uint8Array;
+  /** Origin and three axes of each frame that carries it. */
+  frames: Float32Array;
+}
+
+export interface SkinFrame {
+  positions: Float32Array;
+  normals: Float32Array;
+  triangles: Uint32Array;
 }
 
 export interface Frame {
@@ -159,6 +234,7 @@ export interface Frame {
   /** Of each bounded obstacle: three axes and the origin. */
   poses: Float32Array[];
   bodies: BodyFrame[];
+  skins: SkinFrame[];
 }
 
 export interface Samples {
@@ -169,8 +245,10 @@ export interface Samples {
   numbers: Float64Array;
 }
 
+export type Binary = Surface | Frame | Samples | NetworkShape | InsideShape | ToolShape;
+
 /** Reads a binary message; null for one of a version or kind that this page does not know. */
-export function decode(buffer: ArrayBuffer): Surface | Frame | Samples | null {
+export function decode(buffer: ArrayBuffer): Binary | null {
   const view = new DataView(buffer);
   if (buffer.byteLength < 16 || view.getUint8(1) !== VERSION) return null;
   const count = view.getUint16(2, true);
@@ -183,6 +261,39 @@ export function decode(buffer: ArrayBuffer): Surface | Frame | Samples | null {
     case 3: {
       const rows = view.getUint32(8, true);
       return { kind: "samples", scene, columns: count, numbers: new Float64Array(buffer, 16, rows * count) };
+    }
+    case 4: {
+      const links = view.getUint32(8, true);
+      const radii = view.getUint32(12, true);
+      return {
+        kind: "network",
+        scene,
+        index: count,
+        links: new Uint32Array(buffer, 16, 2 * links),
+        radii: new Float32Array(buffer, 16 + 8 * links, radii),
+      };
+    }
+    case 5: {
+      const tetrahedra = view.getUint32(8, true);
+      const triangles = view.getUint32(12, true);
+      return {
+        kind: "inside",
+        scene,
+        index: count,
+        tetrahedra: new Uint32Array(buffer, 16, 5 * tetrahedra),
+        triangles: new Uint32Array(buffer, 16 + 20 * tetrahedra, 4 * triangles),
+      };
+    }
+    case 6: {
+      const points = view.getUint32(16, true);
+      return {
+        kind: "tool",
+        scene,
+        page: view.getUint32(8, true),
+        hand: view.getUint32(12, true),
+        points: new Float32Array(buffer, 24, 3 * points),
+        triangles: new Uint32Array(buffer, 24 + 12 * points, 3 * view.getUint32(20, true)),
+      };
     }
     default:
       return null;
@@ -201,34 +312,68 @@ function decodeSurface(buffer: ArrayBuffer, view: DataView, index: number, scene
   };
 }
 
+/** Reads numbers one after the other. */
+class Reader {
+  constructor(
+    private readonly buffer: ArrayBuffer,
+    private at: number,
+  ) {}
+
+  integer(): number {
+    return this.integers(1)[0]!;
+  }
+
+  integers(count: number): Uint32Array {
+    return new Uint32Array(this.buffer, this.pass(4 * count), count);
+  }
+
+  floats(count: number): Float32Array {
+    return new Float32Array(this.buffer, this.pass(4 * count), count);
+  }
+
+  /** Followed by as many bytes as lead to a multiple of four. */
+  bytes(count: number): Uint8Array {
+    return new Uint8Array(this.buffer, this.pass(4 * Math.ceil(count / 4)), count);
+  }
+
+  list<T>(count: number, read: () => T): T[] {
+    return Array.from({ length: count }, read);
+  }
+
+  private pass(length: number): number {
+    this.at += length;
+    return this.at - length;
+  }
+}
+
 function decodeFrame(buffer: ArrayBuffer, view: DataView, bodyCount: number, scene: number): Frame {
-  let at = 68;
-  const floats = (count: number): Float32Array => {
-    const numbers = new Float32Array(buffer, at, count);
-    at += 4 * count;
-    return numbers;
+  const read = new Reader(buffer, 60);
+  const [handCount = 0, poseCount = 0, skinCount = 0] = read.integers(3);
+  const hand = (): HandShown => {
+    const [page = 0, number = 0, holds] = read.integers(3);
+    return {
+      page,
+      hand: number,
+      holds: holds === 1 ? "tool" : "body",
+      held: read.floats(3),
+      place: read.floats(3),
+      force: read.floats(3),
+    };
   };
-  const integer = (): number => {
-    at += 4;
-    return view.getUint32(at - 4, true);
+  const body = (): BodyFrame => {
+    const [points = 0, fields = 0, arrows = 0, links = 0, frames = 0] = read.integers(5);
+    return {
+      positions: read.floats(3 * points),
+      fields: new Map(read.list(fields, () => [read.integer(), read.floats(read.integer())])),
+      arrows: new Map(read.list(arrows, () => [read.integer(), read.floats(3 * points)])),
+      linkStates: read.bytes(links),
+      frames: read.floats(12 * frames),
+    };
   };
-  const hands: HandShown[] = [];
-  for (let i = view.getUint32(60, true); i > 0; i--) {
-    hands.push({ page: integer(), hand: integer(), held: floats(3), place: floats(3), force: floats(3) });
-  }
-  const poses: Float32Array[] = [];
-  for (let i = view.getUint32(64, true); i > 0; i--) poses.push(floats(12));
-  const bodies: BodyFrame[] = [];
-  for (let i = 0; i < bodyCount; i++) {
-    const points = integer();
-    const fieldCount = integer();
-    const body: BodyFrame = { positions: floats(3 * points), fields: new Map() };
-    for (let f = 0; f < fieldCount; f++) {
-      const field = integer();
-      body.fields.set(field, floats(points));
-    }
-    bodies.push(body);
-  }
+  const skin = (): SkinFrame => {
+    const [points = 0, triangles = 0] = read.integers(2);
+    return { positions: read.floats(3 * points), normals: read.floats(3 * points), triangles: read.integers(3 * triangles) };
+  };
   return {
     kind: "frame",
     scene,
@@ -238,8 +383,9 @@ function decodeFrame(buffer: ArrayBuffer, view: DataView, bodyCount: number, sce
     realTimeFactor: view.getFloat32(28, true),
     stages: new Float32Array(buffer, 32, 5),
     iterations: new Float32Array(buffer, 52, 2),
-    hands,
-    poses,
-    bodies,
+    hands: read.list(handCount, hand),
+    poses: read.list(poseCount, () => read.floats(12)),
+    bodies: read.list(bodyCount, body),
+    skins: read.list(skinCount, skin),
   };
 }

@@ -1,5 +1,6 @@
 //! Elasto-plastic links with hardening and rupture: a spring in series with a slider beside a second spring.
 
+use souple_engine::LinkState;
 use souple_math::Real;
 use souple_table::{Parameter, Range, Value};
 
@@ -78,6 +79,15 @@ impl LinkLaw for ElastoPlastic {
 
     fn is_conservative(&self) -> bool {
         false
+    }
+
+    // torn, its threshold is zero; yielded, its rest length is another
+    fn state(&self, rest: f64, memory: &[f64]) -> LinkState {
+        match (memory[TEARS] > 0.0, memory[REST] == rest) {
+            (false, _) => LinkState::Apart,
+            (true, true) => LinkState::In(0),
+            (true, false) => LinkState::In(1),
+        }
     }
 
     fn stiffest(&self) -> f64 {

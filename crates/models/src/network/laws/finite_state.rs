@@ -3,12 +3,15 @@
 //! At step `n` the transitions out of the present state are looked at in the order they are written; the last one whose
 //! condition holds wins. What is entered may set remembered numbers; then the force is that of the new state.
 
+use souple_engine::LinkState;
 use souple_formal::{Condition, Formula};
 use souple_math::Dual;
 use souple_table::{Parameter, Value};
 
 use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
-use crate::network::written::{Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula};
+use crate::network::written::{
+    ARGUMENTS, Arguments, OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula,
+};
 
 /// What formulas and conditions may refer to, before what is remembered and the parameters of the scene.
 const VARIABLES: [&str; 4] = ["D", "D_before", "V", "t"];
@@ -29,6 +32,15 @@ struct State {
     transitions: Vec<(Condition, usize)>,
     /// Remembered numbers that are set on entry.
     settings: Vec<(usize, Formula)>,
+}
+
+impl State {
+    /// Without force, for good.
+    fn is_end(&self) -> bool {
+        let is_constant = !(0..self.push.variables().len()).any(|variable| self.push.depends_on(variable));
+        let zeros = [0.0; ARGUMENTS];
+        self.transitions.is_empty() && is_constant && self.push.evaluate(&zeros) == 0.0
+    }
 }
 
 /// Place of the state among the numbers of a link; remembered numbers follow.
@@ -77,6 +89,16 @@ impl WrittenLaw for FiniteState {
 
     fn is_conservative(&self) -> bool {
         false
+    }
+
+    // a state without force that nothing leads out of is the end
+    fn state(&self, memory: &[f64]) -> LinkState {
+        let number = memory[STATE] as usize;
+        if self.states[number].is_end() {
+            LinkState::Apart
+        } else {
+            LinkState::In(u8::try_from(number).unwrap_or(u8::MAX))
+        }
     }
 
     fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response {

@@ -36,6 +36,10 @@ impl LinkLaw for LennardJones {
         true
     }
 
+    fn rest_distance(&self) -> Option<f64> {
+        Some(self.distance)
+    }
+
     // 2 n² E0 / r0², at rest
     fn stiffest(&self) -> f64 {
         2.0 * self.depth * (f64::from(self.exponent) / self.distance).powi(2)

@@ -6,6 +6,7 @@ mod flowing;
 mod formula;
 mod lennard_jones;
 mod piecewise;
+mod rheological;
 mod spring_damper;
 mod stops;
 
@@ -33,6 +34,7 @@ pub const LINKS: Table<BuildLink> = Table {
         &flowing::MAXWELL,
         &flowing::BINGHAM,
         &flowing::BURGER,
+        &rheological::ENTRY,
         &formula::ENTRY,
         &finite_state::ENTRY,
     ],

@@ -97,6 +97,10 @@ impl LinkLaw for Piecewise {
         self.steepest + 2.0 * self.damping
     }
 
+    fn rest_distance(&self) -> Option<f64> {
+        self.range().is_finite().then_some(self.zero)
+    }
+
     /// The last threshold, where the last piece is level and without force.
     fn range(&self) -> f64 {
         let last = self.bends.last().map_or(f64::INFINITY, |(bend, _)| *bend);

@@ -73,6 +73,10 @@ impl LinkLaw for Stop {
             Zone::Outside => f64::INFINITY,
         }
     }
+
+    fn rest_distance(&self) -> Option<f64> {
+        (self.zone == Zone::Inside).then_some(self.threshold)
+    }
 }
 
 /// `φ = K d (e^{(S - D)/d} - 1)` for `D < S`: the stiffer the deeper.
@@ -107,6 +111,10 @@ impl LinkLaw for ExponentialStop {
 
     fn range(&self) -> f64 {
         self.threshold
+    }
+
+    fn rest_distance(&self) -> Option<f64> {
+        Some(self.threshold)
     }
 }
 

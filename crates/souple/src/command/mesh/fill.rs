@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_mesh::fill::{Options, PARAMETERS, fill_mesh, surface_of};
+use souple_mesh::fill::{FillError, Options, PARAMETERS, fill_mesh, surface_of};
 use souple_mesh::implicit::SHAPES;
 use souple_mesh::repair::{RepairLimits, repair};
 use souple_mesh::simplify::{Goal, simplify};
@@ -18,8 +18,16 @@ const SCALE: Parameter =
 /// Fills a file's surface, or a shape known by name.
 pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
     let refuse = |error: MeshError| {
-        let message = format!("`{input}` cannot be filled: {error}");
-        Refusal::request("fill", input, "a shape that has an inside, and cells that fit in it", message)
+        let expected = match &error {
+            MeshError::Fill(FillError::TooManyPoints { .. } | FillError::Nothing { .. })
+                if Path::new(input).exists() =>
+            {
+                "cells that fit the shape; lengths are metres: a file in millimetres takes scale=0.001"
+            }
+            MeshError::Fill(FillError::Open { .. }) => "a surface that encloses something",
+            _ => "a shape that has an inside, and cells that fit in it",
+        };
+        Refusal::request("fill", input, expected, format!("`{input}` cannot be filled: {error}"))
     };
     let shape = SHAPES.entries.iter().copied().find(|entry| entry.name == input);
     if shape.is_none() && !Path::new(input).exists() {

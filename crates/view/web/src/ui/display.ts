@@ -1,6 +1,6 @@
 // How the world is drawn: what colours it, edges, a cut, light or dark.
 
-import type { ColourMap, FieldInfo } from "../protocol";
+import type { ArrowInfo, ColourMap, FieldInfo } from "../protocol";
 import { label } from "../format";
 import type { Cut } from "../view/picture";
 import type { Style } from "../view/body";
@@ -11,7 +11,10 @@ export interface Look {
   map: string;
   style: Style;
   cut: Cut | null;
-  strength: number;
+  arrows: string | null;
+  /** How far cells are apart, in their distance from the middle. */
+  explode: number;
+  axes: boolean;
 }
 
 const STYLES: [Style, string][] = [
@@ -28,13 +31,16 @@ const AXES: [string, string][] = [
 
 export class Display {
   readonly root: HTMLElement;
-  readonly look: Look = { field: null, map: "sequential", style: "smooth", cut: null, strength: 1 };
+  readonly look: Look = { field: null, map: "sequential", style: "smooth", cut: null, arrows: null, explode: 0, axes: true };
   private readonly field = element("select", { id: "field" });
   private readonly map = element("select", { id: "map" });
   private readonly style = element("select", { id: "style" });
   private readonly axis = element("select", { id: "cut" });
   private readonly place = element("input", { type: "range", min: 0, max: 1, step: 0.005, value: 0.5, "aria-label": "Place of the cut" });
-  private readonly strength = element("input", { type: "range", id: "strength", min: -1.5, max: 1.5, step: 0.05, value: 0 });
+  private readonly explode = element("input", { type: "range", id: "explode", min: 0, max: 1, step: 0.01, value: 0 });
+  private readonly arrows = element("select", { id: "arrows" });
+  private readonly axes = element("input", { type: "checkbox", id: "axes", checked: true });
+  private readonly axesRow: HTMLElement;
 
   constructor(
     private readonly changed: () => void,
@@ -44,12 +50,13 @@ export class Display {
       select.append(...entries.map(([value, text]) => element("option", { value }, text)));
     options(this.style, STYLES);
     options(this.axis, AXES);
-    for (const control of [this.field, this.map, this.style, this.axis]) {
+    for (const control of [this.field, this.map, this.style, this.axis, this.arrows, this.axes]) {
       control.addEventListener("change", () => this.read());
     }
-    for (const control of [this.place, this.strength]) control.addEventListener("input", () => this.read());
+    for (const control of [this.place, this.explode]) control.addEventListener("input", () => this.read());
     const row = (text: string, control: HTMLElement) =>
       element("label", { class: "row" }, element("span", {}, text), control);
+    this.axesRow = row("Frames' axes", this.axes);
     this.root = panel(
       "Display",
       true,
@@ -58,7 +65,9 @@ export class Display {
       row("Surface", this.style),
       row("Cut", this.axis),
       element("div", { class: "row" }, this.place),
-      row("Hand's strength", this.strength),
+      row("Cells apart", this.explode),
+      row("Arrows", this.arrows),
+      this.axesRow,
       element(
         "div",
         { class: "buttons" },
@@ -83,6 +92,14 @@ export class Display {
     this.read();
   }
 
+  setArrows(kinds: ArrowInfo[], hasFrames: boolean): void {
+    const entry = ({ name, summary, unit }: ArrowInfo) =>
+      element("option", { value: name, title: `${summary} [${unit}]` }, label(name));
+    this.arrows.replaceChildren(element("option", { value: "" }, "None"), ...kinds.map(entry));
+    this.arrows.value = this.look.arrows ?? "";
+    this.axesRow.hidden = !hasFrames;
+  }
+
   /** The next style of surfaces. */
   nextStyle(): void {
     const at = STYLES.findIndex(([style]) => style === this.look.style);
@@ -95,7 +112,9 @@ export class Display {
     look.field = this.field.value || null;
     look.map = this.map.value || "sequential";
     look.style = this.style.value as Style;
-    look.strength = 10 ** Number(this.strength.value);
+    look.explode = Number(this.explode.value);
+    look.arrows = this.arrows.value || null;
+    look.axes = this.axes.checked;
     const axis = this.axis.value;
     this.place.hidden = axis === "none";
     look.cut = axis === "none" ? null : { axis: Number(axis) as 0 | 1 | 2, place: Number(this.place.value) };

@@ -8,13 +8,15 @@ const TEXT_MAX = 1_000_000;
 
 export class Scenes {
   readonly root: HTMLElement;
+  /** The number that refusals come back to. */
+  page = 0;
   private readonly list = element("ul", { class: "scenes" });
 
   constructor(
     private readonly send: (wish: Wish) => void,
     private readonly say: (text: string) => void,
   ) {
-    this.root = panel("Scenes", false, this.list, element("p", { class: "quiet" }, "A scene file can be dropped on the page."));
+    this.root = panel("Scenes", false, this.list, element("p", { class: "quiet" }, "A scene file or a mesh can be dropped on the page."));
     window.addEventListener("dragover", (event) => event.preventDefault());
     window.addEventListener("drop", (event) => void this.drop(event));
   }
@@ -47,11 +49,25 @@ export class Scenes {
     const file = event.dataTransfer?.files[0];
     if (!file) return;
     if (!file.name.endsWith(".toml")) {
-      this.say(`${file.name} is no scene file; a scene is a text that ends in .toml`);
+      await this.sendMesh(file);
     } else if (file.size > TEXT_MAX) {
       this.say(`${file.name} is larger than the ${TEXT_MAX} bytes that a scene may have here`);
     } else {
       this.send({ do: "load_text", name: file.name, text: await file.text() });
+    }
+  }
+
+  /** A mesh or a closed surface becomes a soft body; what is neither is refused in words. */
+  private async sendMesh(file: File): Promise<void> {
+    const url = new URL("mesh", location.href);
+    url.search = location.search;
+    url.searchParams.set("name", file.name.replace(/[^\w.-]/g, "_"));
+    url.searchParams.set("page", String(this.page));
+    try {
+      const answer = await fetch(url, { method: "POST", body: file });
+      if (!answer.ok) this.say(`${file.name}: ${(await answer.text()).trim()}`);
+    } catch {
+      this.say(`${file.name} could not be sent`);
     }
   }
 }

@@ -7,7 +7,8 @@ import { number } from "../format";
 
 const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
 const TOOLS: [Tool, string, string][] = [
-  ["pull", "Pull", "Drag a body (G)"],
+  ["pull", "Pull", "Drag a body; the wheel leads it nearer or away (G)"],
+  ["push", "Push", "Press a tool on a body; the wheel leads it nearer or away (O)"],
   ["pin", "Pin", "Click to hold a place, click again to let go (P)"],
   ["throw", "Throw", "Drag and let go: the body flies that way (T)"],
 ];

@@ -1,9 +1,11 @@
-// A soft body on the screen: its surface as it stands, smooth, in one colour or coloured by a field.
+// A soft body on the screen: its surface, its links and balls, its inside, the frames that carry it.
 
 import {
   BufferAttribute,
   BufferGeometry,
+  DoubleSide,
   DynamicDrawUsage,
+  FrontSide,
   Group,
   InstancedMesh,
   LineBasicMaterial,
@@ -15,8 +17,11 @@ import {
   SphereGeometry,
   Vector3,
 } from "three";
-import type { Plane } from "three";
-import type { BodyFrame, Surface } from "../protocol";
+import type { Object3D, Plane } from "three";
+import type { BodyFrame, BodyInfo, InsideShape, NetworkShape, Surface } from "../protocol";
+import { Axes } from "./axes";
+import { Inside } from "./inside";
+import { Network } from "./network";
 import { smoothNormals } from "./normals";
 import { BODY_COLOURS, paint } from "./palette";
 import type { Range } from "./palette";
@@ -29,8 +34,16 @@ const PIN_COLOUR = 0x3d6fd8;
 export class Body {
   readonly group = new Group();
   readonly mesh: Mesh<BufferGeometry, MeshPhysicalMaterial>;
+  /** Of the points that are always shown. */
   readonly positions: Float32Array;
   readonly normals: Float32Array;
+  private readonly network: Network | null;
+  private readonly axes: Axes;
+  private inside: Inside | null = null;
+  private last: BodyFrame | null = null;
+  private cut: Plane | null = null;
+  private explode = 0;
+  private style: Style = "smooth";
   private readonly colours: BufferAttribute;
   private readonly edges: LineSegments<BufferGeometry, LineBasicMaterial>;
   private readonly triangles: Uint32Array;
@@ -39,7 +52,9 @@ export class Body {
 
   constructor(
     readonly index: number,
+    readonly info: BodyInfo,
     surface: Surface,
+    network: NetworkShape | undefined,
     private readonly size: number,
   ) {
     this.triangles = surface.triangles;
@@ -73,13 +88,48 @@ export class Body {
     this.edges.frustumCulled = false;
     this.edges.visible = false;
     this.group.add(this.mesh, this.edges);
+    this.network = network ? new Network(network, surface.points, index, size) : null;
+    if (this.network) this.group.add(this.network.group);
+    this.axes = new Axes(this.group, size);
+    if (info.is_sheet) material.side = DoubleSide;
     this.moved();
   }
 
+  /** Goes where a frame says; points of the inside follow those of the outside there, if anybody looks at them. */
   update(frame: BodyFrame): void {
-    if (frame.positions.length !== this.positions.length) return;
-    this.positions.set(frame.positions);
+    if (frame.positions.length < this.positions.length) return;
+    this.last = frame;
+    this.positions.set(frame.positions.subarray(0, this.positions.length));
+    this.axes.update(frame.frames);
     this.moved();
+  }
+
+  /** Its cells have come. */
+  setInside(shape: InsideShape): void {
+    this.inside?.dispose();
+    if (this.inside) this.group.remove(this.inside.group);
+    this.inside = new Inside(shape, this.index);
+    this.group.add(this.inside.group);
+    this.setVisible();
+  }
+
+  /** Cells whose shapes have come. */
+  get cellCount(): number {
+    return this.inside ? this.info.cells : 0;
+  }
+
+  /** What a ray may meet. */
+  get targets(): Object3D[] {
+    return this.network ? this.network.targets : [this.mesh];
+  }
+
+  setExplode(amount: number): void {
+    this.explode = amount;
+    this.setVisible();
+  }
+
+  setAxes(shown: boolean): void {
+    this.axes.setShown(shown);
   }
 
   /** Colours by values; by its own colour for none. */
@@ -97,23 +147,33 @@ export class Body {
       paint(values, range, map, this.colours.array as Float32Array);
       this.colours.needsUpdate = true;
     }
+    if (!this.last) return;
+    this.network?.update(this.last, values, range, map);
+    // a frame that left before the page looked inside has no points there
+    const hasInside = this.last.positions.length > this.positions.length || this.info.points === this.info.surface_points;
+    if (hasInside) this.inside?.update(this.last.positions, { values, range, map }, this.cut, this.explode);
   }
 
   setStyle(style: Style, dark: boolean): void {
+    this.style = style;
     this.mesh.material.colorWrite = style !== "wireframe";
     this.mesh.material.depthWrite = style !== "wireframe";
     this.mesh.castShadow = style !== "wireframe";
-    this.edges.visible = style !== "smooth";
+    this.setVisible();
     this.edges.material.color.set(style === "wireframe" && dark ? 0xdfe6f0 : 0x101418);
     this.edges.material.opacity = style === "wireframe" ? 0.6 : 0.3;
   }
 
-  setCut(planes: Plane[]): void {
+  setCut(cut: Plane | null): void {
+    this.cut = cut;
+    const planes = cut ? [cut] : [];
     this.mesh.material.clippingPlanes = planes;
-    // the inside is seen then
-    this.mesh.material.side = planes.length > 0 ? 2 : 0;
+    // what has no section is looked into
+    this.mesh.material.side = this.info.is_sheet || (cut && !this.info.has_inside) ? DoubleSide : FrontSide;
     this.mesh.material.needsUpdate = true;
     this.edges.material.clippingPlanes = planes;
+    this.network?.setCut(planes);
+    this.inside?.setCut(planes);
   }
 
   setPins(points: number[]): void {
@@ -136,17 +196,18 @@ export class Body {
     return this.pinned.includes(point);
   }
 
-  /** Points within a distance of a place, on the side that a normal points to. */
-  pointsNear(place: Vector3, normal: Vector3, distance: number): number[] {
+  /** Points within a distance of a place, of a surface those on the side that a normal points to. */
+  pointsNear(place: Vector3, normal: Vector3 | null, distance: number): number[] {
     const near: [number, number][] = [];
     const { positions, normals } = this;
+    const side = this.network ? null : normal;
     for (let point = 0; point < positions.length / 3; point++) {
       const at = 3 * point;
       const dx = positions[at]! - place.x;
       const dy = positions[at + 1]! - place.y;
       const dz = positions[at + 2]! - place.z;
       const distanceSq = dx * dx + dy * dy + dz * dz;
-      const facing = normals[at]! * normal.x + normals[at + 1]! * normal.y + normals[at + 2]! * normal.z;
+      const facing = side ? normals[at]! * side.x + normals[at + 1]! * side.y + normals[at + 2]! * side.z : 1;
       if (distanceSq < distance * distance && facing > 0) near.push([distanceSq, point]);
     }
     near.sort((a, b) => a[0] - b[0]);
@@ -156,6 +217,7 @@ export class Body {
   /** Makes the mesh ready to be met by a ray. */
   prepareForRay(): void {
     this.mesh.geometry.computeBoundingSphere();
+    this.network?.prepareForRay();
   }
 
   dispose(): void {
@@ -164,6 +226,18 @@ export class Body {
     this.edges.geometry.dispose();
     this.edges.material.dispose();
     this.pins?.dispose();
+    this.network?.dispose();
+    this.inside?.dispose();
+    this.axes.dispose();
+  }
+
+  /** What stands for the body: its cells, its surface, or the skin that it wears. */
+  private setVisible(): void {
+    const isApart = this.explode > 0 && this.inside !== null;
+    const isSurface = !isApart && !this.info.is_worn;
+    this.mesh.visible = isSurface;
+    this.edges.visible = isSurface && this.style !== "smooth";
+    if (this.inside) this.inside.group.visible = !this.info.is_worn;
   }
 
   private moved(): void {

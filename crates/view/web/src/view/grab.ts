@@ -1,15 +1,19 @@
-// The mouse, pen and fingers on bodies: pull, pin, throw.
+// The mouse, pen, fingers and keys on bodies: pull, push, pin, throw.
 
 import { Vector3 } from "three";
 import type { Vector, Wish } from "../protocol";
+import type { Handling } from "../ui/handling";
 import type { Hit, Picture } from "./picture";
 
-export type Tool = "pull" | "pin" | "throw";
+export type Tool = "pull" | "push" | "pin" | "throw";
 
 interface Held {
   hand: number;
   body: number;
+  /** Where the hand took hold; of a tool, where it was put. */
   start: Vector3;
+  /** The place under the pointer then. */
+  grip: Vector3;
   tool: Tool;
   last: Vector3;
 }
@@ -18,11 +22,20 @@ interface Held {
 const PATCH = 0.045;
 /** A throw is as fast as if the way pulled were gone in this time [s]. */
 const THROW_SECONDS = 0.25;
+/** Hands that a page has. */
+const HANDS = 10;
+/** The key's hand among what is held; pointers have numbers from 0. */
+const KEYS = -1;
+/** How far a press of an arrow key, and a notch of the wheel, lead a hand: parts of the bodies' diagonal. */
+const KEY_STEP = 0.02;
+const WHEEL_STEP = 0.012;
 
 export class Grab {
   tool: Tool = "pull";
-  strength = 1;
+  handling: Handling = { strength: 1, tool: "ball", size: 0.16, front: 0.5, stays: false };
   private readonly held = new Map<number, Held>();
+  /** Tools that were left where they are. */
+  private readonly left: Held[] = [];
   private lastHover = 0;
 
   constructor(
@@ -30,30 +43,95 @@ export class Grab {
     private readonly send: (wish: Wish) => void,
   ) {
     const { canvas } = picture;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("aria-label", "The simulated world: drag bodies, or take hold with H and lead with the arrow keys");
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.up(event));
     canvas.addEventListener("pointercancel", (event) => this.up(event));
+    // before the camera's own wheel
+    canvas.addEventListener("wheel", (event) => this.wheel(event), { capture: true });
+  }
+
+  /** The connection was lost or the scene is another: nothing is held any more. */
+  forget(): void {
+    this.held.clear();
+    this.left.length = 0;
+    this.rest();
+  }
+
+  /** Lets go of every tool that was left. */
+  putAway(): void {
+    this.left.splice(0).forEach(({ hand }) => this.send({ do: "release", hand }));
+  }
+
+  /** Takes hold in the middle of the picture, leads, lets go; whether the key was one of these. */
+  key(name: string): boolean {
+    const held = this.held.get(KEYS);
+    if (name === "h" || (name === "escape" && held)) {
+      if (held) this.end(KEYS);
+      else this.takeInTheMiddle();
+      return true;
+    }
+    const direction = { arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, 1], arrowdown: [0, -1] }[name];
+    if (!held || !direction) return false;
+    const right = new Vector3().setFromMatrixColumn(this.picture.camera.matrixWorld, 0);
+    const up = new Vector3().setFromMatrixColumn(this.picture.camera.matrixWorld, 1);
+    const step = KEY_STEP * this.picture.size;
+    this.lead(held, held.last.clone().addScaledVector(right, direction[0]! * step).addScaledVector(up, direction[1]! * step));
+    return true;
+  }
+
+  private takeInTheMiddle(): void {
+    const { left, top, width, height } = this.picture.canvas.getBoundingClientRect();
+    // what is nearest to the middle, along a spiral
+    for (let k = 0; k < 200; k++) {
+      const [angle, reach] = [2.4 * k, (0.03 * Math.sqrt(k) * Math.min(width, height)) / 1];
+      const place = { clientX: left + width / 2 + reach * Math.cos(angle), clientY: top + height / 2 + reach * Math.sin(angle) };
+      const hit = this.picture.hit(place);
+      if (hit) {
+        this.begin(KEYS, hit, this.tool === "push" ? "push" : "pull");
+        return;
+      }
+    }
   }
 
   private down(event: PointerEvent): void {
     if (event.button !== 0 || event.shiftKey || event.ctrlKey || event.metaKey) return;
     const hit = this.picture.hit(event);
     if (!hit) return;
-    if (this.tool === "pin") {
-      this.pin(hit);
-    } else {
-      const hand = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].find((n) => ![...this.held.values()].some((h) => h.hand === n)) ?? 0;
-      const held: Held = { hand, body: hit.body.index, start: hit.point, tool: this.tool, last: hit.point.clone() };
-      this.held.set(event.pointerId, held);
-      if (this.tool === "pull") {
-        this.send({ do: "grab", hand, body: held.body, points: this.patch(hit), strength: this.strength });
-      }
+    if (this.tool === "pin") this.pin(hit);
+    else {
+      this.begin(event.pointerId, hit, this.tool);
       this.picture.canvas.setPointerCapture(event.pointerId);
     }
     // the camera is not to turn with it
     this.picture.controls.enabled = false;
     this.picture.canvas.style.cursor = "grabbing";
+  }
+
+  private begin(pointer: number, hit: Hit, tool: Tool): void {
+    const used = new Set([...this.held.values(), ...this.left].map(({ hand }) => hand));
+    const hand = Array.from({ length: HANDS }, (_, n) => n).find((n) => !used.has(n));
+    if (hand === undefined) return;
+    const { body, point } = hit;
+    const start = tool === "push" ? this.put(hand, hit) : point.clone();
+    this.held.set(pointer, { hand, body: body.index, start, grip: point, tool, last: point.clone() });
+    if (tool === "pull") {
+      this.send({ do: "grab", hand, body: body.index, points: this.patch(hit), strength: this.handling.strength });
+    }
+  }
+
+  /** Puts a tool before the nearest point of a body, which is what meets it; where that is. */
+  private put(hand: number, hit: Hit): Vector3 {
+    const { tool, strength, front } = this.handling;
+    const size = this.handling.size * this.picture.size;
+    const nearest = this.patch(hit)[0];
+    const point = nearest === undefined ? hit.point : new Vector3().fromArray(hit.body.positions, 3 * nearest);
+    const place = point.clone().addScaledVector(hit.normal, 1.02 * front * size);
+    const direction = this.picture.towardsEye.toArray() as Vector;
+    this.send({ do: "touch", hand, tool, size, place: place.toArray() as Vector, direction, strength });
+    return place;
   }
 
   private move(event: PointerEvent): void {
@@ -62,26 +140,52 @@ export class Grab {
       if (event.buttons === 0) this.hover(event);
       return;
     }
-    const place = this.picture.onPlane(event, held.start);
-    if (!place) return;
+    const place = this.picture.onPlane(event, held.last);
+    if (place) this.lead(held, place);
+  }
+
+  /** Leads what is held to where its grip is at a place. */
+  private lead(held: Held, place: Vector3): void {
     held.last = place;
-    if (held.tool === "pull") {
-      this.send({ do: "move", hand: held.hand, offset: place.clone().sub(held.start).toArray() as Vector });
-    }
+    if (held.tool === "throw") return;
+    this.send({ do: "move", hand: held.hand, offset: place.clone().sub(held.grip).toArray() as Vector });
+  }
+
+  /** The wheel leads what is held away from the eye, or nearer. */
+  private wheel(event: WheelEvent): void {
+    const held = [...this.held.values()][0];
+    if (!held || held.tool === "throw") return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    const step = WHEEL_STEP * this.picture.size * Math.sign(event.deltaY);
+    this.lead(held, held.last.clone().addScaledVector(this.picture.towardsEye, step));
   }
 
   private up(event: PointerEvent): void {
-    const held = this.held.get(event.pointerId);
-    this.held.delete(event.pointerId);
-    if (held?.tool === "pull") this.send({ do: "release", hand: held.hand });
-    if (held?.tool === "throw") {
+    this.end(event.pointerId);
+  }
+
+  private end(pointer: number): void {
+    const held = this.held.get(pointer);
+    this.held.delete(pointer);
+    if (held) this.letGo(held);
+    this.rest();
+  }
+
+  private letGo(held: Held): void {
+    if (held.tool === "push" && this.handling.stays) this.left.push(held);
+    else if (held.tool === "pull" || held.tool === "push") this.send({ do: "release", hand: held.hand });
+    if (held.tool === "throw") {
       const velocity = held.last.clone().sub(held.start).divideScalar(THROW_SECONDS);
       if (velocity.length() > 0) this.send({ do: "throw", body: held.body, velocity: velocity.toArray() as Vector });
     }
-    if (this.held.size === 0) {
-      this.picture.controls.enabled = true;
-      this.picture.canvas.style.cursor = "";
-    }
+  }
+
+  /** Without a hand on anything the camera is free. */
+  private rest(): void {
+    if (this.held.size > 0) return;
+    this.picture.controls.enabled = true;
+    this.picture.canvas.style.cursor = "";
   }
 
   private pin(hit: Hit): void {
@@ -89,17 +193,18 @@ export class Grab {
     const nearest = points[0];
     const pinned = nearest !== undefined && hit.body.isPinned(nearest);
     this.send({ do: pinned ? "unpin" : "pin", body: hit.body.index, points });
-    // without a hand on anything the camera is free again at once
-    requestAnimationFrame(() => (this.picture.controls.enabled = this.held.size === 0));
+    requestAnimationFrame(() => this.rest());
   }
 
   private patch(hit: Hit): number[] {
     const { body, point, normal } = hit;
+    // of few masses one is enough
+    const enough = Math.min(3, body.positions.length / 3);
     for (let reach = PATCH; reach < 1; reach *= 1.5) {
       const points = body.pointsNear(point, normal, reach * this.picture.size);
-      if (points.length >= 3) return points;
+      if (points.length >= enough) return points;
     }
-    return body.pointsNear(point, normal, this.picture.size);
+    return body.pointsNear(point, null, Infinity).slice(0, enough);
   }
 
   /** Shows that what is under the mouse can be taken; now and then, since it costs a search. */

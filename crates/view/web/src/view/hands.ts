@@ -6,6 +6,8 @@ import { quantity } from "../format";
 import type { HandShown } from "../protocol";
 
 const COLOUR = 0xf2a33a;
+/** Length of the arrow of a tool, in the size of all bodies. */
+const TOOL_ARROW = 0.12;
 
 interface Shown {
   arrow: ArrowHelper;
@@ -29,16 +31,21 @@ export class Hands {
     hands.forEach((hand, index) => {
       const { arrow, grip, label, place } = this.shown[index]!;
       const held = new Vector3().fromArray(hand.held);
+      const force = new Vector3().fromArray(hand.force);
       place.fromArray(hand.place);
+      // of a tool, which is where it is led to, the arrow tells the way it pushes
+      if (hand.holds === "tool" && force.length() > 0) place.addScaledVector(force, (TOOL_ARROW * this.size()) / force.length());
       const pull = place.clone().sub(held);
       const length = Math.max(pull.length(), 1e-9);
+      arrow.visible = length > 1e-6 * this.size();
+      grip.visible = hand.holds === "body";
       const head = Math.min(0.035 * this.size(), 0.6 * length);
       arrow.position.copy(held);
       arrow.setDirection(pull.divideScalar(length));
       arrow.setLength(length, head, 0.55 * head);
       grip.position.copy(held);
       grip.scale.setScalar(this.size());
-      label.textContent = quantity(new Vector3().fromArray(hand.force).length(), "N");
+      label.textContent = quantity(force.length(), "N");
     });
   }
 

@@ -5,6 +5,10 @@ import type { ColourMap } from "../protocol";
 
 /** Bodies in colours of their own, where no field colours them: the same as in pictures. */
 export const BODY_COLOURS = [0xd67a68, 0x7096c4, 0xa0b260, 0xcea860, 0xa080b8];
+/** Links in a state beyond that of the start: yielded ones are amber; the same as in pictures. */
+export const STATE_COLOURS = [0xe6aa28, 0x58a478, 0xaa60b4, 0x3c82be, 0xbe5a3c];
+/** Axes x, y, z of frames. */
+export const AXIS_COLOURS = [0xd23c3c, 0x2f9e4f, 0x3d6fd8];
 export const OBSTACLE_COLOUR = 0x969eaa;
 
 /** A map as 256 colours of three numbers in linear light. */
@@ -23,11 +27,22 @@ export interface Range {
   high: number;
 }
 
+/** A colour as three numbers in linear light. */
+export function linearOf(colour: number): Float32Array {
+  return new Float32Array(new Color(colour).toArray());
+}
+
+/** Where the colour of a value stands in a map. */
+export function colourAt(value: number, { low, high }: Range): number {
+  const scale = 255 / Math.max(high - low, 1e-30);
+  return 3 * Math.min(255, Math.max(0, Math.round((value - low) * scale) || 0));
+}
+
 /** Colours of values, three numbers each. */
 export function paint(values: Float32Array, range: Range, map: Float32Array, colours: Float32Array): void {
-  const scale = 255 / Math.max(range.high - range.low, 1e-30);
-  for (let i = 0; i < values.length; i++) {
-    const step = 3 * Math.min(255, Math.max(0, Math.round((values[i]! - range.low) * scale) || 0));
+  const count = Math.min(values.length, colours.length / 3);
+  for (let i = 0; i < count; i++) {
+    const step = colourAt(values[i]!, range);
     colours[3 * i] = map[step]!;
     colours[3 * i + 1] = map[step + 1]!;
     colours[3 * i + 2] = map[step + 2]!;

@@ -1,14 +1,16 @@
 //! Bodies of frames: rigid motion (BOS-1), forces against energy and tangents against forces (BOS-2), frames on a line and
-//! in a plane (BOS-3), mass, weights that know the shape.
+//! in a plane (BOS-3), mass; placements and weights that know the shape in `placement`.
 
 #![allow(non_snake_case)] // symbols of the mathematics: F
+
+mod placement;
 
 use souple_engine::{Configuration, Force, Mass, TangentWeights};
 use souple_math::{Mat3, Vec3, eigen_symmetric, exponential};
 use souple_mesh::Mesh;
 use souple_models::frames::{
-    self, Carried, Frame, FramesDescription, FramesForce, PLACEMENTS, POINTS, Sample, Shape, TangentKind,
-    WEIGHTS, Weights,
+    self, Carried, Frame, FramesDescription, FramesForce, POINTS, Sample, Shape, TangentKind, WEIGHTS,
+    Weights,
 };
 use souple_models::materials::{self, Material};
 use souple_solve::{BlockMatrix, Pattern};
@@ -424,117 +426,4 @@ fn eigenvalues(a: &mut [f64], n: usize) -> Vec<f64> {
         }
     }
     (0..n).map(|i| a[i * n + i]).collect()
-}
-
-/// Harmonic weights do not cross a slit: two arms that meet at their root only, closer to each other than frames reach.
-#[test]
-fn harmonic_weights_keep_the_sides_of_a_slit_apart() {
-    // a bar of eight by four cells, cut along its middle from x = 0.5 to its end
-    let whole = bar([1.0, 0.4, 0.1], [16.0, 8.0, 1.0], "hex8");
-    let mut mesh = whole.clone();
-    let mut twins = std::collections::BTreeMap::new();
-    for (point, x) in whole.points.iter().enumerate() {
-        if (x.y - 0.2).abs() < 1e-9 && x.x > 0.51 {
-            twins.insert(point as u32, mesh.points.len() as u32);
-            mesh.points.push(*x);
-        }
-    }
-    let centres = whole.cell_centres();
-    for (cell, nodes) in mesh.blocks[0].nodes.chunks_mut(8).enumerate() {
-        if centres[cell].y > 0.2 {
-            nodes.iter_mut().for_each(|node| *node = *twins.get(node).unwrap_or(node));
-        }
-    }
-    let frame = |x: f64, y: f64| Frame { origin: Vec3::new(x, y, 0.05), axes: Mat3::IDENTITY };
-    let frames = [frame(0.1, 0.2), frame(0.9, 0.1), frame(0.9, 0.3)];
-    let stiffness = vec![1.0; mesh.cell_count()];
-    let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &stiffness };
-    let point = Vec3::new(0.85, 0.17, 0.05);
-    let share = |name: &str| {
-        let shares = weights_of(name, &shape).shares(point);
-        shares.iter().find(|share| share.frame == 2).map_or(0.0, |share| share.weight)
-    };
-    assert!(share("wendland") > 0.1, "{}", share("wendland"));
-    // by way of the root: the arm is three times as long as it is wide
-    assert!(share("harmonic") < 0.05, "{}", share("harmonic"));
-}
-
-/// A stiff inclusion moves as one: harmonic weights are nearly constant in it, and not without its stiffness.
-#[test]
-fn harmonic_weights_are_flat_where_matter_is_stiff() {
-    let mesh = bar([1.0, 0.1, 0.1], [40.0, 2.0, 2.0], "hex8");
-    let frames = [0.0, 1.0].map(|x| Frame { origin: Vec3::new(x, 0.05, 0.05), axes: Mat3::IDENTITY });
-    let range = |contrast: f64| {
-        let stiff = |centre: &Vec3| if (0.3..0.7).contains(&centre.x) { contrast } else { 1.0 };
-        let stiffness: Vec<f64> = mesh.cell_centres().iter().map(stiff).collect();
-        let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &stiffness };
-        let weights = weights_of("harmonic", &shape);
-        let at = |x: f64| weights.shares(Vec3::new(x, 0.05, 0.05))[0].weight;
-        at(0.32) - at(0.68)
-    };
-    // between cores of 0.2: resistances 0.2 / (0.6 - 0.4 + 0.4 / contrast) of the whole, 0.36/0.6 and about 0.0036/0.2036
-    assert!(range(1.0) > 0.5 && range(100.0) < 0.03, "{} {}", range(1.0), range(100.0));
-}
-
-/// Placements give what they are asked for: as many frames, inside or near the matter, all apart; Lloyd's by compliance
-/// puts more of them where matter is soft.
-#[test]
-fn placements_spread() {
-    let mesh = bar(SIZE, [20.0, 4.0, 4.0], "tet4");
-    let entry = POINTS.find("cells").unwrap();
-    let samples = (entry.build)(&entry.values(Values::new()).unwrap(), &mesh, &vec![0; mesh.cell_count()]);
-    let stiffness: Vec<f64> =
-        samples.iter().map(|sample| if sample.position.x > 0.5 { 100.0 } else { 1.0 }).collect();
-    let matter = frames::Matter { samples: &samples, stiffness: &stiffness, bounds: mesh.bounds() };
-    let place = |name: &str, by: &'static str| {
-        let entry = PLACEMENTS.find(name).unwrap();
-        let mut values = Values::new().with("count", Value::Integer(12));
-        if !by.is_empty() {
-            values.set("by", Value::Text(by));
-        }
-        (entry.build)(&entry.values(values).unwrap(), &matter).unwrap()
-    };
-    for (name, by) in [("farthest_point", ""), ("lloyd", "volume")] {
-        let frames = place(name, by);
-        assert_eq!(frames.len(), 12);
-        let unit = vec![1.0; mesh.cell_count()];
-        let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &unit };
-        // twelve in a bar of 0.04 m³ have some 0.1 m each
-        assert!(frames::spacings(&shape).iter().all(|spacing| *spacing > 0.05), "{name}");
-    }
-    let soft = place("lloyd", "compliance").iter().filter(|frame| frame.origin.x < 0.5).count();
-    assert!(soft >= 8, "{soft} of 12 in the soft half");
-}
-
-/// Bodies of frames that cannot be say so, with what to change.
-#[test]
-fn faults_are_said_in_words() {
-    let mesh = bar(SIZE, [8.0, 1.0, 1.0], "tet4");
-    let unit = vec![1.0; mesh.cell_count()];
-    let frame = |x: f64| Frame { origin: Vec3::new(x, 0.1, 0.1), axes: Mat3::IDENTITY };
-    let said = |frames: &[Frame]| {
-        let shape = Shape { frames, mesh: &mesh, stiffness_of_cell: &unit };
-        if let Err(error) = frames::check_apart(&shape) {
-            return error.to_string();
-        }
-        let weights = weights_of("wendland", &shape);
-        match frames::check_reach(&shape, weights.as_ref(), mesh.points.iter().copied()) {
-            Err(error) => error.to_string(),
-            Ok(()) => String::new(),
-        }
-    };
-    assert!(said(&[]).contains("there are no frames"));
-    assert!(said(&[frame(0.2), frame(0.2)]).contains("frames 0 and 1 are on top of each other"));
-    assert!(said(&[frame(0.0), frame(0.1)]).contains("wider support"));
-    let shape = Shape { frames: &[frame(0.5), frame(0.51)], mesh: &mesh, stiffness_of_cell: &unit };
-    let entry = WEIGHTS.find("harmonic").unwrap();
-    let error = (entry.build)(&entry.values(Values::new()).unwrap(), &shape).err().unwrap().to_string();
-    assert!(error.contains("finer mesh"), "{error}");
-    // one sample of all the body: nothing resists a turn
-    let frames = [frame(0.5)];
-    let sample = Sample { position: Vec3::new(0.5, 0.1, 0.1), volume: 0.04, cell: 0 };
-    let shares = [frames::Share { frame: 0, weight: 1.0, gradient: Vec3::ZERO }];
-    let carried = [Carried::new(&frames, &shares, sample.position)];
-    let error = frames::check_inertia(&frames, &[sample], &carried, false).unwrap_err().to_string();
-    assert!(error.contains("lies on a point"), "{error}");
 }

@@ -3,9 +3,11 @@
 use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpStream};
 use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+use souple_run::Recording;
 use souple_view::{Catalogue, Options, Viewer};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Error, Message, WebSocket};
@@ -53,9 +55,19 @@ impl World {
         Self::open_with(&[])
     }
 
+    /// A world of a scene's text.
+    pub fn of(text: &str) -> Self {
+        Self::read(text, &[])
+    }
+
     pub fn open_with(settings: &[&str]) -> Self {
+        Self::read(SCENE, settings)
+    }
+
+    fn read(text: &str, settings: &[&str]) -> Self {
         let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
-        let scene = souple_scene::read_text("bar", SCENE, Path::new("."), &settings).unwrap();
+        let scene = souple_scene::read_text("bar", text, Path::new("."), &settings)
+            .unwrap_or_else(|error| panic!("{error}"));
         let options = Options {
             host: Ipv4Addr::LOCALHOST.into(),
             port: 0,
@@ -87,6 +99,28 @@ impl World {
         Reply { status, body: body.to_owned() }
     }
 
+    /// What was done in this world is repeated bit for bit from its recording, which is given.
+    pub fn assert_replayed(&self) -> Recording {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("souple_live_{}_{number}.recording", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        std::fs::write(&path, self.get("/recording").body).unwrap();
+        let recording = Recording::read(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let scene = souple_scene::read_again(&recording.inputs, Default::default()).unwrap();
+        let options = souple_run::Options {
+            steps: Some(recording.steps),
+            commands: recording.commands.clone(),
+            changes: recording.changes.clone(),
+            scene_name: recording.scene.clone(),
+            ..Default::default()
+        };
+        let outcome = souple_run::run(scene, &options, &mut |_| souple_run::Control::Continue).unwrap();
+        assert_eq!(recording.first_divergence(&outcome.recording), None);
+        recording
+    }
+
     /// The simulated time [s].
     pub fn time(&self) -> f64 {
         self.get("/health").json()["time"].as_f64().unwrap()
@@ -108,16 +142,34 @@ pub struct Page {
     documents: Vec<Value>,
     /// Whether it says what it has seen.
     pub answers: bool,
+    /// Tetrahedra and triangles of each message of the inside of a body.
+    pub insides: Vec<[u32; 2]>,
+    /// Messages of tools' shapes.
+    pub tool_count: u32,
+    /// Bytes of the last frame.
+    pub frame_bytes: usize,
 }
 
 /// What a test looks at in a frame.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Frame {
     pub number: u32,
     pub time: f64,
     pub hands: u32,
+    /// Of the hands, those with a tool.
+    pub tools: u32,
     /// Of each body.
     pub point_counts: Vec<u32>,
+    /// Mean height of the points of each body [m].
+    pub height: Vec<f32>,
+    /// Fields and kinds of arrows of the first body.
+    pub field_count: u32,
+    pub arrow_count: u32,
+    /// Frames that carry each body.
+    pub frame_counts: Vec<u32>,
+    /// Links that do not hold.
+    pub torn: usize,
+    pub skin_triangles: Vec<u32>,
 }
 
 impl Frame {
@@ -126,23 +178,43 @@ impl Frame {
         if bytes[0] != 2 {
             return None;
         }
-        let (hands, poses) = (u32_at(60), u32_at(64));
-        let mut at = 68 + 44 * hands as usize + 48 * poses as usize;
-        let mut point_counts = Vec::new();
+        let (hands, poses, skins) = (u32_at(60), u32_at(64), u32_at(68));
+        let mut at = 72 + 48 * hands as usize + 48 * poses as usize;
+        let mut frame = Self { number: u32_at(24), hands, ..Self::default() };
+        frame.time = f64::from_le_bytes(bytes[16..24].try_into().unwrap());
+        frame.tools = (0..hands).filter(|hand| u32_at(72 + 48 * *hand as usize + 8) == 1).count() as u32;
         for _ in 0..u16::from_le_bytes([bytes[2], bytes[3]]) {
-            let (points, fields) = (u32_at(at), u32_at(at + 4));
-            at += 8 + 12 * points as usize + fields as usize * (4 + 4 * points as usize);
-            point_counts.push(points);
+            let [points, fields, arrows, links, frames] = [0, 4, 8, 12, 16].map(|offset| u32_at(at + offset));
+            at += 20;
+            let float = |place: usize| f32::from_le_bytes(bytes[place..place + 4].try_into().unwrap());
+            let height = |k: usize| float(at + 12 * k + 4);
+            frame.height.push((0..points as usize).map(height).sum::<f32>() / points as f32);
+            if frame.point_counts.is_empty() {
+                (frame.field_count, frame.arrow_count) = (fields, arrows);
+            }
+            at += 12 * points as usize;
+            for _ in 0..fields {
+                at += 8 + 4 * u32_at(at + 4) as usize;
+            }
+            at += arrows as usize * (4 + 12 * points as usize);
+            frame.torn += bytes[at..at + links as usize].iter().filter(|state| **state == 0).count();
+            at += (links as usize).next_multiple_of(4) + 48 * frames as usize;
+            frame.point_counts.push(points);
+            frame.frame_counts.push(frames);
+        }
+        for _ in 0..skins {
+            let (points, triangles) = (u32_at(at), u32_at(at + 4));
+            at += 8 + 24 * points as usize + 12 * triangles as usize;
+            frame.skin_triangles.push(triangles);
         }
         assert_eq!(at, bytes.len(), "the frame has its length");
-        let time = f64::from_le_bytes(bytes[16..24].try_into().unwrap());
-        Some(Self { number: u32_at(24), time, hands, point_counts })
+        Some(frame)
     }
 }
 
 impl Page {
     pub fn open(world: &World) -> Self {
-        Self::try_open(world, None, "souple.v1").unwrap_or_else(|error| panic!("{error}"))
+        Self::try_open(world, None, "souple.v2").unwrap_or_else(|error| panic!("{error}"))
     }
 
     pub fn try_open(world: &World, origin: Option<&str>, protocol: &str) -> Result<Self, String> {
@@ -155,7 +227,14 @@ impl Page {
         let stream = TcpStream::connect(world.host()).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         let (socket, _) = tungstenite::client::client(request, stream).map_err(|error| error.to_string())?;
-        Ok(Self { socket, documents: Vec::new(), answers: true })
+        Ok(Self {
+            socket,
+            documents: Vec::new(),
+            answers: true,
+            insides: Vec::new(),
+            tool_count: 0,
+            frame_bytes: 0,
+        })
     }
 
     pub fn wish(&mut self, wish: Value) {
@@ -191,7 +270,14 @@ impl Page {
         match self.socket.read().unwrap_or_else(|error| panic!("the connection is lost: {error}")) {
             Message::Text(text) => self.documents.push(serde_json::from_str(&text).unwrap()),
             Message::Binary(bytes) => {
+                let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+                match bytes[0] {
+                    5 => self.insides.push([number(8), number(12)]),
+                    6 => self.tool_count += 1,
+                    _ => {}
+                }
                 let frame = Frame::parse(&bytes)?;
+                self.frame_bytes = bytes.len();
                 if self.answers {
                     self.wish(serde_json::json!({"do": "seen"}));
                 }

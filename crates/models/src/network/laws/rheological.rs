@@ -1,0 +1,76 @@
+//! Any series and parallel network of springs, dampers and sliders, written as text.
+
+use souple_formal::parse_quantity;
+use souple_table::{Parameter, Value};
+
+use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
+use crate::network::rheology::{self, Network};
+use crate::network::written::{OneByOne, WRITTEN_MEMORY, WrittenLaw, constants, formula};
+
+/// `φ = -Q(q)` with `q = D - S`; remembers the deformations of dampers and sliders.
+#[derive(Debug)]
+struct Rheological {
+    network: Network,
+    /// `Te` [s].
+    timestep: f64,
+}
+
+impl WrittenLaw for Rheological {
+    fn memory_len(&self) -> usize {
+        self.network.memory_len()
+    }
+
+    fn begin(&self, rest: f64, length: f64, memory: &mut [f64]) {
+        self.network.rest_at(length - rest, memory);
+    }
+
+    fn is_conservative(&self) -> bool {
+        self.network.memory_len() == 0
+    }
+
+    fn respond(&self, reach: &Reach, _: f64, memory: &mut [f64]) -> Response {
+        let outcome = self.network.deform(reach.length - reach.rest, self.timestep, memory);
+        Response { push: -outcome.effort, stored: outcome.account.stored, heat: outcome.account.heat }
+    }
+
+    fn slopes(&self, reach: &Reach, _: f64, memory: &[f64]) -> [f64; 2] {
+        let mut numbers = [0.0; WRITTEN_MEMORY];
+        numbers[..memory.len()].copy_from_slice(memory);
+        let outcome = self.network.deform(reach.length - reach.rest, self.timestep, &mut numbers);
+        [-outcome.slope, 0.0]
+    }
+
+    fn stiffest(&self, _: f64) -> f64 {
+        self.network.stiffest(self.timestep)
+    }
+}
+
+pub const ENTRY: LinkEntry = LinkEntry {
+    name: "rheological",
+    summary: "any network of springs, dampers and sliders: `-` puts in series, `|` in parallel",
+    source: "Jimenez 1993, P2-V.3; solved exactly for each step instead of by recursions",
+    parameters: &[
+        Parameter::text(
+            "network",
+            "\"spring(1000) - (damper(100) | slider(5))\": spring(k), damper(z), slider(Q) or slider(Qt, Qc) with what it \
+             holds in traction and in compression; `-` binds before `|`",
+        ),
+        Parameter::texts("parameters", "numbers that the network names").or(Value::Texts(&[])),
+    ],
+    build: |making| Ok(Box::new(OneByOne(read(making)?))),
+};
+
+fn read(making: &Making) -> Result<Rheological, LinkError> {
+    let (names, values) = constants(making.values.texts("parameters"), 0)?;
+    let number = |text: &str| match parse_quantity(text) {
+        Ok(quantity) => Ok(quantity.value),
+        Err(_) => match formula("network", text, &names) {
+            Ok(formula) => Ok(formula.evaluate(&values)),
+            Err(error) => Err(error.to_string()),
+        },
+    };
+    let network = rheology::read(making.values.text("network"), &number).map_err(|error| {
+        LinkError::Text { place: "network".to_owned(), what: format!("cannot be built: {error}") }
+    })?;
+    Ok(Rheological { network, timestep: making.timestep })
+}

@@ -1,0 +1,117 @@
+use super::*;
+
+const TE: f64 = 1.0 / 300.0;
+
+fn network(text: &str) -> Network {
+    let number = |text: &str| text.parse::<f64>().map_err(|error| error.to_string());
+    read(text, &number).unwrap()
+}
+
+/// Efforts at the ends of steps along a course.
+fn efforts(network: &Network, timestep: f64, course: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let mut memory = [0.0; WRITTEN_MEMORY];
+    course.into_iter().map(|q| network.deform(q, timestep, &mut memory).effort).collect()
+}
+
+/// Elements in series add their compliances, in parallel their stiffnesses.
+#[test]
+fn springs_add_up() {
+    let both = network("spring(200) - (spring(100) | spring(50) | spring(50))");
+    let effort = efforts(&both, TE, [0.01])[0];
+    assert!((effort - 1.0).abs() < 4.0 * f64::EPSILON, "{effort}");
+    assert!((both.stiffest(TE) - 100.0).abs() < 1e-13);
+    let outcome = both.deform(0.01, TE, &mut [0.0; WRITTEN_MEMORY]);
+    assert!((outcome.slope - 100.0).abs() < 1e-12);
+    assert!((outcome.account.stored - 0.005).abs() < 1e-17);
+}
+
+/// A slider beside a spring, in series with another: the loop of an elasto-plastic body whose thresholds move along
+/// (kinematic hardening).
+#[test]
+fn plastic_loop() {
+    let plastic = network("spring(1000) - (slider(10) | spring(250))");
+    let found = efforts(&plastic, TE, [0.005, 0.010, 0.015, 0.030, 0.025, 0.010, 0.0]);
+    // beyond the yield at 10 mm the slope is 1000·250/1250 = 200; unloading is elastic over 20 N
+    for (found, expected) in found.iter().zip([5.0, 10.0, 11.0, 14.0, 9.0, -6.0, -8.0]) {
+        assert!((found - expected).abs() < 1e-12, "{found} for {expected}");
+    }
+}
+
+/// A chain bears no more than its weakest slider, a bundle as much as all together; what slips in equal parts slips once.
+#[test]
+fn sliders_in_chains_and_bundles() {
+    let chain = network("spring(1000) - slider(3) - slider(2) - slider(2)");
+    let mut memory = [0.0; WRITTEN_MEMORY];
+    assert_eq!(chain.deform(1.0, TE, &mut memory).effort, 2.0);
+    // 2 N stretch the spring by 2 mm; one of the two weak sliders took the rest
+    assert!((memory[0]).abs() < 1e-15 && (memory[1] - 0.998).abs() < 1e-15 && memory[2] == 0.0, "{memory:?}");
+    assert_eq!(chain.deform(0.0, TE, &mut memory).effort, -2.0);
+    let bundle = network("spring(1000) - (slider(3) | slider(2, 1))");
+    assert_eq!(efforts(&bundle, TE, [1.0, -1.0]), [5.0, -4.0]);
+}
+
+/// What is put in is stored, given off, or lost to the step, which is of the size of the step.
+#[test]
+fn energy_is_accounted_for() {
+    let network =
+        network("spring(300) | (spring(1000) - (slider(4, 2) | damper(3)) - (spring(800) | damper(20)))");
+    let course = |time: f64| 0.03 * (9.0 * time).sin() + 0.01 * (31.0 * time).sin();
+    let lost = |timestep: f64| {
+        let (mut memory, mut work, mut heat, mut before) = ([0.0; WRITTEN_MEMORY], 0.0, 0.0, 0.0);
+        let mut stored = 0.0;
+        for step in 1..=(1.0 / timestep).round() as usize {
+            let q = course(step as f64 * timestep);
+            let Outcome { effort, account, .. } = network.deform(q, timestep, &mut memory);
+            work += effort * (q - before);
+            heat += account.heat;
+            assert!(account.heat >= 0.0);
+            (before, stored) = (q, account.stored);
+        }
+        (work - stored - heat, work)
+    };
+    let ((coarse, work), (fine, _)) = (lost(1e-3), lost(1e-4));
+    assert!(fine > 0.0 && coarse < 0.1 * work, "{coarse} of {work}");
+    assert!((coarse / fine - 10.0).abs() < 1.0, "{coarse} {fine}");
+}
+
+/// Slopes are those of differences, on every piece.
+#[test]
+fn slopes_are_differences() {
+    let network = network("spring(300) | (spring(1000) - (slider(4, 2) | damper(3)))");
+    let memory = [0.002, 0.001];
+    for q in [-0.02, -0.001, 0.003, 0.02] {
+        let effort = |q: f64| network.deform(q, TE, &mut memory.clone()).effort;
+        let difference = (effort(q + 1e-7) - effort(q - 1e-7)) / 2e-7;
+        let slope = network.deform(q, TE, &mut memory.clone()).slope;
+        // efforts of some newtons carry 1e-15 of rounding, divided by 1e-7
+        assert!((slope - difference).abs() < 1e-6, "{slope} for {difference}");
+    }
+}
+
+/// Held for ever, dampers bear nothing and sliders have not moved.
+#[test]
+fn begins_relaxed() {
+    let network = network("spring(300) - damper(3) - (slider(5) | damper(2))");
+    let mut memory = [0.0; WRITTEN_MEMORY];
+    network.rest_at(0.01, &mut memory);
+    // a millionth of the elongation is left to the spring
+    assert!((memory[0] - 0.01).abs() < 2e-8 && memory[1] == 0.0, "{memory:?}");
+}
+
+#[test]
+fn faults_are_told() {
+    let number = |text: &str| text.parse::<f64>().map_err(|error| error.to_string());
+    let problem = |text: &str| read(text, &number).unwrap_err().to_string();
+    assert!(problem("sprong(1)").contains("did you mean `spring`?"));
+    assert!(problem("spring(1) -").contains("the end was read at byte 11"));
+    assert!(problem("spring(1) + spring(2)").contains("`+` was read at byte 10, where `-`, `|` or the end"));
+    assert!(problem("(spring(1) | damper(2)").contains("`)`"));
+    assert!(problem("spring(1, 2)").contains("2 number(s)"));
+    assert!(problem("spring(0)").contains("above zero"));
+    assert!(problem("spring(x)").contains("`spring` at byte 7"));
+    assert!(problem("spring").contains("`(` and a number"));
+    assert!(problem("").contains("spring(…)"));
+    assert!(problem("spring(1) | slider(2)").contains("put a spring or a damper in series"));
+    assert!(problem(&"(".repeat(1000)).contains("more than 32 deep"));
+    assert!(problem(&vec!["damper(1)"; 17].join("-")).contains("at most 16"));
+}

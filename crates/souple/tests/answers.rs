@@ -1,0 +1,182 @@
+//! What is answered where the work itself goes wrong: full disks, folders that are taken, runs that blow up, surfaces that
+//! enclose nothing.
+
+mod common;
+
+use common::{CUBE, Folder, souple, souple_in};
+
+/// What a run came to is told, though the disk is too full to record it.
+#[cfg(target_os = "linux")]
+#[test]
+fn full_disks_do_not_silence_a_run() {
+    let folder = Folder::new("full");
+    let scene = folder.write("cube.toml", CUBE);
+    let told = souple(["run", &scene, "--record", "/dev/full"]).ends(1);
+    assert!(told.stdout.starts_with("failed: 10 steps, 0.1000 s simulated"), "{told:#?}");
+    assert!(told.stdout.contains("place = ["), "{told:#?}");
+    assert!(
+        told.stderr.contains("the recording is lost") && told.stderr.contains("disk is full"),
+        "{told:#?}"
+    );
+    let report = souple(["run", &scene, "--record", "/dev/full", "--json", "--quiet"]).ends(1).json();
+    assert_eq!((report["status"].as_str(), report["steps"].as_u64()), (Some("failed"), Some(10)));
+    assert!(report["error"]["message"].to_string().contains("disk is full"), "{report:#}");
+    // the words of a picture are those of any file
+    souple(["run", &scene, "--quiet", "--out", &folder.at("run")]).ends(0);
+    for name in ["full.png", "full.gif", "full.apng"] {
+        std::os::unix::fs::symlink("/dev/full", folder.path().join(name)).expect("a link");
+        let arguments = ["render", "run", "--out", name, "--quiet", "--size", "64,64"];
+        let told = souple_in(folder.path(), arguments).ends(1);
+        assert!(told.stderr.contains("the disk is full"), "{told:#?}");
+    }
+}
+
+/// A folder that a run cannot have is refused in one sentence, which does not ask for what it refuses.
+#[test]
+fn folders_are_refused_in_one_sentence() {
+    let folder = Folder::new("refused");
+    let scene = folder.write("cube.toml", CUBE);
+    folder.write("file", "mine");
+    for (name, content) in [("foreign/report.json", "{}"), ("listed/files.txt", "mine")] {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("it is made");
+        std::fs::write(path, content).expect("a file is written");
+    }
+    for (out, words) in [
+        ("file", "is a file, and results go into a folder"),
+        ("foreign", "report.json` would be overwritten, and no run has written it"),
+        ("listed", "files.txt` is no list of what a run has written"),
+    ] {
+        let refused = souple(["run", &scene, "--quiet", "--out", &folder.at(out)]).ends(2);
+        assert!(refused.stderr.contains(words) && !refused.stderr.contains("= expected"), "{refused:#?}");
+    }
+    // the folder of another run is cleared, which is said, one file as one
+    souple(["run", &scene, "--quiet", "--out", &folder.at("out")]).ends(0);
+    let one = folder.write("one.toml", CUBE.replace("A cube", "One cube"));
+    let next = souple(["run", &one, "--steps", "1", "--out", &folder.at("out")]).ends(0);
+    assert!(next.stderr.contains("files of an earlier run in"), "{next:#?}");
+    assert!(next.stdout.starts_with("done: 1 step, "), "{next:#?}");
+}
+
+/// Results that cannot be held against each other are told in words.
+#[test]
+fn comparisons_are_told_in_words() {
+    let folder = Folder::new("compared");
+    for (file, cells) in [("a.vtu", "cells=1,1,1"), ("b.vtu", "cells=2,1,1")] {
+        souple(["mesh", "generate", "box", &folder.at(file), "size=1,1,1", cells]).ends(0);
+    }
+    let compare = |a: &str, b: &str| souple_in(folder.path(), ["compare", a, b]);
+    let told = compare("a.vtu", "b.vtu").ends(0);
+    assert_eq!(told.stdout, "positions: 24 numbers in the first, 36 in the second\n");
+    folder.write("a.txt", "");
+    let refused = compare("a.txt", "a.vtu").ends(2);
+    assert!(refused.stderr.contains("snapshot (.souple)") && refused.stderr.contains("vtu"), "{refused:#?}");
+    folder.write("cube.toml", CUBE);
+    for (out, frames) in [("c", "1"), ("d", "0")] {
+        let arguments = ["run", "cube.toml", "--quiet", "--out", out, "--frames", frames];
+        souple_in(folder.path(), arguments).ends(0);
+    }
+    std::fs::copy(folder.path().join("c/frames/cube_0001.vtu"), folder.path().join("c.vtu"))
+        .expect("a frame");
+    let told = compare("c.vtu", "a.vtu").ends(0);
+    assert!(told.stdout.contains("displacement: only in c.vtu\n") && !told.stdout.contains('{'), "{told:#?}");
+}
+
+/// A quantity of another dimension in a load is a wrong unit, not a formula that cannot be read.
+#[test]
+fn units_of_loads_are_told() {
+    let folder = Folder::new("units");
+    for (load, words) in [
+        ("traction = [\"1 m\", 0, 0]", "`1 m` is a length [m], but a pressure"),
+        ("pressure = \"3 mm\"", "`3 mm` is a length [m], but a pressure"),
+        ("force = [0, \"3 kPa\", 0]", "`3 kPa` is a pressure"),
+    ] {
+        let text = format!("{CUBE}[[bodies.cube.loads]]\nregion = \"x_max\"\n{load}\n");
+        let answer = souple(["check", &folder.write("load.toml", text)]).ends(2);
+        assert!(answer.stderr.contains(words), "{answer:#?}");
+    }
+}
+
+/// Springs of one coupling say once what they all say.
+#[test]
+fn couplings_warn_once() {
+    let folder = Folder::new("couplings");
+    let second = "[systems.slow]\nstepper = \"backward_euler\"\n[systems.fast]\nstepper = \"symplectic_euler\"\nsteps_per_period = 10\n\
+         [bodies.other]\nsystem = \"fast\"\ntranslate = [2, 0, 0]\n\
+         mesh = { generate = \"box\", size = [1, 1, 1], cells = [2, 2, 2], element = \"hex8\" }\n\
+         material = { name = \"neo_hookean\", youngs_modulus = \"20 kPa\", poissons_ratio = 0.3, density = 1000 }\n\
+         [[couplings]]\nfrom = \"other\"\nregion = \"x_min\"\nto = \"cube\"\nstiffness = 1000\n\
+         [bodies.cube]\nsystem = \"slow\"";
+    let scene = folder.write("two.toml", CUBE.replace("[bodies.cube]", second));
+    let report = souple(["run", &scene, "--quiet", "--json"]).ends(0).json();
+    let warnings: Vec<&str> =
+        report["warnings"].as_array().into_iter().flatten().filter_map(|warning| warning.as_str()).collect();
+    let of_coupling: Vec<_> = warnings.iter().filter(|warning| warning.contains("may make energy")).collect();
+    assert_eq!(of_coupling.len(), 1, "{warnings:#?}");
+    // a face of 2 x 2 squares
+    assert!(
+        of_coupling[0].contains("couplings[0]") && of_coupling[0].contains("8 springs more"),
+        "{warnings:#?}"
+    );
+}
+
+/// A solid that has blown up, its numbers still finite, is no result.
+#[test]
+fn blown_up_solids_are_failures() {
+    let folder = Folder::new("burst");
+    // beyond the longest stable step, for as long as numbers last
+    let text = CUBE.replace("[bodies.cube]", "[systems.main]\nstepper = \"symplectic_euler\"\n[bodies.cube]");
+    let text =
+        text.replace("20 kPa", "2 GPa").replace("material =", "angular_velocity = [0, 3, 1]\nmaterial =");
+    let scene = folder.write("fast.toml", text);
+    let finite = |steps: &str| {
+        let report = souple(["run", &scene, "--json", "--quiet", "--steps", steps]).json();
+        let is_finite = !report["error"]["message"].to_string().contains("not finite");
+        (is_finite, report)
+    };
+    let reports: Vec<_> = ["2", "3", "4", "5", "6"].into_iter().map(finite).collect();
+    let blown = reports.iter().find(|(_, report)| report["error"].to_string().contains("has blown up"));
+    let (_, report) = blown.unwrap_or_else(|| panic!("{reports:#?}"));
+    assert_eq!(report["status"], "failed");
+    assert!(report["error"]["message"].to_string().contains("body `cube`"), "{report:#}");
+}
+
+/// Surfaces that enclose nothing, files of another scale and sizes that contradict each other are told as such.
+#[test]
+fn fillings_are_refused_in_words() {
+    let folder = Folder::new("fillings");
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+    folder.write("open.obj", square);
+    souple(["mesh", "generate", "box", &folder.at("large.stl"), "size=900,900,900", "cells=1,1,1"]).ends(0);
+    let fill = |arguments: &[&str]| {
+        let call = ["mesh", "fill"].into_iter().chain(arguments.iter().copied());
+        souple_in(folder.path(), call).ends(2)
+    };
+    for (arguments, words) in [
+        (&["open.obj", "a.msh", "size=0.1"][..], &["the surface is open, 4 of its edges"][..]),
+        (&["large.stl", "a.msh", "size=0.5"], &["measures 900.000 x 900.000 x 900.000 m", "scale=0.001"]),
+        (&["liver", "a.msh", "size=0.02", "largest=0.01"], &["`largest` is 0.01 m", "at least the size"]),
+        (&["liver", "a.msh", "count=3000", "largest=0.001"], &["`largest` is 0.001 m"]),
+    ] {
+        let refused = fill(arguments);
+        assert!(words.iter().all(|word| refused.stderr.contains(word)), "{words:?}: {refused:#?}");
+    }
+}
+
+/// A cut that leaves nothing is drawn, and said.
+#[test]
+fn empty_cuts_are_said() {
+    let folder = Folder::new("cut");
+    folder.write("cube.toml", CUBE);
+    souple_in(folder.path(), ["run", "cube.toml", "--quiet", "--out", "run"]).ends(0);
+    let cut = |plane: &str| {
+        let call = ["render", "run", "--out", "a.png", "--size", "64,64", "--cut", plane];
+        souple_in(folder.path(), call).ends(0)
+    };
+    let told = cut("1,0,0,-0.5").stderr;
+    assert!(
+        told.contains("the cut leaves nothing") && told.contains("1.0000 m, and what lies beyond -0.5000 m"),
+        "{told}"
+    );
+    assert!(!cut("1,0,0,0.5").stderr.contains("leaves nothing"));
+}

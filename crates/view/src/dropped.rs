@@ -1,0 +1,92 @@
+//! A mesh that was dropped on the page becomes a scene: a soft body that falls on a floor.
+
+use std::path::{Path, PathBuf};
+
+use souple_io::read_mesh;
+
+/// Largest file that is taken [bytes].
+pub const FILE_MAX: usize = 64 << 20;
+/// Cells of what a surface encloses, about.
+const CELLS: usize = 3000;
+/// Longest extent that is taken for metres; longer ones are taken for millimetres [m].
+const METRES_MAX: f64 = 20.0;
+/// How much a body sinks under its own weight: `ρ g L²/E` in its length.
+const SAG: f64 = 0.05;
+const DENSITY: f64 = 1000.0;
+const GRAVITY: f64 = 9.81;
+
+/// A folder for files that were dropped, which goes with the program.
+pub struct DropFolder(PathBuf);
+
+impl DropFolder {
+    /// Beside those of other programs; it is made when the first file comes.
+    pub fn new(port: u16) -> Self {
+        Self(std::env::temp_dir().join(format!("souple_{}_{port}", std::process::id())))
+    }
+
+    /// Keeps a file; where it is.
+    ///
+    /// # Errors
+    /// The folder takes no file.
+    pub fn keep(&self, name: &str, content: &[u8]) -> Result<PathBuf, String> {
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
+        let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+        let path = self.0.join(plain.trim_start_matches('.'));
+        std::fs::create_dir_all(&self.0)
+            .and_then(|()| std::fs::write(&path, content))
+            .map_err(|error| format!("{} cannot be written: {error}", path.display()))?;
+        Ok(path)
+    }
+
+    /// Removes all files.
+    pub fn clear(&self) {
+        // none was dropped, or somebody else has cleared up
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The scene of a mesh or closed surface: soft enough to be seen to sag, over a floor.
+///
+/// # Errors
+/// The file is no mesh, or has no extent.
+pub fn scene_of(path: &Path) -> Result<String, String> {
+    let (mesh, _) = read_mesh(path).map_err(|error| error.to_string())?;
+    let bounds = mesh.bounds();
+    let written = bounds.diagonal();
+    if !(written.is_finite() && written > 0.0) {
+        return Err(format!("{} has no extent", path.display()));
+    }
+    let scale = if written > METRES_MAX { 1e-3 } else { 1.0 };
+    let length = scale * written;
+    let file = path.display().to_string();
+    let is_solid = mesh.cell_count() > 0 && mesh.dimension() == 3;
+    let source =
+        if is_solid { format!("file = {file:?}") } else { format!("fill = {file:?}, count = {CELLS}") };
+    let youngs_modulus = DENSITY * GRAVITY * length / SAG;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let floor = scale * bounds.low.y - 0.1 * length;
+    let (x, z) = (scale * bounds.centre().x, scale * bounds.centre().z);
+    Ok(format!(
+        "format = 1\n\
+         title = {name:?}\n\
+         description = \"A mesh that was dropped on the page: a soft body that falls on a floor.\"\n\
+         [world]\n\
+         period = \"10 ms\"\n\
+         gravity = [0, -{GRAVITY}, 0]\n\
+         [bodies.body]\n\
+         mesh = {{ {source}, scale = {scale} }}\n\
+         material = {{ name = \"stable_neo_hookean\", youngs_modulus = {youngs_modulus}, poissons_ratio = 0.4, \
+         density = {DENSITY} }}\n\
+         damping = {{ rayleigh_mass = 0.5 }}\n\
+         [shapes.floor]\n\
+         shape = {{ name = \"plane\", point = [{x}, {floor}, {z}], normal = [0, 1, 0] }}\n\
+         [[contacts]]\n\
+         body = \"body\"\n\
+         shape = \"floor\"\n\
+         friction = 0.5\n\
+         [probes.height]\n\
+         body = \"body\"\n\
+         quantity = \"position\"\n\
+         component = \"y\"\n"
+    ))
+}

@@ -1,0 +1,58 @@
+//! Messages that describe once what frames move: surfaces, links and balls, the inside of bodies, tools.
+
+use souple_math::Vec3;
+
+use super::{Kind, header, put_f32, put_u32, put_vector};
+
+/// Surface `index` of a scene: of bodies first, then of obstacles.
+pub fn surface(scene: u32, index: u16, points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
+    let mut bytes = header(Kind::Surface, index, scene);
+    bytes.reserve(8 + 12 * (points.len() + triangles.len()));
+    put_surface(&mut bytes, points, triangles);
+    bytes
+}
+
+fn put_surface(bytes: &mut Vec<u8>, points: &[Vec3], triangles: &[[u32; 3]]) {
+    put_u32(bytes, points.len());
+    put_u32(bytes, triangles.len());
+    points.iter().for_each(|point| put_vector(bytes, *point));
+    bytes.extend_from_slice(bytemuck::cast_slice(triangles));
+}
+
+/// Links and radii of balls of body `index`.
+pub fn network(scene: u32, index: u16, links: &[[u32; 2]], radii: &[f64]) -> Vec<u8> {
+    let mut bytes = header(Kind::Network, index, scene);
+    put_u32(&mut bytes, links.len());
+    put_u32(&mut bytes, radii.len());
+    bytes.extend_from_slice(bytemuck::cast_slice(links));
+    radii.iter().for_each(|radius| put_f32(&mut bytes, *radius));
+    bytes
+}
+
+/// Tetrahedra and faces of the cells of body `index`, each followed by its cell.
+pub fn inside(
+    scene: u32,
+    index: u16,
+    tetrahedra: &[([u32; 4], u32)],
+    triangles: &[([u32; 3], u32)],
+) -> Vec<u8> {
+    let mut bytes = header(Kind::Inside, index, scene);
+    put_u32(&mut bytes, tetrahedra.len());
+    put_u32(&mut bytes, triangles.len());
+    for (corners, cell) in tetrahedra {
+        corners.iter().chain([cell]).for_each(|number| put_u32(&mut bytes, *number as usize));
+    }
+    for (corners, cell) in triangles {
+        corners.iter().chain([cell]).for_each(|number| put_u32(&mut bytes, *number as usize));
+    }
+    bytes
+}
+
+/// The surface of the tool in a hand of a page, about its own origin.
+pub fn tool(scene: u32, [page, hand]: [u32; 2], points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
+    let mut bytes = header(Kind::Tool, 0, scene);
+    put_u32(&mut bytes, page as usize);
+    put_u32(&mut bytes, hand as usize);
+    put_surface(&mut bytes, points, triangles);
+    bytes
+}

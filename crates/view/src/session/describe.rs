@@ -1,0 +1,184 @@
+//! What pages must know of a scene before its first frame, as documents and as messages of shapes.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+use souple_engine::obstacle::{Form, Obstacle, Side};
+use souple_io::picture::COLOUR_MAPS;
+use souple_run::Session;
+use souple_scene::{Adjustable, BodyInfo, ProbeInfo, SkinInfo};
+use souple_table::{Entry, Kind};
+
+use super::shown::has_inside;
+use super::stage::Stage;
+use crate::fields::{ARROWS, ArrowKind, FIELDS, Field};
+use crate::hub::Outgoing;
+use crate::protocol::{self, document};
+use crate::tools::{Making, TOOLS};
+
+impl Stage {
+    /// All that a page must know before its first frame.
+    pub fn describe(&self, tell: &mut dyn FnMut(Outgoing)) {
+        tell(document("scene", self.to_json()));
+        let mut binary = |message: Vec<u8>| tell(Outgoing::Binary(Arc::from(message)));
+        let bodies = self.session().bodies.iter().zip(self.shown());
+        for (index, (body, shown)) in bodies.clone().enumerate() {
+            let (index, radii) = (index as u16, &body.radii);
+            if !shown.links.is_empty() || !radii.is_empty() {
+                binary(protocol::network(self.number(), index, &shown.links, radii));
+            }
+        }
+        let rest = |(body, shown): (&BodyInfo, &super::Shown)| {
+            let points = shown.points[..shown.outer_count].iter();
+            points.map(|point| body.mesh.points[*point as usize]).collect::<Vec<_>>()
+        };
+        let of_bodies = bodies.map(|pair| (rest(pair), &pair.1.triangles));
+        let of_obstacles = self.obstacles().iter().filter_map(|obstacle| match &obstacle.form {
+            Form::Surface { points, triangles, .. } => Some((points.clone(), triangles)),
+            Form::Plane { .. } => None,
+        });
+        for (index, (points, triangles)) in of_bodies.chain(of_obstacles).enumerate() {
+            binary(protocol::surface(self.number(), index as u16, &points, triangles));
+        }
+        self.tools().into_iter().for_each(&mut binary);
+        tell(self.adjustables());
+        tell(self.pins());
+    }
+
+    /// The cells of all bodies that have any inside.
+    pub fn describe_inside(&self, tell: &mut dyn FnMut(Outgoing)) {
+        for (index, (body, shown)) in self.session().bodies.iter().zip(self.shown()).enumerate() {
+            if let Some(inside) = shown.inside(&body.mesh) {
+                let message =
+                    protocol::inside(self.number(), index as u16, &inside.tetrahedra, &inside.triangles);
+                tell(Outgoing::Binary(Arc::from(message)));
+            }
+        }
+    }
+
+    fn to_json(&self) -> Value {
+        let Session { title, bodies, skins, probes, warnings, world, .. } = self.session();
+        let view = self.view();
+        let is_worn = |body: &BodyInfo| skins.iter().any(|skin| skin.name == body.name);
+        let body = |(body, shown): (&BodyInfo, &super::Shown)| {
+            json!({
+                "name": body.name,
+                "points": body.mesh.points.len(),
+                "cells": body.mesh.cell_count(),
+                "surface_points": shown.outer_count,
+                "surface_triangles": shown.triangles.len(),
+                "links": shown.links.len(),
+                "is_network": !shown.links.is_empty() || !body.radii.is_empty(),
+                "is_sheet": shown.is_sheet,
+                "is_worn": is_worn(body),
+                "has_inside": has_inside(&body.mesh),
+            })
+        };
+        let skin = |skin: &SkinInfo| {
+            let worn_by = bodies.iter().position(|body| body.name == skin.name);
+            json!({"name": skin.name, "worn_by": worn_by})
+        };
+        let probe = |probe: &ProbeInfo| {
+            json!({
+                "name": probe.name, "unit": probe.unit, "quantity": probe.quantity,
+                "components": if probe.gives_vector() { 3 } else { 1 },
+            })
+        };
+        json!({
+            "scene": self.number(),
+            "name": self.name(),
+            "title": title,
+            "description": self.description(),
+            "period": world.model().period,
+            "up": view.up.to_array(),
+            "direction": view.direction.to_array(),
+            "bodies": bodies.iter().zip(self.shown()).map(body).collect::<Vec<_>>(),
+            "skins": skins.iter().map(skin).collect::<Vec<_>>(),
+            "obstacles": self.obstacles().iter().map(obstacle_to_json).collect::<Vec<_>>(),
+            "probes": probes.iter().map(probe).collect::<Vec<_>>(),
+            "fields": FIELDS.entries.iter().map(field_to_json).collect::<Vec<_>>(),
+            "arrows": ARROWS.entries.iter().map(arrow_to_json).collect::<Vec<_>>(),
+            "counts": souple_run::counts(world, bodies),
+            "warnings": warnings,
+        })
+    }
+
+    /// What may be set, as it is now, and the command that comes to the same scene.
+    pub fn adjustables(&self) -> Outgoing {
+        let all: Vec<Value> = self.session().adjustables.iter().map(adjustable_to_json).collect();
+        let command = json!({"adjustables": all, "settings": self.session().inputs().settings});
+        document("adjustables", command)
+    }
+
+    /// Which of the points shown are held.
+    pub fn pins(&self) -> Outgoing {
+        let world = &self.session().world;
+        let of_body = |(body, shown): (&BodyInfo, &super::Shown)| -> Vec<u32> {
+            let system = &world.model().systems[body.system];
+            let row = |block: u32| system.kinematics.point_block_row(block).map(|row| row as usize);
+            let mut held = vec![false; body.mesh.points.len()];
+            for row in system.constraints.iter().filter_map(|constraint| row(constraint.block)) {
+                if body.rows.contains(&row) {
+                    held[row - body.rows.start] = true;
+                }
+            }
+            let points = shown.points[..shown.outer_count].iter().enumerate();
+            points.filter(|(_, point)| held[**point as usize]).map(|(index, _)| index as u32).collect()
+        };
+        let bodies = self.session().bodies.iter().zip(self.shown());
+        document("pins", json!({"pins": bodies.map(of_body).collect::<Vec<_>>()}))
+    }
+}
+
+fn field_to_json(field: &&Entry<Field>) -> Value {
+    let Entry { name, summary, build, .. } = field;
+    json!({"name": name, "summary": summary, "unit": build.unit, "of": build.of()})
+}
+
+fn arrow_to_json(arrow: &&Entry<ArrowKind>) -> Value {
+    json!({"name": arrow.name, "summary": arrow.summary, "unit": arrow.build.unit})
+}
+
+fn obstacle_to_json(obstacle: &Obstacle) -> Value {
+    match &obstacle.form {
+        Form::Plane { point, normal } => {
+            json!({"form": "plane", "point": point.to_array(), "normal": normal.to_array()})
+        }
+        Form::Surface { bodies, .. } => json!({"form": "surface", "is_around": *bodies == Side::Inside}),
+    }
+}
+
+fn adjustable_to_json(adjustable: &Adjustable) -> Value {
+    let Adjustable { path, group, name, summary, unit, kind, range, value } = adjustable;
+    let (kind, choices) = match kind {
+        Kind::Number => ("number", &[][..]),
+        Kind::Integer => ("integer", &[][..]),
+        Kind::Boolean => ("boolean", &[][..]),
+        Kind::Vector => ("vector", &[][..]),
+        Kind::Choice(choices) => ("choice", *choices),
+        Kind::Text | Kind::Texts | Kind::Numbers => ("text", &[][..]),
+    };
+    let finite = |number: f64| number.is_finite().then_some(number);
+    json!({
+        "path": path, "group": group, "name": name, "summary": summary, "unit": unit, "type": kind,
+        "choices": choices, "low": finite(range.low), "high": finite(range.high), "value": value,
+    })
+}
+
+/// Colour maps as 256 colours of six hexadecimal digits, the same as in pictures.
+pub fn colour_maps() -> Value {
+    let map = |entry: &&souple_table::Entry<souple_io::picture::ColourMap>| {
+        let colour = |step: i32| {
+            let [red, green, blue] = entry.build.colour(f64::from(step) / 255.0).to_screen();
+            format!("{red:02x}{green:02x}{blue:02x}")
+        };
+        json!({"name": entry.name, "summary": entry.summary, "colours": (0..256).map(colour).collect::<String>()})
+    };
+    COLOUR_MAPS.entries.iter().map(map).collect()
+}
+
+/// What a hand may push with.
+pub fn tools() -> Value {
+    let tool = |tool: &&Entry<Making>| json!({"name": tool.name, "summary": tool.summary, "front": tool.build.front});
+    TOOLS.entries.iter().map(tool).collect()
+}

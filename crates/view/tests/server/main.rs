@@ -1,0 +1,5 @@
+//! The server as pages and others meet it.
+
+mod client;
+mod clients;
+mod shown;

@@ -1,0 +1,168 @@
+//! What frames hold of networks, frames and skins, of the inside of bodies, and of tools.
+
+use crate::client::{Page, World};
+use serde_json::json;
+
+/// Two rows of masses joined by links that tear when pulled by more than 1 N; the upper row is led away.
+const TEARING: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    [systems.main]
+    stepper = "t_simulation"
+    steps_per_period = 10
+    [networks.net.masses.lower]
+    lattice = { spacing = 0.1, counts = [4, 1, 1] }
+    mass = "10 g"
+    [networks.net.masses.upper]
+    lattice = { origin = [0, 0.1, 0], spacing = 0.1, counts = [4, 1, 1] }
+    mass = "10 g"
+    [[networks.net.links]]
+    law = { name = "elasto_plastic", stiffness = 100, hardening = 10, traction = "0.5 N", rupture = "1 N" }
+    of = ["lower", "upper"]
+    reach = 0.11
+    [[networks.net.pins]]
+    region = "lower"
+    [[networks.net.pins]]
+    region = "upper"
+    motion = { times = [0, 0.5], offsets = [[0, 0, 0], [0, 0.1, 0]] }
+"#;
+
+/// A block that two frames carry, held at neither end.
+const CARRIED: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    [bodies.bar]
+    mesh = { generate = "bar", size = [0.4, 0.1, 0.1], cells = [4, 1, 1], element = "hex8" }
+    material = { name = "stable_neo_hookean", youngs_modulus = "50 kPa", poissons_ratio = 0.3, density = 1000 }
+    [bodies.bar.frames]
+    kind = "rigid"
+    placement = { name = "grid", counts = [2, 1, 1] }
+"#;
+
+/// A ball that wears a skin and lies still.
+const WORN: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    [bodies.ball]
+    mesh = { generate = "sphere", radius = 0.1, cells = 4, element = "hex8" }
+    material = { name = "stable_neo_hookean", youngs_modulus = "50 kPa", poissons_ratio = 0.3, density = 1000 }
+    [bodies.ball.skin]
+    voxel = 0.025
+    radius = 0.03
+    terms = [{ term = "attraction", strength = 2.0 }]
+"#;
+
+/// A soft block on a floor, with nothing but its weight.
+const BLOCK: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    [bodies.block]
+    mesh = { generate = "box", size = [0.2, 0.1, 0.2], cells = [4, 2, 4], element = "hex8" }
+    material = { name = "stable_neo_hookean", youngs_modulus = "20 kPa", poissons_ratio = 0.3, density = 1000 }
+    damping = { rayleigh_mass = 5 }
+    [[bodies.block.pins]]
+    region = { box = [[-1, -1e-9, -1], [1, 1e-9, 1]] }
+"#;
+
+/// All links hold at first, and none when their ends have been led away.
+#[test]
+fn links_tear() {
+    let world = World::of(TEARING);
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    assert_eq!(scene["bodies"][0]["links"], 4);
+    assert_eq!(scene["bodies"][0]["is_network"], true);
+    assert_eq!(page.frame().point_counts, [8]);
+    assert!(page.frame_where(|frame| frame.torn == 4).time > 0.04);
+    page.wish(json!({"do": "reset"}));
+    assert!(page.frame_where(|frame| frame.torn == 0).time < 0.5);
+}
+
+/// Links whose law is written in the scene are apart in a state without force that nothing leads out of.
+#[test]
+fn written_links_end() {
+    let law = r#"law = { name = "elasto_plastic", stiffness = 100, hardening = 10, traction = "0.5 N", rupture = "1 N" }"#;
+    let written = r#"law = { name = "finite_state", states = { whole = "-100 * (D - L0)", slack = "0", gone = "0" }, transitions = { "whole -> slack" = "D > 1.1 * L0", "slack -> whole" = "D < L0", "slack -> gone" = "D > 1.5 * L0" } }"#;
+    assert!(TEARING.contains(law));
+    let world = World::of(&TEARING.replace(law, written));
+    let mut page = Page::open(&world);
+    // slack from 0.05 s on, and gone from 0.25 s
+    let ended = page.frame_where(|frame| frame.torn == 4);
+    assert!(ended.time > 0.2, "{ended:?}");
+}
+
+/// Frames that carry a body are in every frame, and the weight of one of them can be asked for.
+#[test]
+fn frames_are_shown() {
+    let world = World::of(CARRIED);
+    let mut page = Page::open(&world);
+    assert_eq!(page.frame().frame_counts, [2]);
+    page.wish(json!({"do": "colour", "field": "influence"}));
+    page.wish(json!({"do": "arrows", "of": "velocity"}));
+    page.wish(json!({"do": "arrows", "of": "nothing"}));
+    let refused = page.document_where("refused", |refused| refused["about"] == "arrows");
+    assert!(refused["message"].as_str().unwrap().contains("contact_force"), "{refused}");
+    assert_eq!(page.frame_where(|frame| frame.field_count == 1 && frame.arrow_count == 1).frame_counts, [2]);
+}
+
+/// A skin comes with triangles in every frame; the body under it is said to be hidden.
+#[test]
+fn skins_are_shown() {
+    let world = World::of(WORN);
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    assert_eq!(scene["bodies"][0]["is_worn"], true);
+    assert_eq!(scene["skins"][0]["worn_by"], 0);
+    assert!(page.frame().skin_triangles[0] > 100);
+}
+
+/// Who looks inside gets the cells once and all points from then on; who looks away, those of the surface.
+#[test]
+fn the_inside_comes_on_demand() {
+    let world = World::of(BLOCK);
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    let (all, outer) = (scene["bodies"][0]["points"].clone(), scene["bodies"][0]["surface_points"].clone());
+    assert_eq!((all.as_u64(), outer.as_u64()), (Some(75), Some(66)));
+    assert_eq!(page.frame().point_counts, [66]);
+    page.wish(json!({"do": "inside", "is_shown": true}));
+    page.frame_where(|frame| frame.point_counts == [75]);
+    // six tetrahedra and twelve triangles of each of 32 cells
+    assert_eq!(page.insides, [[192, 384]]);
+    page.wish(json!({"do": "inside", "is_shown": false}));
+    page.frame_where(|frame| frame.point_counts == [66]);
+}
+
+/// A tool presses the top of a block down, is seen by all pages, and is gone when its page lets go; what it did is
+/// repeated from the recording.
+#[test]
+fn tools_press() {
+    let world = World::of(BLOCK);
+    let (mut page, mut other) = (Page::open(&world), Page::open(&world));
+    let hello = page.document("hello");
+    assert!(hello["tools"].as_array().unwrap().iter().any(|tool| tool["name"] == "finger"), "{hello}");
+    let touch = |tool: &str| {
+        json!({
+            "do": "touch", "hand": 0, "tool": tool, "size": 0.1, "place": [0.1, 0.15, 0.1], "direction": [0, 1, 0],
+            "strength": 1,
+        })
+    };
+    page.wish(touch("spoon"));
+    let refused = page.document_where("refused", |refused| refused["about"] == "touch");
+    assert!(refused["message"].as_str().unwrap().contains("ball, finger, block, plate"), "{refused}");
+    let start = page.frame().height[0];
+    page.wish(touch("plate"));
+    // its lower side, 25 mm below its middle, from above the block to 25 mm into it
+    page.wish(json!({"do": "move", "hand": 0, "offset": [0, -0.05, 0]}));
+    let pressed = other.frame_where(|frame| frame.tools == 1 && frame.height[0] < start - 2e-3);
+    assert_eq!(other.tool_count, 1);
+    page.wish(json!({"do": "release", "hand": 0}));
+    other.frame_where(|frame| frame.tools == 0 && frame.time > pressed.time + 0.1);
+    page.wish(json!({"do": "pause"}));
+    page.document_where("status", |status| status["mode"] == "paused");
+    world.assert_replayed();
+}

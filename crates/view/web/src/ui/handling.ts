@@ -1,0 +1,66 @@
+// How the hand takes hold and what it pushes with.
+
+import { label } from "../format";
+import type { ToolInfo } from "../protocol";
+import { element, panel } from "./dom";
+
+export interface Handling {
+  /** 1 swings a whole body in about half a second. */
+  strength: number;
+  tool: string;
+  /** In the size of all bodies. */
+  size: number;
+  /** How far the front of the tool is from its origin, in its size. */
+  front: number;
+  /** Whether a tool stays where the hand leaves it. */
+  stays: boolean;
+}
+
+export class HandPanel {
+  readonly root: HTMLElement;
+  readonly handling: Handling = { strength: 1, tool: "", size: 0.16, front: 0.5, stays: false };
+  private tools: ToolInfo[] = [];
+  private readonly strength = element("input", { type: "range", id: "strength", min: -1.5, max: 1.5, step: 0.05, value: 0 });
+  private readonly tool = element("select", { id: "tool" });
+  private readonly size = element("input", { type: "range", id: "tool-size", min: -1.7, max: -0.3, step: 0.02, value: -0.8 });
+  private readonly stays = element("input", { type: "checkbox", id: "tool-stays" });
+
+  constructor(
+    private readonly changed: (handling: Handling) => void,
+    putAway: () => void,
+  ) {
+    const row = (text: string, control: HTMLElement) =>
+      element("label", { class: "row" }, element("span", {}, text), control);
+    for (const control of [this.strength, this.size]) control.addEventListener("input", () => this.read());
+    for (const control of [this.tool, this.stays]) control.addEventListener("change", () => this.read());
+    this.root = panel(
+      "Hand",
+      false,
+      row("Strength", this.strength),
+      row("Pushes with", this.tool),
+      row("Size of the tool", this.size),
+      row("Stays where it is left", this.stays),
+      element("div", { class: "buttons" }, element("button", { id: "put-away", click: putAway }, "Put tools away")),
+    );
+  }
+
+  setTools(tools: ToolInfo[]): void {
+    this.tools = tools;
+    const before = this.tool.value;
+    this.tool.replaceChildren(
+      ...tools.map(({ name, summary }) => element("option", { value: name, title: summary }, label(name))),
+    );
+    if (tools.some(({ name }) => name === before)) this.tool.value = before;
+    this.read();
+  }
+
+  private read(): void {
+    const { handling } = this;
+    handling.strength = 10 ** Number(this.strength.value);
+    handling.size = 10 ** Number(this.size.value);
+    handling.tool = this.tool.value;
+    handling.stays = this.stays.checked;
+    handling.front = this.tools.find(({ name }) => name === handling.tool)?.front ?? 0.5;
+    this.changed(handling);
+  }
+}

@@ -1,0 +1,109 @@
+// Links and balls of a body: sticks coloured by the state of their link, masses as large as they keep others off.
+
+import { Group } from "three";
+import type { Object3D, Plane } from "three";
+import type { BodyFrame, NetworkShape } from "../protocol";
+import { Instances } from "./instances";
+import { BODY_COLOURS, STATE_COLOURS, colourAt, linearOf } from "./palette";
+import type { Range } from "./palette";
+
+/** Radius of a stick, in the mean length of links; and least and most in the size of all bodies. */
+const OF_LENGTH = 0.09;
+const LEAST = 0.0009;
+const MOST = 0.004;
+/** Radius of masses that no link joins and nothing gives a size. */
+const POINT = 0.007;
+
+export class Network {
+  readonly group = new Group();
+  private readonly sticks: Instances;
+  private readonly balls: Instances;
+  private readonly radius: number;
+  private readonly sizes: Float32Array;
+  private readonly own: Float32Array;
+  private readonly states = STATE_COLOURS.map(linearOf);
+  private readonly links: Uint32Array;
+
+  constructor(shape: NetworkShape, rest: Float32Array, index: number, size: number) {
+    this.links = shape.links;
+    this.own = linearOf(BODY_COLOURS[index % BODY_COLOURS.length]!);
+    const count = shape.links.length / 2;
+    this.radius = Math.min(MOST * size, Math.max(LEAST * size, OF_LENGTH * meanLength(shape.links, rest)));
+    this.sizes = this.sizesOf(shape, rest.length / 3, size);
+    this.sticks = new Instances("stick", count);
+    this.balls = new Instances("ball", this.sizes.filter((radius) => radius > 0).length);
+    this.group.add(this.sticks.mesh, this.balls.mesh);
+  }
+
+  /** What a ray may meet. */
+  get targets(): Object3D[] {
+    return [this.sticks.mesh, this.balls.mesh];
+  }
+
+  prepareForRay(): void {
+    this.sticks.prepareForRay();
+    this.balls.prepareForRay();
+  }
+
+  /** `values` are those of points or, where there are as many, of links. */
+  update(frame: BodyFrame, values: Float32Array | undefined, range: Range, map: Float32Array): void {
+    const { positions, linkStates } = frame;
+    const count = this.links.length / 2;
+    const ofLinks = values && values.length === count && values.length !== positions.length / 3;
+    this.sticks.begin();
+    for (let link = 0; link < count; link++) {
+      const state = linkStates.length > 0 ? linkStates[link]! : 1;
+      if (state === 0) continue;
+      const a = this.links[2 * link]!;
+      const b = this.links[2 * link + 1]!;
+      this.sticks.span(positions, 3 * a, positions, 3 * b, this.radius);
+      if (values) {
+        const value = ofLinks ? values[link]! : 0.5 * (values[a]! + values[b]!);
+        this.sticks.put(map, colourAt(value, range), a);
+      } else {
+        const colour = state > 1 ? this.states[(state - 2) % this.states.length]! : this.own;
+        this.sticks.put(colour, 0, a);
+      }
+    }
+    this.sticks.end();
+    this.balls.begin();
+    for (let point = 0; point < this.sizes.length; point++) {
+      const radius = this.sizes[point]!;
+      if (radius <= 0) continue;
+      this.balls.ball(positions, 3 * point, radius);
+      if (values && !ofLinks) this.balls.put(map, colourAt(values[point]!, range), point);
+      else this.balls.put(this.own, 0, point);
+    }
+    this.balls.end();
+  }
+
+  setCut(planes: Plane[]): void {
+    this.sticks.setClipping(planes);
+    this.balls.setClipping(planes);
+  }
+
+  dispose(): void {
+    this.sticks.dispose();
+    this.balls.dispose();
+  }
+
+  /** Radii of all points: those that are given, small ones for loose masses, the sticks' own where these meet. */
+  private sizesOf(shape: NetworkShape, points: number, size: number): Float32Array {
+    const sizes = new Float32Array(points).fill(POINT * size);
+    for (const end of shape.links) sizes[end] = this.radius;
+    shape.radii.forEach((radius, point) => {
+      if (radius > 0) sizes[point] = radius;
+    });
+    return sizes;
+  }
+}
+
+function meanLength(links: Uint32Array, rest: Float32Array): number {
+  let sum = 0;
+  for (let link = 0; link < links.length; link += 2) {
+    const a = 3 * links[link]!;
+    const b = 3 * links[link + 1]!;
+    sum += Math.hypot(rest[a]! - rest[b]!, rest[a + 1]! - rest[b + 1]!, rest[a + 2]! - rest[b + 2]!);
+  }
+  return links.length > 0 ? (2 * sum) / links.length : 0;
+}

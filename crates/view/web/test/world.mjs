@@ -1,0 +1,135 @@
+// A released program that shows a scene, and a page of it in a real browser.
+//
+// SOUPLE_PROGRAM and SOUPLE_CHROMIUM name the program and the browser; SOUPLE_PICTURES a folder for pictures to look at.
+
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { mkdir } from "node:fs/promises";
+import { join, resolve } from "node:path";
+import { fileURLToPath } from "node:url";
+import { chromium } from "playwright-core";
+
+const root = resolve(fileURLToPath(import.meta.url), "../../../../..");
+const program = process.env.SOUPLE_PROGRAM ?? "souple";
+const pictures = process.env.SOUPLE_PICTURES;
+/** Machines that draw by software, several at once, are slow. */
+const PATIENCE = Number(process.env.SOUPLE_PATIENCE ?? 120_000);
+
+/** The program showing a scene. */
+export class Program {
+  static async open(...scene) {
+    const opened = new Program();
+    const stdio = ["ignore", "pipe", "ignore"];
+    opened.child = spawn(program, ["view", ...scene, "--port", "0"], { cwd: root, stdio });
+    const [line] = await Promise.race([
+      once(opened.child.stdout, "data"),
+      once(opened.child, "exit").then(() => Promise.reject(new Error(`souple view ${scene.join(" ")} has ended`))),
+    ]);
+    opened.url = String(line).trim().split("\n")[0];
+    return opened;
+  }
+
+  async close() {
+    if (this.child.exitCode !== null) return;
+    this.child.kill("SIGINT");
+    await once(this.child, "exit");
+  }
+}
+
+export async function launch() {
+  const args = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--disable-dev-shm-usage"];
+  if (pictures) await mkdir(pictures, { recursive: true });
+  return chromium.launch({ executablePath: process.env.SOUPLE_CHROMIUM ?? "/usr/bin/chromium", args });
+}
+
+/** A page that shows frames, drawn simply; errors that it says are kept. */
+export async function open(browser, url, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 800, height: 440 }, ...options });
+  page.setDefaultTimeout(PATIENCE);
+  const errors = [];
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  page.on("pageerror", (error) => errors.push(error.message));
+  await options.before?.(page);
+  await page.goto(`${url}?quality=3`, { timeout: PATIENCE, waitUntil: "commit" });
+  await page.waitForFunction(() => Number(document.body.dataset.frame) > 0);
+  return Object.assign(page, { errors });
+}
+
+export const time = (page) => page.evaluate(() => Number(document.body.dataset.time));
+
+/** Waits until the simulated time is beyond one. */
+export const passed = (page, moment) => page.waitForFunction((moment) => Number(document.body.dataset.time) > moment, moment);
+
+export const reads = (page, selector, text) =>
+  page.waitForFunction(([selector, text]) => document.querySelector(selector)?.textContent === text, [selector, text]);
+
+/** The share of the stage that is in strong colours, how many colours are on it, and a number that tells pictures apart. */
+export async function seen(page) {
+  const png = (await page.locator("#stage canvas").screenshot()).toString("base64");
+  return page.evaluate(async (png) => {
+    const bytes = Uint8Array.from(atob(png), (c) => c.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    const colours = new Set();
+    let [strong, print] = [0, 0];
+    for (let i = 0; i < data.length; i += 4) {
+      const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
+      colours.add(((r >> 4) << 8) | ((g >> 4) << 4) | (b >> 4));
+      if (Math.max(r, g, b) - Math.min(r, g, b) > 40) strong += 1;
+      print = (31 * print + r + 7 * g + 13 * b) % 1_000_000_007;
+    }
+    return { share: strong / (data.length / 4), colours: colours.size, print };
+  }, png);
+}
+
+/** Waits until as much of the stage is in strong colours. */
+export async function shows(page, share) {
+  const deadline = Date.now() + PATIENCE;
+  for (;;) {
+    const now = await seen(page);
+    if (now.share > share) return now;
+    if (Date.now() > deadline) throw new Error(`${now.share} of the picture is in strong colours, not ${share}`);
+  }
+}
+
+/** The largest value of the legend [mm]. */
+export const largest = (page) =>
+  page.evaluate(() => {
+    const [number, unit] = document.querySelector("#legend .ends span:last-child").textContent.split(" ");
+    return Number(number) * ({ m: 1000, mm: 1, "µm": 1e-3, nm: 1e-6 }[unit] ?? NaN);
+  });
+
+/** Waits until a condition of the legend's largest value [mm] holds; that value. */
+export async function until(page, holds, what) {
+  const deadline = Date.now() + PATIENCE;
+  for (;;) {
+    const now = await largest(page);
+    if (holds(now)) return now;
+    if (Date.now() > deadline) throw new Error(`${what}: still ${now} mm`);
+    await page.evaluate(() => new Promise(requestAnimationFrame));
+  }
+}
+
+/** The largest value of the legend when it changes no more over a tenth of a simulated second [mm]. */
+export async function settled(page) {
+  let last = NaN;
+  for (;;) {
+    const now = await largest(page);
+    if (Math.abs(now - last) < 0.02 * now) return now;
+    last = now;
+    await passed(page, (await time(page)) + 0.1);
+  }
+}
+
+export async function photograph(page, name) {
+  if (pictures) await page.screenshot({ path: join(pictures, `${name}.png`) });
+}
+
+/** A place of the stage, in parts of its width and height. */
+export async function at(page, x = 0.48, y = 0.52) {
+  const box = await page.locator("#stage canvas").boundingBox();
+  return [box.x + x * box.width, box.y + y * box.height];
+}
