@@ -10,6 +10,7 @@ use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
+use crate::levels::Levels;
 use crate::state::{FieldState, Pair};
 
 /// What a force reads: the rows as they stand, and its own memory.
@@ -270,6 +271,11 @@ pub trait Force: Send + Sync {
 
     /// Calls `visit` for every point that touches something; never where the force is no contact.
     fn visit_contacts(&self, _at: &Configuration, _visit: &mut dyn FnMut(&ContactPoint)) {}
+
+    /// What steps the points of a body of several meshes, of which at each place one is at work.
+    fn levels(&self) -> Option<&dyn Levels> {
+        None
+    }
 
     /// Calls `visit` for every link, in the order they were made in; never where the force is none of links.
     fn visit_links(&self, _at: &Configuration, _visit: &mut dyn FnMut(&LinkShown)) {}

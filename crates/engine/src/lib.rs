@@ -12,6 +12,7 @@ pub mod hash;
 pub mod implicit;
 pub mod inertia;
 pub mod kinematics;
+pub mod levels;
 pub mod linear;
 pub mod mass;
 pub mod modes;
@@ -34,6 +35,7 @@ pub use force::{
 pub use hand::{Grip, Hand, Held};
 pub use hash::Fingerprint;
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
+pub use levels::{Census, Levels};
 pub use mass::Mass;
 pub use obstacle::Obstacle;
 pub use snapshot::SnapshotError;

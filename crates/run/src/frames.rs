@@ -145,7 +145,7 @@ fn precision_for(positions: &[Vec3]) -> Precision {
     if fits { Precision::Single } else { Precision::Double }
 }
 
-/// Displacement and velocity of every point, the weight of the frame that is shown and the radius of a ball; stress and
+/// Displacement and velocity of every point, the weight of the frame that is shown, the level at work, the radius of a ball; stress and
 /// energy density of every cell, state and force of every link.
 pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let positions = &world.rows(body.system).positions[body.rows.clone()];
@@ -158,6 +158,9 @@ pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     ];
     point_fields
         .extend(body.frames.as_ref().map(|frames| Field::new("influence", 1, frames.influence.clone())));
+    let levels = body.level_of_point(world);
+    point_fields
+        .extend(levels.map(|levels| Field::new("level", 1, levels.iter().map(|l| f64::from(*l)).collect())));
     let (radius, of_links) = crate::links::fields(world, body);
     point_fields.extend(radius);
     let mut of_cells = cell_fields(world, body);

@@ -4,6 +4,7 @@ mod adaptive;
 mod formulations;
 mod frames;
 mod laws;
+mod levels;
 mod links;
 mod timing;
 mod view;
@@ -145,6 +146,11 @@ pub const BENCHES: &[Bench] = &[
         name: "springs_lattice_1m",
         what: "the same with 70 masses along each edge (1,014,300 damped springs) [links/s]",
         run: |effort| links::springs_lattice("springs_lattice_1m", 70, None, effort),
+    },
+    Bench {
+        name: "adaptive_saving",
+        what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
+        run: levels::adaptive_saving,
     },
     Bench {
         name: "view_frame_20k",

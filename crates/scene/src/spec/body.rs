@@ -8,6 +8,7 @@ use souple_table::{Range, Value};
 use super::adapt::{ADAPT, AdaptSpec};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::frames::{FRAMES, FramesSpec};
+use super::levels::{LEVELS, LevelsSpec};
 use super::mesh::{MESH, MeshSpec};
 use super::network::Network;
 use super::region::{Region, direction};
@@ -69,6 +70,7 @@ pub(crate) static BODY: Keys = Keys::new(
             "what its cells are sections of, where they are no volumes: a plane body, a membrane, a bar, a cable",
         ),
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
+        Key::new("levels", Shape::Table(&LEVELS), "coarser meshes that are at work where little happens"),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new(
             "mass",
@@ -124,6 +126,8 @@ pub struct Body {
     pub section: Option<Chosen<BuildSection>>,
     /// What carries it; the points of its mesh where left out.
     pub frames: Option<FramesSpec>,
+    /// Coarser meshes of it.
+    pub levels: Option<LevelsSpec>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
@@ -241,6 +245,7 @@ impl Body {
             material: read_material(reader),
             section: reader.entry("section", &SECTIONS),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
+            levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: match reader.choice("mass") {
                 "consistent" => MassKind::Consistent,

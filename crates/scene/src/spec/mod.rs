@@ -7,6 +7,7 @@ pub mod contact;
 pub mod expect;
 pub mod frames;
 pub mod interaction;
+pub mod levels;
 pub mod mesh;
 pub mod network;
 pub mod picture;

@@ -248,6 +248,7 @@ impl Network {
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
             frames: None,
+            levels: None,
             network: Some(network),
             site: reader.site(),
         }

@@ -48,6 +48,14 @@ pub enum Subject {
     BodyOrWorld(Momentum),
     World(WorldQuantity),
     Skin(SkinQuantity),
+    /// One value of a body with levels, or of one of its levels.
+    Levels(LevelsQuantity),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LevelsQuantity {
+    Active,
+    Ghosts,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,6 +161,7 @@ const CONTACT: &str = "Wriggers 2006, §5";
 const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
 const ADAPTATION: &str = "Faure 2014, §6.4";
+const LEVELS: &str = "Debunne 2000, 5 §2.3";
 const MECHANICS: &str = "balance of momentum";
 
 const fn entry(
@@ -174,6 +183,10 @@ const fn cells(unit: &'static str, reduction: Reduction, quantity: CellQuantity)
 
 const fn skin(unit: &'static str, quantity: SkinQuantity) -> Quantity {
     Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Skin(quantity))
+}
+
+const fn levels(quantity: LevelsQuantity) -> Quantity {
+    Quantity::of("", Rank::Number, Reduction::Sum, Subject::Levels(quantity))
 }
 
 const fn world(unit: &'static str, quantity: WorldQuantity) -> Quantity {
@@ -368,6 +381,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         skin("", SkinQuantity::Events),
     ),
     &entry("skin.speed", "the greatest at the surface", SKIN, skin("m/s", SkinQuantity::Speed)),
+    &entry(
+        "levels.active",
+        "points that move by themselves, of all levels or of the key `level`",
+        LEVELS,
+        levels(LevelsQuantity::Active),
+    ),
+    &entry(
+        "levels.ghosts",
+        "points that follow because active ones see them, of all levels or of the key `level`",
+        LEVELS,
+        levels(LevelsQuantity::Ghosts),
+    ),
     &entry("skin.blocks", "blocks of 512 nodes that its grid keeps", SKIN, skin("", SkinQuantity::Blocks)),
 ];
 

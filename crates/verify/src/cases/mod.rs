@@ -13,6 +13,7 @@ mod formulations;
 mod frames;
 mod frequencies;
 mod implicit;
+mod levels;
 mod long_beam;
 mod motion;
 mod network;
@@ -56,6 +57,7 @@ pub const TABLES: &[&[Case]] = &[
     rheometer::CASES,
     rheology::CASES,
     frames::CASES,
+    levels::CASES,
     skins::CASES,
 ];
 
