@@ -10,6 +10,7 @@ use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
+use crate::levels::Levels;
 use crate::state::{FieldState, Pair};
 
 /// What a force reads: the rows as they stand, and its own memory.
@@ -110,6 +111,15 @@ pub struct CellField {
     pub volume: f64,
     /// Volume as the cell stands, negative where it is inside out [m³].
     pub current_volume: f64,
+}
+
+/// What law a cell has, of a force whose cells change theirs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adapted {
+    /// 0 for the first law, 1 for the second.
+    pub law: f64,
+    /// The greatest criterion over its threshold: above 1 the second law is wanted.
+    pub excess: f64,
 }
 
 /// A point that touches, and what that does to it.
@@ -249,8 +259,23 @@ pub trait Force: Send + Sync {
         None
     }
 
+    /// The same where what the force remembers of the cell matters.
+    fn cell_field_at(&self, cell: usize, at: &Configuration) -> Option<CellField> {
+        self.cell_field(cell, at.positions)
+    }
+
+    /// Which law cell number `cell` has, of a force whose cells change theirs.
+    fn adapted(&self, _cell: usize, _at: &Configuration) -> Option<Adapted> {
+        None
+    }
+
     /// Calls `visit` for every point that touches something; never where the force is no contact.
     fn visit_contacts(&self, _at: &Configuration, _visit: &mut dyn FnMut(&ContactPoint)) {}
+
+    /// What steps the points of a body of several meshes, of which at each place one is at work.
+    fn levels(&self) -> Option<&dyn Levels> {
+        None
+    }
 
     /// Calls `visit` for every link, in the order they were made in; never where the force is none of links.
     fn visit_links(&self, _at: &Configuration, _visit: &mut dyn FnMut(&LinkShown)) {}

@@ -12,6 +12,7 @@ pub mod hash;
 pub mod implicit;
 pub mod inertia;
 pub mod kinematics;
+pub mod levels;
 pub mod linear;
 pub mod mass;
 pub mod modes;
@@ -28,12 +29,13 @@ pub mod world;
 pub use constraint::{Constraint, Motion};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
-    CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown, LinkState,
-    ParameterError, Scratch, TangentWeights,
+    Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown,
+    LinkState, ParameterError, Scratch, TangentWeights,
 };
 pub use hand::{Grip, Hand, Held};
 pub use hash::Fingerprint;
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
+pub use levels::{Census, Levels};
 pub use mass::Mass;
 pub use obstacle::Obstacle;
 pub use snapshot::SnapshotError;

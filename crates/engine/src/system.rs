@@ -11,7 +11,7 @@ use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::mass::Mass;
 use crate::state::{FieldState, Pair, SystemState, merge_pairs, pairs_of};
-use crate::steppers::{StepError, Stepper};
+use crate::steppers::{StaggeredBuffers, StepError, Stepper};
 use crate::tangent::Tangent;
 
 /// The constant part of a system.
@@ -57,6 +57,7 @@ pub struct SystemWorkspace {
     pub tangent: Tangent,
     pub linear: LinearSolver,
     pub implicit: Option<ImplicitBuffers>,
+    pub staggered: StaggeredBuffers,
     pub stages: StageTimes,
 }
 
@@ -104,6 +105,17 @@ impl SystemWorkspace {
 }
 
 impl System {
+    /// Why its stepper cannot step it, in words that name what stands in the way.
+    pub fn refused(&self) -> Option<String> {
+        let levels = self.forces.iter().find(|force| force.levels().is_some());
+        match levels.filter(|_| !self.stepper.steps_levels()) {
+            Some(force) => {
+                Some(format!("`{}` has levels, of which only some points move by themselves", force.name()))
+            }
+            None => self.stepper.refuses(self),
+        }
+    }
+
     /// Where each force's numbers stand in [`SystemState::memory`].
     pub fn memory_ranges(&self) -> Vec<Range<usize>> {
         let mut start = 0;
@@ -149,6 +161,7 @@ impl System {
             tangent: Tangent::default(),
             linear: LinearSolver::new(self.stepper.solver_settings()),
             implicit: None,
+            staggered: StaggeredBuffers::default(),
             stages: StageTimes::default(),
         }
     }

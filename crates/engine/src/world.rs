@@ -436,6 +436,16 @@ impl World {
         )
     }
 
+    /// A force of a system by its name, and what it sees of the committed state.
+    pub fn force_named(&self, system: usize, name: &str) -> Option<(&dyn Force, Configuration<'_>)> {
+        let model = &self.model.systems[system];
+        let index = model.forces.iter().position(|force| force.name() == name)?;
+        let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
+        let rows = &self.workspace.systems[system].rows;
+        let at = model.view(index, rows, &self.state.systems[system], &around);
+        Some((model.forces[index].as_ref(), at))
+    }
+
     /// Calls `visit` for every force of a system with what it reads of the committed state.
     pub fn visit_forces(&self, system: usize, visit: &mut dyn FnMut(&dyn Force, &Configuration)) {
         let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };

@@ -5,6 +5,7 @@
 //! knows an element by name except the generators.
 
 mod boundary;
+pub mod coarsen;
 mod conformity;
 mod element;
 mod error;

@@ -7,5 +7,6 @@ pub mod derive;
 pub mod frames;
 pub mod loads;
 pub mod materials;
+pub mod multiresolution;
 pub mod network;
 pub mod solids;

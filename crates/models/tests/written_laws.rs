@@ -198,6 +198,66 @@ fn grouped_constants_of_the_tables() {
     }
 }
 
+/// Cut along the law, triangles and tetrahedra need the entries of their inverse map and one factor in each fragment.
+#[test]
+fn grouped_constants_of_terms() {
+    for (kind, expected) in [(ElementKind::Tri3, 5), (ElementKind::Tet4, 10)] {
+        let element = element_data(kind, &kind.rules()[0], MapKind::General).unwrap();
+        let law = compiled(WrittenLaw::find("st_venant_kirchhoff").unwrap());
+        let derived = element.derive(&law, Cut::of(&[Axis::Law])).unwrap();
+        let counts: Vec<usize> =
+            derived.energies.iter().map(|fragment| fragment.grouped.constants.len()).collect();
+        assert_eq!(counts, [expected, expected], "{kind}");
+    }
+}
+
+/// EXP-3: a hexahedron of 27 samples under St. Venant–Kirchhoff, cut along all axes, has 54 fragments of forces and 1296 of
+/// differentials, and they add up to what is not cut.
+#[test]
+fn all_fragments_of_the_largest_association_add_up() {
+    let kind = ElementKind::Hex8;
+    let rule = kind.rules().iter().find(|rule| rule.points.len() == 27).unwrap();
+    let element = element_data(kind, rule, MapKind::Box).unwrap();
+    let law = compiled(WrittenLaw::find("st_venant_kirchhoff").unwrap());
+    let numbers = |name: &str| -> f64 {
+        // a box along the axes, moved by waves; node and axis stand at the end of a name
+        let node = name[1..name.len() - 1].parse().unwrap_or(0);
+        let axis = ["x", "y", "z"].iter().position(|axis| name.ends_with(axis)).unwrap_or(0);
+        let wave = |phase: f64| 0.1 * (2.0 * node as f64 + 3.0 * axis as f64 + phase).sin();
+        match name.chars().next() {
+            Some('P') => [1.0, 0.8, 1.3][axis] * kind.element().nodes[node][axis],
+            Some('U') => wave(0.3),
+            Some('V') => wave(1.7),
+            _ if name == "lambda" => 5.0,
+            _ => 3.0,
+        }
+    };
+    let sums = |cut: Cut| -> ([usize; 2], [Vec<f64>; 2]) {
+        let derived = element.derive(&law, cut).unwrap();
+        let lists = [&derived.forces, &derived.differentials];
+        let sums = lists.map(|fragments| {
+            let roots: Vec<_> = fragments.iter().flat_map(|fragment| fragment.raw.iter().copied()).collect();
+            // leaked: a few hundred numbers for the length of a test
+            let values = derived
+                .graph
+                .evaluate(&roots, |symbol| std::slice::from_ref(Box::leak(Box::new(numbers(&symbol.name)))));
+            let mut sum = vec![0.0; fragments[0].raw.len()];
+            for fragment in fragments {
+                sum.iter_mut().zip(&fragment.raw).for_each(|(sum, expr)| *sum += values.scalar(*expr));
+            }
+            sum
+        });
+        (lists.map(Vec::len), sums)
+    };
+    let (counts, cut) = sums(Cut::of(&[Axis::Law, Axis::Gauss, Axis::Nodes, Axis::Dimension]));
+    assert_eq!(counts, [54, 1296]);
+    let (_, whole) = sums(Cut::NONE);
+    for (cut, whole) in cut.iter().zip(&whole) {
+        let scale = whole.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        assert!(cut.iter().zip(whole).all(|(a, b)| (a - b).abs() <= 1e-12 * scale), "{cut:?} {whole:?}");
+    }
+}
+
 /// 27 samples of a hexahedron, two terms: 54 fragments of forces.
 #[test]
 fn fragments_of_the_largest_association() {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use souple_engine::{Force, Model, World};
+use souple_engine::{Adapted, Force, Model, World};
 use souple_io::{Facets, Field, Output, Precision, Series, write_mesh};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh};
@@ -145,7 +145,7 @@ fn precision_for(positions: &[Vec3]) -> Precision {
     if fits { Precision::Single } else { Precision::Double }
 }
 
-/// Displacement and velocity of every point, the weight of the frame that is shown and the radius of a ball; stress and
+/// Displacement and velocity of every point, the weight of the frame that is shown, the level at work, the radius of a ball; stress and
 /// energy density of every cell, state and force of every link.
 pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     let positions = &world.rows(body.system).positions[body.rows.clone()];
@@ -158,6 +158,9 @@ pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
     ];
     point_fields
         .extend(body.frames.as_ref().map(|frames| Field::new("influence", 1, frames.influence.clone())));
+    let levels = body.level_of_point(world);
+    point_fields
+        .extend(levels.map(|levels| Field::new("level", 1, levels.iter().map(|l| f64::from(*l)).collect())));
     let (radius, of_links) = crate::links::fields(world, body);
     point_fields.extend(radius);
     let mut of_cells = cell_fields(world, body);
@@ -185,13 +188,12 @@ pub fn solid_of<'a>(model: &'a Model, body: &BodyInfo) -> Option<&'a dyn Force> 
 
 /// Cauchy stress (six components xx, yy, zz, xy, yz, xz), von Mises stress and energy density of every cell.
 fn cell_fields(world: &World, body: &BodyInfo) -> Vec<Field> {
-    let Some(solid) = solid_of(world.model(), body) else {
+    let Some((solid, at)) = world.force_named(body.system, &body.force) else {
         return Vec::new();
     };
-    let positions = &world.rows(body.system).positions;
     let (mut stress, mut von_mises, mut energy) = (Vec::new(), Vec::new(), Vec::new());
     for cell in 0..body.mesh.cell_count() {
-        let Some(field) = solid.cell_field(cell, positions) else {
+        let Some(field) = solid.cell_field_at(cell, &at) else {
             return Vec::new();
         };
         let s = field.cauchy;
@@ -206,9 +208,18 @@ fn cell_fields(world: &World, body: &BodyInfo) -> Vec<Field> {
         von_mises.push(field.von_mises);
         energy.push(field.energy_density);
     }
-    vec![
+    let mut fields = vec![
         Field::new("stress", 6, stress),
         Field::new("von_mises", 1, von_mises),
         Field::new("strain_energy_density", 1, energy),
-    ]
+    ];
+    let adapted: Option<Vec<_>> = (0..body.mesh.cell_count()).map(|cell| solid.adapted(cell, &at)).collect();
+    if let Some(adapted) = adapted {
+        fields.push(Field::new("law", 1, adapted.iter().map(|adapted| adapted.law).collect()));
+        fields.push(Field::new("excess", 1, adapted.iter().map(|adapted| adapted.excess).collect()));
+        // for one map of colours: from 0 to 1 as a criterion nears its threshold, -1 where the second law is
+        let shown = |adapted: &Adapted| if adapted.law == 0.0 { adapted.excess.min(1.0) } else { -1.0 };
+        fields.push(Field::new("adaptation", 1, adapted.iter().map(shown).collect()));
+    }
+    fields
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use souple_engine::{Model, State, World};
+use souple_engine::{Census, Model, State, World};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::Carried;
@@ -105,7 +105,21 @@ impl SkinInfo {
     }
 }
 
+/// Who does what in the body of a force; `None` where it has no levels.
+pub fn census(world: &World, system: usize, force: &str) -> Option<Census> {
+    let of = &world.model().systems[system];
+    let index = of.forces.iter().position(|candidate| candidate.name() == force)?;
+    let levels = of.forces[index].levels()?;
+    let memory = of.memory_ranges()[index].clone();
+    Some(levels.census(&world.state().systems[system].memory[memory]))
+}
+
 impl BodyInfo {
+    /// Of each point of its mesh: the level at work there, where the body has levels.
+    pub fn level_of_point(&self, world: &World) -> Option<Vec<u32>> {
+        Some(census(world, self.system, &self.force)?.level_of_point)
+    }
+
     pub(crate) fn new(placed: Placed, radii: Vec<f64>) -> Self {
         let Placed { spec, system, rows, mesh, frames, .. } = placed;
         let surface = mesh.boundary_surface();

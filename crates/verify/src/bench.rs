@@ -1,6 +1,10 @@
 //! Benchmarks: speed with its error beside it, on scenes anyone can run.
 
+mod adaptive;
+mod formulations;
 mod frames;
+mod laws;
+mod levels;
 mod links;
 mod timing;
 mod view;
@@ -144,6 +148,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| links::springs_lattice("springs_lattice_1m", 70, None, effort),
     },
     Bench {
+        name: "adaptive_saving",
+        what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
+        run: levels::adaptive_saving,
+    },
+    Bench {
         name: "view_frame_20k",
         what: "a frame for the browser of a bar with 20,800 triangles, coloured, on the thread of the world [ms]",
         run: view::frame_20k,
@@ -157,6 +166,51 @@ pub const BENCHES: &[Bench] = &[
         name: "static_100k",
         what: "equilibrium of the reference bar, n = 12, St. Venant-Kirchhoff, to 1e-8 [s]",
         run: static_100k,
+    },
+    Bench {
+        name: "law_text_tensor",
+        what: "steps with a law as text of tensor operations, over those with the same law of the table [x built-in]",
+        run: |effort| laws::law_text("law_text_tensor", laws::Writing::Tensors, 1.3, effort),
+    },
+    Bench {
+        name: "law_text_scalar",
+        what: "the same with the law written entry by entry [x built-in]",
+        run: |effort| laws::law_text("law_text_scalar", laws::Writing::Scalars, 2.5, effort),
+    },
+    Bench {
+        name: "tet4_forces",
+        what: "forces alone of tetrahedra, St. Venant-Kirchhoff, bent [elements/s], and a derivative product [x force]",
+        run: |effort| laws::forces("tet4_forces", "tet4", 12, 20e6, effort),
+    },
+    Bench {
+        name: "hex8_forces",
+        what: "the same of hexahedra of eight samples",
+        run: |effort| laws::forces("hex8_forces", "hex8", 12, 3e6, effort),
+    },
+    Bench {
+        name: "prism6_forces",
+        what: "the same of prisms of six samples",
+        run: |effort| laws::forces("prism6_forces", "prism6", 10, 3e6, effort),
+    },
+    Bench {
+        name: "pyramid5_forces",
+        what: "the same of pyramids of five samples",
+        run: |effort| laws::forces("pyramid5_forces", "pyramid5", 7, 3e6, effort),
+    },
+    Bench {
+        name: "tangents",
+        what: "an implicit step with the tangent stored, element by element, and by differences of forces [ms/step]",
+        run: |effort| laws::tangents("tangents", effort),
+    },
+    Bench {
+        name: "formal",
+        what: "every formulation on the reference bar: forces and derivative products [elements/s], error against samples",
+        run: |effort| formulations::table("formal", effort),
+    },
+    Bench {
+        name: "adaptive",
+        what: "twenty steps of a bar whose elements change their law, by threshold [ms/step], deviation of its tip",
+        run: |effort| adaptive::table("adaptive", effort),
     },
 ];
 

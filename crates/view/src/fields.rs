@@ -158,9 +158,8 @@ impl Field {
                 Some(points.iter().map(|point| weights[*point as usize] as f32).collect())
             }
             Source::Cells(value) => {
-                let solid = souple_run::solid_of(world.model(), body)?;
-                let positions = &world.rows(body.system).positions;
-                let of_cell = |cell: &u32| Some(value(&solid.cell_field(*cell as usize, positions)?));
+                let (solid, at) = world.force_named(body.system, &body.force)?;
+                let of_cell = |cell: &u32| Some(value(&solid.cell_field_at(*cell as usize, &at)?));
                 let about = shown.cells_about(body, with_inside);
                 let values: Option<Vec<f64>> = about.cells.par_iter().map(of_cell).collect();
                 Some(about.means(&values?))

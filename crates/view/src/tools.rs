@@ -3,11 +3,14 @@
 use souple_math::Vec3;
 use souple_table::{Entry, Table};
 
+/// Values of a shape for a size [m] and the direction it is held from.
+pub type SizedValues = fn(f64, Vec3) -> Vec<(String, Vec<f64>)>;
+
 /// How a tool of a size [m] is made, held from where `direction` points to: the name of its shape, and its values.
 #[derive(Clone, Copy)]
 pub struct Making {
     pub shape: &'static str,
-    pub values: fn(size: f64, direction: Vec3) -> Vec<(String, Vec<f64>)>,
+    pub values: SizedValues,
     /// How far its front is from its origin, in its size.
     pub front: f64,
 }
@@ -17,7 +20,7 @@ const fn entry(
     summary: &'static str,
     front: f64,
     shape: &'static str,
-    values: fn(f64, Vec3) -> Vec<(String, Vec<f64>)>,
+    values: SizedValues,
 ) -> Entry<Making> {
     Entry { name, summary, source: "", parameters: &[], build: Making { shape, values, front } }
 }

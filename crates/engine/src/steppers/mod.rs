@@ -8,6 +8,7 @@ mod newmark;
 mod position_verlet;
 mod quasi_static;
 mod runge_kutta;
+mod staggered;
 mod static_equilibrium;
 mod t_simulation;
 
@@ -25,6 +26,7 @@ pub use newmark::Newmark;
 pub use position_verlet::PositionVerlet;
 pub use quasi_static::QuasiStatic;
 pub use runge_kutta::{RungeKutta2, RungeKutta4};
+pub use staggered::{Schedule, Staggered, StaggeredBuffers};
 pub use static_equilibrium::StaticEquilibrium;
 pub use t_simulation::{Start, TSimulation};
 
@@ -142,6 +144,11 @@ pub trait Stepper: Send + Sync {
         None
     }
 
+    /// Whether it steps bodies of which only some points move by themselves, see [`crate::Levels`].
+    fn steps_levels(&self) -> bool {
+        false
+    }
+
     fn stability(&self) -> Stability;
 
     /// Whether mass resists acceleration in its steps; statics knows no inertia.
@@ -184,6 +191,7 @@ pub const TABLE: Table<BuildStepper> = Table {
         &t_simulation::ENTRY,
         &runge_kutta::RK2,
         &runge_kutta::RK4,
+        &staggered::ENTRY,
         &backward_euler::ENTRY,
         &bdf2::ENTRY,
         &newmark::ENTRY,

@@ -2,11 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use souple_math::Mat3;
-
 use super::Code;
-use crate::graph::{Evaluation, Expr, Graph, Node, Shape};
-use crate::law::EnergyLaw;
+use crate::graph::{Evaluation, Expr, Graph, Node, Shape, Symbol};
 
 /// A number, or the first of several, within a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,9 +28,19 @@ pub(super) struct Lowered {
     /// Steps that need `F` only, then the others.
     pub steps: [Vec<Step>; 2],
     pub constants: Vec<(Place, f64)>,
-    pub deformation: Place,
-    pub variation: Place,
+    /// Of the inputs that come first, and of those that vary at the same first ones.
+    pub inputs: [Vec<Place>; 2],
     pub outputs: Vec<Place>,
+}
+
+/// What a tape is made of.
+pub(super) struct Request<'a> {
+    pub graph: &'a Graph,
+    /// Symbols that vary from lane to lane: those that come first, and those that vary at the same first ones.
+    pub inputs: [&'a [Expr]; 2],
+    /// Symbols that stand for expressions; later ones may use earlier ones.
+    pub definitions: &'a [(Expr, Expr)],
+    pub outputs: &'a [Expr],
 }
 
 struct Lowering<'a> {
@@ -53,38 +60,55 @@ struct Lowering<'a> {
     part: usize,
 }
 
-pub(super) fn lower(law: &EnergyLaw, outputs: &[Expr]) -> Lowered {
-    let graph = &law.graph;
-    let varies = graph.depends(outputs, &[law.deformation, law.variation]);
-    let reachable = graph.reachable(outputs);
+/// `numbers` gives those of symbols that are no inputs.
+pub(super) fn lower<'n>(request: &Request, numbers: impl Fn(&Symbol) -> &'n [f64]) -> Lowered {
+    let Request { graph, inputs, definitions, outputs } = *request;
+    let roots: Vec<Expr> = definitions.iter().map(|(_, of)| *of).chain(outputs.iter().copied()).collect();
+    let variables: Vec<Expr> = inputs
+        .iter()
+        .copied()
+        .flatten()
+        .copied()
+        .chain(definitions.iter().map(|(symbol, _)| *symbol))
+        .collect();
+    let varies = graph.depends(&roots, &variables);
+    let reachable = graph.reachable(&roots);
     let fixed: Vec<Expr> = reachable.iter().copied().filter(|expr| !varies[expr.index()]).collect();
     let mut uses: HashMap<Expr, usize> = HashMap::new();
-    for operand in
-        reachable.iter().flat_map(|expr| graph.node(*expr).operands()).chain(outputs.iter().copied())
+    for operand in reachable.iter().flat_map(|expr| graph.node(*expr).operands()).chain(roots.iter().copied())
     {
         *uses.entry(operand).or_insert(0) += 1;
     }
-    let (deformation, variation) = (Place { value: 0, offset: 0 }, Place { value: 1, offset: 0 });
     let mut lowering = Lowering {
         graph,
-        uniform: law.evaluate(&fixed, &Mat3::identity(1.0), &Mat3::ZERO),
-        needs_variation: graph.depends(outputs, &[law.variation]),
+        uniform: graph.evaluate(&fixed, numbers),
+        needs_variation: graph.depends(&roots, inputs[1]),
         varies,
         uses,
         reachable: reachable.into_iter().collect(),
-        places: HashMap::from([(law.deformation, deformation), (law.variation, variation)]),
+        places: HashMap::new(),
         powers: HashMap::new(),
         numbers: HashMap::new(),
         out: Lowered {
-            sizes: vec![9, 9],
+            sizes: Vec::new(),
             steps: [Vec::new(), Vec::new()],
             constants: Vec::new(),
-            deformation,
-            variation,
+            inputs: [Vec::new(), Vec::new()],
             outputs: Vec::new(),
         },
         part: 0,
     };
+    for (part, inputs) in inputs.into_iter().enumerate() {
+        for input in inputs {
+            let place = lowering.new_value(graph.shape(*input).size());
+            lowering.places.insert(*input, place);
+            lowering.out.inputs[part].push(place);
+        }
+    }
+    for (symbol, definition) in definitions {
+        let place = lowering.place(*definition);
+        lowering.places.insert(*symbol, place);
+    }
     for output in outputs {
         let place = lowering.place(*output);
         lowering.out.outputs.push(place);

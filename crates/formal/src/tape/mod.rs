@@ -10,8 +10,8 @@ mod machine;
 mod registers;
 
 use crate::Function;
-use crate::graph::{Comparison, Expr};
-use crate::law::EnergyLaw;
+use crate::graph::{Comparison, Expr, Graph, Symbol};
+use crate::law::{EnergyLaw, LawParameter};
 
 /// Lanes of one run.
 pub const BATCH: usize = 64;
@@ -84,8 +84,7 @@ pub struct Tape {
     split: usize,
     registers: usize,
     constants: Vec<(u32, f64)>,
-    deformation: u32,
-    variation: u32,
+    inputs: [Vec<u32>; 2],
     outputs: Vec<u32>,
 }
 
@@ -102,7 +101,42 @@ pub enum Part {
 impl Tape {
     /// Compiles expressions of a law for its parameters.
     pub fn compile(law: &EnergyLaw, outputs: &[Expr]) -> Self {
-        registers::assign(lower::lower(law, outputs))
+        let request = lower::Request {
+            graph: &law.graph,
+            inputs: [&[law.deformation], &[law.variation]],
+            definitions: &[],
+            outputs,
+        };
+        let parameter = |symbol: &Symbol| law.parameter(&symbol.name).map_or(&[][..], LawParameter::numbers);
+        registers::assign(lower::lower(&request, parameter))
+    }
+
+    /// Compiles expressions of numbers: `inputs` are the symbols that come first and those that vary at the same first
+    /// ones, `definitions` symbols that stand for expressions, `directions` the numbers of all other symbols and of their
+    /// components.
+    pub fn of_expressions(
+        graph: &Graph,
+        inputs: [&[Expr]; 2],
+        definitions: &[(Expr, Expr)],
+        outputs: &[Expr],
+        directions: &[(String, LawParameter)],
+    ) -> Self {
+        let request = lower::Request { graph, inputs, definitions, outputs };
+        let numbers = |symbol: &Symbol| {
+            directions
+                .iter()
+                .find_map(|(name, parameter)| {
+                    // `a`, or its components `a_0`, `a_1`, `a_2`
+                    let rest = symbol.name.strip_prefix(name.as_str())?;
+                    if rest.is_empty() {
+                        return Some(parameter.numbers());
+                    }
+                    let index: usize = rest.strip_prefix('_')?.parse().ok()?;
+                    parameter.numbers().get(index..=index)
+                })
+                .unwrap_or_else(|| unreachable!("`{}` is neither an input nor of a direction", symbol.name))
+        };
+        registers::assign(lower::lower(&request, numbers))
     }
 
     /// Numbers that the memory of a run must hold, [`BATCH`] for each register.
@@ -121,12 +155,22 @@ impl Tape {
 
     /// Where the lanes of entry `entry` of `F` start, by columns.
     pub fn deformation(&self, entry: usize) -> usize {
-        (self.deformation as usize + entry) * BATCH
+        self.input(0) + entry * BATCH
     }
 
     /// Where the lanes of entry `entry` of `δF` start.
     pub fn variation(&self, entry: usize) -> usize {
-        (self.variation as usize + entry) * BATCH
+        self.varied(0) + entry * BATCH
+    }
+
+    /// Where the lanes of an input that comes first start.
+    pub fn input(&self, input: usize) -> usize {
+        self.inputs[0][input] as usize * BATCH
+    }
+
+    /// Where the lanes of an input that varies at the same first ones start.
+    pub fn varied(&self, input: usize) -> usize {
+        self.inputs[1][input] as usize * BATCH
     }
 
     /// Where the lanes of number `entry` of an output start.

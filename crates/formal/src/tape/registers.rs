@@ -24,27 +24,28 @@ impl Free {
 }
 
 pub(super) fn assign(lowered: Lowered) -> Tape {
-    let Lowered { sizes, steps, constants, deformation, variation, outputs } = lowered;
+    let Lowered { sizes, steps, constants, inputs, outputs } = lowered;
     let split = steps[0].len();
     let steps: Vec<Step> = steps.into_iter().flatten().collect();
+    let mut computed_again = vec![false; sizes.len()];
+    steps[split..].iter().for_each(|step| computed_again[step.out.value] = true);
     // the last step that reads each value; what outlives the tape is read behind its end
     let mut last_use = vec![0; sizes.len()];
     for (index, step) in steps.iter().enumerate() {
         for operand in step.operands.iter().flatten() {
             // the second part runs again and again: what it reads from the first must stay
-            let computed_before =
-                index >= split && !steps[split..].iter().any(|s| s.out.value == operand.value);
+            let computed_before = index >= split && !computed_again[operand.value];
             last_use[operand.value] =
                 if computed_before { usize::MAX } else { last_use[operand.value].max(index) };
         }
         last_use[step.out.value] = last_use[step.out.value].max(index);
     }
-    let kept = constants.iter().map(|(place, _)| place).chain(&outputs).chain([&deformation, &variation]);
-    kept.for_each(|place| last_use[place.value] = usize::MAX);
+    let given = || constants.iter().map(|(place, _)| place).chain(inputs.iter().flatten());
+    given().chain(&outputs).for_each(|place| last_use[place.value] = usize::MAX);
 
     let mut free = Free::default();
     let mut registers: Vec<Option<u32>> = vec![None; sizes.len()];
-    for place in constants.iter().map(|(place, _)| place).chain([&deformation, &variation]) {
+    for place in given() {
         if registers[place.value].is_none() {
             registers[place.value] = Some(free.take(sizes[place.value]));
         }
@@ -83,8 +84,7 @@ pub(super) fn assign(lowered: Lowered) -> Tape {
         split,
         registers: free.next as usize,
         constants: constants.iter().map(|(place, value)| (register(place), *value)).collect(),
-        deformation: register(&deformation),
-        variation: register(&variation),
+        inputs: inputs.each_ref().map(|places| places.iter().map(register).collect()),
         outputs: outputs.iter().map(register).collect(),
         instructions,
     }

@@ -48,8 +48,9 @@ fn filled(
     let shape = SurfaceShape::new(mended)?;
     if shape.sign() == Sign::WindingNumber {
         notes.extend(shape.diagnosis().messages());
-        notes
-            .push("the surface is not simple: its inside is where it winds around more than half".to_owned());
+        let parts = "parts of it lie within each other or overlap";
+        let why = if shape.diagnosis().is_simple() { parts } else { "the surface is not simple" };
+        notes.push(format!("{why}: its inside is where it winds around more than half"));
     }
     let open = shape.diagnosis().open_edges.len();
     let mesh = options.fill(&shape, &[]).map_err(|error| match error {
@@ -67,7 +68,12 @@ fn filled(
         let percent = 100.0 * volume / enclosed;
         notes.push(format!(
             "the filling holds {volume:.4e} m³ of the {enclosed:.4e} m³ that the surface encloses, {percent:.0} %: \
-             what is thinner than its cells is lost; take a smaller size"
+             {}",
+            if shape.sign() == Sign::WindingNumber {
+                "parts that overlap count once, and what is thinner than its cells is lost"
+            } else {
+                "what is thinner than its cells is lost; take a smaller size"
+            }
         ));
     }
     Ok((FilledSurface { mesh, repairs, notes }, shape))

@@ -53,8 +53,8 @@ fn build(values: &Values) -> Result<Body, MeshError> {
     })?;
     let [low, high] = ["low", "high"].map(|name| Vec3::from_array(values.vector(name)));
     if (0..3).any(|axis| low[axis] >= high[axis]) {
-        let value = format!("{high:?}");
-        let expected = format!("a corner above the lowest one, {low:?}, in every coordinate");
+        let value = format!("{:?}", high.to_array());
+        let expected = format!("a corner above the lowest one, {:?}, in every coordinate", low.to_array());
         return Err(MeshError::Parameter { name: "high", value, expected });
     }
     Ok(Body { shape: Box::new(FormulaShape::new(formula, BoundingBox { low, high })), parts: Vec::new() })

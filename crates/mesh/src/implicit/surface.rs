@@ -40,7 +40,8 @@ impl SurfaceShape {
         let diagnosis = diagnose(&surface);
         let bounds = BoundingBox::of(surface.triangles.iter().flatten().map(|p| surface.points[*p as usize]));
         let bounds = bounds.grown(1e-9 * bounds.diagonal());
-        let exact = if diagnosis.is_simple() { SignedDistance::new(surface.clone()).ok() } else { None };
+        let is_simple = diagnosis.is_simple() && winds_once(&surface);
+        let exact = if is_simple { SignedDistance::new(surface.clone()).ok() } else { None };
         let distance = exact.map_or_else(|| wound(surface), Distance::Exact);
         Ok(Self { distance, bounds, diagnosis })
     }
@@ -55,6 +56,27 @@ impl SurfaceShape {
     pub fn diagnosis(&self) -> &Diagnosis {
         &self.diagnosis
     }
+}
+
+/// Triangles at which it is asked how often the surface winds around what lies before and behind them.
+const SAMPLES: usize = 256;
+
+/// Whether what lies before its triangles is outside of all of it: parts within each other that face the same way, and parts
+/// that overlap where no triangles cross, have normals that tell nothing.
+fn winds_once(surface: &TriangleSurface) -> bool {
+    let winding = WindingNumber::new(surface);
+    let outside = |triangle: usize| {
+        let [a, b, c] = surface.corners(triangle as u32);
+        let normal = (b - a).cross(c - a);
+        // a thousandth of its size before it
+        let offset = normal * (1e-3 / normal.length().sqrt());
+        winding.at((a + b + c) / 3.0 + offset).round()
+    };
+    let first = outside(0);
+    let count = surface.triangles.len();
+    // a surface that faces inward has the outside behind it
+    (first == 0.0 || first == -1.0)
+        && (0..count).step_by(count.div_ceil(SAMPLES)).all(|triangle| outside(triangle) == first)
 }
 
 fn wound(surface: TriangleSurface) -> Distance {
@@ -82,5 +104,46 @@ impl Shape for SurfaceShape {
 
     fn bounds(&self) -> BoundingBox {
         self.bounds
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use souple_table::{Value, Values};
+
+    use super::*;
+
+    /// A ball around the origin and another of the same triangles, scaled and moved.
+    fn two_balls(scale: f64, centre: Vec3) -> TriangleSurface {
+        let values = Values::new().with("radius", Value::Number(1.0)).with("cells", Value::Integer(4));
+        let ball = crate::generate("sphere", values).unwrap().boundary_surface();
+        let count = ball.points.len() as u32;
+        let points: Vec<Vec3> =
+            ball.points.iter().copied().chain(ball.points.iter().map(|p| *p * scale + centre)).collect();
+        let moved = ball.triangles.iter().map(|corners| corners.map(|corner| corner + count));
+        let triangles: Vec<[u32; 3]> = ball.triangles.iter().copied().chain(moved).collect();
+        TriangleSurface::from_mesh(&points, &triangles, Vec::new())
+    }
+
+    /// A ball within a ball that faces the same way is solid through and through; one that faces inward is a hollow.
+    #[test]
+    fn parts_within_each_other() {
+        let solid = SurfaceShape::new(two_balls(0.5, Vec3::ZERO)).unwrap();
+        assert_eq!(solid.sign(), Sign::WindingNumber);
+        for x in [0.1, 0.55, 0.9] {
+            assert!(solid.value(Vec3::new(x, 0.0, 0.0)) < 0.0, "{x}");
+        }
+        let mut hollow = two_balls(0.5, Vec3::ZERO);
+        let half = hollow.triangles.len() / 2;
+        hollow.triangles[half..].iter_mut().for_each(|corners| corners.swap(1, 2));
+        let hollow = SurfaceShape::new(hollow).unwrap();
+        assert_eq!(hollow.sign(), Sign::Normals);
+        assert!(hollow.value(Vec3::ZERO) > 0.0 && hollow.value(Vec3::new(0.75, 0.0, 0.0)) < 0.0);
+    }
+
+    #[test]
+    fn balls_apart_are_simple() {
+        let apart = SurfaceShape::new(two_balls(1.0, Vec3::new(3.0, 0.0, 0.0))).unwrap();
+        assert_eq!(apart.sign(), Sign::Normals);
     }
 }

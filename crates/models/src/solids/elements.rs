@@ -97,7 +97,8 @@ impl<K: Send + Sync> Elements<K> {
                 measure: section.measure(),
             };
             let parameters_of = |cell: u32| sorting.parameters_of(cell as usize);
-            let chunks = layout::chunks(&body, &cells, &parameters_of, elements.partial_count)?;
+            let mut chunks = layout::chunks(&body, &cells, &parameters_of, elements.partial_count)?;
+            (elements.chunk_count..).zip(&mut chunks).for_each(|(number, chunk)| chunk.number = number);
             elements.partial_count += chunks.iter().map(|chunk| chunk.rows.len()).sum::<usize>();
             let first_chunk = elements.chunk_count;
             elements.chunk_count += chunks.len();

@@ -42,6 +42,8 @@ pub struct Chunk {
     has_one_material: bool,
     /// Where the chunk's nodes start among the partial sums.
     pub first_partial: usize,
+    /// Among the chunks of all batches.
+    pub number: usize,
 }
 
 impl Chunk {
@@ -60,6 +62,7 @@ impl Chunk {
             parameters: vec![LaneBlock::default(); first.len() * if has_one_material { 1 } else { blocks }],
             has_one_material,
             first_partial: 0,
+            number: 0,
         };
         for (block, lane) in lanes() {
             let (volume, numbers) = sample(block, lane);
@@ -71,6 +74,50 @@ impl Chunk {
             }
         }
         chunk
+    }
+
+    /// The cells that `keep` names, on the same nodes; elements have `nodes` and `samples`.
+    pub fn part(&self, nodes: usize, samples: usize, keep: impl Fn(u32) -> bool) -> Self {
+        let slots: Vec<usize> = (0..self.cells.len()).filter(|slot| keep(self.cells[*slot])).collect();
+        let blocks = slots.len().div_ceil(LANES);
+        let (from_blocks, numbers) = (self.block_count(), samples * SAMPLE_LEN);
+        let parameters = self.all_parameters(0).len();
+        let parameter_blocks = if self.has_one_material { 1 } else { blocks };
+        let mut part = Self {
+            cells: slots.iter().map(|slot| self.cells[*slot]).collect(),
+            rows: self.rows.clone(),
+            connectivity: vec![0; blocks * nodes * LANES],
+            samples: vec![LaneBlock::default(); blocks * numbers],
+            parameters: vec![LaneBlock::default(); parameter_blocks * parameters],
+            has_one_material: self.has_one_material,
+            ..*self
+        };
+        for to in 0..blocks * LANES {
+            let (lane, block) = (to / blocks, to % blocks);
+            // lanes past the last element repeat it, without volume
+            let from = slots[to.min(slots.len() - 1)];
+            let (from_lane, from_block) = (from / from_blocks, from % from_blocks);
+            for node in 0..nodes {
+                part.connectivity[(block * nodes + node) * LANES + lane] =
+                    self.connectivity[(from_block * nodes + node) * LANES + from_lane];
+            }
+            for number in 0..numbers {
+                let is_volume = number % SAMPLE_LEN == SAMPLE_LEN - 1;
+                part.samples[block * numbers + number].0[lane] = if is_volume && to >= slots.len() {
+                    0.0
+                } else {
+                    self.samples[from_block * numbers + number].0[from_lane]
+                };
+            }
+            if block < parameter_blocks {
+                let from_block = if self.has_one_material { 0 } else { from_block };
+                for number in 0..parameters {
+                    part.parameters[block * parameters + number].0[lane] =
+                        self.parameters[from_block * parameters + number].0[from_lane];
+                }
+            }
+        }
+        part
     }
 
     pub fn block_count(&self) -> usize {
@@ -222,6 +269,7 @@ fn lay_out<'p>(
         has_one_material,
         rows,
         first_partial,
+        number: 0,
     };
     let mut corners = [Vec3::ZERO; souple_mesh::MAX_NODES];
     for slot in 0..blocks * LANES {

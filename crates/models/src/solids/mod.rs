@@ -1,7 +1,10 @@
 //! Solids: finite elements of any kind and law, mixed in one body; plane bodies, membranes and bars with them.
 
+mod adaptive;
 mod assembly;
+mod difference;
 mod elements;
+mod formulation;
 mod geometry;
 mod group;
 mod kernel;
@@ -39,6 +42,9 @@ use sample_law::{Compiled, SampleLaw, Taped};
 use section_kernel::SectionKernel;
 use staged::Staged;
 
+pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
+pub use difference::DifferencedForce;
+pub use formulation::{BuildFormulation, FORMULATIONS, FormulationError};
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass, uniform_mass};
 pub use rayleigh::RayleighDamping;
@@ -57,6 +63,9 @@ pub struct SolidForce {
     section: Section,
     /// The laws of the materials, for what is read off single cells.
     row_laws: Vec<Box<dyn RowLaw>>,
+    declaration: Declaration,
+    /// Where its points rest, if its kernels take displacements in the place of positions [m]; else empty.
+    rest: Vec<Vec3>,
 }
 
 /// Which rule of quadrature integrates the energy of an element.
@@ -97,11 +106,17 @@ pub struct SolidDescription<'a> {
 struct SolidScratch {
     partials: Vec<Vec3>,
     assembly: Assembly,
+    /// Of all rows, where kernels take displacements.
+    displacements: Vec<Vec3>,
 }
 
 impl SolidScratch {
     fn boxed() -> Scratch {
-        Box::new(Self { partials: Vec::new(), assembly: Assembly::new(Symmetry::Symmetric) })
+        Box::new(Self {
+            partials: Vec::new(),
+            assembly: Assembly::new(Symmetry::Symmetric),
+            displacements: Vec::new(),
+        })
     }
 
     fn of(scratch: &mut Scratch) -> &mut Self {
@@ -109,9 +124,9 @@ impl SolidScratch {
     }
 
     fn bytes(scratch: &Scratch) -> usize {
-        scratch
-            .downcast_ref()
-            .map_or(0, |Self { partials, assembly }| 24 * partials.capacity() + assembly.bytes())
+        scratch.downcast_ref().map_or(0, |Self { partials, assembly, displacements }| {
+            24 * (partials.capacity() + displacements.capacity()) + assembly.bytes()
+        })
     }
 }
 
@@ -176,9 +191,21 @@ impl SolidForce {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
+        let SolidDescription { materials, material_of_cell, section, .. } = description;
+        Self::sorted_by(description, &ByLaw { materials, material_of_cell, section: *section })
+    }
+
+    /// With the kernels of another formulation.
+    fn sorted_by(
+        description: &SolidDescription,
+        sorting: &impl Sorting<Kernel = Box<dyn Kernel>>,
+    ) -> Result<Self, FlatCell> {
         let SolidDescription { name, mesh, materials, material_of_cell, quadrature, section, .. } =
             description;
-        let elements = Elements::new(description, &ByLaw { materials, material_of_cell, section: *section })?;
+        let elements = Elements::new(description, sorting)?;
+        // small strain knows a rest orientation: a rotated body feels a torque
+        let is_objective =
+            section.follows_rotation() || materials.iter().all(|material| material.law.is_objective());
         Ok(Self {
             name: name.clone(),
             chunk_of_cell: elements.chunk_of_cell(mesh.cell_count()),
@@ -188,7 +215,31 @@ impl SolidForce {
             quadrature: *quadrature,
             section: *section,
             row_laws: materials.iter().map(|material| row_law(&material.law)).collect(),
+            declaration: Declaration { internal: is_objective, ..Declaration::ELASTIC },
+            rest: Vec::new(),
         })
+    }
+
+    fn declared(self, declaration: Declaration) -> Self {
+        Self { declaration, ..self }
+    }
+
+    /// Its kernels take displacements from the points of `mesh`.
+    fn of_displacements(self, mesh: &Mesh) -> Self {
+        Self { rest: mesh.points.clone(), ..self }
+    }
+
+    /// What the kernels take of row positions; `buffer` holds it where that is not the positions themselves.
+    fn seen<'a>(&self, positions: &'a [Vec3], buffer: &'a mut Vec<Vec3>) -> &'a [Vec3] {
+        if self.rest.is_empty() {
+            return positions;
+        }
+        buffer.resize(positions.len(), Vec3::ZERO);
+        let rows = self.elements.rows();
+        for ((u, x), rest) in buffer[rows.clone()].iter_mut().zip(&positions[rows]).zip(&self.rest) {
+            *u = *x - *rest;
+        }
+        buffer
     }
 }
 
@@ -232,26 +283,31 @@ impl Force for SolidForce {
     }
 
     fn declaration(&self) -> Declaration {
-        // small strain knows a rest orientation: a rotated body feels a torque
-        Declaration { internal: self.is_objective(), ..Declaration::ELASTIC }
+        self.declaration
     }
 
     fn new_scratch(&self) -> Scratch {
         SolidScratch::boxed()
     }
 
-    fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
+    fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
+        let positions = self.seen(at.positions, &mut SolidScratch::of(scratch).displacements);
         let stored = self
             .elements
-            .sum([at.positions], |batch, chunk, [x]| batch.kernel.energy(chunk, &batch.reference, x));
+            .sum([positions], |batch, chunk, [x]| batch.kernel.energy(chunk, &batch.reference, x));
         Energy { stored, dissipated: 0.0 }
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
-        let partials = &mut SolidScratch::of(scratch).partials;
-        self.elements.add_sums([at.positions], partials, out, |batch, chunk, [x], sums| {
-            batch.kernel.forces(chunk, &batch.reference, x, sums);
-        });
+        let SolidScratch { partials, displacements, .. } = SolidScratch::of(scratch);
+        self.elements.add_sums(
+            [self.seen(at.positions, displacements)],
+            partials,
+            out,
+            |batch, chunk, [x], sums| {
+                batch.kernel.forces(chunk, &batch.reference, x, sums);
+            },
+        );
     }
 
     fn add_differential(
@@ -265,8 +321,9 @@ impl Force for SolidForce {
         if weights.position == 0.0 {
             return;
         }
-        let partials = &mut SolidScratch::of(scratch).partials;
-        self.elements.add_sums([at.positions, delta], partials, out, |batch, chunk, [x, delta], sums| {
+        let SolidScratch { partials, displacements, .. } = SolidScratch::of(scratch);
+        let positions = self.seen(at.positions, displacements);
+        self.elements.add_sums([positions, delta], partials, out, |batch, chunk, [x, delta], sums| {
             batch.kernel.differential(chunk, &batch.reference, x, delta, weights.position, sums);
         });
     }
@@ -285,10 +342,10 @@ impl Force for SolidForce {
         if weights.position == 0.0 {
             return;
         }
-        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
+        let SolidScratch { partials, assembly, displacements } = SolidScratch::of(scratch);
         assembly.add_blocks(
             &self.elements,
-            [at.positions],
+            [self.seen(at.positions, displacements)],
             partials,
             matrix,
             |batch, chunk, blocks, [x], out| {
@@ -302,6 +359,7 @@ impl Force for SolidForce {
             + 4 * self.chunk_of_cell.capacity()
             + 2 * self.material_of_cell.capacity()
             + size_of::<Material>() * self.materials.capacity()
+            + size_of_val(self.rest.as_slice())
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
@@ -318,11 +376,6 @@ impl Force for SolidForce {
 }
 
 impl SolidForce {
-    /// Whether every law gives rotated bodies no stress.
-    fn is_objective(&self) -> bool {
-        self.section.follows_rotation() || self.materials.iter().all(|material| material.law.is_objective())
-    }
-
     pub fn cell_count(&self) -> usize {
         self.material_of_cell.len()
     }

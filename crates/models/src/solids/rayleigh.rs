@@ -109,7 +109,7 @@ impl Force for RayleighDamping {
             return;
         }
         let scale = self.seconds * weights.velocity;
-        let SolidScratch { partials, assembly } = SolidScratch::of(scratch);
+        let SolidScratch { partials, assembly, .. } = SolidScratch::of(scratch);
         assembly.add_blocks(
             &self.elements,
             [at.positions],

@@ -9,16 +9,17 @@ use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
-    FlatCell, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass,
-    lumped_mass, uniform_mass,
+    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, Section,
+    SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
 };
 
 use super::boundary::constant_vector;
 use super::frames::PlacedFrames;
+use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, network, shape};
-use crate::diagnostic::Code;
-use crate::spec::body::{Body, Damping, MassKind};
+use super::{Draft, frames, levels, network, shape};
+use crate::diagnostic::{Code, Site};
+use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
 
 /// A body with its mesh and its rows in a system.
@@ -34,12 +35,24 @@ pub struct Placed<'a> {
     pub links: Vec<PlacedLinks>,
     /// What carries it, where that is not its points.
     pub frames: Option<PlacedFrames>,
+    /// Coarser meshes of it.
+    pub levels: Option<PlacedLevels<'a>>,
 }
 
 impl Placed<'_> {
     /// Rows that its mass is on: those of its frames, or its points.
     pub fn mass_rows(&self) -> Range<usize> {
         self.frames.as_ref().map_or_else(|| self.rows.clone(), PlacedFrames::row_range)
+    }
+
+    /// Its coarser meshes, each as if it were a body.
+    pub fn levels_of(&self) -> impl Iterator<Item = &Self> {
+        self.levels.iter().flat_map(|levels| &levels.coarser)
+    }
+
+    /// Points of all its meshes, which are rows one after the other.
+    fn point_count(&self) -> usize {
+        self.mesh.points.len() + self.levels.as_ref().map_or(0, PlacedLevels::point_count)
     }
 }
 
@@ -77,8 +90,17 @@ pub fn place(draft: &mut Draft) -> Option<()> {
         draft.warnings.extend(shape.warnings);
         let (mesh, point_numbers) = (shape.mesh, shape.point_numbers);
         let materials = BodyMaterials::default();
-        let mut placed =
-            Placed { spec: body, system, rows: 0..0, mesh, point_numbers, materials, links, frames: None };
+        let mut placed = Placed {
+            spec: body,
+            system,
+            rows: 0..0,
+            mesh,
+            point_numbers,
+            materials,
+            links,
+            frames: None,
+            levels: None,
+        };
         if let Some(materials) = materials_of(draft, &placed) {
             placed.materials = materials;
         }
@@ -88,9 +110,15 @@ pub fn place(draft: &mut Draft) -> Option<()> {
             placed.frames = frames::place(draft, body, &placed.mesh, all, of_cell, &mut warnings);
             draft.warnings.extend(warnings);
         }
+        let mut warnings = Vec::new();
+        placed.levels = levels::place(draft, body, system, &placed.mesh, &mut warnings);
+        draft.warnings.extend(warnings);
         draft.bodies.push(placed);
     }
-    let is_complete = |body: &Placed| body.spec.frames.is_some() == body.frames.is_some();
+    let is_complete = |body: &Placed| {
+        body.spec.frames.is_some() == body.frames.is_some()
+            && body.spec.levels.is_some() == body.levels.is_some()
+    };
     if draft.bodies.len() < spec.bodies.len()
         || !draft.bodies.iter().all(is_complete)
         || !draft.log.is_empty()
@@ -110,7 +138,11 @@ fn give_rows(bodies: &mut [Placed], systems: usize) {
         first..next[system]
     };
     for body in bodies.iter_mut().filter(|body| body.frames.is_none()) {
-        body.rows = give(body.system, body.mesh.points.len());
+        let rows = give(body.system, body.point_count());
+        body.rows = rows.start..rows.start + body.mesh.points.len();
+        if let Some(levels) = &mut body.levels {
+            levels.give_rows(body.rows.end);
+        }
     }
     for body in bodies.iter_mut() {
         if let Some(frames) = &mut body.frames {
@@ -126,7 +158,7 @@ fn give_rows(bodies: &mut [Placed], systems: usize) {
 fn kinematics(draft: &Draft, index: usize) -> Kinematics {
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
     let mut kinematics = Kinematics::default();
-    let points = bodies().filter(|body| body.frames.is_none()).map(|body| body.mesh.points.len()).sum();
+    let points = bodies().filter(|body| body.frames.is_none()).map(Placed::point_count).sum();
     kinematics.add_unknowns(UnknownKind::Point, points);
     for frames in bodies().filter_map(|body| body.frames.as_ref()) {
         kinematics.add_unknowns(frames.kind, frames.frames.len());
@@ -153,6 +185,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             continue;
         }
         let density = |cell: usize| materials.of(cell).density * section.measure();
+        check_together(draft, body.spec);
         if let (Some(frames), Some(spec)) = (&body.frames, &body.spec.frames) {
             frames.add_mass(body.spec.mass, &density, &mut mass);
             forces.push(frames.force(body, spec, &materials.all, &materials.of_cell));
@@ -162,6 +195,10 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             MassKind::Lumped => lumped_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Uniform => uniform_mass(&body.mesh, body.rows.start, &density, &mut mass),
+        }
+        if let Some(coarser) = &body.levels {
+            forces.extend(levels::force(draft, body, coarser));
+            continue;
         }
         let description = SolidDescription {
             name: solid_name(&body.spec.name),
@@ -173,8 +210,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             section,
         };
         if let Err(error) = add_solid(body.spec, description, &mut forces) {
-            let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
-            draft.log.add(Code::Mesh, site, error.to_string(), "cells with volume");
+            report(draft, body.spec, &error);
         }
     }
     mass.seal();
@@ -221,8 +257,19 @@ fn add_solid(
     body: &Body,
     description: SolidDescription,
     forces: &mut Vec<Box<dyn Force>>,
-) -> Result<(), FlatCell> {
-    forces.push(Box::new(SolidForce::new(&description)?));
+) -> Result<(), FormulationError> {
+    let elastic: Box<dyn Force> = match (&body.formulation, adapted(body)) {
+        (Some(chosen), _) => (chosen.entry.build)(&description)?,
+        (None, Some((second, adaptation))) => {
+            let laws = [description.materials[0].clone(), second];
+            Box::new(AdaptiveForce::new(&description, laws, adaptation)?)
+        }
+        (None, None) => Box::new(SolidForce::new(&description)?),
+    };
+    forces.push(match body.tangent {
+        TangentKind::Exact => elastic,
+        TangentKind::Difference => Box::new(DifferencedForce::new(elastic, description.mesh)),
+    });
     let Damping { rayleigh_stiffness, viscosity, .. } = body.damping;
     if rayleigh_stiffness > 0.0 {
         let name = format!("{}.rayleigh_stiffness", body.name);
@@ -234,6 +281,51 @@ fn add_solid(
         forces.push(Box::new(Viscosity::new(&description, viscosity)?));
     }
     Ok(())
+}
+
+/// The law that takes over in a body that adapts, and when.
+fn adapted(body: &Body) -> Option<(Material, Adaptation)> {
+    let adapt = body.adapt.as_ref()?;
+    let chosen = adapt.material.as_ref()?;
+    // tried when the scene was read
+    Some(((chosen.entry.build)(&chosen.values).ok()?, adapt.adaptation.clone()))
+}
+
+/// Reports what a body cannot have together.
+fn check_together(draft: &Draft, body: &Body) {
+    let report = |site: &Site, message: String, expected: &str| {
+        draft.log.add(Code::Conflict, site, message, expected);
+    };
+    if let (Some(chosen), Some(_)) = (&body.formulation, &body.frames) {
+        let message = format!("frames carry body `{}`, whose forces are those of its points", body.name);
+        report(&chosen.site, message, "a formulation of a body without frames");
+    }
+    let Some(adapt) = &body.adapt else { return };
+    let others = [
+        ("frames", body.frames.is_some()),
+        ("section", body.section.is_some()),
+        ("regions", !body.regions.is_empty()),
+        ("formulation", body.formulation.is_some()),
+    ];
+    for (other, _) in others.into_iter().filter(|(_, is_there)| *is_there) {
+        let message = format!("body `{}` has `{other}`, and its elements cannot adapt besides", body.name);
+        report(&adapt.site, message, "`adapt` in a body of volumes with one material");
+    }
+}
+
+/// Reports why a body has no such force.
+fn report(draft: &Draft, body: &Body, error: &FormulationError) {
+    let (code, site, expected) = match error {
+        FormulationError::Flat(_) => {
+            (Code::Mesh, body.mesh.as_ref().map(|mesh| mesh.site()), "cells with volume")
+        }
+        _ => (
+            Code::Conflict,
+            body.formulation.as_ref().map(|chosen| &chosen.site),
+            "another formulation: `samples` takes all laws on all elements",
+        ),
+    };
+    draft.log.add(code, site.unwrap_or(&body.site), error.to_string(), expected);
 }
 
 /// Gravity of the whole system, drag and damping of its bodies.
@@ -272,7 +364,8 @@ fn add_outer_forces(
     for body in draft.bodies.iter().filter(|body| body.system == index) {
         let (name, damping) = (&body.spec.name, body.spec.damping);
         let mut added: Vec<Result<Box<dyn Force>, LoadError>> = Vec::new();
-        if damping.rayleigh_mass > 0.0 {
+        // points of levels fade by themselves
+        if damping.rayleigh_mass > 0.0 && body.levels.is_none() {
             let part = part_of_mass(mass, &body.mass_rows());
             let force = MassDamping::new(format!("{name}.rayleigh_mass"), part, damping.rayleigh_mass);
             added.push(force.map(|force| Box::new(force) as _));
@@ -377,6 +470,9 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
             None => body.mesh.centroid(),
         };
         let (velocity, angular_velocity) = (body.spec.velocity, body.spec.angular_velocity);
+        if let Some(coarser) = &body.levels {
+            levels::start(coarser, [velocity, angular_velocity, centre], &mut state.q, &mut state.v);
+        }
         match &body.frames {
             Some(frames) => {
                 let motion = [velocity, angular_velocity, centre];

@@ -7,6 +7,7 @@ mod depth;
 mod doubts;
 mod frames;
 mod freedom;
+mod levels;
 mod links;
 mod memory;
 mod motion;
@@ -190,7 +191,7 @@ fn check_force_names(draft: &Draft) {
 }
 
 fn check_stepper(system: &System, spec: &SystemSpec, log: &Log) {
-    if let Some(why) = system.stepper.refuses(system) {
+    if let Some(why) = system.refused() {
         let site: &Site = spec.stepper.as_ref().map_or(&spec.site, |stepper| &stepper.site);
         let message = format!("`{}` cannot step system `{}`: {why}", system.stepper.name(), system.name);
         log.add(Code::Conflict, site, message, "another stepper, or a system without what stands in its way");

@@ -44,7 +44,7 @@ const SAME: f64 = 1e-9;
 pub fn add(draft: &mut Draft) {
     let mut added: Vec<(usize, Constraint)> = Vec::new();
     let (mut torn, mut holding, mut joints) = (Vec::new(), Vec::new(), Vec::new());
-    for body in &draft.bodies {
+    for body in draft.bodies.iter().flat_map(|body| body.levels_of().chain([body])) {
         let system = &draft.systems[body.system];
         let mut holds = holds(draft, body);
         // plane bodies stay in their plane

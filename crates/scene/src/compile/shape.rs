@@ -25,7 +25,11 @@ const NEAREST: f64 = 1e-10;
 
 /// The mesh of a body; `None` where it was refused.
 pub fn build(body: &Body, draft: &Draft) -> Option<Shape> {
-    let spec = body.mesh.as_ref()?;
+    build_of(body, body.mesh.as_ref()?, draft)
+}
+
+/// One of the meshes of a body; `None` where it was refused.
+pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
     let (site, log) = (spec.site(), draft.log);
     let refuse = |message: String, expected: &str| {
         log.add(Code::Mesh, site, message, expected);

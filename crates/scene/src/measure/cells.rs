@@ -1,23 +1,22 @@
 //! Quantities of cells: means over each cell.
 
-use souple_engine::{Force, World};
-use souple_math::{Vec3, eigen_symmetric};
+use souple_engine::{Configuration, Force, World};
+use souple_math::eigen_symmetric;
 
 use super::CellPart;
 use crate::spec::quantity::CellQuantity;
 
 /// Values and rest volumes of the cells of a part.
 pub fn measure(quantity: CellQuantity, part: &CellPart, world: &World) -> (Vec<f64>, Vec<f64>) {
-    let forces = &world.model().systems[part.system].forces;
-    let solid = forces.iter().find(|force| force.name() == part.solid);
-    let Some(solid) = solid else { return (vec![f64::NAN], vec![1.0]) };
-    let positions = &world.rows(part.system).positions;
-    part.cells.iter().filter_map(|cell| value(quantity, solid.as_ref(), *cell, positions)).unzip()
+    let Some((solid, at)) = world.force_named(part.system, &part.solid) else {
+        return (vec![f64::NAN], vec![1.0]);
+    };
+    part.cells.iter().filter_map(|cell| value(quantity, solid, *cell as usize, &at)).unzip()
 }
 
 /// The value of one cell and its rest volume.
-fn value(quantity: CellQuantity, solid: &dyn Force, cell: u32, positions: &[Vec3]) -> Option<(f64, f64)> {
-    let field = solid.cell_field(cell as usize, positions)?;
+fn value(quantity: CellQuantity, solid: &dyn Force, cell: usize, at: &Configuration) -> Option<(f64, f64)> {
+    let field = solid.cell_field_at(cell, at)?;
     // eigenvalues fall; those of FᵀF are the squares of the stretches
     let principal_stress = || eigen_symmetric(&field.cauchy).values;
     let stretch_sq = || eigen_symmetric(&field.deformation.transpose_mul(&field.deformation)).values;
@@ -32,6 +31,8 @@ fn value(quantity: CellQuantity, solid: &dyn Force, cell: u32, positions: &[Vec3
         CellQuantity::StrainEnergy => field.energy_density * field.volume,
         CellQuantity::StrainEnergyDensity => field.energy_density,
         CellQuantity::Volume => field.current_volume,
+        CellQuantity::Law => solid.adapted(cell, at)?.law,
+        CellQuantity::Excess => solid.adapted(cell, at)?.excess,
         CellQuantity::VolumeRatio => field.current_volume / field.volume,
     };
     Some((value, field.volume))

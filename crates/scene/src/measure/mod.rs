@@ -5,6 +5,7 @@
 mod body;
 mod cells;
 mod contact;
+mod levels;
 mod points;
 mod reaction;
 mod skin;
@@ -12,13 +13,13 @@ mod skin;
 use souple_engine::World;
 use souple_math::Vec3;
 
-use crate::compile::{Draft, hold_name, solid_name};
+use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
 use crate::scene::SkinInfo;
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
-    BodyQuantity, CellQuantity, Momentum, PointQuantity, Rank, Reduction, SkinQuantity, Subject,
-    WorldQuantity,
+    BodyQuantity, CellQuantity, LevelsQuantity, Momentum, PointQuantity, Rank, Reduction, SkinQuantity,
+    Subject, WorldQuantity,
 };
 
 /// A probe that knows where to read.
@@ -46,6 +47,7 @@ enum Target {
     BodyMomentum(Momentum, Part),
     Cells(CellQuantity, CellPart),
     Skin(SkinQuantity, SkinInfo),
+    Levels(LevelsQuantity, LevelsPart),
 }
 
 /// Points of a body.
@@ -54,6 +56,8 @@ struct Part {
     system: usize,
     /// Among the rows of the system.
     rows: Vec<u32>,
+    /// Rows of coarser points of a body with levels in the same region, for what holds them.
+    coarser: Vec<u32>,
     /// Where the rows started [m].
     starts: Vec<Vec3>,
     /// All rows of the body, for its centre of mass.
@@ -72,6 +76,15 @@ struct CellPart {
     system: usize,
     solid: String,
     cells: Vec<u32>,
+}
+
+/// Levels of the body with the force of this name.
+#[derive(Clone, Debug)]
+struct LevelsPart {
+    system: usize,
+    force: String,
+    /// Only this one.
+    level: Option<usize>,
 }
 
 /// What a probe reads.
@@ -115,6 +128,7 @@ impl ProbeInfo {
             (Subject::Points(quantity), _) => Target::Points(quantity, part(probe, draft)?),
             (Subject::Body(quantity), _) => Target::Body(quantity, matter(probe, draft)?),
             (Subject::Cells(quantity), _) => Target::Cells(quantity, cell_part(probe, draft)?),
+            (Subject::Levels(quantity), _) => Target::Levels(quantity, levels_part(probe, draft)?),
         };
         Some(Self {
             name: probe.name.clone(),
@@ -137,6 +151,7 @@ impl ProbeInfo {
         match &self.target {
             Target::World(quantity) => Measurement::Number(of_world(*quantity, world)),
             Target::Skin(quantity, skin) => Measurement::Number(skin::measure(*quantity, skin, world)),
+            Target::Levels(quantity, part) => Measurement::Number(levels::measure(*quantity, part, world)),
             Target::WorldMomentum(momentum, about) => {
                 let (linear, angular) = world.momentum();
                 self.vector(match momentum {
@@ -190,8 +205,16 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         Some(region) => draft.selector(body).points(region),
         None => (0..body.mesh.points.len() as u32).collect(),
     };
+    let is_held = matches!(probe.quantity.build.subject, Subject::Points(PointQuantity::Reaction));
+    let rows_in = |level: &Placed| -> Vec<u32> {
+        let first = level.rows.start as u32;
+        let points = probe.region.as_ref().map(|region| draft.selector(level).points(region));
+        let points = points.unwrap_or_else(|| (0..level.mesh.points.len() as u32).collect());
+        points.into_iter().map(|point| first + point).collect()
+    };
     Some(Part {
         system: body.system,
+        coarser: body.levels_of().filter(|_| is_held).flat_map(rows_in).collect(),
         rows: points.iter().map(|point| body.rows.start as u32 + point).collect(),
         starts: points.iter().map(|point| body.mesh.points[*point as usize]).collect(),
         whole: body.mass_rows(),
@@ -222,9 +245,27 @@ fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
     Some(Part { rows: body.mass_rows().map(|row| row as u32).collect(), ..part })
 }
 
+/// The levels that a probe is of; `None` where its body has not so many, which is reported.
+fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
+    let body = draft.body(probe.body.as_deref()?)?;
+    let count = body.levels.as_ref().map_or(0, |levels| levels.coarser.len() + 1);
+    let is_there = probe.level.is_none_or(|level| level < count);
+    if count == 0 || !is_there {
+        let message = format!("body `{}` has {count} levels", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body with `levels`, and one of them");
+        return None;
+    }
+    Some(LevelsPart { system: body.system, force: solid_name(&body.spec.name), level: probe.level })
+}
+
 /// The cells that a probe is of.
 fn cell_part(probe: &Probe, draft: &Draft) -> Option<CellPart> {
     let body = draft.body(probe.body.as_deref()?)?;
+    if probe.quantity.build.is_of_adaptation() && body.spec.adapt.is_none() {
+        let message = format!("the elements of body `{}` keep their law", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body with `adapt`");
+        return None;
+    }
     let cells = match &probe.region {
         Some(region) => draft.selector(body).cells(region),
         None => (0..body.mesh.cell_count() as u32).collect(),

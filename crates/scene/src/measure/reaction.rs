@@ -6,6 +6,7 @@
 //! them to their free neighbours, whose accelerations follow from the same law. Where a stepper knows no inertia,
 //! `r = −f`.
 
+use souple_engine::levels::Followers;
 use souple_engine::{System, World};
 use souple_math::Vec3;
 
@@ -16,11 +17,17 @@ use super::Part;
 const TOLERANCE: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 500;
 
-/// Reactions at the rows of a part; zero at those that nothing holds [N].
+/// Reactions at the rows of a part, and of its coarser points; zero at those that nothing holds [N].
 pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
     let timestep = world.model().timestep(part.system);
     world.with_system(part.system, |system: &System, state, around, ws| {
         system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
+        // what acts on points that follow acts on those that they follow
+        for (index, levels) in
+            system.forces.iter().enumerate().filter_map(|(index, force)| Some((index, force.levels()?)))
+        {
+            levels.give_back(Followers::All, &ws.scratches[index], &mut ws.row_force);
+        }
         let force = &ws.row_force;
         // r = M a − f
         let mut balance: Vec<Vec3> = force.iter().map(|f| -*f).collect();
@@ -40,7 +47,7 @@ pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
             let at = system.view(index, &ws.rows, state, around);
             system.forces[index].add_force(&at, &mut ws.scratches[index], &mut reactions);
         }
-        part.rows.iter().map(|row| reactions[*row as usize]).collect()
+        part.rows.iter().chain(&part.coarser).map(|row| reactions[*row as usize]).collect()
     })
 }
 

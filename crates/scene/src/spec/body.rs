@@ -2,11 +2,13 @@
 
 use souple_math::Vec3;
 use souple_models::materials;
-use souple_models::solids::{BuildSection, Quadrature, SECTIONS, Section};
+use souple_models::solids::{BuildFormulation, BuildSection, FORMULATIONS, Quadrature, SECTIONS, Section};
 use souple_table::{Range, Value};
 
+use super::adapt::{ADAPT, AdaptSpec};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::frames::{FRAMES, FramesSpec};
+use super::levels::{LEVELS, LevelsSpec};
 use super::mesh::{MESH, MeshSpec};
 use super::network::Network;
 use super::region::{Region, direction};
@@ -20,6 +22,9 @@ pub(crate) const MATERIAL: EntryShape =
 
 pub(crate) const SECTION: EntryShape =
     EntryShape { tag: "name", kind: "section", outlines: || outlines(&SECTIONS), instead: &[] };
+
+pub(crate) const FORMULATION: EntryShape =
+    EntryShape { tag: "name", kind: "formulation", outlines: || outlines(&FORMULATIONS), instead: &[] };
 
 pub(crate) static DAMPING: Keys = Keys::new(
     "damping",
@@ -65,6 +70,7 @@ pub(crate) static BODY: Keys = Keys::new(
             "what its cells are sections of, where they are no volumes: a plane body, a membrane, a bar, a cable",
         ),
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
+        Key::new("levels", Shape::Table(&LEVELS), "coarser meshes that are at work where little happens"),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new(
             "mass",
@@ -78,6 +84,18 @@ pub(crate) static BODY: Keys = Keys::new(
             "samples in an element: the cheapest of full rank, or exact ones for quadratic stress",
         )
         .or(Value::Text("default")),
+        Key::new(
+            "formulation",
+            Shape::Entry(FORMULATION),
+            "how its forces are evaluated; sample by sample where left out",
+        ),
+        Key::new(
+            "tangent",
+            Shape::Choice(&["exact", "difference"]),
+            "products with its stiffness in solvers without a matrix: derived, or by differences of forces",
+        )
+        .or(Value::Text("exact")),
+        Key::new("adapt", Shape::Table(&ADAPT), "a second law for the elements that need one while it runs"),
         Key::new("damping", Shape::Table(&DAMPING), "what takes energy from it"),
         Key::number(
             "drag",
@@ -108,9 +126,16 @@ pub struct Body {
     pub section: Option<Chosen<BuildSection>>,
     /// What carries it; the points of its mesh where left out.
     pub frames: Option<FramesSpec>,
+    /// Coarser meshes of it.
+    pub levels: Option<LevelsSpec>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
+    /// How its forces are evaluated; sample by sample where left out.
+    pub formulation: Option<Chosen<BuildFormulation>>,
+    pub tangent: TangentKind,
+    /// A second law for the elements that need one.
+    pub adapt: Option<AdaptSpec>,
     pub damping: Damping,
     /// Of the whole body against a medium at rest [N s/m].
     pub drag: f64,
@@ -145,6 +170,13 @@ pub enum MassKind {
     Consistent,
     /// To all points alike.
     Uniform,
+}
+
+/// How products with the stiffness are made where no matrix is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TangentKind {
+    Exact,
+    Difference,
 }
 
 /// What takes energy from a body.
@@ -213,6 +245,7 @@ impl Body {
             material: read_material(reader),
             section: reader.entry("section", &SECTIONS),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
+            levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: match reader.choice("mass") {
                 "consistent" => MassKind::Consistent,
@@ -224,6 +257,13 @@ impl Body {
             } else {
                 Quadrature::Default
             },
+            formulation: reader.entry("formulation", &FORMULATIONS),
+            tangent: if reader.choice("tangent") == "difference" {
+                TangentKind::Difference
+            } else {
+                TangentKind::Exact
+            },
+            adapt: reader.table("adapt").map(|table| AdaptSpec::read(&table)),
             damping,
             drag: reader.number("drag"),
             placement: Placement::read(reader),
@@ -248,7 +288,7 @@ impl Body {
 
 /// The material, built once on trial: a law as text may be wrong where its table is right, and numbers that are each in their
 /// range may make no body together.
-fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
+pub(super) fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>> {
     let chosen = reader.entry("material", &materials::TABLE)?;
     let Err(error) = (chosen.entry.build)(&chosen.values) else { return Some(chosen) };
     let (mut site, mut node) = (chosen.site.clone(), reader.reading("material").map(|reading| reading.node));

@@ -1,11 +1,13 @@
 //! The specification of a scene: what its text says, checked key by key, before anything is built.
 
+pub mod adapt;
 pub mod body;
 pub mod boundary;
 pub mod contact;
 pub mod expect;
 pub mod frames;
 pub mod interaction;
+pub mod levels;
 pub mod mesh;
 pub mod network;
 pub mod picture;

@@ -7,7 +7,7 @@ use souple_models::network::{BuildLink, LINKS};
 use souple_models::solids::Quadrature;
 use souple_table::{Range, Value};
 
-use super::body::{Body, Damping, MassKind, Placement, ROTATION};
+use super::body::{Body, Damping, MassKind, Placement, ROTATION, TangentKind};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::region::{Region, RegionKind};
 use crate::diagnostic::{Code, Site};
@@ -235,6 +235,9 @@ impl Network {
             regions: Vec::new(),
             mass: MassKind::Lumped,
             quadrature: Quadrature::Default,
+            formulation: None,
+            tangent: TangentKind::Exact,
+            adapt: None,
             damping: Damping::default(),
             drag: 0.0,
             placement: Placement::read(reader),
@@ -245,6 +248,7 @@ impl Network {
             loads: reader.tables("loads").iter().map(Load::read).collect(),
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
             frames: None,
+            levels: None,
             network: Some(network),
             site: reader.site(),
         }

@@ -1,6 +1,7 @@
 //! Probes: what is measured along a run.
 
 use souple_math::Vec3;
+use souple_table::Range;
 
 use super::quantity::{NAMES, QUANTITIES, QuantityEntry, Rank, Reduction, Subject};
 use super::region::Region;
@@ -26,6 +27,11 @@ pub(crate) static PROBE: Keys = Keys::new(
         ),
         Key::new("skin", Shape::Text, "whose, for quantities of skins; a body's skin has the body's name"),
         Key::new("contact", Shape::Text, "only what this contact does (for quantities of contacts)"),
+        Key::integer(
+            "level",
+            Range::NOT_NEGATIVE,
+            "of a body with levels: only this one, counted from 0, the coarsest",
+        ),
         Key::vector("about", "m", "the place that moments are taken about"),
     ],
 );
@@ -41,6 +47,8 @@ pub struct Probe {
     pub reduction: Reduction,
     pub contact: Option<String>,
     pub skin: Option<String>,
+    /// Only this level of a body.
+    pub level: Option<usize>,
     /// The place that moments are taken about [m]; the centre of mass where `None`.
     pub about: Option<Vec3>,
     pub site: Site,
@@ -97,6 +105,7 @@ impl Probe {
             reduction,
             contact: reader.maybe_text("contact"),
             skin: reader.maybe_text("skin"),
+            level: reader.maybe_integer("level").map(|level| level as usize),
             about: reader.maybe_vector("about"),
             site: reader.site(),
         }
@@ -144,7 +153,10 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
                 );
             }
         }
-        Subject::Points(_) | Subject::Cells(_) | Subject::Body(_) => {
+        Subject::Levels(_) if reader.has("region") => {
+            refuse(reader, "region", format!("`{name}` is of a whole body"), "no region");
+        }
+        Subject::Points(_) | Subject::Cells(_) | Subject::Body(_) | Subject::Levels(_) => {
             if !reader.has("body") {
                 refuse(
                     reader,
@@ -172,6 +184,14 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             "skin",
             format!("`{name}` is of no skin"),
             "a quantity of skins, such as \"skin.area\"",
+        );
+    }
+    if reader.has("level") && !matches!(quantity.subject, Subject::Levels(_)) {
+        refuse(
+            reader,
+            "level",
+            format!("`{name}` is of no level"),
+            "a quantity of levels, such as \"levels.active\"",
         );
     }
     if reader.has("about") && !quantity.is_moment() {

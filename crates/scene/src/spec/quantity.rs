@@ -48,6 +48,14 @@ pub enum Subject {
     BodyOrWorld(Momentum),
     World(WorldQuantity),
     Skin(SkinQuantity),
+    /// One value of a body with levels, or of one of its levels.
+    Levels(LevelsQuantity),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LevelsQuantity {
+    Active,
+    Ghosts,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,6 +96,8 @@ pub enum CellQuantity {
     StrainEnergyDensity,
     Volume,
     VolumeRatio,
+    Law,
+    Excess,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +136,11 @@ impl Quantity {
         )
     }
 
+    /// Whether it is of bodies whose elements change their law.
+    pub fn is_of_adaptation(&self) -> bool {
+        matches!(self.subject, Subject::Cells(CellQuantity::Law | CellQuantity::Excess))
+    }
+
     /// Whether it is of contacts, of which a probe may choose one.
     pub fn is_of_contact(&self) -> bool {
         matches!(
@@ -145,6 +160,8 @@ const KINEMATICS: &str = "kinematics of points";
 const CONTACT: &str = "Wriggers 2006, §5";
 const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
+const ADAPTATION: &str = "Faure 2014, §6.4";
+const LEVELS: &str = "Debunne 2000, 5 §2.3";
 const MECHANICS: &str = "balance of momentum";
 
 const fn entry(
@@ -166,6 +183,10 @@ const fn cells(unit: &'static str, reduction: Reduction, quantity: CellQuantity)
 
 const fn skin(unit: &'static str, quantity: SkinQuantity) -> Quantity {
     Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Skin(quantity))
+}
+
+const fn levels(quantity: LevelsQuantity) -> Quantity {
+    Quantity::of("", Rank::Number, Reduction::Sum, Subject::Levels(quantity))
 }
 
 const fn world(unit: &'static str, quantity: WorldQuantity) -> Quantity {
@@ -282,6 +303,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         cells("", Mean, CellQuantity::VolumeRatio),
     ),
     &entry(
+        "law",
+        "of each cell of a body that adapts: 0 for the first, 1 for the second",
+        ADAPTATION,
+        cells("", Mean, CellQuantity::Law),
+    ),
+    &entry(
+        "excess",
+        "of each cell of a body that adapts: its greatest criterion over the threshold",
+        ADAPTATION,
+        cells("", Max, CellQuantity::Excess),
+    ),
+    &entry(
         "mass",
         "of the points",
         MECHANICS,
@@ -348,6 +381,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         skin("", SkinQuantity::Events),
     ),
     &entry("skin.speed", "the greatest at the surface", SKIN, skin("m/s", SkinQuantity::Speed)),
+    &entry(
+        "levels.active",
+        "points that move by themselves, of all levels or of the key `level`",
+        LEVELS,
+        levels(LevelsQuantity::Active),
+    ),
+    &entry(
+        "levels.ghosts",
+        "points that follow because active ones see them, of all levels or of the key `level`",
+        LEVELS,
+        levels(LevelsQuantity::Ghosts),
+    ),
     &entry("skin.blocks", "blocks of 512 nodes that its grid keeps", SKIN, skin("", SkinQuantity::Blocks)),
 ];
 

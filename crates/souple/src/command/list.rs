@@ -104,6 +104,7 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("laws", laws()),
         ("elements", pages_of(&souple_mesh::ELEMENTS)),
         ("sections", pages_of(&souple_models::solids::SECTIONS)),
+        ("formulations", pages_of(&souple_models::solids::FORMULATIONS)),
         ("links", pages_of(&souple_models::network::LINKS)),
         ("placements", pages_of(&souple_models::frames::PLACEMENTS)),
         ("weights", pages_of(&souple_models::frames::WEIGHTS)),

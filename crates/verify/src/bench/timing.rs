@@ -102,7 +102,7 @@ impl Timed {
         self.figure(name, rates, held, ("steps/s", true))
     }
 
-    fn figure(
+    pub fn figure(
         &self,
         name: &str,
         values: Vec<f64>,

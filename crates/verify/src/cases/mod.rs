@@ -1,5 +1,6 @@
 //! The cases: one file and one line in [`TABLES`] for each subject.
 
+mod adaptive;
 mod bar;
 mod cantilever_orders;
 mod cantilevers;
@@ -8,9 +9,12 @@ mod elements;
 mod energy;
 mod explicit;
 mod filling;
+mod formulations;
 mod frames;
 mod frequencies;
 mod implicit;
+mod levels;
+mod long_beam;
 mod motion;
 mod network;
 mod patch;
@@ -44,12 +48,16 @@ pub const TABLES: &[&[Case]] = &[
     implicit::CASES,
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
+    long_beam::CASES,
+    adaptive::CASES,
+    formulations::CASES,
     wall_cube::CASES,
     contact::CASES,
     network::CASES,
     rheometer::CASES,
     rheology::CASES,
     frames::CASES,
+    levels::CASES,
     skins::CASES,
 ];
 

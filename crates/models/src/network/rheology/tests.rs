@@ -1,3 +1,5 @@
+//! Networks of springs, dampers and sliders against loops and sums known by hand, and what texts are refused.
+
 use super::*;
 
 const TE: f64 = 1.0 / 300.0;

@@ -1,0 +1,136 @@
+//! Bodies of several meshes, of which at each place one is at work.
+//!
+//! The points of all meshes are unknowns, but only *active* ones move by themselves. All others follow: each is a
+//! weighted sum of active points, and these are not the same ones from step to step. Which they are is told by the memory
+//! of the body's force, so State holds it. [`crate::steppers::Staggered`] steps such bodies; no other stepper does.
+
+use std::ops::Range;
+
+use souple_math::Vec3;
+
+use crate::force::Scratch;
+use crate::system::Rows;
+
+/// How a step is divided: into `2^halvings` ticks. Points of rate `i` are pushed `2^i` times, evenly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Division {
+    /// Of the whole step [s].
+    pub timestep: f64,
+    pub halvings: u32,
+    pub filter: Filter,
+}
+
+impl Division {
+    pub fn ticks(&self) -> u32 {
+        1 << self.halvings
+    }
+
+    /// Seconds between two pushes of a rate.
+    pub fn interval(&self, rate: u32) -> f64 {
+        self.timestep / f64::from(1_u32 << rate)
+    }
+}
+
+/// What becomes of a velocity after a push.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// It stays: modified Euler.
+    None,
+    /// `v ← (1 + h²K/m)⁻¹ v` with the point's own stiffness `K` at rest: twice the step, but it brakes all motion.
+    SemiImplicit,
+}
+
+/// Which of the points that follow.
+#[derive(Clone, Copy, Debug)]
+pub enum Followers<'a> {
+    /// Those that elastic forces read.
+    Ghosts,
+    /// These rows, as far as they follow.
+    These(&'a [u32]),
+    All,
+}
+
+/// What a value on rows is: positions follow with the shape at rest, velocities do not know it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kinematic {
+    Position,
+    Velocity,
+}
+
+/// Where impulses come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Push {
+    /// The body's own elasticity, at this rate.
+    Elastic { rate: u32 },
+    /// All other forces.
+    Outer,
+}
+
+/// How many points do what.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Census {
+    /// Active points of each level, from coarse to fine.
+    pub active: Vec<usize>,
+    /// Points of each level that follow because a force or another ghost reads them.
+    pub ghosts: Vec<usize>,
+    /// Of each point of the finest mesh: the level of the mesh that is at work there.
+    pub level_of_point: Vec<u32>,
+}
+
+/// A force whose body has several meshes.
+pub trait Levels: Send + Sync {
+    /// Rows of the points of all meshes.
+    fn rows(&self) -> Range<usize>;
+
+    /// Chooses the active points by the rows as they stand, and gets lists ready for steps so divided. Where others are
+    /// active then, all rows follow anew; velocities are corrected by what that would do to the momentum.
+    fn adapt(&self, division: &Division, rows: &mut Rows, memory: &mut [f64], scratch: &mut Scratch);
+
+    /// Rows of the active points, ascending.
+    fn active<'a>(&self, scratch: &'a Scratch) -> &'a [u32];
+
+    /// Moves active points by `x += h v`, after their velocities have faded as long.
+    fn drift(&self, timestep: f64, scratch: &Scratch, rows: &mut Rows);
+
+    /// `v += interval · a` of the active points of a rate.
+    fn accelerate(
+        &self,
+        rate: u32,
+        division: &Division,
+        scratch: &Scratch,
+        accelerations: &[Vec3],
+        velocities: &mut [Vec3],
+    );
+
+    /// Brings followers to where those are that they follow.
+    fn follow(&self, who: Followers, kind: Kinematic, scratch: &Scratch, values: &mut [Vec3]);
+
+    /// Gives what acts on followers to those that they follow; followers are left with nothing.
+    fn give_back(&self, who: Followers, scratch: &Scratch, impulses: &mut [Vec3]);
+
+    /// `impulses += interval · f` of the elastic forces of a rate on active points, at placed rows.
+    fn add_impulses(
+        &self,
+        rate: u32,
+        division: &Division,
+        rows: &Rows,
+        scratch: &mut Scratch,
+        impulses: &mut [Vec3],
+    );
+
+    /// `v += impulse / m` of active points; no impulse is left.
+    fn kick(
+        &self,
+        push: Push,
+        division: &Division,
+        scratch: &Scratch,
+        impulses: &mut [Vec3],
+        velocities: &mut [Vec3],
+    );
+
+    /// Elastic forces of samples that a step so divided evaluates, by the last lists made.
+    fn evaluations(&self, division: &Division, scratch: &Scratch) -> usize;
+
+    /// Who does what, by the memory.
+    fn census(&self, memory: &[f64]) -> Census;
+}

@@ -1,0 +1,330 @@
+//! Steps of their own for every point: bodies of several meshes, of which a few points are pushed often, most seldom.
+
+use std::ops::Range;
+
+use souple_math::Vec3;
+use souple_table::{Parameter, Range as Allowed, Value};
+
+use crate::force::Force;
+use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Push};
+use crate::state::SystemState;
+use crate::system::{System, SystemWorkspace};
+
+use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
+
+/// A step is `2^halvings` ticks. At each tick the points of the highest rate are pushed, and of one other rate at most, in
+/// turn: no tick has much more to do than another. All points move at every tick with the velocity they have, so that
+/// those pushed seldom are seen where they are. Forces from outside act at every tick, but those that couple no rows:
+/// nothing can make them stiff, they are evaluated once a step and act at each point's own dates.
+#[derive(Debug)]
+pub struct Staggered {
+    pub halvings: u32,
+    pub schedule: Schedule,
+    pub filter: Filter,
+}
+
+/// Which rates are due together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Schedule {
+    /// The highest, and at most one other.
+    Staggered,
+    /// All whose interval begins.
+    Plain,
+}
+
+pub(super) const ENTRY: StepperEntry = StepperEntry {
+    name: "staggered",
+    summary: "of bodies with levels: modified Euler, each point with a power-of-two part of the step as its own",
+    source: "Debunne 2000, 5 §4.3",
+    parameters: &[
+        Parameter::integer(
+            "halvings",
+            Allowed::closed(0.0, 12.0),
+            "the shortest interval is the step halved so many times",
+        )
+        .or(Value::Integer(5)),
+        Parameter::choice(
+            "schedule",
+            &["staggered", "plain"],
+            "the fastest points and at most one other rate at a time, or all whose interval begins",
+        )
+        .or(Value::Text("staggered")),
+        Parameter::boolean(
+            "semi_implicit",
+            "divide each velocity by 1 + h²K/m of its point: twice the step, all motion braked; one-way coupling only",
+        )
+        .or(Value::Boolean(false)),
+    ],
+    build: |values| {
+        Box::new(Staggered {
+            halvings: values.integer("halvings") as u32,
+            schedule: if values.text("schedule") == "plain" { Schedule::Plain } else { Schedule::Staggered },
+            filter: if values.boolean("semi_implicit") { Filter::SemiImplicit } else { Filter::None },
+        })
+    },
+};
+
+impl Schedule {
+    /// The rates that are due at a tick, from high to low.
+    pub fn due(self, tick: u32, halvings: u32) -> impl Iterator<Item = u32> {
+        // rate i comes every 2^(halvings - i) ticks; staggered, it comes in the middle of its interval
+        let slowest = match self {
+            Self::Plain => halvings.saturating_sub(tick.trailing_zeros()),
+            Self::Staggered => halvings,
+        };
+        let other = match self {
+            Self::Staggered if tick > 0 => Some(halvings - 1 - tick.trailing_zeros()),
+            _ => None,
+        };
+        (slowest..=halvings).rev().chain(other)
+    }
+}
+
+/// Scratch of this stepper.
+#[derive(Debug, Default)]
+pub struct StaggeredBuffers {
+    /// Rows that forces from outside couple.
+    watched: Vec<u32>,
+    is_watched: Vec<bool>,
+    /// Rows of no body with levels.
+    others: Vec<Range<usize>>,
+    /// Accelerations that stay the same throughout the step.
+    steady: Vec<Vec3>,
+}
+
+fn bodies(system: &System) -> impl Iterator<Item = (usize, &dyn Levels)> {
+    system.forces.iter().enumerate().filter_map(|(index, force)| Some((index, force.levels()?)))
+}
+
+/// Whether a force may be stiff: it couples rows.
+fn couples(force: &dyn Force, state: &SystemState) -> bool {
+    let mut couples = false;
+    force.visit_cliques(&state.pairs, &mut |_| couples = true);
+    couples
+}
+
+impl StaggeredBuffers {
+    fn prepare(&mut self, system: &System, state: &SystemState) {
+        self.is_watched.clear();
+        self.is_watched.resize(state.q.len(), false);
+        for force in system.forces.iter().filter(|force| force.levels().is_none()) {
+            force.visit_cliques(&state.pairs, &mut |rows| {
+                rows.iter().for_each(|row| self.is_watched[*row as usize] = true);
+            });
+        }
+        self.watched.clear();
+        self.watched.extend((0..state.q.len() as u32).filter(|row| self.is_watched[*row as usize]));
+        self.others.clear();
+        let mut next = 0;
+        // bodies have their rows one after the other
+        for (_, levels) in bodies(system) {
+            let rows = levels.rows();
+            self.others.push(next..rows.start);
+            next = rows.end;
+        }
+        self.others.push(next..state.q.len());
+    }
+}
+
+/// What a step is made with.
+struct Stage<'a, 'b> {
+    step: &'a Step<'b>,
+    division: Division,
+    next: &'a mut SystemState,
+    ws: &'a mut SystemWorkspace,
+    buffers: &'a mut StaggeredBuffers,
+}
+
+impl Stage<'_, '_> {
+    /// Sums the forces from outside that couple rows, or those that do not; whether there is any.
+    fn sum_outside(&mut self, coupling: bool) -> bool {
+        let (Step { system, around, .. }, ws) = (*self.step, &mut *self.ws);
+        let mut is_any = false;
+        for (index, force) in system.forces.iter().enumerate() {
+            if force.levels().is_none() && couples(force.as_ref(), self.next) == coupling {
+                let at = system.view(index, &ws.rows, self.next, around);
+                force.add_force(&at, &mut ws.scratches[index], &mut ws.row_force);
+                is_any = true;
+            }
+        }
+        is_any
+    }
+
+    /// Accelerations by forces that couple no rows: the same throughout the step. They come with the elastic forces, at
+    /// each point's own dates, so that what is in balance does not quiver.
+    fn hold_steady(&mut self) {
+        self.sum_outside(false);
+        let (ws, steady) = (&mut *self.ws, &mut self.buffers.steady);
+        steady.clear();
+        steady.resize(ws.row_force.len(), Vec3::ZERO);
+        for (index, levels) in bodies(self.step.system) {
+            let scratch = &ws.scratches[index];
+            levels.give_back(Followers::All, scratch, &mut ws.row_force);
+            levels.kick(Push::Outer, &self.division, scratch, &mut ws.row_force, steady);
+        }
+        for row in self.buffers.others.iter().flat_map(Clone::clone) {
+            steady[row] =
+                std::mem::replace(&mut ws.row_force[row], Vec3::ZERO) / self.step.system.mass.diagonal[row];
+        }
+    }
+
+    /// Pushes by the forces from outside that couple rows.
+    fn push_from_outside(&mut self, tick: f64) {
+        let clock = std::time::Instant::now();
+        if self.sum_outside(true) {
+            let (system, ws, buffers) = (self.step.system, &mut *self.ws, &*self.buffers);
+            for row in &buffers.watched {
+                ws.row_force[*row as usize] = ws.row_force[*row as usize] * tick;
+            }
+            for (index, levels) in bodies(system) {
+                let scratch = &ws.scratches[index];
+                levels.give_back(Followers::These(&buffers.watched), scratch, &mut ws.row_force);
+                let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
+                levels.kick(Push::Outer, &self.division, scratch, impulses, velocities);
+            }
+            for row in buffers.others.iter().flat_map(Clone::clone) {
+                let impulse = std::mem::replace(&mut ws.row_force[row], Vec3::ZERO);
+                ws.rows.velocities[row] += impulse / system.mass.diagonal[row];
+            }
+        }
+        for row in self.buffers.others.iter().flat_map(Clone::clone) {
+            self.ws.rows.velocities[row] += self.buffers.steady[row] * tick;
+        }
+        self.ws.stages.forces += clock.elapsed().as_secs_f64();
+    }
+
+    /// Pushes by elastic forces of the rates that are due.
+    fn push_from_inside(&mut self, tick: u32, schedule: Schedule) {
+        let (system, ws) = (self.step.system, &mut *self.ws);
+        let clock = std::time::Instant::now();
+        for rate in schedule.due(tick, self.division.halvings) {
+            for (index, levels) in bodies(system) {
+                let scratch = &mut ws.scratches[index];
+                let steady = &self.buffers.steady;
+                levels.accelerate(rate, &self.division, scratch, steady, &mut ws.rows.velocities);
+                levels.add_impulses(rate, &self.division, &ws.rows, scratch, &mut ws.row_force);
+                let (impulses, velocities) = (&mut ws.row_force, &mut ws.rows.velocities);
+                levels.kick(Push::Elastic { rate }, &self.division, scratch, impulses, velocities);
+            }
+        }
+        ws.stages.forces += clock.elapsed().as_secs_f64();
+    }
+
+    /// Moves what is active for a tick that ends at `end`; what is led is where it is led to.
+    fn drift(&mut self, timestep: f64, end: f64) {
+        let Step { system, around, .. } = *self.step;
+        let rows = &mut self.ws.rows;
+        for (index, levels) in bodies(system) {
+            levels.drift(timestep, &self.ws.scratches[index], rows);
+        }
+        for row in self.buffers.others.iter().flat_map(Clone::clone) {
+            rows.positions[row] += rows.velocities[row] * timestep;
+        }
+        system.impose_constraints(&mut rows.positions, &mut rows.velocities, end, around.load);
+        rows.time = end;
+    }
+
+    fn run(&mut self, schedule: Schedule) {
+        let Step { system, around, start, timestep } = *self.step;
+        for (index, levels) in bodies(system) {
+            let memory = &mut self.next.memory[system.memory_range(index)];
+            let scratch = &mut self.ws.scratches[index];
+            levels.adapt(&self.division, &mut self.ws.rows, memory, scratch);
+        }
+        self.ws.row_force.fill(Vec3::ZERO);
+        let ticks = self.division.ticks();
+        let tick_length = timestep / f64::from(ticks);
+        self.hold_steady();
+        for tick in 0..ticks {
+            self.push_from_outside(tick_length);
+            self.push_from_inside(tick, schedule);
+            system.advance_memory(self.ws, self.next, around, tick_length);
+            self.drift(tick_length, start + f64::from(tick + 1) * tick_length);
+            follow(system, Followers::Ghosts, self.ws);
+            follow(system, Followers::These(&self.buffers.watched), self.ws);
+        }
+        follow(system, Followers::All, self.ws);
+        // what is held is where it is held, also where coarser points carry it
+        let rows = &mut self.ws.rows;
+        system.impose_constraints(&mut rows.positions, &mut rows.velocities, self.step.end(), around.load);
+    }
+}
+
+fn follow(system: &System, who: Followers, ws: &mut SystemWorkspace) {
+    for (index, levels) in bodies(system) {
+        let scratch = &ws.scratches[index];
+        levels.follow(who, Kinematic::Position, scratch, &mut ws.rows.positions);
+        levels.follow(who, Kinematic::Velocity, scratch, &mut ws.rows.velocities);
+    }
+}
+
+impl Stepper for Staggered {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn refuses(&self, system: &System) -> Option<String> {
+        let has_levels = bodies(system).next().is_some();
+        (!has_levels || !system.kinematics.is_trivial() || !system.mass.is_lumped())
+            .then(|| "it steps points with lumped masses, of bodies with `levels`".to_owned())
+    }
+
+    fn steps_levels(&self) -> bool {
+        true
+    }
+
+    /// Points choose their intervals by themselves.
+    fn stability(&self) -> Stability {
+        Stability::Unconditional
+    }
+
+    fn step(
+        &self,
+        step: &Step,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError> {
+        let division = Division { timestep: step.timestep, halvings: self.halvings, filter: self.filter };
+        let mut buffers = std::mem::take(&mut ws.staggered);
+        buffers.prepare(step.system, next);
+        // all rows are points: they move where they stand
+        std::mem::swap(&mut next.q, &mut ws.rows.positions);
+        std::mem::swap(&mut next.v, &mut ws.rows.velocities);
+        ws.rows.time = step.start;
+        Stage { step, division, next: &mut *next, ws: &mut *ws, buffers: &mut buffers }.run(self.schedule);
+        std::mem::swap(&mut next.q, &mut ws.rows.positions);
+        std::mem::swap(&mut next.v, &mut ws.rows.velocities);
+        ws.staggered = buffers;
+        Ok(StepReport::default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Schedule;
+
+    /// Rate `i` is due `2^i` times a step, evenly; staggered, no tick has more than two rates, plain ticks have up to all.
+    #[test]
+    fn every_rate_has_its_dates() {
+        let halvings = 3;
+        for (schedule, most) in [(Schedule::Staggered, 2), (Schedule::Plain, 4)] {
+            let mut dates = vec![Vec::new(); halvings as usize + 1];
+            for tick in 0..1 << halvings {
+                let due: Vec<u32> = schedule.due(tick, halvings).collect();
+                assert!(due.len() <= most, "{schedule:?} {tick}: {due:?}");
+                due.iter().for_each(|rate| dates[*rate as usize].push(tick));
+            }
+            for (rate, dates) in dates.iter().enumerate() {
+                assert_eq!(dates.len(), 1 << rate, "{schedule:?} {rate}");
+                let apart = (1 << halvings) >> rate;
+                assert!(dates.windows(2).all(|pair| pair[1] - pair[0] == apart));
+            }
+        }
+        let staggered: Vec<Vec<u32>> =
+            (0..8).map(|tick| Schedule::Staggered.due(tick, 3).collect()).collect();
+        assert_eq!(
+            staggered,
+            [vec![3], vec![3, 2], vec![3, 1], vec![3, 2], vec![3, 0], vec![3, 2], vec![3, 1], vec![3, 2]]
+        );
+    }
+}

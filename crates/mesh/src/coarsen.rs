@@ -1,0 +1,111 @@
+//! Coarser meshes of the same body: its surface filled anew with larger tetrahedra, of several sizes the best.
+//!
+//! A few tetrahedra more or less change the worst of them a lot (Debunne 2000, 5 §2.1).
+
+use souple_math::Vec3;
+use souple_table::{Value, Values};
+
+use crate::fill::{Options, PARAMETERS, fill_mesh};
+use crate::repair::RepairLimits;
+use crate::{ElementKind, Mesh, MeshError};
+
+/// Other sizes that are tried, relative to the one asked for.
+const OTHERS: [f64; 6] = [0.98, 1.02, 0.96, 1.04, 0.94, 1.06];
+
+/// Shapes of all tetrahedra of a mesh: three times the inscribed over the circumscribed radius, 1 for a regular one.
+pub fn radius_ratios(mesh: &Mesh) -> Vec<f64> {
+    mesh.cells()
+        .filter(|cell| cell.kind == ElementKind::Tet4)
+        .map(|cell| radius_ratio([0, 1, 2, 3].map(|corner: usize| mesh.points[cell.nodes[corner] as usize])))
+        .collect()
+}
+
+fn radius_ratio([a, b, c, d]: [Vec3; 4]) -> f64 {
+    let [u, v, w] = [b - a, c - a, d - a];
+    let six_volumes = u.dot(v.cross(w)).abs();
+    let twice_areas = [v.cross(w), w.cross(u), u.cross(v), (c - b).cross(d - b)];
+    let twice_surface: f64 = twice_areas.iter().map(|area| area.length()).sum();
+    // r = 3V/S and |u² v×w + v² w×u + w² u×v| = 12 V R
+    let inscribed = six_volumes / twice_surface;
+    let [vw, wu, uv, _] = twice_areas;
+    let to_centre = vw * u.length_sq() + wu * v.length_sq() + uv * w.length_sq();
+    3.0 * inscribed * 2.0 * six_volumes / to_centre.length()
+}
+
+/// The mesh of tetrahedra about as long as `size` [m] that fills the surface of a mesh, of those of nearly that size the
+/// one whose worst tetrahedron is best; groups of points are carried along.
+///
+/// # Errors
+/// None of the sizes can be filled: the last failure.
+pub fn coarser(mesh: &Mesh, size: f64) -> Result<Mesh, MeshError> {
+    let mut best = attempt(mesh, size);
+    for factor in OTHERS {
+        let other = attempt(mesh, factor * size);
+        best = match (best, other) {
+            (Ok(best), Ok(other)) if other.0 > best.0 => Ok(other),
+            (Err(_), other) => other,
+            (best, _) => best,
+        };
+    }
+    best.map(|(_, mesh)| mesh)
+}
+
+/// The least and the mean radius ratio of a filling, and the filling.
+fn attempt(mesh: &Mesh, size: f64) -> Result<([f64; 2], Mesh), MeshError> {
+    let values = Values::new().with("size", Value::Number(size)).completed(PARAMETERS);
+    let options = Options::from_values(&values.unwrap_or_else(|error| unreachable!("{error}")))?;
+    let filled = fill_mesh(mesh, RepairLimits::default(), &options)?.mesh;
+    let ratios = radius_ratios(&filled);
+    let worst = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+    Ok(([worst, mean], filled))
+}
+
+/// Mean length of the edges of all cells, each counted once for each of its cells [m].
+pub fn mean_edge(mesh: &Mesh) -> f64 {
+    let (mut sum, mut count) = (0.0, 0);
+    for cell in mesh.cells() {
+        for [a, b] in cell.kind.edges() {
+            let at = |node: &u8| mesh.points[cell.nodes[usize::from(*node)] as usize];
+            sum += (at(a) - at(b)).length();
+            count += 1;
+        }
+    }
+    sum / f64::from(count.max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::implicit::SHAPES;
+
+    /// Regular: 1. A flat one: 0. A corner of a cube: `r = 3V/S`, `R = √3/2`.
+    #[test]
+    fn radius_ratios_are_known() {
+        let regular = ElementKind::Tet4.regular();
+        let ratio = radius_ratio([regular[0], regular[1], regular[2], regular[3]]);
+        assert!((ratio - 1.0).abs() < 1e-14);
+        let corner = radius_ratio([Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]);
+        let expected = 3.0 * (0.5 / (1.5 + 0.5 * 3.0_f64.sqrt())) / (0.5 * 3.0_f64.sqrt());
+        assert!((corner - expected).abs() < 1e-14, "{corner} {expected}");
+        assert_eq!(radius_ratio([Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y]), 0.0);
+    }
+
+    /// The coarser mesh of a ball fills it, with good tetrahedra about as long as asked.
+    #[test]
+    fn coarser_meshes_are_good() {
+        let entry = SHAPES.find("ellipsoid").unwrap();
+        let values = entry.values(Values::new().with("semi_axes", Value::Vector([1.0; 3]))).unwrap();
+        let size = Values::new().with("size", Value::Number(0.15)).completed(PARAMETERS).unwrap();
+        let options = Options::from_values(&size).unwrap();
+        let fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap();
+        for size in [0.3, 0.6] {
+            let mesh = coarser(&fine, size).unwrap();
+            assert!(radius_ratios(&mesh).into_iter().all(|ratio| ratio > 0.1), "{size}");
+            let volume = mesh.volume() / fine.volume();
+            // chords of length l cut off (l/2)²/(2 R) of the radius at most
+            assert!((1.0 - 3.0 * size * size / 8.0..1.001).contains(&volume), "{size}: {volume}");
+            assert!((mean_edge(&mesh) / size - 0.87).abs() < 0.15, "{size}: {}", mean_edge(&mesh));
+        }
+    }
+}

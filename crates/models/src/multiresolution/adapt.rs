@@ -1,0 +1,170 @@
+//! Points come and go: what is subdivided and regrouped before a step.
+
+use souple_engine::Rows;
+use souple_engine::levels::{Division, Followers, Kinematic, Levels};
+use souple_math::Vec3;
+
+use super::lists::Work;
+use super::roles::Role;
+use super::{Choice, Coupling, LEAST_MASS, LevelsForce};
+
+/// Part of the budget above which nothing is subdivided.
+const FULL: f64 = 0.95;
+/// Steps above the budget before points are regrouped against their criterion.
+const PATIENCE: f64 = 2.0;
+
+impl LevelsForce {
+    /// Moves the set of subdivided points on, in `memory`.
+    pub(super) fn choose(
+        &self,
+        division: &Division,
+        positions: &[Vec3],
+        memory: &mut [f64],
+        work: &mut Work,
+    ) {
+        work.refresh(self, memory);
+        match &self.choice {
+            Choice::Fixed(level) => {
+                for points in &self.hierarchy.levels[..self.hierarchy.finest()] {
+                    for point in points.clone() {
+                        let wanted = level.evaluate(&self.hierarchy.rest[point].to_array());
+                        let is_finer = wanted > f64::from(self.hierarchy.level_of[point]);
+                        self.subdivide(memory, point, is_finer);
+                    }
+                }
+            }
+            Choice::Adaptive(_) => self.follow_criterion(division, positions, memory, work),
+        }
+        if self.coupling == Coupling::Transpose {
+            self.give_up_empty_points(memory, work);
+        }
+        work.refresh(self, memory);
+    }
+
+    fn follow_criterion(&self, division: &Division, positions: &[Vec3], memory: &mut [f64], work: &mut Work) {
+        let Choice::Adaptive(criterion) = &self.choice else { return };
+        let hierarchy = &self.hierarchy;
+        let mut variation = std::mem::take(&mut work.variation);
+        variation.clear();
+        variation.resize(hierarchy.point_count(), 0.0);
+        for point in &work.active {
+            let point = *point as usize;
+            variation[point] = criterion.measure.at(hierarchy, point, positions);
+        }
+        // what is wanted most comes first; equal ones by number
+        let (mut wanted, mut unwanted) =
+            (std::mem::take(&mut work.wanted), std::mem::take(&mut work.unwanted));
+        wanted.clear();
+        unwanted.clear();
+        for points in &hierarchy.levels[..hierarchy.finest()] {
+            for point in points.clone() {
+                match work.roles.of_point[point] {
+                    Role::Active if variation[point] > criterion.refine => wanted.push(point as u32),
+                    Role::Subdivided => {
+                        let successors = hierarchy.successors.get(point);
+                        if successors.iter().all(|child| work.roles.is_active(*child as usize)) {
+                            let of = |child: &u32| variation[*child as usize];
+                            let greatest = successors.iter().map(of).fold(0.0, f64::max);
+                            unwanted.push((greatest, point as u32));
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        for (_, point) in unwanted.iter().filter(|(greatest, _)| *greatest < criterion.coarsen) {
+            self.subdivide(memory, *point as usize, false);
+        }
+        wanted.sort_unstable_by(|a, b| {
+            variation[*b as usize].total_cmp(&variation[*a as usize]).then(a.cmp(b))
+        });
+        work.variation = variation;
+        self.spend(division, &wanted, &mut unwanted, memory, work);
+        (work.wanted, work.unwanted) = (wanted, unwanted);
+    }
+
+    /// Subdivides as far as the budget goes; where it is overdrawn, regroups what needs it least.
+    fn spend(
+        &self,
+        division: &Division,
+        wanted: &[u32],
+        unwanted: &mut [(f64, u32)],
+        memory: &mut [f64],
+        work: &mut Work,
+    ) {
+        let Some(budget) = self.budget else {
+            wanted.iter().for_each(|point| self.subdivide(memory, *point as usize, true));
+            return;
+        };
+        let cost = |memory: &[f64], work: &mut Work| {
+            work.refresh(self, memory);
+            work.divide(self, division);
+            work.evaluations(division) as f64
+        };
+        let before = cost(memory, work);
+        // what is refined is counted, not guessed: half of it is taken back until it fits
+        let mut accepted = if before < FULL * budget { wanted.len() } else { 0 };
+        wanted[..accepted].iter().for_each(|point| self.subdivide(memory, *point as usize, true));
+        while accepted > 0 && cost(memory, work) > FULL * budget {
+            wanted[accepted / 2..accepted]
+                .iter()
+                .for_each(|point| self.subdivide(memory, *point as usize, false));
+            accepted /= 2;
+        }
+        let overload = memory.len() - 1;
+        memory[overload] = if before > budget { memory[overload] + 1.0 } else { 0.0 };
+        if memory[overload] > PATIENCE {
+            unwanted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            for (_, point) in unwanted {
+                self.subdivide(memory, *point as usize, false);
+                if cost(memory, work) <= budget {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// A point whose matter finer points stand for has nothing to move: it is subdivided too.
+    fn give_up_empty_points(&self, memory: &mut [f64], work: &mut Work) {
+        loop {
+            work.refresh(self, memory);
+            let is_empty = |point: &&u32| {
+                let point = **point as usize;
+                usize::from(self.hierarchy.level_of[point]) < self.hierarchy.finest()
+                    && work.carried[point] <= LEAST_MASS * self.whole_masses[point]
+            };
+            let mut found = false;
+            for point in work.active.iter().filter(is_empty) {
+                self.subdivide(memory, *point as usize, true);
+                found = true;
+            }
+            if !found {
+                return;
+            }
+        }
+    }
+
+    /// What others being active does to rows: they follow anew, and keep the momentum of the matter.
+    pub(super) fn change_over(&self, rows: &mut Rows, work: &Work) {
+        let velocities = &mut rows.velocities[self.rows()];
+        let momentum = |velocities: &[Vec3]| -> Vec3 {
+            self.finest_masses.iter().zip(velocities).map(|(mass, v)| *v * *mass).sum()
+        };
+        let before = momentum(velocities);
+        self.place(work, Followers::All, Kinematic::Velocity, velocities);
+        if self.coupling == Coupling::Transpose {
+            let lost = before - momentum(velocities);
+            let shift = lost / self.finest_masses.iter().sum::<f64>();
+            velocities.iter_mut().for_each(|v| *v += shift);
+        }
+        self.place(work, Followers::All, Kinematic::Position, &mut rows.positions[self.rows()]);
+    }
+}
+
+impl Work {
+    /// Stresses that a step so divided evaluates.
+    pub fn evaluations(&self, division: &Division) -> usize {
+        let samples = |rate: usize| self.due[rate].iter().flat_map(|due| due.slots()).count();
+        (0..=division.halvings as usize).map(|rate| samples(rate) << rate).sum()
+    }
+}

@@ -1,0 +1,191 @@
+//! What the staggered stepper asks of a body of levels.
+
+use std::ops::Range;
+
+use souple_engine::levels::{Census, Division, Filter, Followers, Kinematic, Levels, Push};
+use souple_engine::{Rows, Scratch};
+use souple_math::Vec3;
+
+use super::elastic::Values;
+use super::lists::Work;
+use super::{Coupling, LevelsForce};
+use crate::solids::sample_law::Answer;
+
+/// The work of a scratch that is only read.
+fn read(scratch: &Scratch) -> &Work {
+    scratch.downcast_ref().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
+}
+
+/// Calls `visit` for each of the followers meant, by its number among all points.
+fn for_each(force: &LevelsForce, work: &Work, who: Followers, mut visit: impl FnMut(usize)) {
+    match who {
+        Followers::Ghosts => work.ghosts.iter().for_each(|point| visit(*point as usize)),
+        Followers::These(rows) => {
+            let own = force.rows();
+            rows.iter()
+                .map(|row| *row as usize)
+                .filter(|row| own.contains(row))
+                .for_each(|row| visit(row - own.start));
+        }
+        Followers::All => (0..force.hierarchy.point_count()).for_each(visit),
+    }
+}
+
+impl LevelsForce {
+    /// Brings followers to where they follow; `values` are those of this body's points.
+    pub(super) fn place(&self, work: &Work, who: Followers, kind: Kinematic, values: &mut [Vec3]) {
+        let rest = &self.hierarchy.rest;
+        for_each(self, work, who, |point| {
+            if work.roles.is_active(point) {
+                return;
+            }
+            let leaders = work.following.of(point);
+            values[point] = match kind {
+                // x = X + Σ w (x - X)
+                Kinematic::Position => leaders.iter().fold(rest[point], |sum, (leader, weight)| {
+                    sum + (values[*leader as usize] - rest[*leader as usize]) * *weight
+                }),
+                Kinematic::Velocity => {
+                    leaders.iter().map(|(leader, weight)| values[*leader as usize] * *weight).sum()
+                }
+            };
+        });
+    }
+
+    /// Gives what is on followers to their leaders.
+    pub(super) fn return_all(&self, work: &Work, who: Followers, values: &mut [Vec3]) {
+        for_each(self, work, who, |point| {
+            if work.roles.is_active(point) || values[point] == Vec3::ZERO {
+                return;
+            }
+            let value = std::mem::replace(&mut values[point], Vec3::ZERO);
+            for (leader, weight) in work.following.of(point) {
+                values[*leader as usize] += value * *weight;
+            }
+        });
+    }
+}
+
+impl Levels for LevelsForce {
+    fn rows(&self) -> Range<usize> {
+        self.row_range()
+    }
+
+    fn adapt(&self, division: &Division, rows: &mut Rows, memory: &mut [f64], scratch: &mut Scratch) {
+        let work = self.work(scratch);
+        work.refresh(self, memory);
+        work.before.clone_from(&work.active);
+        self.choose(division, self.own(&rows.positions), memory, work);
+        if work.active != work.before {
+            self.change_over(rows, work);
+        }
+        work.divide(self, division);
+    }
+
+    fn active<'a>(&self, scratch: &'a Scratch) -> &'a [u32] {
+        &read(scratch).active_rows
+    }
+
+    fn accelerate(
+        &self,
+        rate: u32,
+        division: &Division,
+        scratch: &Scratch,
+        accelerations: &[Vec3],
+        velocities: &mut [Vec3],
+    ) {
+        let interval = division.interval(rate);
+        for point in &read(scratch).of_rate[rate as usize] {
+            let row = self.first_row + *point as usize;
+            velocities[row] += accelerations[row] * interval;
+        }
+    }
+
+    fn drift(&self, timestep: f64, scratch: &Scratch, rows: &mut Rows) {
+        // in every tick: a velocity that quivers about zero would fade unevenly at its own dates
+        let fading = libm::exp(-self.mass_damping * timestep);
+        for row in &read(scratch).active_rows {
+            let row = *row as usize;
+            rows.velocities[row] = rows.velocities[row] * fading;
+            rows.positions[row] += rows.velocities[row] * timestep;
+        }
+    }
+
+    fn follow(&self, who: Followers, kind: Kinematic, scratch: &Scratch, values: &mut [Vec3]) {
+        self.place(read(scratch), who, kind, &mut values[self.row_range()]);
+    }
+
+    fn give_back(&self, who: Followers, scratch: &Scratch, impulses: &mut [Vec3]) {
+        self.return_all(read(scratch), who, &mut impulses[self.row_range()]);
+    }
+
+    fn add_impulses(
+        &self,
+        rate: u32,
+        division: &Division,
+        rows: &Rows,
+        scratch: &mut Scratch,
+        impulses: &mut [Vec3],
+    ) {
+        let work = self.work(scratch);
+        let values = Values { positions: self.own(&rows.positions), variation: &[] };
+        let velocities = self.own(&rows.velocities);
+        let impulses = &mut impulses[self.row_range()];
+        let interval = division.interval(rate);
+        let parts = (&self.hierarchy, &self.matter);
+        let (due, acting) = (&work.due[rate as usize], &work.acting);
+        work.stress.ask(parts, Answer::Stress, due, values, |slot, _, tet, corners, stress| {
+            let mut stress = *stress;
+            if self.viscosity > 0.0 {
+                // P += F 2 η sym(Fᵀ Ḟ)
+                let (F, rate) = (tet.gradient(values.positions), tet.gradient(velocities));
+                stress += F * F.transpose_mul(&rate).symmetric_part() * (2.0 * self.viscosity);
+            }
+            for (index, (corner, gradient)) in tet.corners.iter().zip(tet.gradients).enumerate() {
+                if corners & (1 << index) != 0 {
+                    impulses[*corner as usize] -= stress * gradient * (acting[slot] * interval);
+                }
+            }
+        });
+        if self.coupling == Coupling::Transpose {
+            self.return_all(work, Followers::Ghosts, impulses);
+        }
+    }
+
+    fn kick(
+        &self,
+        push: Push,
+        division: &Division,
+        scratch: &Scratch,
+        impulses: &mut [Vec3],
+        velocities: &mut [Vec3],
+    ) {
+        let work = read(scratch);
+        let (impulses, velocities) = (&mut impulses[self.row_range()], &mut velocities[self.row_range()]);
+        let mut give = |points: &[u32], masses: &[f64]| {
+            for point in points {
+                let point = *point as usize;
+                velocities[point] += std::mem::replace(&mut impulses[point], Vec3::ZERO) / masses[point];
+            }
+        };
+        let rate = match push {
+            Push::Outer => return give(&work.active, &work.carried),
+            Push::Elastic { rate } => rate,
+        };
+        give(&work.pushed[rate as usize], &work.masses);
+        if division.filter == Filter::SemiImplicit {
+            work.of_rate[rate as usize].iter().for_each(|point| {
+                let v = &mut velocities[*point as usize];
+                *v = work.brakes[*point as usize] * *v;
+            });
+        }
+    }
+
+    fn evaluations(&self, division: &Division, scratch: &Scratch) -> usize {
+        read(scratch).evaluations(division)
+    }
+
+    fn census(&self, memory: &[f64]) -> Census {
+        self.counted(memory)
+    }
+}

@@ -1,0 +1,93 @@
+//! Ways to evaluate the forces of a solid, side by side: what the others are held against.
+//!
+//! Bodies take forces sample by sample unless their scene says otherwise ([`crate::solids::SolidForce`]); that is exact for
+//! every law on every element. The formulations here are those of the literature: exact ones that arrange the same
+//! numbers otherwise, and approximations that were made for speed. `souple bench formal` prints time and error of all.
+
+mod corotated;
+mod four_loops;
+mod grouped;
+mod polynomial;
+mod springs;
+mod tensor_mass;
+
+use souple_engine::Force;
+use souple_mesh::ElementKind;
+use souple_table::{Entry, Table};
+
+use super::{FlatCell, Section, SolidDescription, SolidForce};
+use crate::materials::{AnyLaw, Lame, Material, MaterialLaw};
+
+/// Makes the elastic force of a body.
+pub type BuildFormulation = fn(&SolidDescription) -> Result<Box<dyn Force>, FormulationError>;
+
+/// All formulations.
+pub static FORMULATIONS: Table<BuildFormulation> = Table {
+    kind: "formulation",
+    entries: &[
+        &Entry {
+            name: "samples",
+            summary: "stress and tangent of the law at every sample of every element: exact for all laws, and what bodies do \
+                      where nothing is said",
+            source: "Bonet & Wood 2008, Nonlinear Continuum Mechanics for Finite Element Analysis, §9",
+            parameters: &[],
+            build: |description| Ok(Box::new(SolidForce::new(description)?)),
+        },
+        &grouped::ENTRY,
+        &tensor_mass::ENTRY,
+        &four_loops::ENTRY,
+        &corotated::ENTRY,
+        &springs::ENTRY,
+    ],
+};
+
+/// Why a body has no such formulation.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FormulationError {
+    #[error(transparent)]
+    Flat(#[from] FlatCell),
+    #[error("`{formulation}` knows no {kind}; it takes {accepted}")]
+    Element { formulation: &'static str, kind: ElementKind, accepted: &'static str },
+    #[error("`{formulation}` cannot take the law `{law}`; it takes {accepted}")]
+    Law { formulation: &'static str, law: String, accepted: &'static str },
+    #[error("`{formulation}` is of volumes, and the body has a section")]
+    Section { formulation: &'static str },
+}
+
+/// Refuses sections, and cells of other kinds.
+fn check_cells(
+    formulation: &'static str,
+    description: &SolidDescription,
+    takes: impl Fn(ElementKind) -> bool,
+    accepted: &'static str,
+) -> Result<(), FormulationError> {
+    if description.section != Section::Solid {
+        return Err(FormulationError::Section { formulation });
+    }
+    match description.mesh.cells().find(|cell| !takes(cell.kind)) {
+        Some(cell) => Err(FormulationError::Element { formulation, kind: cell.kind, accepted }),
+        None => Ok(()),
+    }
+}
+
+/// A law's name in the table of materials.
+fn name_of(law: &MaterialLaw) -> &'static str {
+    match law {
+        MaterialLaw::Known(law) => law.entry().name,
+        MaterialLaw::Text(_) => "hyperelastic",
+    }
+}
+
+/// The moduli of materials that all have one of `laws`.
+fn moduli_of(
+    formulation: &'static str,
+    materials: &[Material],
+    laws: &[AnyLaw],
+    accepted: &'static str,
+) -> Result<Vec<Lame>, FormulationError> {
+    let moduli = |material: &Material| match &material.law {
+        MaterialLaw::Known(law) if laws.contains(law) => Ok(material.small_strain),
+        law => Err(FormulationError::Law { formulation, law: name_of(law).to_owned(), accepted }),
+    };
+    materials.iter().map(moduli).collect()
+}

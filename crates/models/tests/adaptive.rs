@@ -1,0 +1,183 @@
+//! Bodies of two laws against bodies whose cells have these laws from the start, and what switching does.
+#![allow(non_snake_case)]
+
+mod common;
+
+use std::sync::Arc;
+
+use souple_engine::{Configuration, Force, TangentWeights};
+use souple_math::Vec3;
+use souple_mesh::Mesh;
+use souple_models::materials::{self, Material};
+use souple_models::solids::{
+    Adaptation, AdaptiveForce, Criterion, Quadrature, Section, SolidDescription, SolidForce,
+};
+use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
+use souple_table::{Value, Values};
+
+fn bar(element: &str) -> Mesh {
+    let values = Values::new()
+        .with("size", Value::Vector([1.0, 0.4, 0.3]))
+        .with("cells", Value::Vector([8.0, 3.0, 3.0]))
+        .with("element", Value::Text(element));
+    souple_mesh::generate("bar", values).unwrap()
+}
+
+fn laws() -> [Material; 2] {
+    ["linear", "neo_hookean"].map(|law| common::material_of(materials::TABLE.find(law).unwrap(), 1e7, 0.3))
+}
+
+fn describe<'a>(mesh: &'a Mesh, materials: &'a [Material], of_cell: &'a [u16]) -> SolidDescription<'a> {
+    SolidDescription {
+        name: "bar".into(),
+        mesh,
+        first_row: 0,
+        materials,
+        material_of_cell: of_cell,
+        quadrature: Quadrature::Default,
+        section: Section::Solid,
+    }
+}
+
+fn adaptive(mesh: &Mesh, thresholds: &[(Criterion, f64)], back: f64) -> AdaptiveForce {
+    let of_cell = vec![0; mesh.cell_count()];
+    let laws = laws();
+    let adaptation = Adaptation { thresholds: thresholds.to_vec(), back };
+    AdaptiveForce::new(&describe(mesh, &laws, &of_cell), laws.clone(), adaptation).unwrap()
+}
+
+fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3], memory: &'a [f64]) -> Configuration<'a> {
+    Configuration {
+        positions,
+        velocities,
+        time: 0.0,
+        load: 1.0,
+        memory,
+        pairs: &[],
+        driven: &[],
+        fields: &[],
+    }
+}
+
+fn bent(mesh: &Mesh) -> Vec<Vec3> {
+    let wave = |p: Vec3| Vec3::new((7.0 * p.y).sin(), (5.0 * p.x + p.z).cos(), (3.0 * p.x - 2.0 * p.y).sin());
+    mesh.points.iter().map(|p| *p + wave(*p) * 0.02).collect()
+}
+
+/// Energy, force, and tangent product with a fixed direction, element by element and by blocks.
+fn answers(force: &dyn Force, x: &[Vec3], memory: &[f64]) -> (f64, [Vec<Vec3>; 3]) {
+    let (mut scratch, v) = (force.new_scratch(), vec![Vec3::ZERO; x.len()]);
+    let number = |i: usize, salt: f64| ((i as f64 + salt) * 12.9898).sin();
+    let delta: Vec<Vec3> =
+        (0..x.len()).map(|i| Vec3::new(number(i, 0.1), number(i, 0.2), number(i, 0.3))).collect();
+    let weights = TangentWeights { position: 2.0, velocity: 0.0 };
+    let at = at(x, &v, memory);
+    let mut out = [(); 3].map(|()| vec![Vec3::ZERO; x.len()]);
+    force.add_force(&at, &mut scratch, &mut out[0]);
+    force.add_differential(&at, weights, &delta, &mut scratch, &mut out[1]);
+    let mut pattern = PatternBuilder::new(x.len());
+    force.visit_cliques(&[], &mut |rows| pattern.add_clique(rows).unwrap());
+    let mut matrix = BlockMatrix::zeros(Arc::new(pattern.build().unwrap()));
+    force.add_blocks(&at, weights, &mut scratch, &mut matrix);
+    matrix.apply(&delta, &mut out[2]);
+    (force.energy(&at, &mut scratch).stored, out)
+}
+
+/// Whatever cells have which law, forces, energies and tangents are those of a body with these materials.
+#[test]
+fn cells_have_the_law_that_memory_says() {
+    for element in ["tet4", "hex8", "prism6", "mixed"] {
+        let mesh = bar(element);
+        let count = mesh.cell_count();
+        let force = adaptive(&mesh, &[(Criterion::Length, 0.1)], 0.5);
+        let x = bent(&mesh);
+        let patterns: [(&str, &dyn Fn(usize) -> bool); 4] = [
+            ("none", &|_| false),
+            ("all", &|_| true),
+            ("half", &|cell| cell < count / 2),
+            ("scattered", &|cell| cell * 7 % 3 == 0),
+        ];
+        for (name, is_second) in patterns {
+            let of_cell: Vec<u16> = (0..count).map(|cell| u16::from(is_second(cell))).collect();
+            let mut memory: Vec<f64> = of_cell.iter().map(|law| f64::from(*law)).collect();
+            memory.extend([0.0, 0.0]);
+            let laws = laws();
+            let fixed = SolidForce::new(&describe(&mesh, &laws, &of_cell)).unwrap();
+            let (energy, expected) = answers(&fixed, &x, &[]);
+            let (found_energy, found) = answers(&force, &x, &memory);
+            // sums of the same terms in another order
+            assert!((energy - found_energy).abs() <= 1e-12 * energy, "{element}, {name}");
+            for (expected, found) in expected.iter().zip(&found) {
+                let off: f64 = expected.iter().zip(found).map(|(a, b)| (*a - *b).length_sq()).sum();
+                let scale: f64 = expected.iter().map(|a| a.length_sq()).sum();
+                assert!(off.sqrt() <= 1e-12 * scale.sqrt(), "{element}, {name}: {:e}", (off / scale).sqrt());
+            }
+        }
+    }
+}
+
+/// Cells over a threshold take the second law, those below the fraction return, and what a switch takes is in the memory:
+/// stored and dissipated energy together stay as they were.
+#[test]
+fn switches_follow_criteria_and_account_for_energy() {
+    let mesh = bar("hex8");
+    let count = mesh.cell_count();
+    let force = adaptive(&mesh, &[(Criterion::Length, 0.05), (Criterion::Volume, 0.04)], 0.5);
+    let mut memory = vec![0.0; force.memory_len()];
+    force.initial_memory(&mut memory);
+    let (v, mut scratch) = (vec![Vec3::ZERO; mesh.points.len()], force.new_scratch());
+    // stretched more and more along the bar: by x/5, at most a fifth
+    let x: Vec<Vec3> = mesh.points.iter().map(|p| *p + Vec3::new(0.1 * p.x * p.x, 0.0, 0.0)).collect();
+    let total = |memory: &[f64], scratch: &mut _| {
+        let energy = force.energy(&at(&x, &v, memory), scratch);
+        energy.stored + energy.dissipated
+    };
+    let before = total(&memory, &mut scratch);
+    let mut next = memory.clone();
+    force.advance_memory(&at(&x, &v, &memory), 0.1, &mut next, &mut []);
+    memory.clone_from(&next);
+    let after = total(&memory, &mut scratch);
+    assert!((before - after).abs() <= 1e-12 * before, "{before} {after}");
+    for (cell, law) in memory[..count].iter().enumerate() {
+        let nodes = mesh.cell(cell as u32).unwrap().nodes;
+        let ends = nodes.iter().map(|node| mesh.points[*node as usize].x);
+        let (low, high) =
+            (ends.clone().fold(f64::INFINITY, f64::min), ends.fold(f64::NEG_INFINITY, f64::max));
+        // (0.1 high² - 0.1 low²) / (high - low), of length and volume alike
+        let stretch = 0.1 * (high + low);
+        assert_eq!(*law, f64::from(u8::from(stretch > 0.04)), "cell {cell} stretched by {stretch}");
+    }
+    assert!(memory[count + 1] > 0.0 && memory[count] != 0.0);
+    // back to a strain between half the threshold and the threshold: nothing returns; at rest all do
+    let switched = memory[..count].iter().sum::<f64>();
+    let held: Vec<Vec3> = mesh.points.iter().map(|p| *p + Vec3::new(0.03 * p.x, 0.0, 0.0)).collect();
+    force.advance_memory(&at(&held, &v, &memory.clone()), 0.1, &mut memory, &mut []);
+    assert_eq!(memory[..count].iter().sum::<f64>(), switched);
+    force.advance_memory(&at(&mesh.points, &v, &memory.clone()), 0.1, &mut memory, &mut []);
+    assert_eq!(memory[..count].iter().sum::<f64>(), 0.0);
+}
+
+/// The lower a threshold the more cells are over it, by every criterion.
+#[test]
+fn lower_thresholds_switch_more() {
+    let mesh = bar("tet4");
+    let x = bent(&mesh);
+    let v = vec![Vec3::ZERO; x.len()];
+    for (criterion, unit) in [
+        (Criterion::Length, 1.0),
+        (Criterion::Volume, 1.0),
+        (Criterion::Shape, 1.0),
+        // some newtons: stresses of 1e5 Pa on faces of 1e-2 m²
+        (Criterion::Force, 1e4),
+    ] {
+        let switched = |threshold: f64| {
+            let force = adaptive(&mesh, &[(criterion, threshold * unit)], 0.0);
+            let mut memory = vec![0.0; force.memory_len()];
+            force.advance_memory(&at(&x, &v, &memory.clone()), 0.1, &mut memory, &mut []);
+            memory[..mesh.cell_count()].iter().sum::<f64>()
+        };
+        let counts = [1e-9, 0.015, 0.03, 0.06, 10.0].map(switched);
+        assert!(counts.is_sorted_by(|a, b| a >= b), "{criterion:?}: {counts:?}");
+        assert!(counts[0] > counts[3] && counts[4] == 0.0, "{criterion:?}: {counts:?}");
+    }
+}

@@ -1,0 +1,307 @@
+//! Formulations of one body against each other: the exact ones to rounding, the others by what they promise.
+#![allow(non_snake_case)]
+
+mod common;
+
+use std::sync::Arc;
+
+use souple_engine::{Configuration, Force, TangentWeights};
+use souple_math::{Mat3, Vec3, exponential};
+use souple_mesh::{ElementKind, Mesh};
+use souple_models::materials::{self, Material};
+use souple_models::solids::{
+    DifferencedForce, FORMULATIONS, FormulationError, Quadrature, Section, SolidDescription,
+};
+use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
+use souple_table::{Value, Values};
+
+fn bar(element: &str) -> Mesh {
+    let values = Values::new()
+        .with("size", Value::Vector([1.0, 0.4, 0.3]))
+        .with("cells", Value::Vector([4.0, 2.0, 2.0]))
+        .with("element", Value::Text(element));
+    souple_mesh::generate("bar", values).unwrap()
+}
+
+/// The bar with its points moved a little: no cell is a box or like another.
+fn crooked(element: &str) -> Mesh {
+    let mut mesh = bar(element);
+    for p in &mut mesh.points {
+        let s = *p;
+        *p += Vec3::new((7.0 * s.y + s.z).sin(), (5.0 * s.x).cos(), (3.0 * s.x - 9.0 * s.y).sin()) * 0.01;
+    }
+    mesh
+}
+
+fn material(law: &str) -> Material {
+    common::material_of(materials::TABLE.find(law).unwrap(), 1e7, 0.3)
+}
+
+fn text(energy: &str) -> Material {
+    let entry = materials::TABLE.find("hyperelastic").unwrap();
+    let parameters = [
+        ("mu".to_owned(), "4 MPa".to_owned()),
+        ("k".to_owned(), "8 MPa".to_owned()),
+        ("a".to_owned(), "[1, 2, -1]".to_owned()),
+    ];
+    let values = Values::new()
+        .with("energy", Value::Text(energy))
+        .with("parameters", Value::Texts(&parameters))
+        .with("density", Value::Number(1000.0));
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
+fn build(formulation: &str, mesh: &Mesh, material: &Material) -> Result<Box<dyn Force>, FormulationError> {
+    let of_cell = vec![0; mesh.cell_count()];
+    let description = SolidDescription {
+        name: "bar".into(),
+        mesh,
+        first_row: 0,
+        materials: std::slice::from_ref(material),
+        material_of_cell: &of_cell,
+        quadrature: Quadrature::Default,
+        section: Section::Solid,
+    };
+    (FORMULATIONS.find(formulation).unwrap().build)(&description)
+}
+
+fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3]) -> Configuration<'a> {
+    Configuration {
+        positions,
+        velocities,
+        time: 0.0,
+        load: 1.0,
+        memory: &[],
+        pairs: &[],
+        driven: &[],
+        fields: &[],
+    }
+}
+
+/// Bent and turned, without symmetry.
+fn bent(mesh: &Mesh) -> Vec<Vec3> {
+    let wave = |p: Vec3| Vec3::new((7.0 * p.y).sin(), (5.0 * p.x + p.z).cos(), (3.0 * p.x - 2.0 * p.y).sin());
+    mesh.points.iter().map(|p| exponential(Vec3::new(0.1, 0.2, -0.3)) * (*p + wave(*p) * 0.02)).collect()
+}
+
+fn directions(count: usize) -> Vec<Vec3> {
+    let number = |i: usize, salt: f64| ((i as f64 + salt) * 12.9898).sin();
+    (0..count).map(|i| Vec3::new(number(i, 0.1), number(i, 0.2), number(i, 0.3))).collect()
+}
+
+fn norm(a: &[Vec3]) -> f64 {
+    a.iter().map(|a| a.length_sq()).sum::<f64>().sqrt()
+}
+
+fn distance(a: &[Vec3], b: &[Vec3]) -> f64 {
+    let difference: Vec<Vec3> = a.iter().zip(b).map(|(a, b)| *a - *b).collect();
+    norm(&difference) / norm(a)
+}
+
+/// Energy, force, tangent product, and the same product by blocks.
+struct Answers {
+    energy: f64,
+    force: Vec<Vec3>,
+    products: [Vec<Vec3>; 2],
+}
+
+fn answers(force: &dyn Force, x: &[Vec3]) -> Answers {
+    let (mut scratch, v, delta) = (force.new_scratch(), vec![Vec3::ZERO; x.len()], directions(x.len()));
+    let weights = TangentWeights { position: 2.0, velocity: 0.0 };
+    let zeros = || vec![Vec3::ZERO; x.len()];
+    let (mut f, mut df, mut by_blocks) = (zeros(), zeros(), zeros());
+    force.add_force(&at(x, &v), &mut scratch, &mut f);
+    force.add_differential(&at(x, &v), weights, &delta, &mut scratch, &mut df);
+    let mut pattern = PatternBuilder::new(x.len());
+    force.visit_cliques(&[], &mut |rows| pattern.add_clique(rows).unwrap());
+    let mut matrix = BlockMatrix::zeros(Arc::new(pattern.build().unwrap()));
+    force.add_blocks(&at(x, &v), weights, &mut scratch, &mut matrix);
+    matrix.apply(&delta, &mut by_blocks);
+    Answers { energy: force.energy(&at(x, &v), &mut scratch).stored, force: f, products: [df, by_blocks] }
+}
+
+/// Two forces with the same energy, forces and tangents.
+fn assert_same(name: &str, one: &dyn Force, other: &dyn Force, x: &[Vec3]) {
+    let (one, other) = (answers(one, x), answers(other, x));
+    // EXP-20 asks for 1e-10; sums of some hundred products in another order
+    const TOLERANCE: f64 = 1e-11;
+    assert!((one.energy - other.energy).abs() <= TOLERANCE * one.energy, "{name}: energy");
+    assert!(
+        distance(&one.force, &other.force) <= TOLERANCE,
+        "{name}: {:e}",
+        distance(&one.force, &other.force)
+    );
+    for product in &other.products {
+        assert!(distance(&one.products[0], product) <= TOLERANCE, "{name}: tangent");
+    }
+}
+
+/// Derived expressions with grouped constants are the law at the samples: every law that has a formula, on every linear element,
+/// crooked and as boxes.
+#[test]
+fn grouped_constants_are_the_law() {
+    let laws = [
+        ("linear", material("linear")),
+        ("st_venant_kirchhoff", material("st_venant_kirchhoff")),
+        ("neo_hookean", material("neo_hookean")),
+        ("fibres", text("mu/2*(I1 - 3) - mu*ln(J) + k/2*ln(J)^2 + mu/4*(exp(2*max(I4(a) - 1, 0)^2) - 1)")),
+    ];
+    for (law, material) in &laws {
+        for mesh in ["tet4", "prism6", "pyramid5"].map(crooked).iter().chain([&bar("hex8"), &crooked("hex8")])
+        {
+            let name = format!("{law} on {}", mesh.blocks[0].kind);
+            let grouped = build("grouped_constants", mesh, material).unwrap();
+            let samples = build("samples", mesh, material).unwrap();
+            assert_same(&name, samples.as_ref(), grouped.as_ref(), &bent(mesh));
+        }
+    }
+}
+
+/// Where the strain is constant the energy is that of the law times the volume, whatever the number of samples: `W_E = W V`.
+#[test]
+fn constant_strain_needs_no_quadrature() {
+    let F = Mat3::from_rows([[1.1, 0.05, -0.02], [0.03, 0.95, 0.04], [-0.01, 0.02, 1.08]]);
+    let mesh = crooked("tet4");
+    let x: Vec<Vec3> = mesh.points.iter().map(|p| F * *p).collect();
+    for law in ["linear", "st_venant_kirchhoff", "neo_hookean"] {
+        let material = material(law);
+        let expected = material.energy_density(&F) * mesh.volume();
+        for formulation in ["samples", "grouped_constants"] {
+            let energy = answers(build(formulation, &mesh, &material).unwrap().as_ref(), &x).energy;
+            // a sum over some hundred cells
+            assert!((energy - expected).abs() <= 1e-12 * expected, "{law} by {formulation}");
+        }
+    }
+}
+
+/// The tensor-mass method, with its constants on the mesh and with its four loops, is the law at the samples: `2.16` and its
+/// derivative as corrected.
+#[test]
+fn tensor_masses_are_the_law() {
+    let mesh = crooked("tet4");
+    for law in ["linear", "st_venant_kirchhoff"] {
+        let material = material(law);
+        let samples = build("samples", &mesh, &material).unwrap();
+        for formulation in ["tensor_mass", "four_loops"] {
+            let other = build(formulation, &mesh, &material).unwrap();
+            let name = format!("{law} by {formulation}");
+            assert_same(&name, samples.as_ref(), other.as_ref(), &bent(&mesh));
+            assert_eq!(samples.declaration(), other.declaration(), "{name}");
+        }
+    }
+}
+
+/// One rotation for each element: a turned body bears nothing, tetrahedra are those of the material `corotational`, and near
+/// rest every element is linear elasticity.
+#[test]
+fn elements_turn_with_their_rotation() {
+    for element in ["tet4", "hex8", "prism6", "pyramid5"] {
+        let mesh = crooked(element);
+        let force = build("element_corotational", &mesh, &material("linear")).unwrap();
+        let bent_force = answers(force.as_ref(), &bent(&mesh)).force;
+        let turned: Vec<Vec3> =
+            mesh.points.iter().map(|p| exponential(Vec3::new(1.0, -2.0, 0.7)) * *p).collect();
+        let rigid = norm(&answers(force.as_ref(), &turned).force);
+        // positions carry roundings of 1e-16 m, strains of 1e-14 in cells of 0.1 m
+        assert!(rigid <= 1e-9 * norm(&bent_force), "{element}: {rigid}");
+        let net: Vec3 = bent_force.iter().copied().sum();
+        assert!(net.length() <= 1e-11 * norm(&bent_force), "{element}: {net:?}");
+        // near rest: the tangent of the linear law
+        let linear = build("samples", &mesh, &material("linear")).unwrap();
+        let [product, by_blocks] = answers(force.as_ref(), &mesh.points).products;
+        let [expected, _] = answers(linear.as_ref(), &mesh.points).products;
+        assert!(
+            distance(&expected, &product) <= 1e-11 && distance(&expected, &by_blocks) <= 1e-11,
+            "{element}"
+        );
+    }
+    let mesh = crooked("tet4");
+    let law = material("corotational");
+    let one = answers(build("samples", &mesh, &law).unwrap().as_ref(), &bent(&mesh));
+    let other = answers(build("element_corotational", &mesh, &law).unwrap().as_ref(), &bent(&mesh));
+    assert!((one.energy - other.energy).abs() <= 1e-11 * one.energy);
+    assert!(distance(&one.force, &other.force) <= 1e-11);
+}
+
+/// A spring between two nodes pulls with `k Δl`; those of a tetrahedron have `k = E V / l²`; and all add up to no force or torque.
+#[test]
+fn springs_have_the_stiffness_of_their_cells() {
+    let mut mesh = Mesh::default();
+    mesh.points =
+        vec![Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 2.0)];
+    mesh.push_cell(ElementKind::Tet4, &[0, 1, 2, 3]);
+    let law = material("linear");
+    let force = build("mass_spring", &mesh, &law).unwrap();
+    // the far corner drawn along its edge to the first: the other two edges at it turn, and stretch too
+    let mut x = mesh.points.clone();
+    x[1].x = 0.6;
+    let answers_at = answers(force.as_ref(), &x);
+    let k = |length_sq: f64| 1e7 * (1.0 / 6.0) / length_sq;
+    let pull = |a: Vec3, b: Vec3, length_sq: f64| {
+        let (d, rest) = (a - b, length_sq.sqrt());
+        d * (k(length_sq) * (d.length() - rest) / d.length())
+    };
+    let expected = -pull(x[1], x[0], 0.25) - pull(x[1], x[2], 1.25) - pull(x[1], x[3], 4.25);
+    assert!((answers_at.force[1] - expected).length() <= 1e-12 * expected.length());
+    for element in ["tet4", "hex8", "prism6", "pyramid5"] {
+        let mesh = crooked(element);
+        let force = build("mass_spring", &mesh, &law).unwrap();
+        let x = bent(&mesh);
+        let Answers { force: f, products: [product, by_blocks], .. } = answers(force.as_ref(), &x);
+        let torque: Vec3 = x.iter().zip(&f).map(|(x, f)| x.cross(*f)).sum();
+        assert!(f.iter().copied().sum::<Vec3>().length() + torque.length() <= 1e-11 * norm(&f), "{element}");
+        assert!(distance(&product, &by_blocks) <= 1e-12, "{element}");
+        let differenced = DifferencedForce::new(force, &mesh);
+        // ε² of third derivatives, and rounding over ε
+        assert!(distance(&product, &answers(&differenced, &x).products[0]) <= 1e-6, "{element}");
+    }
+}
+
+/// A cube of tetrahedra pulled by a tenth of a percent has Young's modulus by springs to within what springs can: Van Gelder's
+/// stiffness is exact in no mesh but near in all.
+#[test]
+fn springs_pull_about_as_hard_as_the_matter() {
+    let mesh = bar("tet4");
+    let force = build("mass_spring", &mesh, &material("linear")).unwrap();
+    let F = Mat3::from_diagonal(Vec3::new(1.001, 1.0, 1.0));
+    let x: Vec<Vec3> = mesh.points.iter().map(|p| F * *p).collect();
+    let energy = answers(force.as_ref(), &x).energy;
+    // E/2 ε² of the volume, were the matter to bear no load across
+    let of_matter = 0.5 * 1e7 * 1e-6 * 0.12;
+    assert!((0.5..2.0).contains(&(energy / of_matter)), "{}", energy / of_matter);
+}
+
+/// Products by differences are the derivative of the force to the square of the step.
+#[test]
+fn differences_are_near_the_tangent() {
+    for law in ["st_venant_kirchhoff", "neo_hookean"] {
+        let mesh = crooked("hex8");
+        let x = bent(&mesh);
+        let exact = answers(build("samples", &mesh, &material(law)).unwrap().as_ref(), &x);
+        let differenced = DifferencedForce::new(build("samples", &mesh, &material(law)).unwrap(), &mesh);
+        let other = answers(&differenced, &x);
+        assert_eq!(exact.force, other.force);
+        // (1e-5)² of third derivatives, and roundings of 1e-15 over 1e-5; EXP-41 asks for 1e-3
+        let off = distance(&exact.products[0], &other.products[0]);
+        assert!(off <= 1e-8, "{law}: {off:e}");
+    }
+}
+
+/// What a formulation cannot do is refused, with what it takes.
+#[test]
+fn what_does_not_fit_is_refused() {
+    let refusal = |formulation: &str, element: &str, law: &str| {
+        build(formulation, &bar(element), &material(law)).err().unwrap().to_string()
+    };
+    for (formulation, element, law, words) in [
+        ("tensor_mass", "hex8", "linear", "`tensor_mass` knows no hex8; it takes tet4"),
+        ("four_loops", "tet4", "neo_hookean", "cannot take the law `neo_hookean`"),
+        ("grouped_constants", "tet4", "ogden", "cannot take the law `ogden`"),
+        ("grouped_constants", "hex20", "linear", "knows no hex20"),
+        ("element_corotational", "tet4", "neo_hookean", "it takes linear and corotational"),
+        ("mass_spring", "tet10", "linear", "knows no tet10"),
+    ] {
+        let refused = refusal(formulation, element, law);
+        assert!(refused.contains(words), "{refused}");
+    }
+}

@@ -1,0 +1,389 @@
+//! Bodies of several meshes: what follows follows exactly, nothing is lost between levels, and steps keep their laws.
+
+use souple_engine::levels::{Division, Filter, Followers, Kinematic, Levels};
+use souple_engine::steppers::{Schedule, Staggered};
+use souple_engine::{
+    Constraint, Force, Kinematics, Mass, Model, Rows, Scratch, State, System, UnknownKind, World,
+};
+use souple_formal::Formula;
+use souple_math::{Mat3, Vec3};
+use souple_mesh::coarsen::coarser;
+use souple_mesh::fill::{Options, PARAMETERS};
+use souple_mesh::implicit::SHAPES;
+use souple_mesh::{Mesh, generate};
+use souple_models::materials::{Material, TABLE};
+use souple_models::multiresolution::{
+    Choice, Coupling, Criterion, LevelsDescription, LevelsForce, Measure, PLACE_VARIABLES,
+};
+use souple_table::{Value, Values};
+
+fn material(name: &str, lame: [f64; 2]) -> Material {
+    let [lambda, mu] = lame;
+    // E = μ (3λ + 2μ)/(λ + μ), ν = λ/(2 (λ + μ))
+    let values = Values::new()
+        .with("youngs_modulus", Value::Number(mu * (3.0 * lambda + 2.0 * mu) / (lambda + mu)))
+        .with("poissons_ratio", Value::Number(0.5 * lambda / (lambda + mu)))
+        .with("density", Value::Number(1000.0));
+    let entry = TABLE.find(name).unwrap();
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
+/// A cube of 10 cm, six tetrahedra to a cell.
+fn cube(cells: f64) -> Mesh {
+    let values = Values::new()
+        .with("size", Value::Vector([0.1; 3]))
+        .with("cells", Value::Vector([cells; 3]))
+        .with("element", Value::Text("tet4"));
+    let mut mesh = generate("bar", values).unwrap();
+    mesh.validate().unwrap();
+    mesh
+}
+
+/// A ball and what fills it more coarsely: nothing is nested, and points of each mesh stick out of the others.
+fn balls() -> Vec<Mesh> {
+    let entry = SHAPES.find("ellipsoid").unwrap();
+    let values = entry.values(Values::new().with("semi_axes", Value::Vector([0.05; 3]))).unwrap();
+    let size = Values::new().with("size", Value::Number(0.01)).completed(PARAMETERS).unwrap();
+    let options = Options::from_values(&size).unwrap();
+    let mut fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap();
+    fine.validate().unwrap();
+    vec![coarser(&fine, 0.036).unwrap(), coarser(&fine, 0.018).unwrap(), fine]
+}
+
+fn fixed(level: &str) -> Choice {
+    Choice::Fixed(Formula::compile(level, &PLACE_VARIABLES).unwrap())
+}
+
+fn body(meshes: &[Mesh], coupling: Coupling, choice: Choice) -> LevelsForce {
+    let all: Vec<&Mesh> = meshes.iter().collect();
+    let finest = meshes.last().unwrap();
+    LevelsForce::new(LevelsDescription {
+        name: "body.material".to_owned(),
+        meshes: &all,
+        first_row: 0,
+        materials: &[material("st_venant_kirchhoff", [20000.0, 7000.0])],
+        material_of_cell: &vec![0; finest.cell_count()],
+        coupling,
+        choice,
+        viscosity: 0.0,
+        mass_damping: 0.0,
+        budget: None,
+    })
+    .unwrap()
+}
+
+/// A force with its memory, its scratch and rows at rest.
+struct Alone {
+    force: LevelsForce,
+    memory: Vec<f64>,
+    scratch: Scratch,
+    rows: Rows,
+}
+
+const DIVISION: Division = Division { timestep: 1e-3, halvings: 2, filter: Filter::None };
+
+impl Alone {
+    fn new(force: LevelsForce) -> Self {
+        let mut memory = vec![0.0; force.memory_len()];
+        let scratch = force.new_scratch();
+        let rest = force.hierarchy().rest.clone();
+        let velocities = vec![Vec3::ZERO; rest.len()];
+        let mut rows = Rows { positions: rest, velocities, time: 0.0 };
+        let mut scratch = scratch;
+        force.adapt(&DIVISION, &mut rows, &mut memory, &mut scratch);
+        Self { force, memory, scratch, rows }
+    }
+
+    fn at(&self) -> souple_engine::Configuration<'_> {
+        souple_engine::Configuration {
+            positions: &self.rows.positions,
+            velocities: &self.rows.velocities,
+            time: 0.0,
+            load: 1.0,
+            memory: &self.memory,
+            pairs: &[],
+            driven: &[],
+            fields: &[],
+        }
+    }
+
+    /// Moves active points, and what follows them.
+    fn place(&mut self, map: impl Fn(Vec3) -> Vec3) {
+        for row in self.force.active(&self.scratch).to_vec() {
+            let row = row as usize;
+            self.rows.positions[row] = map(self.force.hierarchy().rest[row]);
+        }
+        self.follow();
+    }
+
+    fn follow(&mut self) {
+        let positions = &mut self.rows.positions;
+        self.force.follow(Followers::All, Kinematic::Position, &self.scratch, positions);
+    }
+
+    fn energy(&mut self) -> f64 {
+        let mut scratch = self.force.new_scratch();
+        self.force.energy(&self.at(), &mut scratch).stored
+    }
+}
+
+/// Patterns of levels, from all coarse to all fine, with sides, stripes and holes.
+const PATTERNS: [&str; 6] =
+    ["0", "2", "if(x < 0.03, 2, 0)", "if(x < 0.03, 2, 1)", "if(x*x + y*y + z*z < 0.001, 2, 0)", "1"];
+
+/// V-32 (a): every affine motion of the active points is that of all points, border and extrapolated ones too.
+#[test]
+fn affine_motions_are_followed_exactly() {
+    let map = |x: Vec3| {
+        Mat3::from_columns(Vec3::new(1.1, 0.2, -0.1), Vec3::new(0.05, 0.9, 0.3), Vec3::new(0.0, -0.2, 1.2))
+            * x
+            + Vec3::new(0.3, -0.1, 0.2)
+    };
+    for meshes in [balls(), vec![cube(2.0), cube(4.0), cube(7.0)]] {
+        for pattern in PATTERNS {
+            let mut body = Alone::new(body(&meshes, Coupling::Transpose, fixed(pattern)));
+            body.place(map);
+            for (x, rest) in body.rows.positions.iter().zip(&body.force.hierarchy().rest) {
+                // weights are solved to 1e-13, positions are of order one
+                assert!((*x - map(*rest)).length() < 1e-12, "{pattern}: {:?}", *x - map(*rest));
+            }
+        }
+    }
+}
+
+/// DEB-29, 30: who is active sees active points and such that follow active ones only; weights sum to one; the matter is
+/// shared without a gap, so that a homogeneous strain has one energy whoever is at work.
+#[test]
+fn nothing_is_lost_between_levels() {
+    let meshes = balls();
+    let stretch = |x: Vec3| Vec3::new(1.1 * x.x, 0.95 * x.y + 0.1 * x.x, x.z);
+    let mut energies = Vec::new();
+    for pattern in PATTERNS {
+        let mut body = Alone::new(body(&meshes, Coupling::Transpose, fixed(pattern)));
+        let census = body.force.census(&body.memory);
+        assert!(census.active.iter().sum::<usize>() > 0);
+        // the impulse of one newton second on each finest point comes to active points, whole
+        let count = body.force.masses().len();
+        let mut impulses = vec![Vec3::ZERO; body.rows.positions.len()];
+        impulses[..count].fill(Vec3::X);
+        body.force.give_back(Followers::All, &body.scratch, &mut impulses);
+        let arrived: f64 = impulses.iter().map(|impulse| impulse.x).sum();
+        assert!((arrived / count as f64 - 1.0).abs() < 1e-12, "{pattern}: {arrived}");
+        let active = body.force.active(&body.scratch).to_vec();
+        assert_eq!(active.len(), census.active.iter().sum::<usize>());
+        let left = (0..impulses.len()).filter(|row| impulses[*row] != Vec3::ZERO);
+        assert!(left.into_iter().all(|row| active.binary_search(&(row as u32)).is_ok()));
+        body.place(stretch);
+        energies.push(body.energy());
+    }
+    let first = energies[0];
+    // sums of some thousand volumes in another order
+    assert!(energies.iter().all(|energy| (energy / first - 1.0).abs() < 1e-12), "{energies:?}");
+}
+
+/// The force on active points is minus the slope of the energy, through ghosts; it has no sum and no moment.
+#[test]
+fn forces_are_slopes_of_the_energy() {
+    let meshes = balls();
+    for pattern in PATTERNS {
+        let mut body = Alone::new(body(&meshes, Coupling::Transpose, fixed(pattern)));
+        let bend = |x: Vec3| Vec3::new(x.x + 2.0 * x.y * x.y, x.y + 3.0 * x.x * x.z, 1.05 * x.z);
+        body.place(bend);
+        let mut force = vec![Vec3::ZERO; body.rows.positions.len()];
+        let mut scratch = body.force.new_scratch();
+        body.force.add_force(&body.at(), &mut scratch, &mut force);
+        let largest = force.iter().map(|f| f.length()).fold(0.0, f64::max);
+        let sum: Vec3 = force.iter().copied().sum();
+        let moment: Vec3 = body.rows.positions.iter().zip(&force).map(|(x, f)| x.cross(*f)).sum();
+        let total: f64 = force.iter().map(|f| f.length()).sum();
+        assert!(sum.length() < 1e-12 * total, "{pattern}: {sum:?}");
+        assert!(moment.length() < 1e-12 * 0.05 * total, "{pattern}: {moment:?}");
+        let active = body.force.active(&body.scratch).to_vec();
+        let step = 1e-6;
+        for row in active.iter().step_by(1 + active.len() / 7) {
+            let row = *row as usize;
+            for axis in Vec3::AXES {
+                let mut energy_at = |side: f64| {
+                    let kept = body.rows.positions[row];
+                    body.rows.positions[row] = kept + axis * (side * step);
+                    body.follow();
+                    let energy = body.energy();
+                    body.rows.positions[row] = kept;
+                    energy
+                };
+                let slope = (energy_at(1.0) - energy_at(-1.0)) / (2.0 * step);
+                body.follow();
+                let error = (force[row].dot(axis) + slope).abs();
+                // step² times a third derivative of order E h, and rounding of the energy over the step
+                assert!(error < 1e-5 * largest, "{pattern}: row {row}: {error} of {largest}");
+            }
+        }
+    }
+}
+
+fn world(force: LevelsForce, stepper: Staggered, period: f64, pins: impl Fn(Vec3) -> bool) -> World {
+    let mut kinematics = Kinematics::default();
+    let rest = force.hierarchy().rest.clone();
+    kinematics.add_unknowns(UnknownKind::Point, rest.len());
+    let mut mass = Mass::new(rest.len());
+    mass.diagonal[..force.masses().len()].copy_from_slice(force.masses());
+    let pinned = (0..rest.len()).filter(|row| pins(rest[*row]));
+    let constraints = pinned.map(|row| Constraint::pin(row as u32, rest[row])).collect();
+    let system = System {
+        name: "main".to_owned(),
+        kinematics,
+        mass,
+        forces: vec![Box::new(force)],
+        constraints,
+        stepper: Box::new(stepper),
+        steps_per_period: 1,
+    };
+    let state = State { systems: vec![system.initial_state(rest)], ..State::default() };
+    Model { period, systems: vec![system], ..Model::default() }.start(state)
+}
+
+fn stepper(halvings: u32, filter: Filter) -> Staggered {
+    Staggered { halvings, schedule: Schedule::Staggered, filter }
+}
+
+/// Sets velocities of all points, which followers share where they are linear.
+fn set_velocities(world: &mut World, velocity: impl Fn(Vec3) -> Vec3) {
+    let mut state = world.state().clone();
+    let system = &mut state.systems[0];
+    for (v, x) in system.v.iter_mut().zip(&system.q) {
+        *v = velocity(*x);
+    }
+    world.resume(state).unwrap();
+}
+
+/// A free ball with all its levels at work keeps its momentum to rounding, also while points come and go; one way it
+/// does not.
+#[test]
+fn the_transpose_keeps_momentum() {
+    let criterion = Criterion { measure: Measure::Jump, refine: 0.08, coarsen: 0.02 };
+    let velocity = |x: Vec3| Vec3::new(0.4 - 900.0 * x.z * x.y, 8.0 * x.x, 40.0 * x.x.abs());
+    let drift = |coupling, choice| {
+        let mut world = world(body(&balls(), coupling, choice), stepper(4, Filter::None), 4e-3, |_| false);
+        set_velocities(&mut world, velocity);
+        // fixed patterns come to be with the first step
+        world.step().unwrap();
+        let (start, mut most, mut counts) = (world.momentum().0, 0.0_f64, Vec::new());
+        for _ in 0..60 {
+            world.step().unwrap();
+            most = most.max((world.momentum().0 - start).length() / start.length());
+            let memory = &world.state().systems[0].memory;
+            let census = world.model().systems[0].forces[0].levels().unwrap().census(memory);
+            counts.push(census.active);
+        }
+        (most, counts)
+    };
+    for choice in [fixed("if(x < 0, 2, if(y < 0, 1, 0))"), Choice::Adaptive(criterion)] {
+        let (most, counts) = drift(Coupling::Transpose, choice.clone());
+        assert!(most < 1e-10, "{most:e}");
+        assert!(counts.iter().any(|active| active.iter().all(|count| *count > 0)), "{counts:?}");
+    }
+    let (one_way, _) = drift(Coupling::OneWay, fixed("if(x < 0, 2, if(y < 0, 1, 0))"));
+    assert!(one_way > 1e-4, "{one_way:e}");
+}
+
+/// DEB-12, 32: a twist refines; when it has gone the coarsest points are alone again, without a ghost.
+#[test]
+fn points_come_and_go() {
+    come_and_go(Measure::Jump);
+    come_and_go(Measure::Laplacian);
+}
+
+fn come_and_go(measure: Measure) {
+    let criterion = Criterion { measure, refine: 0.05, coarsen: 0.0125 };
+    let force = body(&balls(), Coupling::Transpose, Choice::Adaptive(criterion));
+    let mut body = Alone::new(force);
+    let twist = |strength: f64| {
+        move |x: Vec3| {
+            let angle = strength * x.z;
+            let (s, c) = angle.sin_cos();
+            Vec3::new(c * x.x - s * x.y, s * x.x + c * x.y, x.z)
+        }
+    };
+    let mut census = Vec::new();
+    for strength in [0.0, 60.0, 60.0, 60.0, 60.0, 0.0, 0.0, 0.0, 0.0] {
+        body.place(twist(strength));
+        body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
+        census.push(body.force.census(&body.memory));
+    }
+    let (first, twisted, last) = (&census[0], &census[4], &census[8]);
+    assert_eq!(first.active[1..], [0, 0]);
+    assert!(twisted.active[2] > 100, "{:?}", twisted.active);
+    assert_eq!(census[3], *twisted, "what is refined enough stays");
+    assert_eq!(last, first);
+    assert_eq!(last.ghosts, [0, 0, 0]);
+    // a turn of the whole is no reason to refine
+    body.place(|x| Vec3::new(-x.y, x.x, x.z));
+    body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
+    assert_eq!(body.force.census(&body.memory), *first);
+}
+
+/// V-34: with its own stiffness taken implicitly a point bears twice the step of modified Euler and more. The limits follow
+/// from the spectra of the cube's stiffness with and without its diagonal blocks.
+#[test]
+fn semi_implicit_points_bear_twice_the_step() {
+    for (cells, explicit, semi_implicit) in [(2.0, 5.62e-3, 15.2e-3), (4.0, 2.83e-3, 7.56e-3)] {
+        let is_stable = |filter, period: f64| {
+            let meshes = [cube(cells)];
+            let all: Vec<&Mesh> = meshes.iter().collect();
+            let force = LevelsForce::new(LevelsDescription {
+                name: "cube.material".to_owned(),
+                meshes: &all,
+                first_row: 0,
+                materials: &[material("linear", [20000.0, 7000.0])],
+                material_of_cell: &vec![0; meshes[0].cell_count()],
+                coupling: Coupling::OneWay,
+                choice: fixed("0"),
+                viscosity: 0.0,
+                mass_damping: 0.0,
+                budget: None,
+            });
+            let mut world = world(force.unwrap(), stepper(0, filter), period, |x| x.x < 1e-9);
+            set_velocities(&mut world, |x| Vec3::new(x.z * x.x, x.y * x.y - x.x, 3.0 * x.x + x.y) * 1e-3);
+            let is_slow = |world: &World| world.rows(0).velocities.iter().all(|v| v.length() < 1.0);
+            (0..600).all(|_| world.step().is_ok() && is_slow(&world))
+        };
+        assert!(is_stable(Filter::None, 0.98 * explicit), "{cells}");
+        assert!(!is_stable(Filter::None, 1.05 * explicit), "{cells}");
+        assert!(is_stable(Filter::SemiImplicit, 2.0 * explicit), "{cells}");
+        assert!(is_stable(Filter::SemiImplicit, 0.98 * semi_implicit), "{cells}");
+        assert!(!is_stable(Filter::SemiImplicit, 1.1 * semi_implicit), "{cells}");
+    }
+}
+
+/// DEB-39: a budget is kept while the whole body asks for more, and nothing is refined above 95 % of it.
+#[test]
+fn budgets_are_kept() {
+    let meshes = balls();
+    let all: Vec<&Mesh> = meshes.iter().collect();
+    let spent = |budget: Option<f64>| {
+        let criterion = Criterion { measure: Measure::Jump, refine: 0.01, coarsen: 0.002 };
+        let force = LevelsForce::new(LevelsDescription {
+            name: "ball.material".to_owned(),
+            meshes: &all,
+            first_row: 0,
+            materials: &[material("st_venant_kirchhoff", [20000.0, 7000.0])],
+            material_of_cell: &vec![0; meshes[2].cell_count()],
+            coupling: Coupling::Transpose,
+            choice: Choice::Adaptive(criterion),
+            viscosity: 0.0,
+            mass_damping: 0.0,
+            budget,
+        });
+        let mut body = Alone::new(force.unwrap());
+        for _ in 0..12 {
+            body.place(|x| Vec3::new(x.x + 4.0 * x.y * x.z, x.y + 6.0 * x.x * x.x, x.z));
+            body.force.adapt(&DIVISION, &mut body.rows, &mut body.memory, &mut body.scratch);
+        }
+        body.force.evaluations(&DIVISION, &body.scratch) as f64
+    };
+    let most = spent(None);
+    for part in [0.3, 0.6] {
+        let spent = spent(Some(part * most));
+        assert!(spent <= part * most && spent > 0.3 * part * most, "{spent} of {}", part * most);
+    }
+}

@@ -1,0 +1,117 @@
+//! Bodies of several meshes: how many, how coarse, who decides which one is at work.
+
+use souple_formal::Formula;
+use souple_models::multiresolution::{Choice, Coupling, Criterion, MOST, Measure, PLACE_VARIABLES};
+use souple_table::{Range, Value};
+
+use super::mesh::{MESH, MeshSpec};
+use crate::diagnostic::{Code, Site};
+use crate::keys::{Key, Keys, Shape};
+use crate::reader::Reader;
+
+static COARSER: Keys = Keys::new(
+    "coarser_mesh",
+    "a coarser mesh of a body",
+    &[Key::new("mesh", Shape::Entry(MESH), "its shape at rest, of tetrahedra").required()],
+);
+
+pub(crate) static LEVELS: Keys = Keys::new(
+    "levels",
+    "coarser meshes of the body, one of which is at work wherever its own mesh need not be",
+    &[
+        Key::integer(
+            "count",
+            Range::closed(1.0, MOST as f64),
+            "meshes in all, the body's own included; the others fill its surface, each coarser than the one before",
+        )
+        .or(Value::Integer(3)),
+        Key::number(
+            "ratio",
+            "",
+            Range::closed(1.2, 8.0),
+            "length of the edges of a mesh over those of the next finer one",
+        )
+        .or(Value::Number(2.0)),
+        Key::new("coarser", Shape::Tables(&COARSER), "the coarser meshes, from coarse to fine, in the place of `count`"),
+        Key::new(
+            "coupling",
+            Shape::Choice(&["transpose", "one_way"]),
+            "forces on points that follow return to those that they follow, or are lost",
+        )
+        .or(Value::Text("transpose")),
+        Key::new(
+            "criterion",
+            Shape::Choice(&["jump", "laplacian"]),
+            "what is measured around a point: how the deformation gradient varies, or the Laplacian of the displacement",
+        )
+        .or(Value::Text("jump")),
+        Key::number("refine", "", Range::NOT_NEGATIVE, "finer points take the place of a point above this variation")
+            .or(Value::Number(0.1)),
+        Key::number("coarsen", "", Range::NOT_NEGATIVE, "they go when it is below this around all of them")
+            .or(Value::Number(0.025)),
+        Key::new(
+            "fixed",
+            Shape::Formula(&PLACE_VARIABLES),
+            "the level at a place, counted from 0, the coarsest, in the place of a criterion",
+        ),
+        Key::number("budget", "", Range::POSITIVE, "stresses that a step may evaluate; without it, any number"),
+    ],
+);
+
+/// The levels of a body as specified.
+pub struct LevelsSpec {
+    pub count: usize,
+    pub ratio: f64,
+    pub coarser: Vec<MeshSpec>,
+    pub coupling: Coupling,
+    pub criterion: Criterion,
+    pub fixed: Option<Formula>,
+    pub budget: Option<f64>,
+    pub site: Site,
+}
+
+impl LevelsSpec {
+    pub(crate) fn read(reader: &Reader) -> Self {
+        let coarser: Vec<MeshSpec> = reader.tables("coarser").iter().filter_map(MeshSpec::read).collect();
+        if reader.has("coarser") {
+            for key in reader.written(&["count", "ratio"]) {
+                let message = format!("`{key}` is of meshes that are made, and these are given");
+                reader.log().add(Code::Conflict, &reader.site_of(key), message, "`coarser` alone");
+            }
+        }
+        let measure =
+            if reader.choice("criterion") == "laplacian" { Measure::Laplacian } else { Measure::Jump };
+        let criterion =
+            Criterion { measure, refine: reader.number("refine"), coarsen: reader.number("coarsen") };
+        if criterion.coarsen >= criterion.refine && criterion.refine > 0.0 {
+            let message = "points would come and go in every step";
+            reader.log().add(
+                Code::Conflict,
+                &reader.site_of("coarsen"),
+                message,
+                "less than half of `refine`",
+            );
+        }
+        Self {
+            count: reader.maybe_integer("count").unwrap_or(3) as usize,
+            ratio: reader.number("ratio"),
+            coarser,
+            coupling: if reader.choice("coupling") == "one_way" {
+                Coupling::OneWay
+            } else {
+                Coupling::Transpose
+            },
+            criterion,
+            fixed: reader.maybe_formula("fixed"),
+            budget: reader.maybe_number("budget"),
+            site: reader.site(),
+        }
+    }
+
+    pub fn choice(&self) -> Choice {
+        match &self.fixed {
+            Some(level) => Choice::Fixed(level.clone()),
+            None => Choice::Adaptive(self.criterion),
+        }
+    }
+}

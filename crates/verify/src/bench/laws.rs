@@ -1,0 +1,283 @@
+//! Laws as text against the same laws of the table, on complete steps; and forces and their derivatives alone.
+
+use std::time::Instant;
+
+use souple_engine::{TangentWeights, World};
+use souple_math::Vec3;
+
+use super::timing::{Held, Timed, Timing, bend, median, scene, thread_counts, with_threads};
+use super::{Effort, Figure};
+
+/// Neo-Hookean energy by tensors, as one would write it.
+const TENSORS: &str = "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2";
+/// The same by entries: nothing of it is a tensor operation.
+const SCALARS: &str = "mu/2*(F11^2 + F12^2 + F13^2 + F21^2 + F22^2 + F23^2 + F31^2 + F32^2 + F33^2 - 3) - mu*log(D) + lambda/2*log(D)^2";
+const DETERMINANT: &str = "F11*(F22*F33 - F23*F32) - F12*(F21*F33 - F23*F31) + F13*(F21*F32 - F22*F31)";
+
+/// How a law is written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Writing {
+    Tensors,
+    Scalars,
+}
+
+/// The bar of `cells` across, under the law of the table and under the same law as text.
+fn settings(element: &str, cells: u32, writing: Option<Writing>) -> Vec<String> {
+    let mut settings = vec![
+        r#"world.period="10 us""#.to_owned(),
+        r#"systems.main.stepper="symplectic_euler""#.to_owned(),
+        format!("bodies.bar.mesh.cells=[{}, {cells}, {cells}]", 10 * cells),
+        format!("bodies.bar.mesh.element=\"{element}\""),
+    ];
+    // 10 MPa and 0.3
+    let (mu, lambda) = (1e7 / 2.6, 3e6 / (1.3 * 0.4));
+    settings.push(match writing {
+        None => r#"bodies.bar.material.name="neo_hookean""#.to_owned(),
+        Some(writing) => {
+            let (energy, definitions) = match writing {
+                Writing::Tensors => (TENSORS, String::new()),
+                Writing::Scalars => (SCALARS, format!("definitions = {{ D = \"{DETERMINANT}\" }}, ")),
+            };
+            format!(
+                "bodies.bar.material={{ name = \"hyperelastic\", energy = \"{energy}\", {definitions}parameters = {{ mu = \"{mu} Pa\", lambda = \"{lambda} Pa\" }}, density = 1000 }}"
+            )
+        }
+    });
+    settings
+}
+
+fn started(settings: &[String]) -> Result<World, String> {
+    let scene = scene("cantilever_dynamic", settings)?;
+    let mut world = scene.model.start(scene.state);
+    bend(&mut world).map_err(|error| error.to_string())?;
+    Ok(world)
+}
+
+/// Seconds of `steps` steps.
+fn seconds_of(world: &mut World, steps: usize) -> Result<f64, String> {
+    let clock = Instant::now();
+    (0..steps).try_for_each(|_| world.step().map_err(|error| error.to_string()))?;
+    Ok(clock.elapsed().as_secs_f64())
+}
+
+/// Positions of one world against those of another, relative to how far they have moved.
+fn distance(world: &World, other: &World, start: &[Vec3]) -> f64 {
+    let (q, r) = (&world.state().systems[0].q, &other.state().systems[0].q);
+    let off: f64 = q.iter().zip(r).map(|(a, b)| (*a - *b).length_sq()).sum();
+    let moved: f64 = q.iter().zip(start).map(|(a, b)| (*a - *b).length_sq()).sum();
+    (off / moved).sqrt()
+}
+
+/// Time of a step under the text over that under the law of the table, sample by sample in turn, for tetrahedra (whose law of
+/// the table is one loop with the element) and hexahedra; and how long the text takes to be ready.
+pub fn law_text(name: &str, writing: Writing, most: f64, effort: Effort) -> Result<Vec<Figure>, String> {
+    let mut figures = Vec::new();
+    for (element, cells, steps) in [("tet4", 6, 10), ("hex8", 6, 10)] {
+        let measured = with_threads(1, || {
+            let mut known = started(&settings(element, cells, None))?;
+            let start = known.state().systems[0].q.clone();
+            let mut text = started(&settings(element, cells, Some(writing)))?;
+            let mut ratios = Vec::new();
+            for _ in 0..effort.choose(7, 31) {
+                let of_known = seconds_of(&mut known, steps)?;
+                ratios.push(seconds_of(&mut text, steps)? / of_known);
+            }
+            Ok::<_, String>((ratios, distance(&known, &text, &start), text.bytes()))
+        });
+        let (ratios, error, bytes) = measured??;
+        let samples = ratios.len();
+        let (value, spread) = median(ratios);
+        figures.push(Figure {
+            name: format!("{name}_{element}_1t"),
+            value,
+            unit: "x built-in",
+            higher_is_better: false,
+            error,
+            error_of: "motion by the law of the table".to_owned(),
+            baseline: Some(most),
+            threads: 1,
+            samples,
+            spread,
+            bytes,
+        });
+    }
+    figures.push(ready(name, writing, effort)?);
+    Ok(figures)
+}
+
+/// From text to a world that can step: what a scene of ten cells takes more with the law as text.
+fn ready(name: &str, writing: Writing, effort: Effort) -> Result<Figure, String> {
+    let seconds = |writing: Option<Writing>| {
+        let settings = settings("hex8", 1, writing);
+        let clock = Instant::now();
+        let world = started(&settings)?;
+        Ok::<_, String>((clock.elapsed().as_secs_f64(), world.bytes()))
+    };
+    let mut samples = Vec::new();
+    let mut bytes = 0;
+    for _ in 0..effort.choose(5, 31) {
+        let (without, _) = seconds(None)?;
+        let (with, held) = seconds(Some(writing))?;
+        samples.push(1e3 * (with - without));
+        bytes = held;
+    }
+    let count = samples.len();
+    let (value, spread) = median(samples);
+    Ok(Figure {
+        name: format!("{name}_ready"),
+        value,
+        unit: "ms",
+        higher_is_better: false,
+        error: 0.0,
+        error_of: "nothing: the text is compiled".to_owned(),
+        baseline: Some(50.0),
+        threads: 1,
+        samples: count,
+        spread,
+        bytes,
+    })
+}
+
+/// The elastic force of the bent bar alone, and its derivative along a direction.
+pub struct ForceTimes {
+    pub force: Timed,
+    pub derivative: Timed,
+    /// Forces and derivatives for comparison.
+    pub forces: Vec<Vec3>,
+    pub derivatives: Vec<Vec3>,
+    /// Derivative against central differences of the force.
+    pub derivative_error: f64,
+}
+
+/// Times force and derivative of the bar's material `samples` times each, in turn.
+pub fn force_times(settings: &[String], threads: usize, samples: usize) -> Result<ForceTimes, String> {
+    with_threads(threads, || {
+        let scene = scene("cantilever_dynamic", settings)?;
+        let cells = scene.bodies[0].mesh.cell_count();
+        let mut world = scene.model.start(scene.state);
+        bend(&mut world).map_err(|error| error.to_string())?;
+        world.with_system(0, |system, state, around, ws| {
+            let index = system.forces.iter().position(|force| force.name() == "bar.material");
+            let index = index.ok_or("the bar has no material")?;
+            let (force, at) = (&system.forces[index], system.view(index, &ws.rows, state, around));
+            let scratch = &mut ws.scratches[index];
+            let wave = |i: usize| (i as f64 * 12.9898).sin();
+            let delta: Vec<Vec3> = (0..at.positions.len())
+                .map(|i| Vec3::new(wave(3 * i), wave(3 * i + 1), wave(3 * i + 2)))
+                .collect();
+            let weights = TangentWeights { position: 1.0, velocity: 0.0 };
+            let zeros = vec![Vec3::ZERO; delta.len()];
+            let (mut forces, mut derivatives) = (zeros.clone(), zeros.clone());
+            let mut seconds = [Vec::new(), Vec::new()];
+            for _ in 0..samples + 1 {
+                forces.fill(Vec3::ZERO);
+                let clock = Instant::now();
+                force.add_force(&at, scratch, &mut forces);
+                seconds[0].push(clock.elapsed().as_secs_f64());
+                derivatives.fill(Vec3::ZERO);
+                let clock = Instant::now();
+                force.add_differential(&at, weights, &delta, scratch, &mut derivatives);
+                seconds[1].push(clock.elapsed().as_secs_f64());
+            }
+            // (f(x + ε δ) - f(x - ε δ)) / 2ε
+            let step = 1e-7;
+            let mut difference = zeros.clone();
+            for sign in [1.0, -1.0] {
+                let moved: Vec<Vec3> =
+                    at.positions.iter().zip(&delta).map(|(x, d)| *x + *d * (sign * step)).collect();
+                let mut f = zeros.clone();
+                force.add_force(&souple_engine::Configuration { positions: &moved, ..at }, scratch, &mut f);
+                difference.iter_mut().zip(f).for_each(|(sum, f)| *sum += f * (sign / (2.0 * step)));
+            }
+            let bytes = force.bytes() + force.scratch_bytes(scratch);
+            // the first of each fills buffers
+            let [force, derivative] = seconds.map(|mut seconds| {
+                seconds.remove(0);
+                Timed { threads, seconds, cells, bytes }
+            });
+            let derivative_error = off(&derivatives, &difference);
+            Ok(ForceTimes { force, derivative, forces, derivatives, derivative_error })
+        })
+    })?
+}
+
+/// Distance of two fields, relative to the first.
+pub fn off(a: &[Vec3], b: &[Vec3]) -> f64 {
+    let distance: f64 = a.iter().zip(b).map(|(a, b)| (*a - *b).length_sq()).sum();
+    (distance / a.iter().map(|a| a.length_sq()).sum::<f64>()).sqrt()
+}
+
+/// Settings of a bar of an element under a law.
+pub fn bar(element: &str, cells: u32, law: &str) -> Vec<String> {
+    vec![
+        format!("bodies.bar.mesh.cells=[{}, {cells}, {cells}]", 10 * cells),
+        format!("bodies.bar.mesh.element=\"{element}\""),
+        format!("bodies.bar.material.name=\"{law}\""),
+    ]
+}
+
+/// Forces alone of an element under St. Venant-Kirchhoff's law, and what a derivative product takes of them.
+pub fn forces(
+    name: &str,
+    element: &str,
+    cells: u32,
+    wanted: f64,
+    effort: Effort,
+) -> Result<Vec<Figure>, String> {
+    let settings = bar(element, cells, "st_venant_kirchhoff");
+    let mut figures = Vec::new();
+    for threads in thread_counts() {
+        let times = force_times(&settings, threads, effort.choose(7, 41))?;
+        let held = |baseline, wanted_of: &str| Held {
+            error: times.derivative_error,
+            error_of: wanted_of.to_owned(),
+            baseline: Some(baseline),
+        };
+        let of_derivative = "derivative against differences of the force";
+        figures.push(times.force.elements_per_second(name, &held(wanted, of_derivative)));
+        let ratios = times.derivative.seconds.iter().zip(&times.force.seconds).map(|(d, f)| d / f).collect();
+        let name = format!("{name}_derivative");
+        figures.push(times.force.figure(&name, ratios, &held(2.5, of_derivative), ("x force", false)));
+    }
+    Ok(figures)
+}
+
+/// Products with the tangent from a stored matrix against products element by element, in one implicit step each: what a
+/// derivative that is computed once per step saves (EXP-41), and what differences in its place cost.
+pub fn tangents(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let variants = [
+        ("stored", "matrix_free = false", "exact"),
+        ("element_by_element", "matrix_free = true", "exact"),
+        ("differences", "matrix_free = true", "difference"),
+    ];
+    let step = |stored: &str, tangent: &str| {
+        let mut settings = bar("hex8", 4, "st_venant_kirchhoff");
+        settings.push(format!("bodies.bar.tangent=\"{tangent}\""));
+        settings.push(format!(
+            "systems.main.stepper={{ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-6, preconditioner = \"block_jacobi\", {stored} }}"
+        ));
+        settings
+    };
+    let tip = |settings: &[String]| super::value_of(scene("cantilever_dynamic", settings)?, 5, "tip", 1);
+    let exact = tip(&step(variants[1].1, variants[1].2))?;
+    let mut figures = Vec::new();
+    for (variant, stored, tangent) in variants {
+        let settings = step(stored, tangent);
+        let held = Held {
+            error: (tip(&settings)? / exact - 1.0).abs(),
+            error_of: "tip after 5 steps, against products element by element".to_owned(),
+            baseline: None,
+        };
+        let timing = Timing {
+            scene: "cantilever_dynamic",
+            settings: &settings,
+            prepare: super::timing::as_it_is,
+            warm_up: 1,
+            samples: effort.choose(4, 12),
+            steps_per_sample: 1,
+        };
+        let timed = with_threads(1, || timing.sample(1))??;
+        figures.push(timed.milliseconds_per_step(&format!("{name}_{variant}"), &held));
+    }
+    Ok(figures)
+}

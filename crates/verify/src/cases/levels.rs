@@ -1,0 +1,116 @@
+//! Bodies of several meshes: a cube of one of them or of two, a free one, an organ that is touched.
+
+use crate::reading::Statistic;
+use crate::{Case, Reading, Tolerance};
+
+const CUBE: Case = Case {
+    id: "",
+    capabilities: &["DEB-3", "DEB-50"],
+    what: "",
+    scene: "levels_cube",
+    settings: &[],
+    reading: Reading::component("edge", 2),
+    refinement: None,
+    reference: 0.0,
+    tolerance: Tolerance::Absolute(2e-5),
+    source: "V-01: static equilibrium of the same mesh, by Newton's method",
+    mutation: r#"bodies.cube.material.youngs_modulus="19.3 kPa""#,
+};
+
+const FREE: Case = Case {
+    capabilities: &["DEB-28", "DEB-50"],
+    scene: "levels_free",
+    source: "1 kg at (0.3, 0.1, 0) m/s",
+    tolerance: Tolerance::Relative(1e-10),
+    mutation: r#"bodies.cube.levels.coupling="one_way""#,
+    ..CUBE
+};
+
+const ORGAN: Case = Case { capabilities: &["DEB-12", "DEB-30"], scene: "surgical", ..CUBE };
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "levels_cube_coarse",
+        what: "sag of the clamped cube, the mesh of 48 tetrahedra at work, St. Venant-Kirchhoff",
+        settings: &[r#"bodies.cube.levels.fixed="0""#],
+        reference: -10.05e-3,
+        ..CUBE
+    },
+    Case {
+        id: "levels_cube_middle",
+        what: "the same, 384 tetrahedra",
+        settings: &[r#"bodies.cube.levels.fixed="1""#],
+        reference: -12.41e-3,
+        ..CUBE
+    },
+    Case {
+        id: "levels_cube_fine",
+        what: "the same, 3072 tetrahedra",
+        settings: &[r#"bodies.cube.levels.fixed="2""#],
+        reference: -14.16e-3,
+        ..CUBE
+    },
+    Case {
+        id: "levels_cube_one_way",
+        what: "the same, 384 tetrahedra, coupled one way: a mesh that is alone does not know it",
+        settings: &[r#"bodies.cube.levels.fixed="1""#, r#"bodies.cube.levels.coupling="one_way""#],
+        reference: -12.41e-3,
+        ..CUBE
+    },
+    Case {
+        id: "levels_cube_mixed",
+        capabilities: &["DEB-28", "DEB-31"],
+        what: "half of it fine, half coarse: between the sag of one and of the other",
+        reference: -12.11e-3,
+        tolerance: Tolerance::Absolute(2.05e-3),
+        source: "V-32 (d): between levels_cube_coarse and levels_cube_fine",
+        mutation: r#"bodies.cube.material.youngs_modulus="14 kPa""#,
+        ..CUBE
+    },
+    Case {
+        id: "levels_momentum_x",
+        what: "momentum of a free cube of three meshes after 6400 ticks, along x",
+        reading: Reading::component("momentum", 0),
+        reference: 0.3,
+        ..FREE
+    },
+    Case {
+        id: "levels_momentum_y",
+        what: "the same along y",
+        reading: Reading::component("momentum", 1),
+        reference: 0.1,
+        ..FREE
+    },
+    Case {
+        id: "levels_rest_coarse",
+        what: "points of the finest mesh that are active after the tool has gone and all is at rest",
+        reading: Reading::last("fine"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.5),
+        source: "V-38: back to coarse in less than 3 s",
+        mutation: "bodies.liver.levels.coarsen=0",
+        ..ORGAN
+    },
+    Case {
+        id: "levels_ghosts_gone",
+        capabilities: &["DEB-32"],
+        what: "ghosts while only the coarsest points are active, after a step that refined nothing",
+        settings: &["bodies.liver.levels.refine=100"],
+        reading: Reading::last("ghosts").after(3),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.5),
+        source: "nobody is there to see them",
+        mutation: "bodies.liver.levels.refine=0",
+        ..ORGAN
+    },
+    Case {
+        id: "levels_refined",
+        what: "most points of the finest mesh that were active at once: some, but not all",
+        reading: Reading::last("fine").taking(Statistic::Max),
+        reference: 400.0,
+        tolerance: Tolerance::Absolute(350.0),
+        source: "V-38: finer meshes in the pressed zone only",
+        mutation: r#"bodies.liver.levels.fixed="1""#,
+        ..ORGAN
+    },
+];
