@@ -226,10 +226,9 @@ fn elements_turn_with_their_rotation() {
 /// A spring between two nodes pulls with `k Δl`; those of a tetrahedron have `k = E V / l²`; and all add up to no force or torque.
 #[test]
 fn springs_have_the_stiffness_of_their_cells() {
-    let mut mesh = Mesh::default();
-    mesh.points =
+    let points =
         vec![Vec3::ZERO, Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 2.0)];
-    mesh.push_cell(ElementKind::Tet4, &[0, 1, 2, 3]);
+    let mesh = Mesh::new(points, ElementKind::Tet4, vec![0, 1, 2, 3]);
     let law = material("linear");
     let force = build("mass_spring", &mesh, &law).unwrap();
     // the far corner drawn along its edge to the first: the other two edges at it turn, and stretch too

@@ -270,8 +270,7 @@ impl<G: Geometry, const N: usize> WithSimd for Differential<'_, G, N> {
 #[inline(always)]
 fn turned_differential<R: Real>(parameters: &Lame<R>, rotation: &Mat3<R>, dF: &Mat3<R>) -> Mat3<R> {
     let turned = rotation.transpose_mul(dF);
-    let at = Linear::at(parameters, &turned);
-    *rotation * Linear::stress_differential(parameters, &at, &turned)
+    *rotation * Linear::stress_differential(parameters, &(), &turned)
 }
 
 struct Energy<'a, G, const N: usize> {

@@ -77,19 +77,18 @@ fn shape_of(mesh: &Mesh, number: u32, cell: &Cell) -> Result<([Vec3; 4], f64), F
 }
 
 #[cfg(test)]
-pub mod tests {
+mod tests {
     use super::*;
 
     /// A tetrahedron of no symmetry.
-    pub fn example(is_quartic: bool) -> Polynomial {
-        let mut mesh = Mesh::default();
-        mesh.points = vec![
+    fn example(is_quartic: bool) -> Polynomial {
+        let points = vec![
             Vec3::new(0.1, 0.0, 0.2),
             Vec3::new(1.2, 0.1, 0.0),
             Vec3::new(0.3, 0.9, -0.1),
             Vec3::new(0.2, 0.3, 1.4),
         ];
-        mesh.push_cell(ElementKind::Tet4, &[0, 1, 2, 3]);
+        let mesh = Mesh::new(points, ElementKind::Tet4, vec![0, 1, 2, 3]);
         let (alpha, volume) = shape_of(&mesh, 0, &mesh.cell(0).unwrap()).unwrap();
         Polynomial { alpha, volume, moduli: Lame { mu: 3.0, lambda: 5.0 }, is_quartic }
     }
