@@ -1,6 +1,5 @@
-//! Bodies of several meshes: a cube of one of them or of two, a free one, an organ that is touched.
+//! Bodies of several meshes: a cube of one of them or of two, a free one.
 
-use crate::reading::Statistic;
 use crate::{Case, Reading, Tolerance};
 
 const CUBE: Case = Case {
@@ -25,8 +24,6 @@ const FREE: Case = Case {
     mutation: r#"bodies.cube.levels.coupling="one_way""#,
     ..CUBE
 };
-
-const ORGAN: Case = Case { capabilities: &["DEB-12", "DEB-30"], scene: "surgical", ..CUBE };
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -80,37 +77,5 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::component("momentum", 1),
         reference: 0.1,
         ..FREE
-    },
-    Case {
-        id: "levels_rest_coarse",
-        what: "points of the finest mesh that are active after the tool has gone and all is at rest",
-        reading: Reading::last("fine"),
-        reference: 0.0,
-        tolerance: Tolerance::Absolute(0.5),
-        source: "V-38: back to coarse in less than 3 s",
-        mutation: "bodies.liver.levels.coarsen=0",
-        ..ORGAN
-    },
-    Case {
-        id: "levels_ghosts_gone",
-        capabilities: &["DEB-32"],
-        what: "ghosts while only the coarsest points are active, after a step that refined nothing",
-        settings: &["bodies.liver.levels.refine=100"],
-        reading: Reading::last("ghosts").after(3),
-        reference: 0.0,
-        tolerance: Tolerance::Absolute(0.5),
-        source: "nobody is there to see them",
-        mutation: "bodies.liver.levels.refine=0",
-        ..ORGAN
-    },
-    Case {
-        id: "levels_refined",
-        what: "most points of the finest mesh that were active at once: some, but not all",
-        reading: Reading::last("fine").taking(Statistic::Max),
-        reference: 400.0,
-        tolerance: Tolerance::Absolute(350.0),
-        source: "V-38: finer meshes in the pressed zone only",
-        mutation: r#"bodies.liver.levels.fixed="1""#,
-        ..ORGAN
     },
 ];
