@@ -200,13 +200,37 @@ fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -
     }
 }
 
-/// What a file of that name will not hold of a mesh, in words; nothing where all of it is kept.
+/// What a file of the format will not hold of a mesh, in words; nothing where all of it is kept.
+///
+/// # Errors
+/// The format is unknown.
+pub fn losses(format: &str, output: &Output<'_>) -> Result<Vec<String>, IoError> {
+    let entry = FORMATS.find(format)?;
+    Ok(entry.build.holds.losses(entry.name, output))
+}
+
+/// The name of the format that a file's extension stands for.
 ///
 /// # Errors
 /// The extension is unknown.
-pub fn losses(path: &Path, output: &Output<'_>) -> Result<Vec<String>, IoError> {
-    let entry = by_extension(path)?;
-    Ok(entry.build.holds.losses(entry.name, output))
+pub fn format_of(path: &Path) -> Result<&'static str, IoError> {
+    Ok(by_extension(path)?.name)
+}
+
+/// The name of the format, where a file of that path can be read again: by its extension, or by what it begins with where the
+/// format is one of several that share an extension.
+///
+/// # Errors
+/// The format is unknown, or has other extensions.
+pub fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
+    let entry = FORMATS.find(format)?;
+    let known = entry.build.extensions;
+    let found = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    if known.is_empty() || known.contains(&found.as_str()) {
+        return Ok(entry.name);
+    }
+    let expected = format!("{} for the format `{}`", known.join(" or "), entry.name);
+    Err(IoError::request(format!("the extension of {}", path.display()), format!("`{found}`"), expected))
 }
 
 fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {

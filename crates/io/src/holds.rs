@@ -154,6 +154,9 @@ impl Holds {
                 "positions exactly: they are rounded to 4 bytes",
             );
         }
+        if self.groups == HeldGroups::OneNumber {
+            losses.extend(crate::tetgen::renamed(output));
+        }
         losses
     }
 }

@@ -12,7 +12,7 @@ use souple_table::Entry;
 use crate::cursor::parse;
 use crate::dataset::{Output, tidy_groups};
 use crate::error::{Fault, Place, quoted};
-use crate::facets::{Origin, SurfacePart};
+use crate::facets::{Origin, SurfacePart, check_end};
 use crate::format::{Format, WriteError};
 use crate::holds::{HeldGroups, Holds, Shapes};
 use crate::{Dataset, IoError};
@@ -86,9 +86,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
         return Err(Fault::cut_off(place, "the line that a backslash continues", "another line"));
     }
     let mut dataset = reader.finish(bytes)?;
-    if !bytes.ends_with(b"\n") {
-        dataset.notes.push("the last line has no end: the file may be cut off".to_owned());
-    }
+    check_end(bytes, &dataset.mesh, &mut dataset.notes)?;
     Ok(dataset)
 }
 
@@ -315,6 +313,22 @@ mod tests {
             let fault = read(text.as_bytes()).unwrap_err();
             assert_eq!((fault.place, fault.found.as_str()), (Place::Line(line), found), "{text:?}");
         }
+    }
+
+    /// A tent cut off: within its last line with a point that no facet has come to, behind a line, and within the last number
+    /// of all, which only the missing end of the line tells.
+    #[test]
+    fn cut_off_files() {
+        let whole = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\n";
+        let cut = |length: usize| read(&whole.as_bytes()[..length]);
+        let at = |text: &str| whole.find(text).unwrap() + text.len();
+        assert!(cut(whole.len()).unwrap().notes.is_empty());
+        let fault = cut(at("f 1 2 3")).unwrap_err().to_string();
+        assert!(fault.contains("line 5") && fault.contains("1 points are in no facet"), "{fault}");
+        let notes = cut(at("f 1 2 3\n")).unwrap().notes;
+        assert!(notes[0].contains("1 points are in no facet, the first is points[3]"), "{notes:?}");
+        let notes = cut(whole.len() - 1).unwrap().notes;
+        assert_eq!(notes, ["the last line has no end: the file may be cut off"]);
     }
 
     #[test]

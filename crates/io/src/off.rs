@@ -11,7 +11,7 @@ use crate::Dataset;
 use crate::cursor::{Cursor, parse};
 use crate::dataset::Output;
 use crate::error::{Fault, Place, quoted};
-use crate::facets::{Polygons, SurfacePart, check_facets};
+use crate::facets::{Polygons, SurfacePart, check_end, check_facets};
 use crate::format::{Format, WriteError};
 use crate::holds::{Holds, Shapes};
 
@@ -102,12 +102,16 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     }
     check_facets(&lines.cursor, &dataset.mesh)?;
     dataset.notes = polygons.notes();
-    if lines.next().is_some() {
-        dataset.notes.push("lines behind the last facet were left out".to_owned());
+    if let Some((place, words)) = lines.next() {
+        let subject = format!("a facet behind the last of {facet_count}");
+        return Err(Fault::new(
+            place,
+            subject,
+            quoted(&words.join(&b' ')),
+            "as many facets as the head says",
+        ));
     }
-    if !bytes.ends_with(b"\n") {
-        dataset.notes.push("the last line has no end: the file may be cut off".to_owned());
-    }
+    check_end(bytes, &dataset.mesh, &mut dataset.notes)?;
     Ok(dataset)
 }
 
@@ -213,6 +217,7 @@ mod tests {
             ("3 0 1 3", "3 0 1 -1", "a corner of facet 0 is \"-1\""),
             ("3 0 1 3", "9 0 1 3", "is 9, but the line has 3"),
             ("3 0 1 3", "2 0 1", "expected 3 or more"),
+            ("4 3 5\n", "4 2 5\n", "line 9: a facet behind the last of 2"),
         ] {
             assert!(TEXT.contains(from), "{from}");
             let message = match read(TEXT.replacen(from, to, 1).as_bytes()) {

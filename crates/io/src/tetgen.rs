@@ -270,6 +270,26 @@ fn numbers<'a>(
     numbers
 }
 
+/// A line for each group whose name is lost: what it is called when the file is read.
+pub(crate) fn renamed(output: &Output<'_>) -> Vec<String> {
+    let kinds: [(&str, fn(&Group) -> &[u32]); 3] = [
+        ("point", |group| &group.points),
+        ("volume", |group| &group.cells),
+        ("surface", |group| &group.facets),
+    ];
+    let mut lines = Vec::new();
+    for name in output.mesh.groups.keys() {
+        let given = kinds.iter().filter_map(|(kind, members)| {
+            numbers(output, kind, members).get(name.as_str()).map(|number| format!("{kind}_{number}"))
+        });
+        let given: Vec<String> = given.filter(|given| given != name).collect();
+        if !given.is_empty() {
+            lines.push(format!("the group `{name}` is called {} in the file", given.join(" and ")));
+        }
+    }
+    lines
+}
+
 /// The number of the group of each member, zero for none.
 fn marks(
     output: &Output<'_>,

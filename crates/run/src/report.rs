@@ -38,6 +38,8 @@ pub struct Report {
     pub title: String,
     pub scene: String,
     pub scene_sha256: String,
+    /// `path=value` that changed the scene.
+    pub settings: Vec<String>,
     pub seed: u64,
     pub threads: usize,
     /// The period it began at: 0, or that of the snapshot it went on from.
@@ -97,6 +99,7 @@ impl Report {
             "scene": self.scene,
             "title": self.title,
             "scene_sha256": self.scene_sha256,
+            "settings": self.settings,
             "binary": binary(),
             "isa": instruction_set(),
             "threads": self.threads,

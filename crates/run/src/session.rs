@@ -242,6 +242,7 @@ impl Session {
             title: self.title.clone(),
             scene: self.scene_name.clone(),
             scene_sha256: self.scene_sha256.clone(),
+            settings: self.inputs().settings,
             seed: self.seed,
             threads: rayon::current_num_threads(),
             first_step: self.first_step,

@@ -50,7 +50,8 @@ fn read_entities(cursor: &mut Cursor<'_>, width: usize, assembly: &mut Assembly)
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
                 cursor.double(format_args!("the extent of entity {tag}"))?;
             }
-            let physical = read_int_list(cursor, width, format_args!("the physical groups of entity {tag}"))?;
+            let mut physical =
+                read_int_list(cursor, width, format_args!("the physical groups of entity {tag}"))?;
             if physical.len() > MOST_GROUPS {
                 let subject = format!("the number of physical groups of entity {tag}");
                 return Err(cursor.fault(
@@ -59,6 +60,8 @@ fn read_entities(cursor: &mut Cursor<'_>, width: usize, assembly: &mut Assembly)
                     format!("at most {MOST_GROUPS}"),
                 ));
             }
+            // 0 stands for no group
+            physical.retain(|group| *group != 0);
             if dimension > 0 {
                 read_int_list(cursor, width, format_args!("the boundary of entity {tag}"))?;
             }

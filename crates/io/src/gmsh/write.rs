@@ -80,6 +80,9 @@ pub(super) fn version_4(
 }
 
 /// An entity for each set of groups; its number is that of the set plus one.
+///
+/// Where some cells have groups, those without have group 0, as version 2 writes it: Gmsh would drop cells without any when
+/// it saves the file, and readers that make a list of groups want one for each block.
 fn write_entities(
     sink: &mut Sink<'_>,
     grouping: &Grouping<'_>,
@@ -104,6 +107,8 @@ fn write_entities(
                     sink.double(coordinate)?;
                 }
             }
+            let ungrouped: &[usize] = if grouping.names.is_empty() { &[] } else { &[0] };
+            let groups = if groups.is_empty() { ungrouped } else { groups };
             sink.size(groups.len())?;
             for group in groups {
                 sink.int(*group as i64)?;

@@ -72,6 +72,16 @@ fn evened(path: fn(f64) -> [f64; 3]) -> Vec<Colour> {
 }
 
 impl ColourMap {
+    /// The range of colours for values from `low` to `high`: around zero, where the middle of a diverging map is, if there are
+    /// values on both sides of it; else it would show one half of its colours only.
+    pub fn spread(self, (low, high): (f64, f64)) -> (f64, f64) {
+        if self == Self::Diverging && low < 0.0 && high > 0.0 {
+            let most = high.max(-low);
+            return (-most, most);
+        }
+        (low, high)
+    }
+
     /// The colour of a value, 0 to 1; NaN is grey.
     pub fn colour(self, value: f64) -> Colour {
         if value.is_nan() {

@@ -5,7 +5,7 @@ use super::colour::Colour;
 use super::image::{Anchor, Canvas};
 use super::legend::scale;
 use super::lettering::text_width;
-use super::{Image, Legend, Palette, Picture, Theme};
+use super::{Image, Legend, LegendPlace, Palette, Picture, Theme};
 
 /// All in pixels.
 pub(super) struct Layout {
@@ -28,9 +28,12 @@ struct LegendBox {
     top: f64,
     bottom: f64,
     ticks: Vec<(f64, String)>,
+    /// Of the ticks' names.
+    widest: f64,
     title: Vec<String>,
-    /// Left border of everything of it.
+    /// Left border of everything of it, and the middle under its title.
     edge: f64,
+    middle: f64,
 }
 
 /// Lines of a title that does not fit in one.
@@ -48,8 +51,8 @@ impl Layout {
             (wanted * room / text_width(&picture.title, wanted).max(1.0)).clamp(0.75 * wanted, wanted);
         let title = wrapped(&picture.title, title_letter, room, MOST_LINES);
         let subtitle = wrapped(&picture.subtitle, letter, room, MOST_LINES);
-        let legend =
-            picture.legend.as_ref().map(|legend| LegendBox::of(legend, range, picture.size, letter, margin));
+        let beside = picture.legend.as_ref().filter(|legend| legend.place == LegendPlace::Beside);
+        let legend = beside.map(|legend| LegendBox::of(legend, range, picture.size, letter, margin));
         let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
         // room for the shade around the place of contact
         let shade = if picture.ground.is_some() { 0.07 * height } else { 0.0 };
@@ -124,14 +127,13 @@ impl LegendBox {
     fn of(legend: &Legend, (low, high): (f64, f64), size: [usize; 2], letter: f64, margin: f64) -> Self {
         let [width, height] = size.map(|side| side as f64);
         let (top, bottom) = (0.29 * height, 0.71 * height);
-        let names = scale(low, high, 5, 1.8 * letter / (bottom - top));
-        let widest = names.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
+        let scale = scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top));
+        let widest = scale.ticks.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
         let place = |value: f64| bottom - (value - low) / (high - low) * (bottom - top);
-        let ticks = names.into_iter().map(|(value, name)| (place(value), name)).collect();
-        let title = if legend.unit.is_empty() {
-            legend.title.clone()
-        } else {
-            format!("{} [{}]", legend.title, legend.unit)
+        let ticks = scale.ticks.into_iter().map(|(value, name)| (place(value), name)).collect();
+        let title = match scale.unit.as_str() {
+            "" => legend.title.clone(),
+            unit => format!("{} [{unit}]", legend.title),
         };
         let bar = 1.4 * letter;
         let body = bar + 0.95 * letter + widest;
@@ -140,7 +142,14 @@ impl LegendBox {
         let edge = width - margin - body.max(head);
         // under the middle of its title
         let left = edge + 0.5 * (body.max(head) - body);
-        Self { left, right: left + bar, top, bottom, ticks, title, edge }
+        let middle = edge + 0.5 * body.max(head);
+        Self { left, right: left + bar, top, bottom, ticks, widest, title, edge, middle }
+    }
+
+    /// The same so many pixels to the right.
+    fn moved(self, by: f64) -> Self {
+        let Self { left, right, edge, middle, .. } = self;
+        Self { left: left + by, right: right + by, edge: edge + by, middle: middle + by, ..self }
     }
 
     fn write(&self, picture: &Picture, letter: f64, palette: &Palette, canvas: &mut Canvas) {
@@ -159,21 +168,52 @@ impl LegendBox {
             canvas.line(&[[self.right + 1.0, *y], [self.right + 0.45 * letter, *y]], 1.2, palette.ink);
             canvas.text(
                 label,
-                [self.right + 0.95 * letter, y + 0.5 * letter],
+                // one under the other by their last digits
+                [self.right + 0.95 * letter + self.widest, y + 0.5 * letter],
                 letter,
-                Anchor::Left,
+                Anchor::Right,
                 palette.ink,
             );
         }
-        let middle = 0.5 * (self.edge + canvas.width as f64 - 0.045 * canvas.width.min(canvas.height) as f64);
         for (index, line) in self.title.iter().rev().enumerate() {
             let y = self.top - 1.4 * letter - 1.6 * letter * index as f64;
-            canvas.text(line, [middle, y], letter, Anchor::Middle, palette.ink);
+            canvas.text(line, [self.middle, y], letter, Anchor::Middle, palette.ink);
         }
     }
 }
 
+impl Picture {
+    /// The legend alone, as a strip of that height to stand beside a sheet of pictures; `None` where there is none.
+    pub fn legend_strip(&self, height: usize) -> Option<Image> {
+        let letter = (0.018 * height as f64).clamp(8.0, 16.0);
+        let margin = 2.0 * letter;
+        // laid out in a strip that is wide enough for any title, of which the free part is left out
+        let wide = 4 * height.max(64);
+        let of = LegendBox::of(self.legend.as_ref()?, self.range(), [wide, height], letter, margin);
+        let spare = of.edge - margin;
+        let mut canvas = Canvas::new((wide as f64 - spare).ceil() as usize, height);
+        let palette = self.palette();
+        canvas.fill(0..canvas.width, 0..height, palette.bottom, 1.0);
+        of.moved(-spare).write(self, letter, &palette, &mut canvas);
+        Some(canvas.finish())
+    }
+}
+
 impl Image {
+    /// The same with another of the same height on its right.
+    pub fn beside(&self, other: &Self) -> Self {
+        let width = self.width + other.width;
+        let mut pixels = Vec::with_capacity(width * self.height);
+        let rows =
+            self.pixels.chunks_exact(self.width.max(1)).zip(other.pixels.chunks_exact(other.width.max(1)));
+        rows.for_each(|(left, right)| {
+            pixels.extend(left);
+            pixels.extend(right);
+        });
+        let height = pixels.len() / width.max(1);
+        Self { width, height, pixels }
+    }
+
     /// The same below a strip with a title, the background of a picture of that theme going on under it.
     pub fn titled(&self, title: &str, theme: Theme) -> Self {
         let (palette, width) = (theme.palette(), self.width as f64);
@@ -266,7 +306,7 @@ mod tests {
             ("s", 1.0, [300, 900]),
             ("a very long name of a quantity", 99_999.0, [640, 400]),
         ] {
-            let legend = Legend { title: title.to_owned(), unit: "Pa".to_owned(), range: None };
+            let legend = Legend { title: title.to_owned(), unit: "Pa".to_owned(), ..Legend::default() };
             let picture = Picture { size, legend: Some(legend), ..Picture::default() };
             let layout = Layout::of(&picture, (-high, high));
             let legend = layout.legend.as_ref().unwrap();

@@ -23,28 +23,64 @@ pub(crate) fn ticks(low: f64, high: f64, about: usize) -> Vec<f64> {
         .collect()
 }
 
+/// The scale of a legend: its numbers are few digits of a unit that suits them.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Scale {
+    /// Values in the unit they were given in, with their names, all with as many digits behind the point.
+    pub ticks: Vec<(f64, String)>,
+    /// With a prefix, as `kPa`; a power of ten where there is no unit.
+    pub unit: String,
+}
+
+/// Prefixes of powers of a thousand, from the ninth below to the ninth above.
+const PREFIXES: [(i32, &str); 7] = [(-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (3, "k"), (6, "M"), (9, "G")];
+
 /// The names of a scale: round numbers, and both ends; a round number closer to an end than `nearest`, a share of the
 /// whole, gives way to it.
-pub(crate) fn scale(low: f64, high: f64, about: usize, nearest: f64) -> Vec<(f64, String)> {
-    let round = ticks(low, high, about);
+pub(super) fn scale(low: f64, high: f64, unit: &str, about: usize, nearest: f64) -> Scale {
+    let (factor, unit) = scaled_unit(low.abs().max(high.abs()), unit);
+    let (low, high) = (low / factor, high / factor);
     let span = high - low;
+    let round = ticks(low, high, about);
     if round.len() < 2 || !span.is_finite() {
-        return round.iter().copied().zip(labels(&round)).collect();
+        let ticks = round.iter().map(|tick| tick * factor).zip(labels(&round)).collect();
+        return Scale { ticks, unit };
     }
-    let (step, largest) = (round[1] - round[0], low.abs().max(high.abs()));
+    let step = round[1] - round[0];
     let is_round = |value: f64| round.iter().any(|tick| (tick - value).abs() <= 1e-9 * span);
-    let end = |value: f64| {
-        // an end is told to a digit more than the round numbers between
-        let step = if is_round(value) { step } else { 0.1 * step };
-        (value, labelled(&[value], largest, step).remove(0))
+    // ends that are not round are told to a digit more than the steps between, and so is all else, one under the other
+    let step = if is_round(low) && is_round(high) { step } else { 0.1 * step };
+    let within =
+        round.iter().copied().filter(|tick| tick - low > nearest * span && high - tick > nearest * span);
+    let values: Vec<f64> = [low].into_iter().chain(within).chain([high]).collect();
+    let names = labelled(&values, low.abs().max(high.abs()), step);
+    Scale { ticks: values.into_iter().map(|value| value * factor).zip(names).collect(), unit }
+}
+
+/// What values up to `largest` are divided by to be from 0.1 to a thousand, and what the unit is called then.
+fn scaled_unit(largest: f64, unit: &str) -> (f64, String) {
+    if !(largest > 0.0 && largest.is_finite()) || (0.1..1000.0).contains(&largest) {
+        return (1.0, unit.to_owned());
+    }
+    let power = 3 * libm::floor(libm::log10(largest) / 3.0 + 1e-9) as i32;
+    match PREFIXES.iter().find(|(known, _)| *known == power).filter(|_| !unit.is_empty()) {
+        Some((_, prefix)) => (libm::pow(10.0, f64::from(power)), format!("{prefix}{unit}")),
+        None => {
+            let factor = libm::pow(10.0, f64::from(power));
+            let space = if unit.is_empty() { "" } else { " " };
+            (factor, format!("10{}{space}{unit}", raised(power)))
+        }
+    }
+}
+
+/// A whole number as an exponent.
+fn raised(number: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raise = |character: char| match character.to_digit(10) {
+        Some(digit) => DIGITS[digit as usize],
+        None => '⁻',
     };
-    let within: Vec<f64> = round
-        .iter()
-        .copied()
-        .filter(|tick| tick - low > nearest * span && high - tick > nearest * span)
-        .collect();
-    let names = labelled(&within, largest, step);
-    [end(low)].into_iter().chain(within.into_iter().zip(names)).chain([end(high)]).collect()
+    number.to_string().chars().map(raise).collect()
 }
 
 /// Numbers with as many digits as their steps need; very large and small ones as `3.2e6`.
@@ -90,20 +126,28 @@ fn minus(text: String) -> String {
 mod tests {
     use super::*;
 
-    /// Both ends are named, to a digit more than the round numbers, which keep away from them.
+    /// Both ends are named; where they are not round all numbers have a digit more; round ones keep away from the ends.
     #[test]
     fn the_ends_of_a_scale_are_named() {
-        let names = |low: f64, high: f64| -> Vec<String> {
-            scale(low, high, 5, 0.06).into_iter().map(|(_, name)| name).collect()
+        let names = |low: f64, high: f64, unit: &str| -> (Vec<String>, String) {
+            let scale = scale(low, high, unit, 5, 0.06);
+            (scale.ticks.into_iter().map(|(_, name)| name).collect(), scale.unit)
         };
-        assert_eq!(names(0.0, 1.0), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
-        assert_eq!(names(0.0, 7.031), ["0", "1", "2", "3", "4", "5", "6", "7.0"]);
-        assert_eq!(names(15803.2, 16531.7), ["15803", "16000", "16200", "16400", "16532"][..].to_vec());
-        assert_eq!(names(0.0, 3.4e-6)[6..], ["3.0e-6", "3.40e-6"]);
-        assert_eq!(names(1e3, 1.71e11)[0], "0");
-        assert_eq!(names(2.0, 2.0), ["2"]);
+        let of = |names: &[&str], unit: &str| {
+            (names.iter().map(|name| (*name).to_owned()).collect(), unit.to_owned())
+        };
+        assert_eq!(names(0.0, 1.0, "m"), of(&["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"], "m"));
+        assert_eq!(
+            names(0.0, 7.031, "m"),
+            of(&["0.0", "1.0", "2.0", "3.0", "4.0", "5.0", "6.0", "7.0"], "m")
+        );
+        assert_eq!(names(15803.2, 16531.7, "Pa"), of(&["15.80", "16.00", "16.20", "16.40", "16.53"], "kPa"));
+        assert_eq!(names(0.0, 3.4e-6, "m"), of(&["0.0", "1.0", "2.0", "3.0", "3.4"], "µm"));
+        assert_eq!(names(0.0, 0.02, ""), of(&["0", "5", "10", "15", "20"], "10⁻³"));
+        assert_eq!(names(0.0, 2e12, "Pa"), of(&["0.0", "0.5", "1.0", "1.5", "2.0"], "10¹² Pa"));
+        assert_eq!(names(2.0, 2.0, "m"), of(&["2"], "m"));
         for (low, high) in [(0.0, f64::INFINITY), (f64::NAN, 1.0), (-1e308, 1e308), (1.0, 1.0 + 1e-15)] {
-            assert!(scale(low, high, 5, 0.05).len() < 50);
+            assert!(scale(low, high, "m", 5, 0.05).ticks.len() < 50);
         }
     }
 

@@ -84,8 +84,19 @@ impl MeshSurface {
 
     /// All faces of all cells, each cell with points of its own, to be moved apart by [`MeshSurface::explode`].
     pub fn of_cells(mesh: &Mesh) -> Self {
+        Self::of_cells_where(mesh, |_| true)
+    }
+
+    /// The same of the cells that a cut leaves whole or more than half of, of a mesh whose points stand at `positions`: what
+    /// is taken apart is not sliced.
+    pub fn of_cells_left(mesh: &Mesh, positions: &[Vec3], cut: Cut) -> Self {
+        let height = |node: &u32| (positions[*node as usize] - cut.point).dot(cut.normal);
+        Self::of_cells_where(mesh, |cell| cell.nodes.iter().map(height).sum::<f64>() <= 0.0)
+    }
+
+    fn of_cells_where(mesh: &Mesh, keeps: impl Fn(&Cell<'_>) -> bool) -> Self {
         let mut of = Self::default();
-        for (cell, view) in mesh.cells().enumerate() {
+        for (cell, view) in mesh.cells().enumerate().filter(|(_, view)| keeps(view)) {
             let mut numbers = HashMap::new();
             if view.kind.dimension() < 3 {
                 of.push_face(mesh, (view.kind, view.nodes), cell as u32, &mut numbers);
@@ -271,22 +282,28 @@ impl Clipper<'_> {
             return;
         }
         let apex = cell.nodes[0];
-        for face in 0..cell.kind.faces().len() {
-            // curved cells by their corners: the section is as fine as the mesh
-            let nodes: Vec<u32> = cell.face_corners(face).collect();
-            if nodes.contains(&apex) {
-                continue;
-            }
+        // curved cells by their corners: the section is as fine as the mesh
+        let faces: Vec<Vec<u32>> =
+            (0..cell.kind.faces().len()).map(|face| cell.face_corners(face).collect()).collect();
+        for nodes in faces.iter().filter(|nodes| !nodes.contains(&apex)) {
             for pair in nodes.windows(2).skip(1) {
-                self.section_tetrahedron(positions, normal, [apex, nodes[0], pair[0], pair[1]], number);
+                let tetrahedron = [apex, nodes[0], pair[0], pair[1]];
+                self.section_tetrahedron((positions, normal), tetrahedron, &faces, number);
             }
         }
     }
 
-    fn section_tetrahedron(&mut self, positions: &[Vec3], normal: Vec3, nodes: [u32; 4], cell: u32) {
+    /// The section of a part of a cell, the edges drawn that lie in `faces` of the cell.
+    fn section_tetrahedron(
+        &mut self,
+        (positions, normal): (&[Vec3], Vec3),
+        nodes: [u32; 4],
+        faces: &[Vec<u32>],
+        cell: u32,
+    ) {
         let (below, above): (Vec<u32>, Vec<u32>) = nodes.iter().partition(|node| self.is_left(**node));
         // around: from each point below to each above, so that neighbours share a point of the tetrahedron
-        let around: Vec<[u32; 2]> = match (below.as_slice(), above.as_slice()) {
+        let mut around: Vec<[u32; 2]> = match (below.as_slice(), above.as_slice()) {
             ([a], [x, y, z]) => vec![[*a, *x], [*a, *y], [*a, *z]],
             ([a, b, c], [x]) => vec![[*a, *x], [*b, *x], [*c, *x]],
             ([a, b], [x, y]) => vec![[*a, *x], [*b, *x], [*b, *y], [*a, *y]],
@@ -298,9 +315,15 @@ impl Clipper<'_> {
         // outward is towards what was cut away
         if (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(normal) < 0.0 {
             polygon.reverse();
+            around.reverse();
         }
-        let hidden = vec![false; polygon.len()];
-        self.push(&polygon, &hidden, cell);
+        let count = around.len();
+        let is_of_cell = |k: usize| {
+            let ends = [around[k], around[(k + 1) % count]];
+            faces.iter().any(|face| ends.as_flattened().iter().all(|node| face.contains(node)))
+        };
+        let drawn: Vec<bool> = (0..count).map(is_of_cell).collect();
+        self.push(&polygon, &drawn, cell);
     }
 
     /// A convex polygon as triangles around its first corner; `drawn`: its edges from each corner to the next.

@@ -59,6 +59,7 @@ pub struct Picture {
     /// Samples along each side of a pixel: 1 is rough, 2 good, 3 fine.
     pub samples_per_pixel: usize,
     pub theme: Theme,
+    pub backdrop: Backdrop,
     /// Written at the top, if not empty.
     pub title: String,
     /// Written under the title, smaller, if not empty.
@@ -76,6 +77,27 @@ pub struct Legend {
     pub unit: String,
     /// Values of the first and the last colour; those of the surfaces where `None`.
     pub range: Option<(f64, f64)>,
+    pub place: LegendPlace,
+}
+
+/// Where a legend is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LegendPlace {
+    /// On the right of the subject.
+    #[default]
+    Beside,
+    /// By itself, one for several pictures, by [`Picture::legend_strip`].
+    Apart,
+}
+
+/// What is behind the subject.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backdrop {
+    /// Lighter above than below.
+    #[default]
+    Graded,
+    /// One colour: pictures that stand under each other make no bands.
+    Plain,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,6 +118,7 @@ impl Default for Picture {
             size: [1280, 800],
             samples_per_pixel: 2,
             theme: Theme::default(),
+            backdrop: Backdrop::default(),
             title: String::new(),
             subtitle: String::new(),
             legend: None,
@@ -167,6 +190,7 @@ impl Picture {
         // what is seen through shades no corners
         triangles.iter().filter(|triangle| !triangle.see_through).for_each(|triangle| whole.draw(triangle));
         let open = light::openness(&whole, &camera, 0.09 * bounds.diagonal().max(f64::MIN_POSITIVE));
+        let strokes = stroke::prepared(&self.strokes, &camera, &whole);
         drop(whole);
 
         let lamps = Lamps::of(&camera, &self.view);
@@ -174,10 +198,10 @@ impl Picture {
             camera,
             shadow: Shadow::of(&self.surfaces, lamps.key()),
             lamps,
-            palette: self.theme.palette(),
+            palette: self.palette(),
             ground,
             open,
-            strokes: stroke::prepared(&self.strokes, &camera),
+            strokes,
         };
         let mut canvas = Canvas::new(width, height);
         for top in (0..height).step_by(BAND) {
@@ -187,6 +211,14 @@ impl Picture {
         }
         layout.write(self, &scene.palette, &mut canvas);
         Ok(canvas.finish())
+    }
+
+    fn palette(&self) -> Palette {
+        let palette = self.theme.palette();
+        match self.backdrop {
+            Backdrop::Graded => palette,
+            Backdrop::Plain => Palette { top: palette.bottom, ..palette },
+        }
     }
 
     fn check(&self) -> Result<(), IoError> {
@@ -240,11 +272,7 @@ impl Picture {
             ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
         };
         let (low, high) = given.or_else(of_surfaces).unwrap_or((0.0, 1.0));
-        // the middle of a diverging map is zero
-        let (low, high) = match (self.colours, given) {
-            (ColourMap::Diverging, None) => (-low.abs().max(high.abs()), low.abs().max(high.abs())),
-            _ => (low, high),
-        };
+        let (low, high) = if given.is_some() { (low, high) } else { self.colours.spread((low, high)) };
         if low < high { (low, high) } else { (low, low + low.abs().max(f64::MIN_POSITIVE)) }
     }
 

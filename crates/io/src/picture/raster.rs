@@ -68,6 +68,17 @@ const HALF_EDGE: f64 = 0.55;
 const EDGE_SHADE: f32 = 0.22;
 
 impl Samples {
+    /// Whether a place is seen: nothing drawn here stands before it by more than `lift` of its distance.
+    pub fn shows(&self, place: Projected, lift: f64) -> bool {
+        let sample = |along: f64, most: usize| {
+            let index = along * self.per_pixel as f64;
+            (0.0..most as f64).contains(&index).then_some(index as usize)
+        };
+        let at = sample(place.x, self.width).zip(sample(place.y - self.top as f64, self.height));
+        let before = at.map_or(0.0, |(column, row)| self.samples[row * self.width + column].inverse_depth);
+        place.inverse_depth > 0.0 && place.inverse_depth * (1.0 + lift) >= f64::from(before)
+    }
+
     pub fn new(width: usize, height: usize, top: usize, per_pixel: usize) -> Self {
         let count = width * height * per_pixel * per_pixel;
         Self {

@@ -2,7 +2,7 @@
 
 use super::camera::{Camera, Projected};
 use super::colour::Colour;
-use super::raster::distance_point_segment;
+use super::raster::{Samples, distance_point_segment};
 use super::surface::{Stroke, StrokeShape};
 
 /// A piece of a stroke in the picture.
@@ -22,7 +22,10 @@ const SHINE_THROUGH: f32 = 0.16;
 /// How much closer a stroke counts than it is, relative: one that lies on a surface is seen whole.
 const LIFT: f64 = 4e-3;
 
-pub(super) fn prepared(strokes: &[Stroke], camera: &Camera) -> Vec<Drawn> {
+/// Strokes as pieces in the picture; `surfaces` are what may stand before them.
+///
+/// An arrow whose start is seen is seen whole, also where it points into the body that it starts on.
+pub(super) fn prepared(strokes: &[Stroke], camera: &Camera, surfaces: &Samples) -> Vec<Drawn> {
     let mut drawn = Vec::new();
     for stroke in strokes {
         let half = 0.5 * stroke.width.clamp(0.0, 1000.0);
@@ -45,7 +48,11 @@ pub(super) fn prepared(strokes: &[Stroke], camera: &Camera) -> Vec<Drawn> {
                 }
             }
             StrokeShape::Arrow(from, to) => {
-                let (start, tip) = (camera.project(*from), camera.project(*to));
+                let (mut start, mut tip) = (camera.project(*from), camera.project(*to));
+                if surfaces.shows(start, LIFT) {
+                    // nearer than anything
+                    (start.inverse_depth, tip.inverse_depth) = (f64::MAX, f64::MAX);
+                }
                 let length = (tip.x - start.x).hypot(tip.y - start.y);
                 // the head is nine half widths long, but leaves a third of the shaft
                 let head = (9.0 * half).min(0.66 * length);
@@ -53,7 +60,7 @@ pub(super) fn prepared(strokes: &[Stroke], camera: &Camera) -> Vec<Drawn> {
                 let neck = Projected {
                     x: start.x + (tip.x - start.x) * share,
                     y: start.y + (tip.y - start.y) * share,
-                    inverse_depth: start.inverse_depth + (tip.inverse_depth - start.inverse_depth) * share,
+                    inverse_depth: start.inverse_depth * (1.0 - share) + tip.inverse_depth * share,
                 };
                 push(start, neck, [half; 2]);
                 push(neck, tip, [0.4 * head, 0.0]);
@@ -75,7 +82,8 @@ impl Drawn {
         if distance > half_widths[0] + (half_widths[1] - half_widths[0]) * t {
             return below;
         }
-        let own = from.inverse_depth + (to.inverse_depth - from.inverse_depth) * t;
+        // not by the difference: of two that are nearer than anything it is nothing
+        let own = from.inverse_depth * (1.0 - t) + to.inverse_depth * t;
         let hidden = own * (1.0 + LIFT) < f64::from(inverse_depth);
         below.mixed(self.colour, if hidden { SHINE_THROUGH } else { 1.0 })
     }

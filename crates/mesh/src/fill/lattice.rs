@@ -12,7 +12,7 @@
 use rayon::prelude::*;
 use souple_math::Vec3;
 
-use super::{FillError, Interior, Size};
+use super::{FillError, Grading, Reach, Size};
 use crate::implicit::Shape;
 
 /// Coordinates of a lattice point, in halves of the smallest cube's edge.
@@ -84,27 +84,26 @@ impl Lattice {
     pub fn new(shape: &dyn Shape, size: &Size) -> Result<Self, FillError> {
         let bounds = shape.bounds();
         let extent = bounds.size();
-        if !(size.surface > 0.0 && size.surface.is_finite()) {
-            return Err(FillError::Size { size: size.surface });
+        if !(size.smallest > 0.0 && size.smallest.is_finite()) {
+            return Err(FillError::Size { size: size.smallest });
         }
         if !(extent.is_finite() && extent.largest_component() > 0.0) {
             return Err(FillError::Bounds { low: bounds.low.to_array(), high: bounds.high.to_array() });
         }
         let coarsest = size.coarsest_level(MAX_LEVEL);
         let unit = 1_usize << coarsest;
-        // a cube around everything, so that the outermost corners are outside
-        let wanted = extent.to_array().map(|length| (length / size.surface).ceil() + 2.0);
-        let requested = wanted.iter().map(|count| count + unit as f64).product::<f64>() * 2.0;
+        let wanted = cubes_along(extent, size);
+        let requested = points_of(shape, size);
         if requested > MAX_POINTS {
-            let (size, extent) = (size.surface, extent.to_array());
+            let (size, extent) = (size.smallest, extent.to_array());
             return Err(FillError::TooManyPoints { size, extent, requested, limit: MAX_POINTS });
         }
         let counts = wanted.map(|count| (count as usize).next_multiple_of(unit));
-        let whole = Vec3::from_array(counts.map(|count| count as f64 * size.surface));
+        let whole = Vec3::from_array(counts.map(|count| count as f64 * size.smallest));
         let mut lattice = Self {
             counts,
             origin: bounds.centre() - whole * 0.5,
-            half: 0.5 * size.surface,
+            half: 0.5 * size.smallest,
             corners: Vec::new(),
             centres: Vec::new(),
             levels: vec![0; counts.iter().product()],
@@ -114,9 +113,14 @@ impl Lattice {
         lattice.centres = lattice.evaluate(shape, counts, 1)?;
         lattice.check_border()?;
         if coarsest > 0 {
-            lattice.join(size, coarsest);
+            lattice.join(size, coarsest)?;
         }
         Ok(lattice)
+    }
+
+    /// The least value on its points.
+    pub fn least_value(&self) -> f64 {
+        self.corners.iter().chain(&self.centres).copied().fold(f64::INFINITY, f64::min)
     }
 
     /// Values on the points `2 index + offset`, plane by plane.
@@ -235,8 +239,8 @@ impl Lattice {
     }
 
     /// Joins cubes into the largest leaves that the sizes inside allow.
-    fn join(&mut self, size: &Size, coarsest: u8) {
-        let allowed = self.allowed_levels(size, coarsest);
+    fn join(&mut self, size: &Size, coarsest: u8) -> Result<(), FillError> {
+        let allowed = self.allowed_levels(size, coarsest)?;
         let mut levels = vec![0_u8; allowed.len()];
         for level in (1..=coarsest).rev() {
             self.for_each_block(level, |block| {
@@ -249,6 +253,7 @@ impl Lattice {
         }
         self.levels = levels;
         while self.split_unbalanced(coarsest) {}
+        Ok(())
     }
 
     /// Calls with the cubes of each aligned block of `2^level` cubes along the axes.
@@ -268,19 +273,30 @@ impl Lattice {
         }
     }
 
-    /// The greatest level of a leaf that may hold each cube: zero near the surface and around that.
-    fn allowed_levels(&self, size: &Size, coarsest: u8) -> Vec<u8> {
+    /// The greatest level of a leaf that may hold each cube: zero near the surface and around that, but for a field that holds
+    /// everywhere.
+    fn allowed_levels(&self, size: &Size, coarsest: u8) -> Result<Vec<u8>, FillError> {
+        let level_of = |ratio: f64| (ratio.max(1.0).log2().floor() as u8).min(coarsest);
+        let by_field = |field: &dyn Fn(Vec3) -> f64, cube: [usize; 3]| {
+            let position = self.position(cube.map(|i| 2 * i as u32 + 1));
+            let length = field(position);
+            // beyond the shape a formula may say anything
+            if self.centres[self.cube(cube)] < 0.0 && (length.is_nan() || length <= 0.0) {
+                return Err(FillError::SizeAt { size: length, position: position.to_array() });
+            }
+            Ok(level_of(length / size.smallest * (1.0 + 1e-12)))
+        };
+        if let Grading::Field { size: field, reach: Reach::Everywhere, .. } = &size.grading {
+            return self.cubes().map(|cube| by_field(field, cube)).collect();
+        }
         // steps of a cube from the nearest one that touches a cube near the surface
         let steps = self.steps_from_surface();
-        let level_of = |ratio: f64| (ratio.max(1.0).log2().floor() as u8).min(coarsest);
         self.cubes()
             .zip(steps)
-            .map(|(cube, steps)| match (steps, &size.interior) {
-                (0, _) | (_, Interior::Uniform) => 0,
-                (steps, Interior::Graded { growth, .. }) => level_of(1.0 + growth * f64::from(steps)),
-                (_, Interior::Field { size: field, .. }) => {
-                    level_of(field(self.position(cube.map(|i| 2 * i as u32 + 1))) / size.surface)
-                }
+            .map(|(cube, steps)| match (steps, &size.grading) {
+                (0, _) | (_, Grading::Uniform) => Ok(0),
+                (steps, Grading::Inward { growth, .. }) => Ok(level_of(1.0 + growth * f64::from(steps))),
+                (_, Grading::Field { size: field, .. }) => by_field(field, cube),
             })
             .collect()
     }
@@ -340,6 +356,17 @@ impl Lattice {
         }
         has_split
     }
+}
+
+/// Cubes along the axes that a lattice has at least: one around everything, so that the outermost corners are outside.
+fn cubes_along(extent: Vec3, size: &Size) -> [f64; 3] {
+    extent.to_array().map(|length| (length / size.smallest).ceil() + 2.0)
+}
+
+/// How many points a lattice would have.
+pub(super) fn points_of(shape: &dyn Shape, size: &Size) -> f64 {
+    let unit = f64::from(1_u32 << size.coarsest_level(MAX_LEVEL));
+    cubes_along(shape.bounds().size(), size).iter().map(|count| count + unit).product::<f64>() * 2.0
 }
 
 /// The 26 steps to the cubes that touch one.

@@ -8,6 +8,10 @@
 //! lattice. It holds for a graded one too, because every tetrahedron that touches a point of a smallest cube near
 //! the surface is one of the uniform lattice, and the others are not moved: their angles, 45° to 120°, are those of
 //! the halves, quarters and half pyramids as they stand.
+//!
+//! Where a size is given everywhere, cubes at the surface are of several sizes too. Points between sizes move by no more than
+//! their smallest cubes allow, and diagonals follow one order around each corner outside: the filling conforms and nothing
+//! is inverted, but angles are as they come out, and the mesh tells them.
 
 mod background;
 mod groups;
@@ -31,20 +35,29 @@ use stencil::Stencils;
 
 /// How large cells are.
 pub struct Size {
-    /// Edge of the lattice's cubes at the surface [m]: the longest edges of the tetrahedra have this length, the
-    /// others are `√3/2` of it.
-    pub surface: f64,
-    pub interior: Interior,
+    /// Edge of the lattice's smallest cubes [m], those at the surface but where a field holds there too: the longest edges of
+    /// the tetrahedra have this length, the others are `√3/2` of it.
+    pub smallest: f64,
+    pub grading: Grading,
 }
 
-/// How large cells are away from the surface.
-pub enum Interior {
+/// How large cells are elsewhere.
+pub enum Grading {
     /// As at the surface.
     Uniform,
     /// Edges grow by `growth` for each length that one goes inward, up to `largest` [m].
-    Graded { growth: f64, largest: f64 },
+    Inward { growth: f64, largest: f64 },
     /// Edges are at most as long as a function of the position says, and at most `largest` [m].
-    Field { size: Box<dyn Fn(Vec3) -> f64 + Sync>, largest: f64 },
+    Field { size: Box<dyn Fn(Vec3) -> f64 + Sync>, largest: f64, reach: Reach },
+}
+
+/// Where a function of the position says how large cells are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Away from the surface, where cells are the smallest.
+    Inside,
+    /// At the surface too: the bounds on angles are not proven there.
+    Everywhere,
 }
 
 /// What cells a shape is filled with.
@@ -78,14 +91,24 @@ pub enum FillError {
     #[error("the shape is inside at {position:?}, on the border of its bounds; expected larger bounds")]
     BeyondBounds { position: [f64; 3] },
     #[error(
-        "no point of a lattice of {size} m is inside the shape, which measures {}; expected a smaller size, or a shape with an inside",
+        "no cell of {size} m is inside the shape, which measures {}; the least value of the shape on the lattice is {least:e}, and inside it is below 0; expected a smaller size, or a shape with an inside",
         metres(.extent)
     )]
-    Nothing { size: f64, extent: [f64; 3] },
+    Nothing { size: f64, extent: [f64; 3], least: f64 },
     #[error(
-        "the surface is open, {edges} of its edges have one triangle only, and it winds around nothing that a lattice of {size} m meets; expected a closed surface, or one with small holes"
+        "{count} cells cannot be had: in a box of {} the shape is so thin that cells of {size} m are too large for it, and {requested:.1e} points of a lattice would be looked at for smaller ones; expected a `size` below its thickness, or a larger `count`",
+        metres(.extent)
     )]
-    Open { size: f64, edges: usize },
+    Thin { count: f64, size: f64, extent: [f64; 3], requested: f64 },
+    #[error("the size of cells is {size} m at {position:?}; expected a length above 0")]
+    SizeAt { size: f64, position: [f64; 3] },
+    #[error("the surface is flat, it measures {}; expected one that encloses something", metres(.extent))]
+    Flat { extent: [f64; 3] },
+    #[error(
+        "the surface encloses nothing that is certain: around {:.0} % of the places that it winds around at all it does so by no whole number ({}); expected a closed surface, or one with small holes",
+        100.0 * .share, .causes.join("; ")
+    )]
+    Undefined { share: f64, causes: Vec<String> },
 }
 
 /// Lengths along the axes, in words.
@@ -96,17 +119,17 @@ fn metres(extent: &[f64; 3]) -> String {
 }
 
 impl Size {
-    pub fn uniform(surface: f64) -> Self {
-        Self { surface, interior: Interior::Uniform }
+    pub fn uniform(smallest: f64) -> Self {
+        Self { smallest, grading: Grading::Uniform }
     }
 
     fn coarsest_level(&self, limit: u8) -> u8 {
-        let largest = match self.interior {
-            Interior::Uniform => self.surface,
-            Interior::Graded { largest, .. } | Interior::Field { largest, .. } => largest,
+        let largest = match self.grading {
+            Grading::Uniform => self.smallest,
+            Grading::Inward { largest, .. } | Grading::Field { largest, .. } => largest,
         };
         // the slack keeps a ratio of exactly two from being rounded to less
-        let ratio = (largest / self.surface * (1.0 + 1e-12)).max(1.0);
+        let ratio = (largest / self.smallest * (1.0 + 1e-12)).max(1.0);
         if ratio.is_finite() { (ratio.log2().floor() as u8).min(limit) } else { 0 }
     }
 
@@ -129,7 +152,8 @@ pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) ->
         Cells::HexDominant => hexes::hex_dominant(&lattice, shape),
     };
     if mesh.cell_count() == 0 {
-        return Err(FillError::Nothing { size: size.surface, extent: shape.bounds().size().to_array() });
+        let extent = shape.bounds().size().to_array();
+        return Err(FillError::Nothing { size: size.smallest, extent, least: lattice.least_value() });
     }
     mesh.remove_loose_points();
     mesh.groups.insert(

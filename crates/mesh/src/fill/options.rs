@@ -1,9 +1,11 @@
 //! What a filling is told, as parameters by name.
 
 use souple_formal::Formula;
+use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
-use super::{Cells, Interior, Part, Size, fill};
+use super::lattice::points_of;
+use super::{Cells, FillError, Grading, Part, Reach, Size, fill};
 use crate::implicit::{Body, FormulaShape, Shape};
 use crate::{Mesh, MeshError};
 
@@ -18,12 +20,22 @@ pub const PARAMETERS: &[Parameter] = &[
     .or(Value::Number(0.0)),
     Parameter::integer("count", Range::closed(0.0, 5e7), "about how many cells, in place of a size")
         .or(Value::Integer(0)),
-    Parameter::number("growth", "", Range::NOT_NEGATIVE, "how much longer edges are for each length inward")
-        .or(Value::Number(0.0)),
+    Parameter::number(
+        "growth",
+        "",
+        Range::closed(0.0, 10.0),
+        "how much longer edges are for each length inward; neighbours differ by a factor of two at most",
+    )
+    .or(Value::Number(0.0)),
     Parameter::number("largest", "m", Range::NOT_NEGATIVE, "longest edge inside; 0: eight times the size")
         .or(Value::Number(0.0)),
     Parameter::text("size_inside", "longest edge inside as a formula of x, y, z [m]; empty: by growth")
         .or(Value::Text("")),
+    Parameter::text(
+        "size_everywhere",
+        "longest edge as a formula of x, y, z [m], at the surface too; `size` is then the smallest; empty: none",
+    )
+    .or(Value::Text("")),
     Parameter::choice("element", &["tet4", "hex_dominant"], "tetrahedra, or hexahedra where they fit")
         .or(Value::Text("tet4")),
 ];
@@ -35,7 +47,7 @@ pub struct Options {
     growth: f64,
     /// Relative to the size where `None`.
     largest: Option<f64>,
-    size_inside: Option<Formula>,
+    field: Option<(Formula, Reach)>,
     pub cells: Cells,
 }
 
@@ -57,6 +69,24 @@ const FEW: f64 = 5000.0;
 const LOOKED_AT: usize = 24;
 const STRIDE: f64 = 0.02;
 
+/// A lattice that is looked at for a count has at most so many points, or so many for each cell: a solid body has one or two
+/// for a cell, one of a hundredth of its box a hundred.
+const MOST_POINTS: f64 = 3e5;
+const MOST_POINTS_OF_A_CELL: f64 = 200.0;
+
+/// The formula of a parameter, `None` where it is empty.
+fn field(values: &Values, name: &'static str) -> Result<Option<Formula>, MeshError> {
+    let text = values.text(name);
+    if text.trim().is_empty() {
+        return Ok(None);
+    }
+    Formula::compile(text, FormulaShape::VARIABLES).map(Some).map_err(|error| MeshError::Parameter {
+        name,
+        value: format!("\"{text}\""),
+        expected: format!("a formula of x, y, z: {error}"),
+    })
+}
+
 impl Options {
     /// From completed values of [`PARAMETERS`].
     ///
@@ -68,37 +98,45 @@ impl Options {
             (true, false) => Wanted::Size(size),
             (false, true) => Wanted::Count(count as f64),
             (both, _) => {
-                let value =
-                    if both { format!("{size} m, and `count` is {count}") } else { "missing".to_owned() };
-                let expected = "a length above 0 [m], or a `count` of cells above 0 in its place".to_owned();
+                let value = if both {
+                    format!("{size} m, and `count` is {count}")
+                } else {
+                    "missing or 0, and so is `count`".to_owned()
+                };
+                let expected = "one of them above 0: a length [m], or a number of cells".to_owned();
                 return Err(MeshError::Parameter { name: "size", value, expected });
             }
         };
-        let text = values.text("size_inside");
-        let compile = || Formula::compile(text, FormulaShape::VARIABLES);
-        let size_inside = if text.trim().is_empty() { Ok(None) } else { compile().map(Some) };
-        let size_inside = size_inside.map_err(|error| MeshError::Parameter {
-            name: "size_inside",
-            value: format!("\"{text}\""),
-            expected: format!("a formula of x, y, z: {error}"),
-        })?;
+        let (inside, everywhere) = (field(values, "size_inside")?, field(values, "size_everywhere")?);
+        let field = match (inside, everywhere) {
+            (Some(_), Some(everywhere)) => {
+                return Err(MeshError::Parameter {
+                    name: "size_inside",
+                    value: format!("there beside `size_everywhere`, \"{}\"", everywhere.text()),
+                    expected: "one of them".to_owned(),
+                });
+            }
+            (Some(inside), None) => Some((inside, Reach::Inside)),
+            (None, everywhere) => everywhere.map(|formula| (formula, Reach::Everywhere)),
+        };
         let largest = Some(values.number("largest")).filter(|largest| *largest > 0.0);
         let cells =
             if values.text("element") == "hex_dominant" { Cells::HexDominant } else { Cells::Tetrahedra };
-        Ok(Self { wanted, growth: values.number("growth"), largest, size_inside, cells })
+        Ok(Self { wanted, growth: values.number("growth"), largest, field, cells })
     }
 
-    fn size(&self, surface: f64) -> Size {
-        let largest = self.largest.unwrap_or(LARGEST * surface);
-        let interior = match &self.size_inside {
-            Some(formula) => {
+    fn size(&self, smallest: f64) -> Size {
+        let largest = self.largest.unwrap_or(LARGEST * smallest);
+        let grading = match &self.field {
+            Some((formula, reach)) => {
                 let formula = formula.clone();
-                Interior::Field { size: Box::new(move |x| formula.evaluate(&x.to_array())), largest }
+                let size = Box::new(move |x: Vec3| formula.evaluate(&x.to_array()));
+                Grading::Field { size, largest, reach: *reach }
             }
-            None if self.growth > 0.0 => Interior::Graded { growth: self.growth, largest },
-            None => Interior::Uniform,
+            None if self.growth > 0.0 => Grading::Inward { growth: self.growth, largest },
+            None => Grading::Uniform,
         };
-        Size { surface, interior }
+        Size { smallest, grading }
     }
 
     /// Cells inside are not smaller than at the surface.
@@ -144,11 +182,20 @@ impl Options {
         let mut size = Size::for_count(extent.x * extent.y * extent.z, count);
         let mut best: Option<Attempt> = None;
         let attempts = if count < FEW { MOST_FILLINGS + LOOKED_AT } else { MOST_FILLINGS };
+        let mut least = f64::NAN;
         for attempt in 0..attempts {
+            let requested = points_of(shape, &self.size(size));
+            if requested > MOST_POINTS.max(MOST_POINTS_OF_A_CELL * count) {
+                if best.is_some() {
+                    break;
+                }
+                return Err(FillError::Thin { count, size, extent: extent.to_array(), requested }.into());
+            }
             let mesh = match fill(shape, &self.size(size), self.cells, parts) {
                 Ok(mesh) => mesh,
                 // nothing was hit: look closer
-                Err(super::FillError::Nothing { .. }) => {
+                Err(FillError::Nothing { least: found, .. }) => {
+                    least = found;
                     size *= 0.5;
                     continue;
                 }
@@ -173,7 +220,7 @@ impl Options {
             };
         }
         let Some(best) = best else {
-            return Err(super::FillError::Nothing { size, extent: extent.to_array() }.into());
+            return Err(FillError::Nothing { size, extent: extent.to_array(), least }.into());
         };
         self.check_largest(best.size)?;
         Ok(best.mesh)

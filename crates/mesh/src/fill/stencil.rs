@@ -10,7 +10,7 @@
 use std::cmp::Ordering;
 
 use super::lattice::{Background, Place, Side};
-use super::warp::{Cut, Warped, is_long};
+use super::warp::{Cut, Warped, axes_apart};
 
 /// Writes what is inside as tetrahedra.
 pub(super) struct Stencils<'a> {
@@ -111,13 +111,34 @@ impl<'a> Stencils<'a> {
     /// Of the quadrilateral `p, q` (inside) and the cuts of their edges to `r` (outside): whether its diagonal runs
     /// from `p` to the cut of `qr`, and not from `q` to the cut of `pr`.
     pub fn diagonal_starts_at_first(&self, p: u32, q: u32, r: u32) -> bool {
-        let [p, q, r] = [p, q, r].map(|node| self.background.places[node as usize]);
-        if is_long(q, r) {
-            true
-        } else if is_long(p, r) {
-            false
-        } else {
-            is_even(p, r)
+        let rank = |node: u32| {
+            let [node_place, r] = [node, r].map(|node| self.background.places[node as usize]);
+            (Rank::of(node_place, r), node)
+        };
+        rank(p) < rank(q)
+    }
+}
+
+/// In what order diagonals of the quadrilaterals below a corner outside start at corners inside: by their edges alone, so that
+/// diagonals never run around a prism, also between cubes of two sizes. On a face of the uniform lattice this is the rule
+/// above: two short edges are one of either kind, since their ends inside differ in one coordinate.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    ShortEven,
+    ShortOdd,
+    /// Half a diagonal of a face, between cubes of two sizes.
+    Halved,
+    Long,
+}
+
+impl Rank {
+    /// Of the edge from a corner inside to one outside.
+    fn of(inside: Place, outside: Place) -> Self {
+        match axes_apart(inside, outside) {
+            1 => Self::Long,
+            2 => Self::Halved,
+            _ if is_even(inside, outside) => Self::ShortEven,
+            _ => Self::ShortOdd,
         }
     }
 }

@@ -24,6 +24,16 @@ pub fn surface_of(mesh: &Mesh) -> Option<TriangleSurface> {
 /// where they are fit for the shape.
 const KEPT: f64 = 0.95;
 
+/// A surface that measures less than this along an axis, relative to its greatest length, is flat: rounding of coordinates with
+/// seven digits.
+const FLAT: f64 = 1e-7;
+
+/// Share of its inside that a surface may leave undefined: of a ball without a quarter of its surface that is a third, of half a
+/// ball more than all of it.
+const UNDEFINED: f64 = 0.6;
+/// Above this it is said.
+const UNDEFINED_SAID: f64 = 0.02;
+
 /// Mends a surface and fills it.
 ///
 /// # Errors
@@ -45,20 +55,30 @@ fn filled(
     let (mended, repairs) = repair(surface, limits);
     let mut notes = repairs.messages();
     let enclosed = mended.enclosed_volume().abs();
+    let extent = mended.bounds().size();
+    if extent.to_array().iter().any(|length| *length <= FLAT * extent.largest_component()) {
+        return Err(FillError::Flat { extent: extent.to_array() }.into());
+    }
     let shape = SurfaceShape::new(mended)?;
+    let undefined = shape.undefined_share();
+    if undefined > UNDEFINED {
+        let causes = shape.diagnosis().messages();
+        return Err(FillError::Undefined { share: undefined.min(1.0), causes }.into());
+    }
+    if undefined > UNDEFINED_SAID {
+        let percent = 100.0 * undefined;
+        notes.push(format!(
+            "the inside is not certain around holes, crossings or loose sheets: {percent:.0} % of it is by a winding \
+             number that is no whole one"
+        ));
+    }
     if shape.sign() == Sign::WindingNumber {
         notes.extend(shape.diagnosis().messages());
         let parts = "parts of it lie within each other or overlap";
         let why = if shape.diagnosis().is_simple() { parts } else { "the surface is not simple" };
         notes.push(format!("{why}: its inside is where it winds around more than half"));
     }
-    let open = shape.diagnosis().open_edges.len();
-    let mesh = options.fill(&shape, &[]).map_err(|error| match error {
-        MeshError::Fill(FillError::Nothing { size, .. }) if open > 0 => {
-            FillError::Open { size, edges: open }.into()
-        }
-        other => other,
-    })?;
+    let mesh = options.fill(&shape, &[])?;
     let parts = mesh.components().1;
     if parts > 1 {
         notes.push(format!("the filling has {parts} parts that share no point"));

@@ -14,6 +14,8 @@ use crate::implicit::Shape;
 /// Fractions of the edge within which a cut moves its end.
 const ALPHA_LONG: f64 = 0.24999;
 const ALPHA_SHORT: f64 = 0.41189;
+/// Of edges between cubes of two sizes: between the two, nothing is proven of it.
+const ALPHA_HALVED: f64 = 0.3;
 
 /// How exactly cuts are found, relative to the edge. The bounds on angles hold wherever a cut is.
 const CUT_TOLERANCE: f64 = 1e-7;
@@ -34,9 +36,36 @@ pub(super) struct Warped {
     pub cuts: Vec<Cut>,
 }
 
-/// Whether an edge runs along an axis.
-pub(super) fn is_long(a: Place, b: Place) -> bool {
-    (0..3).filter(|axis| a[*axis] != b[*axis]).count() == 1
+/// Along how many axes the ends of an edge are apart: one of a long edge, three of a short one, two of an edge between cubes of
+/// two sizes.
+pub(super) fn axes_apart(a: Place, b: Place) -> usize {
+    (0..3).filter(|axis| a[*axis] != b[*axis]).count()
+}
+
+/// Length of an edge, in halves of the smallest cube's edge, and that of the cubes that it belongs to; of an edge between cubes
+/// of two sizes, the smaller ones.
+fn lengths(a: Place, b: Place) -> [f64; 2] {
+    let apart = [0, 1, 2].map(|axis| f64::from(a[axis].abs_diff(b[axis])));
+    let length_sq: f64 = apart.iter().map(|d| d * d).sum();
+    let cube = apart.into_iter().fold(0.0, f64::max);
+    [length_sq.sqrt(), if axes_apart(a, b) == 3 { 2.0 * cube } else { cube }]
+}
+
+/// The smallest cube at each point, by its edge as in [`lengths`].
+fn smallest_cubes(background: &Background) -> Vec<f64> {
+    let mut smallest = vec![f64::INFINITY; background.points.len()];
+    for tet in &background.tets {
+        for (i, a) in tet.iter().enumerate() {
+            for b in &tet[i + 1..] {
+                let [_, cube] = lengths(background.places[*a as usize], background.places[*b as usize]);
+                for end in [a, b] {
+                    let least = &mut smallest[*end as usize];
+                    *least = least.min(cube);
+                }
+            }
+        }
+    }
+    smallest
 }
 
 /// Finds the cuts and moves points onto them, in the order of their numbers.
@@ -44,6 +73,7 @@ pub(super) fn warp(background: &mut Background, shape: &dyn Shape) -> Warped {
     let mut sides: Vec<Side> = background.values.iter().map(|value| Side::of(*value)).collect();
     let mut cuts = find_cuts(background, &sides, shape);
     let edges_of = incidence(background.points.len(), &cuts);
+    let smallest = smallest_cubes(background);
     for point in 0..background.points.len() {
         let edges = &edges_of.items[edges_of.starts[point] as usize..edges_of.starts[point + 1] as usize];
         let mut nearest: Option<(f64, Vec3)> = None;
@@ -52,9 +82,16 @@ pub(super) fn warp(background: &mut Background, shape: &dyn Shape) -> Warped {
             if ends.iter().any(|end| sides[*end as usize] == Side::On) {
                 continue;
             }
-            let is_long = is_long(background.places[ends[0] as usize], background.places[ends[1] as usize]);
+            let [a, b] = ends.map(|end| background.places[end as usize]);
             let from_here = if ends[0] as usize == point { fraction } else { 1.0 - fraction };
-            let (alpha, length) = if is_long { (ALPHA_LONG, 2.0) } else { (ALPHA_SHORT, 3.0_f64.sqrt()) };
+            let alpha = match axes_apart(a, b) {
+                1 => ALPHA_LONG,
+                2 => ALPHA_HALVED,
+                _ => ALPHA_SHORT,
+            };
+            let [length, cube] = lengths(a, b);
+            // the smaller cubes at a point are not to be flattened by what is cut off the larger ones
+            let alpha = alpha * (smallest[point] / cube).min(1.0);
             if from_here < alpha && nearest.is_none_or(|(least, _)| from_here * length < least) {
                 nearest = Some((from_here * length, position));
             }

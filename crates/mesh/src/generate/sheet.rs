@@ -7,7 +7,7 @@ use souple_table::{Parameter, Range, Value, Values};
 
 use super::cut::{in_order, middle};
 use super::{Build, GeneratorEntry};
-use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
+use crate::{CellBlock, ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
 pub(super) static SHEET: GeneratorEntry = GeneratorEntry {
     name: "sheet",
@@ -20,8 +20,8 @@ pub(super) static SHEET: GeneratorEntry = GeneratorEntry {
         Parameter::integer("cells_across", Range::at_least(1.0), "number of cells along y"),
         Parameter::choice(
             "element",
-            &["tri3", "tri6", "quad4", "quad8"],
-            "kind of cells; each rectangle is cut in two triangles, diagonals in a pattern of diamonds",
+            &["tri3", "tri6", "quad4", "quad8", "mixed", "mixed_quadratic"],
+            "kind of cells; rectangles are cut in two triangles, diagonals in a pattern of diamonds; of `mixed` those of the second half along x",
         )
         .or(Value::Text("tri3")),
         Parameter::vector("origin", "m", "the corner of least x, y").or(Value::Vector([0.0; 3])),
@@ -49,27 +49,44 @@ fn limited(requested: f64) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// Cells along and across, and how many each rectangle is cut into.
-fn counts(values: &Values) -> Result<([u64; 2], u64), MeshError> {
-    let cells = ["cells_along", "cells_across"].map(|name| values.integer(name));
-    let per_rectangle = if values.text("element").starts_with("tri") { 2 } else { 1 };
-    limited(cells[0] as f64 * cells[1] as f64 * per_rectangle as f64)?;
-    Ok((cells.map(|count| count as u64), per_rectangle))
+/// Rectangles along and across, and the first column of those that are cut in two.
+struct Pattern {
+    along: u64,
+    across: u64,
+    first_cut: u64,
+}
+
+impl Pattern {
+    fn of(values: &Values) -> Result<Self, MeshError> {
+        let [along, across] = ["cells_along", "cells_across"].map(|name| values.integer(name));
+        limited(along as f64 * across as f64 * 2.0)?;
+        let (along, across) = (along as u64, across as u64);
+        let first_cut = match values.text("element") {
+            "tri3" | "tri6" => 0,
+            "quad4" | "quad8" => along,
+            _ => along.div_ceil(2),
+        };
+        Ok(Self { along, across, first_cut })
+    }
+
+    fn cut_count(&self) -> u64 {
+        (self.along - self.first_cut) * self.across
+    }
 }
 
 fn sheet_size(values: &Values) -> Result<MeshSize, MeshError> {
-    let ([nx, ny], per_rectangle) = counts(values)?;
+    let pattern = Pattern::of(values)?;
+    let (nx, ny, cut) = (pattern.along, pattern.across, pattern.cut_count());
     let corners = (nx + 1) * (ny + 1);
-    let diagonals = if per_rectangle == 2 { nx * ny } else { 0 };
     let middles = match values.text("element") {
-        "tri6" | "quad8" => nx * (ny + 1) + ny * (nx + 1) + diagonals,
+        "tri6" | "quad8" | "mixed_quadratic" => nx * (ny + 1) + ny * (nx + 1) + cut,
         _ => 0,
     };
-    Ok(MeshSize { points: corners + middles, cells: nx * ny * per_rectangle })
+    Ok(MeshSize { points: corners + middles, cells: nx * ny + cut })
 }
 
 fn sheet(values: &Values) -> Result<Mesh, MeshError> {
-    let ([nx, ny], per_rectangle) = counts(values)?;
+    let Pattern { along: nx, across: ny, first_cut } = Pattern::of(values)?;
     let (length, width) = (values.number("length"), values.number("width"));
     let origin = Vec3::from_array(values.vector("origin"));
     let mut points = Vec::with_capacity(((nx + 1) * (ny + 1)) as usize);
@@ -80,20 +97,20 @@ fn sheet(values: &Values) -> Result<Mesh, MeshError> {
         }
     }
     let point = |i: u64, j: u64| (i + (nx + 1) * j) as u32;
-    let mut nodes = Vec::new();
+    let (mut whole, mut cut) = (CellBlock::new(ElementKind::Quad4), CellBlock::new(ElementKind::Tri3));
     for j in 0..ny {
         for i in 0..nx {
             let [a, b, c, d] = [point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)];
-            match (per_rectangle, (i + j) % 2) {
-                (1, _) => nodes.extend([a, b, c, d]),
+            match (i < first_cut, (i + j) % 2) {
+                (true, _) => whole.nodes.extend([a, b, c, d]),
                 // the diagonals of neighbours meet: no direction is preferred
-                (_, 0) => nodes.extend([a, b, c, a, c, d]),
-                _ => nodes.extend([a, b, d, b, c, d]),
+                (_, 0) => cut.nodes.extend([a, b, c, a, c, d]),
+                _ => cut.nodes.extend([a, b, d, b, c, d]),
             }
         }
     }
-    let kind = if per_rectangle == 2 { ElementKind::Tri3 } else { ElementKind::Quad4 };
-    let mut mesh = Mesh::new(points, kind, nodes);
+    let blocks = [whole, cut].into_iter().filter(|block| !block.is_empty()).collect();
+    let mut mesh = Mesh { points, blocks, ..Mesh::default() };
     let group = |points: Vec<u32>| Group { points, ..Group::default() };
     mesh.groups = BTreeMap::from([
         ("x_min".to_owned(), group((0..=ny).map(|j| point(0, j)).collect())),

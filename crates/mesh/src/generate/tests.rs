@@ -335,7 +335,7 @@ fn quadratic_meshes_are_sound_and_round() {
 /// Sheets and lines: exact sizes, area and length, cells that look up.
 #[test]
 fn sheets_and_lines() {
-    for element in ["tri3", "tri6", "quad4", "quad8"] {
+    for element in ["tri3", "tri6", "quad4", "quad8", "mixed", "mixed_quadratic"] {
         let entry = GENERATORS.find("sheet").unwrap();
         let values = Values::new()
             .with("length", Value::Number(2.0))

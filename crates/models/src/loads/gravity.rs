@@ -10,7 +10,7 @@ use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
 
-use super::{Fit, LoadError, editable, finite, set_number};
+use super::{Fit, LoadError, MovingFrame, editable, finite, set_number};
 
 /// What pulls.
 #[derive(Clone, Debug)]
@@ -40,6 +40,8 @@ impl Acceleration {
 pub struct Gravity {
     name: String,
     acceleration: Acceleration,
+    /// From where it is seen; the world at rest where there is none.
+    frame: Option<MovingFrame>,
     /// Per row [kg].
     row_masses: Vec<f64>,
 }
@@ -81,12 +83,22 @@ impl Gravity {
             row_masses[a as usize] += coupling * share(b as usize);
             row_masses[b as usize] += coupling * share(a as usize);
         }
-        Self { name, acceleration, row_masses }
+        Self { name, acceleration, frame: None, row_masses }
+    }
+
+    /// The same gravity of a world at rest, seen from a frame that moves in it.
+    pub fn seen_from(self, frame: MovingFrame) -> Self {
+        Self { frame: Some(frame), ..self }
+    }
+
+    fn at(&self, time: f64) -> Vec3 {
+        let acceleration = self.acceleration.at(time);
+        self.frame.as_ref().map_or(acceleration, |frame| frame.direction_to_frame(time, acceleration))
     }
 
     /// Total weight at a time [N].
     pub fn total(&self, time: f64) -> Vec3 {
-        self.acceleration.at(time) * self.row_masses.iter().sum::<f64>()
+        self.at(time) * self.row_masses.iter().sum::<f64>()
     }
 }
 
@@ -101,13 +113,13 @@ impl Force for Gravity {
 
     // E = -Σ m g · x
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let weight = self.acceleration.at(at.time) * at.load;
+        let weight = self.at(at.time) * at.load;
         let stored = self.row_masses.iter().zip(at.positions).map(|(mass, x)| -mass * weight.dot(*x)).sum();
         Energy { stored, dissipated: 0.0 }
     }
 
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        let weight = self.acceleration.at(at.time) * at.load;
+        let weight = self.at(at.time) * at.load;
         for (out, mass) in out.iter_mut().zip(&self.row_masses) {
             *out += weight * *mass;
         }

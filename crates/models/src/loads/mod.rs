@@ -1,4 +1,4 @@
-//! Loads: forces from outside, springs to the ground and between bodies, drag, and prescribed motions.
+//! Loads: forces from outside, springs to the ground and between bodies, drag, prescribed motions and moving frames.
 //!
 //! Loads that grow with the load steps of `static` are multiplied by [`souple_engine::Configuration::load`];
 //! springs and drag are not loads in that sense and always act in full.
@@ -13,6 +13,7 @@ mod formula;
 mod gravity;
 mod ground_springs;
 mod motion;
+mod moving_frame;
 mod point_load;
 mod pressure;
 mod rigid_motion;
@@ -29,6 +30,7 @@ pub use formula::{FormulaVector, VARIABLES};
 pub use gravity::{Gravity, TIME_VARIABLES};
 pub use ground_springs::{GroundSpring, GroundSprings};
 pub use motion::{Interpolation, KeyFrames};
+pub use moving_frame::{FictitiousForce, MovingFrame};
 pub use point_load::PointLoad;
 pub use pressure::{PressedFace, Pressure};
 pub use rigid_motion::{Pose, RigidMotion};

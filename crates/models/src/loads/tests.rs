@@ -40,6 +40,19 @@ fn consistent_mass() -> Mass {
     mass
 }
 
+fn led(formula: &str) -> Option<Arc<dyn Motion>> {
+    Some(Arc::new(FormulaVector::compile(formula).unwrap()))
+}
+
+fn pushed() -> RigidMotion {
+    RigidMotion { translation: led("[0.3 * sin(t), t^2, 0]"), ..RigidMotion::default() }
+}
+
+fn turning() -> RigidMotion {
+    let rotation = led("[t, 0.5 * t^2, sin(3 * t)]");
+    RigidMotion { rotation, pivot: Vec3::new(0.1, 0.0, -0.4), ..pushed() }
+}
+
 /// Every load of this room, with and without what it has a choice of.
 fn table() -> Vec<(&'static str, Box<dyn Force>)> {
     let mut kinematics = Kinematics::default();
@@ -54,6 +67,10 @@ fn table() -> Vec<(&'static str, Box<dyn Force>)> {
         ("mass damping", Box::new(MassDamping::new("damping", mass, 0.7).unwrap())),
         ("drag", Box::new(Drag::new("drag", shares.clone(), 2.0).unwrap())),
     ];
+    for (name, motion) in [("pushed frame", pushed()), ("turning frame", turning())] {
+        let frame = MovingFrame::new(motion, 0.01);
+        all.push((name, Box::new(FictitiousForce::new("frame", frame, &consistent_mass(), &kinematics))));
+    }
     let fields: [(&str, Arc<dyn ForceField>); 3] = [
         ("uniform load", Arc::new(UniformForce(Vec3::X))),
         ("load by time", Arc::new(FormulaVector::compile("[1, sin(t), -2]").unwrap())),
@@ -144,7 +161,11 @@ fn symmetric_blocks_are_the_symmetric_part() {
         quadrature: Quadrature::Default,
         section: Section::Solid,
     };
-    let forces: [Box<dyn Force>; 5] = [
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, 5);
+    let frame = MovingFrame::new(turning(), 0.01);
+    let forces: [Box<dyn Force>; 6] = [
+        Box::new(FictitiousForce::new("frame", frame, &consistent_mass(), &kinematics)),
         Box::new(Viscosity::new(&description, 0.8).unwrap()),
         Box::new(Attachments::new("damped", vec![link(0.7)], 30.0, 4.0).unwrap()),
         Box::new(Pressure::new("open", faces[1..].to_vec(), Formula::constant(3.0)).unwrap()),
@@ -283,18 +304,56 @@ fn a_spring_carries_a_weight() {
     assert!((sag + mass * 9.81 / stiffness).abs() < 1e-8, "{sag}");
 }
 
+/// What a point feels in a frame is what its path in the world at rest says: `f = m (ẍ - Rᵀ Ẍ)` for any path `x(t)` in the
+/// frame and `X = o + R (x - p)` outside of it.
+#[test]
+fn frames_press_as_paths_bend() {
+    let (motion, time) = (turning(), 0.3);
+    let path = FormulaVector::compile("[0.4 * t^3 - 1, cos(2 * t), 0.5 + t^2]").unwrap();
+    let in_frame = |time: f64| path.value(Vec3::ZERO, time);
+    let outside = |time: f64| motion.pose(time).to_world(in_frame(time));
+    // ÿ = (-y₊₂ + 16 y₊₁ - 30 y + 16 y₋₁ - y₋₂) / 12 s²
+    let step = 2e-3;
+    let second = |y: &dyn Fn(f64) -> Vec3| {
+        let at = |steps: f64| y(time + steps * step);
+        ((at(1.0) + at(-1.0)) * 16.0 - (at(2.0) + at(-2.0)) - at(0.0) * 30.0) * (1.0 / (12.0 * step * step))
+    };
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, 1);
+    let mass = Mass { diagonal: vec![2.5], couplings: vec![] };
+    let frame = FictitiousForce::new("frame", MovingFrame::new(motion.clone(), 0.01), &mass, &kinematics);
+    let velocity = path.velocity(Vec3::ZERO, time);
+    let setting = Setting::new(&frame, vec![in_frame(time)], vec![velocity]);
+    assert_eq!(setting.time, time);
+    // the setting acts with a load of 0.75
+    let felt = setting.force(&frame)[0] * (1.0 / 0.75);
+    let expected =
+        (second(&in_frame) - motion.pose(time).direction_to_shape(second(&outside))) * mass.diagonal[0];
+    // sixth derivatives are of order 3⁶: 2.5 kg 3⁶ step⁴/90, and rounding of 60 ε/12 step²
+    let error = (felt - expected).length();
+    assert!(error < 2.5 * 729.0 * step.powi(4) / 90.0 + 2.5 * 5.0 * f64::EPSILON / step.powi(2), "{error:e}");
+    assert!(expected.length() > 1.0);
+}
+
+/// Gravity keeps its direction in the world at rest: a frame that turns by a right angle sees it turn back.
+#[test]
+fn gravity_seen_from_a_frame() {
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, 1);
+    let mass = Mass { diagonal: vec![1.0], couplings: vec![] };
+    let motion = RigidMotion { rotation: led("[0, 0, pi / 2 * t]"), ..pushed() };
+    let gravity = Gravity::new("gravity", Vec3::new(0.0, -10.0, 0.0), &mass, &kinematics).unwrap();
+    let seen = gravity.seen_from(MovingFrame::new(motion, 0.01)).total(1.0);
+    assert!((seen - Vec3::new(-10.0, 0.0, 0.0)).length() < 1e-14, "{seen:?}");
+}
+
 /// The velocity of a motion is the derivative of its offset.
 #[test]
 fn motions_agree_with_their_velocities() {
     let offsets = vec![Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1.0, 0.0), Vec3::Z];
     let keys =
         |interpolation| KeyFrames::new(vec![0.0, 0.5, 0.7, 2.0], offsets.clone(), interpolation).unwrap();
-    let formula = |text: &str| Some(Arc::new(FormulaVector::compile(text).unwrap()) as Arc<dyn Motion>);
-    let carried = RigidMotion {
-        translation: formula("[0.3 * sin(t), t^2, 0]"),
-        rotation: formula("[t, 0.5 * t^2, -0.2]"),
-        pivot: Vec3::new(0.1, 0.0, -0.4),
-    };
+    let carried = RigidMotion { rotation: led("[t, 0.5 * t^2, -0.2]"), ..turning() };
     let motions: [&dyn Motion; 4] = [
         &carried,
         &keys(Interpolation::Linear),

@@ -1,6 +1,6 @@
 //! What all pictures of a show have in common, so that neither camera nor colours jump.
 
-use souple_io::picture::{ColourMap, Cut, MeshSurface};
+use souple_io::picture::{Cut, MeshSurface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 
@@ -123,11 +123,7 @@ impl Common {
             }
             let noise = bodies().map(|body| quantity.noise(body, show.stage.stiffness)).fold(0.0, f64::max);
             let found = extremes(bodies().filter_map(|body| quantity.at_points(body)).flatten());
-            range = found.map(|range| spread(range, noise));
-            if let (ColourMap::Diverging, Some((low, high))) = (figure.colours, range) {
-                let most = low.abs().max(high.abs());
-                range = Some((-most, most));
-            }
+            range = found.map(|range| figure.colours.spread(spread(range, noise)));
         }
         let mut arrow_scale = 1.0;
         if let Some(arrows) = &figure.arrows {

@@ -2,8 +2,8 @@
 
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
-    Colour, ColourMap, Cut, EdgeStyle, Legend, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface,
-    Theme, View,
+    Backdrop, Colour, ColourMap, Cut, EdgeStyle, Legend, LegendPlace, MeshSurface, Paint, Picture, Stroke,
+    StrokeShape, Surface, Theme, View,
 };
 use souple_scene::spec::picture::PictureView;
 
@@ -18,6 +18,8 @@ pub struct Figure {
     pub size: [usize; 2],
     pub samples_per_pixel: usize,
     pub theme: Theme,
+    pub backdrop: Backdrop,
+    pub legend: LegendPlace,
     /// In place of the scene's title; none if empty.
     pub title: Option<String>,
     /// In place of the scene's, with everything in it; `bounds` are filled in where `None`.
@@ -48,6 +50,8 @@ impl Default for Figure {
             size: [1280, 800],
             samples_per_pixel: 3,
             theme: Theme::default(),
+            backdrop: Backdrop::default(),
+            legend: LegendPlace::default(),
             title: None,
             view: None,
             colour_by: Some("von_mises".to_owned()),
@@ -115,6 +119,7 @@ impl Figure {
             title: quantity.title(),
             unit: quantity.unit().to_owned(),
             range: common.range,
+            place: self.legend,
         });
         let PictureView { direction, up } = show.stage.view;
         let view = self.view.unwrap_or_else(|| View::along(direction, up));
@@ -127,6 +132,7 @@ impl Figure {
             size: self.size,
             samples_per_pixel: self.samples_per_pixel,
             theme: self.theme,
+            backdrop: self.backdrop,
             title: self.title.clone().unwrap_or_else(|| show.stage.title.clone()),
             subtitle: format!("{:.3} s", moment.time),
             legend,
@@ -161,6 +167,7 @@ impl Figure {
     fn surface(&self, body: &BodyMoment, common: &Common) -> MeshSurface {
         let mut surface = match self.cut {
             _ if body.is_of_edges() => body.tubes(common, self.cut, None),
+            Some(cut) if self.explode > 0.0 => MeshSurface::of_cells_left(&body.mesh, &body.positions, cut),
             Some(cut) => MeshSurface::cut(&body.mesh, &body.positions, cut),
             None if self.explode > 0.0 => MeshSurface::of_cells(&body.mesh),
             None => MeshSurface::of(&body.mesh),
@@ -169,7 +176,7 @@ impl Figure {
             surface.move_to(&body.positions);
             surface.surface.edge_style = self.edges;
         }
-        if self.cut.is_none() && self.explode > 0.0 {
+        if self.explode > 0.0 && !body.is_of_edges() {
             surface.explode(self.explode);
         }
         surface

@@ -66,7 +66,10 @@ impl Stage {
         let title = report["title"].as_str().unwrap_or_default().to_owned();
         let bare = Self { title, ..Self::default() };
         let name = report["scene"].as_str().unwrap_or_default();
-        match souple_scene::read_file(Path::new(name), &[]) {
+        let settings = report["settings"].as_array().map_or(&[][..], Vec::as_slice);
+        let settings: Vec<String> =
+            settings.iter().filter_map(|setting| Some(setting.as_str()?.to_owned())).collect();
+        match souple_scene::read_file(Path::new(name), &settings) {
             Ok(scene) if report["scene_sha256"] == scene.scene_sha256.as_str() => (Self::of(&scene), None),
             Ok(_) => (bare, Some(format!("the scene `{name}` is not as it was run: shapes are not drawn"))),
             Err(_) => (bare, Some(format!("the scene `{name}` cannot be read: shapes are not drawn"))),

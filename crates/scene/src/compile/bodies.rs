@@ -6,18 +6,17 @@ use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::ROWS_OF_FRAME;
-use souple_models::loads::{Drag, Gravity, LoadError, MassDamping};
+use souple_models::loads::{Drag, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
     Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, Section,
     SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
 };
 
-use super::boundary::constant_vector;
 use super::frames::PlacedFrames;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, levels, network, shape};
+use super::{Draft, frames, inertial, levels, network, shape};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -328,7 +327,7 @@ fn report(draft: &Draft, body: &Body, error: &FormulationError) {
     draft.log.add(code, site.unwrap_or(&body.site), error.to_string(), expected);
 }
 
-/// Gravity of the whole system, drag and damping of its bodies.
+/// Forces on the whole system, drag and damping of its bodies.
 fn add_outer_forces(
     draft: &Draft,
     index: usize,
@@ -336,31 +335,7 @@ fn add_outer_forces(
     kinematics: &Kinematics,
     forces: &mut Vec<Box<dyn Force>>,
 ) {
-    let world = &draft.spec.world;
-    if let Some(formulas) = &world.gravity {
-        match constant_vector(formulas) {
-            None => {
-                let [x, y, z] = [0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&[0.0]));
-                if ![x, y, z].into_iter().all(f64::is_finite) {
-                    let message = format!("gravity is ({x}, {y}, {z}) at t = 0");
-                    draft.log.add(
-                        Code::NotFinite,
-                        &world.gravity_site,
-                        message,
-                        "formulas that are finite at the start",
-                    );
-                }
-                forces.push(Box::new(Gravity::varying("gravity", formulas.clone(), mass, kinematics)));
-            }
-            Some(Vec3::ZERO) => {}
-            Some(constant) => match Gravity::new("gravity", constant, mass, kinematics) {
-                Ok(gravity) => forces.push(Box::new(gravity)),
-                Err(error) => {
-                    draft.log.add(Code::OutOfRange, &world.gravity_site, error.to_string(), "finite numbers")
-                }
-            },
-        }
-    }
+    inertial::add(draft, index, mass, kinematics, forces);
     for body in draft.bodies.iter().filter(|body| body.system == index) {
         let (name, damping) = (&body.spec.name, body.spec.damping);
         let mut added: Vec<Result<Box<dyn Force>, LoadError>> = Vec::new();

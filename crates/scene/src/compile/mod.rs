@@ -7,6 +7,7 @@ mod depth;
 mod doubts;
 mod frames;
 mod freedom;
+mod inertial;
 mod levels;
 mod links;
 mod memory;

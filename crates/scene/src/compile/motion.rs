@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use souple_engine::Motion;
 use souple_math::Vec3;
-use souple_models::loads::{FormulaVector, Interpolation, KeyFrames, RigidMotion};
+use souple_models::loads::{FormulaVector, Interpolation, KeyFrames, MovingFrame, RigidMotion};
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::spec::boundary::{MotionSpec, Pin};
+use crate::spec::world::FrameSpec;
 
 /// `Some(None)` where no motion is written, `None` where it was refused.
 pub fn motion(log: &Log, spec: Option<&MotionSpec>, site: &Site) -> Option<Option<Arc<dyn Motion>>> {
@@ -33,6 +34,21 @@ pub fn motion_of_pin(log: &Log, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
     let translation = motion(log, pin.motion.as_ref(), &pin.site)?;
     let Some(rotation) = motion(log, pin.rotation.as_ref(), &pin.site)? else { return Some(translation) };
     Some(Some(Arc::new(RigidMotion { translation, rotation: Some(rotation), pivot: pin.pivot })))
+}
+
+/// The frame that a system with this `timestep` [s] is seen from; `None` where it was refused.
+pub fn frame(log: &Log, spec: &FrameSpec, timestep: f64) -> Option<MovingFrame> {
+    let translation = motion(log, spec.motion.as_ref(), &spec.site)?;
+    let rotation = motion(log, spec.rotation.as_ref(), &spec.site)?;
+    let frame = RigidMotion { translation, rotation, pivot: spec.pivot };
+    let start = frame.pose(0.0);
+    if !(start.origin.is_finite() && start.velocity.is_finite() && start.angular_velocity.is_finite()) {
+        let message =
+            format!("the frame is at {:?} m and moves by {:?} m/s at t = 0", start.origin, start.velocity);
+        log.add(Code::NotFinite, &spec.site, message, "formulas that are finite at the start");
+        return None;
+    }
+    Some(MovingFrame::new(frame, timestep))
 }
 
 /// `None`: the axis stays where it started.

@@ -155,6 +155,7 @@ impl Spec {
                 period_site: site.clone(),
                 gravity: None,
                 gravity_site: site.clone(),
+                frame: None,
                 site,
             },
             systems: Vec::new(),

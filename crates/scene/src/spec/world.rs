@@ -2,10 +2,12 @@
 
 use souple_engine::steppers::{self, BuildStepper};
 use souple_formal::Formula;
+use souple_math::Vec3;
 use souple_models::loads::TIME_VARIABLES;
 use souple_table::{Range, Value};
 
-use crate::diagnostic::Site;
+use super::boundary::{MOTION, MotionSpec, TURNING};
+use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Others, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
@@ -31,6 +33,17 @@ pub(crate) static WORLD: Keys = Keys::new(
             "acceleration of everything that has mass: numbers, or formulas of time; none where left out",
         )
         .in_unit("m/s^2"),
+        Key::new("frame", Shape::Table(&FRAME), "a moving frame that all of the scene is seen from"),
+    ],
+);
+
+pub(crate) static FRAME: Keys = Keys::new(
+    "frame",
+    "how the frame moves in a world at rest: carried by `motion`, turned by `rotation` about the `pivot`",
+    &[
+        Key::new("motion", Shape::Table(&MOTION), "where its pivot goes; it stays where left out"),
+        Key::new("rotation", Shape::Table(&TURNING), "how it turns; it keeps its axes where left out"),
+        Key::vector("pivot", "m", "where it turns").or(Value::Vector([0.0; 3])),
     ],
 );
 
@@ -68,6 +81,19 @@ pub struct WorldSpec {
     /// Of the time; `None`: there is none [m/s²].
     pub gravity: Option<[Formula; 3]>,
     pub gravity_site: Site,
+    /// How the frame moves that everything is seen from; `None`: it is at rest.
+    pub frame: Option<FrameSpec>,
+    pub site: Site,
+}
+
+/// A frame of reference that moves.
+#[derive(Clone, Debug)]
+pub struct FrameSpec {
+    pub motion: Option<MotionSpec>,
+    /// Rotation vector about the pivot [rad].
+    pub rotation: Option<MotionSpec>,
+    /// [m]
+    pub pivot: Vec3,
     pub site: Site,
 }
 
@@ -100,8 +126,34 @@ impl WorldSpec {
             period_site: reader.site_of("period"),
             gravity: reader.maybe_vector_formula("gravity"),
             gravity_site: reader.site_of("gravity"),
+            frame: reader.table("frame").map(|frame| FrameSpec::read(&frame)),
             site: reader.site(),
         }
+    }
+}
+
+impl FrameSpec {
+    fn read(reader: &Reader) -> Self {
+        let motion = |key| reader.table(key).and_then(|table| MotionSpec::read(&table));
+        let frame = Self {
+            motion: motion("motion"),
+            rotation: motion("rotation"),
+            pivot: reader.vector("pivot"),
+            site: reader.site(),
+        };
+        for key in ["motion", "rotation"] {
+            let spec = if key == "motion" { &frame.motion } else { &frame.rotation };
+            if let Some(MotionSpec::KeyFrames { is_smooth: false, .. }) = spec {
+                let message = "straight lines between key frames jump in velocity, and a frame that does is no place to be";
+                reader.log().add(
+                    Code::Conflict,
+                    &reader.site_of(key),
+                    message,
+                    "`interpolation = \"smooth\"`, or a formula",
+                );
+            }
+        }
+        frame
     }
 }
 

@@ -63,10 +63,13 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
-    /// Reads one format and writes another, by extension; tells what the written file holds
+    /// Reads one format and writes another, by extension or by name; tells what the written file holds
     Convert {
         input: PathBuf,
         out: PathBuf,
+        /// A name that `souple list formats` prints: `gmsh_binary`, `ply_text`, …; by the extension where left out
+        #[arg(long)]
+        format: Option<String>,
         #[arg(long)]
         json: bool,
     },
@@ -94,24 +97,24 @@ impl Arguments {
 pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
     match arguments.action {
         Action::Generate { generator, out, parameters, json } => {
-            write(&out, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
+            write(&out, None, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
         }
         Action::Fill { input, out, parameters, json } => {
             let (mesh, notes) = fill::fill(&input, &parameters)?;
-            write(&out, &Output::new(&mesh), notes, json)
+            write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
-            write(&out, &Output::new(&mesh), notes, json)
+            write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
-            write(&out, &Output::new(&skin::dressed(&input, &parameters)?), Vec::new(), json)
+            write(&out, None, &Output::new(&skin::dressed(&input, &parameters)?), Vec::new(), json)
         }
-        Action::Convert { input, out, json } => {
+        Action::Convert { input, out, format, json } => {
             let Dataset { mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
             let output =
                 Output { point_fields: &point_fields, cell_fields: &cell_fields, ..Output::new(&mesh) };
-            write(&out, &output, notes, json)
+            write(&out, format.as_deref(), &output, notes, json)
         }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
@@ -151,10 +154,21 @@ fn read(path: &Path) -> Result<(Mesh, Vec<String>), Refusal> {
     Ok(souple_io::read_mesh(path)?)
 }
 
-/// Writes a mesh and tells what the file holds, which may be less: a format may know surfaces alone, or no groups.
-fn write(path: &Path, output: &Output, mut notes: Vec<String>, as_json: bool) -> Result<End, Refusal> {
-    souple_io::write_dataset(path, output)?;
-    notes.extend(souple_io::losses(path, output)?);
+/// Writes a mesh, in the format of that name where there is one, and tells what the file holds, which may be less: a format
+/// may know surfaces alone, or no groups.
+fn write(
+    path: &Path,
+    format: Option<&str>,
+    output: &Output,
+    mut notes: Vec<String>,
+    as_json: bool,
+) -> Result<End, Refusal> {
+    let format = match format {
+        Some(name) => souple_io::format_for(name, path)?,
+        None => souple_io::format_of(path)?,
+    };
+    souple_io::write_dataset_as(format, path, output)?;
+    notes.extend(souple_io::losses(format, output)?);
     let written = match souple_io::read_mesh(path) {
         Ok((written, _)) => written,
         // a format that is only written, and for surfaces

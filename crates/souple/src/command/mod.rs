@@ -11,6 +11,7 @@ mod progress;
 mod render;
 mod replay;
 mod run;
+mod sweep;
 mod verify;
 mod view;
 
@@ -50,6 +51,8 @@ enum Command {
     Verify(verify::Arguments),
     /// Runs the benchmarks: speed with its error beside it
     Bench(bench::Arguments),
+    /// Makes the runs of a study in parallel, into one SQLite file, with a table and graphs of them
+    Sweep(sweep::Arguments),
     /// Plays a recording again
     Replay(replay::Arguments),
     /// Draws a scene or a run: picture, contact sheet, film, animated surfaces
@@ -238,6 +241,7 @@ pub fn execute(cli: Cli) -> ExitCode {
     let (ended, as_json) = match command {
         Command::View(arguments) => (view::view(&arguments), false),
         Command::Run(arguments) => (run::run(&arguments), arguments.json),
+        Command::Sweep(arguments) => (sweep::sweep(&arguments), arguments.json),
         Command::Check(arguments) => (check::check(&arguments), arguments.json),
         Command::Modes(arguments) => (modes::modes(&arguments), arguments.json),
         Command::List(arguments) => (list::list(&arguments), arguments.json),

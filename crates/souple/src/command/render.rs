@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde_json::json;
 use souple_io::picture::{
-    COLOUR_MAPS, Cut, EdgeStyle, Image, Picture, Theme, View, write_animated_png, write_gif,
+    Backdrop, COLOUR_MAPS, Cut, EdgeStyle, Image, LegendPlace, Picture, Theme, View, write_animated_png,
+    write_gif,
 };
 use souple_math::Vec3;
 use souple_run::Options;
@@ -53,8 +54,8 @@ pub struct Arguments {
     /// Cuts away what lies beyond the plane n · x = d
     #[arg(long, value_name = "NX,NY,NZ,D", value_parser = list::<4>, allow_hyphen_values = true)]
     cut: Option<[f64; 4]>,
-    /// Moves cells apart, by this part of their distance from the middle
-    #[arg(long, default_value_t = 0.0, conflicts_with = "cut")]
+    /// Moves cells apart, by this part of their distance from the middle; with a cut, those that it leaves whole
+    #[arg(long, default_value_t = 0.0)]
     explode: f64,
     /// Arrows of a vector field: `displacement`, `velocity`
     #[arg(long, value_name = "FIELD")]
@@ -180,9 +181,12 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
             count = show.moments.len();
             // one title for all of them
             let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
-            let figure = Figure { title: Some(String::new()), ..figure };
-            let images = images(&figure.pictures(&show)?, arguments.quiet)?;
-            let sheet = Image::sheet(&images, columns(count));
+            let (backdrop, legend) = (Backdrop::Plain, LegendPlace::Apart);
+            let figure = Figure { title: Some(String::new()), backdrop, legend, ..figure };
+            let pictures = figure.pictures(&show)?;
+            let sheet = Image::sheet(&images(&pictures, arguments.quiet)?, columns(count));
+            let legend = pictures.iter().find_map(|picture| picture.legend_strip(sheet.height));
+            let sheet = legend.map_or_else(|| sheet.clone(), |legend| sheet.beside(&legend));
             let sheet = if title.is_empty() { sheet } else { sheet.titled(&title, figure.theme) };
             write_picture(arguments, &sheet)?;
         }
@@ -332,6 +336,7 @@ fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
             .as_ref()
             .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
         edges,
+        ..Figure::default()
     })
 }
 

@@ -16,8 +16,10 @@ mod implicit;
 mod levels;
 mod long_beam;
 mod motion;
+mod moving_frame;
 mod network;
 mod patch;
+mod pressure;
 mod rheology;
 mod rheometer;
 mod rubber;
@@ -42,6 +44,8 @@ pub const TABLES: &[&[Case]] = &[
     elements::CASES,
     frequencies::CASES,
     motion::CASES,
+    moving_frame::CASES,
+    pressure::CASES,
     stepper_orders::CASES,
     energy::CASES,
     explicit::CASES,

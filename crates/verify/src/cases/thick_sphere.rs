@@ -20,6 +20,15 @@ const HALVED: Refinement = Refinement {
     limit: Limit::Known(1e-3 * INNER),
 };
 
+/// Six cells to a cube: as many of them as the finest hexahedra at half the edges.
+const COARSER: Refinement = Refinement {
+    runs: &[
+        Variant { size: 0.25, settings: &["parameters.cells=4", "parameters.layers=4"] },
+        Variant { size: 0.125, settings: &["parameters.cells=8", "parameters.layers=8"] },
+    ],
+    ..HALVED
+};
+
 const SPHERE: Case = Case {
     id: "",
     capabilities: &["FAU-7"],
@@ -44,6 +53,20 @@ pub(super) const CASES: &[Case] = &[
         id: "thick_sphere_order_prism6",
         what: "the same, prism6",
         settings: &[GENTLE, r#"parameters.element="prism6""#],
+        ..SPHERE
+    },
+    Case {
+        id: "thick_sphere_order_pyramid5",
+        what: "the same, pyramid5",
+        settings: &[GENTLE, r#"parameters.element="pyramid5""#],
+        refinement: Some(COARSER),
+        ..SPHERE
+    },
+    Case {
+        id: "thick_sphere_order_tet4",
+        what: "the same, tet4",
+        settings: &[GENTLE, r#"parameters.element="tet4""#],
+        refinement: Some(COARSER),
         ..SPHERE
     },
 ];

@@ -24,7 +24,13 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
             {
                 "cells that fit the shape; lengths are metres: a file in millimetres takes scale=0.001"
             }
-            MeshError::Fill(FillError::Open { .. }) => "a surface that encloses something",
+            MeshError::Fill(FillError::Undefined { .. } | FillError::Flat { .. }) => {
+                "a surface that encloses something"
+            }
+            MeshError::Fill(FillError::Thin { .. }) => {
+                "`size=` below the thickness of the shape, or more cells"
+            }
+            MeshError::Parameter { .. } => "parameters as `souple mesh fill --help` names them",
             _ => "a shape that has an inside, and cells that fit in it",
         };
         Refusal::request("fill", input, expected, format!("`{input}` cannot be filled: {error}"))
@@ -56,10 +62,27 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     let scale = others.completed(&[SCALE]).map_err(|error| refuse(error.into()))?.number("scale");
     let (mut mesh, mut notes) = read(Path::new(input))?;
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
+    notes.extend(scale_doubt(&mesh));
     let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
     notes.extend(missed(wanted, &filled.mesh));
     Ok((filled.mesh, notes))
+}
+
+/// Sizes of soft bodies [m]: beyond these a file is more likely in other units.
+const USUAL: [f64; 2] = [1e-4, 20.0];
+
+/// What to say of a surface whose size is that of a house or of a grain of dust.
+fn scale_doubt(mesh: &Mesh) -> Option<String> {
+    let extent = mesh.bounds().size();
+    let largest = extent.largest_component();
+    let hint = if largest > USUAL[1] { ": in millimetres it takes scale=0.001" } else { "" };
+    (largest > 0.0 && !(USUAL[0]..=USUAL[1]).contains(&largest)).then(|| {
+        format!(
+            "the surface measures {:.4} x {:.4} x {:.4} m, an unusual size for a soft body{hint}",
+            extent.x, extent.y, extent.z
+        )
+    })
 }
 
 /// A count is met within this part of it, or else it is said.

@@ -1,0 +1,129 @@
+//! `souple sweep`: the runs of a study, their table and graphs.
+
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use serde_json::json;
+use souple_sweep::{Database, Progress, Study, SweepError, Workers, graphs, sweep as make_runs, table_of};
+use souple_table::counted;
+
+use super::progress::Meter;
+use super::{End, Refusal, print_json, print_line, print_note};
+
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// A study: a TOML file with a scene and what varies
+    study: PathBuf,
+    /// SQLite file of the results; beside the study and named like it where left out. Table and graphs go beside it
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Runs at once; as many as the machine has cores where left out
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1024))]
+    jobs: Option<u64>,
+    /// Worker threads of each run
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=1024))]
+    threads: u64,
+    /// Makes runs again that the file holds
+    #[arg(long)]
+    again: bool,
+    #[arg(long)]
+    pub json: bool,
+    /// No progress and no table
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Set by the first Ctrl-C, or by the system's wish that the program ends (SIGTERM).
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+impl From<SweepError> for Refusal {
+    fn from(error: SweepError) -> Self {
+        let message = error.to_string();
+        match error {
+            SweepError::Value { value, expected, .. } => Self::request("study", value, expected, message),
+            SweepError::Read { .. } | SweepError::Syntax { .. } => {
+                Self::request("study", "", "a study: TOML with `scene` and `vary`", message)
+            }
+            SweepError::Scene { settings, .. } => {
+                Self::request("study", settings, "values that the scene takes", message)
+            }
+            SweepError::OtherStudy { found, .. } => {
+                Self::request("database", found, "a file of this study", message)
+            }
+            SweepError::Database { .. } | SweepError::Threads(_) => Self::work("database", message),
+            SweepError::Io(error) => error.into(),
+        }
+    }
+}
+
+pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
+    let study = Study::read(&arguments.study)?;
+    let out = arguments.out.clone().unwrap_or_else(|| arguments.study.with_extension("sqlite"));
+    let mut database = Database::open(&out, &study.scene.display().to_string())?;
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let workers = Workers {
+        count: arguments.jobs.map_or(cores, |jobs| jobs as usize),
+        threads: arguments.threads as usize,
+        again: arguments.again,
+    };
+    // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
+    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, std::sync::atomic::Ordering::Relaxed));
+    let meter = Meter::new("runs", arguments.quiet);
+    let mut watch = |progress: Progress| meter.show(progress.done as u64, progress.runs as u64, "");
+    let summary = make_runs(&study, &mut database, workers, &INTERRUPTED, &mut watch)?;
+    drop(meter);
+    let table = table_of(&study, &database)?;
+    let csv = out.with_extension("csv");
+    table.write_csv(&csv)?;
+    let mut files = vec![out.clone(), csv];
+    if !table.rows.is_empty() {
+        files.extend(graphs::write(&study, &table, out.parent().unwrap_or(std::path::Path::new(".")))?);
+    }
+    if summary.of_others > 0 {
+        print_note(format_args!(
+            "warning: {} made by another program; --again makes all of them anew",
+            counted(summary.of_others as u64, "run")
+        ));
+    }
+    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    let cells = table.cells();
+    if arguments.json {
+        print_json(&json!({
+            "title": study.title,
+            "scene": study.scene.display().to_string(),
+            "runs": study.runs.len(),
+            "made": summary.made,
+            "held": summary.held,
+            "failed": summary.failed,
+            "interrupted": summary.interrupted,
+            "table": cells,
+            "files": names,
+        }));
+    } else if !arguments.quiet {
+        print_table(&cells);
+        print_line(format_args!(
+            "{}: {} made, {} held, {} failed",
+            counted(study.runs.len() as u64, "run"),
+            summary.made,
+            summary.held,
+            summary.failed
+        ));
+        names.iter().for_each(|name| print_line(format_args!("  {name}")));
+    }
+    if INTERRUPTED.load(std::sync::atomic::Ordering::Relaxed) {
+        return Ok(End::Interrupted);
+    }
+    Ok(if summary.failed > 0 { End::Failed } else { End::Done })
+}
+
+/// Columns under each other.
+fn print_table(cells: &[Vec<String>]) {
+    let columns = cells.first().map_or(0, Vec::len);
+    let width = |column: usize| cells.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    for line in cells {
+        let padded: Vec<String> =
+            line.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+        print_line(padded.join("  ").trim_end());
+    }
+}

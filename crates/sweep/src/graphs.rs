@@ -1,0 +1,79 @@
+//! Graphs of a study: a result over a value, a curve for each value of another.
+
+use std::path::{Path, PathBuf};
+
+use souple_io::plot::{Axis, Curve, Mark, Plot, Scale};
+
+use crate::SweepError;
+use crate::study::{Graph, Study};
+use crate::table::{Row, Table};
+
+/// Writes each graph of the study as `NAME.svg` and `NAME.png` into a folder; their paths.
+///
+/// # Errors
+/// A graph names what no run has; a file cannot be written.
+pub fn write(study: &Study, table: &Table, folder: &Path) -> Result<Vec<PathBuf>, SweepError> {
+    let mut written = Vec::new();
+    for graph in &study.graphs {
+        let plot = plot_of(study, graph, table)?;
+        let [svg, png] = ["svg", "png"].map(|extension| folder.join(format!("{}.{extension}", graph.name)));
+        plot.write_svg(&svg)?;
+        plot.to_image(1.0)?.write_png(&png)?;
+        written.extend([svg, png]);
+    }
+    Ok(written)
+}
+
+fn plot_of(study: &Study, graph: &Graph, table: &Table) -> Result<Plot, SweepError> {
+    let place = |key: &str| format!("graphs.{}.{key}", graph.name);
+    let lines = match &graph.lines {
+        None => None,
+        Some(path) => Some(table.paths.iter().position(|known| known == path).ok_or_else(|| {
+            SweepError::value(
+                place("lines"),
+                format!("`{path}`"),
+                format!("a path that varies: {}", table.paths.join(", ")),
+            )
+        })?),
+    };
+    let mut units = [String::new(), String::new()];
+    let mut curves: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    for row in table.rows.iter().filter(|row| row.stored.status == "done") {
+        let of = |key: &str, name: &str| number(table, row, &place(key), name);
+        let ((x, unit_x), (y, unit_y)) = (of("x", &graph.x)?, of("y", &graph.y)?);
+        units = [unit_x, unit_y];
+        let name = lines.map_or_else(String::new, |path| row.values[path].clone());
+        match curves.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, points)) => points.push((x, y)),
+            None => curves.push((name, vec![(x, y)])),
+        }
+    }
+    let curve = |(name, mut points): (String, Vec<(f64, f64)>)| {
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (x, y) = points.into_iter().unzip();
+        Curve { mark: Mark::DottedLine, ..Curve::new(name, x, y) }
+    };
+    let [unit_x, unit_y] = units;
+    let scale = |logarithmic: bool| if logarithmic { Scale::Logarithmic } else { Scale::Linear };
+    Ok(Plot {
+        title: study.title.clone(),
+        x: Axis { scale: scale(graph.logarithmic[0]), ..Axis::new(graph.x.clone(), unit_x) },
+        y: Axis { scale: scale(graph.logarithmic[1]), ..Axis::new(graph.y.clone(), unit_y) },
+        curves: curves.into_iter().map(curve).collect(),
+        ..Plot::default()
+    })
+}
+
+/// A number of a run, or what the runs have in its place.
+fn number(table: &Table, row: &Row, place: &str, name: &str) -> Result<(f64, String), SweepError> {
+    table.find(row, name).ok_or_else(|| {
+        let results = table.results().into_iter().map(|(name, _)| name);
+        let known: Vec<String> =
+            table.paths.iter().cloned().chain(results).chain(["wall_seconds".to_owned()]).collect();
+        SweepError::value(
+            place,
+            format!("`{name}`"),
+            format!("a number that every run has: {}", known.join(", ")),
+        )
+    })
+}

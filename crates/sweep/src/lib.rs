@@ -1,0 +1,44 @@
+//! Studies: a family of runs of one scene, in parallel, into one SQLite file that tables and graphs are made from.
+//!
+//! A study is a TOML file (see [`Study`]). [`sweep`] makes the runs that the file does not hold yet, so that one that was
+//! interrupted goes on where it stood; [`table_of`] and [`graphs::write`] read the file alone.
+
+mod database;
+pub mod graphs;
+mod study;
+mod sweep;
+mod table;
+
+use std::path::PathBuf;
+
+pub use database::Database;
+pub use study::{Graph, Plan, Study};
+pub use sweep::{Progress, Summary, Workers, sweep};
+pub use table::{Table, table_of};
+
+/// A study that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum SweepError {
+    #[error("{}: {source}", .path.display())]
+    Read { path: PathBuf, source: std::io::Error },
+    #[error("{}: {message}", .path.display())]
+    Syntax { path: PathBuf, message: String },
+    #[error("`{path}` is {value}; expected {expected}")]
+    Value { path: String, value: String, expected: String },
+    #[error("run {run} ({settings}): {message}")]
+    Scene { run: usize, settings: String, message: String },
+    #[error("{}: {source}", .path.display())]
+    Database { path: PathBuf, source: rusqlite::Error },
+    #[error("{}: it holds results of `{found}`, not of `{wanted}`; expected a file of this study, or a new one", .path.display())]
+    OtherStudy { path: PathBuf, found: String, wanted: String },
+    #[error("the threads of the runs cannot be made: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    #[error(transparent)]
+    Io(#[from] souple_io::IoError),
+}
+
+impl SweepError {
+    fn value(path: impl Into<String>, value: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self::Value { path: path.into(), value: value.into(), expected: expected.into() }
+    }
+}

@@ -1,0 +1,324 @@
+//! What a study asks for: a scene, what is the same in all runs, what varies, and the graphs to draw.
+
+use std::path::{Path, PathBuf};
+
+use toml::{Table, Value};
+
+use crate::SweepError;
+
+/// A study, read from a TOML file.
+#[derive(Clone, Debug)]
+pub struct Study {
+    pub title: String,
+    /// Scene file, or a folder with a `scene.toml`.
+    pub scene: PathBuf,
+    /// `path=value` of every run.
+    pub settings: Vec<String>,
+    /// Periods of each run; to the end of the scene where `None`.
+    pub steps: Option<u64>,
+    pub runs: Vec<Plan>,
+    pub graphs: Vec<Graph>,
+}
+
+/// One run: what it has of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// Paths of the scene and their values, in the order of the study.
+    pub values: Vec<(String, Value)>,
+}
+
+/// A curve of a result over a value, one for each value of `lines`.
+#[derive(Clone, Debug)]
+pub struct Graph {
+    pub name: String,
+    /// A path that varies, or a result.
+    pub x: String,
+    /// A result: `PROBE`, `PROBE.x`, `PROBE.max`, `wall_seconds`.
+    pub y: String,
+    pub lines: Option<String>,
+    pub logarithmic: [bool; 2],
+}
+
+/// Most runs of a study.
+const MOST_RUNS: usize = 100_000;
+
+const KEYS: &[&str] = &["title", "scene", "settings", "steps", "vary", "table", "graphs"];
+const GRAPH_KEYS: &[&str] = &["x", "y", "lines", "logarithmic"];
+
+impl Study {
+    /// # Errors
+    /// The file cannot be read, is no TOML, or asks for something that cannot be.
+    pub fn read(path: &Path) -> Result<Self, SweepError> {
+        let text = read(path)?;
+        let document: Table = text.parse().map_err(|error: toml::de::Error| SweepError::Syntax {
+            path: path.to_owned(),
+            message: error.to_string(),
+        })?;
+        refuse_unknown("", &document, KEYS)?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let scene =
+            folder.join(text_of(&document, "scene")?.ok_or_else(|| missing("scene", "a scene file"))?);
+        let runs = match (document.get("vary"), document.get("table")) {
+            (Some(vary), None) => products(vary)?,
+            (None, Some(_)) => {
+                let table = folder.join(text_of(&document, "table")?.unwrap_or_default());
+                rows(&table)?
+            }
+            (Some(_), Some(_)) => {
+                return Err(SweepError::value("vary", "there beside `table`", "one of them"));
+            }
+            (None, None) => {
+                return Err(missing("vary", "a table of paths with lists of values, or a `table` file"));
+            }
+        };
+        let steps = match document.get("steps") {
+            None => None,
+            Some(Value::Integer(steps @ 1..)) => Some(*steps as u64),
+            Some(other) => {
+                return Err(SweepError::value("steps", other.to_string(), "a whole number above 0"));
+            }
+        };
+        Ok(Self {
+            title: text_of(&document, "title")?.unwrap_or_default().to_owned(),
+            scene: if scene.is_dir() { scene.join("scene.toml") } else { scene },
+            settings: settings(&document)?,
+            steps,
+            runs,
+            graphs: graphs(&document)?,
+        })
+    }
+
+    /// Paths that vary, in the order of the study.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        self.runs.first().into_iter().flat_map(|plan| plan.values.iter().map(|(path, _)| path.as_str()))
+    }
+}
+
+impl Plan {
+    /// As `souple run --set` takes them.
+    pub fn settings(&self) -> Vec<String> {
+        self.values.iter().map(|(path, value)| format!("{path}={value}")).collect()
+    }
+}
+
+fn read(path: &Path) -> Result<String, SweepError> {
+    std::fs::read_to_string(path).map_err(|source| SweepError::Read { path: path.to_owned(), source })
+}
+
+fn missing(path: &str, expected: &str) -> SweepError {
+    SweepError::value(path, "missing", expected)
+}
+
+fn refuse_unknown(within: &str, table: &Table, known: &[&str]) -> Result<(), SweepError> {
+    match table.keys().find(|key| !known.contains(&key.as_str())) {
+        None => Ok(()),
+        Some(key) => Err(SweepError::value(
+            format!("{within}{key}"),
+            "unknown",
+            format!("one of {}", known.join(", ")),
+        )),
+    }
+}
+
+fn text_of<'a>(table: &'a Table, key: &str) -> Result<Option<&'a str>, SweepError> {
+    match table.get(key) {
+        None => Ok(None),
+        Some(Value::String(text)) => Ok(Some(text)),
+        Some(other) => Err(SweepError::value(key, other.to_string(), "a text")),
+    }
+}
+
+/// `settings = ["path=value", …]`.
+fn settings(document: &Table) -> Result<Vec<String>, SweepError> {
+    let expected = "a list of texts, as `--set` takes them";
+    let Some(value) = document.get("settings") else { return Ok(Vec::new()) };
+    let Value::Array(list) = value else {
+        return Err(SweepError::value("settings", value.to_string(), expected));
+    };
+    let texts = list.iter().map(|entry| {
+        let text =
+            entry.as_str().ok_or_else(|| SweepError::value("settings", entry.to_string(), expected))?;
+        Ok(text.to_owned())
+    });
+    texts.collect()
+}
+
+/// Every combination of the lists, the last one running fastest.
+fn products(vary: &Value) -> Result<Vec<Plan>, SweepError> {
+    let Value::Table(paths) = vary else {
+        return Err(SweepError::value("vary", vary.to_string(), "a table of paths with lists of values"));
+    };
+    let mut plans = vec![Plan { values: Vec::new() }];
+    for (path, value) in paths {
+        let Value::Array(values) = value else {
+            return Err(SweepError::value(format!("vary.\"{path}\""), value.to_string(), "a list of values"));
+        };
+        let count = plans.len().saturating_mul(values.len());
+        if values.is_empty() || count > MOST_RUNS {
+            let found = format!("a list of {}, {count} runs in all", values.len());
+            return Err(SweepError::value(
+                format!("vary.\"{path}\""),
+                found,
+                format!("1 to {MOST_RUNS} runs"),
+            ));
+        }
+        let with = |plan: &Plan, value: &Value| Plan {
+            values: plan.values.iter().cloned().chain([(path.clone(), value.clone())]).collect(),
+        };
+        plans = plans.iter().flat_map(|plan| values.iter().map(move |value| with(plan, value))).collect();
+    }
+    Ok(plans)
+}
+
+/// A file of values with commas, paths at the head: a run for each line. A value is read as TOML, or as text where it is none;
+/// lists stand in quotes.
+fn rows(path: &Path) -> Result<Vec<Plan>, SweepError> {
+    let text = read(path)?;
+    let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let (_, head) = lines.next().ok_or_else(|| SweepError::value(place(0), "empty", "paths with commas"))?;
+    let paths = cells(head);
+    let mut plans = Vec::new();
+    for (number, line) in lines {
+        let values = cells(line);
+        if values.len() != paths.len() {
+            let found = format!("{} values", values.len());
+            return Err(SweepError::value(
+                place(number),
+                found,
+                format!("{}, one for each path", paths.len()),
+            ));
+        }
+        let values = paths.iter().cloned().zip(values.iter().map(|value| value_of(value))).collect();
+        plans.push(Plan { values });
+    }
+    if plans.is_empty() || plans.len() > MOST_RUNS {
+        let found = format!("{} lines of values", plans.len());
+        return Err(SweepError::value(path.display().to_string(), found, format!("1 to {MOST_RUNS} runs")));
+    }
+    Ok(plans)
+}
+
+/// What stands between commas; in quotes commas may stand, and two quotes for one.
+fn cells(line: &str) -> Vec<String> {
+    let (mut all, mut cell, mut quoted) = (Vec::new(), String::new(), false);
+    let mut characters = line.trim().chars().peekable();
+    while let Some(character) = characters.next() {
+        match character {
+            '"' if quoted && characters.peek() == Some(&'"') => {
+                characters.next();
+                cell.push('"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => all.push(std::mem::take(&mut cell).trim().to_owned()),
+            other => cell.push(other),
+        }
+    }
+    all.push(cell.trim().to_owned());
+    all
+}
+
+fn value_of(text: &str) -> Value {
+    let parsed: Option<Table> = format!("value = {text}").parse().ok();
+    parsed.and_then(|mut table| table.remove("value")).unwrap_or_else(|| Value::String(text.to_owned()))
+}
+
+fn graphs(document: &Table) -> Result<Vec<Graph>, SweepError> {
+    let Some(value) = document.get("graphs") else { return Ok(Vec::new()) };
+    let Value::Table(graphs) = value else {
+        return Err(SweepError::value("graphs", value.to_string(), "tables `[graphs.NAME]`"));
+    };
+    let graph = |(name, value): (&String, &Value)| {
+        let within = format!("graphs.{name}.");
+        let Value::Table(table) = value else {
+            return Err(SweepError::value(format!("graphs.{name}"), value.to_string(), "a table"));
+        };
+        refuse_unknown(&within, table, GRAPH_KEYS)?;
+        let is_plain = |character: char| character.is_ascii_alphanumeric() || "_-".contains(character);
+        if name.is_empty() || !name.chars().all(is_plain) {
+            return Err(SweepError::value(
+                format!("graphs.{name}"),
+                "no name of a file",
+                "letters, digits, _ and -",
+            ));
+        }
+        let needed = |key: &str, expected: &str| -> Result<String, SweepError> {
+            Ok(text_of(table, key)?.ok_or_else(|| missing(&format!("{within}{key}"), expected))?.to_owned())
+        };
+        let logarithmic = text_of(table, "logarithmic")?.unwrap_or_default();
+        if !["", "x", "y", "xy"].contains(&logarithmic) {
+            return Err(SweepError::value(format!("{within}logarithmic"), logarithmic, "x, y or xy"));
+        }
+        Ok(Graph {
+            name: name.clone(),
+            x: needed("x", "a path that varies, or a result")?,
+            y: needed("y", "a result: a probe, PROBE.x, wall_seconds")?,
+            lines: text_of(table, "lines")?.map(str::to_owned),
+            logarithmic: ["x", "y"].map(|axis| logarithmic.contains(axis)),
+        })
+    };
+    graphs.iter().map(graph).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study(text: &str) -> Result<Study, SweepError> {
+        let folder = std::env::temp_dir().join(format!("souple-study-{}-{}", std::process::id(), text.len()));
+        std::fs::create_dir_all(&folder).expect("a folder of temporary files");
+        let path = folder.join("study.toml");
+        std::fs::write(&path, text).expect("the study is written");
+        std::fs::write(folder.join("runs.csv"), "a.b,c.d[0]\n1,\"[1, 2]\"\n\n5 kPa,tet4\n")
+            .expect("the table");
+        let read = Study::read(&path);
+        std::fs::remove_dir_all(&folder).expect("the folder is removed");
+        read
+    }
+
+    /// All combinations, the last list running fastest, as settings of a scene.
+    #[test]
+    fn every_combination() {
+        let read =
+            study("scene = \"x.toml\"\n[vary]\n\"a.b\" = [1, 2.5]\n\"c\" = [\"tet4\", [1, 2]]\n").unwrap();
+        let settings: Vec<Vec<String>> = read.runs.iter().map(Plan::settings).collect();
+        assert_eq!(
+            settings,
+            [
+                ["a.b=1", "c=\"tet4\""],
+                ["a.b=1", "c=[1, 2]"],
+                ["a.b=2.5", "c=\"tet4\""],
+                ["a.b=2.5", "c=[1, 2]"]
+            ]
+        );
+    }
+
+    /// A table has a run for each line; what is no TOML is text.
+    #[test]
+    fn runs_from_a_table() {
+        let read = study("scene = \"x.toml\"\ntable = \"runs.csv\"\n").unwrap();
+        let settings: Vec<Vec<String>> = read.runs.iter().map(Plan::settings).collect();
+        assert_eq!(settings, [["a.b=1", "c.d[0]=[1, 2]"], ["a.b=\"5 kPa\"", "c.d[0]=\"tet4\""]]);
+    }
+
+    #[test]
+    fn faults_are_named() {
+        for (text, words) in [
+            ("scene = 1\n", "`scene` is 1; expected a text"),
+            ("scene = \"x\"\n", "`vary` is missing"),
+            ("scene = \"x\"\n[vary]\na = 1\n", "`vary.\"a\"` is 1; expected a list"),
+            ("scene = \"x\"\n[vary]\na = []\n", "a list of 0"),
+            ("scene = \"x\"\nrepeat = 2\n", "`repeat` is unknown; expected one of title, scene"),
+            ("scene = \"x\"\nsteps = 0\n[vary]\na = [1]\n", "`steps` is 0; expected a whole number above 0"),
+            ("scene = \"x\"\n[vary]\na = [1]\n[graphs.g]\nx = \"a\"\n", "`graphs.g.y` is missing"),
+            (
+                "scene = \"x\"\n[vary]\na = [1]\n[graphs.g]\nx = \"a\"\ny = \"b\"\nlogarithmic = \"z\"\n",
+                "x, y or xy",
+            ),
+            ("scene = \n", "TOML parse error at line 1"),
+        ] {
+            let message = study(text).map(|_| ()).unwrap_err().to_string();
+            assert!(message.contains(words), "{text}: {message}");
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! The runs of a study, several at once.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
+
+use souple_run::{Control, Options, Outcome, Status};
+use souple_scene::Scene;
+
+use crate::SweepError;
+use crate::database::{Database, is_kept};
+use crate::study::{Plan, Study};
+
+/// How many runs at once, with how many threads each: results do not depend on either, times do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Workers {
+    pub count: usize,
+    pub threads: usize,
+    /// Whether runs that the file holds are made again.
+    pub again: bool,
+}
+
+/// How a study stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    pub done: usize,
+    pub runs: usize,
+}
+
+/// What became of the runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Made now.
+    pub made: usize,
+    /// In the file before.
+    pub held: usize,
+    /// Of those made or held, how many failed.
+    pub failed: usize,
+    pub interrupted: usize,
+    /// Held ones that another program made.
+    pub of_others: usize,
+}
+
+/// Makes the runs that the file does not hold, stores each as it ends, and stops where `stop` is set.
+///
+/// All scenes are read before the first is run, so that a value that cannot be is said at once.
+///
+/// # Errors
+/// A scene cannot be read or started, the file cannot be written.
+pub fn sweep(
+    study: &Study,
+    database: &mut Database,
+    workers: Workers,
+    stop: &AtomicBool,
+    watch: &mut dyn FnMut(Progress),
+) -> Result<Summary, SweepError> {
+    let mut summary = Summary::default();
+    let mut wanted = Vec::new();
+    for (number, plan) in study.runs.iter().enumerate() {
+        let scene = read(study, number, plan)?;
+        match database.find(&scene.scene_sha256, study.steps)?.filter(|_| !workers.again) {
+            Some(held) => {
+                summary.held += 1;
+                summary.failed += usize::from(held.status == Status::Failed.as_str());
+                summary.of_others += usize::from(held.binary != souple_run::binary());
+            }
+            None => wanted.push(number),
+        }
+    }
+    let runs = study.runs.len();
+    watch(Progress { done: summary.held, runs });
+    let next = AtomicUsize::new(0);
+    let failed = AtomicBool::new(false);
+    let (sender, receiver) = mpsc::channel();
+    std::thread::scope(|scope| {
+        for _ in 0..workers.count.clamp(1, wanted.len().max(1)) {
+            let sender = sender.clone();
+            let (wanted, next, failed) = (&wanted, &next, &failed);
+            let is_over = move || stop.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed);
+            scope.spawn(move || {
+                while !is_over() {
+                    let Some(number) = wanted.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
+                    let made = run(study, *number, workers.threads, &is_over);
+                    if sender.send((*number, made)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let mut result = Ok(());
+        for (number, made) in &receiver {
+            let stored = made.and_then(|outcome| {
+                let status = outcome.report.status;
+                if !is_kept(status) {
+                    summary.interrupted += 1;
+                    return Ok(());
+                }
+                summary.made += 1;
+                summary.failed += usize::from(status == Status::Failed);
+                database.store(&study.runs[number], study.steps, &outcome)
+            });
+            if let (Err(error), true) = (stored, result.is_ok()) {
+                failed.store(true, Ordering::Relaxed);
+                result = Err(error);
+            }
+            watch(Progress { done: summary.held + summary.made, runs });
+        }
+        result
+    })?;
+    Ok(summary)
+}
+
+fn read(study: &Study, number: usize, plan: &Plan) -> Result<Scene, SweepError> {
+    let settings: Vec<String> = study.settings.iter().cloned().chain(plan.settings()).collect();
+    souple_scene::read_file(&study.scene, &settings).map_err(|diagnostics| SweepError::Scene {
+        run: number + 1,
+        settings: settings.join(", "),
+        message: diagnostics.to_string(),
+    })
+}
+
+/// One run, within threads of its own.
+fn run(
+    study: &Study,
+    number: usize,
+    threads: usize,
+    is_over: &(impl Fn() -> bool + Sync),
+) -> Result<Outcome, SweepError> {
+    let plan = &study.runs[number];
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    pool.install(|| {
+        let options = Options { steps: study.steps, scene_name: name(&study.scene), ..Options::default() };
+        let mut watch = |_: &souple_run::Progress| if is_over() { Control::Stop } else { Control::Continue };
+        souple_run::run(read(study, number, plan)?, &options, &mut watch).map_err(|error| SweepError::Scene {
+            run: number + 1,
+            settings: plan.settings().join(", "),
+            message: error.to_string(),
+        })
+    })
+}
+
+/// A scene as reports call it.
+fn name(scene: &Path) -> String {
+    scene.display().to_string()
+}
+
+/// The fingerprint of the scene of each run.
+pub fn fingerprints(study: &Study) -> Result<Vec<String>, SweepError> {
+    let numbered = study.runs.iter().enumerate();
+    numbered.map(|(number, plan)| Ok(read(study, number, plan)?.scene_sha256)).collect()
+}
