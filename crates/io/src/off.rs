@@ -217,7 +217,7 @@ mod tests {
             ("3 0 1 3", "3 0 1 -1", "a corner of facet 0 is \"-1\""),
             ("3 0 1 3", "9 0 1 3", "is 9, but the line has 3"),
             ("3 0 1 3", "2 0 1", "expected 3 or more"),
-            ("4 3 5\n", "4 2 5\n", "line 9: a facet behind the last of 2"),
+            ("4 3 5\n", "4 2 5\n", "line 10: a facet behind the last of 2"),
         ] {
             assert!(TEXT.contains(from), "{from}");
             let message = match read(TEXT.replacen(from, to, 1).as_bytes()) {

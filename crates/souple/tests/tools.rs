@@ -97,6 +97,88 @@ fn conversions_count_what_was_written() {
     assert_eq!((&told["facets"], &told["closed"]), (&12.into(), &true.into()), "{told:#}");
 }
 
+/// A format that shares its extension is written by its name; one of another extension is refused.
+#[test]
+fn conversions_take_a_format() {
+    let folder = Folder::new("formats");
+    let convert = |to: &str, format: &str| {
+        souple_in(folder.path(), ["mesh", "convert", "bar.msh", to, "--format", format, "--json"])
+    };
+    souple_in(folder.path(), ["mesh", "generate", "bar", "bar.msh", "size=1,1,1", "cells=2,1,1"]).ends(0);
+    for (file, format, start) in [
+        ("binary.msh", "gmsh_binary", &b"$MeshFormat\n4.1 1 8"[..]),
+        ("text.ply", "ply_text", b"ply\nformat ascii"),
+        ("text.stl", "stl_text", b"solid"),
+    ] {
+        convert(file, format).ends(0);
+        let written = std::fs::read(folder.path().join(file)).expect("the mesh just written");
+        assert!(written.starts_with(start), "{format}");
+    }
+    let refused = convert("bar.obj", "vtu").ends(2);
+    assert!(refused.stderr.contains("`obj`; expected vtu for the format `vtu`"), "{}", refused.stderr);
+    assert!(convert("bar.msh", "gmsh_7").ends(2).stderr.contains("gmsh_2"));
+}
+
+/// What cannot be filled is refused by its cause, and a size that is none is named.
+#[test]
+fn fillings_that_cannot_be() {
+    let folder = Folder::new("fillings");
+    let plate: Vec<String> =
+        ["0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1e-3", "1 0 1e-3", "1 1 1e-3", "0 1 1e-3"]
+            .iter()
+            .map(|point| format!("v {point}\n"))
+            .chain(
+                ["1 4 3 2", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"]
+                    .iter()
+                    .map(|f| format!("f {f}\n")),
+            )
+            .collect();
+    folder.write("plate.obj", plate.concat());
+    folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let lid = plate.concat().replace("f 5 6 7 8\n", "").replace("1e-3", "1");
+    folder.write("open.obj", lid);
+    for (input, parameters, words) in [
+        ("plate.obj", &["count=1000"][..], "1000 cells cannot be had"),
+        ("sheet.obj", &["size=0.1"], "the surface is flat"),
+        ("torus", &["count=0"], "`size` is missing or 0, and so is `count`"),
+        ("torus", &["size=0.05", "growth=1e9"], "growth"),
+        ("torus", &["size=0.05", "size_inside=0"], "the size of cells is 0 m at"),
+        ("torus", &["size=0.05", "size_inside=1", "size_everywhere=1"], "expected one of them"),
+        (
+            "formula",
+            &["formula=1", "low=-1,-1,-1", "high=1,1,1", "size=0.2"],
+            "the least value of the shape on the lattice is 1e0",
+        ),
+    ] {
+        let call = ["mesh", "fill", input, "out.msh"].into_iter().chain(parameters.iter().copied());
+        let refused = souple_in(folder.path(), call).ends(2);
+        assert!(refused.stderr.contains(words), "{input} {parameters:?}: {}", refused.stderr);
+    }
+    // a box without its lid has most of an inside: it is filled, and what is not certain is said
+    let open = souple_in(folder.path(), ["mesh", "fill", "open.obj", "out.msh", "size=0.1"]);
+    assert!(open.stdout.contains("not certain") || open.status == Some(2), "{open:#?}");
+}
+
+/// A study is run into its database, table and graphs; what it asks for in vain is named.
+#[test]
+fn studies_are_swept() {
+    let folder = Folder::new("study");
+    let scene = common::scenes().join("block_on_springs");
+    let study = format!(
+        "scene = {:?}\nsteps = 5\n[vary]\n\"world.period\" = [\"10 ms\", \"5 ms\"]\n[graphs.place]\nx = \"world.period\"\ny = \"place.x\"\n",
+        scene.display().to_string()
+    );
+    folder.write("study.toml", &study);
+    let answer = souple_in(folder.path(), ["sweep", "study.toml", "--json", "--jobs", "1"]).ends(0).json();
+    assert_eq!((&answer["made"], &answer["held"]), (&2.into(), &0.into()));
+    assert_eq!(folder.files(), ["place.png", "place.svg", "study.csv", "study.sqlite", "study.toml"]);
+    let again = souple_in(folder.path(), ["sweep", "study.toml", "--json"]).ends(0).json();
+    assert_eq!((&again["made"], &again["held"], &again["table"]), (&0.into(), &2.into(), &answer["table"]));
+    folder.write("wrong.toml", study.replace("place.x", "nowhere"));
+    let wrong = souple_in(folder.path(), ["sweep", "wrong.toml"]).ends(2);
+    assert!(wrong.stderr.contains("`nowhere`; expected a number that every run has"), "{}", wrong.stderr);
+}
+
 /// Without a tolerance a comparison tells; with one it judges.
 #[test]
 fn comparisons_judge_by_a_tolerance() {

@@ -9,7 +9,7 @@ mod diagnose;
 mod holes;
 mod orient;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use souple_math::Vec3;
 
@@ -40,6 +40,8 @@ pub struct SurfaceRepairs {
     pub welded_points: usize,
     pub flat_triangles: usize,
     pub doubled_triangles: usize,
+    /// Triangles that lay back to back, where parts touch.
+    pub facing_triangles: usize,
     /// Triangles turned so that neighbours agree.
     pub turned_triangles: usize,
     /// Parts that were inside out as a whole.
@@ -54,6 +56,7 @@ impl SurfaceRepairs {
             (self.welded_points, "points were welded to others at the same place"),
             (self.flat_triangles, "triangles without area were dropped"),
             (self.doubled_triangles, "triangles that repeat another were dropped"),
+            (self.facing_triangles, "triangles back to back with another were dropped: parts touch there"),
             (self.turned_triangles, "triangles were turned to agree with their neighbours"),
             (self.turned_parts, "parts were inside out and were turned"),
             (self.closed_holes, "small holes were closed"),
@@ -78,25 +81,57 @@ fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) 
     let number = joined_points(&surface.points, distance);
     repairs.welded_points =
         number.iter().enumerate().filter(|(point, first)| *point as u32 != **first).count();
-    let mut seen: HashMap<[u32; 3], ()> = HashMap::new();
-    let mut triangles = Vec::with_capacity(surface.triangles.len());
-    for corners in &surface.triangles {
-        let corners = corners.map(|point| number[point as usize]);
-        if is_flat(corners, &surface.points) {
-            repairs.flat_triangles += 1;
-            continue;
-        }
-        let mut key = corners;
-        key.sort_unstable();
-        if seen.insert(key, ()).is_some() {
-            repairs.doubled_triangles += 1;
-        } else {
-            triangles.push(corners);
-        }
-    }
+    let welded = surface.triangles.iter().map(|corners| corners.map(|point| number[point as usize]));
+    let (flat, mut triangles): (Vec<_>, Vec<_>) =
+        welded.partition(|corners| is_flat(*corners, &surface.points));
+    repairs.flat_triangles = flat.len();
+    drop_facing(&mut triangles, repairs);
+    let mut seen: HashSet<[u32; 3]> = HashSet::new();
+    let before = triangles.len();
+    triangles.retain(|corners| seen.insert(sorted(*corners)));
+    repairs.doubled_triangles = before - triangles.len();
     let mut mended = TriangleSurface::from_mesh(&surface.points, &triangles, Vec::new());
     mended.mesh_points.clear();
     mended
+}
+
+/// Drops pairs of triangles that lie back to back on edges of an even number of triangles, as where two closed parts touch: what
+/// is left is closed again. A triangle that repeats another of a simple surface has edges of three.
+fn drop_facing(triangles: &mut Vec<[u32; 3]>, repairs: &mut SurfaceRepairs) {
+    let edges = |corners: &[u32; 3]| {
+        let [a, b, c] = *corners;
+        [[a, b], [b, c], [c, a]].map(|[from, to]| [from.min(to), from.max(to)])
+    };
+    let mut uses: HashMap<[u32; 2], usize> = HashMap::new();
+    triangles.iter().flat_map(edges).for_each(|edge| *uses.entry(edge).or_default() += 1);
+    let mut open: HashMap<[u32; 3], usize> = HashMap::new();
+    let mut is_dropped = vec![false; triangles.len()];
+    for (index, corners) in triangles.iter().enumerate() {
+        if !edges(corners).iter().all(|edge| uses[edge] > 2 && uses[edge].is_multiple_of(2)) {
+            continue;
+        }
+        match open.remove(&sorted(*corners)) {
+            Some(other) if is_turned_over(*corners, triangles[other]) => {
+                (is_dropped[index], is_dropped[other]) = (true, true);
+                repairs.facing_triangles += 2;
+            }
+            _ => {
+                open.insert(sorted(*corners), index);
+            }
+        }
+    }
+    let mut dropped = is_dropped.into_iter();
+    triangles.retain(|_| dropped.next() != Some(true));
+}
+
+fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
+    corners.sort_unstable();
+    corners
+}
+
+/// Whether two triangles of the same corners run around them in opposite directions.
+fn is_turned_over([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
+    [[a, c, b], [c, b, a], [b, a, c]].contains(&other)
 }
 
 /// Whether corners repeat or lie on one line, to rounding.

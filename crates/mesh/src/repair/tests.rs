@@ -74,6 +74,21 @@ fn large_holes_stay_and_are_said() {
     assert!(diagnosis.messages()[0].contains("holes"));
 }
 
+/// Two cubes that touch along a side are one body: the triangles between them go in pairs, and what is left is closed.
+#[test]
+fn parts_that_touch_are_joined() {
+    let mut surface = unit_cube(3.0);
+    let other = surface.clone();
+    let count = surface.points.len() as u32;
+    surface.points.extend(other.points.iter().map(|p| *p + Vec3::X));
+    surface.triangles.extend(other.triangles.iter().map(|corners| corners.map(|point| point + count)));
+    let (mended, repairs) = repair(&surface, RepairLimits::default());
+    // nine squares of two triangles, twice
+    assert_eq!((repairs.facing_triangles, repairs.doubled_triangles), (36, 0));
+    assert!(diagnose(&mended).is_simple(), "{:?}", diagnose(&mended).messages());
+    assert_volume(&mended, 2.0);
+}
+
 /// A part that is inside out is turned; a hollow within it stays a hollow.
 #[test]
 fn parts_face_outward_and_hollows_stay() {

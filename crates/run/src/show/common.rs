@@ -78,8 +78,8 @@ impl Default for Outermost {
 }
 
 impl Outermost {
-    fn add(&mut self, points: &[Vec3]) {
-        for point in points.iter().filter(|point| point.is_finite()) {
+    fn add<'a>(&mut self, points: impl IntoIterator<Item = &'a Vec3>) {
+        for point in points.into_iter().filter(|point| point.is_finite()) {
             for farthest in &mut self.0 {
                 let along = farthest.direction.dot(*point);
                 if along > farthest.along {
@@ -102,7 +102,11 @@ impl Common {
         let bodies = || moments.iter().flat_map(|moment| &moment.bodies).filter(|body| body.is_drawable());
         let mut bounds = BoundingBox::of(bodies().flat_map(|body| body.positions.iter().copied()));
         let mut framed = Outermost::default();
-        bodies().for_each(|body| framed.add(&body.positions));
+        // what is cut away is not made room for
+        let is_left = |point: &Vec3| figure.cut.is_none_or(|cut| (*point - cut.point).dot(cut.normal) <= 0.0);
+        for body in bodies() {
+            framed.add(body.positions.iter().filter(|point| is_left(point)));
+        }
         for moment in moments {
             let shapes = show.stage.points_near(moment.time, bounds);
             framed.add(&shapes);
@@ -221,7 +225,7 @@ mod tests {
             .map(|i| Vec3::new((i & 1) as f64, (i >> 1 & 1) as f64 * 0.3, (i >> 2) as f64 * 2.0))
             .collect();
         let mut outermost = Outermost::default();
-        outermost.add(&[&corners[..], &[Vec3::new(0.5, 0.1, 1.0)]].concat());
+        outermost.add([&corners[..], &[Vec3::new(0.5, 0.1, 1.0)]].concat().iter());
         let kept = outermost.points();
         assert!(corners.iter().all(|corner| kept.contains(corner)), "{kept:?}");
     }

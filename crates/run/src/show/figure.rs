@@ -2,9 +2,10 @@
 
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
-    Backdrop, Colour, ColourMap, Cut, EdgeStyle, Legend, LegendPlace, MeshSurface, Paint, Picture, Stroke,
-    StrokeShape, Surface, Theme, View,
+    Backdrop, Colour, ColourMap, Cut, EdgeStyle, Ground, Legend, LegendPlace, MeshSurface, Paint, Picture,
+    Stroke, StrokeShape, Surface, Theme, View,
 };
+use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
 
 use super::common::Common;
@@ -19,6 +20,7 @@ pub struct Figure {
     pub samples_per_pixel: usize,
     pub theme: Theme,
     pub backdrop: Backdrop,
+    pub floor: Floor,
     pub legend: LegendPlace,
     /// In place of the scene's title; none if empty.
     pub title: Option<String>,
@@ -36,6 +38,18 @@ pub struct Figure {
     pub edges: EdgeStyle,
 }
 
+/// What shadows fall on where the scene has no ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Floor {
+    #[default]
+    None,
+    /// A floor a little below the bodies, which touches nothing and is in the picture alone.
+    Below,
+}
+
+/// How far below the bodies, as a part of their size: near enough for their shade, clear of touching.
+const FLOOR_GAP: f64 = 0.03;
+
 /// Arrows of a vector field at points of the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrows {
@@ -51,6 +65,7 @@ impl Default for Figure {
             samples_per_pixel: 3,
             theme: Theme::default(),
             backdrop: Backdrop::default(),
+            floor: Floor::default(),
             legend: LegendPlace::default(),
             title: None,
             view: None,
@@ -126,7 +141,7 @@ impl Figure {
         Picture {
             surfaces,
             strokes,
-            ground: show.stage.ground(moment.time),
+            ground: show.stage.ground(moment.time).or_else(|| self.floor_below(common, up)),
             framed: if view.bounds.is_some() { Vec::new() } else { common.framed.clone() },
             view: View { bounds: view.bounds.or(Some(common.bounds)), ..view },
             size: self.size,
@@ -138,6 +153,12 @@ impl Figure {
             legend,
             colours: self.colours,
         }
+    }
+
+    fn floor_below(&self, common: &Common, up: Vec3) -> Option<Ground> {
+        let lowest = common.framed.iter().map(|point| point.dot(up)).reduce(f64::min)?;
+        let height = lowest - FLOOR_GAP * common.bounds.diagonal();
+        (self.floor == Floor::Below).then(|| Ground { point: up * height, normal: up })
     }
 
     /// What is seen of a body: its surface, or its links, those of each state in a colour, and its balls.

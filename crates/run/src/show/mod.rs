@@ -19,7 +19,7 @@ use souple_scene::{BodyInfo, SkinInfo};
 
 use crate::Session;
 
-pub use figure::{Arrows, Figure};
+pub use figure::{Arrows, Figure, Floor};
 pub use film::{FilmError, write_film};
 pub use stage::{Stage, obstacles_of};
 

@@ -11,7 +11,7 @@ use souple_io::picture::{
 };
 use souple_math::Vec3;
 use souple_run::Options;
-use souple_run::show::{Arrows, Figure, FilmError, Moment, Show, ShowError, Stage, write_film};
+use souple_run::show::{Arrows, Figure, FilmError, Floor, Moment, Show, ShowError, Stage, write_film};
 use souple_scene::spec::picture::PictureSpec;
 
 use super::progress::Meter;
@@ -81,6 +81,9 @@ pub struct Arguments {
     /// From the lamp that throws shadows towards the bodies; over the eye's left shoulder if left out
     #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
     light: Option<[f64; 3]>,
+    /// A floor below the bodies that their shadows fall on, where the scene has no ground
+    #[arg(long)]
+    floor: bool,
     /// Angle between the upper and the lower border [deg]
     #[arg(long, default_value_t = 28.65)]
     field_of_view: f64,
@@ -336,6 +339,7 @@ fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
             .as_ref()
             .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
         edges,
+        floor: if arguments.floor { Floor::Below } else { Floor::None },
         ..Figure::default()
     })
 }

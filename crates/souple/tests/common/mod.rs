@@ -161,6 +161,7 @@ pub const REPORT_KEYS: &[&str] = &[
     "status",
     "scene",
     "scene_sha256",
+    "settings",
     "binary",
     "isa",
     "threads",
