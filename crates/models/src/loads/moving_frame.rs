@@ -85,11 +85,6 @@ pub struct FictitiousForce {
     translations: Vec<f64>,
 }
 
-/// Fields over rows: of the force, or of a change of it.
-struct Fields {
-    field: Vec<Vec3>,
-}
-
 impl FictitiousForce {
     /// On the whole mass of a system, lumped or consistent.
     pub fn new(name: impl Into<String>, frame: MovingFrame, mass: &Mass, kinematics: &Kinematics) -> Self {
@@ -120,8 +115,9 @@ impl Acceleration {
     }
 }
 
-fn fields(scratch: &mut Scratch) -> &mut Vec<Vec3> {
-    &mut scratch.downcast_mut::<Fields>().expect("the scratch of a fictitious force").field
+/// A vector for each row, of which the force or a change of it is `-M` times.
+fn field(scratch: &mut Scratch) -> &mut Vec<Vec3> {
+    scratch.downcast_mut().expect("the scratch of a fictitious force")
 }
 
 impl Force for FictitiousForce {
@@ -140,13 +136,13 @@ impl Force for FictitiousForce {
     }
 
     fn new_scratch(&self) -> Scratch {
-        Box::new(Fields { field: vec![Vec3::ZERO; self.translations.len()] })
+        Box::new(vec![Vec3::ZERO; self.translations.len()])
     }
 
     // E = Σ_ab m_ab (t_a a·r_b - (Ω x r_a)·(Ω x r_b)/2)
     fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
         let acceleration = self.frame.acceleration(at.time);
-        let field = fields(scratch);
+        let field = field(scratch);
         for (row, (field, position)) in field.iter_mut().zip(at.positions).enumerate() {
             *field = acceleration.spin.cross(self.arm(row, *position));
         }
@@ -165,7 +161,7 @@ impl Force for FictitiousForce {
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
         let acceleration = self.frame.acceleration(at.time);
         let (of_place, of_velocity) = (acceleration.of_place(), acceleration.of_velocity());
-        let field = fields(scratch);
+        let field = field(scratch);
         for (row, field) in field.iter_mut().enumerate() {
             *field = acceleration.linear * self.translations[row]
                 + of_place * self.arm(row, at.positions[row])
@@ -187,7 +183,7 @@ impl Force for FictitiousForce {
         }
         let acceleration = self.frame.acceleration(at.time);
         let map = acceleration.of_place() * weights.position + acceleration.of_velocity() * weights.velocity;
-        let field = fields(scratch);
+        let field = field(scratch);
         for (field, delta) in field.iter_mut().zip(delta) {
             *field = map * *delta;
         }

@@ -20,11 +20,19 @@ const HALVED: Refinement = Refinement {
     limit: Limit::Known(1e-3 * INNER),
 };
 
-/// Six cells to a cube: as many of them as the finest hexahedra at half the edges.
-const COARSER: Refinement = Refinement {
+/// Six cells to a cube: pyramids are near their order sooner, tetrahedra later.
+const PYRAMIDS: Refinement = Refinement {
     runs: &[
         Variant { size: 0.25, settings: &["parameters.cells=4", "parameters.layers=4"] },
         Variant { size: 0.125, settings: &["parameters.cells=8", "parameters.layers=8"] },
+    ],
+    ..HALVED
+};
+
+const TETRAHEDRA: Refinement = Refinement {
+    runs: &[
+        Variant { size: 1.0 / 8.0, settings: &["parameters.cells=8", "parameters.layers=8"] },
+        Variant { size: 1.0 / 12.0, settings: &["parameters.cells=12", "parameters.layers=12"] },
     ],
     ..HALVED
 };
@@ -59,14 +67,14 @@ pub(super) const CASES: &[Case] = &[
         id: "thick_sphere_order_pyramid5",
         what: "the same, pyramid5",
         settings: &[GENTLE, r#"parameters.element="pyramid5""#],
-        refinement: Some(COARSER),
+        refinement: Some(PYRAMIDS),
         ..SPHERE
     },
     Case {
         id: "thick_sphere_order_tet4",
         what: "the same, tet4",
         settings: &[GENTLE, r#"parameters.element="tet4""#],
-        refinement: Some(COARSER),
+        refinement: Some(TETRAHEDRA),
         ..SPHERE
     },
 ];
