@@ -23,7 +23,7 @@ pub struct Study {
 /// One run: what it has of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Paths of the scene and their values, in the order of the study.
+    /// Paths of the scene and their values: sorted, or in the order of the table.
     pub values: Vec<(String, Value)>,
 }
 
@@ -88,7 +88,7 @@ impl Study {
         })
     }
 
-    /// Paths that vary, in the order of the study.
+    /// Paths that vary, in the order of the values of each run.
     pub fn paths(&self) -> impl Iterator<Item = &str> {
         self.runs.first().into_iter().flat_map(|plan| plan.values.iter().map(|(path, _)| path.as_str()))
     }

@@ -35,6 +35,7 @@ static MESH_SHAPE: Keys = Keys {
         filling(3),
         filling(4),
         filling(5),
+        filling(6),
     ],
     others: Others::ParametersOf("shape"),
 };
@@ -51,8 +52,12 @@ static MESH_FILL: Keys = Keys::new(
         filling(3),
         filling(4),
         filling(5),
+        filling(6),
     ],
 );
+
+// all of them stand above
+const _: () = assert!(PARAMETERS.len() == 7);
 
 /// A parameter of fillings as a key.
 const fn filling(index: usize) -> Key {
