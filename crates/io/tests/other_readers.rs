@@ -7,13 +7,15 @@ use std::process::Command;
 
 use souple_io::{FORMATS, Field, Output, Series, write_dataset_as};
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, Mesh};
+use souple_mesh::{ElementKind, Group, Mesh};
 
 fn tetrahedra() -> Mesh {
     let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
     let mut mesh = Mesh { points: points.map(Vec3::from_array).to_vec(), ..Mesh::default() };
     mesh.push_cell(ElementKind::Tet4, &[0, 1, 2, 3]);
     mesh.push_cell(ElementKind::Tet4, &[1, 2, 3, 4]);
+    // one cell has a group and one has none: readers that list the group of each block want one of all
+    mesh.groups.insert("first".to_owned(), Group { cells: vec![0], ..Group::default() });
     mesh
 }
 
