@@ -277,7 +277,12 @@ fn cell_part(probe: &Probe, draft: &Draft) -> Option<CellPart> {
     let answers = |force: &dyn Force, cell: u32| force.cell_field(cell as usize, &nowhere).is_some();
     if force.zip(cells.first()).is_some_and(|(force, cell)| !answers(force.as_ref(), *cell)) {
         let message = format!("the forces of body `{}` are not those of cells", body.spec.name);
-        draft.log.add(Code::Conflict, &probe.site, message, "a body of solid matter, with another `formulation`");
+        draft.log.add(
+            Code::Conflict,
+            &probe.site,
+            message,
+            "a body of solid matter, with another `formulation`",
+        );
         return None;
     }
     Some(CellPart { system: body.system, solid, cells })

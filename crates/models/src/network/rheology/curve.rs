@@ -120,7 +120,13 @@ impl Curve {
         let least = if before.is_infinite() { first } else { f64::NEG_INFINITY };
         let most = if behind.is_infinite() { last } else { f64::INFINITY };
         // no number stays none
-        swapped.efforts(if effort < least { least } else if effort > most { most } else { effort })
+        swapped.efforts(if effort < least {
+            least
+        } else if effort > most {
+            most
+        } else {
+            effort
+        })
     }
 
     /// `∂Q/∂q` at a deformation, from the right [N/m].
