@@ -124,7 +124,11 @@ impl LegendBox {
     fn of(legend: &Legend, (low, high): (f64, f64), size: [usize; 2], letter: f64, margin: f64) -> Self {
         let [width, height] = size.map(|side| side as f64);
         let (top, bottom) = (0.29 * height, 0.71 * height);
-        let names = scale(low, high, 5, 1.8 * letter / (bottom - top));
+        let names = if legend.names.is_empty() {
+            scale(low, high, 5, 1.8 * letter / (bottom - top))
+        } else {
+            legend.names.clone()
+        };
         let widest = names.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
         let place = |value: f64| bottom - (value - low) / (high - low) * (bottom - top);
         let ticks = names.into_iter().map(|(value, name)| (place(value), name)).collect();
@@ -266,7 +270,7 @@ mod tests {
             ("s", 1.0, [300, 900]),
             ("a very long name of a quantity", 99_999.0, [640, 400]),
         ] {
-            let legend = Legend { title: title.to_owned(), unit: "Pa".to_owned(), range: None };
+            let legend = Legend { title: title.to_owned(), unit: "Pa".to_owned(), ..Legend::default() };
             let picture = Picture { size, legend: Some(legend), ..Picture::default() };
             let layout = Layout::of(&picture, (-high, high));
             let legend = layout.legend.as_ref().unwrap();

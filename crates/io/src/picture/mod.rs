@@ -35,7 +35,7 @@ use shadow::Shadow;
 pub use animated_png::write_animated_png;
 pub use camera::View;
 pub use colour::Colour;
-pub use colour_map::{COLOUR_MAPS, ColourMap};
+pub use colour_map::{COLOUR_MAPS, ColourMap, ELEMENT_KINDS};
 pub use gif::write_gif;
 pub use ground::Ground;
 pub use image::Image;
@@ -76,6 +76,8 @@ pub struct Legend {
     pub unit: String,
     /// Values of the first and the last colour; those of the surfaces where `None`.
     pub range: Option<(f64, f64)>,
+    /// Names of values, in the place of numbers.
+    pub names: Vec<(f64, String)>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -234,7 +236,7 @@ impl Picture {
 
     /// Values of the ends of the colour map.
     fn range(&self) -> (f64, f64) {
-        let given = self.legend.as_ref().and_then(|legend| legend.range);
+        let given = self.legend.as_ref().and_then(|legend| legend.range).or(self.colours.own_range());
         let of_surfaces = || {
             let ranges = self.surfaces.iter().filter_map(Surface::range);
             ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))

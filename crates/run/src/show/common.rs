@@ -128,6 +128,7 @@ impl Common {
                 let most = low.abs().max(high.abs());
                 range = Some((-most, most));
             }
+            range = figure.colours.own_range().or(range);
         }
         let mut arrow_scale = 1.0;
         if let Some(arrows) = &figure.arrows {

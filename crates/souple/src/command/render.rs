@@ -10,7 +10,7 @@ use souple_io::picture::{
 };
 use souple_math::Vec3;
 use souple_run::Options;
-use souple_run::show::{Arrows, Figure, FilmError, Moment, Show, ShowError, Stage, write_film};
+use souple_run::show::{Arrows, Figure, FilmError, Moment, Show, ShowError, Stage, map_of, write_film};
 use souple_scene::spec::picture::PictureSpec;
 
 use super::progress::Meter;
@@ -40,13 +40,16 @@ pub struct Arguments {
     /// Frames of a film per second; in real time if left out
     #[arg(long)]
     per_second: Option<f64>,
-    /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, …, `none`; `von_mises` if left out,
-    /// where there is stress
+    /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, `element`, `adaptation`, `gap`, …,
+    /// `none`; `von_mises` if left out, where there is stress
     #[arg(long)]
     colour: Option<String>,
-    /// sequential, diverging, grey
-    #[arg(long, default_value = "sequential")]
-    map: String,
+    /// sequential, diverging, grey, adaptation, elements; that of the quantity if left out
+    #[arg(long)]
+    map: Option<String>,
+    /// The folder of another run, from which the quantity `gap` is measured
+    #[arg(long, value_name = "RUN")]
+    against: Option<PathBuf>,
     /// Values of the first and the last colour
     #[arg(long, value_name = "LOW,HIGH", value_parser = list::<2>, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
@@ -56,6 +59,9 @@ pub struct Arguments {
     /// Moves cells apart, by this part of their distance from the middle
     #[arg(long, default_value_t = 0.0, conflicts_with = "cut")]
     explode: f64,
+    /// Draws each cell smaller by this part of its size, about its own middle
+    #[arg(long, default_value_t = 0.0, conflicts_with = "cut")]
+    shrink: f64,
     /// Arrows of a vector field: `displacement`, `velocity`
     #[arg(long, value_name = "FIELD")]
     arrows: Option<String>,
@@ -152,7 +158,11 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let kind = kind_of(&arguments.out)?;
     let figure = figure(arguments, kind)?;
-    let (show, mut notes) = show(arguments, kind)?;
+    let (mut show, mut notes) = show(arguments, kind)?;
+    if let Some(other) = &arguments.against {
+        let other = Show::of_run(other, show.stage.clone())?;
+        show.against(&other)?;
+    }
     let view = view(arguments, &show.stage)?;
     let mut figure = Figure { view: Some(view), ..figure };
     if arguments.colour.is_none() && !show.has_field(STRESS) {
@@ -272,9 +282,15 @@ const STRESS: &str = "von_mises";
 
 fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
     let colour = arguments.colour.as_deref().unwrap_or(STRESS);
-    let map = COLOUR_MAPS
-        .find(&arguments.map)
-        .map_err(|error| Refusal::request("map", arguments.map.clone(), "", error.to_string()))?;
+    let colours = match &arguments.map {
+        Some(name) => {
+            COLOUR_MAPS
+                .find(name)
+                .map_err(|error| Refusal::request("map", name.clone(), "", error.to_string()))?
+                .build
+        }
+        None => map_of(colour).unwrap_or_default(),
+    };
     let edges = match arguments.edges.as_str() {
         "drawn" => EdgeStyle::Drawn,
         "hidden" => EdgeStyle::Hidden,
@@ -303,6 +319,10 @@ fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         let message = format!("cells cannot be moved apart by {}", arguments.explode);
         return Err(Refusal::request("explode", arguments.explode.to_string(), "0 to 100", message));
     }
+    if !(0.0..1.0).contains(&arguments.shrink) {
+        let message = format!("cells cannot shrink by {} of their size", arguments.shrink);
+        return Err(Refusal::request("shrink", arguments.shrink.to_string(), "0 to less than 1", message));
+    }
     let size =
         arguments.size.unwrap_or(if arguments.sheet.is_some() { [640.0, 480.0] } else { [1280.0, 800.0] });
     let is_one = kind == Kind::Picture && arguments.sheet.is_none();
@@ -323,10 +343,11 @@ fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         title: arguments.title.clone(),
         view: None,
         colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
-        colours: map.build,
+        colours,
         range: arguments.range.map(|[low, high]| (low, high)),
         cut,
         explode: arguments.explode,
+        shrink: arguments.shrink,
         arrows: arguments
             .arrows
             .as_ref()
