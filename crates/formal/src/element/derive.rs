@@ -82,11 +82,22 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
         .filter(|(_, parameter)| parameter.numbers().len() == 1)
         .map(|(name, _)| graph.symbol(name, Shape::Scalar))
         .collect();
+    // directions are plain numbers of the code
+    let directions: Vec<(Expr, Vec<Expr>)> = law
+        .parameters
+        .iter()
+        .filter(|(_, parameter)| parameter.numbers().len() == 3)
+        .map(|(name, parameter)| {
+            let symbol = graph.symbol(name, Shape::Vector);
+            (symbol, parameter.numbers().iter().map(|number| graph.number(*number)).collect())
+        })
+        .collect();
     let terms = terms(&mut graph, law);
     let cut_variations = cut.has(super::Axis::Nodes) || cut.has(super::Axis::Dimension);
     let mut samples = Vec::with_capacity(element.samples.len());
     for sample in 0..element.samples.len() {
-        let mut at = Placing { graph: &mut graph, element, law, sample, rest: &rest };
+        let directions = &directions;
+        let mut at = Placing { graph: &mut graph, element, law, sample, rest: &rest, directions };
         samples.push(at.expressions(&terms, &displacements, &variations, cut_variations)?);
     }
     let variables: Vec<Expr> = displacements.iter().chain(&variations).flatten().copied().collect();
@@ -177,6 +188,7 @@ struct Placing<'a> {
     law: &'a EnergyLaw,
     sample: usize,
     rest: &'a [Vec<Expr>],
+    directions: &'a [(Expr, Vec<Expr>)],
 }
 
 impl Placing<'_> {
@@ -197,6 +209,7 @@ impl Placing<'_> {
         }
         let symbol = self.graph.symbol(WEIGHT, Shape::Scalar);
         let mut given = HashMap::from([(symbol, vec![weight]), (self.law.deformation, deformation)]);
+        given.extend(self.directions.iter().cloned());
         let mut at = AtSample { energies: Vec::new(), forces: Vec::new(), differentials: Vec::new() };
         let every: Vec<Option<(usize, usize)>> = if cut_variations {
             (0..displacements.len()).flat_map(|n| (0..dimension).map(move |k| Some((n, k)))).collect()

@@ -16,16 +16,24 @@ const HOOKE: &str = "lambda/2*tr(eps)^2 + mu*dot(eps, eps)";
 const STVK: &str = "lambda/2*tr(E)^2 + mu*dot(E, E)";
 const NEO_HOOKEAN: &str = "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2";
 
+const CONSTANT: [u8; 4] = [0; 4];
+const XI: [u8; 4] = [1, 0, 0, 0];
+const ETA: [u8; 4] = [0, 1, 0, 0];
+const ZETA: [u8; 4] = [0, 0, 1, 0];
+
 fn triangle() -> ElementData {
     let gradients = vec![[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let samples = vec![Sample { weight: 0.5, gradients }];
-    ElementData { name: "Triangle".into(), dimension: 2, node_count: 3, samples, map: RestMap::Nodes }
+    let samples = vec![Sample { position: [1.0 / 3.0, 1.0 / 3.0, 0.0], weight: 0.5, gradients }];
+    let shapes = vec![vec![(1.0, CONSTANT), (-1.0, XI), (-1.0, ETA)], vec![(1.0, XI)], vec![(1.0, ETA)]];
+    ElementData { name: "Triangle".into(), dimension: 2, node_count: 3, shapes, samples, map: RestMap::Nodes }
 }
 
 fn tetrahedron() -> ElementData {
     let gradients = vec![[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let samples = vec![Sample { weight: 1.0 / 6.0, gradients }];
-    ElementData { name: "Tetra".into(), dimension: 3, node_count: 4, samples, map: RestMap::Nodes }
+    let samples = vec![Sample { position: [0.25; 3], weight: 1.0 / 6.0, gradients }];
+    let first = vec![(1.0, CONSTANT), (-1.0, XI), (-1.0, ETA), (-1.0, ZETA)];
+    let shapes = vec![first, vec![(1.0, XI)], vec![(1.0, ETA)], vec![(1.0, ZETA)]];
+    ElementData { name: "Tetra".into(), dimension: 3, node_count: 4, shapes, samples, map: RestMap::Nodes }
 }
 
 /// Quadrilateral of 2×2 Gauss points.
@@ -33,12 +41,16 @@ fn quadrilateral(map: RestMap) -> ElementData {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let g = 1.0 / 3f64.sqrt();
     let samples = corners.map(|[x, y]| Sample {
+        position: [x * g, y * g, 0.0],
         weight: 1.0,
         gradients: corners
             .map(|[a, b]| [0.25 * a * (1.0 + b * y * g), 0.25 * b * (1.0 + a * x * g), 0.0])
             .to_vec(),
     });
-    ElementData { name: "Quad".into(), dimension: 2, node_count: 4, samples: samples.to_vec(), map }
+    let shapes = corners
+        .map(|[a, b]| vec![(0.25, CONSTANT), (0.25 * a, XI), (0.25 * b, ETA), (0.25 * a * b, [1, 1, 0, 0])])
+        .to_vec();
+    ElementData { name: "Quad".into(), dimension: 2, node_count: 4, shapes, samples: samples.to_vec(), map }
 }
 
 /// Values of expressions for rest positions, displacements and variations without symmetry.
