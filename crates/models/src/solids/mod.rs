@@ -35,7 +35,7 @@ use souple_solve::BlockMatrix;
 use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters};
 use assembly::{Assembly, Symmetry};
 use elements::{Batch, Elements, Sorting};
-use geometry::{AnyElement, Tetrahedron};
+use geometry::{AnyElement, Nodes, Tetrahedron};
 use kernel::{Kernel, LawKernel};
 use layout::Chunk;
 use row_law::{RowLaw, row_law};
@@ -254,9 +254,13 @@ impl LawVisitor for ParameterCount {
 
 /// The kernel for a law that knows no elements.
 fn staged(kind: ElementKind, law: Box<dyn SampleLaw>) -> Box<dyn Kernel> {
-    match kind {
-        ElementKind::Tet4 => Box::new(Staged::<Tetrahedron, 4>::new(law, 4)),
-        _ => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, kind.node_count())),
+    match (kind, kind.node_count()) {
+        (ElementKind::Tet4, _) => Box::new(Staged::<Tetrahedron, 4>::new(law, 4)),
+        // loops of known length are twice as fast or more; the others are long anyway
+        (_, 5) => Box::new(Staged::<Nodes<5>, 5>::new(law, 5)),
+        (_, 6) => Box::new(Staged::<Nodes<6>, 6>::new(law, 6)),
+        (_, 8) => Box::new(Staged::<Nodes<8>, 8>::new(law, 8)),
+        (_, nodes) => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, nodes)),
     }
 }
 

@@ -133,8 +133,10 @@ impl Expressions {
     ) {
         let tape = &fragment.step;
         MEMORY.with_borrow_mut(|memory| {
-            memory.clear();
-            memory.resize(tape.memory_len(), 0.0);
+            // what lies there from another run is written before it is read
+            if memory.len() < tape.memory_len() {
+                memory.resize(tape.memory_len(), 0.0);
+            }
             tape.prepare(memory);
             for first in blocks.clone().step_by(BATCH / LANES) {
                 let batch = first..blocks.end.min(first + BATCH / LANES);
