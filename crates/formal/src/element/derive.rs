@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::{Cut, ElementData, Fragment, RestMap};
-use crate::graph::{Expr, Graph, Grouped, Node, Operations, Shape, WithoutFormula};
+use crate::graph::{Expr, Graph, Grouped, Operations, Shape, WithoutFormula};
 use crate::law::EnergyLaw;
 
 /// Expressions of an element under one law.
@@ -162,17 +162,9 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
 /// material constants and is grouped with them.
 fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
     let weight = graph.symbol(WEIGHT, Shape::Scalar);
-    let terms: Vec<Expr> = match graph.node(law.energy) {
-        Node::Sum(terms) => terms.to_vec(),
-        _ => vec![law.energy],
-    };
     let seeds = HashMap::from([(law.deformation, law.variation)]);
     let mut list = Vec::new();
-    for term in terms {
-        // an offset makes no force
-        if graph.value(term).is_some() {
-            continue;
-        }
+    for term in law.terms() {
         let energy = graph.product(&[weight, term]);
         let stress = graph.gradient(energy, law.deformation);
         let differential = graph.differential(stress, &seeds);

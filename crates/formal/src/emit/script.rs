@@ -9,7 +9,7 @@ use super::text::{Text, sign_of};
 use super::{Binding, Style, Written, write};
 use crate::Function;
 use crate::element::{ElementData, RestMap};
-use crate::graph::{Comparison, Node};
+use crate::graph::{Comparison, Expr, Node};
 use crate::law::{EnergyLaw, LawParameter};
 
 /// Expressions of a law as Maxima reads them.
@@ -106,15 +106,34 @@ outer_of(a, b) := a . transpose(b)$
 ///
 /// Laws in principal stretches have no formula that it could use: `None`.
 pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> Option<String> {
-    let axes = &["x", "y", "z"][..element.dimension];
-    let nodes = 0..element.node_count;
+    let terms = law.terms();
+    let is_spectral = |expr: &Expr| matches!(law.graph.node(*expr), Node::Decompose(_) | Node::Pack(_));
+    if law.graph.reachable(&terms).iter().any(is_spectral) {
+        return None;
+    }
     let mut text = format!("/* {association}: batch this file with Maxima */\n{HELPERS}");
+    put_deformation(&mut text, element);
+    put_energy(&mut text, law, &terms);
+    put_integral(&mut text, element, terms.len());
+    put_forces(&mut text, element, association);
+    Some(text)
+}
+
+/// Letters of the axes of an element.
+fn axes_of(element: &ElementData) -> &'static [&'static str] {
+    &["x", "y", "z"][..element.dimension]
+}
+
+/// Steps 1 to 3: from shape functions to the deformation gradient at `R0`, `R1`, `R2`.
+fn put_deformation(text: &mut String, element: &ElementData) {
+    let axes = axes_of(element);
     let _ = writeln!(text, "\n/* 1. interpolation */");
     for (node, shape) in element.shapes.iter().enumerate() {
         let _ = writeln!(text, "L{node}: {}$", polynomial(shape));
     }
     let field = |letter: &str, axis: &str| {
-        let terms: Vec<String> = nodes.clone().map(|n| format!("L{n}*{letter}{n}{axis}")).collect();
+        let terms: Vec<String> =
+            (0..element.node_count).map(|node| format!("L{node}*{letter}{node}{axis}")).collect();
         terms.join(" + ")
     };
     for axis in axes {
@@ -147,42 +166,52 @@ pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> Opti
         "FX: genmatrix(lambda([i, j], (if i = j then 1 else 0) + (if i <= {0} and j <= {0} then GradU[j, i] else 0)), 3, 3)$",
         axes.len()
     );
+}
+
+/// Step 4: one function of `F` for each term of the law.
+fn put_energy(text: &mut String, law: &EnergyLaw, terms: &[Expr]) {
     let _ = writeln!(text, "\n/* 4. energy density, term by term */");
     for (name, parameter) in &law.parameters {
         if let LawParameter::Direction([x, y, z]) = parameter {
             let _ = writeln!(text, "{name}: matrix([{x:e}], [{y:e}], [{z:e}])$");
         }
     }
-    let terms = terms_of(law);
     for (term, expr) in terms.iter().enumerate() {
-        let is_spectral =
-            |expr: &crate::graph::Expr| matches!(law.graph.node(*expr), Node::Decompose(_) | Node::Pack(_));
-        if law.graph.reachable(&[*expr]).iter().any(is_spectral) {
-            return None;
-        }
         let (parts, roots) = write(&law.graph, &[*expr], &Maxima);
-        let parts: Vec<String> = parts.iter().map(|part| part.trim_end_matches('$').to_owned()).collect();
+        let parts: Vec<&str> = parts.iter().map(|part| part.trim_end_matches('$')).collect();
         let names: Vec<&str> = parts.iter().filter_map(|part| part.split(':').next()).collect();
-        let body = parts.iter().chain(&roots).map(String::as_str).collect::<Vec<_>>().join(",\n  ");
-        let _ = writeln!(text, "W{term}(F) := block([{}],\n  {body})$", names.join(", "));
+        let lines: Vec<&str> = parts.iter().copied().chain(roots.iter().map(String::as_str)).collect();
+        let _ =
+            writeln!(text, "W{term}(F) := block([{}],\n  {})$", names.join(", "), lines.join(",\n  "));
     }
+}
+
+/// Step 5: the energy of the element, sample by sample.
+fn put_integral(text: &mut String, element: &ElementData, terms: usize) {
     let _ = writeln!(text, "\n/* 5. energy of the element, by samples */");
     let mut addends = Vec::new();
     for (q, sample) in element.samples.iter().enumerate() {
-        let at: Vec<String> = (0..axes.len()).map(|k| format!("R{k} = {:e}", sample.position[k])).collect();
+        let at: Vec<String> =
+            (0..element.dimension).map(|k| format!("R{k} = {:e}", sample.position[k])).collect();
         let at = at.join(", ");
         let _ = writeln!(text, "F_{q}: subst([{at}], FX)$");
         let _ = writeln!(text, "dV_{q}: {:e}*subst([{at}], determinant(JT))$", sample.weight);
-        for term in 0..terms.len() {
+        for term in 0..terms {
             let _ = writeln!(text, "intW{term}_{q}: W{term}(F_{q})*dV_{q}$");
             addends.push(format!("intW{term}_{q}"));
         }
     }
     let _ = writeln!(text, "WE: {}$", addends.join(" + "));
     let _ = writeln!(text, "\n/* 6. what holds no U or V is constant from here on */");
+}
+
+/// Steps 7 to 9: forces, their differential, and both as files.
+fn put_forces(text: &mut String, element: &ElementData, association: &str) {
+    let axes = axes_of(element);
+    let unknowns: Vec<String> = (0..element.node_count)
+        .flat_map(|node| axes.iter().map(move |axis| format!("{node}{axis}")))
+        .collect();
     let _ = writeln!(text, "\n/* 7. forces */");
-    let unknowns: Vec<String> =
-        nodes.flat_map(|node| axes.iter().map(move |axis| format!("{node}{axis}"))).collect();
     for unknown in &unknowns {
         let _ = writeln!(text, "F{unknown}: -diff(WE, U{unknown})$");
     }
@@ -198,16 +227,6 @@ pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> Opti
             let _ = writeln!(text, "stringout(\"{prefix}{association}0_{unknown}.mac\", {prefix}{unknown})$");
         }
     }
-    Some(text)
-}
-
-/// The addends of the energy that make forces.
-fn terms_of(law: &EnergyLaw) -> Vec<crate::graph::Expr> {
-    let terms = match law.graph.node(law.energy) {
-        Node::Sum(terms) => terms.to_vec(),
-        _ => vec![law.energy],
-    };
-    terms.into_iter().filter(|term| law.graph.value(*term).is_none()).collect()
 }
 
 /// `Σ c R0^x R1^y R2^z / (1 - R2)^w`.

@@ -28,6 +28,8 @@ struct Sums {
     constants: usize,
     step: Operations,
     once: Operations,
+    /// Operands per step where no part has a name: what the source's texts are as long as.
+    written_out: f64,
 }
 
 fn sums(derived: &Derived, fragments: &[ElementExpressions]) -> Sums {
@@ -36,12 +38,14 @@ fn sums(derived: &Derived, fragments: &[ElementExpressions]) -> Sums {
         constants: 0,
         step: Operations::default(),
         once: Operations::default(),
+        written_out: 0.0,
     };
     for fragment in fragments {
         let (step, once) = fragment.operations(&derived.graph);
         sums.constants += fragment.grouped.constants.len();
         sums.step = sums.step + step;
         sums.once = sums.once + once;
+        sums.written_out += derived.graph.operands_written_out(&fragment.grouped.varying, |_| false);
     }
     sums
 }
@@ -115,8 +119,8 @@ impl Report<'_> {
         let _ = writeln!(text, "  F = I + U_xi X_xi^-1, f_n = -sum w det(X_xi) P X_xi^-T dN_n/dxi\n");
         let _ = writeln!(
             text,
-            "  {:<14} {:>9} {:>9} {:>12} {:>12} {:>10}",
-            "", "fragments", "constants", "ops per step", "ops at start", "functions"
+            "  {:<14} {:>9} {:>9} {:>12} {:>12} {:>10} {:>12}",
+            "", "fragments", "constants", "ops per step", "ops at start", "functions", "written out"
         );
         for (what, fragments) in [
             ("energy", &derived.energies),
@@ -126,12 +130,13 @@ impl Report<'_> {
             let sums = sums(derived, fragments);
             let _ = writeln!(
                 text,
-                "  {what:<14} {:>9} {:>9} {:>12} {:>12} {:>10}",
+                "  {what:<14} {:>9} {:>9} {:>12} {:>12} {:>10} {:>12.4e}",
                 sums.fragments,
                 sums.constants,
                 sums.step.total(),
                 sums.once.total(),
-                sums.step.functions
+                sums.step.functions,
+                sums.written_out
             );
         }
         let _ = writeln!(
@@ -163,6 +168,7 @@ impl Report<'_> {
                 "operations_per_step": sums.step.total(),
                 "functions_per_step": sums.step.functions,
                 "operations_at_start": sums.once.total(),
+                "operands_written_out": sums.written_out,
             })
         };
         let [energy, stress, differential] = Step::all(self.law);
