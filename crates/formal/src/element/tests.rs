@@ -191,7 +191,8 @@ fn the_reference_frame_is_shorter() {
     let element = quadrilateral(RestMap::Box { low: 0, high: 2 });
     let mut derived = element.derive(&law(HOOKE), Cut::NONE).unwrap();
     let differential = derived.differentials[0].clone();
-    let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = differential.grouped.constants.iter().copied().unzip();
+    let (symbols, definitions): (Vec<Expr>, Vec<Expr>) =
+        differential.grouped.constants.iter().copied().unzip();
     let graph = &mut derived.graph;
     // Λ_n = Π (x - x_other)/(x_n - x_other) at the Gauss points of the rectangle from node 0 to node 2
     let [low, high] = [0, 2].map(|node| derived.rest[node].clone());
@@ -210,7 +211,8 @@ fn the_reference_frame_is_shorter() {
             sum_of(graph, middle, 0.5 * sample.position[axis], span)
         });
         let factor = |graph: &mut Graph, node: usize, axis: usize| {
-            let (own, other) = if far(node, axis) { (low[axis], high[axis]) } else { (high[axis], low[axis]) };
+            let (own, other) =
+                if far(node, axis) { (low[axis], high[axis]) } else { (high[axis], low[axis]) };
             let above = sum_of(graph, at[axis], -1.0, other);
             let below = sum_of(graph, own, -1.0, other);
             let one = graph.number(1.0);

@@ -181,8 +181,7 @@ fn put_energy(text: &mut String, law: &EnergyLaw, terms: &[Expr]) {
         let parts: Vec<&str> = parts.iter().map(|part| part.trim_end_matches('$')).collect();
         let names: Vec<&str> = parts.iter().filter_map(|part| part.split(':').next()).collect();
         let lines: Vec<&str> = parts.iter().copied().chain(roots.iter().map(String::as_str)).collect();
-        let _ =
-            writeln!(text, "W{term}(F) := block([{}],\n  {})$", names.join(", "), lines.join(",\n  "));
+        let _ = writeln!(text, "W{term}(F) := block([{}],\n  {})$", names.join(", "), lines.join(",\n  "));
     }
 }
 

@@ -95,8 +95,9 @@ fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>])
     let like = stress.columns[0].x;
     for a in 0..reference.len() {
         let g = reference[a];
-        let gradient = Vec3::new(like.splat(g.x), like.splat(g.y), like.splat(g.z));
-        forces[a] -= *stress * gradient;
+        accumulate(&mut forces[a], stress.columns[0], like.splat(-g.x));
+        accumulate(&mut forces[a], stress.columns[1], like.splat(-g.y));
+        accumulate(&mut forces[a], stress.columns[2], like.splat(-g.z));
     }
 }
 
