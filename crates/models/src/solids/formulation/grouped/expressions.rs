@@ -4,15 +4,17 @@ use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
 
+use pulp::{Arch, Simd, WithSimd};
 use souple_formal::element::{Derived, ElementExpressions};
 use souple_formal::graph::Expr;
 use souple_formal::law::{EnergyLaw, LawParameter};
 use souple_formal::tape::{BATCH, Part, Tape};
-use souple_math::{Padded, Vec3};
+use souple_math::{Lanes, Padded, Vec3};
 use souple_mesh::Mesh;
 
 use super::Names;
 use crate::materials::{Material, MaterialLaw};
+use crate::solids::group::Group;
 use crate::solids::kernel::Kernel;
 use crate::solids::layout::{Chunk, LANES};
 
@@ -34,6 +36,10 @@ struct Fragment {
     /// From displacements and constants, and what the differential is multiplied with.
     step: Tape,
     range: Range<usize>,
+    /// Where the lanes of displacements, of variations and of outputs start in the memory of `step`.
+    displacements: Vec<usize>,
+    variations: Vec<usize>,
+    outputs: Vec<usize>,
 }
 
 thread_local! {
@@ -55,10 +61,14 @@ impl Expressions {
             constant_count = range.end;
             let (graph, directions) = (&derived.graph, &law.parameters);
             let known = &of.grouped.constants;
+            let step = Tape::of_expressions(graph, [&inputs, varied], &[], &of.grouped.varying, directions);
             Fragment {
                 constants: Tape::of_expressions(graph, [&given, &[]], known, &definitions, directions),
-                step: Tape::of_expressions(graph, [&inputs, varied], &[], &of.grouped.varying, directions),
                 range,
+                displacements: (0..displacements.len()).map(|input| step.input(input)).collect(),
+                variations: (0..varied.len()).map(|input| step.varied(input)).collect(),
+                outputs: (0..of.grouped.varying.len()).map(|output| step.output(output, 0)).collect(),
+                step,
             }
         };
         let mut fragments = |all: &[ElementExpressions], varied: &[Expr]| -> Vec<Fragment> {
@@ -140,9 +150,9 @@ impl Expressions {
             tape.prepare(memory);
             for first in blocks.clone().step_by(BATCH / LANES) {
                 let batch = first..blocks.end.min(first + BATCH / LANES);
+                self.put((chunk, batch.clone()), displacements, &fragment.displacements, memory);
                 for block in batch.clone() {
                     let at = (block - first) * LANES;
-                    self.put(chunk, block, displacements, |input| tape.input(input) + at, memory);
                     let constants = &chunk.parameters(block, self.constant_count)[fragment.range.clone()];
                     for (constant, lanes) in constants.iter().enumerate() {
                         let input = tape.input(3 * self.nodes + constant) + at;
@@ -159,62 +169,107 @@ impl Expressions {
         &self,
         chunk: &Chunk,
         [displacements, delta]: [&[Padded]; 2],
-        mut work: impl FnMut(&Tape, &[f64], Range<usize>),
+        mut work: impl FnMut(&Fragment, &[f64], Range<usize>),
     ) {
         for fragment in &self.differential {
-            let tape = &fragment.step;
             self.for_each_batch(fragment, chunk, 0..chunk.block_count(), displacements, |memory, batch| {
-                for block in batch.clone() {
-                    let at = (block - batch.start) * LANES;
-                    self.put(chunk, block, delta, |input| tape.varied(input) + at, memory);
-                }
-                tape.run_here(Part::All, batch.len() * LANES, memory);
-                work(tape, memory, batch);
+                self.put((chunk, batch.clone()), delta, &fragment.variations, memory);
+                fragment.step.run_here(Part::All, batch.len() * LANES, memory);
+                work(fragment, memory, batch);
             });
         }
     }
 
-    /// Writes a field of a block's nodes where `place` says, by node and direction.
+    /// Writes a field of the nodes of a batch where `places` says, by node and direction.
     fn put(
         &self,
-        chunk: &Chunk,
-        block: usize,
+        (chunk, batch): (&Chunk, Range<usize>),
         field: &[Padded],
-        place: impl Fn(usize) -> usize,
+        places: &[usize],
         memory: &mut [f64],
     ) {
-        for node in 0..self.nodes {
-            let locals = &chunk.connectivity[(block * self.nodes + node) * LANES..][..LANES];
-            let places = [0, 1, 2].map(|axis| place(3 * node + axis));
-            for (lane, local) in locals.iter().enumerate() {
-                let numbers = Vec3::from(field[usize::from(*local)]).to_array();
-                for (axis, place) in places.iter().enumerate() {
-                    memory[place + lane] = numbers[axis];
-                }
-            }
-        }
+        Arch::new().dispatch(Put { chunk, batch, nodes: self.nodes, field, places, memory });
     }
 
-    /// Adds `scale` times a tape's outputs to the nodes of a batch, element after element.
+    /// Adds `scale` times a fragment's outputs to the nodes of a batch, element after element.
     fn add_to_nodes(
         &self,
-        tape: &Tape,
-        chunk: &Chunk,
-        batch: Range<usize>,
+        fragment: &Fragment,
+        (chunk, batch): (&Chunk, Range<usize>),
         memory: &[f64],
         scale: f64,
         sums: &mut [Padded],
     ) {
+        let places = &fragment.outputs;
+        Arch::new().dispatch(Add { chunk, batch, nodes: self.nodes, places, memory, scale, sums });
+    }
+}
+
+struct Put<'a> {
+    chunk: &'a Chunk,
+    batch: Range<usize>,
+    nodes: usize,
+    field: &'a [Padded],
+    places: &'a [usize],
+    memory: &'a mut [f64],
+}
+
+impl WithSimd for Put<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { chunk, batch, nodes, field, places, memory } = self;
         for block in batch.clone() {
-            let at = (block - batch.start) * LANES;
-            for node in 0..self.nodes {
-                let locals = &chunk.connectivity[(block * self.nodes + node) * LANES..][..LANES];
-                let places = [0, 1, 2].map(|axis| tape.output(3 * node + axis, 0) + at);
-                for (lane, local) in locals[..chunk.lanes_in(block)].iter().enumerate() {
-                    let sum = &mut sums[usize::from(*local)];
-                    let [x, y, z] = places.map(|place| scale * memory[place + lane]);
-                    *sum = (Vec3::from(*sum) + Vec3::new(x, y, z)).into();
+            let mut lane = 0;
+            while lane < LANES {
+                let group = Group::<S, 0> { simd, chunk, nodes, samples: 0, block, lane };
+                let at = (block - batch.start) * LANES + lane;
+                for node in 0..nodes {
+                    let x = group.gather_node(field, node);
+                    x.x.store(&mut memory[places[3 * node] + at..]);
+                    x.y.store(&mut memory[places[3 * node + 1] + at..]);
+                    x.z.store(&mut memory[places[3 * node + 2] + at..]);
                 }
+                lane += S::F64_LANES;
+            }
+        }
+    }
+}
+
+struct Add<'a> {
+    chunk: &'a Chunk,
+    batch: Range<usize>,
+    nodes: usize,
+    places: &'a [usize],
+    memory: &'a [f64],
+    scale: f64,
+    sums: &'a mut [Padded],
+}
+
+impl WithSimd for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { chunk, batch, nodes, places, memory, scale, sums } = self;
+        for block in batch.clone() {
+            let mut lane = 0;
+            while lane < LANES {
+                let group = Group::<S, 0> { simd, chunk, nodes, samples: 0, block, lane };
+                let at = (block - batch.start) * LANES + lane;
+                // lanes past the last element repeat it, and add nothing
+                let real = (0..S::F64_LANES).map(|l| lane + l).filter(|l| *l < chunk.lanes_in(block)).count();
+                let mut factors = [0.0; LANES];
+                factors[..real].fill(scale);
+                let factor = Lanes::load(simd, &factors);
+                for node in 0..nodes {
+                    let x = Lanes::load(simd, &memory[places[3 * node] + at..]);
+                    let y = Lanes::load(simd, &memory[places[3 * node + 1] + at..]);
+                    let z = Lanes::load(simd, &memory[places[3 * node + 2] + at..]);
+                    group.scatter_node(node, Vec3::new(x * factor, y * factor, z * factor), sums);
+                }
+                lane += S::F64_LANES;
             }
         }
     }
@@ -224,9 +279,8 @@ impl Kernel for Arc<Expressions> {
     fn forces(&self, chunk: &Chunk, _: &[Vec3], displacements: &[Padded], forces: &mut [Padded]) {
         for fragment in &self.forces {
             self.for_each_batch(fragment, chunk, 0..chunk.block_count(), displacements, |memory, batch| {
-                let tape = &fragment.step;
-                tape.run_here(Part::All, batch.len() * LANES, memory);
-                self.add_to_nodes(tape, chunk, batch, memory, 1.0, forces);
+                fragment.step.run_here(Part::All, batch.len() * LANES, memory);
+                self.add_to_nodes(fragment, (chunk, batch), memory, 1.0, forces);
             });
         }
     }
@@ -240,8 +294,8 @@ impl Kernel for Arc<Expressions> {
         scale: f64,
         forces: &mut [Padded],
     ) {
-        self.for_each_differential(chunk, [displacements, delta], |tape, memory, batch| {
-            self.add_to_nodes(tape, chunk, batch, memory, scale, forces);
+        self.for_each_differential(chunk, [displacements, delta], |fragment, memory, batch| {
+            self.add_to_nodes(fragment, (chunk, batch), memory, scale, forces);
         });
     }
 
@@ -263,14 +317,15 @@ impl Kernel for Arc<Expressions> {
     // -δ·δf
     fn quadratic_form(&self, chunk: &Chunk, _: &[Vec3], displacements: &[Padded], delta: &[Padded]) -> f64 {
         let mut sum = 0.0;
-        self.for_each_differential(chunk, [displacements, delta], |tape, memory, batch| {
+        self.for_each_differential(chunk, [displacements, delta], |fragment, memory, batch| {
             for block in batch.clone() {
                 let at = (block - batch.start) * LANES;
                 for (lane, number) in
                     (0..chunk.lanes_in(block)).flat_map(|l| (0..3 * self.nodes).map(move |n| (l, n)))
                 {
-                    sum -=
-                        memory[tape.varied(number) + at + lane] * memory[tape.output(number, 0) + at + lane];
+                    let [delta, force] =
+                        [&fragment.variations, &fragment.outputs].map(|places| places[number]);
+                    sum -= memory[delta + at + lane] * memory[force + at + lane];
                 }
             }
         });
