@@ -97,14 +97,21 @@ impl<P: Precision> Reader<'_, P> {
         }
         self.skip_blanks();
         let start = self.at;
-        while self.text.get(self.at).is_some_and(|c| c.is_ascii_alphanumeric() || b"_.[]:".contains(c)) {
-            self.at += 1;
-            // the sign of an exponent
-            let is_number = self.text[start].is_ascii_digit();
-            let sign = self.text.get(self.at).is_some_and(|c| b"+-".contains(c));
-            if is_number && sign && self.text[self.at - 1] == b'e' {
-                self.at += 1;
+        let mut open = 0;
+        while let Some(letter) = self.text.get(self.at) {
+            // the sign of an exponent; a bracket that was not opened here closes what is around
+            let is_sign = b"+-".contains(letter)
+                && self.text[start].is_ascii_digit()
+                && self.at > start
+                && self.text[self.at - 1] == b'e';
+            match letter {
+                b'[' => open += 1,
+                b']' if open > 0 => open -= 1,
+                b'_' | b'.' | b':' => {}
+                _ if letter.is_ascii_alphanumeric() || is_sign => {}
+                _ => break,
             }
+            self.at += 1;
         }
         let word = std::str::from_utf8(&self.text[start..self.at]).unwrap().to_owned();
         if let Ok(number) = word.parse::<f64>() {
