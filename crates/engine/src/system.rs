@@ -78,11 +78,18 @@ pub struct StageTimes {
     pub solve: f64,
     /// The rest of a step: positions and velocities moved on, energies of the line search, internal variables.
     pub advance: f64,
+    /// Of `solve`: products with the tangent where no matrix is stored.
+    pub products: f64,
 }
 
 impl StageTimes {
     pub fn total(&self) -> f64 {
         self.pairs + self.forces + self.assembly + self.solve + self.advance
+    }
+
+    /// What derivatives of forces took: matrices, and products where none is stored.
+    pub fn derivatives(&self) -> f64 {
+        self.assembly + self.products
     }
 }
 

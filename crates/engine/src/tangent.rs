@@ -8,6 +8,7 @@
 //! for points alone, `D = a`, `a b M - ∂f/∂x - a ∂f/∂v`, with the [`Rates`] `a` and `b`. In statics both are zero.
 
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
@@ -391,6 +392,8 @@ pub struct OperatorBuffers {
     row_velocities: Vec<Vec3>,
     row_force: Vec<Vec3>,
     row_inertia: Vec<Vec3>,
+    /// Wall seconds that products have taken since they were asked for last.
+    seconds: f64,
 }
 
 impl OperatorBuffers {
@@ -405,12 +408,18 @@ impl OperatorBuffers {
             row_velocities: rows(),
             row_force: rows(),
             row_inertia: rows(),
+            seconds: 0.0,
         }
+    }
+
+    /// Wall seconds that products have taken since this was asked last.
+    pub fn take_seconds(&mut self) -> f64 {
+        std::mem::take(&mut self.seconds)
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let Self { free, row_positions, row_velocities, row_force, row_inertia } = self;
+        let Self { free, row_positions, row_velocities, row_force, row_inertia, .. } = self;
         let buffers = [free, row_positions, row_velocities, row_force, row_inertia];
         buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum()
     }
@@ -429,7 +438,9 @@ impl<'a> TangentOperator<'a> {
     pub fn apply_unconstrained(&self, delta: &[Vec3], out: &mut [Vec3]) {
         let mut buffers = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
         let (scratches, buffers) = &mut *buffers;
+        let clock = Instant::now();
         self.product(delta, out, scratches, buffers);
+        buffers.seconds += clock.elapsed().as_secs_f64();
     }
 
     fn product(
@@ -512,7 +523,9 @@ impl LinearOperator for TangentOperator<'_> {
         let mut free = std::mem::take(&mut buffers.free);
         free.copy_from_slice(x);
         self.at.system.project_free(&mut free);
+        let clock = Instant::now();
         self.product(&free, y, scratches, buffers);
+        buffers.seconds += clock.elapsed().as_secs_f64();
         buffers.free = free;
         // S A S + (I - S)
         for constraint in &self.at.system.constraints {

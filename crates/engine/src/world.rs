@@ -207,6 +207,7 @@ impl World {
             sum.assembly += ws.stages.assembly;
             sum.solve += ws.stages.solve;
             sum.advance += ws.stages.advance;
+            sum.products += ws.stages.products;
             sum
         })
     }

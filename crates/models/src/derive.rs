@@ -25,7 +25,7 @@ pub enum MapKind {
 pub fn element_data(kind: ElementKind, rule: &QuadratureRule, map: MapKind) -> Result<ElementData, NoBox> {
     let samples = rule.points.iter().map(|point| {
         let gradients = kind.shape_gradients(point.position).iter().map(|gradient| tidy(*gradient)).collect();
-        Sample { weight: point.weight, gradients }
+        Sample { position: point.position.to_array(), weight: point.weight, gradients }
     });
     let map = match (map, kind) {
         (MapKind::General, _) => RestMap::Nodes,
@@ -43,6 +43,7 @@ pub fn element_data(kind: ElementKind, rule: &QuadratureRule, map: MapKind) -> R
         name: source_name(kind).to_owned(),
         dimension: kind.dimension(),
         node_count: kind.node_count(),
+        shapes: kind.shape_polynomials(),
         samples: samples.collect(),
         map,
     })
@@ -90,6 +91,25 @@ pub fn source_constant_count(kind: ElementKind, map: MapKind) -> Option<usize> {
         (ElementKind::Hex8, MapKind::Box) => Some(40),
         (ElementKind::Prism6, _) => Some(77),
         (ElementKind::Pyramid5, _) => Some(71),
+        _ => None,
+    }
+}
+
+/// Grouped constants of each fragment of the energy in the source's tables 3.6 and 3.7, cut along law and Gauss points;
+/// hexahedra, which are boxes there, along Gauss points alone.
+pub fn source_fragment_counts(kind: ElementKind, map: MapKind, law: &str) -> Option<&'static [usize]> {
+    match (kind, map, law) {
+        (ElementKind::Tri3, _, "linear") => Some(&[5, 7]),
+        (ElementKind::Tri3, _, "st_venant_kirchhoff") => Some(&[5, 5]),
+        (ElementKind::Tet4, _, "linear") => Some(&[10, 16]),
+        (ElementKind::Tet4, _, "st_venant_kirchhoff") => Some(&[10, 10]),
+        (ElementKind::Pyramid5, _, "linear") => Some(&[17, 23, 15, 21, 17, 23, 15, 21, 12, 18]),
+        (ElementKind::Pyramid5, _, "st_venant_kirchhoff") => Some(&[17, 17, 15, 15, 17, 17, 15, 15, 12, 12]),
+        (ElementKind::Prism6, _, "linear") => Some(&[16, 22, 16, 22, 16, 22, 16, 22, 16, 22, 16, 22]),
+        (ElementKind::Prism6, _, "st_venant_kirchhoff") => Some(&[16; 12]),
+        (ElementKind::Hex8, MapKind::Box, "linear" | "st_venant_kirchhoff") => {
+            Some(&[8, 13, 13, 12, 12, 13, 13, 8])
+        }
         _ => None,
     }
 }

@@ -2,6 +2,7 @@
 
 #![allow(non_snake_case)] // symbols of the mathematics: F, P, K
 
+pub mod associations;
 pub mod contact;
 pub mod derive;
 pub mod frames;

@@ -71,6 +71,10 @@ fn kinds(section: Section) -> impl Iterator<Item = ElementKind> {
 }
 
 fn force_of(mesh: &Mesh, material: &Material, section: Section) -> SolidForce {
+    force_by(mesh, material, section, Quadrature::Default)
+}
+
+fn force_by(mesh: &Mesh, material: &Material, section: Section, quadrature: Quadrature) -> SolidForce {
     let of_cell = vec![0; mesh.cell_count()];
     SolidForce::new(&SolidDescription {
         name: "sheet".into(),
@@ -78,7 +82,7 @@ fn force_of(mesh: &Mesh, material: &Material, section: Section) -> SolidForce {
         first_row: 0,
         materials: std::slice::from_ref(material),
         material_of_cell: &of_cell,
-        quadrature: Quadrature::Default,
+        quadrature,
         section,
     })
     .unwrap()
@@ -129,55 +133,59 @@ fn bent(mesh: &Mesh, section: Section) -> Vec<Vec3> {
     mesh.points.iter().map(|p| *p + wave(p) * 0.05).collect()
 }
 
-/// For every section, element and law: force = -∂E/∂x, tangent = ∂f/∂x, blocks = products; zero at rest; in rigid
+/// For every section, element, rule and law: force = -∂E/∂x, tangent = ∂f/∂x, blocks = products; zero at rest; in rigid
 /// motion, where the law is objective, no force.
 #[test]
 fn battery_of_every_section() {
     for section in sections() {
         for (law, material) in laws(section) {
             for kind in kinds(section) {
-                let name = format!("{law} on {kind} in {section:?}");
-                let mesh = mesh_of(kind);
-                let force = force_of(&mesh, &material, section);
-                let mut scratch = force.new_scratch();
-                let x = bent(&mesh, section);
-                let flat = if section.is_plane() { 0.0 } else { 1.0 };
-                let direction = directions(x.len(), flat);
-                let step = 1e-6;
-                let moved = |sign: f64| -> Vec<Vec3> {
-                    x.iter().zip(&direction).map(|(x, d)| *x + *d * (sign * step)).collect()
-                };
-                let f = forces(&force, &mut scratch, &x);
-                let slope = (energy(&force, &moved(1.0)) - energy(&force, &moved(-1.0))) / (2.0 * step);
-                let scale = norm(&f) * norm(&direction);
-                assert!((slope + dot(&f, &direction)).abs() <= 1e-7 * scale, "{name}: {slope}");
-
-                let mut product = vec![Vec3::ZERO; x.len()];
-                let weights = TangentWeights { position: 1.0, velocity: 0.0 };
-                force.add_differential(&at(&x), weights, &direction, &mut scratch, &mut product);
-                let [ahead, behind] = [1.0, -1.0].map(|sign| forces(&force, &mut scratch, &moved(sign)));
-                let difference: Vec<Vec3> =
-                    ahead.iter().zip(&behind).map(|(a, b)| (*a - *b) * (0.5 / step)).collect();
-                let gap: Vec<Vec3> = product.iter().zip(&difference).map(|(a, b)| *a - *b).collect();
-                assert!(norm(&gap) <= 1e-6 * norm(&product), "{name}: {:e}", norm(&gap) / norm(&product));
-                // ∂f/∂x is symmetric
-                let other = directions(x.len() + 7, flat).split_off(7);
-                let mut crossed = vec![Vec3::ZERO; x.len()];
-                force.add_differential(&at(&x), weights, &other, &mut scratch, &mut crossed);
-                let (ab, ba) = (dot(&other, &product), dot(&direction, &crossed));
-                assert!((ab - ba).abs() <= 1e-10 * norm(&product) * norm(&other), "{name}: {ab} {ba}");
-
-                let rest = forces(&force, &mut scratch, &mesh.points);
-                assert!(norm(&rest) <= 1e-11 * norm(&f), "{name}: {} N at rest", norm(&rest));
-                if force.declaration().internal {
-                    let axis = if section.is_plane() { Vec3::Z } else { Vec3::new(1.0, -2.0, 0.7) };
-                    let Q = exponential(axis * 0.8);
-                    let turned: Vec<Vec3> = mesh.points.iter().map(|p| Q * *p + Vec3::X).collect();
-                    let rigid = norm(&forces(&force, &mut scratch, &turned));
-                    assert!(rigid <= 1e-9 * norm(&f), "{name}: {rigid} N in rigid motion");
+                for rule in kind.rules() {
+                    let name = format!("{law} on {kind} by {} in {section:?}", rule.name);
+                    let quadrature = Quadrature::Default.with(kind, rule);
+                    check_section(&name, &mesh_of(kind), &material, (section, quadrature));
                 }
             }
         }
+    }
+}
+
+fn check_section(name: &str, mesh: &Mesh, material: &Material, (section, quadrature): (Section, Quadrature)) {
+    let force = force_by(mesh, material, section, quadrature);
+    let mut scratch = force.new_scratch();
+    let x = bent(mesh, section);
+    let flat = if section.is_plane() { 0.0 } else { 1.0 };
+    let direction = directions(x.len(), flat);
+    let step = 1e-6;
+    let moved =
+        |sign: f64| -> Vec<Vec3> { x.iter().zip(&direction).map(|(x, d)| *x + *d * (sign * step)).collect() };
+    let f = forces(&force, &mut scratch, &x);
+    let slope = (energy(&force, &moved(1.0)) - energy(&force, &moved(-1.0))) / (2.0 * step);
+    let scale = norm(&f) * norm(&direction);
+    assert!((slope + dot(&f, &direction)).abs() <= 1e-7 * scale, "{name}: {slope}");
+
+    let mut product = vec![Vec3::ZERO; x.len()];
+    let weights = TangentWeights { position: 1.0, velocity: 0.0 };
+    force.add_differential(&at(&x), weights, &direction, &mut scratch, &mut product);
+    let [ahead, behind] = [1.0, -1.0].map(|sign| forces(&force, &mut scratch, &moved(sign)));
+    let difference: Vec<Vec3> = ahead.iter().zip(&behind).map(|(a, b)| (*a - *b) * (0.5 / step)).collect();
+    let gap: Vec<Vec3> = product.iter().zip(&difference).map(|(a, b)| *a - *b).collect();
+    assert!(norm(&gap) <= 1e-6 * norm(&product), "{name}: {:e}", norm(&gap) / norm(&product));
+    // ∂f/∂x is symmetric
+    let other = directions(x.len() + 7, flat).split_off(7);
+    let mut crossed = vec![Vec3::ZERO; x.len()];
+    force.add_differential(&at(&x), weights, &other, &mut scratch, &mut crossed);
+    let (ab, ba) = (dot(&other, &product), dot(&direction, &crossed));
+    assert!((ab - ba).abs() <= 1e-10 * norm(&product) * norm(&other), "{name}: {ab} {ba}");
+
+    let rest = forces(&force, &mut scratch, &mesh.points);
+    assert!(norm(&rest) <= 1e-11 * norm(&f), "{name}: {} N at rest", norm(&rest));
+    if force.declaration().internal {
+        let axis = if section.is_plane() { Vec3::Z } else { Vec3::new(1.0, -2.0, 0.7) };
+        let Q = exponential(axis * 0.8);
+        let turned: Vec<Vec3> = mesh.points.iter().map(|p| Q * *p + Vec3::X).collect();
+        let rigid = norm(&forces(&force, &mut scratch, &turned));
+        assert!(rigid <= 1e-9 * norm(&f), "{name}: {rigid} N in rigid motion");
     }
 }
 

@@ -6,8 +6,9 @@ use souple_formal::element::{Axis, Cut};
 use souple_formal::law::{EnergyLaw, LawParameter};
 use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::ElementKind;
+use souple_models::associations::Association;
 use souple_models::derive::{MapKind, element_data, source_constant_count, source_law_name, source_name};
-use souple_models::materials::{TABLE, WRITTEN_LAWS, WrittenLaw};
+use souple_models::materials::{AnyLaw, WRITTEN_LAWS, WrittenLaw};
 use souple_table::{Value, Values};
 
 /// Principal stretches.
@@ -33,7 +34,7 @@ fn by_hand(name: &str, p: &dyn Fn(&str) -> f64, s: Stretches) -> [f64; 3] {
     let green = s.map(|s| 0.5 * (s * s - 1.0));
     let trace: f64 = green.iter().sum();
     match name {
-        "linear" => {
+        "linear" | "corotational" => {
             let dilation: f64 = s.iter().sum::<f64>() - 3.0;
             s.map(|s| s * (p("lambda") * dilation + 2.0 * p("mu") * (s - 1.0)))
         }
@@ -41,6 +42,11 @@ fn by_hand(name: &str, p: &dyn Fn(&str) -> f64, s: Stretches) -> [f64; 3] {
             std::array::from_fn(|i| s[i] * s[i] * (p("lambda") * trace + 2.0 * p("mu") * green[i]))
         }
         "neo_hookean" => s.map(|s| p("mu") * (s * s - 1.0) + p("lambda") * J.ln()),
+        "stable_neo_hookean" => {
+            let (m, l) = (p("mu") * 4.0 / 3.0, p("lambda") + p("mu") * 5.0 / 6.0);
+            let I: f64 = s.iter().map(|s| s * s).sum();
+            s.map(|s| m * s * s * (1.0 - 1.0 / (I + 1.0)) + (l * (J - 1.0) - 0.75 * m) * J)
+        }
         "mooney_rivlin" => {
             // λ̄ ∂/∂λ̄ of Σλ̄² is 2λ̄², of Σλ̄⁻² is -2λ̄⁻²
             decoupled(squares.map(|q| 2.0 * p("c10") * q - 2.0 * p("c01") / q), J, bulk(J))
@@ -114,16 +120,26 @@ fn written_laws_are_the_closed_forms() {
     }
 }
 
-/// The laws of the table that are also written as text are the same function: energy, stress and tangent.
+/// Every law of the table is also written as text, and both are the same function: energy and stress.
 #[test]
 fn laws_of_the_table_are_the_texts() {
     let number = Value::Number;
+    // 20 and 10 kPa of Lamé
+    let isotropic = [("youngs_modulus", number(80e3 / 3.0)), ("poissons_ratio", number(1.0 / 3.0))];
     let mooney = [("c10", number(4e3)), ("c01", number(1e3))];
     let ogden = [("mu", Value::Numbers(&[6e3, -1e3])), ("alpha", Value::Numbers(&[1.8, -2.5]))];
-    for (name, own) in [("mooney_rivlin", mooney), ("ogden", ogden)] {
-        let text = compiled(WrittenLaw::find(name).unwrap());
-        let entry = TABLE.find(name).unwrap();
-        let values = Values::new().with("bulk_modulus", number(100e3)).with("density", number(1e3));
+    for law in AnyLaw::ALL {
+        let entry = law.entry();
+        let text = compiled(WrittenLaw::find(entry.name).unwrap());
+        let (own, has_bulk) = match entry.name {
+            "mooney_rivlin" => (mooney, true),
+            "ogden" => (ogden, true),
+            _ => (isotropic, false),
+        };
+        let mut values = Values::new().with("density", number(1e3));
+        if has_bulk {
+            values.set("bulk_modulus", number(100e3));
+        }
         let values = own.into_iter().fold(values, |values, (name, value)| values.with(name, value));
         let material = (entry.build)(&entry.values(values).unwrap()).unwrap();
         let scale = text.stiffness.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -141,10 +157,28 @@ fn laws_of_the_table_are_the_texts() {
             }
             let energies = (text.energy_at(&F), material.energy_density(&F));
             // some tens of operations; the stress is a difference of parts of the size of the bulk modulus
+            let name = entry.name;
             assert!((energies.0 - energies.1).abs() <= 1e-12 * scale, "{name} {F:?}: {energies:?}");
             let error = (text.stress_at(&F) - material.stress(&F)).largest_entry();
             assert!(error <= 1e-12 * scale, "{name} {F:?}: {error:e}");
         }
+    }
+}
+
+/// EXP-5: every element of surfaces and volumes under each of its rules, with every law and cut; each has a name of its own.
+#[test]
+fn every_association_is_listed_once() {
+    let kinds = ElementKind::ALL.iter().filter(|kind| kind.dimension() > 1);
+    let variants: usize = kinds.map(|kind| kind.rules().len()).sum();
+    // the source counts 53, nine of them edges
+    assert!(variants >= 44, "{variants}");
+    let names: Vec<String> = Association::all().map(|association| association.name()).collect();
+    assert_eq!(names.len(), WRITTEN_LAWS.len() * variants * 16);
+    let unique: std::collections::HashSet<&String> = names.iter().collect();
+    assert_eq!(unique.len(), names.len());
+    for expected in ["HookeTriangleDecoupageNon", "SaintVenantHexa8IDecoupageLN", "HookePrism6IDecoupageTout"]
+    {
+        assert!(unique.contains(&expected.to_owned()), "{expected}");
     }
 }
 

@@ -91,7 +91,7 @@ impl Report {
         let probes: serde_json::Map<String, Value> = self.probes.iter().map(probe_to_json).collect();
         let hashes: Vec<Value> =
             self.hashes.iter().map(|(step, hash)| json!({"step": step, "hash": hash})).collect();
-        let StageTimes { pairs, forces, assembly, solve, advance } = self.stages;
+        let StageTimes { pairs, forces, assembly, solve, advance, .. } = self.stages;
         json!({
             "version": env!("CARGO_PKG_VERSION"),
             "schema": SCHEMA,
@@ -121,6 +121,7 @@ impl Report {
                 "measure": 1e3 * self.around.measure,
                 "write": 1e3 * self.around.write,
             },
+            "derivatives_ms": 1e3 * self.stages.derivatives(),
             "energy": { "initial": energy_to_json(&self.energy.0), "final": energy_to_json(&self.energy.1) },
             "momentum": { "initial": momentum_to_json(self.momentum.0), "final": momentum_to_json(self.momentum.1) },
             "solver": {

@@ -304,6 +304,24 @@ fn stages_add_up() {
     assert!(stages["advance"].as_f64().is_some_and(|advance| advance > 0.0));
 }
 
+/// Derivatives of forces are timed apart: as matrices where these are stored, as products where they are not.
+#[test]
+fn derivatives_are_timed() {
+    let folder = Folder::new("derivatives");
+    let scene = folder.write("cube.toml", CUBE);
+    for matrix_free in ["false", "true"] {
+        let stepper = format!(
+            "systems.main.stepper={{ name = \"backward_euler\", solver = \"cg\", preconditioner = \"block_jacobi\", matrix_free = {matrix_free} }}"
+        );
+        let report = souple(["run", &scene, "--quiet", "--json", "--set", &stepper]).ends(0).json();
+        let stage = |name: &str| report["stages_ms"][name].as_f64().expect("a stage");
+        let derivatives = report["derivatives_ms"].as_f64().expect("derivatives");
+        let (assembly, solve) = (stage("assembly"), stage("solve"));
+        assert!(assembly <= derivatives && derivatives <= assembly + solve, "{report:#}");
+        assert_eq!(derivatives > assembly, matrix_free == "true", "{report:#}");
+    }
+}
+
 /// A program asked to end while it waits writes nothing half: see `contract.rs`. Here: before its first step it has
 /// touched nothing.
 #[cfg(unix)]

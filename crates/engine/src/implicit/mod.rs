@@ -300,6 +300,8 @@ impl ImplicitStep<'_> {
         if wanted.constrained == Constrained::Led {
             // A (δ_free + δ_prescribed) = -r
             TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
+            // it counts as assembly
+            operator.take_seconds();
             for (rhs, lift) in rhs.iter_mut().zip(direction.iter()) {
                 *rhs -= *lift;
             }
@@ -344,6 +346,7 @@ impl ImplicitStep<'_> {
         };
         let solved = linear.solve(linear_system, rhs, direction);
         stages.solve += clock.elapsed().as_secs_f64();
+        stages.products += operator.take_seconds();
         system.project_free(direction);
         if wanted.constrained == Constrained::Led {
             for (direction, prescribed) in direction.iter_mut().zip(prescribed.iter()) {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::{Cut, ElementData, Fragment, RestMap};
-use crate::graph::{Expr, Graph, Grouped, Node, Operations, Shape, WithoutFormula};
+use crate::graph::{Expr, Graph, Grouped, Operations, Shape, WithoutFormula};
 use crate::law::EnergyLaw;
 
 /// Expressions of an element under one law.
@@ -82,11 +82,22 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
         .filter(|(_, parameter)| parameter.numbers().len() == 1)
         .map(|(name, _)| graph.symbol(name, Shape::Scalar))
         .collect();
+    // directions are plain numbers of the code
+    let directions: Vec<(Expr, Vec<Expr>)> = law
+        .parameters
+        .iter()
+        .filter(|(_, parameter)| parameter.numbers().len() == 3)
+        .map(|(name, parameter)| {
+            let symbol = graph.symbol(name, Shape::Vector);
+            (symbol, parameter.numbers().iter().map(|number| graph.number(*number)).collect())
+        })
+        .collect();
     let terms = terms(&mut graph, law);
     let cut_variations = cut.has(super::Axis::Nodes) || cut.has(super::Axis::Dimension);
     let mut samples = Vec::with_capacity(element.samples.len());
     for sample in 0..element.samples.len() {
-        let mut at = Placing { graph: &mut graph, element, law, sample, rest: &rest };
+        let directions = &directions;
+        let mut at = Placing { graph: &mut graph, element, law, sample, rest: &rest, directions };
         samples.push(at.expressions(&terms, &displacements, &variations, cut_variations)?);
     }
     let variables: Vec<Expr> = displacements.iter().chain(&variations).flatten().copied().collect();
@@ -151,17 +162,9 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
 /// material constants and is grouped with them.
 fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
     let weight = graph.symbol(WEIGHT, Shape::Scalar);
-    let terms: Vec<Expr> = match graph.node(law.energy) {
-        Node::Sum(terms) => terms.to_vec(),
-        _ => vec![law.energy],
-    };
     let seeds = HashMap::from([(law.deformation, law.variation)]);
     let mut list = Vec::new();
-    for term in terms {
-        // an offset makes no force
-        if graph.value(term).is_some() {
-            continue;
-        }
+    for term in law.terms() {
         let energy = graph.product(&[weight, term]);
         let stress = graph.gradient(energy, law.deformation);
         let differential = graph.differential(stress, &seeds);
@@ -177,6 +180,7 @@ struct Placing<'a> {
     law: &'a EnergyLaw,
     sample: usize,
     rest: &'a [Vec<Expr>],
+    directions: &'a [(Expr, Vec<Expr>)],
 }
 
 impl Placing<'_> {
@@ -197,6 +201,7 @@ impl Placing<'_> {
         }
         let symbol = self.graph.symbol(WEIGHT, Shape::Scalar);
         let mut given = HashMap::from([(symbol, vec![weight]), (self.law.deformation, deformation)]);
+        given.extend(self.directions.iter().cloned());
         let mut at = AtSample { energies: Vec::new(), forces: Vec::new(), differentials: Vec::new() };
         let every: Vec<Option<(usize, usize)>> = if cut_variations {
             (0..displacements.len()).flat_map(|n| (0..dimension).map(move |k| Some((n, k)))).collect()

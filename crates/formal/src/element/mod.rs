@@ -19,6 +19,8 @@ pub struct ElementData {
     /// 2 (plane strain, unit thickness) or 3.
     pub dimension: usize,
     pub node_count: usize,
+    /// Shape function of each node: coefficients of `ξ^x η^y ζ^z / (1 - ζ)^w` by `[x, y, z, w]`.
+    pub shapes: Vec<Vec<(f64, [u8; 4])>>,
     pub samples: Vec<Sample>,
     pub map: RestMap,
 }
@@ -26,6 +28,8 @@ pub struct ElementData {
 /// One point of the rule of quadrature.
 #[derive(Clone, Debug)]
 pub struct Sample {
+    /// `ξ`.
+    pub position: [f64; 3],
     pub weight: f64,
     /// `∂N_n/∂ξ` of each node.
     pub gradients: Vec<[f64; 3]>,

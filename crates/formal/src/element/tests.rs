@@ -16,16 +16,24 @@ const HOOKE: &str = "lambda/2*tr(eps)^2 + mu*dot(eps, eps)";
 const STVK: &str = "lambda/2*tr(E)^2 + mu*dot(E, E)";
 const NEO_HOOKEAN: &str = "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2";
 
+const CONSTANT: [u8; 4] = [0; 4];
+const XI: [u8; 4] = [1, 0, 0, 0];
+const ETA: [u8; 4] = [0, 1, 0, 0];
+const ZETA: [u8; 4] = [0, 0, 1, 0];
+
 fn triangle() -> ElementData {
     let gradients = vec![[-1.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let samples = vec![Sample { weight: 0.5, gradients }];
-    ElementData { name: "Triangle".into(), dimension: 2, node_count: 3, samples, map: RestMap::Nodes }
+    let samples = vec![Sample { position: [1.0 / 3.0, 1.0 / 3.0, 0.0], weight: 0.5, gradients }];
+    let shapes = vec![vec![(1.0, CONSTANT), (-1.0, XI), (-1.0, ETA)], vec![(1.0, XI)], vec![(1.0, ETA)]];
+    ElementData { name: "Triangle".into(), dimension: 2, node_count: 3, shapes, samples, map: RestMap::Nodes }
 }
 
 fn tetrahedron() -> ElementData {
     let gradients = vec![[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let samples = vec![Sample { weight: 1.0 / 6.0, gradients }];
-    ElementData { name: "Tetra".into(), dimension: 3, node_count: 4, samples, map: RestMap::Nodes }
+    let samples = vec![Sample { position: [0.25; 3], weight: 1.0 / 6.0, gradients }];
+    let first = vec![(1.0, CONSTANT), (-1.0, XI), (-1.0, ETA), (-1.0, ZETA)];
+    let shapes = vec![first, vec![(1.0, XI)], vec![(1.0, ETA)], vec![(1.0, ZETA)]];
+    ElementData { name: "Tetra".into(), dimension: 3, node_count: 4, shapes, samples, map: RestMap::Nodes }
 }
 
 /// Quadrilateral of 2×2 Gauss points.
@@ -33,12 +41,16 @@ fn quadrilateral(map: RestMap) -> ElementData {
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     let g = 1.0 / 3f64.sqrt();
     let samples = corners.map(|[x, y]| Sample {
+        position: [x * g, y * g, 0.0],
         weight: 1.0,
         gradients: corners
             .map(|[a, b]| [0.25 * a * (1.0 + b * y * g), 0.25 * b * (1.0 + a * x * g), 0.0])
             .to_vec(),
     });
-    ElementData { name: "Quad".into(), dimension: 2, node_count: 4, samples: samples.to_vec(), map }
+    let shapes = corners
+        .map(|[a, b]| vec![(0.25, CONSTANT), (0.25 * a, XI), (0.25 * b, ETA), (0.25 * a * b, [1, 1, 0, 0])])
+        .to_vec();
+    ElementData { name: "Quad".into(), dimension: 2, node_count: 4, shapes, samples: samples.to_vec(), map }
 }
 
 /// Values of expressions for rest positions, displacements and variations without symmetry.
@@ -170,4 +182,80 @@ fn fragments_have_the_names_of_the_source() {
     assert_eq!(name, "ECR_dFHookeHexa8IDecoupageLN4");
     let name = Sort::Force.expression_name(&format!("HookeTriangle{}", Cut::NONE), 0, 0, 0);
     assert_eq!(name, "FHookeTriangleDecoupageNon0_0x");
+}
+
+/// EXP-1: the differential on a rectangle derived in the reference frame and written out has at most a third of the operands of the
+/// same derived in physical coordinates, where each shape function brings its own nodes along.
+#[test]
+fn the_reference_frame_is_shorter() {
+    let element = quadrilateral(RestMap::Box { low: 0, high: 2 });
+    let mut derived = element.derive(&law(HOOKE), Cut::NONE).unwrap();
+    let differential = derived.differentials[0].clone();
+    let (symbols, definitions): (Vec<Expr>, Vec<Expr>) =
+        differential.grouped.constants.iter().copied().unzip();
+    let graph = &mut derived.graph;
+    // Λ_n = Π (x - x_other)/(x_n - x_other) at the Gauss points of the rectangle from node 0 to node 2
+    let [low, high] = [0, 2].map(|node| derived.rest[node].clone());
+    let far = |node: usize, axis: usize| [[1, 0, 0, 1], [1, 1, 0, 0]][axis][node] == 1;
+    let sum_of = |graph: &mut Graph, a: Expr, b: f64, c: Expr| {
+        let scaled = graph.times_number(b, c);
+        graph.sum(&[a, scaled])
+    };
+    let mut terms: Vec<Vec<Expr>> = vec![Vec::new(); 8];
+    for sample in &element.samples {
+        let at = [0, 1].map(|axis| {
+            let (from, to) = (low[axis], high[axis]);
+            let middle = sum_of(graph, from, 1.0, to);
+            let middle = graph.times_number(0.5, middle);
+            let span = sum_of(graph, to, -1.0, from);
+            sum_of(graph, middle, 0.5 * sample.position[axis], span)
+        });
+        let factor = |graph: &mut Graph, node: usize, axis: usize| {
+            let (own, other) =
+                if far(node, axis) { (low[axis], high[axis]) } else { (high[axis], low[axis]) };
+            let above = sum_of(graph, at[axis], -1.0, other);
+            let below = sum_of(graph, own, -1.0, other);
+            let one = graph.number(1.0);
+            (graph.divide(above, below), graph.divide(one, below))
+        };
+        let gradients: Vec<[Expr; 2]> = (0..4)
+            .map(|node| {
+                let ((x, dx), (y, dy)) = (factor(graph, node, 0), factor(graph, node, 1));
+                [graph.product(&[dx, y]), graph.product(&[x, dy])]
+            })
+            .collect();
+        let [width, height] = [0, 1].map(|axis| sum_of(graph, high[axis], -1.0, low[axis]));
+        let area = graph.product(&[width, height]);
+        let omega = graph.times_number(-0.25 * sample.weight, area);
+        let mut rate = |i: usize, j: usize| {
+            let products: Vec<Expr> =
+                (0..4).map(|n| graph.product(&[derived.variations[n][i], gradients[n][j]])).collect();
+            graph.sum(&products)
+        };
+        let rates = [[rate(0, 0), rate(0, 1)], [rate(1, 0), rate(1, 1)]];
+        let [lambda, mu] = ["lambda", "mu"].map(|name| graph.symbol(name, crate::graph::Shape::Scalar));
+        let volume = graph.sum(&[rates[0][0], rates[1][1]]);
+        for (index, list) in terms.iter_mut().enumerate() {
+            let (node, i) = (index / 2, index % 2);
+            let dilation = graph.product(&[lambda, volume, gradients[node][i]]);
+            let mut inner = vec![dilation];
+            for j in 0..2 {
+                let strain = graph.sum(&[rates[i][j], rates[j][i]]);
+                inner.push(graph.product(&[mu, strain, gradients[node][j]]));
+            }
+            let inner = graph.sum(&inner);
+            list.push(graph.product(&[omega, inner]));
+        }
+    }
+    let direct: Vec<Expr> = terms.iter().map(|terms| graph.sum(terms)).collect();
+    // the same numbers
+    let [ours, theirs] = [&differential.raw, &direct].map(|roots| values(graph, roots, None));
+    for (a, b) in ours.iter().zip(&theirs) {
+        assert!((a - b).abs() <= 1e-13 * a.abs().max(1.0), "{ours:?} {theirs:?}");
+    }
+    let named = |expr: Expr| symbols.contains(&expr);
+    let of_reference = graph.operands_written_out(&differential.grouped.varying, named)
+        + graph.operands_written_out(&definitions, named);
+    let of_direct = graph.operands_written_out(&direct, |_| false);
+    assert!(3.0 * of_reference <= of_direct, "{of_reference} {of_direct}");
 }

@@ -1,5 +1,7 @@
 //! Code of an element under a law: constants once, then forces and their differential at every step.
 
+use std::collections::HashMap;
+
 use super::{Rust, Style, Wgsl, write};
 use crate::element::Derived;
 use crate::graph::{Expr, Grouped};
@@ -62,7 +64,14 @@ impl Derived {
         // one set of constants for both functions
         let roots: Vec<Expr> = forces.into_iter().chain(differentials).collect();
         let Grouped { constants, varying } = self.graph.group_constants(&roots, &variables);
-        let definitions: Vec<Expr> = constants.iter().map(|(_, definition)| *definition).collect();
+        // constants that hold earlier ones are written out: the function that makes them has no array of them yet
+        let mut whole: HashMap<Expr, Expr> = HashMap::new();
+        let mut definitions = Vec::with_capacity(constants.len());
+        for (symbol, definition) in &constants {
+            let definition = self.graph.substitute(*definition, &whole);
+            whole.insert(*symbol, definition);
+            definitions.push(definition);
+        }
         let dimension = self.displacements[0].len();
         let shape = Signature {
             nodes: self.displacements.len(),

@@ -1,4 +1,4 @@
-//! Expressions written out: as text that can be read back, as LaTeX, Rust and WGSL.
+//! Expressions written out: as text that can be read back, as LaTeX, Rust, WGSL and a program for Maxima.
 //!
 //! Parts that are used more than once, or grow too long for a line, get a line of their own before they are used. All
 //! styles share one walk over the graph and differ in how they write an operation.
@@ -6,6 +6,7 @@
 mod element;
 mod latex;
 mod rust;
+mod script;
 mod text;
 mod wgsl;
 
@@ -14,6 +15,7 @@ use std::collections::HashMap;
 pub use element::{ElementCode, Emitted};
 pub use latex::Latex;
 pub use rust::Rust;
+pub use script::maxima;
 pub use text::Text;
 pub use wgsl::Wgsl;
 

@@ -1,5 +1,7 @@
 //! How much work expressions are.
 
+use std::collections::HashMap;
+
 use super::{Expr, Graph, Node};
 use crate::Function;
 
@@ -49,6 +51,18 @@ impl Graph {
             }
         }
         total
+    }
+
+    /// Operands of `roots` written out in full, each part as often as it is used: how long a text without names for parts
+    /// would be. Expressions for which `known` holds have a name and count as one.
+    pub fn operands_written_out(&self, roots: &[Expr], known: impl Fn(Expr) -> bool) -> f64 {
+        // the length of a text that shares nothing grows exponentially: more than any whole number
+        let mut lengths: HashMap<Expr, f64> = HashMap::new();
+        for expr in self.reachable(roots) {
+            let inside: f64 = self.node(expr).operands().map(|operand| lengths[&operand]).sum();
+            lengths.insert(expr, if known(expr) || inside == 0.0 { 1.0 } else { inside });
+        }
+        roots.iter().map(|root| lengths[root]).sum()
     }
 
     fn operations_of(&self, expr: Expr) -> Operations {

@@ -12,6 +12,7 @@ mod constants;
 mod count;
 mod differentiate;
 mod evaluate;
+mod integrate;
 mod simplify;
 mod spectral;
 mod tensor;

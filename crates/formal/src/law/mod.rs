@@ -13,7 +13,7 @@ pub use error::{LawError, LawProblem};
 pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};
 
 use crate::Dimension;
-use crate::graph::{Expr, Graph, Shape};
+use crate::graph::{Expr, Graph, Node, Shape};
 
 /// A law as written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -112,6 +112,15 @@ impl EnergyLaw {
         };
         check::check(&mut law, &read)?;
         Ok(law)
+    }
+
+    /// The addends of the energy; an offset, which makes no force, is none.
+    pub fn terms(&self) -> Vec<Expr> {
+        let terms = match self.graph.node(self.energy) {
+            Node::Sum(terms) => terms.to_vec(),
+            _ => vec![self.energy],
+        };
+        terms.into_iter().filter(|term| self.graph.value(*term).is_none()).collect()
     }
 
     /// The numbers of a parameter.

@@ -154,26 +154,31 @@ impl Tape {
     }
 
     /// Where the lanes of entry `entry` of `F` start, by columns.
+    #[inline]
     pub fn deformation(&self, entry: usize) -> usize {
         self.input(0) + entry * BATCH
     }
 
     /// Where the lanes of entry `entry` of `δF` start.
+    #[inline]
     pub fn variation(&self, entry: usize) -> usize {
         self.varied(0) + entry * BATCH
     }
 
     /// Where the lanes of an input that comes first start.
+    #[inline]
     pub fn input(&self, input: usize) -> usize {
         self.inputs[0][input] as usize * BATCH
     }
 
     /// Where the lanes of an input that varies at the same first ones start.
+    #[inline]
     pub fn varied(&self, input: usize) -> usize {
         self.inputs[1][input] as usize * BATCH
     }
 
     /// Where the lanes of number `entry` of an output start.
+    #[inline]
     pub fn output(&self, output: usize, entry: usize) -> usize {
         (self.outputs[output] as usize + entry) * BATCH
     }

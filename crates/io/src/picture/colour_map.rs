@@ -16,7 +16,26 @@ pub enum ColourMap {
     /// From blue through light grey to red: for values about zero.
     Diverging,
     Grey,
+    /// From green to red as a value nears one, blue below zero: elements by their criterion, and those that have changed
+    /// their law.
+    Adaptation,
+    /// One colour for each kind of element, by [`ELEMENT_KINDS`].
+    Elements,
 }
+
+/// Kinds of elements in the order of the colours of [`ColourMap::Elements`], whose values are their numbers.
+pub const ELEMENT_KINDS: [&str; 7] = ["tet", "hex", "prism", "pyramid", "tri", "quad", "edge"];
+
+/// Dark blue, yellow, cyan, pink as in the source; green, orange, grey.
+const OF_KINDS: [[u8; 3]; 7] = [
+    [52, 78, 158],
+    [232, 196, 64],
+    [72, 190, 204],
+    [226, 132, 176],
+    [104, 172, 96],
+    [222, 134, 66],
+    [128, 132, 140],
+];
 
 /// All maps, by the names that the command line takes.
 pub static COLOUR_MAPS: Table<ColourMap> = Table {
@@ -43,14 +62,34 @@ pub static COLOUR_MAPS: Table<ColourMap> = Table {
             parameters: &[],
             build: ColourMap::Grey,
         },
+        &Entry {
+            name: "adaptation",
+            summary: "green to red as a criterion nears its threshold, blue where an element has changed its law",
+            source: "Faure 2014, fig. 6.26",
+            parameters: &[],
+            build: ColourMap::Adaptation,
+        },
+        &Entry {
+            name: "elements",
+            summary: "a colour for each kind of element: tetrahedra dark blue, hexahedra yellow, prisms cyan, pyramids pink",
+            source: "Faure 2014, fig. 6.17",
+            parameters: &[],
+            build: ColourMap::Elements,
+        },
     ],
 };
 
 const MAP_LENGTH: usize = 256;
 
 /// The maps in the order of [`ColourMap`].
-static MAPS: LazyLock<[Vec<Colour>; 3]> =
-    LazyLock::new(|| [evened(sequential), evened(diverging), evened(grey)]);
+static MAPS: LazyLock<[Vec<Colour>; 5]> = LazyLock::new(|| {
+    [evened(sequential), evened(diverging), evened(grey), stepped(adaptation), stepped(of_kind)]
+});
+
+/// Colours at equal steps of the value, with jumps where a function of it has them.
+fn stepped(colour: fn(f64) -> Colour) -> Vec<Colour> {
+    (0..MAP_LENGTH).map(|index| colour(index as f64 / (MAP_LENGTH - 1) as f64)).collect()
+}
 
 /// Colours at equal lengths along a path in OKLab.
 fn evened(path: fn(f64) -> [f64; 3]) -> Vec<Colour> {
@@ -82,6 +121,15 @@ impl ColourMap {
         (low, high)
     }
 
+    /// The values of its first and last colour, for maps whose colours mean something of their own.
+    pub fn own_range(self) -> Option<(f64, f64)> {
+        match self {
+            Self::Adaptation => Some((-1.0, 1.0)),
+            Self::Elements => Some((-0.5, ELEMENT_KINDS.len() as f64 - 0.5)),
+            Self::Sequential | Self::Diverging | Self::Grey => None,
+        }
+    }
+
     /// The colour of a value, 0 to 1; NaN is grey.
     pub fn colour(self, value: f64) -> Colour {
         if value.is_nan() {
@@ -110,6 +158,17 @@ fn diverging(t: f64) -> [f64; 3] {
 /// From black to nearly white, for print.
 fn grey(t: f64) -> [f64; 3] {
     [0.2 + 0.77 * t, 0.0, 0.0]
+}
+
+/// Blue below the middle, which is zero; then from green to red.
+fn adaptation(t: f64) -> Colour {
+    let [blue, green, red] = [[56, 92, 200], [70, 160, 80], [206, 56, 48]].map(Colour::from_screen);
+    if t < 0.5 { blue } else { green.mixed(red, (2.0 * t - 1.0) as f32) }
+}
+
+fn of_kind(t: f64) -> Colour {
+    let kind = (t * OF_KINDS.len() as f64) as usize;
+    Colour::from_screen(OF_KINDS[kind.min(OF_KINDS.len() - 1)])
 }
 
 /// The colour of this lightness and hue, its chroma no higher than wished and than a screen can show.

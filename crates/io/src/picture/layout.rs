@@ -127,7 +127,10 @@ impl LegendBox {
     fn of(legend: &Legend, (low, high): (f64, f64), size: [usize; 2], letter: f64, margin: f64) -> Self {
         let [width, height] = size.map(|side| side as f64);
         let (top, bottom) = (0.29 * height, 0.71 * height);
-        let scale = scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top));
+        let mut scale = scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top));
+        if !legend.names.is_empty() {
+            scale.ticks.clone_from(&legend.names);
+        }
         let widest = scale.ticks.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
         let place = |value: f64| bottom - (value - low) / (high - low) * (bottom - top);
         let ticks = scale.ticks.into_iter().map(|(value, name)| (place(value), name)).collect();

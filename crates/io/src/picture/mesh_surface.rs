@@ -134,6 +134,18 @@ impl MeshSurface {
     /// Moves the cells of [`MeshSurface::of_cells`] apart: each away from the middle of all by `amount` times its
     /// distance.
     pub fn explode(&mut self, amount: f64) {
+        let all: Vec3 = self.surface.points.iter().copied().sum::<Vec3>()
+            * (1.0 / self.surface.points.len().max(1) as f64);
+        self.move_cells(|_, middle| (middle - all) * amount);
+    }
+
+    /// Shrinks the cells of [`MeshSurface::of_cells`], each about its own middle, by `amount` of its size.
+    pub fn shrink(&mut self, amount: f64) {
+        self.move_cells(|point, middle| (middle - point) * amount);
+    }
+
+    /// Moves every point by what `shift` gives for it and the middle of its cell.
+    fn move_cells(&mut self, shift: impl Fn(Vec3, Vec3) -> Vec3) {
         let mut middles: HashMap<u32, (Vec3, f64)> = HashMap::new();
         let mut cell_of = vec![0; self.surface.points.len()];
         for (corners, cell) in self.surface.triangles.iter().zip(&self.cells) {
@@ -143,11 +155,9 @@ impl MeshSurface {
             let (sum, count) = middles.entry(*cell).or_insert((Vec3::ZERO, 0.0));
             (*sum, *count) = (*sum + *point, *count + 1.0);
         }
-        let all: Vec3 = self.surface.points.iter().copied().sum::<Vec3>()
-            * (1.0 / self.surface.points.len().max(1) as f64);
         for (point, cell) in self.surface.points.iter_mut().zip(&cell_of) {
             let (sum, count) = middles[cell];
-            *point += (sum * (1.0 / count) - all) * amount;
+            *point += shift(*point, sum * (1.0 / count));
         }
     }
 

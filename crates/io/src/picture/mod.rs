@@ -35,7 +35,7 @@ use shadow::Shadow;
 pub use animated_png::write_animated_png;
 pub use camera::View;
 pub use colour::Colour;
-pub use colour_map::{COLOUR_MAPS, ColourMap};
+pub use colour_map::{COLOUR_MAPS, ColourMap, ELEMENT_KINDS};
 pub use gif::write_gif;
 pub use ground::Ground;
 pub use image::Image;
@@ -78,6 +78,8 @@ pub struct Legend {
     /// Values of the first and the last colour; those of the surfaces where `None`.
     pub range: Option<(f64, f64)>,
     pub place: LegendPlace,
+    /// Names of values, in the place of numbers.
+    pub names: Vec<(f64, String)>,
 }
 
 /// Where a legend is drawn.
@@ -266,7 +268,7 @@ impl Picture {
 
     /// Values of the ends of the colour map.
     fn range(&self) -> (f64, f64) {
-        let given = self.legend.as_ref().and_then(|legend| legend.range);
+        let given = self.legend.as_ref().and_then(|legend| legend.range).or(self.colours.own_range());
         let of_surfaces = || {
             let ranges = self.surfaces.iter().filter_map(Surface::range);
             ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))

@@ -222,6 +222,17 @@ impl ElementKind {
         self.element().shape_gradients(xi)
     }
 
+    /// Each node's shape function as coefficients of the powers of its monomials; what rounding leaves of a zero is left
+    /// out.
+    pub fn shape_polynomials(self) -> Vec<Vec<(f64, [u8; 4])>> {
+        let basis = self.element().basis;
+        let terms = |row: &[f64]| {
+            let known = row.iter().zip(basis).filter(|(coefficient, _)| coefficient.abs() > 1e-12);
+            known.map(|(coefficient, monomial)| (*coefficient, monomial.0)).collect()
+        };
+        self.derived().coefficients.chunks(basis.len()).map(terms).collect()
+    }
+
     /// All rules of quadrature, by number of points.
     pub fn rules(self) -> &'static [QuadratureRule] {
         &self.derived().rules

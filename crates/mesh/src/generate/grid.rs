@@ -13,40 +13,50 @@ use crate::{ElementKind, Group, MAX_CELLS, Mesh, MeshError, MeshSize};
 
 pub(super) struct Grid {
     cells: [usize; 3],
-    cut: Cut,
+    /// How the cubes of each layer across x are cut.
+    zones: Vec<Zone>,
 }
 
 impl Grid {
     /// # Errors
     /// Counts that are not whole numbers of at least one, or too many cells.
     pub(super) fn new(name: &'static str, counts: [f64; 3], cut: Cut) -> Result<Self, MeshError> {
-        let unfit = |expected: &str| {
-            let value = Value::Vector(counts).to_string();
-            MeshError::Parameter { name, value, expected: expected.to_owned() }
+        let cells = whole_counts(name, counts, cut.cells_per_cube())?;
+        if cut == Cut::Mixed && cells[0] < 4 {
+            return Err(unfit(name, counts, "at least 4 cubes along x for `mixed`"));
+        }
+        let zone = |i: usize| if cut == Cut::Mixed { mixed(i, cells[0]) } else { Zone::Uniform(cut) };
+        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect() })
+    }
+
+    /// Cubes cut by the part of the length that their middle is in; `parts` are cuts and where they end, as fractions of
+    /// the length, ascending to one.
+    ///
+    /// # Errors
+    /// Counts that are not whole numbers of at least one, or too many cells.
+    pub(super) fn of_parts(
+        name: &'static str,
+        counts: [f64; 3],
+        parts: &[(Cut, f64)],
+    ) -> Result<Self, MeshError> {
+        let most = parts.iter().map(|(cut, _)| cut.cells_per_cube()).max().unwrap_or(1);
+        let cells = whole_counts(name, counts, most)?;
+        let zone = |i: usize| {
+            let middle = (i as f64 + 0.5) / cells[0] as f64;
+            let part = parts.iter().find(|(_, end)| middle < *end).or(parts.last());
+            Zone::Uniform(part.map_or(Cut::Hexahedra, |(cut, _)| *cut))
         };
-        if !counts.iter().all(|count| *count >= 1.0 && count.fract() == 0.0) {
-            return Err(unfit("three whole numbers of at least 1"));
-        }
-        // in floating point, where nothing overflows
-        let requested = counts[0] * counts[1] * counts[2] * cut.cells_per_cube() as f64;
-        if requested > MAX_CELLS as f64 {
-            return Err(MeshError::TooManyCells { requested, limit: MAX_CELLS });
-        }
-        if cut == Cut::Mixed && counts[0] < 4.0 {
-            return Err(unfit("at least 4 cubes along x for `mixed`"));
-        }
-        Ok(Self { cells: counts.map(|count| count as usize), cut })
+        Ok(Self { cells, zones: (0..cells[0]).map(zone).collect() })
     }
 
     pub(super) fn size(&self) -> MeshSize {
-        let cubes = self.cells.iter().map(|count| *count as u64).product::<u64>();
         let corners = self.cells.iter().map(|count| *count as u64 + 1).product::<u64>();
-        let centres = match self.cut {
-            Cut::Pyramids => cubes,
-            Cut::Mixed => (self.cells[1] * self.cells[2]) as u64,
-            _ => 0,
-        };
-        MeshSize { points: corners + centres, cells: cubes * self.cut.cells_per_cube() }
+        let of_layer = (self.cells[1] * self.cells[2]) as u64;
+        let zones = || self.zones.iter();
+        MeshSize {
+            points: corners + of_layer * zones().filter(|zone| zone.has_centres()).count() as u64,
+            cells: of_layer * zones().map(|zone| zone.cells_per_cube()).sum::<u64>(),
+        }
     }
 
     /// The mesh with its points at `place(ξ)`, `ξ` in the unit cube.
@@ -70,7 +80,7 @@ impl Grid {
                         points.push(place(unit(i as f64 + 0.5, j as f64 + 0.5, k as f64 + 0.5)));
                         points.len() as u32 - 1
                     };
-                    match self.zone(i) {
+                    match self.zones[i] {
                         Zone::Uniform(Cut::Hexahedra) => blocks.push(ElementKind::Hex8, &corners),
                         Zone::Uniform(Cut::Prisms) => blocks.prisms(corners),
                         Zone::Uniform(Cut::Pyramids) => blocks.pyramids(corners, centre(), None),
@@ -81,24 +91,6 @@ impl Grid {
             }
         }
         Mesh { points, blocks: blocks.list(), facet_blocks: Vec::new(), groups: self.sides() }
-    }
-
-    fn zone(&self, i: usize) -> Zone {
-        if self.cut != Cut::Mixed {
-            return Zone::Uniform(self.cut);
-        }
-        // hexahedra | one layer between | tetrahedra | prisms: the two outer zones a third of the length each
-        let count = self.cells[0];
-        let outer = (count / 3).max(1);
-        if i < outer {
-            Zone::Uniform(Cut::Hexahedra)
-        } else if i == outer {
-            Zone::Transition
-        } else if i < count - outer {
-            Zone::Uniform(Cut::Tetrahedra)
-        } else {
-            Zone::Uniform(Cut::Prisms)
-        }
     }
 
     fn point(&self, i: usize, j: usize, k: usize) -> u32 {
@@ -127,8 +119,54 @@ impl Grid {
     }
 }
 
+/// How the cubes of a layer are cut.
+#[derive(Clone, Copy)]
 enum Zone {
     Uniform(Cut),
     /// Pyramids whose faces towards greater x are cut in two triangles.
     Transition,
+}
+
+impl Zone {
+    fn has_centres(self) -> bool {
+        matches!(self, Self::Uniform(Cut::Pyramids) | Self::Transition)
+    }
+
+    fn cells_per_cube(self) -> u64 {
+        match self {
+            Self::Uniform(cut) => cut.cells_per_cube(),
+            Self::Transition => Cut::Mixed.cells_per_cube(),
+        }
+    }
+}
+
+/// Hexahedra | one layer between | tetrahedra | prisms: the two outer zones a third of the length each.
+fn mixed(i: usize, count: usize) -> Zone {
+    let outer = (count / 3).max(1);
+    if i < outer {
+        Zone::Uniform(Cut::Hexahedra)
+    } else if i == outer {
+        Zone::Transition
+    } else if i < count - outer {
+        Zone::Uniform(Cut::Tetrahedra)
+    } else {
+        Zone::Uniform(Cut::Prisms)
+    }
+}
+
+fn unfit(name: &'static str, counts: [f64; 3], expected: &str) -> MeshError {
+    let value = Value::Vector(counts).to_string();
+    MeshError::Parameter { name, value, expected: expected.to_owned() }
+}
+
+fn whole_counts(name: &'static str, counts: [f64; 3], per_cube: u64) -> Result<[usize; 3], MeshError> {
+    if !counts.iter().all(|count| *count >= 1.0 && count.fract() == 0.0) {
+        return Err(unfit(name, counts, "three whole numbers of at least 1"));
+    }
+    // in floating point, where nothing overflows
+    let requested = counts[0] * counts[1] * counts[2] * per_cube as f64;
+    if requested > MAX_CELLS as f64 {
+        return Err(MeshError::TooManyCells { requested, limit: MAX_CELLS });
+    }
+    Ok(counts.map(|count| count as usize))
 }

@@ -1,6 +1,6 @@
 //! Meshes made from a few numbers: bar, box, sphere, cylinder, shell, sheet, line, in every kind of cell and in mixes.
 //!
-//! Boxes are grids of cubes (`grid`), balls a grid in a shell of six (`ball`), cylinders a section
+//! Boxes are grids of cubes (`grid`), in `parts` of several kinds, balls a grid in a shell of six (`ball`), cylinders a section
 //! swept (`cylinder`); each cube is `cut` into cells. Quadratic cells are linear ones raised, middles of edges on the
 //! curve where there is one.
 
@@ -9,6 +9,7 @@ mod cuboid;
 mod cut;
 mod cylinder;
 mod grid;
+mod parts;
 mod sheet;
 
 use souple_table::{Entry, Table, Values};
@@ -37,6 +38,7 @@ pub static GENERATORS: Table<Build> = Table {
     entries: &[
         &cuboid::BAR,
         &cuboid::BOX,
+        &parts::BAR_OF_PARTS,
         &ball::SPHERE,
         &ball::HOLLOW_SPHERE,
         &cylinder::CYLINDER,

@@ -82,6 +82,36 @@ fn mixed_bar_has_every_kind() {
     assert_eq!(counts, [1, 5, 6 + 2, 2]);
 }
 
+fn bar_of_parts(cells: [f64; 3], elements: &'static str, ends: &[f64]) -> Result<Mesh, MeshError> {
+    let values = Values::new()
+        .with("size", Value::Vector([8.0, 1.0, 1.0]))
+        .with("cells", Value::Vector(cells))
+        .with("elements", Value::Text(elements))
+        .with("ends", Value::Numbers(ends));
+    generate("bar_of_parts", values)
+}
+
+/// The mixed bar of the source has its counts, fills its box, and gapes only where hexahedra meet tetrahedra: each face of
+/// a cube between pyramids and hexahedra is whole.
+#[test]
+fn bars_of_parts_have_their_counts() {
+    let quarters = [0.25, 0.5, 0.75, 1.0];
+    let mut mesh = bar_of_parts([48.0, 8.0, 8.0], "prism6, pyramid5, hex8, tet4", &quarters).unwrap();
+    let kinds = [ElementKind::Prism6, ElementKind::Pyramid5, ElementKind::Hex8, ElementKind::Tet4];
+    assert_eq!(kinds.map(|kind| mesh.count_of(kind)), [1536, 4608, 768, 4608]);
+    assert_eq!(mesh.points.len(), 4737);
+    mesh.validate().unwrap();
+    assert!((mesh.volume() - 8.0).abs() < 1e-12, "{}", mesh.volume());
+    // prisms end in triangles, pyramids begin with squares: 64 of them, and as many between hexahedra and tetrahedra
+    assert_eq!(mesh.conformity().split.len(), 128);
+    let refused = |elements: &'static str, ends: &[f64]| {
+        bar_of_parts([4.0, 1.0, 1.0], elements, ends).unwrap_err().to_string()
+    };
+    assert!(refused("hex8 tet4", &[0.5]).contains("2 ascending fractions, the last of them 1"));
+    assert!(refused("hex8 tet4", &[0.5, 0.4]).contains("ascending"));
+    assert!(refused("hex20", &[1.0]).contains("expected names among tet4"));
+}
+
 #[test]
 fn sides_are_groups() {
     let mesh = bar([4.0, 2.0, 3.0], "pyramid5").unwrap();

@@ -4,7 +4,8 @@
 //! compiled ahead. Outside the range where its formula has a value (`log(J)` of inverted elements) such a law has none:
 //! the step is refused. The compiled laws are continued there on purpose.
 
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use souple_formal::law::{EnergyLaw, LawError, LawParameter, LawText};
 use souple_formal::tape::Tape;
@@ -37,10 +38,10 @@ pub(super) const ENTRY: Entry<Build> = Entry {
     ],
     build: |values| {
         let text = law_text(values.text("energy"), values.texts("parameters"), values.texts("definitions"))?;
-        let law = TextLaw::compile(text)?;
+        let law = TextLaw::known(text)?;
         let small_strain = law.small_strain();
         Ok(Material {
-            law: MaterialLaw::Text(Arc::new(law)),
+            law: MaterialLaw::Text(law),
             parameters: [0.0; PARAMETERS_MAX],
             small_strain,
             density: values.number("density"),
@@ -138,7 +139,28 @@ fn direction(text: &str) -> Option<[f64; 3]> {
     Some(if length > 0.0 { vector.map(|number| number / length) } else { vector })
 }
 
+/// Laws compiled last, the latest first. A scene is read, built and, while it is shown, built again.
+static KNOWN: Mutex<VecDeque<Arc<TextLaw>>> = Mutex::new(VecDeque::new());
+/// How many of them.
+const KNOWN_MOST: usize = 32;
+
 impl TextLaw {
+    /// The law of a text, compiled if it is not among those compiled last.
+    ///
+    /// # Errors
+    /// As [`Self::compile`].
+    pub fn known(text: LawText) -> Result<Arc<Self>, MaterialError> {
+        let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(law) = known().iter().find(|law| law.text == text) {
+            return Ok(Arc::clone(law));
+        }
+        let law = Arc::new(Self::compile(text)?);
+        let mut known = known();
+        known.truncate(KNOWN_MOST - 1);
+        known.push_front(Arc::clone(&law));
+        Ok(law)
+    }
+
     /// # Errors
     /// As [`EnergyLaw::compile`], with the place marked.
     pub fn compile(text: LawText) -> Result<Self, MaterialError> {

@@ -43,6 +43,22 @@ pub const WRITTEN_LAWS: &[WrittenLaw] = &[
         definitions: &[],
     },
     WrittenLaw {
+        name: "corotational",
+        summary: "Hooke's law in the frame that turns with the matter, by principal stretches",
+        source: "Müller & Gross 2004; Sifakis & Barbič 2012, §3.4",
+        energy: "mu*((l1 - 1)^2 + (l2 - 1)^2 + (l3 - 1)^2) + lambda/2*(l1 + l2 + l3 - 3)^2",
+        parameters: &[("lambda", "20 kPa"), ("mu", "10 kPa")],
+        definitions: &[],
+    },
+    WrittenLaw {
+        name: "stable_neo_hookean",
+        summary: "smooth for every deformation, inverted ones too",
+        source: "Smith, de Goes & Kim 2018, Stable Neo-Hookean Flesh Simulation, eq. 14",
+        energy: "m/2*(I1 - 3 - log((I1 + 1)/4)) + l/2*(J - 1)^2 - 3/4*m*(J - 1)",
+        parameters: &[("lambda", "20 kPa"), ("mu", "10 kPa")],
+        definitions: &[("m", "4/3*mu"), ("l", "lambda + 5/6*mu")],
+    },
+    WrittenLaw {
         name: "mooney_rivlin",
         summary: "rubber at moderate stretch; two isochoric invariants",
         source: "Mooney 1940; Rivlin 1948; decoupled form after Holzapfel 2000, Nonlinear Solid Mechanics, §6.5",

@@ -49,25 +49,55 @@ impl Geometry for AnyElement {
 
     #[inline(always)]
     fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
-        let like = x[0].x;
-        let mut sum = Mat3::zero(like);
-        for a in 0..reference.len() {
-            let g = reference[a];
-            accumulate(&mut sum.columns[0], x[a], like.splat(g.x));
-            accumulate(&mut sum.columns[1], x[a], like.splat(g.y));
-            accumulate(&mut sum.columns[2], x[a], like.splat(g.z));
-        }
-        sum
+        gradient(x, reference)
     }
 
     #[inline(always)]
     fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]) {
-        let like = stress.columns[0].x;
-        for a in 0..reference.len() {
-            let g = reference[a];
-            let gradient = Vec3::new(like.splat(g.x), like.splat(g.y), like.splat(g.z));
-            forces[a] -= *stress * gradient;
-        }
+        spread(stress, reference, forces);
+    }
+}
+
+/// An element of `N` nodes: the same loops, of a length that is known when they are compiled.
+#[derive(Clone, Copy, Debug)]
+pub struct Nodes<const N: usize>;
+
+impl<const N: usize> Geometry for Nodes<N> {
+    const NODES: Option<usize> = Some(N);
+    const SAMPLES: Option<usize> = None;
+
+    #[inline(always)]
+    fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
+        gradient(&x[..N], &reference[..N])
+    }
+
+    #[inline(always)]
+    fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]) {
+        spread(stress, &reference[..N], &mut forces[..N]);
+    }
+}
+
+#[inline(always)]
+fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
+    let like = x[0].x;
+    let mut sum = Mat3::zero(like);
+    for a in 0..reference.len() {
+        let g = reference[a];
+        accumulate(&mut sum.columns[0], x[a], like.splat(g.x));
+        accumulate(&mut sum.columns[1], x[a], like.splat(g.y));
+        accumulate(&mut sum.columns[2], x[a], like.splat(g.z));
+    }
+    sum
+}
+
+#[inline(always)]
+fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]) {
+    let like = stress.columns[0].x;
+    for a in 0..reference.len() {
+        let g = reference[a];
+        accumulate(&mut forces[a], stress.columns[0], like.splat(-g.x));
+        accumulate(&mut forces[a], stress.columns[1], like.splat(-g.y));
+        accumulate(&mut forces[a], stress.columns[2], like.splat(-g.z));
     }
 }
 

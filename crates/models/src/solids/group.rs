@@ -28,23 +28,35 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
     /// Vectors of the elements' nodes, side by side.
     #[inline(always)]
     pub fn gather(&self, values: &[Padded]) -> [Vec3<Lanes<S>>; N] {
-        assert!(values.len() >= self.chunk.rows.len(), "one value for each node of the chunk");
         let mut out = self.zeros();
         for a in 0..self.nodes {
-            // SAFETY: the connectivity of a chunk holds indices below `rows.len()` only (`lay_out`)
-            out[a] = unsafe { Vec3::gather(self.simd, values, self.locals(a)) };
+            out[a] = self.gather_node(values, a);
         }
         out
+    }
+
+    /// Vectors of the elements' node `a`.
+    #[inline(always)]
+    pub fn gather_node(&self, values: &[Padded], a: usize) -> Vec3<Lanes<S>> {
+        assert!(values.len() >= self.chunk.rows.len(), "one value for each node of the chunk");
+        // SAFETY: the connectivity of a chunk holds indices below `rows.len()` only (`lay_out`)
+        unsafe { Vec3::gather(self.simd, values, self.locals(a)) }
     }
 
     /// `sums[n] += values` of the elements' nodes, element after element; lanes without an element add zero.
     #[inline(always)]
     pub fn scatter(&self, values: &[Vec3<Lanes<S>>; N], sums: &mut [Padded]) {
-        assert!(sums.len() >= self.chunk.rows.len(), "one sum for each node of the chunk");
         for a in 0..self.nodes {
-            // SAFETY: as in `gather`
-            unsafe { values[a].scatter_add(self.simd, sums, self.locals(a)) };
+            self.scatter_node(a, values[a], sums);
         }
+    }
+
+    /// The same of node `a` alone.
+    #[inline(always)]
+    pub fn scatter_node(&self, a: usize, value: Vec3<Lanes<S>>, sums: &mut [Padded]) {
+        assert!(sums.len() >= self.chunk.rows.len(), "one sum for each node of the chunk");
+        // SAFETY: as in `gather_node`
+        unsafe { value.scatter_add(self.simd, sums, self.locals(a)) };
     }
 
     /// The group's lanes of a block of lanes.

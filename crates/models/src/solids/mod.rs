@@ -12,6 +12,7 @@ pub(crate) mod layout;
 mod mass;
 mod output;
 pub(crate) mod parallel;
+mod quadrature;
 mod rayleigh;
 mod row_law;
 pub(crate) mod sample_law;
@@ -28,13 +29,13 @@ use std::sync::Arc;
 use souple_engine::state::Pair;
 use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, MAX_NODES, Mesh, QuadratureRule};
+use souple_mesh::{ElementKind, MAX_NODES, Mesh};
 use souple_solve::BlockMatrix;
 
 use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters};
 use assembly::{Assembly, Symmetry};
 use elements::{Batch, Elements, Sorting};
-use geometry::{AnyElement, Tetrahedron};
+use geometry::{AnyElement, Nodes, Tetrahedron};
 use kernel::{Kernel, LawKernel};
 use layout::Chunk;
 use row_law::{RowLaw, row_law};
@@ -47,6 +48,7 @@ pub use difference::DifferencedForce;
 pub use formulation::{BuildFormulation, FORMULATIONS, FormulationError};
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass, uniform_mass};
+pub use quadrature::Quadrature;
 pub use rayleigh::RayleighDamping;
 pub use section::{BuildSection, SECTIONS, Section};
 pub use viscosity::Viscosity;
@@ -66,25 +68,6 @@ pub struct SolidForce {
     declaration: Declaration,
     /// Where its points rest, if its kernels take displacements in the place of positions [m]; else empty.
     rest: Vec<Vec3>,
-}
-
-/// Which rule of quadrature integrates the energy of an element.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Quadrature {
-    /// Exact for linear elasticity on straight-sided elements; the cheapest that keeps full rank.
-    #[default]
-    Default,
-    /// Exact for St. Venant–Kirchhoff energy too: more samples in hexahedra, prisms and pyramids.
-    Full,
-}
-
-impl Quadrature {
-    pub fn rule(self, kind: ElementKind) -> &'static QuadratureRule {
-        match self {
-            Self::Default => kind.default_rule(),
-            Self::Full => kind.full_rule(),
-        }
-    }
 }
 
 /// What a body is made of.
@@ -271,9 +254,13 @@ impl LawVisitor for ParameterCount {
 
 /// The kernel for a law that knows no elements.
 fn staged(kind: ElementKind, law: Box<dyn SampleLaw>) -> Box<dyn Kernel> {
-    match kind {
-        ElementKind::Tet4 => Box::new(Staged::<Tetrahedron, 4>::new(law, 4)),
-        _ => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, kind.node_count())),
+    match (kind, kind.node_count()) {
+        (ElementKind::Tet4, _) => Box::new(Staged::<Tetrahedron, 4>::new(law, 4)),
+        // loops of known length are twice as fast or more; the others are long anyway
+        (_, 5) => Box::new(Staged::<Nodes<5>, 5>::new(law, 5)),
+        (_, 6) => Box::new(Staged::<Nodes<6>, 6>::new(law, 6)),
+        (_, 8) => Box::new(Staged::<Nodes<8>, 8>::new(law, 8)),
+        (_, nodes) => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, nodes)),
     }
 }
 

@@ -246,6 +246,8 @@ impl<G: Geometry, const N: usize> WithSimd for Gradients<'_, G, N> {
                 let group = stage.group(simd, row, lane);
                 let sample = row % stage.per_block();
                 if sample == 0 || row == run.first {
+                    // the stages behind this one find the numbers of its samples in the cache
+                    group.prefetch(1);
                     x = group.gather(values);
                 }
                 let (inverse, _) = group.sample(sample);

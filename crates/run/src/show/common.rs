@@ -128,6 +128,7 @@ impl Common {
             let noise = bodies().map(|body| quantity.noise(body, show.stage.stiffness)).fold(0.0, f64::max);
             let found = extremes(bodies().filter_map(|body| quantity.at_points(body)).flatten());
             range = found.map(|range| figure.colours.spread(spread(range, noise)));
+            range = figure.colours.own_range().or(range);
         }
         let mut arrow_scale = 1.0;
         if let Some(arrows) = &figure.arrows {

@@ -2,14 +2,14 @@
 
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
-    Backdrop, Colour, ColourMap, Cut, EdgeStyle, Ground, Legend, LegendPlace, MeshSurface, Paint, Picture,
-    Stroke, StrokeShape, Surface, Theme, View,
+    Backdrop, Colour, ColourMap, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace, MeshSurface,
+    Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
 };
 use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
 
 use super::common::Common;
-use super::quantity::Quantity;
+use super::quantity::{Quantity, number_of};
 use super::{BodyMoment, Moment, Show, ShowError, vectors};
 
 /// Everything that a person may ask of a picture of a run.
@@ -34,6 +34,8 @@ pub struct Figure {
     pub cut: Option<Cut>,
     /// How far cells are moved apart, as a part of their distance from the middle.
     pub explode: f64,
+    /// How much smaller each cell is drawn, about its own middle.
+    pub shrink: f64,
     pub arrows: Option<Arrows>,
     pub edges: EdgeStyle,
 }
@@ -74,6 +76,7 @@ impl Default for Figure {
             range: None,
             cut: None,
             explode: 0.0,
+            shrink: 0.0,
             arrows: None,
             edges: EdgeStyle::Drawn,
         }
@@ -135,6 +138,7 @@ impl Figure {
             unit: quantity.unit().to_owned(),
             range: common.range,
             place: self.legend,
+            names: names_of(self.colours, moment),
         });
         let PictureView { direction, up } = show.stage.view;
         let view = self.view.unwrap_or_else(|| View::along(direction, up));
@@ -163,11 +167,16 @@ impl Figure {
 
     /// What is seen of a body: its surface, or its links, those of each state in a colour, and its balls.
     fn surfaces(&self, body: &BodyMoment, index: usize, common: &Common) -> Vec<Surface> {
-        let values = self.quantity().and_then(|quantity| quantity.at_points(body));
+        let quantity = self.quantity();
+        let values = quantity.as_ref().and_then(|quantity| quantity.at_points(body));
+        // colours with a meaning of their own are not mixed between cells
+        let by_cell = quantity.filter(|_| self.colours.own_range().is_some() && !body.is_of_edges());
+        let by_cell = by_cell.and_then(|quantity| quantity.at_cells(body));
         let painted = |mut of: MeshSurface, state: u8| {
-            match &values {
-                Some(values) => of.paint_points(values),
-                None => of.surface.paint = Paint::Plain(colour_of(index, state)),
+            match (&by_cell, &values) {
+                (Some(values), _) => of.paint_cells(values),
+                (None, Some(values)) => of.paint_points(values),
+                (None, None) => of.surface.paint = Paint::Plain(colour_of(index, state)),
             }
             of.surface
         };
@@ -190,7 +199,7 @@ impl Figure {
             _ if body.is_of_edges() => body.tubes(common, self.cut, None),
             Some(cut) if self.explode > 0.0 => MeshSurface::of_cells_left(&body.mesh, &body.positions, cut),
             Some(cut) => MeshSurface::cut(&body.mesh, &body.positions, cut),
-            None if self.explode > 0.0 => MeshSurface::of_cells(&body.mesh),
+            None if self.explode > 0.0 || self.shrink > 0.0 => MeshSurface::of_cells(&body.mesh),
             None => MeshSurface::of(&body.mesh),
         };
         if !body.is_of_edges() {
@@ -199,6 +208,9 @@ impl Figure {
         }
         if self.explode > 0.0 && !body.is_of_edges() {
             surface.explode(self.explode);
+        }
+        if self.cut.is_none() && self.shrink > 0.0 {
+            surface.shrink(self.shrink);
         }
         surface
     }
@@ -302,6 +314,19 @@ impl Figure {
             up: show.stage.view.up,
         })
     }
+}
+
+/// What values are called where colours stand for kinds of elements: those there are, with how many.
+fn names_of(colours: ColourMap, moment: &Moment) -> Vec<(f64, String)> {
+    if colours != ColourMap::Elements {
+        return Vec::new();
+    }
+    let mut counts = [0; ELEMENT_KINDS.len()];
+    for cell in moment.bodies.iter().flat_map(|body| body.mesh.cells()) {
+        counts[number_of(cell.kind)] += 1;
+    }
+    let named = counts.iter().zip(ELEMENT_KINDS).enumerate().filter(|(_, (count, _))| **count > 0);
+    named.map(|(number, (count, name))| (number as f64, format!("{count} {name}"))).collect()
 }
 
 /// The colour of a body, or of those of its links that are in another state than at the start.

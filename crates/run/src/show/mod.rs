@@ -5,6 +5,7 @@
 mod common;
 mod figure;
 mod film;
+mod gap;
 mod quantity;
 mod stage;
 
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use souple_engine::World;
+use souple_io::picture::ColourMap;
 use souple_io::{Dataset, Field, IoError, read_dataset, read_series};
 use souple_math::Vec3;
 use souple_mesh::{BoundingBox, Mesh};
@@ -21,7 +23,13 @@ use crate::Session;
 
 pub use figure::{Arrows, Figure, Floor};
 pub use film::{FilmError, write_film};
+pub use gap::GAP;
 pub use stage::{Stage, obstacles_of};
+
+/// The map whose colours mean what a quantity says, `element` or `adaptation`; `None` where any will do.
+pub fn map_of(quantity: &str) -> Option<ColourMap> {
+    quantity::Quantity::parse(quantity).own_map()
+}
 
 /// All bodies and skins at one time.
 #[derive(Clone, Debug)]

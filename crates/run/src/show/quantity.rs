@@ -1,12 +1,23 @@
 //! Numbers to colour by: a field, its magnitude or one component, brought to the points.
 
 use souple_io::Field;
+use souple_io::picture::{ColourMap, ELEMENT_KINDS};
+use souple_mesh::ElementKind;
 
 use super::{BodyMoment, Moment, ShowError};
 
 /// Names of the components of vectors and of symmetric tensors.
 const VECTOR: [&str; 3] = ["x", "y", "z"];
 const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+/// The kind of each cell: what every mesh has, without a field.
+const ELEMENT: &str = "element";
+
+/// The number of a kind among [`ELEMENT_KINDS`], which has one for linear and quadratic elements alike.
+pub(super) fn number_of(kind: ElementKind) -> usize {
+    let name = kind.corners().name().trim_end_matches(|letter: char| letter.is_ascii_digit());
+    ELEMENT_KINDS.iter().position(|known| *known == name).unwrap_or(ELEMENT_KINDS.len() - 1)
+}
 
 /// What is shown by colours: `von_mises`, `displacement` (its magnitude), `displacement.y`, `stress.xx`.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,9 +46,18 @@ impl<'a> Quantity<'a> {
         }
     }
 
+    /// The map whose colours mean what the quantity says; `None` where any will do.
+    pub fn own_map(&self) -> Option<ColourMap> {
+        match self.field {
+            ELEMENT => Some(ColourMap::Elements),
+            "adaptation" => Some(ColourMap::Adaptation),
+            _ => None,
+        }
+    }
+
     pub fn unit(&self) -> &'static str {
         match self.field {
-            "displacement" => "m",
+            "displacement" | super::GAP => "m",
             "velocity" => "m/s",
             "stress" | "von_mises" => "Pa",
             "strain_energy_density" => "J/m³",
@@ -52,8 +72,7 @@ impl<'a> Quantity<'a> {
         if let Some(field) = body.point_fields.iter().find(|field| field.name == self.field) {
             return self.scalars(field);
         }
-        let field = body.cell_fields.iter().find(|field| field.name == self.field)?;
-        let cells = self.scalars(field)?;
+        let cells = self.at_cells(body)?;
         let mut sums = vec![(0.0, 0.0); body.positions.len()];
         for (cell, value) in body.mesh.cells().zip(&cells) {
             for node in cell.nodes {
@@ -63,6 +82,14 @@ impl<'a> Quantity<'a> {
             }
         }
         Some(sums.into_iter().map(|(sum, count)| sum / count).collect())
+    }
+
+    /// A value for each cell of a body; `None` where it has no such field.
+    pub fn at_cells(&self, body: &BodyMoment) -> Option<Vec<f64>> {
+        if self.field == ELEMENT {
+            return Some(body.mesh.cells().map(|cell| number_of(cell.kind) as f64).collect());
+        }
+        self.scalars(body.cell_fields.iter().find(|field| field.name == self.field)?)
     }
 
     /// What rounding makes of zero in a body of a stiffness [Pa]; zero where that is not known of the quantity.
@@ -123,8 +150,11 @@ impl<'a> Quantity<'a> {
             Some(component) => format!("{}.{component}", self.field),
             None => self.field.to_owned(),
         };
-        let expected =
-            if known.is_empty() { "none".to_owned() } else { format!("one of {}, none", known.join(", ")) };
+        let expected = if known.is_empty() {
+            "none".to_owned()
+        } else {
+            format!("one of {}, element, none", known.join(", "))
+        };
         Err(ShowError::UnknownField { name, expected })
     }
 }

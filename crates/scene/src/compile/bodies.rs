@@ -258,7 +258,7 @@ fn add_solid(
     forces: &mut Vec<Box<dyn Force>>,
 ) -> Result<(), FormulationError> {
     let elastic: Box<dyn Force> = match (&body.formulation, adapted(body)) {
-        (Some(chosen), _) => (chosen.entry.build)(&description)?,
+        (Some(chosen), _) => (chosen.entry.build)(&description, &chosen.values)?,
         (None, Some((second, adaptation))) => {
             let laws = [description.materials[0].clone(), second];
             Box::new(AdaptiveForce::new(&description, laws, adaptation)?)
@@ -326,6 +326,11 @@ fn report(draft: &Draft, body: &Body, error: &FormulationError) {
         FormulationError::Flat(_) => {
             (Code::Mesh, body.mesh.as_ref().map(|mesh| mesh.site()), "cells with volume")
         }
+        FormulationError::Cut { .. } => (
+            Code::OutOfRange,
+            body.formulation.as_ref().map(|chosen| chosen.site_of("cut")),
+            "none, all, or letters of L, G, N, D",
+        ),
         _ => (
             Code::Conflict,
             body.formulation.as_ref().map(|chosen| &chosen.site),

@@ -90,8 +90,8 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
     }
     let said = |message: String| format!("body `{}`: {message}", body.name);
     warnings.extend(repairs.messages().into_iter().map(said));
-    if let MeshSpec::File { .. } = spec {
-        // what the generators make conforms by their own tests
+    // what generators make of one kind of cells conforms by their own tests
+    if matches!(spec, MeshSpec::File { .. }) || mesh.blocks.len() > 1 {
         let found = mesh.conformity();
         if let Some(message) = overlap(&found, &repairs) {
             return refuse(

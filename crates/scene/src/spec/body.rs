@@ -84,6 +84,7 @@ pub(crate) static BODY: Keys = Keys::new(
             "samples in an element: the cheapest of full rank, or exact ones for quadratic stress",
         )
         .or(Value::Text("default")),
+        super::rules::RULES,
         Key::new(
             "formulation",
             Shape::Entry(FORMULATION),
@@ -252,11 +253,7 @@ impl Body {
                 "uniform" => MassKind::Uniform,
                 _ => MassKind::Lumped,
             },
-            quadrature: if reader.choice("quadrature") == "full" {
-                Quadrature::Full
-            } else {
-                Quadrature::Default
-            },
+            quadrature: super::rules::read(reader),
             formulation: reader.entry("formulation", &FORMULATIONS),
             tangent: if reader.choice("tangent") == "difference" {
                 TangentKind::Difference

@@ -14,6 +14,7 @@ pub mod picture;
 pub mod probe;
 pub mod quantity;
 pub mod region;
+mod rules;
 pub mod skin;
 pub mod world;
 

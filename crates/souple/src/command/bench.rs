@@ -38,7 +38,8 @@ pub fn bench(arguments: &Arguments) -> Result<End, Refusal> {
         let measured = (bench.run)(effort)
             .map_err(|error| Refusal::work("bench", format!("{}: {error}", bench.name)))?;
         if !arguments.json {
-            measured.iter().for_each(print_line);
+            let width = measured.iter().map(|figure| figure.name.len()).max().unwrap_or(0);
+            measured.iter().for_each(|figure| print_line(format_args!("{figure:width$}")));
         }
         figures.extend(measured);
     }

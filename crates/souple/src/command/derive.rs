@@ -1,30 +1,40 @@
 //! `souple derive`: a law on an element, derived step by step, counted, and written as code.
 
-use std::fmt::Write as _;
+mod files;
+mod report;
+
+use std::path::PathBuf;
 
 use clap::ValueEnum;
-use serde_json::{Value, json};
-use souple_formal::element::{Axis, Cut, Derived, ElementExpressions};
-use souple_formal::emit::{ElementCode, Latex, Style, Text, write};
-use souple_formal::graph::{Expr, Operations};
+use serde_json::json;
+use souple_formal::element::Cut;
+use souple_formal::emit::{ElementCode, maxima};
 use souple_formal::law::{EnergyLaw, LawProblem, LawText};
 use souple_mesh::ElementKind;
-use souple_models::derive::{MapKind, element_data, source_constant_count, source_law_name};
+use souple_models::associations::Association;
+use souple_models::derive::{MapKind, element_data, source_law_name};
 use souple_models::materials::{WRITTEN_LAWS, WrittenLaw, law_text};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line, print_note};
+use report::Report;
 
 #[derive(clap::Args)]
 pub struct Arguments {
     /// An energy density such as "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", or the name of a law
+    #[arg(long, required_unless_present = "list")]
+    law: Option<String>,
+    /// An element of surfaces or volumes, such as tri3, hex8 or tet10
+    #[arg(long, required_unless_present = "list")]
+    element: Option<String>,
+    /// Lists what can be derived: every law on every element under every rule, in every cut
     #[arg(long)]
-    law: String,
-    /// tri3, quad4, tet4, hex8, prism6 or pyramid5
-    #[arg(long)]
-    element: String,
+    list: bool,
     /// What is printed
     #[arg(long, value_enum, default_value_t = Emit::Stats)]
     emit: Emit,
+    /// Writes the expressions of every fragment there, one file for each node and axis
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
     /// A material constant of a law given as text, such as mu="1 MPa" or a="[1, 0, 0]"; may be repeated
     #[arg(long = "parameter", value_name = "NAME=VALUE")]
     parameters: Vec<String>,
@@ -50,6 +60,7 @@ enum Emit {
     Rust,
     Wgsl,
     Latex,
+    Maxima,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -59,8 +70,13 @@ enum Map {
 }
 
 pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
+    if arguments.list {
+        return Ok(list(arguments));
+    }
     let clock = std::time::Instant::now();
-    let (name, text) = law_of(arguments)?;
+    let (wanted, element_name) = (arguments.law.as_deref(), arguments.element.as_deref());
+    let (wanted, element_name) = (wanted.unwrap_or_default(), element_name.unwrap_or_default());
+    let (name, text) = law_of(wanted, arguments)?;
     let law = EnergyLaw::compile(&text).map_err(|error| {
         let definition = text.definitions.iter().find(|(name, _)| *name == error.part);
         let written = definition.map_or(text.energy.as_str(), |(_, text)| text.as_str());
@@ -73,18 +89,13 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Refusal::request("law", text.energy.clone(), expected, error.explained(written))
     })?;
     let compiled_seconds = clock.elapsed().as_secs_f64();
-    let kind = ElementKind::from_name(&arguments.element).map_err(|unknown| {
+    let kind = ElementKind::from_name(element_name).map_err(|unknown| {
         let expected = format!("one of {}", unknown.known.join(", "));
-        Refusal::request("unknown_element", &arguments.element, expected, unknown.to_string())
+        Refusal::request("unknown_element", element_name, expected, unknown.to_string())
     })?;
     if kind.dimension() == 1 {
         let message = format!("{kind} has no gradient in a plane or in space to derive a law on");
-        return Err(Refusal::request(
-            "element",
-            &arguments.element,
-            "an element of surfaces or volumes",
-            message,
-        ));
+        return Err(Refusal::request("element", element_name, "an element of surfaces or volumes", message));
     }
     let rule = match &arguments.rule {
         // the source integrates simplices with constant strain by one sample
@@ -107,13 +118,20 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     })?;
     let mut derived = element
         .derive(&law, cut)
-        .map_err(|error| Refusal::request("law", &arguments.law, "a law of invariants", error.to_string()))?;
+        .map_err(|error| Refusal::request("law", wanted, "a law of invariants", error.to_string()))?;
     // what is known of the laws of the table is on their pages
     for warning in law.warnings.iter().filter(|_| name == TEXT) {
         print_note(format_args!("warning: {warning}"));
     }
     let derived_seconds = clock.elapsed().as_secs_f64();
-    let report = Report { law: &law, name: &name, kind, map, samples: rule.points.len() };
+    let association = source_law_name(&name) + &derived.name;
+    if let Some(folder) = &arguments.out {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| Refusal::work("write", format!("{}: {error}", folder.display())))?;
+        files::write(folder, &derived, &association)
+            .map_err(|error| Refusal::work("write", error.to_string()))?;
+    }
+    let report = Report { law: &law, name: &name, element: &element, kind, map };
     match arguments.emit {
         Emit::Stats => {
             let seconds = [compiled_seconds, derived_seconds];
@@ -126,6 +144,13 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Emit::Latex => emit_text(&report.latex(), "latex", arguments.json),
         Emit::Rust => emit_text(&derived.emit(ElementCode::Rust).text, "rust", arguments.json),
         Emit::Wgsl => emit_text(&derived.emit(ElementCode::Wgsl).text, "wgsl", arguments.json),
+        Emit::Maxima => {
+            let script = maxima(&element, &law, &association).ok_or_else(|| {
+                let message = "principal stretches have no formula that Maxima could differentiate";
+                Refusal::request("law", wanted, "a law of invariants", message)
+            })?;
+            emit_text(&script, "maxima", arguments.json);
+        }
     }
     Ok(End::Done)
 }
@@ -141,8 +166,35 @@ fn emit_text(text: &str, language: &str, as_json: bool) {
 /// The name of a law that is given as text.
 const TEXT: &str = "text";
 
+/// Prints the associations of the law and the element, where they are named.
+fn list(arguments: &Arguments) -> End {
+    let is_wanted = |association: &Association| {
+        arguments.law.as_deref().is_none_or(|law| law == association.law.name)
+            && arguments.element.as_deref().is_none_or(|element| element == association.kind.name())
+    };
+    let wanted = Association::all().filter(is_wanted);
+    if arguments.json {
+        let entry = |association: Association| {
+            json!({
+                "name": association.name(),
+                "law": association.law.name,
+                "element": association.kind.name(),
+                "rule": association.rule.name,
+                "cut": association.cut.name(),
+                "command": association.command(),
+            })
+        };
+        print_json(&wanted.map(entry).collect::<Vec<_>>().into());
+    } else {
+        wanted.for_each(|association| {
+            print_line(format_args!("{:46} {}", association.name(), association.command()));
+        });
+    }
+    End::Done
+}
+
 /// The law of that name, or the text.
-fn law_of(arguments: &Arguments) -> Result<(String, LawText), Refusal> {
+fn law_of(wanted: &str, arguments: &Arguments) -> Result<(String, LawText), Refusal> {
     let pairs = |list: &[String]| -> Result<Vec<(String, String)>, Refusal> {
         list.iter()
             .map(|text| {
@@ -154,186 +206,19 @@ fn law_of(arguments: &Arguments) -> Result<(String, LawText), Refusal> {
             .collect()
     };
     let (parameters, definitions) = (pairs(&arguments.parameters)?, pairs(&arguments.definitions)?);
-    if let Some(law) = WrittenLaw::find(&arguments.law) {
+    if let Some(law) = WrittenLaw::find(wanted) {
         let text = law.text().map_err(|error| Refusal::work("law", error.to_string()))?;
         return Ok((law.name.to_owned(), text));
     }
-    let is_name = arguments.law.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    if is_name && arguments.law.len() > 2 {
+    let is_name = wanted.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    if is_name && wanted.len() > 2 {
         let names: Vec<&str> = WRITTEN_LAWS.iter().map(|law| law.name).collect();
-        let message = format!(
-            "there is no law `{}`{}",
-            arguments.law,
-            did_you_mean(&arguments.law, names.iter().copied())
-        );
+        let message = format!("there is no law `{}`{}", wanted, did_you_mean(wanted, names.iter().copied()));
         let expected =
             format!("an energy density, or a law that `souple list laws` prints: {}", names.join(", "));
-        return Err(Refusal::request("unknown_law", &arguments.law, expected, message));
+        return Err(Refusal::request("unknown_law", wanted, expected, message));
     }
-    let text = law_text(&arguments.law, &parameters, &definitions)
+    let text = law_text(wanted, &parameters, &definitions)
         .map_err(|error| Refusal::request("parameter", "", "a quantity or direction", error.to_string()))?;
     Ok((TEXT.to_owned(), text))
-}
-
-struct Report<'a> {
-    law: &'a EnergyLaw,
-    name: &'a str,
-    kind: ElementKind,
-    map: MapKind,
-    samples: usize,
-}
-
-/// Counts of fragments of one sort, summed.
-struct Sums {
-    fragments: usize,
-    constants: usize,
-    step: Operations,
-    once: Operations,
-}
-
-fn sums(derived: &Derived, fragments: &[ElementExpressions]) -> Sums {
-    let mut sums = Sums {
-        fragments: fragments.len(),
-        constants: 0,
-        step: Operations::default(),
-        once: Operations::default(),
-    };
-    for fragment in fragments {
-        let (step, once) = fragment.operations(&derived.graph);
-        sums.constants += fragment.grouped.constants.len();
-        sums.step = sums.step + step;
-        sums.once = sums.once + once;
-    }
-    sums
-}
-
-impl Report<'_> {
-    /// Parts and result of an expression of the law, as text.
-    fn written(&self, expr: Expr, style: &dyn Style) -> (Vec<String>, String) {
-        let (parts, mut roots) = write(&self.law.graph, &[expr], style);
-        (parts, roots.remove(0))
-    }
-
-    fn to_text(&self, derived: &mut Derived, [compiled, total]: [f64; 2]) -> String {
-        let mut text = String::new();
-        let steps = [
-            ("energy", "Psi", self.law.energy),
-            ("stress, dPsi/dF", "P", self.law.stress),
-            ("its differential along dF", "dP", self.law.differential),
-        ];
-        for (what, symbol, expr) in steps {
-            let (parts, result) = self.written(expr, &Text);
-            let operations = self.law.graph.operations(&[expr], |_| false).total();
-            let _ = writeln!(text, "{what} ({operations} operations)");
-            for part in parts {
-                let _ = writeln!(text, "    {part}");
-            }
-            let _ = writeln!(text, "  {symbol} = {result}\n");
-        }
-        let samples =
-            if self.samples == 1 { "1 sample".to_owned() } else { format!("{} samples", self.samples) };
-        let _ = writeln!(text, "on {}, {samples}, expressions cut: {}", self.kind, derived.cut.name());
-        let _ = writeln!(text, "  F = I + U_xi X_xi^-1, f_n = -sum w det(X_xi) P X_xi^-T dN_n/dxi\n");
-        let _ = writeln!(
-            text,
-            "  {:<14} {:>9} {:>9} {:>12} {:>12} {:>10}",
-            "", "fragments", "constants", "ops per step", "ops at start", "functions"
-        );
-        for (what, fragments) in [
-            ("energy", &derived.energies),
-            ("forces", &derived.forces),
-            ("differential", &derived.differentials),
-        ] {
-            let sums = sums(derived, fragments);
-            let _ = writeln!(
-                text,
-                "  {what:<14} {:>9} {:>9} {:>12} {:>12} {:>10}",
-                sums.fragments,
-                sums.constants,
-                sums.step.total(),
-                sums.once.total(),
-                sums.step.functions
-            );
-        }
-        if let Some(source) = source_constant_count(self.kind, self.map).filter(|_| derived.cut == Cut::NONE)
-        {
-            let _ =
-                writeln!(text, "\n  grouped constants of the energy in Faure 2014, tables 3.4-3.7: {source}");
-        }
-        let (rust, wgsl) = (derived.emit(ElementCode::Rust), derived.emit(ElementCode::Wgsl));
-        let _ = writeln!(text, "\n  code: Rust {} bytes, WGSL {} bytes", rust.text.len(), wgsl.text.len());
-        let _ = writeln!(
-            text,
-            "  law compiled in {:.1} ms, element derived in {:.1} ms",
-            1e3 * compiled,
-            1e3 * (total - compiled)
-        );
-        text
-    }
-
-    fn to_json(&self, derived: &mut Derived, [compiled, total]: [f64; 2]) -> Value {
-        let expression = |expr: Expr| {
-            let (parts, result) = self.written(expr, &Text);
-            let operations = self.law.graph.operations(&[expr], |_| false).total();
-            json!({ "parts": parts, "result": result, "operations": operations })
-        };
-        let counted = |fragments: &[ElementExpressions]| {
-            let sums = sums(derived, fragments);
-            let by_fragment: Vec<usize> =
-                fragments.iter().map(|fragment| fragment.grouped.constants.len()).collect();
-            json!({
-                "fragments": sums.fragments,
-                "constants": sums.constants,
-                "constants_by_fragment": by_fragment,
-                "operations_per_step": sums.step.total(),
-                "functions_per_step": sums.step.functions,
-                "operations_at_start": sums.once.total(),
-            })
-        };
-        let mut document = json!({
-            "law": self.name,
-            "element": self.kind.name(),
-            "samples": self.samples,
-            // as the source names such a pair
-            "association": source_law_name(self.name) + &derived.name,
-            "cut": derived.cut.name(),
-            "cut_axes": Axis::ALL.iter().filter(|axis| derived.cut.has(**axis)).count(),
-            "energy": expression(self.law.energy),
-            "stress": expression(self.law.stress),
-            "differential": expression(self.law.differential),
-            "on_element": {
-                "energy": counted(&derived.energies),
-                "forces": counted(&derived.forces),
-                "differential": counted(&derived.differentials),
-            },
-            "source_constants": source_constant_count(self.kind, self.map),
-            "warnings": self.law.warnings,
-            "seconds": { "law": compiled, "element": total - compiled },
-        });
-        document["code_bytes"] = json!({
-            "rust": derived.emit(ElementCode::Rust).text.len(),
-            "wgsl": derived.emit(ElementCode::Wgsl).text.len(),
-        });
-        document
-    }
-
-    fn latex(&self) -> String {
-        let mut text = String::from("\\begin{align*}\n");
-        for (symbol, expr) in
-            [("\\Psi", self.law.energy), ("P", self.law.stress), ("\\delta P", self.law.differential)]
-        {
-            let (parts, result) = self.written(expr, &Latex);
-            for part in parts {
-                let _ = writeln!(text, "  {} \\\\", part.replacen(" = ", " &= ", 1));
-            }
-            let _ = writeln!(text, "  {symbol} &= {result} \\\\");
-        }
-        let _ = writeln!(text, "  F &= I + \\sum_n U_n\\otimes\\nabla_\\xi N_n\\,X_\\xi^{{-1}} \\\\");
-        let _ = writeln!(
-            text,
-            "  f_n &= -\\sum_{{q=1}}^{{{}}} w_q\\det X_\\xi\\,P\\,X_\\xi^{{-T}}\\nabla_\\xi N_n",
-            self.samples
-        );
-        text + "\\end{align*}\n"
-    }
 }

@@ -2,9 +2,12 @@
 
 use serde_json::{Value, json};
 use souple_engine::linear;
+use souple_formal::law::EnergyLaw;
+use souple_mesh::ElementKind;
 use souple_models::materials::{Lame, WRITTEN_LAWS, WrittenLaw};
 use souple_table::{Entry, Kind, Parameter, Table, readable};
 
+use super::law_steps::Step;
 use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
@@ -178,6 +181,11 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     if arguments.json {
         let described = found.iter().map(|page| {
             let mut document = to_json(page);
+            if let Some([energy, stress, differential]) = steps_of(page) {
+                document["energy"] = energy.to_json();
+                document["stress"] = stress.to_json();
+                document["differential"] = differential.to_json();
+            }
             if let Some(moduli) = moduli_of(page) {
                 document["small_strain"] = json!({
                     "lambda": moduli.lambda, "mu": moduli.mu,
@@ -204,6 +212,12 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         if !page.source.is_empty() {
             print_line(format_args!("  source: {}", page.source));
         }
+        if let Some(rules) = rules_of(page) {
+            print_line(format_args!("  rules of quadrature: {rules}"));
+        }
+        for step in steps_of(page).into_iter().flatten() {
+            print_line(format_args!("{}", step.to_text().trim_end()));
+        }
         for parameter in page.parameters {
             let default = parameter.default.map(|value| format!(", default {value}")).unwrap_or_default();
             print_line(format_args!("  {}: {}", parameter.name, parameter.summary));
@@ -211,6 +225,23 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         }
     }
     Ok(End::Done)
+}
+
+/// The rules of quadrature of an element, with the degree of the polynomials that each integrates exactly.
+fn rules_of(page: &Page) -> Option<String> {
+    let kind = ElementKind::from_name(&page.name).ok().filter(|_| page.kind == "element")?;
+    let rules = kind.rules().iter().map(|rule| format!("{} (degree {})", rule.name, rule.degree));
+    Some(rules.collect::<Vec<_>>().join(", "))
+}
+
+/// What is derived from a law as text.
+fn steps_of(page: &Page) -> Option<[Step; 3]> {
+    if page.kind != "law" {
+        return None;
+    }
+    // each law of the table is one, as its tests see to
+    let text = WrittenLaw::find(&page.name)?.text().ok()?;
+    Some(Step::all(&EnergyLaw::compile(&text).ok()?))
 }
 
 /// What a law as text is at small strain, with its parameters as printed.

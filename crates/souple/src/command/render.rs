@@ -1,18 +1,15 @@
 //! `souple render`: pictures, contact sheets, films and animated surfaces of a scene or of a run's folder.
 
+mod figure;
+
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 use serde_json::json;
-use souple_io::picture::{
-    Backdrop, COLOUR_MAPS, Cut, EdgeStyle, Image, LegendPlace, Picture, Theme, View, write_animated_png,
-    write_gif,
-};
-use souple_math::Vec3;
+use souple_io::picture::{Backdrop, Cut, Image, LegendPlace, Picture, write_animated_png, write_gif};
 use souple_run::Options;
-use souple_run::show::{Arrows, Figure, FilmError, Floor, Moment, Show, ShowError, Stage, write_film};
-use souple_scene::spec::picture::PictureSpec;
+use souple_run::show::{Figure, FilmError, Moment, Show, ShowError, Stage, write_film};
 
 use super::progress::Meter;
 use super::run::play;
@@ -41,13 +38,16 @@ pub struct Arguments {
     /// Frames of a film per second; in real time if left out
     #[arg(long)]
     per_second: Option<f64>,
-    /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, …, `none`; `von_mises` if left out,
-    /// where there is stress
+    /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, `element`, `adaptation`, `gap`, …,
+    /// `none`; `von_mises` if left out, where there is stress
     #[arg(long)]
     colour: Option<String>,
-    /// sequential, diverging, grey
-    #[arg(long, default_value = "sequential")]
-    map: String,
+    /// sequential, diverging, grey, adaptation, elements; that of the quantity if left out
+    #[arg(long)]
+    map: Option<String>,
+    /// The folder of another run, from which the quantity `gap` is measured
+    #[arg(long, value_name = "RUN")]
+    against: Option<PathBuf>,
     /// Values of the first and the last colour
     #[arg(long, value_name = "LOW,HIGH", value_parser = list::<2>, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
@@ -57,6 +57,9 @@ pub struct Arguments {
     /// Moves cells apart, by this part of their distance from the middle; with a cut, those that it leaves whole
     #[arg(long, default_value_t = 0.0)]
     explode: f64,
+    /// Draws each cell smaller by this part of its size, about its own middle
+    #[arg(long, default_value_t = 0.0, conflicts_with = "cut")]
+    shrink: f64,
     /// Arrows of a vector field: `displacement`, `velocity`
     #[arg(long, value_name = "FIELD")]
     arrows: Option<String>,
@@ -155,11 +158,15 @@ impl From<ShowError> for Refusal {
 pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let kind = kind_of(&arguments.out)?;
-    let figure = figure(arguments, kind)?;
-    let (show, mut notes) = show(arguments, kind)?;
-    let view = view(arguments, &show.stage)?;
+    let figure = figure::figure(arguments, kind)?;
+    let (mut show, mut notes) = show(arguments, kind)?;
+    if let Some(other) = &arguments.against {
+        let other = Show::of_run(other, show.stage.clone())?;
+        show.against(&other)?;
+    }
+    let view = figure::view(arguments, &show.stage)?;
     let mut figure = Figure { view: Some(view), ..figure };
-    if arguments.colour.is_none() && !show.has_field(STRESS) {
+    if arguments.colour.is_none() && !show.has_field(figure::STRESS) {
         figure.colour_by = None;
     }
     if let Some(cut) = figure.cut {
@@ -272,111 +279,6 @@ impl Drop for Scratch {
         // what cannot be removed from the folder of temporary files does no harm
         let _ = std::fs::remove_dir_all(&self.0);
     }
-}
-
-/// What colours show where nothing else is asked for.
-const STRESS: &str = "von_mises";
-
-fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
-    let colour = arguments.colour.as_deref().unwrap_or(STRESS);
-    let map = COLOUR_MAPS
-        .find(&arguments.map)
-        .map_err(|error| Refusal::request("map", arguments.map.clone(), "", error.to_string()))?;
-    let edges = match arguments.edges.as_str() {
-        "drawn" => EdgeStyle::Drawn,
-        "hidden" => EdgeStyle::Hidden,
-        "wireframe" => EdgeStyle::Wireframe,
-        other => {
-            return Err(Refusal::request(
-                "edges",
-                other,
-                "drawn, hidden or wireframe",
-                format!("edges cannot be `{other}`"),
-            ));
-        }
-    };
-    if let Some([low, high]) = arguments.range
-        && low >= high
-    {
-        let message = format!("the range {low} to {high} is empty");
-        return Err(Refusal::request(
-            "range",
-            format!("{low},{high}"),
-            "two numbers, the lower one first",
-            message,
-        ));
-    }
-    if !(0.0..=100.0).contains(&arguments.explode) {
-        let message = format!("cells cannot be moved apart by {}", arguments.explode);
-        return Err(Refusal::request("explode", arguments.explode.to_string(), "0 to 100", message));
-    }
-    let size =
-        arguments.size.unwrap_or(if arguments.sheet.is_some() { [640.0, 480.0] } else { [1280.0, 800.0] });
-    let is_one = kind == Kind::Picture && arguments.sheet.is_none();
-    let samples = arguments.samples.unwrap_or(if is_one { 3 } else { 2 });
-    let cut = arguments.cut.map(|[x, y, z, d]| {
-        let normal = Vec3::new(x, y, z);
-        Cut { point: normal * (d / normal.length_sq().max(f64::MIN_POSITIVE)), normal }
-    });
-    if cut.is_some_and(|cut| cut.normal.length_sq() == 0.0) {
-        let message = "the normal of the cut is zero".to_owned();
-        return Err(Refusal::request("cut", "0,0,0", "a normal that is not zero, and d", message));
-    }
-    Ok(Figure {
-        // what is no size of a picture is refused where it is drawn
-        size: size.map(|side| side.round().clamp(0.0, 1e9) as usize),
-        samples_per_pixel: samples as usize,
-        theme: if arguments.dark { Theme::Dark } else { Theme::Light },
-        title: arguments.title.clone(),
-        view: None,
-        colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
-        colours: map.build,
-        range: arguments.range.map(|[low, high]| (low, high)),
-        cut,
-        explode: arguments.explode,
-        arrows: arguments
-            .arrows
-            .as_ref()
-            .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
-        edges,
-        floor: if arguments.floor { Floor::Below } else { Floor::None },
-        ..Figure::default()
-    })
-}
-
-fn view(arguments: &Arguments, stage: &Stage) -> Result<View, Refusal> {
-    let unit = |name: &str, vector: Vec3| {
-        vector.try_normalised().ok_or_else(|| {
-            let message = format!("the {name} of the view is zero");
-            Refusal::request(name, "0,0,0", "a vector that is not zero", message)
-        })
-    };
-    let [direction, eye, look_at, up] =
-        [arguments.direction, arguments.position, arguments.look_at, arguments.up]
-            .map(|given| given.map(Vec3::from_array));
-    let direction = eye.zip(look_at).map_or(direction, |(eye, look_at)| Some(look_at - eye));
-    let asked = PictureSpec {
-        direction: direction.map(|direction| unit("direction", direction)).transpose()?,
-        up: up.map(|up| unit("up", up)).transpose()?,
-    };
-    let seen = match asked {
-        PictureSpec { direction: None, up: None } => stage.view,
-        // without an `up` of its own, the scene's
-        _ => asked.view(-stage.view.up),
-    };
-    let mut view = View { eye, ..View::along(seen.direction, seen.up) };
-    if !(1.0..=140.0).contains(&arguments.field_of_view) {
-        let message = format!("the field of view is {} degrees", arguments.field_of_view);
-        return Err(Refusal::request(
-            "field_of_view",
-            arguments.field_of_view.to_string(),
-            "1 to 140",
-            message,
-        ));
-    }
-    view.field_of_view = arguments.field_of_view.to_radians();
-    view.light = arguments.light.map(|light| unit("light", Vec3::from_array(light))).transpose()?;
-    Ok(view)
 }
 
 /// What to say of a picture of another moment than one may think.

@@ -1,11 +1,17 @@
 //! The formulations side by side: time of force and derivative, memory, and the error against the exact force.
 
-use super::laws::{bar, force_times, off};
-use super::timing::Held;
+use super::laws::{ForceTimes, bar, force_times, off};
+use super::timing::{Held, median};
 use super::{Effort, Figure};
 
-/// What is compared: formulation, element, law; `samples` comes first of each law on each element, and is exact.
-const VARIANTS: &[(&str, &str, &str)] = &[
+/// How often derived expressions must outrun the literal sums (EXP-20), by law.
+const OVER_FOUR_LOOPS: [(&str, f64); 2] = [("st_venant_kirchhoff", 10.0), ("linear", 1.0)];
+
+/// Formulation, element, law.
+type Variant = (&'static str, &'static str, &'static str);
+
+/// What is compared; `samples` is there for each law on each element, and is exact.
+const VARIANTS: &[Variant] = &[
     ("samples", "tet4", "st_venant_kirchhoff"),
     ("grouped_constants", "tet4", "st_venant_kirchhoff"),
     ("tensor_mass", "tet4", "st_venant_kirchhoff"),
@@ -19,6 +25,8 @@ const VARIANTS: &[(&str, &str, &str)] = &[
     ("element_corotational", "tet4", "corotational"),
     ("samples", "hex8", "st_venant_kirchhoff"),
     ("grouped_constants", "hex8", "st_venant_kirchhoff"),
+    ("samples", "hex8", "linear"),
+    ("grouped_constants", "hex8", "linear"),
     ("samples", "hex8", "corotational"),
     ("element_corotational", "hex8", "corotational"),
     ("samples", "prism6", "st_venant_kirchhoff"),
@@ -41,29 +49,53 @@ fn cells(element: &str, is_large: bool) -> u32 {
     }
 }
 
-/// One row of figures for each formulation: elements a second, derivative products a second, bytes of an element.
+/// Figures of each formulation: elements a second, derivative products a second, bytes of an element; then how much faster
+/// derived expressions are than the literal sums of the tensor-mass method, and than the law by samples.
 pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
     let sizes = effort.choose(&[("10k", false)][..], &[("10k", false), ("100k", true)]);
     for (size, is_large) in sizes {
-        let mut exact = None;
-        for (formulation, element, law) in VARIANTS {
+        let mut measured: Vec<(&Variant, ForceTimes)> = Vec::new();
+        for variant in VARIANTS {
+            let (formulation, element, law) = variant;
             let mut settings = bar(element, cells(element, *is_large), law);
             settings.push(format!("bodies.bar.formulation={{ name = \"{formulation}\" }}"));
-            let times = force_times(&settings, 1, effort.choose(3, 11))?;
-            if *formulation == "samples" {
-                exact = Some((times.forces.clone(), times.derivatives.clone()));
-            }
-            let Some((forces, derivatives)) = &exact else {
-                return Err("the exact force comes first".to_owned());
-            };
-            let of = |error, what: &str| Held { error, error_of: what.to_owned(), baseline: None };
+            measured.push((variant, force_times(&settings, 1, effort.choose(3, 11))?));
+        }
+        let of = |wanted: Variant| {
+            measured.iter().find(|(variant, _)| **variant == wanted).map(|(_, times)| times)
+        };
+        for ((formulation, element, law), times) in &measured {
+            let exact = of(("samples", element, law)).ok_or("the law by samples is measured too")?;
+            let held = |error, what: &str| Held { error, error_of: what.to_owned(), baseline: None };
             let row = format!("{name}_{size}_{element}_{law}_{formulation}");
-            let force = of(off(forces, &times.forces), "force by samples");
-            let derivative = of(off(derivatives, &times.derivatives), "derivative by samples");
+            let force = held(off(&exact.forces, &times.forces), "force by samples");
+            let derivative = held(off(&exact.derivatives, &times.derivatives), "derivative by samples");
             figures.push(times.force.elements_per_second(&format!("{row}_force"), &force));
             figures.push(times.derivative.elements_per_second(&format!("{row}_derivative"), &derivative));
         }
+        for (law, wanted) in OVER_FOUR_LOOPS {
+            let derived = of(("grouped_constants", "tet4", law)).ok_or("it is among the variants")?;
+            for (other, wanted) in [("four_loops", Some(wanted)), ("samples", None)] {
+                let other_times = of((other, "tet4", law)).ok_or("it is among the variants")?;
+                let row = format!("{name}_{size}_tet4_{law}_over_{other}");
+                figures.extend(ratios(&row, wanted, derived, other_times));
+            }
+        }
     }
     Ok(figures)
+}
+
+/// How much less time the first takes than the second, for forces and for derivatives.
+fn ratios(name: &str, wanted: Option<f64>, first: &ForceTimes, second: &ForceTimes) -> [Figure; 2] {
+    let errors = [off(&second.forces, &first.forces), off(&second.derivatives, &first.derivatives)];
+    let pairs =
+        [("force", &first.force, &second.force), ("derivative", &first.derivative, &second.derivative)];
+    [0, 1].map(|index| {
+        let (what, first, second) = pairs[index];
+        let (slow, _) = median(second.seconds.clone());
+        let ratios = first.seconds.iter().map(|seconds| slow / seconds).collect();
+        let held = Held { error: errors[index], error_of: format!("the other's {what}"), baseline: wanted };
+        first.figure(&format!("{name}_{what}"), ratios, &held, ("x as fast", true))
+    })
 }

@@ -76,4 +76,66 @@ pub(super) const CASES: &[Case] = &[
         mutation: NEVER,
         ..BAR
     },
+    Case {
+        id: "exp34_at_the_clamp",
+        capabilities: &["FAU-61", "FAU-65"],
+        what: "share of the clamped end with the second law, by changes of length",
+        settings: &[NEVER],
+        reading: Reading::last("at_the_clamp"),
+        reference: 1.0,
+        // the middle of the section is neither stretched nor pressed
+        tolerance: Tolerance::Absolute(0.25),
+        source: "specification, EXP-34: the clamped end stretches, which edges see",
+        mutation: "bodies.bar.adapt.edge_length=0.06",
+        ..BAR
+    },
+    Case {
+        id: "exp34_grows_with_load",
+        what: "share of the bar with the second law under a tenth of its weight: none",
+        settings: &["world.gravity=[0, -0.981, 0]"],
+        reading: Reading::last("second_law"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(1e-9),
+        source: "specification, EXP-34: turns of 2 degrees and strains of 0.5 % are below the thresholds of 1.5 %",
+        mutation: "world.gravity=[0, -9.81, 0]",
+        ..BAR
+    },
+    Case {
+        id: "exp35_length_3",
+        capabilities: &["FAU-61", "FAU-65"],
+        what: "tip by changes of length of 3 %: more deviation than with 1.5 %, less than with 6 %",
+        settings: &[
+            "bodies.bar.adapt={ material = { name = \"st_venant_kirchhoff\", youngs_modulus = 5e6, poissons_ratio = 0.3, density = 1000 }, back = 0, edge_length = 0.03 }",
+        ],
+        tolerance: Tolerance::Relative(0.2),
+        source: "the bar under the second law alone; deviations fall with the threshold",
+        mutation: "bodies.bar.adapt.edge_length=0.06",
+        ..BAR
+    },
+    Case {
+        id: "exp35_volume_3",
+        capabilities: &["FAU-62", "FAU-65"],
+        what: "tip by changes of volume of 3 %",
+        settings: &[
+            "bodies.bar.adapt={ material = { name = \"st_venant_kirchhoff\", youngs_modulus = 5e6, poissons_ratio = 0.3, density = 1000 }, back = 0, volume = 0.03 }",
+        ],
+        tolerance: Tolerance::Relative(0.123),
+        source: "the bar under the second law alone; deviations fall with the threshold",
+        mutation: "bodies.bar.adapt.volume=0.06",
+        ..BAR
+    },
+    Case {
+        id: "exp35_share",
+        what: "share of the bar with the second law, by changes of length of 6 %: fewer than by 3 %",
+        settings: &[
+            "bodies.bar.adapt={ material = { name = \"st_venant_kirchhoff\", youngs_modulus = 5e6, poissons_ratio = 0.3, density = 1000 }, back = 0, edge_length = 0.06 }",
+        ],
+        reading: Reading::last("second_law"),
+        reference: 0.5,
+        // between a quarter and three quarters
+        tolerance: Tolerance::Absolute(0.25),
+        source: "specification, EXP-35: a lower threshold changes more elements",
+        mutation: "bodies.bar.adapt.edge_length=0.03",
+        ..BAR
+    },
 ];

@@ -98,10 +98,14 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "exp27_pyramid5",
         what: "the same, 3,072 pyramids",
-        settings: &["bodies.bar.mesh.cells=[32, 4, 4]", r#"bodies.bar.mesh.element="pyramid5""#],
+        settings: &[
+            "bodies.bar.mesh.cells=[32, 4, 4]",
+            r#"bodies.bar.mesh.element="pyramid5""#,
+            // the samples of the independent code; the usual four are softer or stiffer by half a percent
+            r#"bodies.bar.rules={ pyramid5 = "gauss_5" }"#,
+        ],
         reference: -0.57738,
-        // the rule of five samples of the source is softer by half a percent than both rules here
-        tolerance: Tolerance::Absolute(4e-3),
+        capabilities: &["FAU-73", "FAU-8", "FAU-5"],
         ..BEAM
     },
     Case {

@@ -15,6 +15,7 @@ mod frequencies;
 mod implicit;
 mod levels;
 mod long_beam;
+mod mixed_models;
 mod motion;
 mod moving_frame;
 mod network;
@@ -53,6 +54,7 @@ pub const TABLES: &[&[Case]] = &[
     soft_cube::CASES,
     soft_cube::IMPLICIT_STEPS,
     long_beam::CASES,
+    mixed_models::CASES,
     adaptive::CASES,
     formulations::CASES,
     wall_cube::CASES,

@@ -32,7 +32,7 @@ pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     summary: "linear elements in a frame that turns with each; laws linear and corotational, tangent approximate",
     source: "Müller & Gross 2004, Interactive virtual materials; Faure 2014, table 6.4",
     parameters: &[],
-    build: |description| {
+    build: |description, _| {
         let laws = [AnyLaw::Linear, AnyLaw::Corotational];
         let moduli = moduli_of(NAME, description.materials, &laws, "linear and corotational")?;
         check_cells(NAME, description, |kind| kind.dimension() == 3, "volume elements")?;

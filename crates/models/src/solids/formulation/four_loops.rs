@@ -24,7 +24,7 @@ pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     summary: "tensor-mass as printed: four nested loops over the nodes of a tetrahedron; laws linear and st_venant_kirchhoff",
     source: "Picinbono, Delingette & Ayache 2003; derivative after Faure 2014, §6.2.2",
     parameters: &[],
-    build: |description| Ok(Box::new(FourLoops::new(description)?)),
+    build: |description, _| Ok(Box::new(FourLoops::new(description)?)),
 };
 
 /// [`Force`] of linear tetrahedra.

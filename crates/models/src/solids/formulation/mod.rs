@@ -14,13 +14,13 @@ mod tensor_mass;
 
 use souple_engine::Force;
 use souple_mesh::ElementKind;
-use souple_table::{Entry, Table};
+use souple_table::{Entry, Table, Values};
 
 use super::{FlatCell, Section, SolidDescription, SolidForce};
 use crate::materials::{AnyLaw, Lame, Material, MaterialLaw};
 
-/// Makes the elastic force of a body.
-pub type BuildFormulation = fn(&SolidDescription) -> Result<Box<dyn Force>, FormulationError>;
+/// Makes the elastic force of a body from it and the formulation's own values.
+pub type BuildFormulation = fn(&SolidDescription, &Values) -> Result<Box<dyn Force>, FormulationError>;
 
 /// All formulations.
 pub static FORMULATIONS: Table<BuildFormulation> = Table {
@@ -32,7 +32,7 @@ pub static FORMULATIONS: Table<BuildFormulation> = Table {
                       where nothing is said",
             source: "Bonet & Wood 2008, Nonlinear Continuum Mechanics for Finite Element Analysis, §9",
             parameters: &[],
-            build: |description| Ok(Box::new(SolidForce::new(description)?)),
+            build: |description, _| Ok(Box::new(SolidForce::new(description)?)),
         },
         &grouped::ENTRY,
         &tensor_mass::ENTRY,
@@ -51,6 +51,8 @@ pub enum FormulationError {
     Element { formulation: &'static str, kind: ElementKind, accepted: &'static str },
     #[error("`{formulation}` cannot take the law `{law}`; it takes {accepted}")]
     Law { formulation: &'static str, law: String, accepted: &'static str },
+    #[error("there is no cut `{name}`; it is none, all, or letters of L, G, N, D")]
+    Cut { name: String },
     #[error("`{formulation}` is of volumes, and the body has a section")]
     Section { formulation: &'static str },
 }

@@ -26,7 +26,7 @@ pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     summary: "a spring along every edge, with the stiffness that the cells around it ask for; Poisson's ratio is not kept",
     source: "Van Gelder 1998, Approximate simulation of elastic membranes by triangulated spring meshes",
     parameters: &[],
-    build: |description| Ok(Box::new(MassSpring::new(description)?)),
+    build: |description, _| Ok(Box::new(MassSpring::new(description)?)),
 };
 
 /// [`Force`] of springs along edges.

@@ -32,7 +32,7 @@ pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     source: "Cotin, Delingette & Ayache 2000; Picinbono, Delingette & Ayache 2003, Non-linear anisotropic elasticity for \
              real-time surgery simulation",
     parameters: &[],
-    build: |description| Ok(Box::new(TensorMass::new(description)?)),
+    build: |description, _| Ok(Box::new(TensorMass::new(description)?)),
 };
 
 /// [`Force`] of linear tetrahedra.

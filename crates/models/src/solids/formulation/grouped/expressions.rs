@@ -1,0 +1,381 @@
+//! Derived expressions at work: tapes over lanes of elements, each fragment with constants of its own.
+
+use std::cell::RefCell;
+use std::ops::Range;
+use std::sync::Arc;
+
+use pulp::{Arch, Simd, WithSimd};
+use souple_formal::element::{Derived, ElementExpressions};
+use souple_formal::graph::Expr;
+use souple_formal::law::{EnergyLaw, LawParameter};
+use souple_formal::tape::{BATCH, Part, Tape};
+use souple_math::{Lanes, Padded, Vec3};
+use souple_mesh::Mesh;
+
+use super::Names;
+use crate::materials::{Material, MaterialLaw};
+use crate::solids::group::Group;
+use crate::solids::kernel::Kernel;
+use crate::solids::layout::{Chunk, LANES};
+
+/// [`Kernel`] of one association: what it evaluates, each with constants of its own.
+pub struct Expressions {
+    nodes: usize,
+    parameters: Vec<String>,
+    energy: Vec<Fragment>,
+    forces: Vec<Fragment>,
+    differential: Vec<Fragment>,
+    /// Constants of an element, of all fragments.
+    constant_count: usize,
+}
+
+/// Expressions of displacements, an addend of the whole; their constants, and where these are among the element's.
+struct Fragment {
+    /// From rest positions and material.
+    constants: Tape,
+    /// From displacements and constants, and what the differential is multiplied with.
+    step: Tape,
+    range: Range<usize>,
+    /// Where the lanes of displacements, of variations and of outputs start in the memory of `step`.
+    displacements: Vec<usize>,
+    variations: Vec<usize>,
+    outputs: Vec<usize>,
+}
+
+thread_local! {
+    /// What tapes work in.
+    static MEMORY: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Expressions {
+    pub fn new(derived: &Derived, law: &EnergyLaw, nodes: usize) -> Self {
+        let flat = |list: &[Vec<Expr>]| list.iter().flatten().copied().collect::<Vec<Expr>>();
+        let given: Vec<Expr> =
+            flat(&derived.rest).into_iter().chain(derived.parameters.iter().copied()).collect();
+        let (displacements, variations) = (flat(&derived.displacements), flat(&derived.variations));
+        let mut constant_count = 0;
+        let mut fragment = |of: &ElementExpressions, varied: &[Expr]| {
+            let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = of.grouped.constants.iter().copied().unzip();
+            let inputs: Vec<Expr> = displacements.iter().chain(&symbols).copied().collect();
+            let range = constant_count..constant_count + symbols.len();
+            constant_count = range.end;
+            let (graph, directions) = (&derived.graph, &law.parameters);
+            let known = &of.grouped.constants;
+            let step = Tape::of_expressions(graph, [&inputs, varied], &[], &of.grouped.varying, directions);
+            Fragment {
+                constants: Tape::of_expressions(graph, [&given, &[]], known, &definitions, directions),
+                range,
+                displacements: (0..displacements.len()).map(|input| step.input(input)).collect(),
+                variations: (0..varied.len()).map(|input| step.varied(input)).collect(),
+                outputs: (0..of.grouped.varying.len()).map(|output| step.output(output, 0)).collect(),
+                step,
+            }
+        };
+        let mut fragments = |all: &[ElementExpressions], varied: &[Expr]| -> Vec<Fragment> {
+            all.iter().map(|of| fragment(of, varied)).collect()
+        };
+        let energy = fragments(&derived.energies, &[]);
+        let forces = fragments(&derived.forces, &[]);
+        let differential = fragments(&derived.differentials, &variations);
+        let parameters =
+            law.parameters.iter().filter(|(_, value)| matches!(value, LawParameter::Number { .. }));
+        let parameters = parameters.map(|(name, _)| name.clone()).collect();
+        Self { nodes, parameters, energy, forces, differential, constant_count }
+    }
+
+    /// The numbers of a material in the order of the law's.
+    pub fn numbers_of(&self, material: &Material) -> Vec<f64> {
+        let of_text = |law: &EnergyLaw, name: &String| match law.parameter(name) {
+            Some(LawParameter::Number { value, .. }) => *value,
+            _ => unreachable!("the text that the association was derived from"),
+        };
+        let number = |name: &String| match &material.law {
+            MaterialLaw::Text(text) => of_text(text.law(), name),
+            MaterialLaw::Known(law) => {
+                let index = law.visit(Names).iter().position(|known| known == name);
+                material.parameters[index.unwrap_or_else(|| unreachable!("checked when it was derived"))]
+            }
+        };
+        self.parameters.iter().map(number).collect()
+    }
+
+    /// Writes the constants of cells.
+    pub fn compute_constants(
+        &self,
+        mesh: &Mesh,
+        cells: &[usize],
+        numbers_of: &dyn Fn(usize) -> Vec<f64>,
+        constants: &mut [Vec<f64>],
+    ) {
+        cells.iter().for_each(|cell| constants[*cell] = vec![0.0; self.constant_count]);
+        for Fragment { constants: tape, range, .. } in
+            self.energy.iter().chain(&self.forces).chain(&self.differential)
+        {
+            let mut memory = vec![0.0; tape.memory_len()];
+            tape.prepare(&mut memory);
+            for cells in cells.chunks(BATCH) {
+                for (lane, cell) in cells.iter().enumerate() {
+                    let nodes = mesh.cell(*cell as u32).map_or(&[][..], |cell| cell.nodes);
+                    let rest = nodes.iter().flat_map(|node| mesh.points[*node as usize].to_array());
+                    for (input, number) in rest.chain(numbers_of(*cell)).enumerate() {
+                        memory[tape.input(input) + lane] = number;
+                    }
+                }
+                tape.run_here(Part::All, cells.len(), &mut memory);
+                for (lane, cell) in cells.iter().enumerate() {
+                    for (output, constant) in constants[*cell][range.clone()].iter_mut().enumerate() {
+                        *constant = memory[tape.output(output, 0) + lane];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Runs `work(memory, first block, blocks)` with the displacements and constants of as many of `blocks` as a tape takes at
+    /// once.
+    fn for_each_batch(
+        &self,
+        fragment: &Fragment,
+        chunk: &Chunk,
+        blocks: Range<usize>,
+        displacements: &[Padded],
+        mut work: impl FnMut(&mut [f64], Range<usize>),
+    ) {
+        let tape = &fragment.step;
+        MEMORY.with_borrow_mut(|memory| {
+            // what lies there from another run is written before it is read
+            if memory.len() < tape.memory_len() {
+                memory.resize(tape.memory_len(), 0.0);
+            }
+            tape.prepare(memory);
+            for first in blocks.clone().step_by(BATCH / LANES) {
+                let batch = first..blocks.end.min(first + BATCH / LANES);
+                self.put((chunk, batch.clone()), displacements, &fragment.displacements, memory);
+                for block in batch.clone() {
+                    let at = (block - first) * LANES;
+                    let constants = &chunk.parameters(block, self.constant_count)[fragment.range.clone()];
+                    for (constant, lanes) in constants.iter().enumerate() {
+                        let input = tape.input(3 * self.nodes + constant) + at;
+                        memory[input..input + LANES].copy_from_slice(&lanes.0);
+                    }
+                }
+                work(memory, batch);
+            }
+        });
+    }
+
+    /// Runs the differential of every fragment along `delta`, batch after batch, and `work` on what it gave.
+    fn for_each_differential(
+        &self,
+        chunk: &Chunk,
+        [displacements, delta]: [&[Padded]; 2],
+        mut work: impl FnMut(&Fragment, &[f64], Range<usize>),
+    ) {
+        for fragment in &self.differential {
+            self.for_each_batch(fragment, chunk, 0..chunk.block_count(), displacements, |memory, batch| {
+                self.put((chunk, batch.clone()), delta, &fragment.variations, memory);
+                fragment.step.run_here(Part::All, batch.len() * LANES, memory);
+                work(fragment, memory, batch);
+            });
+        }
+    }
+
+    /// Writes a field of the nodes of a batch where `places` says, by node and direction.
+    fn put(
+        &self,
+        (chunk, batch): (&Chunk, Range<usize>),
+        field: &[Padded],
+        places: &[usize],
+        memory: &mut [f64],
+    ) {
+        Arch::new().dispatch(Put { chunk, batch, nodes: self.nodes, field, places, memory });
+    }
+
+    /// Adds `scale` times a fragment's outputs to the nodes of a batch, element after element.
+    fn add_to_nodes(
+        &self,
+        fragment: &Fragment,
+        (chunk, batch): (&Chunk, Range<usize>),
+        memory: &[f64],
+        scale: f64,
+        sums: &mut [Padded],
+    ) {
+        let places = &fragment.outputs;
+        Arch::new().dispatch(Add { chunk, batch, nodes: self.nodes, places, memory, scale, sums });
+    }
+}
+
+struct Put<'a> {
+    chunk: &'a Chunk,
+    batch: Range<usize>,
+    nodes: usize,
+    field: &'a [Padded],
+    places: &'a [usize],
+    memory: &'a mut [f64],
+}
+
+impl WithSimd for Put<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { chunk, batch, nodes, field, places, memory } = self;
+        for block in batch.clone() {
+            let mut lane = 0;
+            while lane < LANES {
+                let group = Group::<S, 0> { simd, chunk, nodes, samples: 0, block, lane };
+                let at = (block - batch.start) * LANES + lane;
+                for node in 0..nodes {
+                    let x = group.gather_node(field, node);
+                    x.x.store(&mut memory[places[3 * node] + at..]);
+                    x.y.store(&mut memory[places[3 * node + 1] + at..]);
+                    x.z.store(&mut memory[places[3 * node + 2] + at..]);
+                }
+                lane += S::F64_LANES;
+            }
+        }
+    }
+}
+
+struct Add<'a> {
+    chunk: &'a Chunk,
+    batch: Range<usize>,
+    nodes: usize,
+    places: &'a [usize],
+    memory: &'a [f64],
+    scale: f64,
+    sums: &'a mut [Padded],
+}
+
+impl WithSimd for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { chunk, batch, nodes, places, memory, scale, sums } = self;
+        for block in batch.clone() {
+            let mut lane = 0;
+            while lane < LANES {
+                let group = Group::<S, 0> { simd, chunk, nodes, samples: 0, block, lane };
+                let at = (block - batch.start) * LANES + lane;
+                // lanes past the last element repeat it, and add nothing
+                let real = (0..S::F64_LANES).map(|l| lane + l).filter(|l| *l < chunk.lanes_in(block)).count();
+                let mut factors = [0.0; LANES];
+                factors[..real].fill(scale);
+                let factor = Lanes::load(simd, &factors);
+                for node in 0..nodes {
+                    let x = Lanes::load(simd, &memory[places[3 * node] + at..]);
+                    let y = Lanes::load(simd, &memory[places[3 * node + 1] + at..]);
+                    let z = Lanes::load(simd, &memory[places[3 * node + 2] + at..]);
+                    group.scatter_node(node, Vec3::new(x * factor, y * factor, z * factor), sums);
+                }
+                lane += S::F64_LANES;
+            }
+        }
+    }
+}
+
+impl Kernel for Arc<Expressions> {
+    fn forces(&self, chunk: &Chunk, _: &[Vec3], displacements: &[Padded], forces: &mut [Padded]) {
+        for fragment in &self.forces {
+            self.for_each_batch(fragment, chunk, 0..chunk.block_count(), displacements, |memory, batch| {
+                fragment.step.run_here(Part::All, batch.len() * LANES, memory);
+                self.add_to_nodes(fragment, (chunk, batch), memory, 1.0, forces);
+            });
+        }
+    }
+
+    fn differential(
+        &self,
+        chunk: &Chunk,
+        _: &[Vec3],
+        displacements: &[Padded],
+        delta: &[Padded],
+        scale: f64,
+        forces: &mut [Padded],
+    ) {
+        self.for_each_differential(chunk, [displacements, delta], |fragment, memory, batch| {
+            self.add_to_nodes(fragment, (chunk, batch), memory, scale, forces);
+        });
+    }
+
+    fn energy(&self, chunk: &Chunk, _: &[Vec3], displacements: &[Padded]) -> f64 {
+        let mut sum = 0.0;
+        for fragment in &self.energy {
+            self.for_each_batch(fragment, chunk, 0..chunk.block_count(), displacements, |memory, batch| {
+                let tape = &fragment.step;
+                tape.run_here(Part::All, batch.len() * LANES, memory);
+                for block in batch.clone() {
+                    let at = tape.output(0, 0) + (block - batch.start) * LANES;
+                    sum += memory[at..at + chunk.lanes_in(block)].iter().sum::<f64>();
+                }
+            });
+        }
+        sum
+    }
+
+    // -δ·δf
+    fn quadratic_form(&self, chunk: &Chunk, _: &[Vec3], displacements: &[Padded], delta: &[Padded]) -> f64 {
+        let mut sum = 0.0;
+        self.for_each_differential(chunk, [displacements, delta], |fragment, memory, batch| {
+            for block in batch.clone() {
+                let at = (block - batch.start) * LANES;
+                for (lane, number) in
+                    (0..chunk.lanes_in(block)).flat_map(|l| (0..3 * self.nodes).map(move |n| (l, n)))
+                {
+                    let [delta, force] =
+                        [&fragment.variations, &fragment.outputs].map(|places| places[number]);
+                    sum -= memory[delta + at + lane] * memory[force + at + lane];
+                }
+            }
+        });
+        sum
+    }
+
+    fn blocks_at_once(&self) -> usize {
+        BATCH / LANES
+    }
+
+    fn blocks(
+        &self,
+        chunk: &Chunk,
+        blocks: Range<usize>,
+        _: &[Vec3],
+        displacements: &[Padded],
+        scale: f64,
+        out: &mut [f64],
+    ) {
+        let (nodes, first) = (self.nodes, blocks.start);
+        out.fill(0.0);
+        for fragment in &self.differential {
+            let tape = &fragment.step;
+            self.for_each_batch(fragment, chunk, blocks.clone(), displacements, |memory, batch| {
+                let lanes = batch.len() * LANES;
+                tape.run_here(Part::Deformation, lanes, memory);
+                for input in 0..3 * nodes {
+                    memory[tape.varied(input)..][..lanes].fill(0.0);
+                }
+                // column `axis` of ∂f_a/∂x_b for all a, node by node
+                for (b, axis) in (0..nodes).flat_map(|b| (0..3).map(move |axis| (b, axis))) {
+                    memory[tape.varied(3 * b + axis)..][..lanes].fill(1.0);
+                    tape.run_here(Part::Variation, lanes, memory);
+                    memory[tape.varied(3 * b + axis)..][..lanes].fill(0.0);
+                    for (block, a) in batch.clone().flat_map(|block| (0..=b).map(move |a| (block, a))) {
+                        // pairs with a ≤ b, those of a = 0 first
+                        let pair =
+                            (block - first) * nodes * (nodes + 1) / 2 + a * nodes - a * (a + 1) / 2 + b;
+                        for row in 0..3 {
+                            let from = tape.output(3 * a + row, 0) + (block - batch.start) * LANES;
+                            let to = (9 * pair + 3 * axis + row) * LANES;
+                            for (out, number) in
+                                out[to..to + LANES].iter_mut().zip(&memory[from..from + LANES])
+                            {
+                                *out += scale * number;
+                            }
+                        }
+                    }
+                }
+            });
+        }
+    }
+}

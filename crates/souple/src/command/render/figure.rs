@@ -1,0 +1,127 @@
+//! From what a person asks for to how a picture is drawn and from where it is seen.
+
+use souple_io::picture::{COLOUR_MAPS, Cut, EdgeStyle, Theme, View};
+use souple_math::Vec3;
+use souple_run::show::{Arrows, Figure, Floor, Stage, map_of};
+use souple_scene::spec::picture::PictureSpec;
+
+use super::{Arguments, Kind};
+use crate::command::Refusal;
+
+/// What colours show where nothing else is asked for.
+pub const STRESS: &str = "von_mises";
+
+/// How pictures are drawn.
+pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
+    let colour = arguments.colour.as_deref().unwrap_or(STRESS);
+    let colours = match &arguments.map {
+        Some(name) => {
+            COLOUR_MAPS
+                .find(name)
+                .map_err(|error| Refusal::request("map", name.clone(), "", error.to_string()))?
+                .build
+        }
+        None => map_of(colour).unwrap_or_default(),
+    };
+    let edges = match arguments.edges.as_str() {
+        "drawn" => EdgeStyle::Drawn,
+        "hidden" => EdgeStyle::Hidden,
+        "wireframe" => EdgeStyle::Wireframe,
+        other => {
+            return Err(Refusal::request(
+                "edges",
+                other,
+                "drawn, hidden or wireframe",
+                format!("edges cannot be `{other}`"),
+            ));
+        }
+    };
+    if let Some([low, high]) = arguments.range
+        && low >= high
+    {
+        let message = format!("the range {low} to {high} is empty");
+        return Err(Refusal::request(
+            "range",
+            format!("{low},{high}"),
+            "two numbers, the lower one first",
+            message,
+        ));
+    }
+    if !(0.0..=100.0).contains(&arguments.explode) {
+        let message = format!("cells cannot be moved apart by {}", arguments.explode);
+        return Err(Refusal::request("explode", arguments.explode.to_string(), "0 to 100", message));
+    }
+    if !(0.0..1.0).contains(&arguments.shrink) {
+        let message = format!("cells cannot shrink by {} of their size", arguments.shrink);
+        return Err(Refusal::request("shrink", arguments.shrink.to_string(), "0 to less than 1", message));
+    }
+    let size =
+        arguments.size.unwrap_or(if arguments.sheet.is_some() { [640.0, 480.0] } else { [1280.0, 800.0] });
+    let is_one = kind == Kind::Picture && arguments.sheet.is_none();
+    let samples = arguments.samples.unwrap_or(if is_one { 3 } else { 2 });
+    let cut = arguments.cut.map(|[x, y, z, d]| {
+        let normal = Vec3::new(x, y, z);
+        Cut { point: normal * (d / normal.length_sq().max(f64::MIN_POSITIVE)), normal }
+    });
+    if cut.is_some_and(|cut| cut.normal.length_sq() == 0.0) {
+        let message = "the normal of the cut is zero".to_owned();
+        return Err(Refusal::request("cut", "0,0,0", "a normal that is not zero, and d", message));
+    }
+    Ok(Figure {
+        // what is no size of a picture is refused where it is drawn
+        size: size.map(|side| side.round().clamp(0.0, 1e9) as usize),
+        samples_per_pixel: samples as usize,
+        theme: if arguments.dark { Theme::Dark } else { Theme::Light },
+        title: arguments.title.clone(),
+        view: None,
+        colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
+        colours,
+        range: arguments.range.map(|[low, high]| (low, high)),
+        cut,
+        explode: arguments.explode,
+        shrink: arguments.shrink,
+        arrows: arguments
+            .arrows
+            .as_ref()
+            .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
+        edges,
+        floor: if arguments.floor { Floor::Below } else { Floor::None },
+        ..Figure::default()
+    })
+}
+
+/// From where they are seen.
+pub fn view(arguments: &Arguments, stage: &Stage) -> Result<View, Refusal> {
+    let unit = |name: &str, vector: Vec3| {
+        vector.try_normalised().ok_or_else(|| {
+            let message = format!("the {name} of the view is zero");
+            Refusal::request(name, "0,0,0", "a vector that is not zero", message)
+        })
+    };
+    let [direction, eye, look_at, up] =
+        [arguments.direction, arguments.position, arguments.look_at, arguments.up]
+            .map(|given| given.map(Vec3::from_array));
+    let direction = eye.zip(look_at).map_or(direction, |(eye, look_at)| Some(look_at - eye));
+    let asked = PictureSpec {
+        direction: direction.map(|direction| unit("direction", direction)).transpose()?,
+        up: up.map(|up| unit("up", up)).transpose()?,
+    };
+    let seen = match asked {
+        PictureSpec { direction: None, up: None } => stage.view,
+        // without an `up` of its own, the scene's
+        _ => asked.view(-stage.view.up),
+    };
+    let mut view = View { eye, ..View::along(seen.direction, seen.up) };
+    if !(1.0..=140.0).contains(&arguments.field_of_view) {
+        let message = format!("the field of view is {} degrees", arguments.field_of_view);
+        return Err(Refusal::request(
+            "field_of_view",
+            arguments.field_of_view.to_string(),
+            "1 to 140",
+            message,
+        ));
+    }
+    view.field_of_view = arguments.field_of_view.to_radians();
+    view.light = arguments.light.map(|light| unit("light", Vec3::from_array(light))).transpose()?;
+    Ok(view)
+}

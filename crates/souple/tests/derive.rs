@@ -1,0 +1,114 @@
+//! `souple derive`: what can be derived is listed, and written as counts, files and programs.
+
+mod common;
+
+use common::{Folder, souple};
+
+/// EXP-2, tables 3.4 to 3.7: the counts of the source stand beside ours, cut and whole, and ours are no more.
+#[test]
+fn counts_stand_beside_those_of_the_source() {
+    for (law, element, more, expected) in [
+        ("linear", "tri3", &["--cut", "LG"][..], &[5, 7][..]),
+        ("st_venant_kirchhoff", "tet4", &["--cut", "LG"], &[10, 10]),
+        ("linear", "tet4", &[], &[11]),
+        ("linear", "prism6", &[], &[77]),
+        ("linear", "pyramid5", &["--rule", "gauss_5"], &[71]),
+        ("linear", "hex8", &["--map", "box"], &[40]),
+        ("linear", "hex8", &["--map", "box", "--cut", "G"], &[8, 13, 13, 12, 12, 13, 13, 8]),
+        ("st_venant_kirchhoff", "prism6", &["--cut", "LG"], &[16; 12]),
+    ] {
+        let call = ["derive", "--law", law, "--element", element, "--json"];
+        let document = souple(call.iter().chain(more)).ends(0).json();
+        assert_eq!(document["source_constants_by_fragment"], serde_json::json!(expected), "{law} {element}");
+        let ours = document["on_element"]["energy"]["constants_by_fragment"].as_array().expect("counts");
+        assert_eq!(ours.len(), expected.len(), "{law} {element} {more:?}");
+        for (ours, source) in ours.iter().zip(expected) {
+            assert!(
+                ours.as_u64().is_some_and(|ours| ours <= *source),
+                "{law} {element} {more:?}: {ours} {source}"
+            );
+        }
+    }
+}
+
+/// One file for the constants of each fragment and one for each node and axis, with the source's names; the fragments of the
+/// differential are cut along nodes and directions too.
+#[test]
+fn expressions_are_written_as_files() {
+    let folder = Folder::new("derive");
+    let out = folder.at("out");
+    let call = ["derive", "--law", "linear", "--element", "tri3", "--cut", "LN", "--out", &out];
+    souple(call).ends(0);
+    let files = folder.files();
+    // two terms: two fragments of forces, and six of differentials, each with its constants and six expressions
+    assert_eq!(files.len(), 8 * 7, "{files:?}");
+    for name in
+        ["FHookeTriangleDecoupageLN0_0x", "dFHookeTriangleDecoupageLN5_2y", "ECR_dFHookeTriangleDecoupageLN4"]
+    {
+        let text = std::fs::read_to_string(folder.path().join(format!("out/{name}.txt"))).expect("a file");
+        assert_eq!(text.contains("D_0 = "), name.starts_with("ECR"), "{text}");
+    }
+    let force =
+        std::fs::read_to_string(folder.path().join("out/FHookeTriangleDecoupageLN0_0x.txt")).expect("a file");
+    // what is constant is not in what is left for every step
+    assert!(
+        force.contains("U0x") && force.contains("D_") && !force.contains('P') && !force.contains("mu"),
+        "{force}"
+    );
+}
+
+/// EXP-5: every association is listed, with the command that derives it; one of each law is derived so.
+#[test]
+fn associations_are_listed_and_can_be_derived() {
+    let list = souple(["derive", "--list", "--element", "tri6", "--json"]).ends(0).json();
+    let list = list.as_array().expect("a list");
+    assert!(list.len() >= 16 * 2 * 8, "{}", list.len());
+    let mut laws: Vec<&str> = Vec::new();
+    for association in list {
+        let law = association["law"].as_str().expect("a law");
+        if laws.contains(&law) {
+            continue;
+        }
+        laws.push(law);
+        let command = association["command"].as_str().expect("a command");
+        let answer = souple(command.split(' ').skip(1));
+        assert!(answer.status == Some(0) || answer.stderr.contains("principal stretches"), "{answer:#?}");
+    }
+    assert!(laws.len() >= 8, "{laws:?}");
+}
+
+/// The nine steps of the source as a program, from data alone: of quadratic elements, boxes and laws of the user too.
+#[test]
+fn the_derivation_is_written_as_a_program() {
+    for (law, element, more) in [
+        ("linear", "tri3", &[][..]),
+        ("st_venant_kirchhoff", "hex8", &["--map", "box"]),
+        ("neo_hookean", "tet10", &[]),
+        ("m/2*(I1 - 3) - m*log(J) + m*(J - 1)^2", "quad4", &["--parameter", "m=1 kPa"]),
+    ] {
+        let call = ["derive", "--law", law, "--element", element, "--emit", "maxima"];
+        let program = souple(call.iter().chain(more)).ends(0).stdout;
+        for step in 1..=9 {
+            assert!(program.contains(&format!("/* {step}. ")), "{law} on {element}: step {step}");
+        }
+        // each statement ends where it should
+        let open = program.matches('(').count();
+        assert_eq!(open, program.matches(')').count(), "{law} on {element}");
+    }
+    let refused = souple(["derive", "--law", "ogden", "--element", "tet4", "--emit", "maxima"]).ends(2);
+    assert!(refused.stderr.contains("principal stretches"), "{refused:#?}");
+}
+
+/// `describe` prints energy, stress and tangent of every law, and the rules of every element.
+#[test]
+fn laws_and_elements_are_described() {
+    for law in souple(["list", "laws", "--json"]).ends(0).json().as_array().expect("laws") {
+        let name = law["name"].as_str().expect("a name");
+        let page = souple(["describe", name]).ends(0).stdout;
+        for expression in ["  Psi = ", "  P = ", "  dP = "] {
+            assert!(page.contains(expression), "{name}: {page}");
+        }
+    }
+    let page = souple(["describe", "pyramid5"]).ends(0).stdout;
+    assert!(page.contains("gauss_5 (degree 2)"), "{page}");
+}

@@ -1,0 +1,65 @@
+//! EXP-19: what it takes to follow the stretched cube for 0.9 s, explicitly and implicitly.
+
+use super::timing::{Timing, as_it_is, median, scene, with_threads};
+use super::{Effort, Figure, value_of};
+
+/// Density [kg/m³], Young's modulus [Pa], the longest explicit step that is stable [s], and how often implicit steps must win.
+const CASES: [(f64, f64, f64, f64); 2] = [(1000.0, 1e5, 5e-5, 50.0), (10_000.0, 1e4, 5e-3, 2.0)];
+
+pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let mut figures = Vec::new();
+    for (density, modulus, step, wanted) in CASES {
+        let settings = |step: f64, stepper: &str| {
+            vec![
+                format!("world.period={step}"),
+                format!("systems.main.stepper={stepper}"),
+                format!("bodies.cube.material.density={density}"),
+                format!("bodies.cube.material.youngs_modulus={modulus}"),
+            ]
+        };
+        // as the source: one linearised solve a step, to 1e-6
+        let implicit =
+            settings(0.1, "{ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-6 }");
+        let explicit = settings(step, "\"explicit_euler\"");
+        let seconds = |settings: &[String], steps: f64, samples: usize| {
+            let mut seconds = Vec::new();
+            for _ in 0..samples {
+                let timing = Timing {
+                    scene: "stretched_cube",
+                    settings,
+                    prepare: as_it_is,
+                    warm_up: 0,
+                    samples: 1,
+                    steps_per_sample: steps as usize,
+                };
+                let timed = with_threads(1, || timing.sample(1))??;
+                seconds.push(timed.seconds[0] * steps);
+            }
+            Ok::<_, String>(seconds)
+        };
+        let (of_explicit, _) = median(seconds(&explicit, 0.9 / step, 1)?);
+        let of_implicit = seconds(&implicit, 9.0, effort.choose(1, 5))?;
+        let end = |settings: &[String], step: f64| {
+            value_of(scene("stretched_cube", settings)?, (6.0 / step) as u64, "waist", 1)
+        };
+        // explicit runs are at rest some seconds later; the cheap one tells
+        let error = end(&implicit, 0.1)? / -0.0082913887 - 1.0;
+        let ratios: Vec<f64> = of_implicit.iter().map(|seconds| of_explicit / seconds).collect();
+        let samples = ratios.len();
+        let (value, spread) = median(ratios);
+        figures.push(Figure {
+            name: format!("{name}_{density}_{modulus:e}_1t"),
+            value,
+            unit: "x implicit",
+            higher_is_better: true,
+            error: error.abs(),
+            error_of: "waist at rest".to_owned(),
+            baseline: Some(wanted),
+            threads: 1,
+            samples,
+            spread,
+            bytes: 0,
+        });
+    }
+    Ok(figures)
+}
