@@ -35,5 +35,5 @@ pub use format::{
     read_mesh, read_mesh_bytes, read_mesh_content, write_dataset, write_dataset_as, write_mesh,
 };
 pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
-pub use particles::{ParticleRow, read_particles};
+pub use particles::{ParticleRow, read_particle_bytes, read_particles};
 pub use vtk::{Series, read_series};
