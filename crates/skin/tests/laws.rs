@@ -103,6 +103,28 @@ fn curvature_is_of_second_order() {
     }
 }
 
+/// `∫κ` over a cylinder with round ends, and its area.
+fn capsule(voxel: f64, half: f64) -> [f64; 2] {
+    let skin = Skin { redistance: 0.0, ..skin(voxel, Vec::new()) };
+    let mut scratch = skin.new_scratch();
+    let corner = Vec3::new(half + 0.5, 0.5, 0.5);
+    let value = |p: Vec3| 0.4 - Vec3::new((p.x.abs() - half).max(0.0), p.y, p.z).length();
+    let field = skin.start(-corner, corner, &value, &mut scratch).unwrap();
+    let area = skin.view(&field).measures().area;
+    [souple_skin::mean_curvature(skin.view(&field).grid, &skin.lattice) * area, area]
+}
+
+/// `κ = 1/r` of a cylinder, to a twentieth of `(h/r)²`: of two that differ in length by whole voxels at both ends, which are
+/// alike, the difference is of the cylinder alone.
+#[test]
+fn curvature_of_a_cylinder() {
+    for voxel in [1.0 / 8.0, 1.0 / 16.0] {
+        let ([short, less], [long, more]) = (capsule(voxel, 0.5), capsule(voxel, 1.0));
+        let error = 0.4 * (long - short) / (more - less) - 1.0;
+        assert!(error.abs() < 0.05 * (voxel / 0.4).powi(2), "{error} at {voxel}");
+    }
+}
+
 fn part(name: &str, values: &[(&'static str, Value<'static>)]) -> Part {
     struct Nothing;
     impl Surroundings for Nothing {

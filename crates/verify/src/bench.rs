@@ -164,6 +164,11 @@ pub const BENCHES: &[Bench] = &[
         run: skins::cost,
     },
     Bench {
+        name: "skin_image",
+        what: "an image of the metamorphosis of a twisted bundle on 50^3 cells, which took 1 s in 1997, one thread [s]",
+        run: skins::image,
+    },
+    Bench {
         name: "skin_100k",
         what: "the surface of 100,000 particles of a ball at voxels of their radius, beside pysplashsurf [particles/s]",
         run: |effort| skins::dress_100k("skin_100k", 1.0, effort),

@@ -98,6 +98,26 @@ pub fn cost(effort: Effort) -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
+/// Seconds for each of the 25 images of a metamorphosis on 50³ cells, with what is four steps apart.
+pub fn image(effort: Effort) -> Result<Vec<Figure>, String> {
+    let timing = Timing {
+        scene: "skin_untwists",
+        settings: &[],
+        prepare: as_it_is,
+        warm_up: 0,
+        samples: effort.choose(5, 25),
+        steps_per_sample: 4,
+    };
+    let timed = with_threads(1, || timing.sample(1))??;
+    let held = Held {
+        error: super::value_of(scene("skin_untwists", &[])?, 100, "distance", 0)?,
+        error_of: "the skin's distance from its target at last [m]".to_owned(),
+        baseline: Some(1.0),
+    };
+    let seconds = timed.seconds.iter().map(|seconds| 4.0 * seconds).collect();
+    Ok(vec![timed.figure("skin_image", seconds, &held, ("s/image", false))])
+}
+
 /// The slope of a line through points by least squares, and the greatest distance from it.
 fn slope(points: &[(f64, f64)]) -> (f64, f64) {
     let count = points.len() as f64;
