@@ -19,7 +19,9 @@ const FILES: [(&str, &str, &str); 3] = [
 const REMEDY: &str = "install Node.js 20 or later with npm, then build Souple again";
 
 fn main() {
-    let web = Path::new(env!("CARGO_MANIFEST_DIR")).join("web");
+    // where the crate is now: the program that asks may have been made in another folder
+    let web = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo names the folder of the crate"));
+    let web = web.join("web");
     for source in SOURCES.iter().copied().chain(["src"]) {
         println!("cargo::rerun-if-changed={}", web.join(source).display());
     }

@@ -57,14 +57,16 @@ const STEPS: &[Step] = &[
     Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
     Step { name: "reference", summary: "docs/reference is what the tables say", run: reference::check },
     Step { name: "snippets", summary: "every command and scene in README and docs/", run: snippets::check },
-    Step {
-        name: "browser",
-        summary: "the page of the released program in a headless Chromium",
-        run: browser::check,
-    },
     Step { name: "verify", summary: "the validation cases of the released program", run: program::verify },
     Step { name: "mutations", summary: "every validation case fails where it must", run: program::mutations },
 ];
+
+/// Checks that are made only by name: on machines that draw by software, beside other work, they may take an hour.
+const BY_NAME: &[Step] = &[Step {
+    name: "browser",
+    summary: "the page of the released program in a headless Chromium",
+    run: browser::check,
+}];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -112,15 +114,23 @@ fn usage() -> String {
     for step in STEPS {
         text += &format!("  {:<14}{}\n", step.name, step.summary);
     }
+    text += "\nonly by name:\n\n";
+    for step in BY_NAME {
+        text += &format!("  {:<14}{}\n", step.name, step.summary);
+    }
     text
 }
 
 /// The named steps in the order of [`STEPS`]; all of them without names. Errs with a name that is none.
 fn chosen(names: &[String]) -> Result<Vec<&'static Step>, String> {
-    if let Some(unknown) = names.iter().find(|name| STEPS.iter().all(|step| step.name != **name)) {
+    if names.is_empty() {
+        return Ok(STEPS.iter().collect());
+    }
+    let all = || STEPS.iter().chain(BY_NAME);
+    if let Some(unknown) = names.iter().find(|name| all().all(|step| step.name != **name)) {
         return Err(unknown.clone());
     }
-    Ok(STEPS.iter().filter(|step| names.is_empty() || names.iter().any(|name| name == step.name)).collect())
+    Ok(all().filter(|step| names.iter().any(|name| name == step.name)).collect())
 }
 
 /// Runs the steps until one fails.

@@ -15,10 +15,11 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The tree that this program was built from.
+    /// The tree that cargo runs this program in, or that it was built from.
     pub fn of_this_project() -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_owned).unwrap_or_default();
-        Self { root }
+        let built_from = || env!("CARGO_MANIFEST_DIR").into();
+        let own = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(built_from));
+        Self { root: own.parent().map(Path::to_owned).unwrap_or_default() }
     }
 
     /// Every written file, relative to the root, with forward slashes, sorted.

@@ -25,6 +25,9 @@ fn radius_ratio([a, b, c, d]: [Vec3; 4]) -> f64 {
     let six_volumes = u.dot(v.cross(w)).abs();
     let twice_areas = [v.cross(w), w.cross(u), u.cross(v), (c - b).cross(d - b)];
     let twice_surface: f64 = twice_areas.iter().map(|area| area.length()).sum();
+    if six_volumes == 0.0 {
+        return 0.0;
+    }
     // r = 3V/S and |u² v×w + v² w×u + w² u×v| = 12 V R
     let inscribed = six_volumes / twice_surface;
     let [vw, wu, uv, _] = twice_areas;

@@ -187,6 +187,14 @@ fn tensor_masses_are_the_law() {
             let name = format!("{law} by {formulation}");
             assert_same(&name, samples.as_ref(), other.as_ref(), &bent(&mesh));
             assert_eq!(samples.declaration(), other.declaration(), "{name}");
+            let now = bent(&mesh);
+            for cell in 0..mesh.cell_count() {
+                let [one, two] = [&samples, &other].map(|force| force.cell_field(cell, &now).unwrap());
+                // the same sums in the order of their writing
+                assert!((one.deformation - two.deformation).largest_entry() < 1e-13, "{name}");
+                assert!((one.von_mises - two.von_mises).abs() < 1e-10 * material.small_strain.mu, "{name}");
+                assert!((one.volume - two.volume).abs() < 1e-13 * one.volume, "{name}");
+            }
         }
     }
 }

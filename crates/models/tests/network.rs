@@ -44,6 +44,7 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
             "solid_viscosity" => Value::Number(5.0),
             "fluid_stiffness" => Value::Number(1200.0),
             "fluid_viscosity" => Value::Number(50.0),
+            "network" => Value::Text("spring(k) - (damper(c) | spring(2 * k))"),
             "push" => Value::Text("-k * (D - L0) - c * V"),
             "states" => Value::Texts(&states),
             "transitions" => Value::Texts(&transitions),

@@ -202,10 +202,9 @@ fn output_folder(
 pub fn forecast_warnings(world: &mut World) -> Vec<String> {
     let mut warnings = Vec::new();
     for index in 0..world.model().systems.len() {
-        let timestep = world.model().timestep(index);
-        let explicit = world.model().systems[index].stepper.stability()
-            != souple_engine::steppers::Stability::Unconditional;
-        if !explicit {
+        let stepper = &world.model().systems[index].stepper;
+        let timestep = stepper.interval(world.model().timestep(index));
+        if stepper.stability() == souple_engine::steppers::Stability::Unconditional {
             continue;
         }
         let (name, stepper, forecast) = world.with_system(index, |system, state, around, ws| {

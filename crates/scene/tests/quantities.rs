@@ -172,24 +172,35 @@ term = "attraction"
 strength = 1.0
 "#;
 
+const CHANGING: &str = r#"[bodies.cube.adapt]
+material = { name = "st_venant_kirchhoff", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
+volume = 0.1
+"#;
+
+const LAYERED: &str = r#"
+format = 1
+[world]
+period = "1 ms"
+[systems.main]
+stepper = { name = "staggered", halvings = 2 }
+[bodies.cube]
+mesh = { generate = "box", size = [1, 1, 1], cells = [4, 4, 4], element = "tet4" }
+material = { name = "neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
+levels = { count = 2, refine = 0.1, coarsen = 0.03 }
+"#;
+
 /// Every quantity of the table can be measured, and gives what its rank says; none is not finite at rest.
 #[test]
 fn every_quantity_is_measured() {
+    let skin = format!("{CUBE}{SKIN}");
+    let changing = CUBE.replace("neo_hookean", "linear") + CHANGING;
+    let cube = "body = \"cube\"";
+    let probed = [(CUBE, ""), (CUBE, cube), (&skin, "skin = \"ball\""), (&changing, cube), (LAYERED, cube)];
     for entry in QUANTITIES.entries {
-        let body = "[probes.q]\nbody = \"cube\"\n";
-        let alone = "[probes.q]\n";
-        let head =
-            if read_text("s", &format!("{CUBE}{alone}quantity = \"{}\"\n", entry.name), Path::new("."), &[])
-                .is_ok()
-            {
-                alone
-            } else {
-                body
-            };
-        // of a skin, which stands alone
-        let skin = "[probes.q]\nskin = \"ball\"\n";
-        let head = if entry.name.starts_with("skin.") { skin } else { head };
-        let (mut world, probes) = start(&format!("{CUBE}{SKIN}{head}quantity = \"{}\"\n", entry.name));
+        let scene = |(scene, of)| format!("{scene}[probes.q]\n{of}\nquantity = \"{}\"\n", entry.name);
+        let text =
+            probed.map(scene).into_iter().find(|text| read_text("s", text, Path::new("."), &[]).is_ok());
+        let (mut world, probes) = start(&text.unwrap_or_else(|| panic!("nothing has {}", entry.name)));
         let measured = probes[0].measure(&mut world);
         assert!(measured.numbers().iter().all(|number| number.is_finite()), "{}: {measured:?}", entry.name);
         assert_eq!(matches!(measured, Measurement::Vector(_)), probes[0].gives_vector(), "{}", entry.name);

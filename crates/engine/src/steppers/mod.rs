@@ -151,6 +151,11 @@ pub trait Stepper: Send + Sync {
 
     fn stability(&self) -> Stability;
 
+    /// How long a force is taken to stay what it is within a step [s]: what [`Stepper::stability`] is of.
+    fn interval(&self, timestep: f64) -> f64 {
+        timestep
+    }
+
     /// Whether mass resists acceleration in its steps; statics knows no inertia.
     fn has_inertia(&self) -> bool {
         true

@@ -5,7 +5,6 @@ use std::ops::Range;
 use souple_math::Vec3;
 use souple_table::{Parameter, Range as Allowed, Value};
 
-use crate::force::Force;
 use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Push};
 use crate::state::SystemState;
 use crate::system::{System, SystemWorkspace};
@@ -86,6 +85,8 @@ pub struct StaggeredBuffers {
     /// Rows that forces from outside couple.
     watched: Vec<u32>,
     is_watched: Vec<bool>,
+    /// By force, whether it comes from outside and couples rows: it may be stiff, and pushes in every tick.
+    couples: Vec<bool>,
     /// Rows of no body with levels.
     others: Vec<Range<usize>>,
     /// Accelerations that stay the same throughout the step.
@@ -96,21 +97,21 @@ fn bodies(system: &System) -> impl Iterator<Item = (usize, &dyn Levels)> {
     system.forces.iter().enumerate().filter_map(|(index, force)| Some((index, force.levels()?)))
 }
 
-/// Whether a force may be stiff: it couples rows.
-fn couples(force: &dyn Force, state: &SystemState) -> bool {
-    let mut couples = false;
-    force.visit_cliques(&state.pairs, &mut |_| couples = true);
-    couples
-}
-
 impl StaggeredBuffers {
+    /// As the pairs of forces are now.
     fn prepare(&mut self, system: &System, state: &SystemState) {
         self.is_watched.clear();
         self.is_watched.resize(state.q.len(), false);
-        for force in system.forces.iter().filter(|force| force.levels().is_none()) {
-            force.visit_cliques(&state.pairs, &mut |rows| {
-                rows.iter().for_each(|row| self.is_watched[*row as usize] = true);
-            });
+        self.couples.clear();
+        for force in &system.forces {
+            let mut couples = false;
+            if force.levels().is_none() {
+                force.visit_cliques(&state.pairs, &mut |rows| {
+                    couples = true;
+                    rows.iter().for_each(|row| self.is_watched[*row as usize] = true);
+                });
+            }
+            self.couples.push(couples);
         }
         self.watched.clear();
         self.watched.extend((0..state.q.len() as u32).filter(|row| self.is_watched[*row as usize]));
@@ -141,7 +142,7 @@ impl Stage<'_, '_> {
         let (Step { system, around, .. }, ws) = (*self.step, &mut *self.ws);
         let mut is_any = false;
         for (index, force) in system.forces.iter().enumerate() {
-            if force.levels().is_none() && couples(force.as_ref(), self.next) == coupling {
+            if force.levels().is_none() && self.buffers.couples[index] == coupling {
                 let at = system.view(index, &ws.rows, self.next, around);
                 force.add_force(&at, &mut ws.scratches[index], &mut ws.row_force);
                 is_any = true;
@@ -236,6 +237,9 @@ impl Stage<'_, '_> {
         let tick_length = timestep / f64::from(ticks);
         self.hold_steady();
         for tick in 0..ticks {
+            if system.refresh_pairs(self.ws, self.next, around) {
+                self.buffers.prepare(system, self.next);
+            }
             self.push_from_outside(tick_length);
             self.push_from_inside(tick, schedule);
             system.advance_memory(self.ws, self.next, around, tick_length);
@@ -273,9 +277,14 @@ impl Stepper for Staggered {
         true
     }
 
-    /// Points choose their intervals by themselves.
+    /// Of modified Euler, in its shortest intervals.
     fn stability(&self) -> Stability {
-        Stability::Unconditional
+        Stability::Limited(2.0)
+    }
+
+    /// Points of levels choose theirs by themselves; all others, and what acts from outside, have the shortest.
+    fn interval(&self, timestep: f64) -> f64 {
+        timestep / (1_u32 << self.halvings) as f64
     }
 
     fn step(

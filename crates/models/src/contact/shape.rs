@@ -128,6 +128,11 @@ fn boxed<S: Shape + 'static>(shape: S, values: &Values) -> Box<dyn Shape> {
     if values.boolean("hollow") { Box::new(Hollow(shape)) } else { Box::new(shape) }
 }
 
+/// Whether a point is surely farther than `distance` from `centre`, not by rounding alone; without a root.
+fn is_beyond(point: Vec3, centre: Vec3, distance: f64) -> bool {
+    (point - centre).length_sq() > distance * distance * (1.0 + 8.0 * f64::EPSILON)
+}
+
 /// Distance to a rounded thing of `radius` about `centre`, the nearest point of a line, segment or point; at
 /// the centre itself, where every direction is as good, along `fallback`.
 ///

@@ -14,7 +14,7 @@ use super::kernel::{Blocks, Gradients, PAIR_LEN, RATES_LEN, Spread};
 use super::layout::{Chunk, GRADIENT_LEN, chunks};
 use super::matrix::{Pairs, Slots};
 use super::{Carried, ROWS_OF_FRAME, Sample, tangents};
-use crate::materials::{Material, cauchy_stress};
+use crate::materials::Material;
 use crate::solids::layout::{LANES, LaneBlock};
 use crate::solids::sample_law::{Answer, ROWS, Run, SampleLaw, TANGENT_LEN};
 use crate::solids::{law_of_samples, parallel};
@@ -444,19 +444,7 @@ impl Force for FramesForce {
             }
         }
         let material = &self.materials[self.material_of_cell[cell] as usize];
-        let stress = material.stress(&F);
-        let cauchy = cauchy_stress(&stress, &F).unwrap_or(Mat3::ZERO);
-        let deviator = cauchy.plus_diagonal(-cauchy.trace() / 3.0);
-        let volume = self.cell_volumes[cell];
-        Some(CellField {
-            deformation: F,
-            stress,
-            cauchy,
-            von_mises: (1.5 * deviator.dot(&deviator)).sqrt(),
-            energy_density: material.energy_density(&F),
-            volume,
-            current_volume: volume * F.determinant(),
-        })
+        Some(material.field(&F, self.cell_volumes[cell]))
     }
 
     fn bytes(&self) -> usize {

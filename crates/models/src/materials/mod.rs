@@ -21,6 +21,7 @@ mod stable_neo_hookean;
 
 use std::sync::Arc;
 
+use souple_engine::CellField;
 use souple_formal::law::Strain;
 use souple_math::Mat3;
 use souple_table::{Entry, Parameter, Range, Table, Values};
@@ -190,6 +191,21 @@ impl Material {
         }
     }
 
+    /// What is read off matter of `volume` [m³] at rest that is deformed by `F`.
+    pub fn field(&self, F: &Mat3, volume: f64) -> CellField {
+        let stress = self.stress(F);
+        let cauchy = cauchy_stress(&stress, F).unwrap_or(Mat3::ZERO);
+        CellField {
+            deformation: *F,
+            stress,
+            cauchy,
+            von_mises: von_mises(&cauchy),
+            energy_density: self.energy_density(F),
+            volume,
+            current_volume: volume * F.determinant(),
+        }
+    }
+
     /// What is legal in the law and doubtful.
     pub fn warnings(&self) -> &[String] {
         match &self.law {
@@ -197,6 +213,12 @@ impl Material {
             MaterialLaw::Text(law) => &law.law().warnings,
         }
     }
+}
+
+/// `√(3/2 dev σ : dev σ)` [Pa].
+pub fn von_mises(cauchy: &Mat3) -> f64 {
+    let deviator = cauchy.plus_diagonal(-cauchy.trace() / 3.0);
+    (1.5 * deviator.dot(&deviator)).sqrt()
 }
 
 /// Cauchy stress `σ = P Fᵀ / det F` [Pa]; `None` where the element has no volume.

@@ -23,8 +23,15 @@ pub struct Criterion {
     pub measure: Measure,
     /// Above this a point is subdivided.
     pub refine: f64,
-    /// Points that are all below this make place for the coarser one; below half of `refine`, so that none comes and goes.
+    /// Points that are all below this make place for the coarser one; at most half of `refine`, so that none comes and goes.
     pub coarsen: f64,
+}
+
+impl Criterion {
+    /// Whether finer points would go as soon as they came: around them the variation is about half of what called them.
+    pub fn flickers(&self) -> bool {
+        2.0 * self.coarsen > self.refine
+    }
 }
 
 impl Measure {

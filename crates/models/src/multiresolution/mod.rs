@@ -29,11 +29,11 @@ use souple_engine::{
     CellField, Configuration, Declaration, Editable, Energy, Force, ParameterError, Scratch, TangentWeights,
 };
 use souple_formal::Formula;
-use souple_math::{Mat3, Vec3};
+use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_solve::BlockMatrix;
 
-use crate::materials::{Material, cauchy_stress};
+use crate::materials::Material;
 use crate::solids::layout::LANES;
 use crate::solids::sample_law::Answer;
 use elastic::{ALL_CORNERS, Due, LawMemory, Values};
@@ -339,17 +339,33 @@ impl Force for LevelsForce {
     fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
         let force = self.name.clone();
         let known: Vec<String> = self.editable().iter().map(|editable| editable.name.to_owned()).collect();
-        let number = match (name, &mut self.choice, &mut self.budget) {
-            ("refine", Choice::Adaptive(criterion), _) => &mut criterion.refine,
-            ("coarsen", Choice::Adaptive(criterion), _) => &mut criterion.coarsen,
-            ("budget", _, Some(budget)) => budget,
-            _ => return Err(ParameterError::Unknown { force, name: name.to_owned(), known }),
+        let unfit = |force, expected: String| {
+            Err(ParameterError::Unfit { force, name: name.to_owned(), value, expected })
         };
-        if !(value.is_finite() && value >= 0.0) {
-            let expected = "a finite number of at least 0".to_owned();
-            return Err(ParameterError::Unfit { force, name: name.to_owned(), value, expected });
+        match (name, &mut self.choice, &mut self.budget) {
+            ("refine" | "coarsen", Choice::Adaptive(criterion), _) => {
+                let mut changed = *criterion;
+                *(if name == "refine" { &mut changed.refine } else { &mut changed.coarsen }) = value;
+                if !(value.is_finite() && value >= 0.0) {
+                    return unfit(force, "a finite number of at least 0".to_owned());
+                }
+                if changed.flickers() {
+                    let expected = match name {
+                        "refine" => format!("at least twice `coarsen`, {}", 2.0 * criterion.coarsen),
+                        _ => format!("at most half of `refine`, {}", 0.5 * criterion.refine),
+                    };
+                    return unfit(force, expected);
+                }
+                *criterion = changed;
+            }
+            ("budget", _, Some(budget)) => {
+                if !(value.is_finite() && value > 0.0) {
+                    return unfit(force, "a finite number above 0".to_owned());
+                }
+                *budget = value;
+            }
+            _ => return Err(ParameterError::Unknown { force, name: name.to_owned(), known }),
         }
-        *number = value;
         Ok(())
     }
 
@@ -359,18 +375,7 @@ impl Force for LevelsForce {
         let material = &self.matter.materials[usize::from(self.matter.material_of_cell[cell])];
         // rows of the finest mesh are enough
         let F = tet.gradient(&positions[self.first_row..]);
-        let P = material.stress(&F);
-        let cauchy = cauchy_stress(&P, &F).unwrap_or(Mat3::ZERO);
-        let deviator = cauchy.plus_diagonal(-cauchy.trace() / 3.0);
-        Some(CellField {
-            deformation: F,
-            stress: P,
-            cauchy,
-            von_mises: (1.5 * deviator.dot(&deviator)).sqrt(),
-            energy_density: material.energy_density(&F),
-            volume: tet.volume,
-            current_volume: tet.volume * F.determinant(),
-        })
+        Some(material.field(&F, tet.volume))
     }
 
     fn levels(&self) -> Option<&dyn Levels> {

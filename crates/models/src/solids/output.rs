@@ -7,7 +7,7 @@ use souple_mesh::{ElementKind, Order};
 use super::layout::LANES;
 use super::section::Completed;
 use super::{Section, SolidForce};
-use crate::materials::cauchy_stress;
+use crate::materials::{cauchy_stress, von_mises};
 
 impl SolidForce {
     /// Fields of one cell at row positions.
@@ -41,12 +41,11 @@ impl SolidForce {
         }
         let mean = 1.0 / sum.volume;
         let cauchy = sum.cauchy * mean;
-        let deviator = cauchy.plus_diagonal(-cauchy.trace() / 3.0);
         Some(CellField {
             deformation: sum.deformation * mean,
             stress: sum.stress * mean,
             cauchy,
-            von_mises: (1.5 * deviator.dot(&deviator)).sqrt(),
+            von_mises: von_mises(&cauchy),
             energy_density: sum.energy_density * mean,
             volume: sum.volume,
             // by the rule that is exact for the determinant, whatever the samples of the law

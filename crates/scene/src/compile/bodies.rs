@@ -296,13 +296,21 @@ fn check_together(draft: &Draft, body: &Body) {
     let report = |site: &Site, message: String, expected: &str| {
         draft.log.add(Code::Conflict, site, message, expected);
     };
-    if let (Some(chosen), Some(_)) = (&body.formulation, &body.frames) {
-        let message = format!("frames carry body `{}`, whose forces are those of its points", body.name);
-        report(&chosen.site, message, "a formulation of a body without frames");
+    let carriers = [("frames", body.frames.is_some()), ("levels", body.levels.is_some())];
+    for (carrier, _) in carriers.into_iter().filter(|(_, is_there)| *is_there) {
+        let message =
+            |key: &str| format!("`{carrier}` carry body `{}`, and know one way only: no `{key}`", body.name);
+        if let Some(chosen) = &body.formulation {
+            report(&chosen.site, message("formulation"), "a formulation of a body of points alone");
+        }
+        if body.tangent == TangentKind::Difference {
+            report(&body.site, message("tangent"), "`tangent = \"exact\"`");
+        }
     }
     let Some(adapt) = &body.adapt else { return };
     let others = [
         ("frames", body.frames.is_some()),
+        ("levels", body.levels.is_some()),
         ("section", body.section.is_some()),
         ("regions", !body.regions.is_empty()),
         ("formulation", body.formulation.is_some()),

@@ -91,7 +91,7 @@ fn suits(draft: &Draft, body: &Body, spec: &LevelsSpec) -> bool {
             "no `section` and no `frames` beside",
         );
     }
-    if body.mass == MassKind::Consistent {
+    if body.mass != MassKind::Lumped {
         return refuse("points of levels have masses of their own", "`mass = \"lumped\"`");
     }
     if body.damping.rayleigh_stiffness > 0.0 {

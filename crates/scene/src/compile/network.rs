@@ -242,7 +242,7 @@ pub fn warn_of_steps(draft: &mut Draft) {
             continue;
         }
         let spec = &draft.spec.systems[body.system];
-        let timestep = draft.spec.world.period / f64::from(spec.steps_per_period);
+        let timestep = system.stepper.interval(draft.spec.world.period / f64::from(spec.steps_per_period));
         let is_fixed: Vec<bool> = network.of_each(|group| group.is_fixed).collect();
         let mut loads = vec![0.0; body.mesh.points.len()];
         for (index, links) in body.links.iter().enumerate() {

@@ -10,7 +10,7 @@ mod points;
 mod reaction;
 mod skin;
 
-use souple_engine::World;
+use souple_engine::{Force, World};
 use souple_math::Vec3;
 
 use crate::compile::{Draft, Placed, hold_name, solid_name};
@@ -281,7 +281,22 @@ fn cell_part(probe: &Probe, draft: &Draft) -> Option<CellPart> {
         Some(region) => draft.selector(body).cells(region),
         None => (0..body.mesh.cell_count() as u32).collect(),
     };
-    Some(CellPart { system: body.system, solid: solid_name(&body.spec.name), cells })
+    let solid = solid_name(&body.spec.name);
+    let system = draft.systems.get(body.system)?;
+    let force = system.forces.iter().find(|force| force.name() == solid);
+    let nowhere = vec![Vec3::ZERO; system.kinematics.row_count()];
+    let answers = |force: &dyn Force, cell: u32| force.cell_field(cell as usize, &nowhere).is_some();
+    if force.zip(cells.first()).is_some_and(|(force, cell)| !answers(force.as_ref(), *cell)) {
+        let message = format!("the forces of body `{}` are not those of cells", body.spec.name);
+        draft.log.add(
+            Code::Conflict,
+            &probe.site,
+            message,
+            "a body of solid matter, with another `formulation`",
+        );
+        return None;
+    }
+    Some(CellPart { system: body.system, solid, cells })
 }
 
 fn of_world(quantity: WorldQuantity, world: &mut World) -> f64 {

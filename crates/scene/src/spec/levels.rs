@@ -83,14 +83,16 @@ impl LevelsSpec {
             if reader.choice("criterion") == "laplacian" { Measure::Laplacian } else { Measure::Jump };
         let criterion =
             Criterion { measure, refine: reader.number("refine"), coarsen: reader.number("coarsen") };
-        if criterion.coarsen >= criterion.refine && criterion.refine > 0.0 {
+        if criterion.flickers() {
             let message = "points would come and go in every step";
-            reader.log().add(
-                Code::Conflict,
-                &reader.site_of("coarsen"),
-                message,
-                "less than half of `refine`",
-            );
+            let expected = format!("at most half of `refine`, {}", 0.5 * criterion.refine);
+            reader.log().add(Code::Conflict, &reader.site_of("coarsen"), message, expected);
+        }
+        if reader.has("fixed") {
+            for key in reader.written(&["criterion", "refine", "coarsen", "budget"]) {
+                let message = format!("`{key}` is of levels that change, and `fixed` says what they are");
+                reader.log().add(Code::Conflict, &reader.site_of(key), message, "`fixed` alone");
+            }
         }
         Self {
             count: reader.maybe_integer("count").unwrap_or(3) as usize,

@@ -48,7 +48,7 @@ pub fn grip(world: &World, body: &BodyInfo, rows: &[u32], strength: f64) -> Grip
     let mut stiffness = strength * body_mass * FREQUENCY * FREQUENCY;
     let mut damping = stiffness * DAMPING_TIME;
     if !matches!(system.stepper.stability(), Stability::Unconditional) {
-        let timestep = world.model().timestep(body.system);
+        let timestep = system.stepper.interval(world.model().timestep(body.system));
         let carriers = body.frames.as_ref().map_or(rows, |frames| &frames.rows);
         let lightest = carriers.iter().map(|row| masses[*row as usize]).fold(f64::INFINITY, f64::min);
         // k/n < 0.1 m/h², c/n < 0.1 m/h: well within what the step bears
@@ -74,7 +74,7 @@ pub fn tool_stiffness<'a>(
         let masses = rows.iter().map(|row| system.mass.diagonal[*row as usize]);
         mass += masses.clone().sum::<f64>();
         if !matches!(system.stepper.stability(), Stability::Unconditional) {
-            let timestep = world.model().timestep(body.system);
+            let timestep = system.stepper.interval(world.model().timestep(body.system));
             let lightest = masses.filter(|mass| *mass > 0.0).fold(f64::INFINITY, f64::min);
             bearable = f64::min(bearable, EXPLICIT_SHARE * lightest / (timestep * timestep));
         }

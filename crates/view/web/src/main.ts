@@ -189,7 +189,7 @@ class Page {
     if (look.arrows !== asked.arrows) this.send({ do: "arrows", of: look.arrows });
     if (inside !== asked.inside) this.send({ do: "inside", is_shown: inside });
     this.asked = { field: look.field, arrows: look.arrows, inside };
-    if (map) this.picture.setColours(index, map, null);
+    if (map) this.picture.setColours(index, fields[index]?.of ?? "points", map, null);
     this.legend.set(fields[index] ?? null, map);
     this.picture.setStyle(look.style, this.dark);
     this.picture.setCut(look.cut);

@@ -3,7 +3,7 @@
 use souple_math::{Mat3, Vec3};
 use souple_table::{Parameter, Range};
 
-use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, boxed, rounded, rounded_surface};
+use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, boxed, is_beyond, rounded, rounded_surface};
 
 /// All points within a radius of a segment; a segment of no length is a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,11 +16,13 @@ pub struct Capsule {
 }
 
 impl Shape for Capsule {
-    fn nearest(&self, point: Vec3, _reach: f64) -> Option<Nearest> {
-        if !point.is_finite() {
+    fn nearest(&self, point: Vec3, reach: f64) -> Option<Nearest> {
+        let along = self.to - self.from;
+        // of a segment of no length 0/0, which clamps to no number: its ball answers below
+        let share = ((point - self.from).dot(along) / along.length_sq()).clamp(0.0, 1.0);
+        if !point.is_finite() || is_beyond(point, self.from + along * share, self.radius + reach) {
             return None;
         }
-        let along = self.to - self.from;
         let Some(axis) = along.try_normalised() else {
             return Some(rounded(point, self.from, self.radius, Mat3::ZERO, Vec3::Z));
         };

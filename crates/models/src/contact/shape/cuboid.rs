@@ -17,12 +17,15 @@ pub struct Cuboid {
 }
 
 impl Shape for Cuboid {
-    fn nearest(&self, point: Vec3, _reach: f64) -> Option<Nearest> {
+    fn nearest(&self, point: Vec3, reach: f64) -> Option<Nearest> {
         if !point.is_finite() {
             return None;
         }
         let local = point - self.centre;
         let beyond = [0, 1, 2].map(|axis: usize| local[axis].abs() - self.half_size[axis]);
+        if beyond.iter().any(|distance| *distance > reach) {
+            return None;
+        }
         let side = |axis: usize| Vec3::AXES[axis] * 1.0_f64.copysign(local[axis]);
         if beyond.iter().all(|distance| *distance <= 0.0) {
             let nearest = (1..3).fold(0, |best, axis| if beyond[axis] > beyond[best] { axis } else { best });

@@ -3,7 +3,7 @@
 use souple_math::{Mat3, Vec3};
 use souple_table::{Parameter, Range, Value};
 
-use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, boxed, rounded, rounded_surface};
+use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, boxed, is_beyond, rounded, rounded_surface};
 
 /// At the very centre the nearest point is taken along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,8 +15,11 @@ pub struct Sphere {
 }
 
 impl Shape for Sphere {
-    fn nearest(&self, point: Vec3, _reach: f64) -> Option<Nearest> {
-        point.is_finite().then(|| rounded(point, self.centre, self.radius, Mat3::ZERO, Vec3::Z))
+    fn nearest(&self, point: Vec3, reach: f64) -> Option<Nearest> {
+        if !point.is_finite() || is_beyond(point, self.centre, self.radius + reach) {
+            return None;
+        }
+        Some(rounded(point, self.centre, self.radius, Mat3::ZERO, Vec3::Z))
     }
 
     fn outline(&self) -> Option<Outline> {

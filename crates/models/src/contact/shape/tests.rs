@@ -64,6 +64,24 @@ fn distances_agree_with_their_derivatives() {
     }
 }
 
+/// Within reach the answer is the same whatever the reach; none is given up that is not beyond it.
+#[test]
+fn reach_gives_up_what_is_beyond() {
+    for shape in all() {
+        for i in 0..200 {
+            let at = |k: f64| 4.0 * ((i as f64 + 1.0) * k).fract() - 2.0;
+            let point = Vec3::new(at(0.618), at(0.755), at(0.570));
+            let nearest = shape.nearest(point, f64::INFINITY).unwrap();
+            for reach in [0.0, 0.01, 0.5] {
+                match shape.nearest(point, reach) {
+                    Some(within) => assert_eq!(within, nearest, "{shape:?} at {point:?}"),
+                    None => assert!(nearest.distance >= reach, "{shape:?} at {point:?}: {nearest:?}"),
+                }
+            }
+        }
+    }
+}
+
 /// Centres, faces and points that are not finite have answers decided on purpose.
 #[test]
 fn degenerate_points() {

@@ -38,6 +38,11 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// Its number that is nearest to `number`; of an interval without numbers, none.
+    pub fn nearest(self, number: f64) -> f64 {
+        number.max(self.low).min(self.high)
+    }
+
     fn of(number: f64) -> Self {
         Self { low: number, high: number }
     }
@@ -103,18 +108,25 @@ impl Curve {
         }
         let (a, b) = (corners[first - 1], corners[first]);
         let share = (deformation - a.deformation) / (b.deformation - a.deformation);
-        Interval::of(a.effort + share * (b.effort - a.effort))
+        // between the corners, whatever rounding says: beyond them a slider would have given way
+        Interval::of((a.effort + share * (b.effort - a.effort)).max(a.effort).min(b.effort))
     }
 
-    /// Deformations at an effort; empty (`low > high`) where it is never reached.
+    /// Deformations at an effort, at the nearest that is reached.
     pub fn deformations(&self, effort: f64) -> Interval {
         let swapped = self.swapped();
         let [before, behind] = swapped.slopes;
         let (first, last) = (swapped.corners[0].deformation, swapped.corners[self.count - 1].deformation);
-        if before.is_infinite() && effort < first || behind.is_infinite() && effort > last {
-            return Interval { low: f64::INFINITY, high: f64::NEG_INFINITY };
-        }
-        swapped.efforts(effort)
+        let least = if before.is_infinite() { first } else { f64::NEG_INFINITY };
+        let most = if behind.is_infinite() { last } else { f64::INFINITY };
+        // no number stays none
+        swapped.efforts(if effort < least {
+            least
+        } else if effort > most {
+            most
+        } else {
+            effort
+        })
     }
 
     /// `∂Q/∂q` at a deformation, from the right [N/m].

@@ -149,8 +149,10 @@ impl Network {
     pub fn rest_at(&self, deformation: f64, memory: &mut [f64]) {
         memory.fill(0.0);
         let (viscosity, stiffness) = self.slowest();
-        if viscosity > 0.0 && stiffness.is_finite() {
-            self.deform(deformation, FOR_EVER * viscosity / stiffness, memory);
+        if viscosity > 0.0 {
+            // dampers without a spring relax at once: any time will do
+            let relaxation = if stiffness.is_finite() { viscosity / stiffness } else { 1.0 };
+            self.deform(deformation, FOR_EVER * relaxation, memory);
         }
     }
 
@@ -171,7 +173,7 @@ impl Network {
             Self::Parallel(parts) => parts.iter().fold(Account::default(), |sum, part| {
                 // what stands still may bear any effort of an interval, and neither moves nor heats: the least will do
                 let efforts = part.curve(timestep, memory).efforts(deformation);
-                let own = 0.0_f64.clamp(efforts.low, efforts.high);
+                let own = efforts.nearest(0.0);
                 sum.plus(part.follow(deformation, own, timestep, memory))
             }),
             Self::Series(parts) => {
@@ -183,7 +185,7 @@ impl Network {
                 let mut left = deformation - parts.iter().map(|part| anchor(part, memory).1).sum::<f64>();
                 parts.iter().fold(Account::default(), |sum, part| {
                     let (reached, at) = anchor(part, memory);
-                    let own = (at + left).clamp(reached.low, reached.high);
+                    let own = reached.nearest(at + left);
                     left -= own - at;
                     sum.plus(part.follow(own, effort, timestep, memory))
                 })

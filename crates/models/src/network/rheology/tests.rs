@@ -100,6 +100,116 @@ fn begins_relaxed() {
     assert!((memory[0] - 0.01).abs() < 2e-8 && memory[1] == 0.0, "{memory:?}");
 }
 
+/// So do dampers without a spring, which nothing pulls back: the first step asks no force of them.
+#[test]
+fn dampers_alone_begin_relaxed() {
+    for text in ["damper(10)", "damper(10) - damper(30)", "damper(10) - slider(2)"] {
+        let network = network(text);
+        let mut memory = [0.0; WRITTEN_MEMORY];
+        network.rest_at(0.3, &mut memory);
+        let outcome = network.deform(0.3, TE, &mut memory);
+        // rounding of 0.3 m over a step
+        assert!(outcome.effort.abs() < 30.0 * 1e-16 / TE, "{text}: {}", outcome.effort);
+    }
+}
+
+/// A link that slipped and is held stands at the corner of its curve, where rounding may say that its slider would never
+/// bear so much.
+#[test]
+fn held_where_it_slipped() {
+    let mut random = random_numbers();
+    for _ in 0..2000 {
+        let numbers = [100.0 + 5000.0 * random(), 1.0 + 20.0 * random(), 1.0 + 20.0 * random()];
+        let [k, traction, compression] = numbers;
+        let network = network(&format!("spring({k}) - slider({traction}, {compression})"));
+        let mut memory = [0.0; WRITTEN_MEMORY];
+        let q = 2.0 * (random() - 0.3) * traction / k;
+        for _ in 0..10 {
+            let effort = network.deform(q, TE, &mut memory).effort;
+            let bound = traction.max(compression) * (1.0 + 4.0 * f64::EPSILON);
+            assert!(effort.abs() <= bound, "{numbers:?} at {q}: {effort}");
+        }
+    }
+}
+
+/// What has blown up has no effort; it does not stop the program.
+#[test]
+fn no_number_stays_none() {
+    for text in ["spring(300) | (spring(1000) - (slider(4, 2) | damper(3)))", "spring(10) - slider(1)"] {
+        for q in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e300] {
+            network(text).deform(q, TE, &mut [0.0; WRITTEN_MEMORY]);
+        }
+        assert!(network(text).deform(f64::NAN, TE, &mut [0.0; WRITTEN_MEMORY]).effort.is_nan());
+    }
+}
+
+/// Numbers between 0 and 1, always the same.
+fn random_numbers() -> impl FnMut() -> f64 {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A complex number.
+type Complex = [f64; 2];
+
+fn inverse([re, im]: Complex) -> Complex {
+    let square = re * re + im * im;
+    [re / square, -im / square]
+}
+
+/// [s]
+const LONG_STEP: f64 = 0.05;
+
+/// A random network of `elements` springs and dampers, and its effort per deformation at `exp(i ω t)` when dampers take the
+/// difference of two steps, `Z (1 - exp(-i ω h))/h`, `turn = ω h`: parallel ones add up, of those in series the inverses do.
+fn random_tree(random: &mut impl FnMut() -> f64, elements: usize, turn: f64) -> (String, Complex) {
+    if elements == 1 {
+        let number = 1.0 + 9.0 * random();
+        return if random() < 0.5 {
+            (format!("spring({number})"), [number, 0.0])
+        } else {
+            let rate = number / LONG_STEP;
+            (format!("damper({number})"), [rate * (1.0 - turn.cos()), rate * turn.sin()])
+        };
+    }
+    let first = 1 + (random() * (elements - 1) as f64) as usize;
+    let (a, b) = (random_tree(random, first, turn), random_tree(random, elements - first, turn));
+    let add = |a: Complex, b: Complex| [a[0] + b[0], a[1] + b[1]];
+    if random() < 0.5 {
+        (format!("({} | {})", a.0, b.0), add(a.1, b.1))
+    } else {
+        (format!("({} - {})", a.0, b.0), inverse(add(inverse(a.1), inverse(b.1))))
+    }
+}
+
+/// Any network of springs and dampers answers an oscillation as its transfer function says, once it has forgotten how
+/// the oscillation began.
+#[test]
+fn random_trees_have_their_transfer_function() {
+    let mut random = random_numbers();
+    // springs and dampers of 1 to 10: eight of them relax within 80 s at most, of which a course has 25
+    let (turn, steps) = (0.01, 40_000);
+    for round in 0..40 {
+        let (text, transfer) = random_tree(&mut random, 1 + round % 8, turn);
+        let (network, size) = (network(&text), transfer[0].hypot(transfer[1]));
+        let mut memory = [0.0; WRITTEN_MEMORY];
+        for step in 0..steps {
+            let phase = turn * f64::from(step);
+            let effort = network.deform(phase.sin(), LONG_STEP, &mut memory).effort;
+            let expected = transfer[0] * phase.sin() + transfer[1] * phase.cos();
+            // rounding of the deformations of many periods, which dampers add up
+            if step > steps - 700 {
+                assert!((effort - expected).abs() < 1e-6 * size, "{text}: {effort} for {expected}");
+            }
+        }
+    }
+}
+
 #[test]
 fn faults_are_told() {
     let number = |text: &str| text.parse::<f64>().map_err(|error| error.to_string());

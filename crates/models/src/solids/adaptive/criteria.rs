@@ -85,7 +85,8 @@ impl Element<'_> {
             let field: Vec3 = shape.iter().zip(&forces).map(|(N, f)| *f * *N).sum();
             sum += volume * field.length();
         }
-        sum / self.volume(self.now)
+        // an element that is inverted is over any threshold, as one without volume is
+        sum / self.volume(self.now).max(0.0)
     }
 
     /// Calls `visit(F, X_ξ⁻¹, volume, ξ)` at every sample.
@@ -104,7 +105,8 @@ impl Element<'_> {
 pub fn shape_factor([x, y, z]: [Vec3; 3]) -> f64 {
     let (a, b, c) = ((y - x).length(), (z - y).length(), (x - z).length());
     let s = 0.5 * (a + b + c);
-    a * b * c / (8.0 * (s - a) * (s - b) * (s - c))
+    // of corners on a line rounding may say less than nothing
+    a * b * c / (8.0 * ((s - a) * (s - b) * (s - c)).max(0.0))
 }
 
 #[cfg(test)]

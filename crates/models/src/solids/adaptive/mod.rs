@@ -114,12 +114,13 @@ impl AdaptiveForce {
         self.solids[law].material(0)
     }
 
-    /// The greatest criterion of a cell over its threshold.
+    /// The greatest criterion of a cell over its threshold; what has no number any more is over any.
     fn excess(&self, cell: usize, law: usize, positions: &[Vec3]) -> f64 {
         let material = self.material(law);
         self.with_cell(cell, positions, |element| {
             let of = |(criterion, threshold): &(Criterion, f64)| {
-                element.measure(*criterion, |F| material.stress(F)) / threshold
+                let excess = element.measure(*criterion, |F| material.stress(F)) / threshold;
+                if excess.is_nan() { f64::INFINITY } else { excess }
             };
             self.adaptation.thresholds.iter().map(of).fold(0.0, f64::max)
         })

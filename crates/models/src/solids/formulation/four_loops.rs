@@ -7,11 +7,12 @@ use std::any::Any;
 
 use souple_engine::state::Pair;
 use souple_engine::tangent::add_block;
-use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 use souple_table::Entry;
 
+use super::cells::Cells;
 use super::polynomial::{Polynomial, tetrahedra};
 use super::{BuildFormulation, FormulationError};
 use crate::solids::SolidDescription;
@@ -32,6 +33,7 @@ struct FourLoops {
     first_row: u32,
     /// Where the points of the body rest [m].
     rest: Vec<Vec3>,
+    cells: Cells,
     tetrahedra: Vec<Tetrahedron>,
 }
 
@@ -54,6 +56,7 @@ impl FourLoops {
             name: description.name.clone(),
             first_row,
             rest: description.mesh.points.clone(),
+            cells: Cells::of(description),
             tetrahedra: made.collect::<Result<_, FormulationError>>()?,
         })
     }
@@ -210,13 +213,19 @@ impl Force for FourLoops {
         }
     }
 
+    fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
+        self.cells.field(cell, positions)
+    }
+
     fn bytes(&self) -> usize {
         let own = |tetrahedron: &Tetrahedron| {
             size_of::<Tetrahedron>()
                 + size_of_val(tetrahedron.cubic.as_slice())
                 + size_of_val(tetrahedron.quartic.as_slice())
         };
-        size_of_val(self.rest.as_slice()) + self.tetrahedra.iter().map(own).sum::<usize>()
+        size_of_val(self.rest.as_slice())
+            + self.cells.bytes()
+            + self.tetrahedra.iter().map(own).sum::<usize>()
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -4,6 +4,7 @@
 //! every law on every element. The formulations here are those of the literature: exact ones that arrange the same
 //! numbers otherwise, and approximations that were made for speed. `souple bench formal` prints time and error of all.
 
+mod cells;
 mod corotated;
 mod four_loops;
 mod grouped;

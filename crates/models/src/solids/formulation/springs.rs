@@ -52,9 +52,8 @@ impl MassSpring {
         // ordered by their ends: the sums of forces have one order
         let mut stiffness: BTreeMap<[u32; 2], f64> = BTreeMap::new();
         for (number, cell) in mesh.cells().enumerate() {
-            let moduli = materials[usize::from(material_of_cell[number])].small_strain;
             let youngs_modulus =
-                moduli.mu * (3.0 * moduli.lambda + 2.0 * moduli.mu) / (moduli.lambda + moduli.mu);
+                materials[usize::from(material_of_cell[number])].small_strain.youngs_modulus();
             let corners: Vec<Vec3> = cell.nodes.iter().map(|node| mesh.points[*node as usize]).collect();
             let points = &cell.kind.default_rule().points;
             let volume: f64 = points

@@ -14,11 +14,12 @@ use std::collections::BTreeMap;
 
 use souple_engine::state::Pair;
 use souple_engine::tangent::add_block;
-use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::{Dual, Mat3, Real, Vec3};
 use souple_solve::BlockMatrix;
 use souple_table::Entry;
 
+use super::cells::Cells;
 use super::polynomial::{Polynomial, tetrahedra};
 use super::{BuildFormulation, FormulationError};
 use crate::solids::SolidDescription;
@@ -41,6 +42,7 @@ struct TensorMass {
     /// Where the points of the body rest [m].
     rest: Vec<Vec3>,
     is_objective: bool,
+    cells: Cells,
     vertices: Vec<Part<1, Vertex>>,
     edges: Vec<Part<2, Edge>>,
     faces: Vec<Part<3, Face>>,
@@ -267,6 +269,7 @@ impl TensorMass {
             first_row: description.first_row as u32,
             rest: description.mesh.points.clone(),
             is_objective,
+            cells: Cells::of(description),
             vertices: parts(vertices),
             edges: parts(edges),
             faces: parts(faces),
@@ -274,7 +277,7 @@ impl TensorMass {
         })
     }
 
-    /// Displacements of the body's points, and how they vary.
+    /// Displacements of the body's points.
     fn displacements<'a>(&'a self, positions: &'a [Vec3]) -> impl Fn(u32) -> Vec3 + 'a {
         |node| positions[(self.first_row + node) as usize] - self.rest[node as usize]
     }
@@ -445,8 +448,13 @@ impl Force for TensorMass {
         });
     }
 
+    fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
+        self.cells.field(cell, positions)
+    }
+
     fn bytes(&self) -> usize {
         size_of_val(self.rest.as_slice())
+            + self.cells.bytes()
             + size_of_val(self.vertices.as_slice())
             + size_of_val(self.edges.as_slice())
             + size_of_val(self.faces.as_slice())

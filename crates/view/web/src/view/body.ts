@@ -18,7 +18,7 @@ import {
   Vector3,
 } from "three";
 import type { Object3D, Plane } from "three";
-import type { BodyFrame, BodyInfo, InsideShape, NetworkShape, Surface } from "../protocol";
+import type { BodyFrame, BodyInfo, FieldInfo, InsideShape, NetworkShape, Surface } from "../protocol";
 import { Axes } from "./axes";
 import { Inside } from "./inside";
 import { Network } from "./network";
@@ -133,7 +133,7 @@ export class Body {
   }
 
   /** Colours by values; by its own colour for none. */
-  colourBy(values: Float32Array | undefined, range: Range, map: Float32Array): void {
+  colourBy(values: Float32Array | undefined, of: FieldInfo["of"], range: Range, map: Float32Array): void {
     const { material } = this.mesh;
     if (material.vertexColors !== Boolean(values)) {
       material.vertexColors = Boolean(values);
@@ -148,7 +148,7 @@ export class Body {
       this.colours.needsUpdate = true;
     }
     if (!this.last) return;
-    this.network?.update(this.last, values, range, map);
+    this.network?.update(this.last, values, of, range, map);
     // a frame that left before the page looked inside has no points there
     const hasInside = this.last.positions.length > this.positions.length || this.info.points === this.info.surface_points;
     if (hasInside) this.inside?.update(this.last.positions, { values, range, map }, this.cut, this.explode);

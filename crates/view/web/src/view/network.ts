@@ -2,7 +2,7 @@
 
 import { Group } from "three";
 import type { Object3D, Plane } from "three";
-import type { BodyFrame, NetworkShape } from "../protocol";
+import type { BodyFrame, FieldInfo, NetworkShape } from "../protocol";
 import { Instances } from "./instances";
 import { BODY_COLOURS, STATE_COLOURS, colourAt, linearOf } from "./palette";
 import type { Range } from "./palette";
@@ -45,11 +45,16 @@ export class Network {
     this.balls.prepareForRay();
   }
 
-  /** `values` are those of points or, where there are as many, of links. */
-  update(frame: BodyFrame, values: Float32Array | undefined, range: Range, map: Float32Array): void {
+  update(
+    frame: BodyFrame,
+    values: Float32Array | undefined,
+    of: FieldInfo["of"],
+    range: Range,
+    map: Float32Array,
+  ): void {
     const { positions, linkStates } = frame;
     const count = this.links.length / 2;
-    const ofLinks = values && values.length === count && values.length !== positions.length / 3;
+    const ofLinks = of === "links";
     this.sticks.begin();
     for (let link = 0; link < count; link++) {
       const state = linkStates.length > 0 ? linkStates[link]! : 1;

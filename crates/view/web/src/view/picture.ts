@@ -19,7 +19,7 @@ import {
 import type { BufferGeometry, Object3D, Texture } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
-import type { Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
+import type { FieldInfo, Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
 import { Arrows } from "./arrows";
 import { Body } from "./body";
 import type { Style } from "./body";
@@ -80,6 +80,7 @@ export class Picture {
   private direction = new Vector3(-0.5, -0.45, -1);
   private colours: Float32Array = new Float32Array(3 * 256);
   private field = -1;
+  private of: FieldInfo["of"] = "points";
   private style: Style = "smooth";
   private dark = false;
   private cut: Cut | null = null;
@@ -198,12 +199,13 @@ export class Picture {
     }
     const values = frame.bodies.map((body) => body.fields.get(this.field));
     this.follow(values);
-    frame.bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.range, this.colours));
+    frame.bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.of, this.range, this.colours));
   }
 
-  setColours(field: number, map: Parameters<typeof linearColours>[0], fixed: Range | null): void {
+  setColours(field: number, of: FieldInfo["of"], map: Parameters<typeof linearColours>[0], fixed: Range | null): void {
     if (field !== this.field) this.range = { low: Infinity, high: -Infinity };
     this.field = field;
+    this.of = of;
     this.colours = linearColours(map);
     this.fixedRange = fixed !== null;
     if (fixed) this.range = fixed;
