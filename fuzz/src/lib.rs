@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use souple_formal::{Condition, Formula, parse_quantity, parse_unit};
-use souple_io::{FORMATS, Output, read_dataset_bytes};
+use souple_io::{FORMATS, Output, read_dataset_bytes, read_particle_bytes};
 
 /// Reads a content; what is read must refer to points that exist, validate without a panic, and come back the
 /// same from the format's own writer.
@@ -54,6 +54,43 @@ pub fn read_scene(content: &[u8]) {
             let _ = (errors.to_string(), errors.to_json());
         }
     }
+}
+
+/// Reads a content as a table of particles and dresses them, where they are few.
+pub fn dress_particles(content: &[u8]) {
+    let Ok(rows) = read_particle_bytes("fuzzed.csv", content) else { return };
+    let particles: Vec<_> = rows.iter().map(|row| (row.position, row.radius.unwrap_or(0.1))).collect();
+    let radii = particles.iter().map(|(_, radius)| *radius);
+    let (smallest, largest) = (radii.clone().fold(f64::INFINITY, f64::min), radii.fold(0.0, f64::max));
+    // a few nodes for each particle: what is larger is the caller's wish
+    if particles.len() > 100 || largest > 4.0 * smallest {
+        return;
+    }
+    if let Ok((surface, normals)) = souple_skin::dress(&particles, smallest, 0.5) {
+        assert_eq!(normals.len(), surface.points.len());
+        let mut audit = souple_skin::polygons::Audit::default();
+        audit.check(surface.points.len(), &surface.triangles).expect("a closed surface");
+    }
+}
+
+/// Reads a content as a scene and steps it twice, where it has skins alone, in small domains.
+pub fn step_skins(content: &[u8]) {
+    let Ok(text) = std::str::from_utf8(content) else { return };
+    let folder = Path::new("/nonexistent");
+    let Ok(spec) = souple_scene::read_spec("fuzzed.toml", text, folder, &[]) else { return };
+    let is_small = |skin: &souple_scene::spec::skin::SkinSpec| {
+        skin.domain.is_some_and(|[low, high]| {
+            let nodes: f64 = ((high - low) * skin.voxel.recip()).to_array().iter().map(|c| c + 16.0).product();
+            nodes < 1e5
+        })
+    };
+    if !spec.bodies.is_empty() || spec.skins.is_empty() || !spec.skins.iter().all(is_small) {
+        return;
+    }
+    let Ok(scene) = souple_scene::read_text("fuzzed.toml", text, folder, &[]) else { return };
+    let mut world = scene.model.start(scene.state);
+    // a step may be refused, in words
+    let _ = (0..2).try_for_each(|_| world.step().map_err(|error| error.to_string()));
 }
 
 /// Reads a content as all that a formula, a condition, a quantity or a unit may be, and computes with it.

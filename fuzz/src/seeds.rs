@@ -27,6 +27,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         write_file(&place.join(format!("seed_{}", entry.name)), |out| out.write_all(&content))?;
     }
     copy_scenes(&Path::new(&folder).join("scene"))?;
+    copy_scenes(&Path::new(&folder).join("skin"))?;
+    let particles = Path::new(&folder).join("particles");
+    std::fs::create_dir_all(&particles)?;
+    std::fs::write(particles.join("columns"), "x, y, z, radius, from\n0, 0, 0, 0.1, -1\n0.2, 0, 0, 0.1, 0\n")?;
     write_formulas(&Path::new(&folder).join("formula"))?;
     let mut words = Vec::new();
     collect_words(&souple_scene::schema(), &mut words);

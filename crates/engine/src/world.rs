@@ -52,11 +52,21 @@ pub trait Field: Send + Sync {
 
 /// The rows of all systems as they stand at the end of a period.
 #[derive(Clone, Copy)]
-pub struct CommittedRows<'a>(&'a [SystemWorkspace]);
+pub struct CommittedRows<'a> {
+    systems: &'a [System],
+    workspaces: &'a [SystemWorkspace],
+}
 
 impl<'a> CommittedRows<'a> {
     pub fn of(&self, system: usize) -> &'a Rows {
-        &self.0[system].rows
+        &self.workspaces[system].rows
+    }
+
+    /// Rows of the points of a body with levels that moved by themselves in the last step, ascending; `None` where the force
+    /// is of no such body.
+    pub fn active(&self, system: usize, force: usize) -> Option<&'a [u32]> {
+        let levels = self.systems[system].forces[force].levels()?;
+        Some(levels.active(&self.workspaces[system].scratches[force]))
     }
 }
 
@@ -177,6 +187,11 @@ impl World {
 
     pub fn state(&self) -> &State {
         &self.state
+    }
+
+    /// The rows of all systems as fields read them.
+    pub fn committed_rows(&self) -> CommittedRows<'_> {
+        CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems }
     }
 
     /// Rows of a system as committed.
@@ -383,7 +398,7 @@ impl World {
     }
 
     fn step_fields(&mut self, start: f64, next: &mut State) -> Result<(), WorldError> {
-        let rows = CommittedRows(&self.workspace.systems);
+        let rows = CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems };
         let scratches = &mut self.workspace.field_scratches;
         for ((field, state), scratch) in self.model.fields.iter().zip(&mut next.fields).zip(scratches) {
             field.step(rows, start, self.model.period, state, scratch).map_err(|message| WorldError {

@@ -36,5 +36,5 @@ pub use format::{
     write_mesh,
 };
 pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
-pub use particles::{ParticleRow, read_particles};
+pub use particles::{ParticleRow, read_particle_bytes, read_particles};
 pub use vtk::{Series, read_series};

@@ -30,8 +30,15 @@ const COLUMNS: [&str; 9] = ["x", "y", "z", "radius", "vx", "vy", "vz", "from", "
 /// The file cannot be read, a column is unknown or missing, a line holds what is no number.
 pub fn read_particles(path: &Path) -> Result<Vec<ParticleRow>, IoError> {
     let bytes = std::fs::read(path).map_err(|source| IoError::Read { path: path.to_owned(), source })?;
-    let text = String::from_utf8_lossy(&bytes);
-    let name = path.display();
+    read_particle_bytes(&path.display().to_string(), &bytes)
+}
+
+/// Reads the content of a table of particles, which is called `name` in errors.
+///
+/// # Errors
+/// A column is unknown or missing, a line holds what is no number.
+pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>, IoError> {
+    let text = String::from_utf8_lossy(bytes);
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let refuse = |what: String, value: &str, expected: String| {
         Err(IoError::request(format!("{what} of {name}"), format!("`{value}`"), expected))

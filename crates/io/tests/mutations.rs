@@ -135,3 +135,29 @@ fn mutated_mesh_files_are_read_or_refused() {
     println!("{read} of {cases} mutated files are meshes");
     assert!(read > cases / 50, "{read} of {cases}");
 }
+
+/// Tables of particles: what is read has numbers, and a line for each.
+#[test]
+fn mutated_particles_are_read_or_refused() {
+    let seeds: Vec<Vec<u8>> = [
+        "x, y, z\n0, 0, 0\n1, 0.5, -2e-3\n",
+        "x,y,z,radius\n0,0,0,0.1\n0.2,0,0,0.1\n",
+        "radius, z, y, x, vx, vy, vz, from, until\n0.1, 0, 0, 0, 1, 0, 0, -inf, 2\n0.1, 0, 0, 1, 0, 0, 0, 2, inf\n",
+    ]
+    .map(|text| text.as_bytes().to_vec())
+    .into();
+    let words: Vec<Vec<u8>> = ["x", "y", "z", "radius", "vx", "vy", "vz", "from", "until", ",", "\n"]
+        .map(|word| word.as_bytes().to_vec())
+        .into();
+    let mut read = 0;
+    let cases = repeat(4000, |seed| {
+        let content = Mutator::new(seed, words.clone()).mutated(&seeds);
+        guard(seed, &content, 5.0, || {
+            let Ok(rows) = souple_io::read_particle_bytes("mutated.csv", &content) else { return };
+            assert!(rows.iter().all(|row| !row.position.x.is_nan() && !row.during[0].is_nan()));
+            read += 1;
+        });
+    });
+    println!("{read} of {cases} mutated tables are particles");
+    assert!(read > cases / 50, "{read} of {cases}");
+}

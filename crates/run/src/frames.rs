@@ -96,7 +96,7 @@ impl Frames {
             let output = Output {
                 mesh: &mesh,
                 positions: None,
-                point_fields: &[Field::new("normal", 3, flat(&normals))],
+                point_fields: &[normal_field(&normals)],
                 cell_fields: &[],
                 facets: Facets::LeftOut,
                 precision: precision_for(&mesh.points),
@@ -136,6 +136,13 @@ pub fn mesh_of_skin(skin: &SkinInfo, world: &World) -> (Mesh, Vec<Vec3>) {
     let mut mesh = Mesh { points: surface.points, ..Mesh::default() };
     surface.triangles.iter().for_each(|corners| mesh.push_cell(ElementKind::Tri3, corners));
     (mesh, normals)
+}
+
+/// What a skin's points have and no body's do.
+pub const NORMAL: &str = "normal";
+
+pub fn normal_field(normals: &[Vec3]) -> Field {
+    Field::new(NORMAL, 3, flat(normals))
 }
 
 /// Single, unless a run that went astray left coordinates which would become infinite by it: such a frame could not

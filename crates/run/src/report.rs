@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 use souple_engine::{EnergyReport, StageTimes, StepReport, UnknownKind, World};
 use souple_math::Vec3;
-use souple_scene::BodyInfo;
+use souple_scene::{BodyInfo, SkinInfo};
 
 use crate::expect::summary;
 use crate::failure::Failure;
@@ -49,6 +49,8 @@ pub struct Report {
     pub simulated_seconds: f64,
     pub wall_seconds: f64,
     pub counts: BTreeMap<String, u64>,
+    /// Of each skin by its name.
+    pub skins: serde_json::Map<String, Value>,
     pub stages: StageTimes,
     pub around: AroundSteps,
     /// At the start and at the end.
@@ -112,6 +114,7 @@ impl Report {
             "peak_bytes": self.peak_bytes,
             "solver_bytes": self.solver_bytes,
             "counts": self.counts,
+            "skins": self.skins,
             "stages_ms": {
                 "pairs": 1e3 * pairs,
                 "forces": 1e3 * forces,
@@ -218,6 +221,27 @@ pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
         add(block.kind.name(), block.len());
     }
     counts
+}
+
+/// Skins as they stand, and how many of their surfaces were checked to be closed, oriented and manifold.
+pub fn skins(world: &World, skins: &[SkinInfo]) -> serde_json::Map<String, Value> {
+    let skin = |info: &SkinInfo| {
+        let view = info.view(world);
+        let (measures, [points, triangles]) = (view.measures(), view.counts());
+        let numbers = json!({
+            "area": measures.area,
+            "volume": measures.volume,
+            "euler": measures.euler,
+            "components": measures.components,
+            "events": view.events(),
+            "points": points,
+            "triangles": triangles,
+            "blocks": view.grid.keys.len(),
+            "closed_manifold_surfaces": view.checked(),
+        });
+        (info.name.clone(), numbers)
+    };
+    skins.iter().map(skin).collect()
 }
 
 /// Names of the files that [`write_report`] and [`write_tables`] may write.

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::frames::solid_of;
 use crate::machine::peak_bytes;
 use crate::recording::Recording;
-use crate::report::{AroundSteps, Report, Status, counts};
+use crate::report::{AroundSteps, Report, Status, counts, skins};
 use crate::show::{MOST_GROWTH, growth};
 use crate::snapshot_file::{snapshot_bytes, write_snapshot};
 use crate::{Options, RunError, forecast_warnings};
@@ -202,7 +202,8 @@ impl Session {
         self.warnings.extend(new);
         let period = world.state().period;
         self.recording.changes.push(Change { period, setting: setting.to_owned() });
-        (self.world, self.bodies, self.probes) = (world, scene.bodies, scene.probes);
+        (self.world, self.bodies, self.skins) = (world, scene.bodies, scene.skins);
+        self.probes = scene.probes;
         self.adjustables = scene.adjustables;
         self.scene_sha256 = scene.scene_sha256;
         Ok(())
@@ -250,6 +251,7 @@ impl Session {
             simulated_seconds: steps as f64 * period,
             wall_seconds: self.clock.elapsed().as_secs_f64(),
             counts: counts(&self.world, &self.bodies),
+            skins: skins(&self.world, &self.skins),
             stages: self.world.stages(),
             around: self.around,
             energy: (self.energy_at_start.clone(), self.world.energy()),

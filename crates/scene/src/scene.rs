@@ -1,14 +1,17 @@
 //! A scene ready to run, and how to come by one.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use souple_engine::{Census, Model, State, World};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::Carried;
-use souple_skin::{Lattice, Polygons};
+use souple_skin::target::Moment;
+use souple_skin::{Polygons, Skin};
 
 use crate::adjust::Adjustable;
 use crate::compile::{Placed, compile};
@@ -80,28 +83,41 @@ pub struct FramesInfo {
     pub influence: Vec<f64>,
 }
 
-/// Where a skin is in the state.
-#[derive(Clone, Debug)]
+/// A skin and where it is in the state.
+#[derive(Clone)]
 pub struct SkinInfo {
     pub name: String,
     /// Index of its field.
     pub field: usize,
-    pub lattice: Lattice,
-    /// Rows that it acts on.
-    pub reactions: usize,
+    pub skin: Arc<Skin>,
     /// Formats that its surface is written in beside VTU, by their extensions.
     pub formats: Vec<String>,
+}
+
+impl fmt::Debug for SkinInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SkinInfo")
+            .field("name", &self.name)
+            .field("field", &self.field)
+            .finish_non_exhaustive()
+    }
 }
 
 impl SkinInfo {
     /// The skin as committed.
     pub fn view<'a>(&self, world: &'a World) -> souple_skin::View<'a> {
-        souple_skin::View::new(&world.state().fields[self.field], self.reactions)
+        self.skin.view(&world.state().fields[self.field])
     }
 
     /// Its surface as committed, with normals.
     pub fn surface(&self, world: &World) -> (Polygons, Vec<Vec3>) {
-        souple_skin::surface_of(self.view(world).grid, &self.lattice)
+        souple_skin::surface_of(self.view(world).grid, &self.skin.lattice)
+    }
+
+    /// The greatest distance of its surface from that of its target [m]; `None` without one.
+    pub fn distance(&self, world: &World) -> Option<f64> {
+        let rows = world.committed_rows();
+        self.skin.distance(&Moment { time: world.time(), rows: &rows }, &world.state().fields[self.field])
     }
 }
 

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use mutator::{Mutator, guard, repeat};
 use souple_scene::spec::mesh::MeshSpec;
+use souple_scene::spec::skin::SkinSpec;
 use souple_scene::{Spec, read_spec, read_text};
 use souple_table::Value;
 
@@ -86,6 +87,10 @@ fn is_tiny(spec: &Spec) -> bool {
         },
         MeshSpec::File { .. } | MeshSpec::Shape { .. } | MeshSpec::Filled { .. } => f64::INFINITY,
     };
+    // skins are stepped by a test of their own
+    if !spec.skins.is_empty() {
+        return false;
+    }
     let cells: f64 = spec.bodies.iter().map(|body| body.mesh.as_ref().map_or(f64::INFINITY, count)).sum();
     cells <= 64.0
 }
@@ -139,6 +144,49 @@ fn mutated_scenes_compile_or_are_refused() {
     });
     println!("{compiled} of {tried} tiny scenes out of {cases} mutated texts compile");
     assert!(compiled > cases / 50, "{compiled} of {cases}");
+}
+
+/// Whether a scene has skins alone, whose domains have a few thousand nodes.
+fn has_small_skins(spec: &Spec) -> bool {
+    let is_small = |skin: &SkinSpec| {
+        skin.domain.is_some_and(|[low, high]| {
+            let nodes: f64 =
+                ((high - low) * skin.voxel.recip()).to_array().iter().map(|c| c + 16.0).product();
+            nodes < 5e4
+        })
+    };
+    spec.bodies.is_empty() && !spec.skins.is_empty() && spec.skins.iter().all(is_small)
+}
+
+/// Skins start, step and split, or say why not, whatever their targets, terms and times are.
+#[test]
+fn mutated_skins_step_or_say_why() {
+    let folder = here().join("tests/faults");
+    let domain = "domain = [[-1, -1, -1], [1, 1, 1]]\nvoxel = 0.25";
+    let seeds: Vec<Vec<u8>> = [
+        format!("format = 1\n[world]\nperiod = \"10 ms\"\n[skins.a]\n{domain}\nparts = [{{ part = \"point\", at = [0.2, 0, 0], radius = 0.5 }}, {{ part = \"segment\", from = [0, 0, 0], to = [0, 0.3, 0], radius = 0.3, combine = \"union\", warps = [{{ warp = \"twist\", rate = 2 }}] }}]\nterms = [{{ term = \"attraction\", strength = 2 }}, {{ term = \"tension\", strength = 0.01 }}]\n"),
+        format!("format = 1\n[world]\nperiod = \"10 ms\"\n[skins.a]\n{domain}\nstart = [{{ part = \"formula\", formula = \"0.7 - sqrt(x^2 + y^2 + z^2)\", low = [-1, -1, -1], high = [1, 1, 1] }}]\nterms = [{{ term = \"constant_volume\", rate = 4 }}, {{ term = \"constant_area\", rate = 1, area = \"6 + sin(t)\" }}, {{ term = \"pressure\", speed = \"0.1*t\" }}, {{ term = \"speed\", formula = \"x*y - volume\" }}]\n"),
+        format!("format = 1\n[world]\nperiod = \"10 ms\"\n[skins.a]\n{domain}\nparts = [{{ part = \"shape\", shape = \"torus\", scale = 1, during = [-1, 0.01] }}, {{ part = \"point\", at = [0, 0, 0], radius = 0.5, during = [0.01, 9], motion = [\"t\", 0, 0] }}]\nterms = [{{ term = \"attraction\", strength = 2 }}]\n"),
+    ]
+    .map(String::into_bytes)
+    .into();
+    let words = words();
+    let (mut stepped, mut tried) = (0, 0);
+    let cases = repeat(600, |seed| {
+        let content = Mutator::new(seed ^ (1 << 41), words.clone()).mutated(&seeds);
+        let Ok(text) = std::str::from_utf8(&content) else { return };
+        guard(seed, &content, 60.0, || {
+            if !read_spec("mutated.toml", text, &folder, &[]).is_ok_and(|spec| has_small_skins(&spec)) {
+                return;
+            }
+            tried += 1;
+            let Ok(scene) = read_text("mutated.toml", text, &folder, &[]) else { return };
+            let mut world = scene.model.start(scene.state);
+            stepped += u64::from((0..2).all(|_| world.step().is_ok()));
+        });
+    });
+    println!("{stepped} of {tried} small skins out of {cases} mutated texts step");
+    assert!(stepped > cases / 50, "{stepped} of {cases}");
 }
 
 /// Values set from the command line: paths and values mutated.

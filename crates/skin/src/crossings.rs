@@ -6,6 +6,7 @@
 use souple_math::Vec3;
 
 use crate::grid::{EDGE, Found, Grid, Lattice, NODES, Neighbours, block_of, neighbour};
+use crate::widest::{Rows, run_widest};
 
 /// A bit for each node of a block, by layers along z.
 pub type Layers = [u64; EDGE];
@@ -24,6 +25,8 @@ pub struct Crossings {
     cut: Vec<[Layers; 3]>,
     /// Number of the first crossing of each layer.
     first: Vec<[[u32; EDGE]; 3]>,
+    /// How many crossings stand before those of each block.
+    starts: Vec<u32>,
     /// Where they are [m].
     pub points: Vec<Vec3>,
 }
@@ -50,6 +53,7 @@ impl Crossings {
         self.inside.extend((0..count).map(|block| layers_where(grid.block(block), |f| f > 0.0)));
         self.cut.clear();
         self.first.clear();
+        self.starts.clear();
         self.points.clear();
         for block in 0..count {
             let inside = self.inside[block];
@@ -57,6 +61,7 @@ impl Crossings {
             let cut: [Layers; 3] =
                 std::array::from_fn(|axis| std::array::from_fn(|z| inside[z] ^ above[axis][z]));
             let mut first = [[0; EDGE]; 3];
+            self.starts.push(self.points.len() as u32);
             if cut != [[0; EDGE]; 3] {
                 self.place(grid, neighbours, lattice, block, &cut, &mut first);
             }
@@ -133,6 +138,12 @@ impl Crossings {
         self.first[block][axis][z] + before.count_ones()
     }
 
+    /// The numbers of a block's crossings.
+    pub fn numbers(&self, block: usize) -> std::ops::Range<usize> {
+        let end = self.starts.get(block + 1).map_or(self.points.len(), |next| *next as usize);
+        self.starts[block] as usize..end
+    }
+
     pub fn bytes(&self) -> usize {
         let layers = size_of::<Layers>() * (self.inside.capacity() + 3 * self.cut.capacity());
         layers + size_of::<[[u32; EDGE]; 3]>() * self.first.capacity() + 24 * self.points.capacity()
@@ -160,17 +171,29 @@ pub fn back_y(layer: u64, before: u64) -> u64 {
 }
 
 /// A bit for each node whose value fits.
-#[inline(always)]
 pub fn layers_where(values: &[f64; NODES], fits: impl Fn(f64) -> bool) -> Layers {
     let mut layers = [0; EDGE];
-    for (layer, values) in layers.iter_mut().zip(values.chunks_exact(EDGE * EDGE)) {
-        for (row, values) in values.chunks_exact(EDGE).enumerate() {
-            let mut word = 0u64;
-            for (x, value) in values.iter().enumerate() {
-                word |= u64::from(fits(*value)) << x;
+    run_widest(Marks { values, fits, layers: &mut layers });
+    layers
+}
+
+struct Marks<'a, F> {
+    values: &'a [f64; NODES],
+    fits: F,
+    layers: &'a mut Layers,
+}
+
+impl<F: Fn(f64) -> bool> Rows for Marks<'_, F> {
+    #[inline(always)]
+    fn run(self) {
+        let mut rows = [0_u8; EDGE * EDGE];
+        for (row, values) in rows.iter_mut().zip(self.values.chunks_exact(EDGE)) {
+            for x in 0..EDGE {
+                *row |= u8::from((self.fits)(values[x])) << x;
             }
-            *layer |= word << (EDGE * row);
+        }
+        for (layer, rows) in self.layers.iter_mut().zip(rows.chunks_exact(EDGE)) {
+            *layer = rows.iter().rev().fold(0, |word, row| word << EDGE | u64::from(*row));
         }
     }
-    layers
 }

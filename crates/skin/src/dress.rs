@@ -6,9 +6,9 @@
 use rayon::prelude::*;
 use souple_math::Vec3;
 
-use crate::grid::{BAND, EDGE, FARTHEST, Grid, Lattice, NODES, block_of, key_of};
+use crate::grid::{BAND, EDGE, FARTHEST, Grid, Lattice, NODES, block_of, key_of, steps_to};
 use crate::polygons::Polygons;
-use crate::skin::{MOST_BLOCKS, SkinError, surface_of};
+use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, SkinError, surface_of};
 use crate::target::particles::{REACH, kernel};
 use crate::widest::{Rows, run_widest};
 
@@ -42,10 +42,70 @@ pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygon
     // blocks that a particle of a neighbouring block may reach
     let steps = (reach / EDGE as f64).ceil();
     let blocks = (2.0 * steps + 1.0).powi(3) * sorted.blocks.len() as f64;
+    // most are named by several of their neighbours
     if blocks.is_nan() || blocks > 64.0 * MOST_BLOCKS as f64 {
         return Err(SkinError::TooManyBlocks { voxel, size: [2.0 * reach * voxel; 3], blocks });
     }
     let steps = steps as i64;
+    let keys = reached(&sorted, steps);
+    if keys.len() > MOST_SAMPLED {
+        let blocks = keys.len() as f64;
+        return Err(SkinError::TooManyBlocks { voxel, size: [2.0 * reach * voxel; 3], blocks });
+    }
+    let gather = |key: u64| gather(&sorted, block_of(key), steps, iso);
+    let densities: Vec<Density> =
+        keys.par_iter().map(|key| Density::of(gather(*key), keys.len() <= ROOM)).collect();
+    let near = near(&keys, &densities);
+    let values: Vec<Box<[f64; NODES]>> = near
+        .par_iter()
+        .map(|index| {
+            let kept = densities[*index].values.clone().or_else(|| gather(keys[*index]));
+            kept.unwrap_or_else(|| Box::new([-iso; NODES]))
+        })
+        .collect();
+    if values.is_empty() {
+        let bounds = souple_mesh::BoundingBox::of(particles.iter().map(|(x, _)| *x));
+        let (low, high) = (bounds.low.to_array(), bounds.high.to_array());
+        return Err(SkinError::Empty { low, high, voxel });
+    }
+    let kept: Vec<u64> = near.iter().map(|index| keys[*index]).collect();
+    let values: Vec<f64> =
+        values.iter().flat_map(|values| values.iter().map(|value| value.clamp(-BAND, BAND))).collect();
+    Ok(surface_of(Grid { keys: &kept, values: &values }, &lattice))
+}
+
+/// Blocks of which all values are kept, 256 MB; of more only those that the surface runs through, and those around these
+/// are made again.
+const ROOM: usize = 1 << 16;
+
+/// The density on the nodes of a block, less the iso value.
+struct Density {
+    sign: Sign,
+    values: Option<Box<[f64; NODES]>>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Inside,
+    Outside,
+    Both,
+}
+
+impl Density {
+    /// `None` where no particle reaches.
+    fn of(values: Option<Box<[f64; NODES]>>, has_room: bool) -> Self {
+        let inside = values.iter().flat_map(|values| values.iter()).filter(|value| **value > 0.0).count();
+        let sign = match inside {
+            0 => Sign::Outside,
+            NODES => Sign::Inside,
+            _ => Sign::Both,
+        };
+        Self { sign, values: values.filter(|_| has_room || sign == Sign::Both) }
+    }
+}
+
+/// Blocks that a particle may reach, ascending.
+fn reached(sorted: &Sorted, steps: i64) -> Vec<u64> {
     let mut keys: Vec<u64> = Vec::new();
     for (key, _) in &sorted.blocks {
         let [x, y, z] = block_of(*key);
@@ -54,22 +114,22 @@ pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygon
     }
     keys.sort_unstable();
     keys.dedup();
-    let densities: Vec<Option<Box<[f64; NODES]>>> =
-        keys.par_iter().map(|key| gather(&sorted, block_of(*key), steps, iso)).collect();
-    let (mut kept, mut values) = (Vec::new(), Vec::new());
-    for (key, density) in keys.iter().zip(&densities) {
-        if let Some(density) = density {
-            kept.push(*key);
-            values.extend_from_slice(&density[..]);
-        }
-    }
-    keep_near(&mut kept, &mut values);
-    if values.iter().all(|value| *value <= 0.0) {
-        let bounds = souple_mesh::BoundingBox::of(particles.iter().map(|(x, _)| *x));
-        let (low, high) = (bounds.low.to_array(), bounds.high.to_array());
-        return Err(SkinError::Empty { low, high, voxel });
-    }
-    Ok(surface_of(Grid { keys: &kept, values: &values }, &lattice))
+    keys
+}
+
+/// Blocks with a surface in them, and those around these and on both sides of one that runs between blocks.
+fn near(keys: &[u64], densities: &[Density]) -> Vec<usize> {
+    // what no particle reaches is outside
+    let sign_of = |key: u64| keys.binary_search(&key).map_or(Sign::Outside, |index| densities[index].sign);
+    let is_near = |index: &usize| {
+        let (own, place) = (densities[*index].sign, block_of(keys[*index]));
+        let other = |number: usize| {
+            let steps = steps_to(number);
+            sign_of(key_of([0, 1, 2].map(|axis| place[axis] + i64::from(steps[axis]))))
+        };
+        own == Sign::Both || (0..27).any(|number| other(number) != own)
+    };
+    (0..keys.len()).into_par_iter().filter(is_near).collect()
 }
 
 fn sort(particles: &[(Vec3, f64)], lattice: &Lattice) -> Result<Sorted, SkinError> {
@@ -161,40 +221,6 @@ impl Rows for Splat<'_> {
             }
         }
     }
-}
-
-/// Drops blocks that are of one sign, and all around them too.
-fn keep_near(keys: &mut Vec<u64>, values: &mut Vec<f64>) {
-    let mut neighbours = crate::grid::Neighbours::default();
-    // what no particle reaches is outside, whatever stands before it in its row
-    let signs: Vec<i8> = values
-        .chunks_exact(NODES)
-        .map(|block| {
-            let inside = block.iter().filter(|value| **value > 0.0).count();
-            if inside == 0 {
-                -1
-            } else if inside == NODES {
-                1
-            } else {
-                0
-            }
-        })
-        .collect();
-    neighbours.find(Grid { keys, values });
-    let is_near = |block: usize| {
-        (0..27).any(|number| match neighbours.of(block, number) {
-            crate::grid::Found::Kept(other) => signs[other as usize] != signs[block],
-            _ => signs[block] > 0,
-        }) || signs[block] == 0
-    };
-    let kept: Vec<usize> = (0..keys.len()).filter(|block| is_near(*block)).collect();
-    for (to, from) in kept.iter().enumerate() {
-        keys[to] = keys[*from];
-        values.copy_within(NODES * from..NODES * (from + 1), NODES * to);
-    }
-    keys.truncate(kept.len());
-    values.truncate(NODES * kept.len());
-    values.iter_mut().for_each(|value| *value = value.clamp(-BAND, BAND));
 }
 
 #[cfg(test)]

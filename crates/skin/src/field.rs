@@ -1,19 +1,35 @@
 //! A skin as a field of the engine's world.
 
+use std::sync::Arc;
+
 use souple_engine::{CommittedRows, Field, FieldState, Scratch};
+use souple_math::Vec3;
 
 use crate::grid::{BAND, NODES};
 use crate::skin::{HEAD_INDICES, Skin, SkinScratch};
-use crate::target::Moment;
+use crate::target::{Moment, Rows};
 
-impl Field for Skin {
+impl Rows for CommittedRows<'_> {
+    fn positions(&self, system: usize) -> &[Vec3] {
+        &self.of(system).positions
+    }
+
+    fn active(&self, system: usize, force: usize) -> &[u32] {
+        CommittedRows::active(self, system, force).unwrap_or_default()
+    }
+}
+
+/// A skin in a world, which those who read its state share.
+pub struct SkinField(pub Arc<Skin>);
+
+impl Field for SkinField {
     fn name(&self) -> &str {
-        &self.name
+        &self.0.name
     }
 
     /// Its blocks come and go: a state fits when its keys ascend and each has its values, within the band.
     fn accepts(&self, field: &FieldState, _: &FieldState) -> bool {
-        let head = self.head();
+        let head = self.0.head();
         let Some(blocks) = field.indices.len().checked_sub(HEAD_INDICES) else { return false };
         let Some(values) = field.values.get(head..) else { return false };
         values.len() == NODES * blocks
@@ -22,7 +38,7 @@ impl Field for Skin {
     }
 
     fn new_scratch(&self) -> Scratch {
-        Box::new(Skin::new_scratch(self))
+        Box::new(self.0.new_scratch())
     }
 
     fn step(
@@ -33,12 +49,11 @@ impl Field for Skin {
         field: &mut FieldState,
         scratch: &mut Scratch,
     ) -> Result<(), String> {
-        let positions = |system: usize| rows.of(system).positions.as_slice();
-        let end = Moment { time: start + timestep, positions: &positions };
         let Some(scratch) = scratch.downcast_mut::<SkinScratch>() else {
             return Err("its scratch is of another field".to_owned());
         };
-        Skin::step(self, &end, timestep, field, scratch).map_err(|error| error.to_string())
+        let end = Moment { time: start + timestep, rows: &rows };
+        self.0.step(&end, timestep, field, scratch).map_err(|error| error.to_string())
     }
 
     fn bytes(&self, scratch: &Scratch) -> usize {

@@ -5,14 +5,14 @@
 //! kept: memory and time follow the area of the surface. A block that is not kept is uniform, and its sign is that of the
 //! last node of the block before it in its row (along x), or outside where there is none.
 
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 
 /// Nodes along an edge of a block.
 pub const EDGE: usize = 8;
 /// Nodes of a block, x fastest.
 pub const NODES: usize = EDGE * EDGE * EDGE;
 /// Half the width of the band around the surface [voxels].
-pub const BAND: f64 = 5.0;
+pub const BAND: f64 = 4.0;
 
 /// Bits of a coordinate of a block in its key.
 const BITS: u32 = 21;
@@ -108,15 +108,8 @@ impl<'a> Grid<'a> {
 
     /// The value at a place between nodes, trilinear, and its gradient, both in voxels.
     pub fn sample(&self, place: Vec3) -> (f64, Vec3) {
-        // beyond all blocks, and what is not finite, is outside
-        if !place.to_array().into_iter().all(|c| c.abs() < (FARTHEST * EDGE as i64) as f64) {
-            return (-BAND, Vec3::ZERO);
-        }
-        let low = place.to_array().map(|c| c.floor() as i64);
-        let t = place - Vec3::new(low[0] as f64, low[1] as f64, low[2] as f64);
-        let corners = self.corners(low);
+        let Some((corners, t)) = self.cell(place) else { return (-BAND, Vec3::ZERO) };
         let at = |x: usize, y: usize, z: usize| corners[x + 2 * y + 4 * z];
-        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
         let along_x = [0, 1, 2, 3].map(|yz| mix(corners[2 * yz], corners[2 * yz + 1], t.x));
         let along_y = [mix(along_x[0], along_x[1], t.y), mix(along_x[2], along_x[3], t.y)];
         let slope_x = |y: usize, z: usize| at(1, y, z) - at(0, y, z);
@@ -126,6 +119,27 @@ impl<'a> Grid<'a> {
             along_y[1] - along_y[0],
         );
         (mix(along_y[0], along_y[1], t.z), gradient)
+    }
+
+    /// Second derivatives at a place between nodes, trilinear [1/voxel]: those by two different coordinates.
+    pub fn bend(&self, place: Vec3) -> Mat3 {
+        let Some((corners, t)) = self.cell(place) else { return Mat3::ZERO };
+        let at = |x: usize, y: usize, z: usize| corners[x + 2 * y + 4 * z];
+        let xy = |z| at(1, 1, z) - at(0, 1, z) - at(1, 0, z) + at(0, 0, z);
+        let yz = |x| at(x, 1, 1) - at(x, 0, 1) - at(x, 1, 0) + at(x, 0, 0);
+        let xz = |y| at(1, y, 1) - at(0, y, 1) - at(1, y, 0) + at(0, y, 0);
+        let (xy, yz, xz) = (mix(xy(0), xy(1), t.z), mix(yz(0), yz(1), t.x), mix(xz(0), xz(1), t.y));
+        Mat3::from_columns(Vec3::new(0.0, xy, xz), Vec3::new(xy, 0.0, yz), Vec3::new(xz, yz, 0.0))
+    }
+
+    /// The corners of the cell a place is in, and where in it; `None` beyond all blocks, and where it is not finite.
+    fn cell(&self, place: Vec3) -> Option<([f64; 8], Vec3)> {
+        if !place.to_array().into_iter().all(|c| c.abs() < (FARTHEST * EDGE as i64) as f64) {
+            return None;
+        }
+        let low = place.to_array().map(|c| c.floor() as i64);
+        let t = place - Vec3::new(low[0] as f64, low[1] as f64, low[2] as f64);
+        Some((self.corners(low), t))
     }
 
     /// Values at the corners of the cell above a node.
@@ -158,6 +172,10 @@ impl<'a> Grid<'a> {
         let edge = EDGE as i64;
         Some([bounds[0].map(|c| c * edge), bounds[1].map(|c| c * edge + edge - 1)])
     }
+}
+
+fn mix(a: f64, b: f64, t: f64) -> f64 {
+    a + (b - a) * t
 }
 
 /// A block of a grid, kept or uniform.
@@ -257,6 +275,11 @@ impl Halo {
 
     /// Reads a block and the nodes around it.
     pub fn read(&mut self, grid: Grid, neighbours: &Neighbours, block: usize) {
+        let around: [Result<&[f64; NODES], f64>; 27] =
+            std::array::from_fn(|number| match neighbours.of(block, number) {
+                Found::Kept(index) => Ok(grid.block(index as usize)),
+                uniform => Err(uniform.uniform()),
+            });
         // side of a wide coordinate: the neighbour's step, and the coordinate there
         let side = |c: usize| match c {
             0 => (0, EDGE - 1),
@@ -267,20 +290,15 @@ impl Halo {
             let (bz, nz) = side(z);
             for y in 0..WIDE {
                 let (by, ny) = side(y);
-                let row = &mut self.0[wide(0, y, z)..][..WIDE];
-                let value = |bx: usize, nx: usize| match neighbours.of(block, bx + 3 * by + 9 * bz) {
-                    Found::Kept(index) => grid.values[NODES * index as usize + node_of(nx, ny, nz)],
-                    uniform => uniform.uniform(),
-                };
-                row[0] = value(0, EDGE - 1);
-                match neighbours.of(block, 1 + 3 * by + 9 * bz) {
-                    Found::Kept(index) => {
-                        let from = &grid.values[NODES * index as usize + node_of(0, ny, nz)..][..EDGE];
-                        row[1..=EDGE].copy_from_slice(from);
-                    }
-                    uniform => row[1..=EDGE].fill(uniform.uniform()),
+                let (first, node) = (3 * by + 9 * bz, node_of(0, ny, nz));
+                let row: &mut [f64; WIDE] =
+                    (&mut self.0[wide(0, y, z)..][..WIDE]).try_into().expect("a row is so wide");
+                row[0] = around[first].map_or_else(|uniform| uniform, |block| block[node + EDGE - 1]);
+                match around[first + 1] {
+                    Ok(block) => row[1..=EDGE].copy_from_slice(&block[node..node + EDGE]),
+                    Err(uniform) => row[1..=EDGE].fill(uniform),
                 }
-                row[EDGE + 1] = value(2, 0);
+                row[EDGE + 1] = around[first + 2].map_or_else(|uniform| uniform, |block| block[node]);
             }
         }
     }

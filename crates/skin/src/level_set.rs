@@ -1,14 +1,13 @@
 //! One sub-step of the level set: `∂f/∂t = |∇f| (a − β κ)`, kept near a signed distance.
 //!
 //! `a` is the speed of all strategies but tension at the nearest surface points: at a node beside the surface the mean
-//! over the crossings of its own edges (the source's rule, which lets the skin come to a true rest), further out carried
-//! along the gradient from the nodes nearer to the surface. It moves `f` with upwind slopes (Godunov). The curvature is
-//! that of the level through the node, taken on to the nearest surface point: for principal curvatures `k'` at the signed
-//! distance `s` outside, `k = k'/(1 − s k')`, so `κ = (κ' − 2 s K')/(1 − s κ' + s² K')` with the Gaussian curvature `K'`; a
-//! distance then stays one.
+//! over the crossings of its own edges (the source's rule, which lets the skin come to a true rest), a little further out
+//! carried along the gradient from the nodes nearer to the surface, beyond that the mean of the block. It moves `f` with
+//! upwind slopes (Godunov). Tension takes the curvature of the level through each node, by central differences: all levels
+//! of the band then shrink as they would by themselves, so the surface feels no edge of the band, to second order.
 //!
-//! What still drifts is relaxed towards `|∇f| = 1`: beside the surface by a factor, which cannot move it across a node,
-//! further out as usual (Sussman et al. 1994).
+//! What drifts is relaxed towards `|∇f| = 1` by `S (1 − |∇f|)` with the smooth sign `S = f/√(f² + 1)` (Sussman et al. 1994;
+//! Peng et al. 1999): near the surface this is a factor that varies slowly, so it leaves the surface where it is.
 
 use rayon::prelude::*;
 
@@ -25,12 +24,14 @@ pub struct Speeds {
     /// [voxels per sub-step], where `known`.
     pub values: Vec<f64>,
     pub known: Vec<Layers>,
-    /// Nodes at an edge that is cut.
-    pub beside: Vec<Layers>,
     /// Nodes within the band.
     band: Vec<Layers>,
     reached: Vec<Layers>,
     staged: Vec<f64>,
+    /// Sum and count of the speeds at each block's crossings.
+    sums: Vec<(f64, f64)>,
+    /// Of the nodes that no speed is carried to, block by block.
+    pub far: Vec<f64>,
 }
 
 /// The nodes of a set.
@@ -38,8 +39,9 @@ fn nodes(set: &Layers) -> impl Iterator<Item = usize> {
     (0..EDGE).flat_map(|z| bits(set[z]).map(move |bit| z * EDGE * EDGE + bit))
 }
 
-/// Layers of nodes beyond those beside the surface that speeds are carried to.
-const CARRIED: usize = 4;
+/// Layers of nodes beyond those beside the surface that speeds are carried to: slopes and curvatures of nodes beside the
+/// surface are made of these.
+const CARRIED: usize = 1;
 
 /// Steps to the six nearest neighbours of a block, by axis: below and above.
 const BESIDE: [[usize; 2]; 3] = [
@@ -75,49 +77,53 @@ fn next_node(
 
 impl Speeds {
     /// Means over the crossings at each node, carried outward; `speeds` holds one value for each crossing.
-    /// `tension` is `β Δt / voxel²`.
-    pub fn spread(
-        &mut self,
-        grid: Grid,
-        neighbours: &Neighbours,
-        crossings: &Crossings,
-        speeds: &[f64],
-        tension: f64,
-    ) {
+    pub fn spread(&mut self, grid: Grid, neighbours: &Neighbours, crossings: &Crossings, speeds: &[f64]) {
         let count = grid.keys.len();
         self.values.resize(NODES * count, 0.0);
         self.band.clear();
         self.band.extend((0..count).map(|block| layers_where(grid.block(block), |f| f.abs() < BAND)));
-        self.beside.clear();
-        self.beside.extend((0..count).map(|block| beside(neighbours, crossings, block)));
-        self.known.clone_from(&self.beside);
-        let beside = &self.beside;
+        self.known.clear();
+        self.known.extend((0..count).map(|block| beside(neighbours, crossings, block)));
+        let beside = &self.known;
         let chunks = self.values.par_chunks_mut(NODES).enumerate().with_min_len(16);
         chunks.for_each_init(
-            || Box::new(Halo::ZERO),
-            |halo, (block, values)| {
+            || Box::new([(0.0, 0.0); NODES]),
+            |sums, (block, values)| {
                 if beside[block] == [0; EDGE] {
                     return;
                 }
+                add_crossings(neighbours, crossings, speeds, block, sums);
                 for node in nodes(&beside[block]) {
-                    values[node] = mean_at(neighbours, crossings, speeds, block, node);
-                }
-                if tension > 0.0 {
-                    halo.read(grid, neighbours, block);
-                    let values = values.try_into().expect("a chunk is a block");
-                    run_widest(Tense { halo, beside: &beside[block], tension, values });
+                    let (sum, count) = std::mem::take(&mut sums[node]);
+                    values[node] = sum / count;
                 }
             },
         );
         for _ in 0..CARRIED {
             self.carry(grid, neighbours);
         }
+        self.average(neighbours, crossings, speeds);
     }
 
-    /// Of the nodes beside the surface.
-    pub fn greatest(&self) -> f64 {
-        let blocks = self.beside.iter().zip(self.values.chunks_exact(NODES));
-        blocks.flat_map(|(beside, values)| nodes(beside).map(|node| values[node].abs())).fold(0.0, f64::max)
+    /// The mean over the crossings of each block and those around it.
+    fn average(&mut self, neighbours: &Neighbours, crossings: &Crossings, speeds: &[f64]) {
+        self.sums.clear();
+        self.sums.extend((0..neighbours.len()).map(|block| {
+            let own = &speeds[crossings.numbers(block)];
+            (own.iter().sum::<f64>(), own.len() as f64)
+        }));
+        let sums = &self.sums;
+        self.far.clear();
+        self.far.extend((0..neighbours.len()).map(|block| {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for number in 0..27 {
+                if let Found::Kept(index) = neighbours.of(block, number) {
+                    let other = sums[index as usize];
+                    (sum, count) = (sum + other.0, count + other.1);
+                }
+            }
+            if count > 0.0 { sum / count } else { 0.0 }
+        }));
     }
 
     /// One layer further out.
@@ -147,9 +153,9 @@ impl Speeds {
     }
 
     pub fn bytes(&self) -> usize {
-        let layers =
-            self.known.capacity() + self.beside.capacity() + self.band.capacity() + self.reached.capacity();
-        8 * (self.values.capacity() + self.staged.capacity()) + size_of::<Layers>() * layers
+        let layers = self.known.capacity() + self.band.capacity() + self.reached.capacity();
+        8 * (self.values.capacity() + self.staged.capacity() + self.far.capacity() + 2 * self.sums.capacity())
+            + size_of::<Layers>() * layers
     }
 }
 
@@ -167,21 +173,46 @@ fn beside(neighbours: &Neighbours, crossings: &Crossings, block: usize) -> Layer
     })
 }
 
-/// The mean over the crossings of a node's own edges.
-fn mean_at(neighbours: &Neighbours, crossings: &Crossings, speeds: &[f64], block: usize, node: usize) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for axis in 0..3 {
-        for place in [next_node(neighbours, block, node, axis, 0), Some((block, node))].into_iter().flatten()
-        {
-            let (block, node) = place;
-            let (z, bit) = (node / (EDGE * EDGE), node % (EDGE * EDGE));
-            if crossings.cut(block)[axis][z] >> bit & 1 == 1 {
-                sum += speeds[crossings.number(block, axis, z, bit) as usize];
-                count += 1.0;
+/// Adds the speeds of the crossings of all edges of a block's nodes to these nodes, with how many there are.
+fn add_crossings(
+    neighbours: &Neighbours,
+    crossings: &Crossings,
+    speeds: &[f64],
+    block: usize,
+    sums: &mut [(f64, f64); NODES],
+) {
+    let mut add = |node: usize, speed: f64| {
+        sums[node].0 += speed;
+        sums[node].1 += 1.0;
+    };
+    let mut number = crossings.numbers(block).start;
+    for (axis, stride) in STRIDES.into_iter().enumerate() {
+        for (z, layer) in crossings.cut(block)[axis].into_iter().enumerate() {
+            for bit in bits(layer) {
+                let node = z * EDGE * EDGE + bit;
+                add(node, speeds[number]);
+                if node / stride % EDGE < EDGE - 1 {
+                    add(node + stride, speeds[number]);
+                }
+                number += 1;
+            }
+        }
+        // edges from the block below end here
+        let Found::Kept(below) = neighbours.of(block, BESIDE[axis][0]) else { continue };
+        let below = below as usize;
+        for (z, layer) in crossings.cut(below)[axis].into_iter().enumerate() {
+            let last = match axis {
+                0 => LAST_X,
+                1 => FIRST_Y << (EDGE * (EDGE - 1)),
+                _ if z == EDGE - 1 => !0,
+                _ => 0,
+            };
+            for bit in bits(layer & last) {
+                let node = z * EDGE * EDGE + bit - stride * (EDGE - 1);
+                add(node, speeds[crossings.number(below, axis, z, bit) as usize]);
             }
         }
     }
-    sum / count
 }
 
 /// The speed of a node from those nearer to the surface, each by how much nearer it is: constant along the gradient.
@@ -229,40 +260,71 @@ fn dilated(neighbours: &Neighbours, set: &[Layers], block: usize) -> Layers {
     })
 }
 
-/// Moves all values by one sub-step into `next`; `redistance` is the share of the way to `|∇f| = 1`.
-pub fn advance(grid: Grid, neighbours: &Neighbours, speeds: &Speeds, redistance: f64, next: &mut Vec<f64>) {
-    next.resize(grid.values.len(), 0.0);
-    next.par_chunks_mut(NODES).enumerate().with_min_len(8).for_each_init(
-        || Box::new(Halo::ZERO),
-        |halo, (block, next)| {
+/// How nodes move in a sub-step.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    /// Speeds around the surface; `None` where that of all nodes is `uniform`.
+    pub speeds: Option<&'a Speeds>,
+    /// [voxels per sub-step]
+    pub uniform: f64,
+    /// `β Δt / voxel²`.
+    pub tension: f64,
+    /// Share of the way to `|∇f| = 1`.
+    pub redistance: f64,
+}
+
+/// Moves all values by one sub-step into `next`; the greatest move of the surface [voxels].
+pub fn advance(
+    grid: Grid,
+    neighbours: &Neighbours,
+    crossings: &Crossings,
+    motion: Motion,
+    next: &mut [f64],
+) -> f64 {
+    let chunks = next.par_chunks_mut(NODES).enumerate().with_min_len(8);
+    let fastest = chunks.map_init(
+        || (Box::new(Halo::ZERO), Box::new([0.0; NODES])),
+        |(halo, speeds), (block, next)| {
             halo.read(grid, neighbours, block);
-            let values = &speeds.values[NODES * block..][..NODES];
+            match motion.speeds {
+                None => speeds.fill(motion.uniform),
+                Some(known) => {
+                    speeds.fill(known.far[block]);
+                    let values = &known.values[NODES * block..][..NODES];
+                    nodes(&known.known[block]).for_each(|node| speeds[node] = values[node]);
+                }
+            }
+            let mut fastest = [0.0; EDGE];
             run_widest(Moving {
                 halo,
-                values: values.try_into().expect("a block has its nodes"),
-                known: &speeds.known[block],
-                redistance,
+                speeds,
+                beside: &beside(neighbours, crossings, block),
+                fastest: &mut fastest,
+                tension: motion.tension,
+                redistance: [
+                    motion.redistance * (motion.tension / TENSION_LIMIT).min(1.0),
+                    motion.redistance,
+                ],
                 next: next.try_into().expect("a chunk is a block"),
             });
+            fastest.into_iter().fold(0.0, f64::max)
         },
     );
+    fastest.reduce(|| 0.0, f64::max)
 }
 
 /// Values that move.
 struct Moving<'a> {
     halo: &'a Halo,
-    values: &'a [f64; NODES],
-    known: &'a Layers,
-    redistance: f64,
-    next: &'a mut [f64; NODES],
-}
-
-/// Speeds of the nodes beside the surface, to which tension comes.
-struct Tense<'a> {
-    halo: &'a Halo,
+    speeds: &'a [f64; NODES],
+    /// Nodes at an edge that is cut.
     beside: &'a Layers,
+    /// The greatest change there over the slope, column by column.
+    fastest: &'a mut [f64; EDGE],
     tension: f64,
-    values: &'a mut [f64; NODES],
+    /// Shares near the surface and far from it.
+    redistance: [f64; 2],
+    next: &'a mut [f64; NODES],
 }
 
 /// Half second differences up to this are curvature, larger ones kinks [voxels].
@@ -270,10 +332,14 @@ const SMOOTH: f64 = 0.125;
 /// Speeds up to this are carried by slopes of second order [voxels per sub-step]: what grows by their want of damping has left
 /// the band before it shows.
 const SLOW: f64 = 0.1;
-/// Nodes further out are relaxed to a distance, to first order; what is nearer keeps the distance it came with, because a
-/// kink at the surface of the size of its curvature would be felt as one [voxels].
+/// Nodes further out are relaxed by the whole share. Nearer ones keep the distance they came with, since speeds are carried along
+/// normals, but for what tension does to it, which is as much less as its step is short of the longest [voxels].
 const SETTLED: f64 = 2.5;
-/// No curvature is felt beyond that of a ball of one voxel's radius [1/voxel].
+/// `β Δt ≤ voxel²/6` (6).
+pub const TENSION_LIMIT: f64 = 1.0 / 6.0;
+/// Of squared slopes: a level that is flat has no curvature.
+const FLAT: f64 = 1e-3;
+/// No curvature is told beyond that of a ball of one voxel's radius [1/voxel].
 const SHARPEST: f64 = 2.0;
 
 impl Rows for Moving<'_> {
@@ -290,9 +356,10 @@ impl Rows for Moving<'_> {
                     out.copy_from_slice(&f[at..at + EDGE]);
                     continue;
                 }
-                let known = (self.known[z] >> (EDGE * y)) as u8;
-                let values = self.values[row..row + EDGE].try_into().expect("a row has its nodes");
-                move_row(f, at, values, known, self.redistance, out);
+                let speeds = self.speeds[row..row + EDGE].try_into().expect("a row has its nodes");
+                *out = if self.tension > 0.0 { shrink_row(f, at, self.tension) } else { [0.0; EDGE] };
+                let beside = (self.beside[z] >> (EDGE * y)) as u8;
+                move_row(f, at, speeds, beside, self.redistance, self.fastest, out);
             }
         }
     }
@@ -311,8 +378,49 @@ fn is_far(f: &[f64], at: usize) -> bool {
         && far(at + dz, EDGE)
 }
 
+/// `−β κ |∇f| Δt` of a row, by (4) of the source with its signs mended.
 #[inline(always)]
-fn move_row(f: &[f64], at: usize, values: &[f64; EDGE], known: u8, redistance: f64, out: &mut [f64; EDGE]) {
+fn shrink_row(f: &[f64], at: usize, tension: f64) -> [f64; EDGE] {
+    let (dy, dz) = (wide(0, 1, 0), wide(0, 0, 1));
+    let line =
+        |offset: usize| -> &[f64; EDGE] { f[offset..offset + EDGE].try_into().expect("a row has its nodes") };
+    let c = line(at);
+    let (xm, xp, ym, yp, zm, zp) =
+        (line(at - 1), line(at + 1), line(at - dy), line(at + dy), line(at - dz), line(at + dz));
+    let (xpyp, xpym, xmyp, xmym) =
+        (line(at + 1 + dy), line(at + 1 - dy), line(at - 1 + dy), line(at - 1 - dy));
+    let (ypzp, ypzm, ymzp, ymzm) =
+        (line(at + dy + dz), line(at + dy - dz), line(at - dy + dz), line(at - dy - dz));
+    let (xpzp, xpzm, xmzp, xmzm) =
+        (line(at + 1 + dz), line(at + 1 - dz), line(at - 1 + dz), line(at - 1 - dz));
+    let mut out = [0.0; EDGE];
+    for i in 0..EDGE {
+        let twice = 2.0 * c[i];
+        let (x, y, z) = (0.5 * (xp[i] - xm[i]), 0.5 * (yp[i] - ym[i]), 0.5 * (zp[i] - zm[i]));
+        let (xx, yy, zz) = (xp[i] + xm[i] - twice, yp[i] + ym[i] - twice, zp[i] + zm[i] - twice);
+        // twice the mixed second derivatives
+        let xy = 0.5 * ((xpyp[i] - xpym[i]) - (xmyp[i] - xmym[i]));
+        let yz = 0.5 * ((ypzp[i] - ypzm[i]) - (ymzp[i] - ymzm[i]));
+        let xz = 0.5 * ((xpzp[i] - xpzm[i]) - (xmzp[i] - xmzm[i]));
+        let slope_sq = x * x + y * y + z * z + FLAT;
+        let sum = x * x * (yy + zz) + y * y * (xx + zz) + z * z * (xx + yy)
+            - (x * y * xy + y * z * yz + x * z * xz);
+        out[i] = tension * sum / slope_sq;
+    }
+    out
+}
+
+/// Moves a row by its speeds and by what stands in `out`, and relaxes it.
+#[inline(always)]
+fn move_row(
+    f: &[f64],
+    at: usize,
+    speeds: &[f64; EDGE],
+    beside: u8,
+    [settling, redistance]: [f64; 2],
+    fastest: &mut [f64; EDGE],
+    out: &mut [f64; EDGE],
+) {
     let (dy, dz) = (wide(0, 1, 0), wide(0, 0, 1));
     let line =
         |offset: usize| -> &[f64; EDGE] { f[offset..offset + EDGE].try_into().expect("a row has its nodes") };
@@ -322,10 +430,9 @@ fn move_row(f: &[f64], at: usize, values: &[f64; EDGE], known: u8, redistance: f
     let (zm, zp) = (line(at - dz), line(at + dz));
     for i in 0..EDGE {
         let c = c[i];
-        let is = |word: u8| word >> i & 1 == 1;
         let (below, above) = ([c - xm[i], c - ym[i], c - zm[i]], [xp[i] - c, yp[i] - c, zp[i] - c]);
-        // slopes towards larger and towards smaller values, to first order for what is carried by them, and to second
-        // order, where f is smooth, for the distance: a kink at the surface of the size of its curvature would be felt as one
+        // slopes towards larger and towards smaller values, to first order for what is carried by them fast, and to second
+        // order, where f is smooth, for what is slow and for the distance
         let (mut rising, mut falling, mut rising_2, mut falling_2) = (0.0, 0.0, 0.0, 0.0);
         for k in 0..3 {
             let (low, high) = (below[k], above[k]);
@@ -340,34 +447,18 @@ fn move_row(f: &[f64], at: usize, values: &[f64; EDGE], known: u8, redistance: f
             rising_2 += up * up;
             falling_2 += down * down;
         }
-        let speed = if is(known) { values[i] } else { 0.0 };
+        let speed = speeds[i];
         let upwind = if speed > 0.0 { rising } else { falling };
         let smooth = if speed > 0.0 { rising_2 } else { falling_2 };
-        let moved = c + speed * if speed.abs() > SLOW { upwind } else { smooth }.sqrt();
+        let carried = speed * if speed.abs() > SLOW { upwind } else { smooth }.sqrt();
         let slope = if c > 0.0 { falling_2 } else { rising_2 }.sqrt();
-        let share = redistance * (c.abs() - SETTLED).clamp(0.0, 1.0);
-        let relaxed = moved + (if c > 0.0 { 1.0 } else { -1.0 }) * share * (1.0 - slope);
-        out[i] = relaxed.clamp(-BAND, BAND);
-    }
-}
-
-impl Rows for Tense<'_> {
-    // −β κ
-    #[inline(always)]
-    fn run(self) {
-        for z in 0..EDGE {
-            for y in 0..EDGE {
-                if (self.beside[z] >> (EDGE * y)) as u8 == 0 {
-                    continue;
-                }
-                let (at, row) = (wide(1, y + 1, z + 1), node_of(0, y, z));
-                let values = &mut self.values[row..row + EDGE];
-                for (i, value) in values.iter_mut().enumerate() {
-                    let (curvature, _) = curvature_at(&self.halo.0, at + i);
-                    *value -= self.tension * curvature;
-                }
-            }
-        }
+        let far = (c.abs() - SETTLED).clamp(0.0, 1.0);
+        let share = settling + (redistance - settling) * far;
+        let relaxed = share * (c / (c * c + 1.0).sqrt()) * (1.0 - slope);
+        let change = out[i] + carried + relaxed;
+        // a level with a slope below one half is no distance, and moves further than it tells
+        fastest[i] = fastest[i].max(if beside >> i & 1 == 1 { change.abs() / slope.max(0.5) } else { 0.0 });
+        out[i] = (c + change).clamp(-BAND, BAND);
     }
 }
 

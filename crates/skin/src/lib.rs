@@ -10,6 +10,7 @@ mod dress;
 mod field;
 pub mod grid;
 mod level_set;
+mod look_up;
 pub mod polygons;
 pub mod reaction;
 mod skin;
@@ -18,6 +19,8 @@ pub mod target;
 mod widest;
 
 pub use dress::dress;
+pub use field::SkinField;
 pub use grid::{Grid, Lattice};
+pub use look_up::{Seen, look_up};
 pub use polygons::{Measures, Polygons};
 pub use skin::{Skin, SkinError, SkinScratch, View, mean_curvature, surface_of};

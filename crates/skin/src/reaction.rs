@@ -62,7 +62,7 @@ impl Reaction {
         scratch: &mut ReactionScratch,
         out: &mut [f64],
     ) -> Result<(), String> {
-        let positions = (at.positions)(self.system);
+        let positions = at.rows.positions(self.system);
         scratch.cloud.place(self.rows.iter().map(|(row, radius)| (positions[*row as usize], *radius)))?;
         let pressure = self.pressure * (surface.rest_volume - surface.volume) / surface.rest_volume;
         scratch.forces.clear();
@@ -110,6 +110,26 @@ fn shares(cloud: &Cloud, point: Vec3, shares: &mut Vec<(u32, f64)>) -> f64 {
     shares.clear();
     shares.extend(nearest.map(|(index, _)| (index as u32, 1.0)));
     1.0
+}
+
+/// Shares of particles, position and radius [m], in a force at a point, looked for among all of them: those of their
+/// kernels, or all of it to the nearest where none reaches.
+pub fn visit_shares(
+    particles: impl Iterator<Item = (Vec3, f64)> + Clone,
+    point: Vec3,
+    visit: &mut dyn FnMut(usize, f64),
+) {
+    let weight = |(position, radius): (Vec3, f64)| kernel(0.5 * (position - point).length() / radius);
+    let total: f64 = particles.clone().map(weight).sum();
+    if total > 0.0 {
+        let weights = particles.map(weight).enumerate();
+        weights.filter(|(_, weight)| *weight > 0.0).for_each(|(index, weight)| visit(index, weight / total));
+        return;
+    }
+    let distances = particles.map(|(position, _)| (position - point).length_sq()).enumerate();
+    if let Some((nearest, _)) = distances.min_by(|(_, a), (_, b)| a.total_cmp(b)) {
+        visit(nearest, 1.0);
+    }
 }
 
 /// The forces of a skin on the rows of its particles, as they stand in State.

@@ -6,11 +6,11 @@ use souple_math::Vec3;
 
 use crate::crossings::Crossings;
 use crate::grid::{BAND, EDGE, FARTHEST, Grid, Halo, Lattice, NODES, Neighbours, key_of, wide};
-use crate::level_set::{Heads, Runaway, Speeds, Waking, advance, curvature_at};
+use crate::level_set::{Heads, Motion, Runaway, Speeds, TENSION_LIMIT, Waking, advance, curvature_at};
 use crate::polygons::{Audit, Measures, Polygons, Torn, area_and_volume, normals, polygonise};
 use crate::reaction::{Reaction, ReactionScratch, Tense};
 use crate::strategy::{SurfacePoints, Term, Whole};
-use crate::target::{Moment, Target, TargetScratch};
+use crate::target::{Followed, Moment, Target, TargetScratch};
 
 /// The constant part of a skin.
 pub struct Skin {
@@ -38,22 +38,24 @@ const CHANGED: usize = 5;
 const SUBSTEPS: usize = 6;
 
 /// Integers before the keys of the blocks.
-pub const HEAD_INDICES: usize = 5;
+pub const HEAD_INDICES: usize = 6;
 const EULER: usize = 0;
 const COMPONENTS: usize = 1;
 /// Changes of topology so far.
 const EVENTS: usize = 2;
 const POINTS: usize = 3;
 const TRIANGLES: usize = 4;
+/// Surfaces so far that were checked to be closed, oriented and manifold: one at the start, one for each step.
+const CHECKED: usize = 5;
 
 /// Blocks that a skin may have: 2 GB of values.
 pub const MOST_BLOCKS: usize = 1 << 19;
+/// Blocks that are looked at when a skin starts: half a billion nodes.
+pub const MOST_SAMPLED: usize = 1 << 20;
 /// Sub-steps of a step at most.
-const MOST_SUBSTEPS: u32 = 10_000;
+const MOST_SUBSTEPS: u32 = 2_000;
 /// The surface moves no further in a sub-step [voxels].
 const FARTHEST_MOVE: f64 = 0.5;
-/// `β Δt ≤ voxel²/6` (6).
-const TENSION_LIMIT: f64 = 1.0 / 6.0;
 
 /// Why a skin cannot start or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -73,7 +75,7 @@ pub enum SkinError {
     #[error("its target does not say where it is; expected a `domain`")]
     NoDomain,
     #[error(
-        "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_BLOCKS}: larger voxels"
+        "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_SAMPLED}: larger voxels"
     )]
     TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },
     #[error(
@@ -136,6 +138,11 @@ impl<'a> View<'a> {
 
     pub fn substeps(&self) -> f64 {
         self.head[SUBSTEPS]
+    }
+
+    /// Surfaces so far that were checked to be closed, oriented and manifold, and were.
+    pub fn checked(&self) -> u64 {
+        self.head_indices[CHECKED]
     }
 
     /// Points and triangles of the surface.
@@ -203,6 +210,12 @@ impl Skin {
         self.reaction.as_ref().map_or(0, |reaction| reaction.rows.len())
     }
 
+    /// Rows that lead its target.
+    pub fn followed(&self) -> Vec<Followed> {
+        let parts = self.target.iter().flat_map(|target| &target.parts);
+        parts.flat_map(|part| part.potential.followed()).collect()
+    }
+
     fn voxel(&self) -> f64 {
         self.lattice.voxel
     }
@@ -230,7 +243,7 @@ impl Skin {
         let counts = [0, 1, 2].map(|axis| (last[axis] - first[axis] + 1.0).max(1.0));
         let blocks: f64 = counts.iter().product();
         let far = first.iter().chain(&last).any(|c| c.is_nan() || c.abs() >= FARTHEST as f64);
-        if far || blocks.is_nan() || blocks > 64.0 * MOST_BLOCKS as f64 {
+        if far || blocks.is_nan() || blocks > MOST_SAMPLED as f64 {
             let size = (high - low).to_array();
             return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
         }
@@ -314,7 +327,8 @@ impl Skin {
             self.find_crossings(field, scratch);
             scratch.speeds.clear();
             scratch.speeds.resize(scratch.crossings.points.len(), 0.0);
-            self.move_by(field, scratch, 0.0, 2.0 * self.redistance, 0.0)?;
+            let moves = Moves { uniform: 0.0, tension: 0.0, redistance: 2.0 * self.redistance };
+            self.move_by(field, scratch, moves, 0.0)?;
         }
         Ok(())
     }
@@ -359,7 +373,7 @@ impl Skin {
             if substeps > 0 {
                 self.measure_size(field, scratch);
             }
-            let (fastest, answer) = self.add_speeds(field, scratch, now)?;
+            let Asked { uniform, fastest, answer } = self.add_speeds(field, scratch, now)?;
             let substep = self.longest_substep(fastest, answer);
             let count = (left / substep).ceil().max(1.0);
             if count.is_nan() || count + f64::from(substeps) > f64::from(MOST_SUBSTEPS) {
@@ -368,9 +382,13 @@ impl Skin {
             let substep = left / count;
             let h = self.voxel();
             scratch.speeds.iter_mut().for_each(|speed| *speed *= substep / h);
-            let tension = self.tension() * substep / (h * h);
-            self.move_by(field, scratch, tension, self.redistance, now + substep)?;
-            field.values[SPEED] = scratch.spread.greatest() * h / substep;
+            let moves = Moves {
+                uniform: uniform * substep / h,
+                tension: self.tension() * substep / (h * h),
+                redistance: self.redistance,
+            };
+            let moved = self.move_by(field, scratch, moves, now + substep)?;
+            field.values[SPEED] = moved * h / substep;
             done = if count == 1.0 { timestep } else { done + substep };
             substeps += 1;
         }
@@ -403,13 +421,18 @@ impl Skin {
         }
     }
 
-    /// Speeds of the crossings without tension [m/s]; the greatest, and how fast terms answer what they do [1/s].
+    /// Whether its speed without tension differs from place to place.
+    fn varies(&self) -> bool {
+        self.terms.iter().any(|term| term.varies())
+    }
+
+    /// Speeds of the crossings without tension [m/s].
     fn add_speeds(
         &self,
         field: &FieldState,
         scratch: &mut SkinScratch,
         time: f64,
-    ) -> Result<(f64, f64), SkinError> {
+    ) -> Result<Asked, SkinError> {
         let points = &scratch.crossings.points;
         scratch.excess.clear();
         scratch.excess.resize(points.len(), 0.0);
@@ -435,7 +458,7 @@ impl Skin {
             }
             fastest = fastest.max(speed.abs());
         }
-        Ok((fastest, answer))
+        Ok(Asked { uniform, fastest, answer })
     }
 
     fn longest_substep(&self, fastest: f64, answer: f64) -> f64 {
@@ -447,20 +470,28 @@ impl Skin {
         by_speed.min(by_tension).min(by_answer)
     }
 
-    /// One sub-step with speeds in voxels and `tension = β Δt / voxel²`.
+    /// One sub-step, with the speeds of the crossings in voxels; how far the surface moved [voxels].
     fn move_by(
         &self,
         field: &mut FieldState,
         scratch: &mut SkinScratch,
-        tension: f64,
-        redistance: f64,
+        moves: Moves,
         time: f64,
-    ) -> Result<(), SkinError> {
+    ) -> Result<f64, SkinError> {
         let head = self.head();
         let grid = self.grid(field);
-        scratch.spread.spread(grid, &scratch.neighbours, &scratch.crossings, &scratch.speeds, tension);
-        advance(grid, &scratch.neighbours, &scratch.spread, redistance, &mut scratch.next);
-        field.values[head..].copy_from_slice(&scratch.next);
+        let (neighbours, crossings) = (&scratch.neighbours, &scratch.crossings);
+        if self.varies() {
+            scratch.spread.spread(grid, neighbours, crossings, &scratch.speeds);
+        }
+        let Moves { uniform, tension, redistance } = moves;
+        let speeds = self.varies().then_some(&scratch.spread);
+        let motion = Motion { speeds, uniform, tension, redistance };
+        let next = &mut scratch.next;
+        next.resize(field.values.len(), 0.0);
+        next[..head].copy_from_slice(&field.values[..head]);
+        let moved = advance(grid, neighbours, crossings, motion, &mut next[head..]);
+        std::mem::swap(&mut field.values, next);
         let heads = Heads { indices: HEAD_INDICES, values: head };
         let changed = scratch
             .waking
@@ -473,7 +504,7 @@ impl Skin {
             }
             self.find_neighbours(field, scratch);
         }
-        Ok(())
+        Ok(moved)
     }
 
     /// Triangles, their measures, and whether the topology changed.
@@ -492,6 +523,7 @@ impl Skin {
             indices[EVENTS] += 1;
             field.values[CHANGED] = time;
         }
+        indices[CHECKED] += 1;
         indices[EULER] = euler as u64;
         indices[COMPONENTS] = components;
         indices[POINTS] = points.len() as u64;
@@ -512,10 +544,38 @@ impl Skin {
         reaction.act(surface, at, &mut scratch.reaction, out).map_err(SkinError::Target)
     }
 
+    /// The greatest distance of the surface from that of its target at a moment [m]; `None` without a target that can be placed.
+    pub fn distance(&self, at: &Moment, field: &FieldState) -> Option<f64> {
+        let target = self.target.as_ref()?;
+        let mut placed = target.new_scratch();
+        target.place(at, &mut placed).ok()?;
+        let (surface, _) = surface_of(self.view(field).grid, &self.lattice);
+        let distance = |point: &Vec3| target.distance(*point, 0.1 * self.voxel(), &placed);
+        Some(surface.points.par_iter().map(distance).reduce(|| 0.0, f64::max))
+    }
+
     /// A reader's view of the state.
     pub fn view<'a>(&self, field: &'a FieldState) -> View<'a> {
         View::new(field, self.reactions())
     }
+}
+
+/// What terms ask for at a moment.
+struct Asked {
+    /// Speed that is the same everywhere [m/s].
+    uniform: f64,
+    /// The greatest at a crossing [m/s].
+    fastest: f64,
+    /// How fast terms answer what they do [1/s].
+    answer: f64,
+}
+
+/// A sub-step in voxels.
+#[derive(Clone, Copy)]
+struct Moves {
+    uniform: f64,
+    tension: f64,
+    redistance: f64,
 }
 
 /// The key and the values of a block; nothing of one beyond the band.

@@ -41,6 +41,11 @@ pub trait Term: Send + Sync {
         0.0
     }
 
+    /// Whether [`Term::add_at`] adds anything.
+    fn varies(&self) -> bool {
+        self.needs_target()
+    }
+
     /// `out += speed` at each point.
     fn add_at(&self, _at: SurfacePoints, _whole: &Whole, _out: &mut [f64]) {}
 
@@ -241,6 +246,10 @@ struct Speed(Formula);
 const SPEED_VARIABLES: &[&str] = &["x", "y", "z", "t", "g", "area", "volume"];
 
 impl Term for Speed {
+    fn varies(&self) -> bool {
+        true
+    }
+
     fn add_at(&self, at: SurfacePoints, whole: &Whole, out: &mut [f64]) {
         for ((out, p), excess) in out.iter_mut().zip(at.points).zip(at.excess) {
             *out += self.0.evaluate(&[p.x, p.y, p.z, whole.time, *excess, whole.area, whole.volume]);

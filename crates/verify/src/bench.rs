@@ -10,6 +10,7 @@ mod frames;
 mod laws;
 mod levels;
 mod links;
+mod skins;
 mod startup;
 mod stretched;
 mod timing;
@@ -154,6 +155,31 @@ pub const BENCHES: &[Bench] = &[
         name: "adaptive_saving",
         what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
         run: levels::adaptive_saving,
+    },
+    Bench {
+        name: "skin_step_128",
+        what: "steps of a skin that fills 128^3 cells with a ball, drawn to another and tense, with its triangles [steps/s]",
+        run: skins::step_128,
+    },
+    Bench {
+        name: "skin_cost",
+        what: "the same with 64 to 512 cells along an edge [ms/step], and the exponent fitted",
+        run: skins::cost,
+    },
+    Bench {
+        name: "skin_image",
+        what: "an image of the metamorphosis of a twisted bundle on 50^3 cells, which took 1 s in 1997, one thread [s]",
+        run: skins::image,
+    },
+    Bench {
+        name: "skin_100k",
+        what: "the surface of 100,000 particles of a ball at voxels of their radius, beside pysplashsurf [particles/s]",
+        run: |effort| skins::dress_100k("skin_100k", 1.0, effort),
+    },
+    Bench {
+        name: "skin_100k_half",
+        what: "the same at voxels of half their radius",
+        run: |effort| skins::dress_100k("skin_100k_half", 0.5, effort),
     },
     Bench {
         name: "view_frame_20k",

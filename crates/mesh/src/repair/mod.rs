@@ -147,11 +147,11 @@ fn is_flat(corners: [u32; 3], points: &[Vec3]) -> bool {
 
 /// The lowest number of the points within a distance, for each point; chains are not followed.
 fn joined_points(points: &[Vec3], distance: f64) -> Vec<u32> {
-    // cells of twice the distance: equal points are in one cell, close ones in touching cells
-    let cell = |point: Vec3| {
-        let inverse = if distance > 0.0 { 0.5 / distance } else { 0.0 };
-        (point * inverse).to_array().map(|c| c.floor() as i64)
-    };
+    if distance == 0.0 {
+        return equal_points(points);
+    }
+    // cells of twice the distance: close points are in touching cells
+    let cell = |point: Vec3| (point * (0.5 / distance)).to_array().map(|c| c.floor() as i64);
     let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
     let mut number: Vec<u32> = Vec::with_capacity(points.len());
     for (index, point) in points.iter().enumerate() {
@@ -169,6 +169,17 @@ fn joined_points(points: &[Vec3], distance: f64) -> Vec<u32> {
         }
     }
     number
+}
+
+/// The lowest number of the points at the same place, for each point.
+fn equal_points(points: &[Vec3]) -> Vec<u32> {
+    let mut first_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len());
+    let number = |(index, point): (usize, &Vec3)| {
+        // zeros of both signs are one place
+        let place = point.to_array().map(|c| (c + 0.0).to_bits());
+        *first_at.entry(place).or_insert(index as u32)
+    };
+    points.iter().enumerate().map(number).collect()
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod sphere;
 
 use std::fmt::Debug;
 
+use souple_engine::Configuration;
 use souple_engine::obstacle::Side;
 use souple_math::{Mat3, Vec3};
 use souple_mesh::{MeshError, TriangleSurface};
@@ -36,6 +37,19 @@ pub struct Nearest {
 pub trait Shape: Send + Sync + Debug {
     /// `None` where the distance surely exceeds `reach`, or has no answer (a point that is not finite).
     fn nearest(&self, point: Vec3, reach: f64) -> Option<Nearest>;
+
+    /// The same of a shape that a field of State holds.
+    fn nearest_in(&self, _at: &Configuration, point: Vec3, reach: f64) -> Option<Nearest> {
+        self.nearest(point, reach)
+    }
+
+    /// Rows that bear what pushes on it; none of a thing that nothing moves.
+    fn bearers(&self) -> &[u32] {
+        &[]
+    }
+
+    /// Visits the bearers of a point, by their places in [`Shape::bearers`], with shares whose sum is one.
+    fn visit_shares(&self, _at: &Configuration, _point: Vec3, _visit: &mut dyn FnMut(usize, f64)) {}
 
     /// A point and the normal of a shape that is a half-space, for drawing it as a ground.
     fn as_plane(&self) -> Option<(Vec3, Vec3)> {

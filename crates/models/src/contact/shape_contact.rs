@@ -3,6 +3,9 @@
 //! Every point keeps its anchor in the force's memory, also while it touches nothing: a touch that begins
 //! within an implicit step of any length is answered in that step, and the matrix keeps its pattern (a block
 //! per point) whatever comes and goes.
+//!
+//! What pushes on a shape that rows bear, such as the skin of a body, comes to these rows in the next step: so the momentum
+//! returns exactly, one step late, and no point is tied to rows that are others at every moment.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -133,15 +136,47 @@ impl ShapeContact {
     fn local(&self, index: usize, pose: &Pose, at: &Configuration) -> Option<Local> {
         let row = self.points[index].row as usize;
         let position = pose.to_shape(at.positions[row]);
-        let nearest = self.shape.nearest(position, self.law.thickness)?;
+        let nearest = self.shape.nearest_in(at, position, self.law.thickness)?;
         let (anchor, _) = remembered(at.memory, index);
+        let gap = nearest.distance - self.law.thickness;
+        let is_damped = self.law.damping > 0.0 && gap < 0.0;
+        let under = if is_damped { self.velocity_under(at, position) } else { Vec3::ZERO };
         let approach = Approach {
-            gap: nearest.distance - self.law.thickness,
+            gap,
             normal: nearest.normal,
             from_anchor: position - anchor,
-            velocity: pose.velocity_to_shape(at.positions[row], at.velocities[row]),
+            velocity: pose.velocity_to_shape(at.positions[row], at.velocities[row] - under),
         };
         Some(Local { approach, nearest })
+    }
+
+    /// The velocity of those that bear the shape at a point of it [m/s].
+    fn velocity_under(&self, at: &Configuration, point: Vec3) -> Vec3 {
+        let (bearers, mut velocity) = (self.shape.bearers(), Vec3::ZERO);
+        self.shape.visit_shares(at, point, &mut |bearer, share| {
+            velocity += at.velocities[bearers[bearer] as usize] * share;
+        });
+        velocity
+    }
+
+    /// Forces on the bearers: the opposite of those on the points.
+    fn burden(&self, pose: &Pose, at: &Configuration, out: &mut [f64]) {
+        out.fill(0.0);
+        for (point, local) in self.touching(pose, at) {
+            let Some(force) = self.law.force(point.share, &local.approach, |number| number) else { continue };
+            let force = pose.direction_to_world(force.total());
+            let place = pose.to_shape(at.positions[point.row as usize]);
+            self.shape.visit_shares(at, place, &mut |bearer, share| {
+                let numbers = &mut out[3 * bearer..][..3];
+                numbers.iter_mut().zip(force.to_array()).for_each(|(sum, part)| *sum -= share * part);
+            });
+        }
+    }
+
+    /// The part of the memory that belongs to the bearers: the force on each [N].
+    fn burdens(&self) -> std::ops::Range<usize> {
+        let first = HEAT + PER_POINT * self.points.len();
+        first..first + 3 * self.shape.bearers().len()
     }
 
     /// Change of the force on a touching point for changes of its position and velocity.
@@ -209,7 +244,7 @@ impl Force for ShapeContact {
     }
 
     fn memory_len(&self) -> usize {
-        HEAT + PER_POINT * self.points.len()
+        self.burdens().end
     }
 
     fn initial_memory(&self, memory: &mut [f64]) {
@@ -233,6 +268,10 @@ impl Force for ShapeContact {
             if let Some(force) = self.law.force(point.share, &local.approach, |number| number) {
                 out[point.row as usize] += pose.direction_to_world(force.total());
             }
+        }
+        let burdens = at.memory[self.burdens()].chunks_exact(3);
+        for (row, force) in self.shape.bearers().iter().zip(burdens) {
+            out[*row as usize] += Vec3::new(force[0], force[1], force[2]);
         }
     }
 
@@ -293,13 +332,20 @@ impl Force for ShapeContact {
         for (index, point) in self.points.iter().enumerate() {
             let (_, before) = remembered(at.memory, index);
             let position = pose.to_shape(at.positions[point.row as usize]);
-            let (stretch, heat) = match self.local(index, &pose, at) {
+            let local = self.local(index, &pose, at);
+            let (stretch, heat) = match &local {
                 Some(local) => self.law.advance(point.share, &local.approach, before, timestep),
                 // out of reach, so is whatever was stretched
                 None => (Vec3::ZERO, 0.5 * self.law.tangential_stiffness * point.share * before.length_sq()),
             };
             memory[0] += heat;
-            remember(memory, index, position - stretch, stretch);
+            // what sticks to something that is borne goes with it
+            let sticks = self.law.friction > 0.0 && local.is_some_and(|local| local.approach.gap < 0.0);
+            let carried = if sticks { self.velocity_under(at, position) * timestep } else { Vec3::ZERO };
+            remember(memory, index, position - stretch + carried, stretch);
+        }
+        if !self.shape.bearers().is_empty() {
+            self.burden(&pose, at, &mut memory[self.burdens()]);
         }
     }
 

@@ -152,6 +152,11 @@ impl BodyMoment {
         self.mesh.dimension() == 1
     }
 
+    /// Whether it is a skin, whose triangles mean nothing by themselves: they come and go with the nodes of its grid.
+    pub(super) fn is_skin(&self) -> bool {
+        self.point_fields.iter().any(|field| field.name == crate::frames::NORMAL)
+    }
+
     /// Its edges, thick enough to be seen and thin enough to be told apart where pixels allow it; those of links in one
     /// state, or all that hold their ends together.
     pub(super) fn tubes(&self, common: &Common, cut: Option<Cut>, state: Option<f64>) -> MeshSurface {

@@ -204,7 +204,8 @@ impl Figure {
         };
         if !body.is_of_edges() {
             surface.move_to(&body.positions);
-            surface.surface.edge_style = self.edges;
+            let hides = body.is_skin() && self.edges == EdgeStyle::Drawn;
+            surface.surface.edge_style = if hides { EdgeStyle::Hidden } else { self.edges };
         }
         if self.explode > 0.0 && !body.is_of_edges() {
             surface.explode(self.explode);

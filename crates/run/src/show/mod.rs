@@ -191,12 +191,12 @@ impl Moment {
             }
         };
         let skin = |info: &SkinInfo| {
-            let (mesh, _) = crate::frames::mesh_of_skin(info, world);
+            let (mesh, normals) = crate::frames::mesh_of_skin(info, world);
             BodyMoment {
                 name: crate::frames::name_of_skin(info, &session.bodies),
                 positions: mesh.points.clone(),
                 mesh: Arc::new(mesh),
-                point_fields: Vec::new(),
+                point_fields: vec![crate::frames::normal_field(&normals)],
                 cell_fields: Vec::new(),
                 frames: Vec::new(),
             }

@@ -14,7 +14,9 @@ use super::Draft;
 use super::bodies::Placed;
 use super::freedom::{Joint, touching_joints};
 use super::motion::motion;
+use super::skin_shape::SkinShape;
 use crate::diagnostic::Code;
+use crate::scene::SkinInfo;
 use crate::spec::contact::{Against, Contact, ShapeSpec};
 
 /// A body's points that touch, with the areas around them.
@@ -53,6 +55,12 @@ pub fn add(draft: &mut Draft) {
                 .body(name)
                 .and_then(|other| against_body(draft, contact, touching, [body, other]))
                 .map(|force| Box::new(force) as _),
+            Some(Against::Skin(name)) => draft
+                .skins
+                .iter()
+                .find(|skin| skin.name == *name)
+                .and_then(|skin| against_skin(draft, contact, skin, touching, body))
+                .map(|force| Box::new(force) as _),
             None => None,
         };
         added.extend(force.map(|force| (body.system, force)));
@@ -63,19 +71,22 @@ pub fn add(draft: &mut Draft) {
     }
 }
 
-/// Surface points in the region of a contact; `None` where there are none, which is reported.
+/// Surface points in the region of a contact, or masses of a network, which count alike; `None` where there are none, which is
+/// reported.
 fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching> {
-    let surface = body.mesh.boundary_surface();
     let inside: Option<Vec<u32>> = contact.region.as_ref().map(|region| draft.selector(body).points(region));
     if inside.as_ref().is_some_and(Vec::is_empty) {
         return None;
     }
-    let areas = super::bodies::point_areas(&surface);
-    let chosen: Vec<(u32, f64)> = surface
-        .mesh_points
-        .iter()
-        .copied()
-        .zip(areas)
+    let all: Vec<(u32, f64)> = if body.spec.network.is_some() {
+        (0..body.mesh.points.len() as u32).map(|mass| (mass, 1.0)).collect()
+    } else {
+        let surface = body.mesh.boundary_surface();
+        let areas = super::bodies::point_areas(&surface);
+        surface.mesh_points.iter().copied().zip(areas).collect()
+    };
+    let chosen: Vec<(u32, f64)> = all
+        .into_iter()
         .filter(|(point, _)| inside.as_ref().is_none_or(|inside| inside.binary_search(point).is_ok()))
         .collect();
     if chosen.is_empty() {
@@ -92,6 +103,20 @@ fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching>
         start: body.mesh.points[point as usize],
     };
     Some(Touching { points: chosen.into_iter().map(contact_point).collect(), mean_area })
+}
+
+/// Young's modulus behind the points of a contact [Pa]; `None` where a stiffness must be told, and is not.
+fn modulus_of(draft: &Draft, contact: &Contact, body: &Placed, touching: &Touching) -> Option<f64> {
+    if body.spec.network.is_none() {
+        return Some(modulus_behind(body, touching.shares()));
+    }
+    if contact.stiffness.is_none() {
+        let message = format!("masses of network `{}` have no material behind them", contact.body);
+        draft.log.add(Code::MissingKey, &contact.site, message, "stiffness = \"… N/m\" of each mass");
+        return None;
+    }
+    // told, so that no modulus is asked for
+    Some(0.0)
 }
 
 /// Young's modulus behind points of a body, given as rows and shares: the mean over the cells around them [Pa].
@@ -175,10 +200,39 @@ fn against_shape(
         );
         return None;
     }
-    let law = law(contact, modulus_behind(body, touching.shares()), touching.mean_area);
+    let law = law(contact, modulus_of(draft, contact, body, &touching)?, touching.mean_area);
     let joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
     match ShapeContact::new(contact.name.clone(), touching.points, built, motion, law) {
         Ok(force) => Some((force.against(&shape.name), joints)),
+        Err(error) => {
+            draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
+            None
+        }
+    }
+}
+
+/// Points of a body against a skin: what presses on it comes to those that lead it, as far as they step in the same system.
+fn against_skin(
+    draft: &Draft,
+    contact: &Contact,
+    skin: &SkinInfo,
+    touching: Touching,
+    body: &Placed,
+) -> Option<ShapeContact> {
+    let touches_itself = skin
+        .skin
+        .followed()
+        .iter()
+        .any(|followed| followed.system == body.system && body.rows.contains(&(followed.row as usize)));
+    if touches_itself {
+        let message = format!("skin `{}` follows body `{}`, which touches it", skin.name, contact.body);
+        draft.log.add(Code::Conflict, &contact.site, message, "the skin of another body");
+        return None;
+    }
+    let law = law(contact, modulus_of(draft, contact, body, &touching)?, touching.mean_area);
+    let shape = Box::new(SkinShape::new(skin.clone(), body.system));
+    match ShapeContact::new(contact.name.clone(), touching.points, shape, RigidMotion::default(), law) {
+        Ok(force) => Some(force.against(&skin.name)),
         Err(error) => {
             draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
             None
@@ -199,6 +253,11 @@ fn against_body(
     let [body, other] = bodies;
     if body.spec.name == other.spec.name {
         return refuse(format!("body `{}` touches itself", contact.body), "another body");
+    }
+    if let Some(network) = bodies.iter().find(|body| body.spec.network.is_some()) {
+        let message =
+            format!("`{}` is a network, whose masses have no surface between them", network.spec.name);
+        return refuse(message, "a shape or a skin, or `crowds` of the masses");
     }
     if body.system != other.system {
         let message = format!("`{}` and `{}` step in different systems", body.spec.name, other.spec.name);

@@ -16,6 +16,7 @@ mod network;
 mod pins;
 mod selection;
 mod shape;
+mod skin_shape;
 mod skins;
 
 pub(crate) use bodies::{Placed, solid_name};
@@ -113,6 +114,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     }
     boundary::add_loads(&mut draft);
     pins::add(&mut draft);
+    skins::add(&mut draft);
     contact::add(&mut draft);
     links::attach(&mut draft);
     links::couple(&mut draft);
@@ -121,7 +123,6 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     network::warn_of_steps(&mut draft);
     doubts::warn(&mut draft);
     freedom::check(&mut draft);
-    skins::add(&mut draft);
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
     if !log.is_empty() {

@@ -1,41 +1,35 @@
 //! Skins become fields of the world.
 
 use std::path::Path;
+use std::sync::Arc;
 
-use souple_engine::FieldState;
+use souple_engine::{FieldState, System};
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
 use souple_skin::reaction::{Reaction, SkinPush};
 use souple_skin::strategy::Term;
-use souple_skin::target::{Moment, Part, Particle, Particles, Surroundings, Target};
-use souple_skin::{Lattice, Skin, SkinError};
+use souple_skin::target::{Moment, Part, Particle, Particles, Rows, Surroundings, Target};
+use souple_skin::{Lattice, Skin, SkinError, SkinField};
 
 use super::Draft;
+use super::bodies::{Placed, solid_name};
 use crate::diagnostic::{Code, Site};
 use crate::scene::SkinInfo;
 use crate::spec::skin::{PartSpec, SkinSpec};
 
 /// All skins, each with its first state.
 pub fn add(draft: &mut Draft) {
-    let spec = draft.spec;
-    for skin in &spec.skins {
-        if let Some((model, field)) = build(draft, skin) {
-            draft.skins.push(SkinInfo {
-                name: skin.name.clone(),
-                field: draft.model.fields.len(),
-                lattice: model.lattice,
-                reactions: model.reactions(),
-                formats: skin.formats.clone(),
-            });
-            if let Some(reaction) = &model.reaction {
-                let rows = reaction.rows.iter().map(|(row, _)| *row).collect();
-                let field = draft.model.fields.len();
-                let push = SkinPush { name: format!("{}.skin", skin.name), field, rows };
-                draft.systems[reaction.system].forces.push(Box::new(push));
-            }
-            draft.model.fields.push(Box::new(model));
-            draft.state.fields.push(field);
+    for spec in &draft.spec.skins {
+        let Some((skin, state)) = build(draft, spec) else { continue };
+        let (skin, field) = (Arc::new(skin), draft.model.fields.len());
+        if let Some(reaction) = &skin.reaction {
+            let rows = reaction.rows.iter().map(|(row, _)| *row).collect();
+            let push = SkinPush { name: format!("{}.skin", spec.name), field, rows };
+            draft.systems[reaction.system].forces.push(Box::new(push));
         }
+        draft.model.fields.push(Box::new(SkinField(Arc::clone(&skin))));
+        draft.state.fields.push(state);
+        draft.skins.push(SkinInfo { name: spec.name.clone(), field, skin, formats: spec.formats.clone() });
     }
 }
 
@@ -90,7 +84,11 @@ fn reaction(draft: &Draft, spec: &SkinSpec) -> Option<Option<Reaction>> {
         draft.log.add(Code::MissingKey, &spec.site, message, "radius = LENGTH beside");
         return None;
     };
-    let rows = body.rows.clone().map(|row| (row as u32, radius)).collect();
+    let rows = match rows_of(body, &push.group) {
+        Ok(rows) => rows.into_iter().map(|row| (row, radius)).collect(),
+        // its particles were refused for the same reason
+        Err(_) => return None,
+    };
     Some(Some(Reaction { system: body.system, rows, tension: push.tension, pressure: push.pressure }))
 }
 
@@ -106,15 +104,11 @@ fn first_state(
     start: Option<&Target>,
 ) -> Result<FieldState, SkinError> {
     let Some(target) = start.or(skin.target.as_ref()) else { return Err(SkinError::NoDomain) };
-    let rows: Vec<Vec<Vec3>> = (0..draft.spec.systems.len())
-        .map(|system| {
-            let bodies = draft.bodies.iter().filter(|body| body.system == system);
-            bodies.flat_map(|body| body.mesh.points.iter().copied()).collect()
-        })
-        .collect();
+    let systems = draft.systems.iter().enumerate();
+    let rows = Start(systems.map(|(index, system)| start_of(draft, index, system)).collect());
     let mut placed = target.new_scratch();
-    let positions = |system: usize| rows[system].as_slice();
-    target.place(&Moment { time: 0.0, positions: &positions }, &mut placed).map_err(SkinError::Target)?;
+    let at = Moment { time: 0.0, rows: &rows };
+    target.place(&at, &mut placed).map_err(SkinError::Target)?;
     let [low, high] = match spec.domain {
         Some(domain) => domain,
         None => {
@@ -124,6 +118,58 @@ fn first_state(
     };
     let value = |point: Vec3| target.excess(point, &placed);
     skin.start(low, high, &value, &mut skin.new_scratch())
+}
+
+/// Positions of the rows of all systems before the first step.
+struct Start(Vec<Vec<Vec3>>);
+
+impl Rows for Start {
+    fn positions(&self, system: usize) -> &[Vec3] {
+        &self.0[system]
+    }
+
+    fn active(&self, _: usize, _: usize) -> &[u32] {
+        &[]
+    }
+}
+
+/// Where the points of all bodies of a system start, by their rows.
+fn start_of(draft: &Draft, index: usize, system: &System) -> Vec<Vec3> {
+    let mut rows = vec![Vec3::ZERO; system.kinematics.row_count()];
+    for body in draft.bodies.iter().filter(|body| body.system == index) {
+        for body in body.levels_of().chain([body]) {
+            rows[body.rows.clone()].copy_from_slice(&body.mesh.points);
+        }
+    }
+    rows
+}
+
+/// The rows of a body's points, or of a group of them.
+fn rows_of(body: &Placed, group: &str) -> Result<Vec<u32>, String> {
+    let first = body.rows.start as u32;
+    if group.is_empty() {
+        return Ok((first..body.rows.end as u32).collect());
+    }
+    let known = body.mesh.groups.get(group).filter(|group| !group.points.is_empty());
+    let missing = || {
+        let names: Vec<&str> = body.mesh.groups.keys().map(String::as_str).collect();
+        format!("`{}` has no group `{group}` of points, it has {}", body.spec.name, names.join(", "))
+    };
+    Ok(known.ok_or_else(missing)?.points.iter().map(|point| first + point).collect())
+}
+
+/// The points of a body with levels: those of all its meshes, coarser ones with a larger radius, so that as many as there are
+/// of each mesh stand for the same volume.
+fn levels_of(draft: &Draft, body: &Placed, radius: f64) -> Option<Particles> {
+    let name = solid_name(&body.spec.name);
+    let force = draft.systems[body.system].forces.iter().position(|force| force.name() == name)?;
+    let own = body.mesh.points.len();
+    let coarser = body.levels_of().flat_map(|level| {
+        let count = level.mesh.points.len();
+        std::iter::repeat_n(radius * (own as f64 / count as f64).cbrt(), count)
+    });
+    let radii = std::iter::repeat_n(radius, own).chain(coarser).collect();
+    Some(Particles::Levels { system: body.system, force, first: body.rows.start as u32, radii, own })
 }
 
 /// `None` where a part was refused.
@@ -167,16 +213,26 @@ impl Surroundings for Around<'_> {
         super::contact::read_surface(&self.open(file)?)
     }
 
-    fn particles(&self, from: &str, radius: f64) -> Result<Particles, String> {
-        if let Some(body) = self.draft.body(from) {
-            let rows = body.rows.clone().map(|row| (row as u32, radius)).collect();
-            return Ok(Particles::Rows { system: body.system, rows });
+    fn particles(&self, from: &str, group: &str, radius: f64) -> Result<Particles, String> {
+        let Some(body) = self.draft.body(from) else {
+            if !group.is_empty() {
+                return Err(format!("there is no body `{from}`, and a file has no groups"));
+            }
+            return Ok(Particles::Led(read_particles(&self.open(from)?, radius)?));
+        };
+        if body.levels.is_some() && group.is_empty() {
+            let missing = || format!("body `{from}` has levels that do not step");
+            return levels_of(self.draft, body, radius).ok_or_else(missing);
         }
-        Ok(Particles::Led(read_particles(&self.open(from)?, radius)?))
+        let rows = rows_of(body, group)?.into_iter().map(|row| (row, radius)).collect();
+        Ok(Particles::Rows { system: body.system, rows })
     }
 
     fn body_surface(&self, name: &str) -> Result<(TriangleSurface, usize, Vec<u32>), String> {
         let Some(body) = self.draft.body(name) else { return Err("there is none of this name".to_owned()) };
+        if body.spec.network.is_some() {
+            return Err("masses of a network have no surface; `part = \"particles\"` dresses them".to_owned());
+        }
         let surface = body.mesh.boundary_surface();
         let first = body.rows.start as u32;
         let rows = surface.mesh_points.iter().map(|point| first + point).collect();

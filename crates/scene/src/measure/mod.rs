@@ -117,7 +117,18 @@ impl ProbeInfo {
             (Subject::World(quantity), _) => Target::World(quantity),
             (Subject::Skin(quantity), _) => {
                 let name = probe.skin.as_deref()?;
-                Target::Skin(quantity, draft.skins.iter().find(|skin| skin.name == name)?.clone())
+                let info = draft.skins.iter().find(|skin| skin.name == name)?;
+                if quantity == SkinQuantity::Distance && info.skin.target.is_none() {
+                    let message = format!("skin `{name}` has no `parts` that it is drawn to");
+                    draft.log.add(
+                        Code::Conflict,
+                        &probe.site,
+                        message,
+                        "another quantity, or [[skins.NAME.parts]]",
+                    );
+                    return None;
+                }
+                Target::Skin(quantity, info.clone())
             }
             (Subject::BodyOrWorld(momentum), None) => {
                 Target::WorldMomentum(momentum, probe.about.unwrap_or(Vec3::ZERO))

@@ -1,5 +1,7 @@
 //! Quantities of skins.
 
+use std::f64::consts::PI;
+
 use souple_engine::World;
 
 use crate::scene::SkinInfo;
@@ -11,11 +13,14 @@ pub fn measure(quantity: SkinQuantity, skin: &SkinInfo, world: &World) -> f64 {
     match quantity {
         SkinQuantity::Area => measures.area,
         SkinQuantity::Volume => measures.volume,
-        SkinQuantity::Curvature => souple_skin::mean_curvature(view.grid, &skin.lattice),
+        SkinQuantity::Curvature => souple_skin::mean_curvature(view.grid, &skin.skin.lattice),
         SkinQuantity::Euler => measures.euler as f64,
         SkinQuantity::Components => measures.components as f64,
         SkinQuantity::Events => view.events() as f64,
         SkinQuantity::Speed => view.speed(),
+        // of a ball of the same volume
+        SkinQuantity::Roundness => (36.0 * PI * measures.volume * measures.volume).cbrt() / measures.area,
+        SkinQuantity::Distance => skin.distance(world).unwrap_or(f64::NAN),
         SkinQuantity::Blocks => view.grid.keys.len() as f64,
     }
 }

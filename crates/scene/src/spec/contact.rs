@@ -27,18 +27,19 @@ pub(crate) static SHAPE: Keys = Keys::new(
 
 pub(crate) static CONTACT: Keys = Keys::new(
     "contact",
-    "points of a body against a shape, or the surfaces of two bodies",
+    "points of a body against a shape or a skin, or the surfaces of two bodies",
     &[
         Key::new("name", Shape::Text, "for probes; `contacts[0]` and so on where left out"),
         Key::new("body", Shape::Text, "the body that touches").required(),
         Key::new("shape", Shape::Text, "the shape it touches"),
         Key::new("other", Shape::Text, "the body it touches"),
+        Key::new("skin", Shape::Text, "the skin it touches"),
         Key::new("region", Shape::Region, "the part of the body's surface that touches; all where left out"),
         Key::number(
             "stiffness",
             "N/m",
             Range::POSITIVE,
-            "of a point of mean area; where left out, that of the body's material behind it",
+            "of a point of mean area, or of each mass of a network; where left out, that of the body's material behind it",
         ),
         Key::number("friction", "", Range::NOT_NEGATIVE, "Coulomb's coefficient").or(Value::Number(0.0)),
         Key::number(
@@ -75,6 +76,7 @@ pub struct ShapeSpec {
 pub enum Against {
     Shape(String),
     Body(String),
+    Skin(String),
 }
 
 /// Who touches whom, and how; see `souple_models::contact::ContactLaw`.
@@ -108,12 +110,15 @@ impl ShapeSpec {
 
 impl Contact {
     pub(crate) fn read(index: usize, reader: &Reader) -> Self {
-        let against = match (reader.maybe_text("shape"), reader.maybe_text("other")) {
-            (Some(shape), None) => Some(Against::Shape(shape)),
-            (None, Some(body)) => Some(Against::Body(body)),
+        let named = |key: &str, kind: fn(String) -> Against| reader.maybe_text(key).map(kind);
+        let things =
+            [named("shape", Against::Shape), named("other", Against::Body), named("skin", Against::Skin)];
+        let mut things = things.into_iter().flatten();
+        let against = match (things.next(), things.next()) {
+            (Some(thing), None) => Some(thing),
             _ => {
-                let message = "a contact is with one thing, a shape or another body";
-                reader.log().add(Code::Conflict, &reader.site(), message, "`shape` or `other`");
+                let message = "a contact is with one thing, a shape, another body or a skin";
+                reader.log().add(Code::Conflict, &reader.site(), message, "`shape`, `other` or `skin`");
                 None
             }
         };

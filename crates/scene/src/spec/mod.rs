@@ -216,6 +216,7 @@ impl Spec {
             match &contact.against {
                 Some(Against::Shape(shape)) => check("shape", shape, &shapes, &contact.site),
                 Some(Against::Body(body)) => check("body", body, &bodies, &contact.site),
+                Some(Against::Skin(skin)) => check("skin", skin, &skins, &contact.site),
                 None => {}
             }
         }
@@ -302,12 +303,21 @@ fn bodies(reader: &Reader) -> Vec<Body> {
     all
 }
 
-/// Skins that stand alone, then those of bodies.
+/// Skins that stand alone, then those of bodies and of networks.
 fn skins(reader: &Reader) -> Vec<SkinSpec> {
     let alone = reader.named("skins").into_iter().map(|(name, skin)| SkinSpec::read(name, &skin));
     let bodies = reader.named("bodies").into_iter();
     let worn = bodies.filter_map(|(name, body)| Some(SkinSpec::of_body(&name, &body.table("skin")?)));
-    alone.chain(worn).collect()
+    let networks = reader.named("networks").into_iter();
+    let masses = networks.filter_map(|(name, body)| Some(SkinSpec::of_network(&name, &body.table("skin")?)));
+    let all: Vec<SkinSpec> = alone.chain(worn).chain(masses).collect();
+    for (index, skin) in all.iter().enumerate() {
+        if all[..index].iter().any(|other| other.name == skin.name) {
+            let message = format!("there are two skins `{}`: one of a body has the body's name", skin.name);
+            reader.log().add(Code::Conflict, &skin.site, message, "names that differ");
+        }
+    }
+    all
 }
 
 fn contacts(reader: &Reader) -> Vec<Contact> {

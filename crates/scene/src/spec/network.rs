@@ -10,6 +10,7 @@ use souple_table::{Range, Value};
 use super::body::{Body, Damping, MassKind, Placement, ROTATION, TangentKind};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::region::{Region, RegionKind};
+use super::skin::BODY_SKIN;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -127,6 +128,7 @@ pub(crate) static NETWORK: Keys = Keys::new(
         Key::new("pins", Shape::Tables(&PIN), "masses that are held or led"),
         Key::new("loads", Shape::Tables(&LOAD), "forces on masses"),
         Key::new("springs", Shape::Tables(&SPRING), "springs from masses to where they start"),
+        Key::new("skin", Shape::Table(&BODY_SKIN), "a skin that dresses its masses, see `skins`"),
     ],
 );
 

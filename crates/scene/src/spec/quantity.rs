@@ -67,6 +67,8 @@ pub enum SkinQuantity {
     Components,
     Events,
     Speed,
+    Roundness,
+    Distance,
     Blocks,
 }
 
@@ -381,6 +383,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         skin("", SkinQuantity::Events),
     ),
     &entry("skin.speed", "the greatest at the surface", SKIN, skin("m/s", SkinQuantity::Speed)),
+    &entry(
+        "skin.roundness",
+        "area of a ball of the skin's volume over that of the skin: 1 for a ball, less for all else",
+        SKIN,
+        skin("", SkinQuantity::Roundness),
+    ),
+    &entry(
+        "skin.distance",
+        "the greatest of its surface from that of its target, by the slope of the target's potential",
+        SKIN,
+        skin("m", SkinQuantity::Distance),
+    ),
     &entry(
         "levels.active",
         "points that move by themselves, of all levels or of the key `level`",

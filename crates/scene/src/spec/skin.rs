@@ -100,8 +100,9 @@ pub(crate) static BODY_SKIN: Keys = Keys::new(
             "radius",
             "m",
             Range::POSITIVE,
-            "of the body's points as particles, half the distance between them; where left out the skin dresses the body's surface",
+            "of the body's points as particles, half the distance between them; where left out the skin dresses the body's surface, which networks have not",
         ),
+        Key::new("group", Shape::Text, "only the points of this group, as particles"),
         TERMS_KEY,
         Key::new("push", Shape::Table(&SKIN_PUSH), "what it does to the body's points"),
     ],
@@ -118,7 +119,7 @@ static SKIN_PUSH: Keys = Keys::new(
 );
 
 /// What a skin does to the particles it dresses.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PushSpec {
     /// [N/m]
     pub tension: f64,
@@ -126,6 +127,8 @@ pub struct PushSpec {
     pub pressure: f64,
     /// Of the particles [m].
     pub radius: Option<f64>,
+    /// Whose points they are; empty: all.
+    pub group: String,
 }
 
 /// A part of a target.
@@ -233,18 +236,35 @@ impl SkinSpec {
         skin
     }
 
+    /// The skin of a network, whose masses are particles: it has no surface.
+    pub(crate) fn of_network(network: &str, reader: &Reader) -> Self {
+        if !reader.has("radius") {
+            let message =
+                format!("the skin of network `{network}` dresses masses, and has no `radius` of them");
+            reader.log().add(Code::MissingKey, &reader.site(), message, "radius = LENGTH");
+        }
+        Self::of_body(network, reader)
+    }
+
     /// The skin of a body, which has the body's name.
     pub(crate) fn of_body(body: &str, reader: &Reader) -> Self {
         let push = reader.table("push").map(|push| PushSpec {
             tension: push.number("tension"),
             pressure: push.number("pressure"),
             radius: reader.maybe_number("radius"),
+            group: reader.text("group"),
         });
         let bare = Self { push, ..Self::bare(body.to_owned(), reader) };
+        let group = reader.text("group");
+        if !group.is_empty() && !reader.has("radius") {
+            let message = "the points of a group are dressed as particles, and no `radius` is given";
+            reader.log().add(Code::MissingKey, &reader.site_of("group"), message, "radius = LENGTH beside");
+        }
         let mut values = Values::new();
         let (part, text) = match reader.maybe_number("radius") {
             Some(radius) => {
                 values.set("radius".to_owned(), Value::Number(radius));
+                values.set("group".to_owned(), Value::Text(&group));
                 ("particles", "from")
             }
             None => ("surface", "body"),

@@ -23,19 +23,40 @@ pub use warp::{BuildWarp, WARPS, Warp};
 /// The value of all built-in potentials on their surface.
 pub const ISO: f64 = 0.5;
 
+/// Where the rows of the systems are.
+pub trait Rows: Sync {
+    /// [m]
+    fn positions(&self, system: usize) -> &[Vec3];
+
+    /// Rows of a body with levels that moved by themselves, by its system and its force; none before the first step.
+    fn active(&self, system: usize, force: usize) -> &[u32];
+}
+
+/// No system has rows.
+struct NoRows;
+
+impl Rows for NoRows {
+    fn positions(&self, _: usize) -> &[Vec3] {
+        &[]
+    }
+
+    fn active(&self, _: usize, _: usize) -> &[u32] {
+        &[]
+    }
+}
+
 /// When, and where the rows of the systems are.
 #[derive(Clone, Copy)]
 pub struct Moment<'a> {
     /// [s]
     pub time: f64,
-    /// Row positions of a system.
-    pub positions: &'a dyn Fn(usize) -> &'a [Vec3],
+    pub rows: &'a dyn Rows,
 }
 
 impl Moment<'_> {
     /// A time without rows.
     pub fn at(time: f64) -> Self {
-        Self { time, positions: &|_| &[] }
+        Self { time, rows: &NoRows }
     }
 }
 
@@ -60,6 +81,20 @@ pub trait Potential: Send + Sync {
 
     /// A box around all that is inside; `None` where it is not known.
     fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox>;
+
+    /// The rows that lead it.
+    fn followed(&self) -> Vec<Followed> {
+        Vec::new()
+    }
+}
+
+/// A row that leads a part of a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Followed {
+    pub system: usize,
+    pub row: u32,
+    /// Half the distance to its neighbours [m].
+    pub radius: f64,
 }
 
 /// How a part joins what stands before it.
@@ -188,6 +223,14 @@ impl Target {
         sum.unwrap_or(0.0) - self.iso
     }
 
+    /// The distance of a point from the surface, by the slope of the potential over `step`, to first order [m].
+    pub fn distance(&self, point: Vec3, step: f64, scratch: &TargetScratch) -> f64 {
+        let excess = |axis: Vec3, sign: f64| self.excess(point + axis * (sign * step), scratch);
+        let slope = |axis: Vec3| (excess(axis, 1.0) - excess(axis, -1.0)) / (2.0 * step);
+        let slope = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).length();
+        self.excess(point, scratch).abs() / slope
+    }
+
     /// A box around all that is inside; `None` where it is not known.
     pub fn bounds(&self, scratch: &TargetScratch) -> Option<BoundingBox> {
         let mut all: Option<BoundingBox> = None;
@@ -213,11 +256,11 @@ pub trait Surroundings {
     /// Why there are none.
     fn surface(&self, file: &str) -> Result<TriangleSurface, String>;
 
-    /// The particles of a file or a body, by name.
+    /// The particles of a file or a body, by name; those of a group of it where that is not empty.
     ///
     /// # Errors
     /// Why there are none.
-    fn particles(&self, from: &str, radius: f64) -> Result<Particles, String>;
+    fn particles(&self, from: &str, group: &str, radius: f64) -> Result<Particles, String>;
 
     /// The surface of a body, by name: its rows move it.
     ///

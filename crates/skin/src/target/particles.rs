@@ -5,9 +5,9 @@
 
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
-use souple_table::{Entry, Parameter, Range};
+use souple_table::{Entry, Parameter, Range, Value};
 
-use super::{Moment, PartEntry, PartError, PartScratch, Potential};
+use super::{Followed, Moment, PartEntry, PartError, PartScratch, Potential};
 
 /// A particle that is led.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,17 @@ pub enum Particles {
     Rows {
         system: usize,
         rows: Vec<(u32, f64)>,
+    },
+    /// Points of a body with levels, as long as they move by themselves: particles that split and merge.
+    Levels {
+        system: usize,
+        force: usize,
+        /// The body's first row.
+        first: u32,
+        /// Of the points of all its meshes, its own before the coarser ones [m].
+        radii: Vec<f64>,
+        /// Points of its own mesh, which stand for it before the first step.
+        own: usize,
     },
 }
 
@@ -164,8 +175,17 @@ impl Potential for Density {
                 there.then(|| (particle.position + particle.velocity * at.time, particle.radius))
             })),
             Particles::Rows { system, rows } => {
-                let positions = (at.positions)(*system);
+                let positions = at.rows.positions(*system);
                 cloud.place(rows.iter().map(|(row, radius)| (positions[*row as usize], *radius)))
+            }
+            Particles::Levels { system, force, first, radii, own } => {
+                let positions = at.rows.positions(*system);
+                let radius = |row: u32| radii[(row - first) as usize];
+                let particle = |row: u32| (positions[row as usize], radius(row));
+                match at.rows.active(*system, *force) {
+                    [] => cloud.place((*first..first + *own as u32).map(particle)),
+                    active => cloud.place(active.iter().map(|row| particle(*row))),
+                }
             }
         }
     }
@@ -177,6 +197,22 @@ impl Potential for Density {
     fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {
         scratch.downcast_ref::<Cloud>().map(Cloud::bounds)
     }
+
+    fn followed(&self) -> Vec<Followed> {
+        match &self.particles {
+            Particles::Led(_) => Vec::new(),
+            Particles::Rows { system, rows } => {
+                let followed =
+                    |(row, radius): &(u32, f64)| Followed { system: *system, row: *row, radius: *radius };
+                rows.iter().map(followed).collect()
+            }
+            // points of its own mesh follow those that move by themselves, and give them what acts on them
+            Particles::Levels { system, first, radii, own, .. } => (*first..)
+                .zip(&radii[..*own])
+                .map(|(row, radius)| Followed { system: *system, row, radius: *radius })
+                .collect(),
+        }
+    }
 }
 
 pub(super) static PARTICLES: PartEntry = Entry {
@@ -186,14 +222,17 @@ pub(super) static PARTICLES: PartEntry = Entry {
     parameters: &[
         Parameter::text("from", "a body, or a file of points, relative to the scene file that names it"),
         Parameter::number("radius", "m", Range::POSITIVE, "half the distance between neighbours"),
+        Parameter::text("group", "only those of a group of the body's points; empty: all")
+            .or(Value::Text("")),
     ],
     build: |values, around| {
         let (from, radius) = (values.text("from"), values.number("radius"));
-        let particles = around.particles(from, radius).map_err(|message| PartError {
-            parameter: "from",
-            value: format!("\"{from}\""),
-            expected: format!("a body or a file of particles: {message}"),
-        })?;
+        let particles =
+            around.particles(from, values.text("group"), radius).map_err(|message| PartError {
+                parameter: "from",
+                value: format!("\"{from}\""),
+                expected: format!("a body or a file of particles: {message}"),
+            })?;
         Ok(Box::new(Density { particles }))
     },
 };

@@ -8,7 +8,7 @@ use souple_mesh::implicit::{self, Shape, SurfaceShape};
 use souple_mesh::{BoundingBox, SignedDistance, TriangleSurface};
 use souple_table::{Entry, Parameter, Range, Value, Values};
 
-use super::{ISO, Moment, PartEntry, PartError, PartScratch, Potential};
+use super::{Followed, ISO, Moment, PartEntry, PartError, PartScratch, Potential};
 
 const WIDTH: Parameter = Parameter::number(
     "width",
@@ -147,7 +147,7 @@ impl Potential for SurfacePart {
 
     fn place(&self, at: &Moment, scratch: &mut PartScratch) -> Result<(), String> {
         let Some(moved) = scratch.downcast_mut::<Moved>() else { return Ok(()) };
-        let positions = (at.positions)(self.system);
+        let positions = at.rows.positions(self.system);
         for (place, row) in moved.positions.iter_mut().zip(&self.rows) {
             *place = positions[*row as usize];
         }
@@ -165,6 +165,14 @@ impl Potential for SurfacePart {
     fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {
         let moved = scratch.downcast_ref::<Moved>()?;
         Some(BoundingBox::of(moved.positions.iter().copied()).grown(self.offset.max(0.0)))
+    }
+
+    fn followed(&self) -> Vec<Followed> {
+        // each point stands for its part of the area
+        let area: f64 =
+            (0..self.surface.triangles.len() as u32).map(|t| self.surface.area_vector(t).length()).sum();
+        let radius = 0.5 * (area / self.rows.len() as f64).sqrt();
+        self.rows.iter().map(|row| Followed { system: self.system, row: *row, radius }).collect()
     }
 }
 

@@ -48,6 +48,9 @@ struct Skeleton {
 impl Skeleton {
     fn distance_sq(&self, point: Vec3) -> f64 {
         let to_piece = |corners: &[Vec3; 3]| {
+            if corners[0] == corners[2] && corners[0] == corners[1] {
+                return (corners[0] - point).length_sq();
+            }
             let ([a, b, c], _) = closest_point_on_triangle(point, *corners);
             (corners[0] * a + corners[1] * b + corners[2] * c - point).length_sq()
         };

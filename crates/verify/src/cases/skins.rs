@@ -1,5 +1,6 @@
-//! Skins: tension, rest, what is held constant, metamorphosis, cost by resolution.
+//! Skins: tension, curvature, rest, what is held constant, metamorphosis, dressing, contact, cost by resolution.
 
+use crate::reading::Statistic;
 use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
 
 const SOURCE: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
@@ -20,6 +21,9 @@ const SKIN: Case = Case {
 
 /// The time in which R² falls to half, and the volume `4/3 π (1/2)^(3/2)` that is left.
 const HALF: f64 = 1.480_960_979_386_122;
+
+/// Where `0.5 ((1 − c u²)³ − ½) = 10⁻³/R` with `u = R/0.85` and `c = 1 − 2^(−1/3)`: the volume of that ball.
+const BALANCED: f64 = 2.54915494157303;
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -52,6 +56,61 @@ pub(super) const CASES: &[Case] = &[
         ..SKIN
     },
     Case {
+        id: "skin_shrinking_order",
+        capabilities: &["DC-5"],
+        what: "order in space of the volume of a sphere under tension that lost an eighth of R^2",
+        reading: Reading::last("volume").after(12),
+        refinement: Some(Refinement {
+            size_of: "voxel [m]",
+            runs: &[
+                Variant { size: 0.125, settings: &["skins.ball.voxel=0.125"] },
+                Variant { size: 0.0625, settings: &["skins.ball.voxel=0.0625"] },
+            ],
+            // 4/3 π (1 − 0.12)^(3/2)
+            limit: Limit::Known(3.457901496037841),
+        }),
+        reference: 2.0,
+        tolerance: Tolerance::Absolute(0.5),
+        mutation: "skins.ball.terms[0].strength=0.11",
+        ..SKIN
+    },
+    Case {
+        id: "skin_balanced",
+        capabilities: &["DC-5", "DC-6"],
+        what: "volume at which attraction to a ball and tension are equal: alpha (G(R) - 1/2) = 2 beta/R",
+        scene: "skin_ball",
+        reading: Reading::last("volume"),
+        // R = 0.847427 m
+        reference: BALANCED,
+        // a hundredth of a voxel of 62.5 mm
+        tolerance: Tolerance::Relative(2.5e-3),
+        mutation: "skins.ball.terms[1].strength=5e-3",
+        ..SKIN
+    },
+    Case {
+        id: "skin_tension_none",
+        capabilities: &["DC-5"],
+        what: "area of the skin of masses that turn, without tension",
+        scene: "skin_tensions",
+        reading: Reading::last("rough"),
+        // as measured: that two tensions make two looks of one animation is what counts
+        reference: 0.0925,
+        tolerance: Tolerance::Relative(0.02),
+        mutation: "skins.rough.terms=[{ term = \"attraction\", strength = 1 }, { term = \"tension\", strength = 0.005 }]",
+        ..SKIN
+    },
+    Case {
+        id: "skin_tension_strong",
+        capabilities: &["DC-5"],
+        what: "area of another skin of the same masses with strong tension: three fifths",
+        scene: "skin_tensions",
+        reading: Reading::last("smooth"),
+        reference: 0.0555,
+        tolerance: Tolerance::Relative(0.02),
+        mutation: "skins.smooth.terms[1].strength=0",
+        ..SKIN
+    },
+    Case {
         id: "skin_rest",
         capabilities: &["DC-6"],
         what: "greatest speed of a skin ten seconds after it was let go to a fixed target at half a metre per second",
@@ -60,6 +119,40 @@ pub(super) const CASES: &[Case] = &[
         reference: 0.0,
         tolerance: Tolerance::Absolute(1e-3),
         mutation: "skins.peanut.parts[0].motion=[\"0.2*sin(3*t)\", 0, 0]",
+        ..SKIN
+    },
+    Case {
+        id: "skin_rest_distance",
+        capabilities: &["DC-6"],
+        what: "the greatest distance of the skin at rest from its target, of which half a voxel is allowed",
+        scene: "skin_at_rest",
+        reading: Reading::last("distance"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.025),
+        mutation: "skins.peanut.terms[0].strength=0.02",
+        ..SKIN
+    },
+    Case {
+        id: "skin_held_area",
+        capabilities: &["DC-7"],
+        what: "area of a drop held against tension, after 1,000 steps",
+        scene: "skin_area",
+        reading: Reading::last("area").after(1000),
+        reference: 12.4,
+        tolerance: Tolerance::Relative(1e-3),
+        mutation: "skins.drop.terms[1].rate=0.5",
+        ..SKIN
+    },
+    Case {
+        id: "skin_led_area",
+        capabilities: &["DC-7"],
+        what: "the greatest area of a drop whose area is led up and down by a tenth",
+        scene: "skin_area",
+        reading: Reading::last("area").taking(Statistic::Max),
+        reference: 13.64,
+        // it follows its leader, later by the time that tension and rate need
+        tolerance: Tolerance::Relative(3e-3),
+        mutation: "skins.drop.terms[1].rate=0.5",
         ..SKIN
     },
     Case {
@@ -93,6 +186,120 @@ pub(super) const CASES: &[Case] = &[
         reference: 4.0,
         tolerance: Tolerance::Absolute(0.0),
         mutation: "skins.shape.terms[0].strength=0",
+        ..SKIN
+    },
+    Case {
+        id: "skin_untwisted",
+        capabilities: &["DC-3"],
+        what: "changes of topology while a twisted bundle becomes a bean",
+        scene: "skin_untwists",
+        reading: Reading::last("events"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "skins.shape.parts[0].formula=\"0.5*clamp(1 - sqrt(((abs(x) - 0.6)^2 + y^2 + z^2))/0.4, -1, 1)\"",
+        ..SKIN
+    },
+    Case {
+        id: "skin_untwisted_distance",
+        capabilities: &["DC-3"],
+        what: "how far it is from the bean at last, of which a voxel is allowed",
+        scene: "skin_untwists",
+        // tension keeps off sharp places
+        settings: &["skins.shape.terms[1].strength=0.002"],
+        reading: Reading::last("distance"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.04),
+        mutation: "skins.shape.terms[0].strength=0.1",
+        ..SKIN
+    },
+    Case {
+        id: "skin_ring_opens",
+        capabilities: &["DC-4"],
+        what: "Euler characteristic of a ball that became a ring",
+        scene: "skin_ring",
+        reading: Reading::last("euler").after(95),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "skins.shape.terms[0].strength=0",
+        ..SKIN
+    },
+    Case {
+        id: "skin_ring_closes",
+        capabilities: &["DC-4"],
+        what: "Euler characteristic of the ring that became a ball again",
+        scene: "skin_ring",
+        reading: Reading::last("euler"),
+        reference: 2.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "skins.shape.parts[1].formula=\"0.5*clamp((0.25 - sqrt((sqrt(x^2 + y^2) - 0.65)^2 + z^2))/0.25, -1, 1)\"",
+        ..SKIN
+    },
+    Case {
+        id: "skin_drop_round",
+        capabilities: &["DC-1", "DC-5"],
+        what: "roundness of a block of loose masses that nothing but the tension of its skin holds",
+        scene: "skin_drop",
+        reading: Reading::last("roundness"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.05),
+        mutation: "networks.drop.skin.push.tension=0",
+        ..SKIN
+    },
+    Case {
+        id: "skin_drop_momentum",
+        capabilities: &["DC-1"],
+        what: "momentum of these masses: what the skin pulls with adds up to nothing",
+        scene: "skin_drop",
+        reading: Reading::component("momentum", 0),
+        reference: 0.030_72,
+        // roundings of 800 steps on forces a thousand times as large as what is left of them
+        tolerance: Tolerance::Relative(1e-9),
+        mutation: "networks.drop.masses.water.drag=0.001",
+        ..SKIN
+    },
+    Case {
+        id: "skin_thread_pinches",
+        capabilities: &["DC-1", "DC-5"],
+        what: "parts of a stretched drop's skin",
+        scene: "skin_pinch",
+        reading: Reading::last("components").taking(Statistic::Max),
+        reference: 2.0,
+        tolerance: Tolerance::Absolute(0.5),
+        mutation: "networks.drop.masses.left.velocity=[0.2, 0, 0]",
+        ..SKIN
+    },
+    Case {
+        id: "skin_touched_momentum",
+        capabilities: &["DC-1"],
+        what: "momentum of a cube and the network whose skin it ran into, after they parted",
+        scene: "skin_touched",
+        reading: Reading::component("momentum", 0),
+        reference: 0.5,
+        tolerance: Tolerance::Relative(1e-9),
+        mutation: "networks.clump.masses.grains.drag=0.01",
+        ..SKIN
+    },
+    Case {
+        id: "skin_touched_pushes",
+        capabilities: &["DC-1"],
+        what: "speed of the network afterwards: more than that of both together, less than of an elastic push",
+        scene: "skin_touched",
+        reading: Reading::component("clump", 0),
+        // a half of it to both, all of it to a network of the cube's mass
+        reference: 0.375,
+        tolerance: Tolerance::Absolute(0.125),
+        mutation: "contacts[0].stiffness=1e-6",
+        ..SKIN
+    },
+    Case {
+        id: "skin_levels_smooth",
+        capabilities: &["DC-2"],
+        what: "changes of topology of a skin over particles that split where they are pressed, and merge again",
+        scene: "skin_levels",
+        reading: Reading::last("events"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "bodies.block.skin.radius=0.007",
         ..SKIN
     },
     Case {

@@ -1,0 +1,88 @@
+//! Collision with a skin by one look-up of its potential, whatever its shape.
+
+use souple_math::{Mat3, Vec3};
+
+use crate::grid::{BAND, Grid, Lattice};
+
+/// What a point sees of a skin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// To the surface, negative inside [m]; where the values around the skin are distances.
+    pub distance: f64,
+    /// Unit, outward.
+    pub normal: Vec3,
+    /// `∂normal/∂x` across the normal [1/m].
+    pub curvature: Mat3,
+}
+
+/// Between the eight nodes around a point; `None` beyond the band of voxels around the skin, where no value changes.
+pub fn look_up(grid: Grid, lattice: &Lattice, point: Vec3) -> Option<Seen> {
+    let place = lattice.to_voxels(point);
+    let (value, gradient) = grid.sample(place);
+    if value.abs() >= BAND {
+        return None;
+    }
+    let normal = (-gradient).try_normalised()?;
+    // n = −∇f/|∇f|:  ∂n/∂x = −(I − n nᵀ) ∇∇f/|∇f|
+    let across = Mat3::IDENTITY - normal.outer(normal);
+    let curvature = across * grid.bend(place) * across * (-1.0 / (gradient.length() * lattice.voxel));
+    Some(Seen { distance: -value * lattice.voxel, normal, curvature })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Skin;
+
+    /// Distance, normal and curvature of a ball to the order of its voxels; beyond the band there is no answer.
+    #[test]
+    fn a_ball_is_seen() {
+        let (radius, voxel) = (1.0, 1.0 / 16.0);
+        let skin = Skin {
+            name: "ball".to_owned(),
+            lattice: Lattice { origin: Vec3::new(0.01, 0.02, 0.03), voxel },
+            target: None,
+            terms: Vec::new(),
+            redistance: 0.25,
+            reaction: None,
+        };
+        let corner = Vec3::new(1.1, 1.1, 1.1);
+        let field = skin.start(-corner, corner, &|p| radius - p.length(), &mut skin.new_scratch()).unwrap();
+        let grid = skin.view(&field).grid;
+        for direction in [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.5, -0.7, 0.3), Vec3::new(-0.2, 0.4, 0.9)] {
+            let n = direction.try_normalised().unwrap();
+            for depth in [-1.5, 0.0, 1.5] {
+                let seen = look_up(grid, &skin.lattice, n * (radius - depth * voxel)).unwrap();
+                // chords of a cell: (h/R)²/8 of the radius, some for each axis
+                assert!((seen.distance + depth * voxel).abs() < voxel * voxel, "{seen:?} at {depth}");
+                // its slope to first order, which turns by a voxel over the radius in a cell
+                assert!((seen.normal - n).length() < 2.0 * voxel, "{seen:?} at {depth}");
+            }
+        }
+        assert_eq!(look_up(grid, &skin.lattice, Vec3::ZERO), None);
+        assert_eq!(look_up(grid, &skin.lattice, Vec3::new(2.0, 0.0, 0.0)), None);
+        assert_eq!(look_up(grid, &skin.lattice, Vec3::new(f64::NAN, 0.0, 0.0)), None);
+    }
+
+    /// Within a cell normals turn, for steps across them, by the curvature that is told.
+    #[test]
+    fn normals_turn_by_their_curvature() {
+        let keys = [crate::grid::key_of([0, 0, 0])];
+        let values: Vec<f64> = (0..crate::grid::NODES)
+            .map(|node| {
+                let (x, y, z) = ((node % 8) as f64, (node / 8 % 8) as f64, (node / 64) as f64);
+                2.0 - 0.3 * x - 0.2 * y - 0.1 * z + 0.05 * x * y - 0.03 * y * z
+            })
+            .collect();
+        let grid = Grid { keys: &keys, values: &values };
+        let lattice = Lattice { origin: Vec3::ZERO, voxel: 0.5 };
+        let at = Vec3::new(1.7, 1.8, 1.9);
+        let seen = look_up(grid, &lattice, at).unwrap();
+        let step = 1e-5;
+        let u = seen.normal.any_orthogonal();
+        let side = |sign: f64| look_up(grid, &lattice, at + u * (sign * step)).unwrap().normal;
+        let turn = (side(1.0) - side(-1.0)) * (0.5 / step);
+        // second differences of a step of 1e-5 on numbers of order one
+        assert!((turn - seen.curvature * u).length() < 1e-8, "{turn:?} {:?}", seen.curvature * u);
+    }
+}
