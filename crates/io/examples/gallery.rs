@@ -53,7 +53,7 @@ fn bent_bar() -> Result<Picture, Box<dyn std::error::Error>> {
         colour: Colour::from_screen([200, 40, 40]),
         width: 4.0,
     });
-    let legend = Legend { title: "displacement".to_owned(), unit: "m".to_owned(), range: None };
+    let legend = Legend { title: "displacement".to_owned(), unit: "m".to_owned(), ..Legend::default() };
     Ok(Picture {
         surfaces: vec![of.surface],
         strokes,
