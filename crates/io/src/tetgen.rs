@@ -272,16 +272,17 @@ fn numbers<'a>(
 
 /// A line for each group whose name is lost: what it is called when the file is read.
 pub(crate) fn renamed(output: &Output<'_>) -> Vec<String> {
-    let kinds: [(&str, fn(&Group) -> &[u32]); 3] = [
-        ("point", |group| &group.points),
-        ("volume", |group| &group.cells),
-        ("surface", |group| &group.facets),
+    let of = |kind: &'static str, members: fn(&Group) -> &[u32]| (kind, numbers(output, kind, members));
+    let kinds = [
+        of("point", |group| &group.points),
+        of("volume", |group| &group.cells),
+        of("surface", |group| &group.facets),
     ];
     let mut lines = Vec::new();
     for name in output.mesh.groups.keys() {
-        let given = kinds.iter().filter_map(|(kind, members)| {
-            numbers(output, kind, members).get(name.as_str()).map(|number| format!("{kind}_{number}"))
-        });
+        let given = kinds
+            .iter()
+            .filter_map(|(kind, numbers)| Some(format!("{kind}_{}", numbers.get(name.as_str())?)));
         let given: Vec<String> = given.filter(|given| given != name).collect();
         if !given.is_empty() {
             lines.push(format!("the group `{name}` is called {} in the file", given.join(" and ")));

@@ -294,9 +294,13 @@ impl Lattice {
         self.cubes()
             .zip(steps)
             .map(|(cube, steps)| match (steps, &size.grading) {
-                (0, _) | (_, Grading::Uniform) => Ok(0),
+                (_, Grading::Uniform) => Ok(0),
+                // asked at the surface too: a formula that gives no length is said wherever that is
+                (steps, Grading::Field { size: field, .. }) => {
+                    by_field(field, cube).map(|level| if steps == 0 { 0 } else { level })
+                }
+                (0, _) => Ok(0),
                 (steps, Grading::Inward { growth, .. }) => Ok(level_of(1.0 + growth * f64::from(steps))),
-                (_, Grading::Field { size: field, .. }) => by_field(field, cube),
             })
             .collect()
     }
