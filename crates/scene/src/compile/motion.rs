@@ -43,8 +43,11 @@ pub fn frame(log: &Log, spec: &FrameSpec, timestep: f64) -> Option<MovingFrame> 
     let frame = RigidMotion { translation, rotation, pivot: spec.pivot };
     let start = frame.pose(0.0);
     if !(start.origin.is_finite() && start.velocity.is_finite() && start.angular_velocity.is_finite()) {
-        let message =
-            format!("the frame is at {:?} m and moves by {:?} m/s at t = 0", start.origin, start.velocity);
+        let [place, velocity, spin] =
+            [start.origin, start.velocity, start.angular_velocity].map(|vector| vector.to_array());
+        let message = format!(
+            "at t = 0 the frame is at {place:?} m, moves by {velocity:?} m/s and turns by {spin:?} rad/s"
+        );
         log.add(Code::NotFinite, &spec.site, message, "formulas that are finite at the start");
         return None;
     }
