@@ -158,7 +158,7 @@ fn frames_wear_a_skin() {
         mesh = { generate = "bar", size = [0.4, 0.1, 0.1], cells = [8, 2, 2], element = "hex8" }
         material = { name = "stable_neo_hookean", youngs_modulus = "50 kPa", poissons_ratio = 0.3, density = 1000 }
         frames = { kind = "affine", placement = { name = "line", count = 4, from = [0, 0.05, 0.05], to = [0.4, 0.05, 0.05] } }
-        velocity = [1, 0, 0]
+        velocity = [0.3, 0, 0]
         [bodies.bar.skin]
         voxel = 0.02
         terms = [{ term = "attraction", strength = 4.0 }]
@@ -167,9 +167,8 @@ fn frames_wear_a_skin() {
     steps(&mut world, 30).expect("it flies");
     let (surface, _) = skins[0].surface(&world);
     let mean = surface.points.iter().map(|point| point.x).sum::<f64>() / surface.points.len() as f64;
-    // 0.3 m further than its middle was, and behind by what draws it there: a speed of 1 m/s takes an excess of a quarter, and
-    // a quarter of the width of the potential is a voxel
-    assert!((mean - 0.5).abs() < 0.03, "{mean}");
+    // 90 mm further than its middle was, and less than a voxel behind: what draws it there goes with its distance
+    assert!((mean - 0.29).abs() < 0.02, "{mean}");
     assert_eq!(skins[0].view(&world).measures().euler, 2);
 }
 

@@ -187,6 +187,9 @@ fn gather(sorted: &Sorted, block: [i64; 3], steps: i64, iso: f64) -> Option<Box<
     Some(values)
 }
 
+/// Nodes of half a row, which many particles reach alone.
+const HALF: usize = EDGE / 2;
+
 /// Kernels of particles on the nodes of a block.
 struct Splat<'a> {
     particles: &'a [(Vec3, f64)],
@@ -197,10 +200,10 @@ struct Splat<'a> {
 impl Rows for Splat<'_> {
     #[inline(always)]
     fn run(self) {
-        for (position, inverse) in self.particles {
+        for &(position, inverse) in self.particles {
             // twice the kernel's length
             let reach = 2.0 / inverse;
-            let at = *position - self.low;
+            let at = position - self.low;
             let range = |c: f64, reach: f64| {
                 let first = (c - reach).ceil().max(0.0) as usize;
                 let last = (c + reach).floor().min((EDGE - 1) as f64);
@@ -213,13 +216,27 @@ impl Rows for Splat<'_> {
                     let dy = y as f64 - at.y;
                     let across = dy * dy + dz * dz;
                     let first = EDGE * (y + EDGE * z);
-                    for (x, value) in self.values[first..first + EDGE].iter_mut().enumerate() {
-                        let dx = x as f64 - at.x;
-                        *value += kernel((dx * dx + across).sqrt() * inverse);
+                    let (halves, _) = self.values[first..first + EDGE].as_chunks_mut::<HALF>();
+                    for (number, half) in halves.iter_mut().enumerate() {
+                        let x = at.x - (HALF * number) as f64;
+                        // from the half's nodes, along the row
+                        let beside = (x - (HALF - 1) as f64).max(-x).max(0.0);
+                        if beside * beside + across < reach * reach {
+                            add_kernels(half, x, across, inverse);
+                        }
                     }
                 }
             }
         }
+    }
+}
+
+/// Adds the kernel of a particle that stands at `x` along a row of nodes, and `across` from it, squared [voxels].
+#[inline(always)]
+fn add_kernels(nodes: &mut [f64; HALF], x: f64, across: f64, inverse: f64) {
+    for (node, value) in nodes.iter_mut().enumerate() {
+        let dx = node as f64 - x;
+        *value += kernel((dx * dx + across).sqrt() * inverse);
     }
 }
 
