@@ -146,14 +146,20 @@ fn blown_up_solids_are_failures() {
 fn fillings_are_refused_in_words() {
     let folder = Folder::new("fillings");
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
-    folder.write("open.obj", square);
+    folder.write("flat.obj", square);
+    // a corner of a cube: three of its sides
+    folder.write(
+        "open.obj",
+        &(square.to_owned() + "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 5 2\nf 2 5 6\nf 1 4 5\nf 4 7 5\n"),
+    );
     souple(["mesh", "generate", "box", &folder.at("large.stl"), "size=900,900,900", "cells=1,1,1"]).ends(0);
     let fill = |arguments: &[&str]| {
         let call = ["mesh", "fill"].into_iter().chain(arguments.iter().copied());
         souple_in(folder.path(), call).ends(2)
     };
     for (arguments, words) in [
-        (&["open.obj", "a.msh", "size=0.1"][..], &["the surface is open, 4 of its edges"][..]),
+        (&["flat.obj", "a.msh", "size=0.1"][..], &["the surface is flat", "1.000 x 1.000 x 0.000"][..]),
+        (&["open.obj", "a.msh", "size=0.1"], &["the surface has holes", "6 edges"]),
         (&["large.stl", "a.msh", "size=0.5"], &["measures 900.000 x 900.000 x 900.000 m", "scale=0.001"]),
         (&["liver", "a.msh", "size=0.02", "largest=0.01"], &["`largest` is 0.01 m", "at least the size"]),
         (&["liver", "a.msh", "count=3000", "largest=0.001"], &["`largest` is 0.001 m"]),
