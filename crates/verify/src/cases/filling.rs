@@ -32,6 +32,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::component("hanging", 1).after(100),
         // a thousand tetrahedra cut off more of the shape's edges
         tolerance: Tolerance::Relative(0.06),
+        mutation: "bodies.liver.material.density=1400",
         ..WEIGHT
     },
     Case {
