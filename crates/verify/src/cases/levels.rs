@@ -21,6 +21,7 @@ const FREE: Case = Case {
     scene: "levels_free",
     source: "1 kg at (0.3, 0.1, 0) m/s",
     tolerance: Tolerance::Relative(1e-10),
+    // which gives the momentum away at once, and later blows up: the row ends before
     mutation: r#"bodies.cube.levels.coupling="one_way""#,
     ..CUBE
 };
@@ -66,15 +67,15 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "levels_momentum_x",
-        what: "momentum of a free cube of three meshes after 6400 ticks, along x",
-        reading: Reading::component("momentum", 0),
+        what: "momentum of a free cube of three meshes after 1600 ticks, along x",
+        reading: Reading::component("momentum", 0).after(100),
         reference: 0.3,
         ..FREE
     },
     Case {
         id: "levels_momentum_y",
         what: "the same along y",
-        reading: Reading::component("momentum", 1),
+        reading: Reading::component("momentum", 1).after(100),
         reference: 0.1,
         ..FREE
     },
