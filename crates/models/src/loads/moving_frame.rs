@@ -35,7 +35,8 @@ struct Acceleration {
 
 impl MovingFrame {
     /// Accelerations are differences of the motion's velocities, over a hundredth of the `timestep` [s]: of a motion that steps
-    /// resolve, `ω h < 1`, they are off by `(ω h/100)⁴/30`.
+    /// resolve, `ω h < 1`, they are off by `(ω h/100)⁴/30`; at the start, before which a motion may not be known, by
+    /// `(ω h/100)⁴/5`.
     pub fn new(motion: RigidMotion, timestep: f64) -> Self {
         Self { motion, resolution: 0.01 * timestep }
     }
@@ -55,11 +56,16 @@ impl MovingFrame {
             let pose = self.motion.pose(time + steps * self.resolution);
             (pose.velocity, pose.angular_velocity)
         };
-        let [far_before, before, after, far_after] = [-2.0, -1.0, 1.0, 2.0].map(at);
-        // ẏ = (8 (y₊₁ - y₋₁) - (y₊₂ - y₋₂)) / 12 δ
+        // ẏ = (8 (y₊₁ - y₋₁) - (y₊₂ - y₋₂)) / 12 δ, or from y₀ on
+        let (steps, weights) = if time < 2.0 * self.resolution {
+            ([0.0, 1.0, 2.0, 3.0, 4.0], [-25.0, 48.0, -36.0, 16.0, -3.0])
+        } else {
+            ([-2.0, -1.0, 0.0, 1.0, 2.0], [1.0, -8.0, 0.0, 8.0, -1.0])
+        };
+        let velocities = steps.map(at);
         let rate = |of: fn((Vec3, Vec3)) -> Vec3| {
-            ((of(after) - of(before)) * 8.0 - (of(far_after) - of(far_before)))
-                * (1.0 / (12.0 * self.resolution))
+            let terms = velocities.into_iter().zip(weights).map(|(velocity, weight)| of(velocity) * weight);
+            terms.sum::<Vec3>() * (1.0 / (12.0 * self.resolution))
         };
         Acceleration {
             linear: pose.direction_to_shape(rate(|(velocity, _)| velocity)),
