@@ -2,11 +2,13 @@
 //!
 //! A moving surface is one mesh with a morph target for each frame after the first, displacements of positions and of
 //! normals, and an animation of the weights that lets exactly one frame show at its time and blends between. All
-//! programs that play morph targets play it; numbers are of 4 bytes.
+//! programs that play morph targets play it; numbers are of 4 bytes. A surface that is there for a part of the time has the
+//! size zero before and after: a surface whose triangles change is several, one after the other.
 
 mod buffer;
 
 use std::io::Write;
+use std::ops::Range;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -45,7 +47,9 @@ pub struct MovingSurface {
     pub name: String,
     /// Corners, counterclockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Positions [m] of all points, frame after frame.
+    /// Which of the times it is there at.
+    pub during: Range<usize>,
+    /// Positions [m] of all points at each of these, or once for all.
     pub frames: Vec<Vec<Vec3>>,
     pub colour: Colour,
     /// A colour for each point, in place of one for all; or none.
@@ -74,36 +78,19 @@ impl Animation {
     pub fn to_glb(&self) -> Result<Vec<u8>, IoError> {
         self.check()?;
         let mut buffer = Buffer::default();
-        let (mut meshes, mut nodes, mut materials, mut channels, mut samplers) =
-            (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut meshes, mut nodes, mut materials) = (Vec::new(), Vec::new(), Vec::new());
+        let mut motions = Motions::default();
         for (index, surface) in self.surfaces.iter().enumerate() {
             materials.push(material(surface));
             meshes.push(mesh(surface, index, &mut buffer));
-            nodes.push(json!({"name": surface.name, "mesh": index}));
-        }
-        let first = |frames: usize| self.times[..frames].iter().map(|time| (time - self.times[0]) as f32);
-        let moving: Vec<(usize, usize)> = self
-            .surfaces
-            .iter()
-            .enumerate()
-            .filter(|(_, surface)| surface.frames.len() > 1)
-            .map(|(index, surface)| (index, surface.frames.len()))
-            .collect();
-        if let Some((_, frames)) = moving.first() {
-            let times = first(*frames).collect::<Vec<f32>>();
-            let input = buffer.scalars(&times, Target::None);
-            for (node, frames) in moving {
-                let targets = frames - 1;
-                let mut weights = vec![0.0; frames * targets];
-                for frame in 1..frames {
-                    weights[frame * targets + frame - 1] = 1.0;
-                }
-                let output = buffer.scalars(&weights, Target::None);
-                channels.push(json!({
-                    "sampler": samplers.len(), "target": {"node": node, "path": "weights"},
-                }));
-                samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
+            let mut node = json!({"name": surface.name, "mesh": index});
+            if surface.during.start > 0 {
+                // for programs that do not play
+                node["scale"] = json!([0.0, 0.0, 0.0]);
             }
+            nodes.push(node);
+            motions.add_blending(index, surface, &self.times, &mut buffer);
+            motions.add_presence(index, &surface.during, &self.times, &mut buffer);
         }
         let children: Vec<usize> = (0..nodes.len()).collect();
         let root = nodes.len();
@@ -119,7 +106,8 @@ impl Animation {
             "bufferViews": buffer.views,
             "buffers": [{"byteLength": buffer.bytes.len()}],
         });
-        if !channels.is_empty() {
+        if !motions.channels.is_empty() {
+            let Motions { channels, samplers, .. } = motions;
             document["animations"] = json!([{"name": "run", "channels": channels, "samplers": samplers}]);
         }
         Ok(container(&document, &buffer.bytes))
@@ -155,8 +143,13 @@ impl Animation {
         for (index, surface) in self.surfaces.iter().enumerate() {
             let of = |what: &str| format!("{what} of surfaces[{index}]");
             let frames = surface.frames.len();
-            if frames != 1 && frames != self.times.len() {
-                let expected = format!("1, or {}, one for each time", self.times.len());
+            let Range { start, end } = surface.during;
+            if start >= end || end > self.times.len() {
+                let expected = format!("a part of 0..{}", self.times.len());
+                return refuse(of("the range of times"), format!("{start}..{end}"), expected);
+            }
+            if frames != 1 && frames != end - start {
+                let expected = format!("1, or {}, one for each time", end - start);
                 return refuse(of("the number of frames"), frames.to_string(), expected);
             }
             let count = surface.frames[0].len();
@@ -183,6 +176,65 @@ impl Animation {
         }
         Ok(())
     }
+}
+
+/// What moves in a file, channel by channel.
+#[derive(Default)]
+struct Motions {
+    channels: Vec<Value>,
+    samplers: Vec<Value>,
+    /// Accessor of the times of a range, shared by all surfaces that have it.
+    inputs: Vec<(Range<usize>, usize)>,
+}
+
+impl Motions {
+    fn add(&mut self, node: usize, path: &str, input: usize, output: usize, interpolation: &str) {
+        self.channels.push(json!({"sampler": self.samplers.len(), "target": {"node": node, "path": path}}));
+        self.samplers.push(json!({"input": input, "output": output, "interpolation": interpolation}));
+    }
+
+    /// Lets each frame show at its time, and blends between.
+    fn add_blending(&mut self, node: usize, surface: &MovingSurface, times: &[f64], buffer: &mut Buffer) {
+        let frames = surface.frames.len();
+        if frames < 2 {
+            return;
+        }
+        let targets = frames - 1;
+        let mut weights = vec![0.0; frames * targets];
+        for frame in 1..frames {
+            weights[frame * targets + frame - 1] = 1.0;
+        }
+        let known = self.inputs.iter().find(|(range, _)| *range == surface.during).map(|(_, input)| *input);
+        let input = known.unwrap_or_else(|| {
+            let seconds: Vec<f32> = surface.during.clone().map(|at| since_start(times, at)).collect();
+            let input = buffer.scalars(&seconds, Target::None);
+            self.inputs.push((surface.during.clone(), input));
+            input
+        });
+        let output = buffer.scalars(&weights, Target::None);
+        self.add(node, "weights", input, output, "LINEAR");
+    }
+
+    /// Lets a surface be there for its part of the time.
+    fn add_presence(&mut self, node: usize, during: &Range<usize>, times: &[f64], buffer: &mut Buffer) {
+        if *during == (0..times.len()) {
+            return;
+        }
+        let there = |at: usize| if during.contains(&at) { 1.0 } else { 0.0 };
+        let mut keys = vec![0, during.start, during.end];
+        keys.retain(|at| *at < times.len());
+        keys.dedup();
+        let seconds: Vec<f32> = keys.iter().map(|at| since_start(times, *at)).collect();
+        let input = buffer.scalars(&seconds, Target::None);
+        let output =
+            buffer.vectors(keys.iter().map(|at| Vec3::new(1.0, 1.0, 1.0) * there(*at)), Target::None);
+        self.add(node, "scale", input, output, "STEP");
+    }
+}
+
+/// [s]
+fn since_start(times: &[f64], at: usize) -> f32 {
+    (times[at] - times[0]) as f32
 }
 
 fn mesh(surface: &MovingSurface, material: usize, buffer: &mut Buffer) -> Value {
@@ -273,6 +325,7 @@ fn write_mesh(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError
     let surface = MovingSurface {
         name: "surface".to_owned(),
         triangles: part.facets.iter().flat_map(|facet| facet.triangles()).collect(),
+        during: 0..1,
         frames: vec![part.positions],
         colour,
         point_colours: Vec::new(),

@@ -40,6 +40,7 @@ fn swing() -> Animation {
     let surface = MovingSurface {
         name: "flag".into(),
         triangles,
+        during: 0..4,
         frames: (0..4).map(frame).collect(),
         colour: Colour::WHITE,
         point_colours: Vec::new(),
@@ -76,6 +77,37 @@ fn frames_come_back_from_targets_and_weights() {
             );
         }
     }
+}
+
+/// A surface that becomes another one: each is there, at its size, at its own times alone.
+#[test]
+fn surfaces_take_turns() {
+    let mut animation = swing();
+    let mut later = animation.surfaces[0].clone();
+    later.triangles.pop();
+    (later.during, later.frames) = (2..4, later.frames.split_off(2));
+    animation.surfaces[0].during = 0..2;
+    animation.surfaces[0].frames.truncate(2);
+    animation.surfaces.push(later);
+    let (document, numbers) = opened(&animation.to_glb().unwrap());
+    let of = |node: u64, path: &str| {
+        let animation = &document["animations"][0];
+        let is_it = |channel: &&Value| channel["target"]["node"] == node && channel["target"]["path"] == path;
+        let channel = animation["channels"].as_array().unwrap().iter().find(is_it).unwrap();
+        let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
+        let read = |what: &str| floats(&document, &numbers, &sampler[what]);
+        (read("input"), read("output"), sampler["interpolation"].clone())
+    };
+    let close =
+        |a: &[f32], b: &[f32]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+    let (times, scales, how) = of(0, "scale");
+    assert!(close(&times, &[0.0, 0.2]) && close(&scales, &[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) && how == "STEP");
+    let (times, scales, _) = of(1, "scale");
+    assert!(close(&times, &[0.0, 0.2]) && close(&scales, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]));
+    let (times, weights, _) = of(1, "weights");
+    assert!(close(&times, &[0.2, 0.3]) && close(&weights, &[0.0, 1.0]));
+    assert_eq!(document["nodes"][1]["scale"], json!([0.0, 0.0, 0.0]));
+    assert!(document["nodes"][0].get("scale").is_none());
 }
 
 /// `up` becomes `y`: the quaternion turns it there.
@@ -116,6 +148,11 @@ fn faulty_animations_are_refused() {
     refused(|a| a.surfaces[0].triangles[0] = [0, 1, 99], "a corner of surfaces[0] is 99");
     refused(|a| a.surfaces[0].triangles.clear(), "the number of triangles");
     refused(|a| a.surfaces[0].frames.truncate(3), "the number of frames of surfaces[0] is 3");
+    refused(
+        |a| a.surfaces[0].during = 2..2,
+        "the range of times of surfaces[0] is 2..2; expected a part of 0..4",
+    );
+    refused(|a| a.surfaces[0].during = 1..5, "the range of times of surfaces[0] is 1..5");
     refused(|a| a.surfaces[0].frames[1].truncate(5), "expected 6, as of the first frame");
     refused(|a| a.surfaces[0].frames[1][0].x = f64::NAN, "a position of surfaces[0] is [NaN");
     refused(|a| a.surfaces[0].point_colours.push(Colour::BLACK), "one for each point");
