@@ -170,7 +170,60 @@ pub fn write_dataset_as(format: &str, path: &Path, output: &Output<'_>) -> Resul
     write_with(FORMATS.find(format)?, path, output)
 }
 
+/// Writes like [`write_dataset_as`], once what will be in the file has been read back; what was read, `None` where the format is
+/// only written.
+///
+/// # Errors
+/// Those of [`write_dataset_as`], or the format's own reader refuses the content: nothing is written then.
+pub fn write_and_read_back(
+    format: &str,
+    path: &Path,
+    output: &Output<'_>,
+) -> Result<Option<Dataset>, IoError> {
+    let entry = FORMATS.find(format)?;
+    let content = content_of(entry, path, output)?;
+    let read_back = |read: Read| read(&content).map_err(|fault| IoError::content(path, fault));
+    let dataset = entry.build.read.map(read_back).transpose()?;
+    if entry.build.parts.is_empty() {
+        write_file(path, |out| out.write_all(&content))?;
+    } else {
+        write_files(&parts::split_for(path, &content))?;
+    }
+    Ok(dataset)
+}
+
 fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -> Result<(), IoError> {
+    if !entry.build.parts.is_empty() {
+        return write_files(&parts::split_for(path, &content_of(entry, path, output)?));
+    }
+    let write = checked_writer(entry, output)?;
+    let mut refusal = None;
+    let written = write_file(path, |out| match write(output, out) {
+        Ok(()) => Ok(()),
+        Err(WriteError::System(error)) => Err(error),
+        Err(WriteError::Request(error)) => {
+            refusal = Some(error);
+            Err(std::io::ErrorKind::InvalidInput.into())
+        }
+    });
+    match refusal {
+        Some(error) => Err(error),
+        None => written,
+    }
+}
+
+/// What the file or the files of that path will hold.
+fn content_of(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -> Result<Vec<u8>, IoError> {
+    let mut content = Vec::new();
+    match checked_writer(entry, output)?(output, &mut content) {
+        Ok(()) => Ok(content),
+        Err(WriteError::System(source)) => Err(IoError::write(path, source)),
+        Err(WriteError::Request(error)) => Err(error),
+    }
+}
+
+/// The writer of a format, for a mesh that it can be asked to write.
+fn checked_writer(entry: &'static Entry<Format>, output: &Output<'_>) -> Result<WriteInto, IoError> {
     let write = entry.build.write.ok_or_else(|| IoError::Unsupported {
         format: entry.name,
         action: "written",
@@ -178,26 +231,7 @@ fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -
     })?;
     output.check()?;
     entry.build.holds.check(entry.name, output)?;
-    let mut refusal = None;
-    let mut content = |out: &mut dyn Write| match write(output, out) {
-        Ok(()) => Ok(()),
-        Err(WriteError::System(error)) => Err(error),
-        Err(WriteError::Request(error)) => {
-            refusal = Some(error);
-            Err(std::io::ErrorKind::InvalidInput.into())
-        }
-    };
-    let written = if entry.build.parts.is_empty() {
-        write_file(path, content)
-    } else {
-        let mut joined = Vec::new();
-        let made = content(&mut joined).map_err(|source| IoError::write(path, source));
-        made.and_then(|()| write_files(&parts::split_for(path, &joined)))
-    };
-    match refusal {
-        Some(error) => Err(error),
-        None => written,
-    }
+    Ok(write)
 }
 
 /// What a file of the format will not hold of a mesh, in words; nothing where all of it is kept.

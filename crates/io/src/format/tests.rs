@@ -82,6 +82,81 @@ fn every_format_gives_back_what_it_holds() {
     }
 }
 
+/// Edges come back from formats of every kind of cell, surface cells as facets from all but those of tetrahedra; what a format
+/// has no room for is refused before a file is there.
+#[test]
+fn lines_and_sheets_come_back_or_are_refused() {
+    let folder = TemporaryFolder::new("lines");
+    let points: Vec<Vec3> = (0..5).map(|k| Vec3::new(f64::from(k), f64::from(k * k), 0.5)).collect();
+    for (kind, nodes) in [
+        (ElementKind::Edge2, vec![0, 1, 1, 4]),
+        (ElementKind::Edge3, vec![0, 2, 1, 2, 4, 3]),
+        (ElementKind::Tri3, vec![0, 1, 2, 2, 3, 4]),
+        (ElementKind::Quad4, vec![0, 1, 3, 2]),
+    ] {
+        let mut mesh = Mesh::new(points.clone(), kind, nodes);
+        mesh.groups.insert("all".into(), souple_mesh::Group { cells: vec![0], ..Default::default() });
+        for entry in round_trips() {
+            let shapes = entry.build.holds.shapes;
+            let path = folder.path(format!(
+                "{kind}_{}.{}",
+                entry.name,
+                entry.build.extensions.first().unwrap_or(&"x")
+            ));
+            let output = Output::new(&mesh);
+            let written = write_dataset_as(entry.name, &path, &output);
+            let is_kept = match kind.dimension() {
+                1 => shapes == Shapes::All,
+                _ => shapes != Shapes::Tetrahedra,
+            };
+            assert_eq!(written.is_ok(), is_kept, "{kind} {}: {written:?}", entry.name);
+            if !is_kept {
+                assert!(!path.exists(), "{kind} {}", entry.name);
+                continue;
+            }
+            let dataset = read_back(entry.name, &output);
+            let back = dataset.mesh;
+            if shapes == Shapes::All {
+                let (blocks, group) = match kind.dimension() {
+                    1 => (&back.blocks, &back.groups["all"].cells),
+                    _ => (&back.facet_blocks, &back.groups["all"].facets),
+                };
+                assert_eq!((blocks, &back.points), (&mesh.blocks, &mesh.points), "{kind} {}", entry.name);
+                assert_eq!(group, &[0], "{kind} {}", entry.name);
+                assert!(dataset.notes.is_empty(), "{:?}", dataset.notes);
+            } else {
+                assert!(back.facet_count() > 0, "{kind} {}", entry.name);
+            }
+        }
+    }
+    // a tetrahedron with an edge beside it
+    let mut mixed = tetrahedra_mesh();
+    mixed.push_cell(ElementKind::Edge2, &[0, 4]);
+    let losses = Holds::ALL.losses("vtu", &Output::new(&mixed));
+    assert_eq!(losses.len(), 1, "{losses:?}");
+    assert!(losses[0].contains("1 edges: beside other elements"), "{losses:?}");
+}
+
+/// What the reader would refuse is not written, and an older file stays as it is.
+#[test]
+fn nothing_is_written_that_cannot_be_read() {
+    let folder = TemporaryFolder::new("verified");
+    let path = folder.path("a.stl");
+    let mesh = held_mesh(&FORMATS.find("stl").unwrap().build.holds);
+    let back = write_and_read_back("stl", &path, &Output::new(&mesh)).unwrap();
+    assert_eq!(back.unwrap().mesh, read_mesh(&path).unwrap().0);
+    let older = std::fs::read(&path).unwrap();
+    // rounded to 4 bytes all corners are one
+    let small = Mesh { points: mesh.points.iter().map(|p| *p * 1e-60).collect(), ..mesh.clone() };
+    let error = write_and_read_back("stl", &path, &Output::new(&small)).unwrap_err();
+    assert!(matches!(&error, IoError::Content { .. }), "{error}");
+    assert_eq!(std::fs::read(&path).unwrap(), older);
+    assert!(write_and_read_back("gltf", &folder.path("a.glb"), &Output::new(&mesh)).unwrap().is_none());
+    let tets = tetrahedra_mesh();
+    let back = write_and_read_back("tetgen", &folder.path("a.ele"), &Output::new(&tets)).unwrap();
+    assert_eq!((back.unwrap().mesh, folder.path("a.node").is_file()), (tets, true));
+}
+
 /// Quadratic cells and facets of every kind come back from the formats that hold all kinds, node for node.
 #[test]
 fn quadratic_cells_come_back() {
