@@ -123,7 +123,7 @@ impl Assembly {
             let group = self.groups.entry((element.dimension, tag.saturating_abs())).or_default();
             match destination {
                 Destination::Cell(cell) => group.cells.push(cell),
-                Destination::Facet(facet) => group.facets.push(facet),
+                Destination::Facets { first, count } => group.facets.extend(first..first + count),
                 Destination::Skipped => group.points.extend_from_slice(nodes),
             }
         }

@@ -8,7 +8,7 @@ use souple_table::Entry;
 
 use super::array::{self, Number, NumberType};
 use super::grid::Grid;
-use super::{GROUP_PREFIX, cell_type_of};
+use super::{GROUP_PREFIX, POLYGON, cell_type_of};
 use crate::cursor::{Cursor, Encoding, Endian};
 use crate::dataset::{Field, Output};
 use crate::error::{Fault, quoted};
@@ -39,9 +39,6 @@ fn recognises(bytes: &[u8]) -> bool {
 
 /// Most components of a field.
 const MOST_COMPONENTS: usize = 1024;
-
-/// Type of polygons among cells.
-const POLYGON: i64 = 7;
 
 /// What the values that follow belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
