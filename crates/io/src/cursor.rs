@@ -212,6 +212,12 @@ fn count_line_ends(bytes: &[u8]) -> usize {
     bytes.iter().filter(|byte| **byte == b'\n').count()
 }
 
+/// What a text without a mark of its end may hide: cut within its last number it is another number.
+pub(crate) fn open_end(bytes: &[u8], last_line: &str) -> Option<String> {
+    let is_open = bytes.last().is_some_and(|byte| *byte != b'\n');
+    is_open.then(|| format!("{last_line} has no end: the file may be cut off"))
+}
+
 pub(crate) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }

@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
 
-use crate::cursor::Cursor;
+use crate::cursor::{Cursor, line_of, open_end};
 use crate::dataset::Output;
 use crate::error::{Fault, Place};
 
@@ -180,6 +180,7 @@ pub(crate) fn check_facets(cursor: &Cursor<'_>, mesh: &Mesh) -> Result<(), Fault
     }
     Ok(())
 }
+
 /// What the end of a text tells of whether it is all of the file: one that ends within a line, with points that no facet has
 /// come to use, is cut off; either alone may be meant, and is told.
 pub(crate) fn check_end(bytes: &[u8], mesh: &Mesh, notes: &mut Vec<String>) -> Result<(), Fault> {
@@ -188,17 +189,15 @@ pub(crate) fn check_end(bytes: &[u8], mesh: &Mesh, notes: &mut Vec<String>) -> R
         facet.nodes.iter().for_each(|node| is_used[*node as usize] = true);
     }
     let loose = is_used.iter().filter(|used| !**used).count();
-    let first = is_used.iter().position(|used| !used).unwrap_or(0);
-    let ends_a_line = bytes.ends_with(b"\n");
-    match (ends_a_line, loose) {
-        (true, 0) => {}
-        (false, 0) => notes.push("the last line has no end: the file may be cut off".to_owned()),
-        (true, _) => notes.push(format!(
+    match (open_end(bytes, "the last line"), is_used.iter().position(|used| !used)) {
+        (open, None) => notes.extend(open),
+        (None, Some(first)) => notes.push(format!(
             "{loose} points are in no facet, the first is points[{first}]: a file that is cut off looks like that"
         )),
-        (false, _) => {
-            let place = Place::Line(crate::cursor::line_of(bytes, bytes.len()));
-            let subject = format!("the last line has no end, and {loose} points are in no facet yet: the next facet");
+        (Some(_), Some(_)) => {
+            let place = Place::Line(line_of(bytes, bytes.len()));
+            let subject =
+                format!("the last line has no end, and {loose} points are in no facet yet: the next facet");
             return Err(Fault::cut_off(place, subject, "facets of all points, and an end of the last line"));
         }
     }

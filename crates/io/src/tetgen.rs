@@ -11,7 +11,7 @@ use souple_math::Vec3;
 use souple_mesh::{ElementKind, Group};
 use souple_table::Entry;
 
-use crate::cursor::{Cursor, parse};
+use crate::cursor::{Cursor, open_end, parse};
 use crate::dataset::{Facets, Output, tidy_groups};
 use crate::error::{Fault, Place, quoted};
 use crate::format::{Format, WriteError};
@@ -51,12 +51,19 @@ pub(crate) fn read(joined: &[u8]) -> Result<Dataset, Fault> {
     let mut reader = Reader::default();
     let nodes = find("node").ok_or_else(|| missing("node"))?;
     let elements = find("ele").ok_or_else(|| missing("ele"))?;
+    if let Some(part) = files.iter().find(|part| !PARTS.contains(&part.extension)) {
+        let expected = format!("one of {}", PARTS.join(", "));
+        return Err(Fault::new(Place::Line(1), "a part", format!("`{}`", part.extension), expected));
+    }
     reader.read_nodes(nodes).map_err(|fault| parts::in_part("node", fault))?;
     reader.read_elements(elements).map_err(|fault| parts::in_part("ele", fault))?;
     if let Some(faces) = find("face") {
         reader.read_faces(faces).map_err(|fault| parts::in_part("face", fault))?;
     }
     tidy_groups(&mut reader.dataset.mesh);
+    for Part { extension, bytes } in files {
+        reader.dataset.notes.extend(open_end(bytes, &format!("the last line of the .{extension} file")));
+    }
     Ok(reader.dataset)
 }
 
@@ -87,6 +94,17 @@ impl<'a> Rows<'a> {
 
     fn expect(&mut self, subject: &str, expected: &str) -> Result<Vec<&'a [u8]>, Fault> {
         self.next().ok_or_else(|| Fault::cut_off(self.cursor.place(), subject, expected))
+    }
+
+    /// Refuses what follows the last of `count` rows.
+    fn end(&mut self, what: &str, count: usize) -> Result<(), Fault> {
+        match self.next() {
+            None => Ok(()),
+            Some(words) => {
+                let subject = format!("a line behind the last of {count} {what}");
+                Err(self.fault(subject, quoted(&words.join(&b' ')), "as many lines as the head says"))
+            }
+        }
     }
 
     fn fault(
@@ -176,7 +194,7 @@ impl Reader {
                 group.points.push(index as u32);
             }
         }
-        Ok(())
+        rows.end("points", count)
     }
 
     /// Points of `words` from the second on.
@@ -228,7 +246,7 @@ impl Reader {
         if node_count == 10 {
             self.dataset.notes.push("tetrahedra of ten nodes were read by their corners".to_owned());
         }
-        Ok(())
+        rows.end("tetrahedra", count)
     }
 
     /// `number corners… [marker]`
@@ -244,7 +262,7 @@ impl Reader {
                 group.facets.push(index as u32);
             }
         }
-        Ok(())
+        rows.end("triangles", count)
     }
 }
 
@@ -321,14 +339,14 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let regions = marks(output, "volume", mesh.cell_count(), |group| &group.cells)?;
     let any = |marks: &[i64]| u8::from(marks.iter().any(|mark| *mark != 0));
 
-    out.write_all(parts::mark("node").as_bytes())?;
+    parts::begin(out, 0, "node")?;
     writeln!(out, "{} 3 0 {}", mesh.points.len(), any(&point_marks))?;
     for (index, (position, mark)) in output.positions().iter().zip(&point_marks).enumerate() {
         let [x, y, z] = position.to_array();
         write!(out, "{} {x:?} {y:?} {z:?}", index + 1)?;
         write_mark(out, any(&point_marks), *mark)?;
     }
-    out.write_all(parts::mark("ele").as_bytes())?;
+    parts::begin(out, 1, "ele")?;
     writeln!(out, "{} 4 {}", mesh.cell_count(), any(&regions))?;
     for (index, (cell, region)) in mesh.cells().zip(&regions).enumerate() {
         write!(out, "{}", index + 1)?;
@@ -338,7 +356,7 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     // always there: an older one of the stem must not be taken for a part of this mesh
     let facet_count = if output.facets == Facets::Written { mesh.facet_count() } else { 0 };
     let markers = marks(output, "surface", mesh.facet_count(), |group| &group.facets)?;
-    out.write_all(parts::mark("face").as_bytes())?;
+    parts::begin(out, 2, "face")?;
     writeln!(out, "{facet_count} {}", any(&markers))?;
     for (index, (facet, marker)) in mesh.facets().zip(&markers).take(facet_count).enumerate() {
         write!(out, "{}", index + 1)?;

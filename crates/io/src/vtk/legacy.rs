@@ -9,7 +9,7 @@ use souple_table::Entry;
 use super::array::{self, Number, NumberType};
 use super::grid::Grid;
 use super::{GROUP_PREFIX, POLYGON, cell_type_of};
-use crate::cursor::{Cursor, Encoding, Endian};
+use crate::cursor::{Cursor, Encoding, Endian, open_end};
 use crate::dataset::{Field, Output};
 use crate::error::{Fault, quoted};
 use crate::format::{Format, WriteError, wrong_start};
@@ -83,7 +83,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     while let Some(word) = reader.cursor.word() {
         reader.section(word)?;
     }
-    reader.finish()
+    let mut dataset = reader.finish()?;
+    if encoding == Encoding::Text {
+        dataset.notes.extend(open_end(bytes, "the last line"));
+    }
+    Ok(dataset)
 }
 
 impl<'a> Reader<'a> {
