@@ -56,12 +56,17 @@ const WITHOUT_GEOMETRY: &[&[u8]] = &[
 /// Most groups that one facet is in.
 const MOST_GROUPS: usize = 16;
 
+/// The group of facets that are in no other.
+const DEFAULT: &str = "default";
+
 #[derive(Default)]
 struct Reader {
     mesh: Mesh,
     facet_count: u32,
     /// Groups of the facets that follow.
     groups: Vec<String>,
+    /// Lines of more groups than are read.
+    crowded: usize,
     /// Corners of the facet at hand.
     corners: Vec<u32>,
     polygons: Polygons,
@@ -107,8 +112,10 @@ impl Reader {
             }
             b"f" => self.facet(words, place)?,
             b"g" | b"o" => {
-                let names = words.take(MOST_GROUPS).map(|word| String::from_utf8_lossy(word).into_owned());
-                self.groups = names.filter(|name| name != "default").collect();
+                let names = words.by_ref().take(MOST_GROUPS);
+                let names = names.map(|word| String::from_utf8_lossy(word).into_owned());
+                self.groups = names.filter(|name| name != DEFAULT).collect();
+                self.crowded += usize::from(words.next().is_some());
             }
             other if WITHOUT_GEOMETRY.contains(&other) => {}
             other => {
@@ -162,7 +169,13 @@ impl Reader {
             return Err(Fault::new(place, "the number of facets", found, "points (v) and facets (f)"));
         }
         tidy_groups(&mut self.mesh);
-        let notes = self.polygons.notes();
+        let mut notes = self.polygons.notes();
+        if self.crowded > 0 {
+            notes.push(format!(
+                "{} lines of more than {MOST_GROUPS} groups: those behind were left out",
+                self.crowded
+            ));
+        }
         Ok(Dataset { mesh: self.mesh, notes, ..Dataset::default() })
     }
 }
@@ -190,7 +203,7 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     for (facet, groups) in part.facets.iter().zip(&memberships) {
         if groups != current {
             // a group line without names means the default group
-            writeln!(out, "g {}", if groups.is_empty() { "default".to_owned() } else { groups.join(" ") })?;
+            writeln!(out, "g {}", if groups.is_empty() { DEFAULT.to_owned() } else { groups.join(" ") })?;
             current = groups;
         }
         write_facet(facet.corners(), out)?;
@@ -205,10 +218,9 @@ fn memberships<'a>(output: &Output<'a>, part: &SurfacePart) -> Result<Vec<Vec<&'
         return Ok(memberships);
     }
     for (name, group) in &output.mesh.groups {
-        if !group.facets.is_empty()
-            && (name.is_empty() || name.contains(char::is_whitespace) || name.contains('#'))
-        {
-            let expected = "a word without spaces in an OBJ file";
+        let breaks = |letter: char| letter.is_whitespace() || matches!(letter, '#' | '\\');
+        if !group.facets.is_empty() && (name.is_empty() || name.contains(breaks) || name == DEFAULT) {
+            let expected = "a word without spaces, # and \\, which is not `default`, in an OBJ file";
             return Err(IoError::request("the name of a group", format!("`{name}`"), expected));
         }
         for facet in &group.facets {
@@ -222,6 +234,12 @@ fn memberships<'a>(output: &Output<'a>, part: &SurfacePart) -> Result<Vec<Vec<&'
             })?;
             list.push(name.as_str());
         }
+    }
+    if let Some((facet, names)) = memberships.iter().enumerate().find(|(_, names)| names.len() > MOST_GROUPS)
+    {
+        let subject = format!("the number of groups of facet {facet}");
+        let expected = format!("at most {MOST_GROUPS} in an OBJ file");
+        return Err(IoError::request(subject, names.len(), expected));
     }
     Ok(memberships)
 }
@@ -275,6 +293,40 @@ mod tests {
             (&[0, 1, 2][..], &[3][..])
         );
         assert_eq!(dataset.notes.len(), 2);
+    }
+
+    /// Names that the reader takes for something else are refused, and more groups than it reads.
+    #[test]
+    fn groups_that_cannot_be_held_are_refused() {
+        let mesh = read(SURFACE.as_bytes()).unwrap().mesh;
+        let refused = |names: Vec<String>| {
+            let mut mesh = mesh.clone();
+            let group = souple_mesh::Group { facets: vec![0], ..Default::default() };
+            mesh.groups = names.into_iter().map(|name| (name, group.clone())).collect();
+            let mut bytes = Vec::new();
+            match write(&Output::new(&mesh), &mut bytes) {
+                Err(error) => Some(error.to_string()),
+                Ok(()) => {
+                    assert_eq!(read(&bytes).unwrap().mesh, mesh);
+                    None
+                }
+            }
+        };
+        for name in ["", "two words", "a#b", "a\\", "default"] {
+            let message = refused(vec![name.to_owned()]).unwrap();
+            assert!(
+                message.starts_with(&format!("the name of a group is `{name}`; expected a word")),
+                "{message}"
+            );
+        }
+        let many = |count: usize| (0..count).map(|k| format!("g{k:02}")).collect::<Vec<String>>();
+        assert_eq!(refused(many(MOST_GROUPS)), None);
+        let message = refused(many(MOST_GROUPS + 1)).unwrap();
+        assert!(message.contains("the number of groups of facet 0 is 17; expected at most 16"), "{message}");
+        let notes = read(SURFACE.replace("g lid top", &format!("g {}", many(17).join(" "))).as_bytes())
+            .unwrap()
+            .notes;
+        assert_eq!(notes, ["1 lines of more than 16 groups: those behind were left out"]);
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! of such names keep their number and others get the next free one. Tetrahedra of ten nodes are read by their
 //! corners.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 
 use souple_math::Vec3;
@@ -40,6 +40,9 @@ pub(crate) static TETGEN: Entry<Format> = Entry {
 };
 
 const PARTS: &[&str] = &["node", "ele", "face"];
+
+/// Markers and regions are below this: they may be written as real numbers, which are exact so far.
+const MARKERS_BELOW: i64 = 9_000_000_000_000_000;
 
 pub(crate) fn read(joined: &[u8]) -> Result<Dataset, Fault> {
     let files = parts::split(joined)?;
@@ -142,7 +145,7 @@ impl<'a> Rows<'a> {
     fn marker(&self, words: &[&[u8]], place: usize, subject: &str) -> Result<i64, Fault> {
         let Some(word) = words.get(place) else { return Ok(0) };
         match parse::<f64>(word) {
-            Some(number) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64),
+            Some(number) if number.fract() == 0.0 && number.abs() < MARKERS_BELOW as f64 => Ok(number as i64),
             _ => Err(self.fault(subject, quoted(word), "a whole number")),
         }
     }
@@ -157,7 +160,7 @@ struct Reader {
 
 impl Reader {
     fn group(&mut self, kind: &str, number: i64) -> Option<&mut Group> {
-        (number != 0).then(|| self.dataset.mesh.groups.entry(format!("{kind}_{number}")).or_default())
+        (number != 0).then(|| self.dataset.mesh.groups.entry(name_of(kind, number)).or_default())
     }
 
     /// `number x y z [attributes] [marker]`
@@ -266,7 +269,8 @@ impl Reader {
     }
 }
 
-/// A number for each group that has members: its own for `volume_7`, else the next that is free.
+/// A number for each group that has members: its own where the group is called as one of that number is when it is read
+/// (`volume_7`), else the next that is free.
 fn numbers<'a>(
     output: &'a Output<'_>,
     kind: &str,
@@ -274,18 +278,23 @@ fn numbers<'a>(
 ) -> BTreeMap<&'a str, i64> {
     let groups = output.mesh.groups.iter().filter(|(_, group)| !members(group).is_empty());
     let own = |name: &str| -> Option<i64> {
-        let number = name.strip_prefix(kind)?.strip_prefix('_')?.parse().ok()?;
-        (number != 0).then_some(number)
+        let number: i64 = name.strip_prefix(kind)?.strip_prefix('_')?.parse().ok()?;
+        let is_read = number != 0 && number.unsigned_abs() < MARKERS_BELOW.unsigned_abs();
+        (is_read && name_of(kind, number) == name).then_some(number)
     };
     let mut numbers: BTreeMap<&str, i64> =
         groups.clone().filter_map(|(name, _)| Some((name.as_str(), own(name)?))).collect();
-    for (name, _) in groups {
-        if own(name).is_none() {
-            let free = (1..).find(|number| !numbers.values().any(|taken| taken == number)).unwrap_or(1);
-            numbers.insert(name, free);
-        }
+    let taken: BTreeSet<i64> = numbers.values().copied().collect();
+    let free = (1..).filter(|number| !taken.contains(number));
+    for ((name, _), free) in groups.filter(|(name, _)| own(name).is_none()).zip(free) {
+        numbers.insert(name, free);
     }
     numbers
+}
+
+/// What a group of a number is called.
+fn name_of(kind: &str, number: i64) -> String {
+    format!("{kind}_{number}")
 }
 
 /// A line for each group whose name is lost: what it is called when the file is read.
@@ -298,9 +307,8 @@ pub(crate) fn renamed(output: &Output<'_>) -> Vec<String> {
     ];
     let mut lines = Vec::new();
     for name in output.mesh.groups.keys() {
-        let given = kinds
-            .iter()
-            .filter_map(|(kind, numbers)| Some(format!("{kind}_{}", numbers.get(name.as_str())?)));
+        let given =
+            kinds.iter().filter_map(|(kind, numbers)| Some(name_of(kind, *numbers.get(name.as_str())?)));
         let given: Vec<String> = given.filter(|given| given != name).collect();
         if !given.is_empty() {
             lines.push(format!("the group `{name}` is called {} in the file", given.join(" and ")));

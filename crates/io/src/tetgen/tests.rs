@@ -117,6 +117,33 @@ fn files_without_an_end_are_told() {
     }
 }
 
+/// A group keeps its number where the reader would call it the same; others get free numbers, each its own, and that is told.
+#[test]
+fn numbers_of_groups() {
+    let mut mesh = read(&joined(NODE, ELE, "0 0\n")).unwrap().mesh;
+    let of = |cell: u32| Group { cells: vec![cell], ..Group::default() };
+    for (first, second, kept) in [
+        ("volume_7", "volume_07", Some(7)),
+        ("volume_-3", "volume_+7", Some(-3)),
+        ("volume_1", "volume_9999999999999999", Some(1)),
+        ("a", "volume_0", None),
+    ] {
+        mesh.groups = [(first.to_owned(), of(0)), (second.to_owned(), of(1))].into();
+        let output = Output::new(&mesh);
+        let mut bytes = Vec::new();
+        write(&output, &mut bytes).unwrap();
+        let back = read(&bytes).unwrap().mesh;
+        let groups: Vec<_> = back.groups.values().map(|group| group.cells.clone()).collect();
+        assert!(groups.len() == 2 && groups.contains(&vec![0]) && groups.contains(&vec![1]), "{groups:?}");
+        if let Some(number) = kept {
+            assert_eq!(back.groups[&format!("volume_{number}")].cells, [0]);
+        }
+        let told = renamed(&output);
+        assert_eq!(told.len(), if kept.is_some() { 1 } else { 2 }, "{told:?}");
+        assert!(told.iter().any(|line| line.starts_with(&format!("the group `{second}` is called volume_"))));
+    }
+}
+
 #[test]
 fn no_fault_panics() {
     survives_faults("tetgen", &joined(NODE, ELE, FACE), read);
