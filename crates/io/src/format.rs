@@ -23,6 +23,8 @@ pub type WriteInto = fn(&Output<'_>, &mut dyn Write) -> Result<(), WriteError>;
 pub struct Format {
     /// File name extensions that stand for it, in lower case, without the dot.
     pub extensions: &'static [&'static str],
+    /// Extensions that stand for another format of its family, whose reader takes it too.
+    pub family: &'static [&'static str],
     /// Extensions of the files that one mesh is kept in, for formats of several; `read` and `write` then take
     /// them joined (see `parts.rs`). Empty for formats of one file.
     pub parts: &'static [&'static str],
@@ -251,24 +253,28 @@ pub fn format_of(path: &Path) -> Result<&'static str, IoError> {
     Ok(by_extension(path)?.name)
 }
 
-/// The name of the format, where a file of that path can be read again: by its extension, or by what it begins with where the
-/// format is one of several that share an extension.
+/// The name of the format, where a file of that path can be read again: its extension stands for it, or for one of its family.
 ///
 /// # Errors
 /// The format is unknown, or has other extensions.
 pub fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
     let entry = FORMATS.find(format)?;
-    let known = entry.build.extensions;
-    let found = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    if known.is_empty() || known.contains(&found.as_str()) {
+    let known = [entry.build.extensions, entry.build.family].concat();
+    let found = extension_of(path);
+    if known.contains(&found.as_str()) {
         return Ok(entry.name);
     }
     let expected = format!("{} for the format `{}`", known.join(" or "), entry.name);
     Err(IoError::request(format!("the extension of {}", path.display()), format!("`{found}`"), expected))
 }
 
+/// In lower case, without the dot; empty where there is none.
+fn extension_of(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
 fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let extension = extension_of(path);
     FORMATS
         .entries
         .iter()
@@ -279,7 +285,7 @@ fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {
 
 /// The extensions that would be known are those of formats that fit what is wanted.
 fn unknown_extension(path: &Path, fits: impl Fn(&Format) -> bool) -> IoError {
-    let found = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let found = extension_of(path);
     let fitting = FORMATS.entries.iter().filter(|entry| fits(&entry.build));
     let known: Vec<&str> = fitting.flat_map(|entry| entry.build.extensions).copied().collect();
     let expected = format!("one of {}", known.join(", "));

@@ -24,6 +24,7 @@ pub(crate) static OBJ: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["obj"],
+        family: &[],
         parts: &[],
         recognises: |_| false,
         read: Some(read),

@@ -26,6 +26,7 @@ pub(crate) static TETGEN: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: PARTS,
+        family: &[],
         parts: PARTS,
         recognises: |_| false,
         read: Some(read),

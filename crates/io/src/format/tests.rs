@@ -34,6 +34,11 @@ fn round_trips() -> impl Iterator<Item = &'static Entry<Format>> {
     FORMATS.entries.iter().copied().filter(|entry| entry.build.read.is_some() && entry.build.write.is_some())
 }
 
+/// An extension that a file of the format may bear.
+fn extension(entry: &Entry<Format>) -> &'static str {
+    [entry.build.extensions, entry.build.family].concat()[0]
+}
+
 /// A mesh with everything that a format holds, and nothing else.
 fn held_mesh(holds: &Holds) -> Mesh {
     let mut mesh = match holds.shapes {
@@ -71,14 +76,20 @@ fn every_format_gives_back_what_it_holds() {
         let back = read_back(entry.name, &output);
         assert_eq!(back.mesh, mesh, "{}", entry.name);
         assert_eq!(entry.build.holds.losses(entry.name, &output), named_numbers(entry), "{}", entry.name);
-        let Some(extension) = entry.build.extensions.first() else { continue };
-        let path = folder.path(format!("mesh.{extension}"));
-        write_mesh(&path, &mesh).unwrap();
-        assert_eq!(read_mesh(&path).unwrap().0, mesh, "{}", entry.name);
-        // a dot in the stem, letters of the other case
-        let path = folder.path(format!("a.b.{}", extension.to_uppercase()));
-        write_mesh(&path, &mesh).unwrap();
-        assert_eq!(read_mesh(&path).unwrap().0, mesh, "{}", entry.name);
+        for extension in entry.build.extensions.iter().chain(entry.build.family) {
+            // a dot in the stem, letters of the other case
+            for name in [format!("mesh.{extension}"), format!("a.b.{}", extension.to_uppercase())] {
+                let path = folder.path(name);
+                assert_eq!(format_for(entry.name, &path).unwrap(), entry.name);
+                write_dataset_as(entry.name, &path, &output).unwrap();
+                assert_eq!(read_mesh(&path).unwrap().0, mesh, "{} as {}", entry.name, path.display());
+            }
+        }
+        // where the name of the file would stand for another format it is refused
+        for other in ["a.xyz", "a", if entry.name == "obj" { "a.off" } else { "a.obj" }] {
+            let error = format_for(entry.name, Path::new(other)).unwrap_err();
+            assert!(matches!(&error, IoError::Request { .. }), "{}: {error}", entry.name);
+        }
     }
 }
 
@@ -98,11 +109,7 @@ fn lines_and_sheets_come_back_or_are_refused() {
         mesh.groups.insert("all".into(), souple_mesh::Group { cells: vec![0], ..Default::default() });
         for entry in round_trips() {
             let shapes = entry.build.holds.shapes;
-            let path = folder.path(format!(
-                "{kind}_{}.{}",
-                entry.name,
-                entry.build.extensions.first().unwrap_or(&"x")
-            ));
+            let path = folder.path(format!("{kind}_{}.{}", entry.name, extension(entry)));
             let output = Output::new(&mesh);
             let written = write_dataset_as(entry.name, &path, &output);
             let is_kept = match kind.dimension() {

@@ -29,6 +29,7 @@ pub(crate) static GLTF: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["glb"],
+        family: &[],
         parts: &[],
         recognises: |bytes| bytes.starts_with(MAGIC),
         read: None,

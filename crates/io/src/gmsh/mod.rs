@@ -27,6 +27,7 @@ pub(crate) static GMSH: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["msh"],
+        family: &[],
         parts: &[],
         recognises,
         read: Some(read),
@@ -42,6 +43,7 @@ pub(crate) static GMSH_BINARY: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &[],
+        family: &["msh"],
         parts: &[],
         recognises,
         read: Some(read),
@@ -57,6 +59,7 @@ pub(crate) static GMSH_2: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["msh2"],
+        family: &["msh"],
         parts: &[],
         recognises,
         read: Some(read),

@@ -23,6 +23,7 @@ pub(crate) static VTK_LEGACY: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["vtk"],
+        family: &[],
         parts: &[],
         recognises,
         read: Some(read),

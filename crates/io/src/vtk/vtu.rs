@@ -22,6 +22,7 @@ pub(crate) static VTU: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["vtu"],
+        family: &[],
         parts: &[],
         recognises,
         read: Some(read),
