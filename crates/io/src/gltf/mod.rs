@@ -18,7 +18,7 @@ use crate::dataset::Output;
 use crate::facets::SurfacePart;
 use crate::format::{Format, WriteError};
 use crate::holds::{Digits, Holds};
-use crate::picture::{Colour, Paint};
+use crate::picture::Colour;
 use crate::{IoError, write_file};
 use buffer::{Buffer, Target};
 
@@ -82,7 +82,6 @@ impl Animation {
             meshes.push(mesh(surface, index, &mut buffer));
             nodes.push(json!({"name": surface.name, "mesh": index}));
         }
-        let first = |frames: usize| self.times[..frames].iter().map(|time| (time - self.times[0]) as f32);
         let moving: Vec<(usize, usize)> = self
             .surfaces
             .iter()
@@ -90,9 +89,8 @@ impl Animation {
             .filter(|(_, surface)| surface.frames.len() > 1)
             .map(|(index, surface)| (index, surface.frames.len()))
             .collect();
-        if let Some((_, frames)) = moving.first() {
-            let times = first(*frames).collect::<Vec<f32>>();
-            let input = buffer.scalars(&times, Target::None);
+        if !moving.is_empty() {
+            let input = buffer.scalars(&self.times_from_start(), Target::None);
             for (node, frames) in moving {
                 let targets = frames - 1;
                 let mut weights = vec![0.0; frames * targets];
@@ -123,7 +121,30 @@ impl Animation {
         if !channels.is_empty() {
             document["animations"] = json!([{"name": "run", "channels": channels, "samplers": samplers}]);
         }
-        Ok(container(&document, &buffer.bytes))
+        container(&document, &buffer.bytes)
+    }
+
+    /// Times as the file has them: numbers of 4 bytes, from the first on [s].
+    fn times_from_start(&self) -> Vec<f32> {
+        self.times.iter().map(|time| (time - self.times[0]) as f32).collect()
+    }
+
+    /// Bytes of the numbers of the file, known before they are made.
+    fn number_bytes(&self) -> u64 {
+        let of_surface = |surface: &MovingSurface| {
+            let [frames, points, triangles, coloured] = [
+                surface.frames.len(),
+                surface.frames[0].len(),
+                surface.triangles.len(),
+                surface.point_colours.len(),
+            ]
+            .map(|count| count as u64);
+            // positions and normals; a weight of each target at each time
+            12 * (2 * frames * points + triangles + coloured) + 4 * frames * (frames - 1)
+        };
+        let is_moving = self.surfaces.iter().any(|surface| surface.frames.len() > 1);
+        let times = if is_moving { self.times.len() as u64 } else { 0 };
+        4 * times + self.surfaces.iter().map(of_surface).sum::<u64>()
     }
 
     /// Writes the file.
@@ -148,6 +169,15 @@ impl Animation {
                 "the time of a frame".to_owned(),
                 format!("{:?}", pair[1]),
                 format!("more than {:?}", pair[0]),
+            );
+        }
+        // glTF wants them to increase as it has them
+        let times = self.times_from_start();
+        if let Some(frame) = (1..times.len()).find(|frame| times[*frame] <= times[frame - 1]) {
+            return refuse(
+                "the time of a frame".to_owned(),
+                format!("{:?} s, {:?} s from the start", self.times[frame], times[frame]),
+                "times that are apart also as numbers of 4 bytes".to_owned(),
             );
         }
         if self.surfaces.is_empty() {
@@ -182,7 +212,7 @@ impl Animation {
                 return refuse(of("a position"), found, "finite numbers of 4 bytes".to_owned());
             }
         }
-        Ok(())
+        length(self.number_bytes()).map(drop)
     }
 }
 
@@ -247,35 +277,44 @@ fn rotation_to_y(up: Vec3) -> [f64; 4] {
     [axis.x / length, axis.y / length, axis.z / length, w / length]
 }
 
+/// A length as glTF writes it.
+fn length(bytes: u64) -> Result<u32, IoError> {
+    u32::try_from(bytes).map_err(|_| {
+        let expected = "less than 2^32, the most that a .glb file holds: fewer frames, or smaller surfaces";
+        IoError::request("the number of bytes of the .glb file", bytes, expected)
+    })
+}
+
 /// Head, document and numbers as one file; lengths are multiples of four.
-fn container(document: &Value, numbers: &[u8]) -> Vec<u8> {
+fn container(document: &Value, numbers: &[u8]) -> Result<Vec<u8>, IoError> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let padded = numbers.len().next_multiple_of(4);
     let total = 12 + 8 + text.len() + 8 + padded;
+    // the parts are shorter than the whole
+    let whole = length(total as u64)?;
     let mut bytes = Vec::with_capacity(total);
-    let word = |bytes: &mut Vec<u8>, number: usize| bytes.extend((number as u32).to_le_bytes());
+    let word = |bytes: &mut Vec<u8>, number: u32| bytes.extend(number.to_le_bytes());
     bytes.extend(MAGIC);
     word(&mut bytes, 2);
-    word(&mut bytes, total);
-    word(&mut bytes, text.len());
+    word(&mut bytes, whole);
+    word(&mut bytes, text.len() as u32);
     bytes.extend(b"JSON");
     bytes.extend(text);
-    word(&mut bytes, padded);
+    word(&mut bytes, padded as u32);
     bytes.extend(b"BIN\0");
     bytes.extend(numbers);
     bytes.resize(total, 0);
-    bytes
+    Ok(bytes)
 }
 
 fn write_mesh(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let part = SurfacePart::of(output);
-    let Paint::Plain(colour) = Paint::default() else { return Ok(()) };
     let surface = MovingSurface {
         name: "surface".to_owned(),
         triangles: part.facets.iter().flat_map(|facet| facet.triangles()).collect(),
         frames: vec![part.positions],
-        colour,
+        colour: Colour::tissue(),
         point_colours: Vec::new(),
     };
     let animation = Animation { surfaces: vec![surface], times: vec![0.0], up: Vec3::Y };
