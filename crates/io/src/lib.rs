@@ -27,7 +27,7 @@ mod tetgen;
 mod vtk;
 
 pub use beside::write_file;
-pub use csv::{Column, write_csv};
+pub use csv::{Column, csv_cell, write_csv};
 pub use dataset::{Dataset, Facets, Field, Output, Precision};
 pub use error::{Fault, IoError, Place};
 pub use format::{
