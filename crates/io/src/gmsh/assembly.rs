@@ -38,6 +38,8 @@ pub(super) struct Assembly {
     /// Whether the file has elements of more dimensions than edges.
     is_more_than_edges: bool,
     skipped: BTreeMap<i64, usize>,
+    /// Sections that were left out, by name.
+    skipped_sections: BTreeMap<Vec<u8>, usize>,
     pub has_nodes: bool,
     pub has_elements: bool,
 }
@@ -61,6 +63,13 @@ impl Assembly {
         }
         self.dataset.mesh.points.push(position);
         Ok(())
+    }
+
+    /// Notes a section that is not read; remarks say nothing about the mesh.
+    pub fn leave_out(&mut self, section: &[u8]) {
+        if section != b"Comments" {
+            *self.skipped_sections.entry(section.to_vec()).or_default() += 1;
+        }
     }
 
     /// The type of a number, refused if its elements cannot be used.
@@ -170,6 +179,19 @@ impl Assembly {
         for (number, count) in self.skipped {
             let name = element_type::find(number).map_or("element", |element| element.name);
             self.dataset.notes.push(format!("{count} elements of type {number} ({name}) were left out"));
+        }
+        if !self.skipped_sections.is_empty() {
+            let names: Vec<String> = self
+                .skipped_sections
+                .iter()
+                .map(|(name, count)| match count {
+                    1 => format!("${}", name.escape_ascii()),
+                    count => format!("${} ({count} times)", name.escape_ascii()),
+                })
+                .collect();
+            self.dataset
+                .notes
+                .push(format!("sections that are not read were left out: {}", names.join(", ")));
         }
         Ok(self.dataset)
     }

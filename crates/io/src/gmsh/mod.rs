@@ -99,7 +99,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
                     "one section $MeshFormat before all others",
                 ));
             }
-            _ => skip_section(&mut cursor, section)?,
+            _ => skip_section(&mut cursor, section, &mut assembly)?,
         }
         close_section(&mut cursor, section)?;
     }
@@ -209,7 +209,8 @@ fn close_section(cursor: &mut Cursor<'_>, section: &[u8]) -> Result<(), Fault> {
 }
 
 /// Up to the closing word of a section that holds no mesh.
-fn skip_section(cursor: &mut Cursor<'_>, section: &[u8]) -> Result<(), Fault> {
+fn skip_section(cursor: &mut Cursor<'_>, section: &[u8], assembly: &mut Assembly) -> Result<(), Fault> {
+    assembly.leave_out(section);
     let closing = closing_word(section);
     let rest = cursor.rest();
     match rest.windows(closing.len()).position(|window| window == closing) {
