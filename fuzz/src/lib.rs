@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use souple_formal::{Condition, Formula, parse_quantity, parse_unit};
-use souple_io::{FORMATS, Output, read_dataset_bytes, read_particle_bytes};
+use souple_io::{FORMATS, Output, read_dataset_bytes, read_particle_bytes, read_series_bytes};
 
 /// Reads a content; what is read must refer to points that exist, validate without a panic, and come back the
 /// same from the format's own writer.
@@ -54,6 +54,12 @@ pub fn read_scene(content: &[u8]) {
             let _ = (errors.to_string(), errors.to_json());
         }
     }
+}
+
+/// Reads a content as a list of frames.
+pub fn read_series(content: &[u8]) {
+    let Ok(frames) = read_series_bytes(Path::new("fuzzed.pvd"), content) else { return };
+    assert!(!frames.is_empty() && frames.iter().all(|(time, _)| time.is_finite()));
 }
 
 /// Reads a content as a table of particles and dresses them, where they are few.

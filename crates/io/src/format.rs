@@ -82,15 +82,6 @@ pub fn files_of_mesh(path: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The mesh of a file whose content is already in memory; `path` says its extension and is named in errors.
-///
-/// # Errors
-/// The extension is unknown, the content is faulty.
-pub fn read_mesh_content(path: &Path, bytes: &[u8]) -> Result<(Mesh, Vec<String>), IoError> {
-    let dataset = read_content(path, bytes)?;
-    Ok((dataset.mesh, dataset.notes))
-}
-
 /// The mesh and the fields of a file; the format goes by the extension, or by the content where that says more.
 ///
 /// # Errors
