@@ -36,6 +36,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     souple_io::Series::new(&series, "frames").push(0.5, &Output::new(&mesh))?;
     // the frame itself is no list
     std::fs::remove_file(series.join("frames_0000.vtu"))?;
+    let studies = Path::new(&folder).join("study");
+    std::fs::create_dir_all(&studies)?;
+    let vary = "scene = \"x.toml\"\nsteps = 20\n[vary]\n\"a.b\" = [1, 2.5]\nc = [\"tet4\", [1, 2]]\n\
+                [graphs.g]\nx = \"a.b\"\ny = \"tip.y\"\nlines = \"c\"\nlogarithmic = \"xy\"\n";
+    std::fs::write(studies.join("vary"), vary)?;
+    let table = "scene = \"x.toml\"\ntable = \"runs.csv\"\n--- table\na.b,c\n1,\"[1, 2]\"\n5 kPa,tet4\n";
+    std::fs::write(studies.join("table"), table)?;
     write_formulas(&Path::new(&folder).join("formula"))?;
     let mut words = Vec::new();
     collect_words(&souple_scene::schema(), &mut words);

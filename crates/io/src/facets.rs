@@ -203,3 +203,6 @@ pub(crate) fn check_end(bytes: &[u8], mesh: &Mesh, notes: &mut Vec<String>) -> R
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! What a study asks for: a scene, what is the same in all runs, what varies, and the graphs to draw.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
@@ -193,11 +194,10 @@ fn rows(path: &Path, text: &str) -> Result<Vec<Plan>, SweepError> {
             .ok_or_else(|| SweepError::value(place(number), "a quote that is not closed", "quotes in pairs"))
     };
     let paths = cells_of(first, head)?;
-    for (index, path) in paths.iter().enumerate() {
-        if path.is_empty() || paths[..index].contains(path) {
-            let found = if path.is_empty() { "an empty path".to_owned() } else { format!("`{path}` twice") };
-            return Err(SweepError::value(place(first), found, "different paths with commas"));
-        }
+    let mut known = BTreeSet::new();
+    if let Some(path) = paths.iter().find(|path| path.is_empty() || !known.insert(*path)) {
+        let found = if path.is_empty() { "an empty path".to_owned() } else { format!("`{path}` twice") };
+        return Err(SweepError::value(place(first), found, "different paths with commas"));
     }
     let mut plans = Vec::new();
     for (number, line) in lines {

@@ -149,7 +149,8 @@ impl Grid {
         Ok(destinations)
     }
 
-    /// Drops the values of cells where polygons of very many corners would multiply them beyond what a file may ask for.
+    /// Drops the values of cells, their groups among them, where polygons of very many corners would multiply them beyond what a
+    /// file may ask for.
     fn bound_fields(&mut self, dataset: &mut Dataset, destinations: &[Destination]) {
         const ALWAYS: usize = 1 << 24;
         const MOST_PER_VALUE: usize = 16;
@@ -159,7 +160,7 @@ impl Grid {
         if of_each.saturating_mul(elements) > given.saturating_mul(MOST_PER_VALUE).max(ALWAYS) {
             self.cell_fields.clear();
             let note = format!(
-                "the values of {} cells were left out: their polygons became {elements} facets",
+                "the values and groups of {} cells were left out: their polygons became {elements} facets",
                 destinations.len()
             );
             dataset.notes.push(note);

@@ -117,3 +117,34 @@ fn frames(bytes: &[u8], folder: &Path) -> Result<Vec<(f64, PathBuf)>, Fault> {
     }
     Ok(frames)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read_mesh;
+    use crate::testing::{TemporaryFolder, mixed_mesh};
+
+    /// A series lists its frames with their times, and each frame is a mesh.
+    #[test]
+    fn series_of_frames() {
+        let folder = TemporaryFolder::new("series");
+        let mesh = mixed_mesh();
+        let mut series = Series::new(folder.path(""), "run & hide");
+        for time in [0.0, 0.1, 0.2] {
+            let frame = series.push(time, &Output::new(&mesh)).unwrap();
+            assert_eq!(read_mesh(&frame).unwrap().0, mesh);
+        }
+        let list = std::fs::read_to_string(series.path()).unwrap();
+        assert!(list.contains("timestep=\"0.1\" part=\"0\" file=\"run &amp; hide_0001.vtu\""), "{list}");
+        assert_eq!(list.matches("<DataSet").count(), series.len());
+        let read = read_series(&series.path()).unwrap();
+        assert_eq!(read.iter().map(|frame| frame.0).collect::<Vec<_>>(), [0.0, 0.1, 0.2]);
+        assert!(read.iter().all(|frame| frame.1.is_file()));
+        for (from, to) in
+            [("\"0.1\"", "\"nan\""), ("file=", "fill="), ("DataSet", "Datum"), ("<VTKFile", "<VTK")]
+        {
+            std::fs::write(folder.path("bad.pvd"), list.replace(from, to)).unwrap();
+            assert!(read_series(&folder.path("bad.pvd")).is_err(), "{from}");
+        }
+    }
+}
