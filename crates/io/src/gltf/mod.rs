@@ -20,7 +20,7 @@ use crate::dataset::Output;
 use crate::facets::SurfacePart;
 use crate::format::{Format, WriteError};
 use crate::holds::{Digits, Holds};
-use crate::picture::{Colour, Paint};
+use crate::picture::Colour;
 use crate::{IoError, write_file};
 use buffer::{Buffer, Target};
 
@@ -31,6 +31,7 @@ pub(crate) static GLTF: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["glb"],
+        family: &[],
         parts: &[],
         recognises: |bytes| bytes.starts_with(MAGIC),
         read: None,
@@ -79,6 +80,7 @@ impl Animation {
         self.check()?;
         let mut buffer = Buffer::default();
         let (mut meshes, mut nodes, mut materials) = (Vec::new(), Vec::new(), Vec::new());
+        let seconds = self.times_from_start();
         let mut motions = Motions::default();
         for (index, surface) in self.surfaces.iter().enumerate() {
             materials.push(material(surface));
@@ -89,8 +91,8 @@ impl Animation {
                 node["scale"] = json!([0.0, 0.0, 0.0]);
             }
             nodes.push(node);
-            motions.add_blending(index, surface, &self.times, &mut buffer);
-            motions.add_presence(index, &surface.during, &self.times, &mut buffer);
+            motions.add_blending(index, surface, &seconds, &mut buffer);
+            motions.add_presence(index, &surface.during, &seconds, &mut buffer);
         }
         let children: Vec<usize> = (0..nodes.len()).collect();
         let root = nodes.len();
@@ -110,7 +112,39 @@ impl Animation {
             let Motions { channels, samplers, .. } = motions;
             document["animations"] = json!([{"name": "run", "channels": channels, "samplers": samplers}]);
         }
-        Ok(container(&document, &buffer.bytes))
+        container(&document, &buffer.bytes)
+    }
+
+    /// Times as the file has them: numbers of 4 bytes, from the first on [s].
+    fn times_from_start(&self) -> Vec<f32> {
+        self.times.iter().map(|time| (time - self.times[0]) as f32).collect()
+    }
+
+    /// Bytes of the numbers of the file, known before they are made.
+    fn number_bytes(&self) -> u64 {
+        let of_surface = |surface: &MovingSurface| {
+            let [frames, points, triangles, coloured] = [
+                surface.frames.len(),
+                surface.frames[0].len(),
+                surface.triangles.len(),
+                surface.point_colours.len(),
+            ]
+            .map(|count| count as u64);
+            // positions and normals; a weight of each target at each time
+            12 * (2 * frames * points + triangles + coloured) + 4 * frames * (frames - 1)
+        };
+        let count = self.times.len();
+        let mut ranges: Vec<&Range<usize>> = Vec::new();
+        for surface in self.surfaces.iter().filter(|surface| surface.frames.len() > 1) {
+            if !ranges.contains(&&surface.during) {
+                ranges.push(&surface.during);
+            }
+        }
+        let in_part = self.surfaces.iter().filter(|surface| surface.during != (0..count));
+        let keys = in_part.map(|surface| turns(&surface.during, count).len() as u64).sum::<u64>();
+        let times = ranges.into_iter().map(|range| range.len() as u64).sum::<u64>();
+        // a time and three scales of each key
+        4 * times + 16 * keys + self.surfaces.iter().map(of_surface).sum::<u64>()
     }
 
     /// Writes the file.
@@ -135,6 +169,15 @@ impl Animation {
                 "the time of a frame".to_owned(),
                 format!("{:?}", pair[1]),
                 format!("more than {:?}", pair[0]),
+            );
+        }
+        // glTF wants them to increase as it has them
+        let times = self.times_from_start();
+        if let Some(frame) = (1..times.len()).find(|frame| times[*frame] <= times[frame - 1]) {
+            return refuse(
+                "the time of a frame".to_owned(),
+                format!("{:?} s, {:?} s from the start", self.times[frame], times[frame]),
+                "times that are apart also as numbers of 4 bytes".to_owned(),
             );
         }
         if self.surfaces.is_empty() {
@@ -174,7 +217,7 @@ impl Animation {
                 return refuse(of("a position"), found, "finite numbers of 4 bytes".to_owned());
             }
         }
-        Ok(())
+        length(self.number_bytes()).map(drop)
     }
 }
 
@@ -194,7 +237,7 @@ impl Motions {
     }
 
     /// Lets each frame show at its time, and blends between.
-    fn add_blending(&mut self, node: usize, surface: &MovingSurface, times: &[f64], buffer: &mut Buffer) {
+    fn add_blending(&mut self, node: usize, surface: &MovingSurface, times: &[f32], buffer: &mut Buffer) {
         let frames = surface.frames.len();
         if frames < 2 {
             return;
@@ -206,8 +249,7 @@ impl Motions {
         }
         let known = self.inputs.iter().find(|(range, _)| *range == surface.during).map(|(_, input)| *input);
         let input = known.unwrap_or_else(|| {
-            let seconds: Vec<f32> = surface.during.clone().map(|at| since_start(times, at)).collect();
-            let input = buffer.scalars(&seconds, Target::None);
+            let input = buffer.scalars(&times[surface.during.clone()], Target::None);
             self.inputs.push((surface.during.clone(), input));
             input
         });
@@ -216,15 +258,13 @@ impl Motions {
     }
 
     /// Lets a surface be there for its part of the time.
-    fn add_presence(&mut self, node: usize, during: &Range<usize>, times: &[f64], buffer: &mut Buffer) {
+    fn add_presence(&mut self, node: usize, during: &Range<usize>, times: &[f32], buffer: &mut Buffer) {
         if *during == (0..times.len()) {
             return;
         }
         let there = |at: usize| if during.contains(&at) { 1.0 } else { 0.0 };
-        let mut keys = vec![0, during.start, during.end];
-        keys.retain(|at| *at < times.len());
-        keys.dedup();
-        let seconds: Vec<f32> = keys.iter().map(|at| since_start(times, *at)).collect();
+        let keys = turns(during, times.len());
+        let seconds: Vec<f32> = keys.iter().map(|at| times[*at]).collect();
         let input = buffer.scalars(&seconds, Target::None);
         let output =
             buffer.vectors(keys.iter().map(|at| Vec3::new(1.0, 1.0, 1.0) * there(*at)), Target::None);
@@ -232,9 +272,12 @@ impl Motions {
     }
 }
 
-/// [s]
-fn since_start(times: &[f64], at: usize) -> f32 {
-    (times[at] - times[0]) as f32
+/// When it is said whether a surface is there: at the first time, and where it comes and goes.
+fn turns(during: &Range<usize>, count: usize) -> Vec<usize> {
+    let mut keys = vec![0, during.start, during.end];
+    keys.retain(|at| *at < count);
+    keys.dedup();
+    keys
 }
 
 fn mesh(surface: &MovingSurface, material: usize, buffer: &mut Buffer) -> Value {
@@ -298,36 +341,45 @@ fn rotation_to_y(up: Vec3) -> [f64; 4] {
     [axis.x / length, axis.y / length, axis.z / length, w / length]
 }
 
+/// A length as glTF writes it.
+fn length(bytes: u64) -> Result<u32, IoError> {
+    u32::try_from(bytes).map_err(|_| {
+        let expected = "less than 2^32, the most that a .glb file holds: fewer frames, or smaller surfaces";
+        IoError::request("the number of bytes of the .glb file", bytes, expected)
+    })
+}
+
 /// Head, document and numbers as one file; lengths are multiples of four.
-fn container(document: &Value, numbers: &[u8]) -> Vec<u8> {
+fn container(document: &Value, numbers: &[u8]) -> Result<Vec<u8>, IoError> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let padded = numbers.len().next_multiple_of(4);
     let total = 12 + 8 + text.len() + 8 + padded;
+    // the parts are shorter than the whole
+    let whole = length(total as u64)?;
     let mut bytes = Vec::with_capacity(total);
-    let word = |bytes: &mut Vec<u8>, number: usize| bytes.extend((number as u32).to_le_bytes());
+    let word = |bytes: &mut Vec<u8>, number: u32| bytes.extend(number.to_le_bytes());
     bytes.extend(MAGIC);
     word(&mut bytes, 2);
-    word(&mut bytes, total);
-    word(&mut bytes, text.len());
+    word(&mut bytes, whole);
+    word(&mut bytes, text.len() as u32);
     bytes.extend(b"JSON");
     bytes.extend(text);
-    word(&mut bytes, padded);
+    word(&mut bytes, padded as u32);
     bytes.extend(b"BIN\0");
     bytes.extend(numbers);
     bytes.resize(total, 0);
-    bytes
+    Ok(bytes)
 }
 
 fn write_mesh(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let part = SurfacePart::of(output);
-    let Paint::Plain(colour) = Paint::default() else { return Ok(()) };
     let surface = MovingSurface {
         name: "surface".to_owned(),
         triangles: part.facets.iter().flat_map(|facet| facet.triangles()).collect(),
         during: 0..1,
         frames: vec![part.positions],
-        colour,
+        colour: Colour::tissue(),
         point_colours: Vec::new(),
     };
     let animation = Animation { surfaces: vec![surface], times: vec![0.0], up: Vec3::Y };

@@ -134,6 +134,27 @@ fn a_mesh_is_written_as_its_surface() {
     assert_eq!(document["accessors"][0]["count"], 9);
 }
 
+/// Lengths are numbers of 4 bytes: what is longer is refused, by counts alone, which are those of the file.
+#[test]
+fn lengths_are_known_before() {
+    for colours in [0, 6] {
+        let mut animation = swing();
+        animation.surfaces[0].point_colours = vec![Colour::BLACK; colours];
+        let mut still = animation.surfaces[0].clone();
+        still.frames.truncate(1);
+        still.during = 1..2;
+        animation.surfaces.push(still);
+        let (document, _) = opened(&animation.to_glb().unwrap());
+        assert_eq!(document["buffers"][0]["byteLength"], animation.number_bytes());
+    }
+    assert_eq!(length(u64::from(u32::MAX)).unwrap(), u32::MAX);
+    let error = length(1 << 32).unwrap_err().to_string();
+    assert!(
+        error.starts_with("the number of bytes of the .glb file is 4294967296; expected less than 2^32"),
+        "{error}"
+    );
+}
+
 #[test]
 fn faulty_animations_are_refused() {
     let refused = |change: fn(&mut Animation), words: &str| {
@@ -143,6 +164,11 @@ fn faulty_animations_are_refused() {
         assert!(message.contains(words), "{message}");
     };
     refused(|a| a.times[2] = 1.1, "the time of a frame is 1.1; expected more than 1.1");
+    // a millisecond after nine hours is nothing to a number of 4 bytes, whose steps are 2⁻⁸ s there
+    refused(
+        |a| a.times = vec![0.0, 1.0, 32768.0, 32768.001],
+        "the time of a frame is 32768.001 s, 32768.0 s from the start",
+    );
     refused(|a| a.times.clear(), "the number of frames is 0");
     refused(|a| a.surfaces.clear(), "the number of surfaces is 0");
     refused(|a| a.surfaces[0].triangles[0] = [0, 1, 99], "a corner of surfaces[0] is 99");

@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use serde_json::json;
-use souple_sweep::{Database, Progress, Study, SweepError, Workers, graphs, sweep as make_runs, table_of};
+use souple_sweep::{
+    Database, Progress, Study, SweepError, Workers, fingerprints, graphs, sweep as make_runs, table_of,
+};
 use souple_table::counted;
 
 use super::progress::Meter;
@@ -65,9 +67,11 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
     interruption::heed();
     let meter = Meter::new("runs", arguments.quiet);
     let mut watch = |progress: Progress| meter.show(progress.done as u64, progress.runs as u64, "");
-    let summary = make_runs(&study, &mut database, workers, &interruption::INTERRUPTED, &mut watch)?;
+    let fingerprints = fingerprints(&study, workers)?;
+    let summary =
+        make_runs(&study, &fingerprints, &mut database, workers, &interruption::INTERRUPTED, &mut watch)?;
     drop(meter);
-    let table = table_of(&study, &database)?;
+    let table = table_of(&study, &fingerprints, &database)?;
     let csv = out.with_extension("csv");
     table.write_csv(&csv)?;
     let mut files = vec![out.clone(), csv];
