@@ -3,7 +3,7 @@
 //! The source's pair, Hooke's and St. Venant–Kirchhoff's laws, at equilibrium; and Hooke's law with Ogden's, which costs ten
 //! times as much, in explicit steps.
 
-use super::timing::{Held, Timed, Timing, as_it_is, median, scene, with_threads};
+use super::timing::{Held, Timed, Timing, as_it_is, scene, with_threads};
 use super::{Effort, Figure, value_of};
 
 /// How many times faster than under the second law everywhere a body must be that is off by 5 % at most.
@@ -96,7 +96,6 @@ impl Adapting {
             measured.push((variant, read(&settings)?, timed));
         }
         let Some((_, reference, everywhere)) = measured.last() else { return Ok(Vec::new()) };
-        let (slow, _) = median(everywhere.seconds.clone());
         let mut figures = Vec::new();
         for (variant, value, timed) in &measured {
             let error_of = format!("{}, against the second law everywhere", self.probe);
@@ -108,9 +107,8 @@ impl Adapting {
             let row = format!("{name}_{}_{variant}", self.name);
             figures.push(timed.milliseconds_per_step(&row, &held(None)));
             if self.saving == Some(variant) {
-                let ratios = timed.seconds.iter().map(|seconds| slow / seconds).collect();
                 let row = format!("{row}_saving");
-                figures.push(timed.figure(&row, ratios, &held(Some(SAVING)), ("x as fast", true)));
+                figures.push(timed.times_as_fast(&row, everywhere, &held(Some(SAVING))));
             }
         }
         Ok(figures)

@@ -22,10 +22,13 @@ pub struct Timing<'a> {
 }
 
 /// What was timed.
+#[derive(Clone)]
 pub struct Timed {
     pub threads: usize,
     /// Of a step, sample by sample [s].
     pub seconds: Vec<f64>,
+    /// The same by time of the processor, of one thread where the system tells; else empty.
+    pub processor: Vec<f64>,
     pub cells: usize,
     pub bytes: usize,
 }
@@ -44,14 +47,45 @@ impl Timing<'_> {
         let mut steps =
             |count: usize| (0..count).try_for_each(|_| world.step().map_err(|error| error.to_string()));
         steps(self.warm_up)?;
-        let mut seconds = Vec::with_capacity(self.samples);
+        let (mut seconds, mut processor) = (Vec::with_capacity(self.samples), Vec::new());
         for _ in 0..self.samples {
-            let clock = Instant::now();
+            let clock = Clock::start();
             steps(self.steps_per_sample)?;
-            seconds.push(clock.elapsed().as_secs_f64() / self.steps_per_sample as f64);
+            clock.stop(&mut seconds, &mut processor, self.steps_per_sample);
         }
-        Ok(Timed { threads, seconds, cells, bytes: world.bytes() })
+        // several threads work for one clock
+        let processor = if threads == 1 { processor } else { Vec::new() };
+        Ok(Timed { threads, seconds, processor, cells, bytes: world.bytes() })
     }
+}
+
+/// Time that passes, and time that this thread has a processor: where others work on the machine too, what the work itself
+/// takes.
+pub struct Clock {
+    start: Instant,
+    on_processor: Option<f64>,
+}
+
+impl Clock {
+    pub fn start() -> Self {
+        let on_processor = seconds_on_processor();
+        Self { start: Instant::now(), on_processor }
+    }
+
+    /// Adds what each of `count` pieces of work took.
+    pub fn stop(self, seconds: &mut Vec<f64>, processor: &mut Vec<f64>, count: usize) {
+        seconds.push(self.start.elapsed().as_secs_f64() / count as f64);
+        if let (Some(start), Some(end)) = (self.on_processor, seconds_on_processor()) {
+            processor.push((end - start) / count as f64);
+        }
+    }
+}
+
+/// Of this thread so far; `None` where the system does not tell.
+fn seconds_on_processor() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
 }
 
 pub fn as_it_is(_: &mut World) -> Result<(), SnapshotError> {
@@ -76,30 +110,37 @@ pub struct Held {
 
 impl Timed {
     pub fn elements_per_second(&self, name: &str, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| self.cells as f64 / seconds).collect();
-        self.figure(name, rates, held, ("elements/s", true))
+        self.of_seconds(name, |seconds| self.cells as f64 / seconds, held, ("elements/s", true))
     }
 
     /// Of a network, whose cells are its links.
     pub fn links_per_second(&self, name: &str, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| self.cells as f64 / seconds).collect();
-        self.figure(name, rates, held, ("links/s", true))
+        self.of_seconds(name, |seconds| self.cells as f64 / seconds, held, ("links/s", true))
     }
 
     /// Of steps that move so many bytes.
     pub fn gigabytes_per_second(&self, name: &str, bytes: usize, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| 1e-9 * bytes as f64 / seconds).collect();
-        self.figure(name, rates, held, ("GB/s", true))
+        self.of_seconds(name, |seconds| 1e-9 * bytes as f64 / seconds, held, ("GB/s", true))
     }
 
     pub fn milliseconds_per_step(&self, name: &str, held: &Held) -> Figure {
-        let times = self.seconds.iter().map(|seconds| 1e3 * seconds).collect();
-        self.figure(name, times, held, ("ms/step", false))
+        self.of_seconds(name, |seconds| 1e3 * seconds, held, ("ms/step", false))
     }
 
     pub fn steps_per_second(&self, name: &str, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| 1.0 / seconds).collect();
-        self.figure(name, rates, held, ("steps/s", true))
+        self.of_seconds(name, |seconds| 1.0 / seconds, held, ("steps/s", true))
+    }
+
+    fn of_seconds(
+        &self,
+        name: &str,
+        value: impl Fn(f64) -> f64,
+        held: &Held,
+        unit: (&'static str, bool),
+    ) -> Figure {
+        let values = |seconds: &[f64]| seconds.iter().map(|seconds| value(*seconds)).collect();
+        let by_processor = (!self.processor.is_empty()).then(|| median(values(&self.processor)).0);
+        Figure { by_processor, ..self.figure(name, values(&self.seconds), held, unit) }
     }
 
     pub fn figure(
@@ -113,6 +154,7 @@ impl Timed {
         Figure {
             name: format!("{name}_{}t", self.threads),
             value,
+            by_processor: None,
             unit,
             higher_is_better,
             error: held.error,
@@ -123,6 +165,24 @@ impl Timed {
             spread,
             bytes: self.bytes,
         }
+    }
+
+    /// Of one of `count` equal parts of a step.
+    pub fn in_parts(self, count: usize) -> Self {
+        let part = |seconds: &Vec<f64>| seconds.iter().map(|seconds| seconds / count as f64).collect();
+        Self { seconds: part(&self.seconds), processor: part(&self.processor), ..self }
+    }
+
+    /// How many times as fast as `slow`, by medians.
+    pub fn times_as_fast(&self, name: &str, slow: &Self, held: &Held) -> Figure {
+        let ratios = |slow: &[f64], own: &[f64]| -> Vec<f64> {
+            let (slow, _) = median(slow.to_vec());
+            own.iter().map(|seconds| slow / seconds).collect()
+        };
+        let are_known = !self.processor.is_empty() && !slow.processor.is_empty();
+        let by_processor = are_known.then(|| median(ratios(&slow.processor, &self.processor)).0);
+        let unit = ("x as fast", true);
+        Figure { by_processor, ..self.figure(name, ratios(&slow.seconds, &self.seconds), held, unit) }
     }
 }
 
