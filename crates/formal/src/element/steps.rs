@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 
 use super::derive::{Placing, Symbols, Term, WEIGHT, terms};
-use super::{Axis, Cut, ElementData, Fragment};
+use super::{Cut, ElementData, Fragment};
 use crate::graph::{Expr, Graph, Shape};
 use crate::law::EnergyLaw;
 
@@ -72,7 +72,6 @@ pub(super) fn steps(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Steps {
     };
     let (energies, forces) = (list(Sort::Energy, &of_forces), list(Sort::Force, &of_forces));
     let differentials = list(Sort::Differential, &of_differentials);
-    debug_assert!(cut.has(Axis::Nodes) || of_differentials.iter().all(|fragment| fragment.node.is_none()));
     Steps { graph: stepping.graph, symbols: stepping.symbols, energies, forces, differentials }
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 use souple_engine::{TangentWeights, World};
 use souple_math::Vec3;
 
-use super::timing::{Clock, Held, Timed, Timing, bend, median, scene, thread_counts, with_threads};
+use super::timing::{Clock, Held, Timed, Timing, bend, median, over, scene, thread_counts, with_threads};
 use super::{Effort, Figure};
 
 /// Neo-Hookean energy by tensors, as one would write it.
@@ -70,16 +70,6 @@ fn time_steps(
     Ok(())
 }
 
-/// One list over the other, sample by sample.
-fn over(above: &[f64], below: &[f64]) -> Vec<f64> {
-    above.iter().zip(below).map(|(above, below)| above / below).collect()
-}
-
-/// Its median; `None` of an empty list.
-fn middle(values: Vec<f64>) -> Option<f64> {
-    (!values.is_empty()).then(|| median(values).0)
-}
-
 /// Positions of one world against those of another, relative to how far they have moved.
 fn distance(world: &World, other: &World, start: &[Vec3]) -> f64 {
     let (q, r) = (&world.state().systems[0].q, &other.state().systems[0].q);
@@ -103,14 +93,16 @@ pub fn law_text(name: &str, writing: Writing, most: f64, effort: Effort) -> Resu
                 time_steps(&mut known, steps, &mut of_known)?;
                 time_steps(&mut text, steps, &mut of_text)?;
             }
-            let ratios = [0, 1].map(|clock| over(&of_text[clock], &of_known[clock]));
-            Ok::<_, String>((ratios, distance(&known, &text, &start), text.bytes()))
+            let ratios: Vec<f64> =
+                of_text[0].iter().zip(&of_known[0]).map(|(text, known)| text / known).collect();
+            let by_processor = over(&of_text[1], &of_known[1]);
+            Ok::<_, String>((ratios, by_processor, distance(&known, &text, &start), text.bytes()))
         });
-        let ([ratios, by_processor], error, bytes) = measured??;
+        let (ratios, by_processor, error, bytes) = measured??;
         let samples = ratios.len();
         let (value, spread) = median(ratios);
         figures.push(Figure {
-            by_processor: middle(by_processor),
+            by_processor,
             name: format!("{name}_{element}_1t"),
             value,
             unit: "x built-in",
@@ -270,8 +262,8 @@ pub fn forces(
         figures.push(times.force.elements_per_second(name, &held(wanted, of_derivative)));
         let ForceTimes { force, derivative, .. } = &times;
         let (name, unit) = (format!("{name}_derivative"), ("x force", false));
-        let ratios = over(&derivative.seconds, &force.seconds);
-        let by_processor = middle(over(&derivative.processor, &force.processor));
+        let ratios = derivative.seconds.iter().zip(&force.seconds).map(|(d, f)| d / f).collect();
+        let by_processor = over(&derivative.processor, &force.processor);
         let figure = force.figure(&name, ratios, &held(2.5, of_derivative), unit);
         figures.push(Figure { by_processor, ..figure });
     }

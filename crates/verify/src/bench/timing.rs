@@ -27,7 +27,8 @@ pub struct Timed {
     pub threads: usize,
     /// Of a step, sample by sample [s].
     pub seconds: Vec<f64>,
-    /// The same by time of the processor, of one thread where the system tells; else empty.
+    /// The same by time of the processor, of one thread where the system tells; else empty. The system tells at ticks of some
+    /// milliseconds: only the sum means something.
     pub processor: Vec<f64>,
     pub cells: usize,
     pub bytes: usize,
@@ -138,9 +139,9 @@ impl Timed {
         held: &Held,
         unit: (&'static str, bool),
     ) -> Figure {
-        let values = |seconds: &[f64]| seconds.iter().map(|seconds| value(*seconds)).collect();
-        let by_processor = (!self.processor.is_empty()).then(|| median(values(&self.processor)).0);
-        Figure { by_processor, ..self.figure(name, values(&self.seconds), held, unit) }
+        let values = self.seconds.iter().map(|seconds| value(*seconds)).collect();
+        let by_processor = mean(&self.processor).map(value);
+        Figure { by_processor, ..self.figure(name, values, held, unit) }
     }
 
     pub fn figure(
@@ -175,14 +176,10 @@ impl Timed {
 
     /// How many times as fast as `slow`, by medians.
     pub fn times_as_fast(&self, name: &str, slow: &Self, held: &Held) -> Figure {
-        let ratios = |slow: &[f64], own: &[f64]| -> Vec<f64> {
-            let (slow, _) = median(slow.to_vec());
-            own.iter().map(|seconds| slow / seconds).collect()
-        };
-        let are_known = !self.processor.is_empty() && !slow.processor.is_empty();
-        let by_processor = are_known.then(|| median(ratios(&slow.processor, &self.processor)).0);
-        let unit = ("x as fast", true);
-        Figure { by_processor, ..self.figure(name, ratios(&slow.seconds, &self.seconds), held, unit) }
+        let (of_slow, _) = median(slow.seconds.clone());
+        let ratios = self.seconds.iter().map(|seconds| of_slow / seconds).collect();
+        let by_processor = over(&slow.processor, &self.processor);
+        Figure { by_processor, ..self.figure(name, ratios, held, ("x as fast", true)) }
     }
 }
 
@@ -202,6 +199,17 @@ pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) ->
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     Ok(pool.install(work))
+}
+
+/// `None` where nothing was measured.
+fn mean(samples: &[f64]) -> Option<f64> {
+    let sum: f64 = samples.iter().sum();
+    (sum > 0.0).then(|| sum / samples.len() as f64)
+}
+
+/// The mean of one over that of the other, where both are known.
+pub fn over(above: &[f64], below: &[f64]) -> Option<f64> {
+    Some(mean(above)? / mean(below)?)
 }
 
 /// Median and half the interquartile distance over it.
