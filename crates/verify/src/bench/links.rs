@@ -56,7 +56,7 @@ pub fn springs_lattice(
     };
     let mut figures = Vec::new();
     for timed in timing.run()? {
-        let own = timed.in_parts(STEPS_PER_PERIOD as usize);
+        let own = timed.in_parts(STEPS_PER_PERIOD);
         let moved = own.cells * BYTES_OF_LINK + n.pow(3) * BYTES_OF_MASS;
         let triad = super::timing::with_threads(own.threads, triad_gigabytes_per_second)?;
         let bandwidth = Held { error: 0.0, error_of: String::new(), baseline: Some(triad) };
