@@ -264,7 +264,12 @@ pub trait Force: Send + Sync {
         self.cell_field(cell, at.positions)
     }
 
-    /// Which law cell number `cell` has, of a force whose cells change theirs.
+    /// The number of the law that cell number `cell` has, of a force whose cells change theirs.
+    fn adapted_law(&self, cell: usize, at: &Configuration) -> Option<f64> {
+        self.adapted(cell, at).map(|adapted| adapted.law)
+    }
+
+    /// The same, with how far the cell is from changing it.
     fn adapted(&self, _cell: usize, _at: &Configuration) -> Option<Adapted> {
         None
     }

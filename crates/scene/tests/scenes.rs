@@ -156,6 +156,30 @@ quantity = "displacement"
     assert!((corner - Vec3::new(0.005, 0.1 * 0.01_f64.sin(), 0.0)).length() < 1e-12, "{corner:?}");
 }
 
+/// Points start displaced and moving as formulas of their rest places say; formulas that are not finite there are refused.
+#[test]
+fn formulas_at_the_start() {
+    let start = r#"
+[bodies.cube.start]
+displacement = ["0.1 * x * y", 0, "0.05 * sin(z)"]
+velocity = [0, "2 * x - z", 1]
+"#;
+    let made = scene(&(CUBE.to_owned() + start));
+    let (rest, state) = (made.bodies[0].mesh.points.clone(), &made.state.systems[0]);
+    for ((x, q), v) in rest.iter().zip(&state.q).zip(&state.v) {
+        let displacement = Vec3::new(0.1 * x.x * x.y, 0.0, 0.05 * x.z.sin());
+        assert!((*q - *x - displacement).length() < 1e-15);
+        assert!((*v - Vec3::new(0.0, 2.0 * x.x - x.z, 1.0)).length() < 1e-15);
+    }
+    let refused = |more: &str| {
+        read_text("start.toml", &(CUBE.to_owned() + more), folder(), &[]).err().unwrap().to_string()
+    };
+    let pole = refused("[bodies.cube.start]\nvelocity = [\"1 / x\", 0, 0]");
+    assert!(pole.contains("bodies.cube.start") && pole.contains("finite at every point"), "{pole}");
+    let time = refused("[bodies.cube.start]\nvelocity = [\"t\", 0, 0]");
+    assert!(time.contains("there are: x, y, z"), "{time}");
+}
+
 /// The key frames of the solids' specification (its Code 14): led by 0.4 m within a second along one axis alone, held there
 /// until t = 1001 s, then back. Across, the led points are free: the bar narrows while it is long, and is as it was at last.
 #[test]

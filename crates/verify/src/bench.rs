@@ -53,6 +53,8 @@ impl Effort {
 pub struct Figure {
     pub name: String,
     pub value: f64,
+    /// The same by the time that the one thread had a processor; `None` where it is not known.
+    pub by_processor: Option<f64>,
     pub unit: &'static str,
     pub higher_is_better: bool,
     /// How wrong the result is that this speed gives.
@@ -264,6 +266,7 @@ impl Figure {
         json!({
             "name": self.name,
             "value": self.value,
+            "by_processor": self.by_processor,
             "unit": self.unit,
             "higher_is_better": self.higher_is_better,
             "error": self.error,
@@ -282,21 +285,42 @@ impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{:width$} {:>12.4} {} (spread {:.0} %, {}, {}, {:.1} MB",
+            "{:width$} {:>10} {} (",
             self.name,
-            self.value,
+            readable(self.value),
             self.unit,
+            width = f.width().unwrap_or(38),
+        )?;
+        if let Some(by_processor) = self.by_processor {
+            write!(f, "{} by time of the processor; ", readable(by_processor))?;
+        }
+        if let Some(baseline) = self.baseline {
+            write!(f, "baseline {}; ", readable(baseline))?;
+        }
+        write!(
+            f,
+            "spread {:.0} %, {}, {}, {:.1} MB",
             100.0 * self.spread,
             counted(self.threads as u64, "thread"),
             counted(self.samples as u64, "sample"),
             self.bytes as f64 * 1e-6,
-            width = f.width().unwrap_or(38),
         )?;
         if !self.error_of.is_empty() {
             write!(f, "; error {:.1e} of {}", self.error, self.error_of)?;
         }
         write!(f, ")")
     }
+}
+
+/// Four digits, with millions and thousands as such.
+fn readable(value: f64) -> String {
+    let (value, prefix) = match value.abs() {
+        large if large >= 1e6 => (value * 1e-6, " M"),
+        large if large >= 1e4 => (value * 1e-3, " k"),
+        _ => (value, ""),
+    };
+    let digits = (3 - value.abs().max(1e-6).log10().floor() as i32).clamp(0, 6) as usize;
+    format!("{value:.digits$}{prefix}")
 }
 
 /// Runs a scene and gives the last value of a probe's component.

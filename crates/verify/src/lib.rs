@@ -8,6 +8,7 @@
 pub mod bench;
 mod case;
 mod cases;
+mod derivation;
 mod reading;
 mod refinement;
 mod row;
@@ -15,6 +16,7 @@ pub mod scenes;
 
 pub use case::{Case, Tolerance, cases};
 pub use cases::{TABLES, all};
+pub use derivation::Count;
 pub use reading::{Observation, Reading, Statistic};
 pub use refinement::{Limit, Refinement, Variant};
 pub use row::{Row, RunOfRow};

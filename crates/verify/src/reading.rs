@@ -1,13 +1,14 @@
-//! What is read of a scene: a probe of a run, a natural frequency, the highest frequency.
+//! What is read: of a scene a probe of a run, a natural frequency, the highest frequency; or a count of a derivation.
 
 use std::path::Path;
 
 use souple_run::{Control, Options, Status, Trace};
 use souple_scene::Scene;
 
+use crate::derivation::{self, Count};
 use crate::scenes;
 
-/// What is read of a scene.
+/// What is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
     /// A number of a run, as `report.json` has it.
@@ -16,6 +17,8 @@ pub enum Reading {
     NaturalFrequency(usize),
     /// The highest angular frequency [rad/s] of the first system, as `souple check --json` forecasts it.
     HighestFrequency,
+    /// A count of a derivation; there is no scene, and settings are arguments of `souple derive`.
+    Derived(Count),
 }
 
 /// A number of a run.
@@ -77,6 +80,7 @@ impl Reading {
             Self::Probe(observation) => observation.probe.to_owned(),
             Self::NaturalFrequency(number) => format!("natural frequency {number}"),
             Self::HighestFrequency => "highest frequency".to_owned(),
+            Self::Derived(count) => format!("{count:?}").to_lowercase(),
         }
     }
 
@@ -88,6 +92,7 @@ impl Reading {
             }
             Self::NaturalFrequency(number) => ("modes", format!(" --count {number}")),
             Self::HighestFrequency => ("check", " --json".to_owned()),
+            Self::Derived(_) => return derivation::command(settings),
         };
         let settings: String = settings.iter().map(|setting| format!(" --set '{setting}'")).collect();
         format!("souple {verb} scenes/{scene}{settings}{end}")
@@ -98,6 +103,9 @@ impl Reading {
     /// # Errors
     /// Why there is none, in words.
     pub(crate) fn read(&self, name: &str, settings: &[String]) -> Result<(f64, &'static str), String> {
+        if let Self::Derived(count) = self {
+            return Ok((derivation::count(*count, settings)?, ""));
+        }
         let text = scenes::text(name).ok_or_else(|| format!("there is no scene `{name}`"))?;
         let scene = souple_scene::read_text(name, text, Path::new("."), settings)
             .map_err(|diagnostics| diagnostics.to_string())?;
@@ -109,6 +117,7 @@ impl Reading {
                 let hertz = systems.first().and_then(|system| system.hertz.get(number.checked_sub(1)?));
                 Ok((*hertz.ok_or("the scene has no such frequency")?, "Hz"))
             }
+            Self::Derived(_) => unreachable!("counted above"),
             Self::HighestFrequency => {
                 let mut world = scene.model.start(scene.state);
                 let forecast = world.with_system(0, |system, state, around, ws| {

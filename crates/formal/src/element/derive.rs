@@ -44,11 +44,51 @@ impl ElementExpressions {
     }
 }
 
+/// The symbols that expressions of an element are made of.
+#[derive(Clone, Debug)]
+pub struct Symbols {
+    /// Rest positions, by node and direction.
+    pub rest: Vec<Vec<Expr>>,
+    pub displacements: Vec<Vec<Expr>>,
+    /// What the differential is multiplied with.
+    pub variations: Vec<Vec<Expr>>,
+    /// Material constants of one number.
+    pub parameters: Vec<Expr>,
+    /// Directions of the law and their entries, plain numbers of the code.
+    pub(super) directions: Vec<(Expr, Vec<Expr>)>,
+}
+
+impl Symbols {
+    pub(super) fn new(graph: &mut Graph, element: &ElementData, law: &EnergyLaw) -> Self {
+        let axes = ["x", "y", "z"];
+        let mut of_nodes = |letter: &str| -> Vec<Vec<Expr>> {
+            (0..element.node_count)
+                .map(|node| {
+                    let of_axis = |axis: &&str| graph.symbol(&format!("{letter}{node}{axis}"), Shape::Scalar);
+                    axes[..element.dimension].iter().map(of_axis).collect()
+                })
+                .collect()
+        };
+        let (rest, displacements, variations) = (of_nodes("P"), of_nodes("U"), of_nodes("V"));
+        let of_len = |length: usize| {
+            law.parameters.iter().filter(move |(_, parameter)| parameter.numbers().len() == length)
+        };
+        let parameters = of_len(1).map(|(name, _)| graph.symbol(name, Shape::Scalar)).collect();
+        let directions = of_len(3)
+            .map(|(name, parameter)| {
+                let symbol = graph.symbol(name, Shape::Vector);
+                (symbol, parameter.numbers().iter().map(|number| graph.number(*number)).collect())
+            })
+            .collect();
+        Self { rest, displacements, variations, parameters, directions }
+    }
+}
+
 /// `ω Ψ` and its derivatives for one term of the law, `ω` being a symbol.
-struct Term {
-    energy: Expr,
-    stress: Expr,
-    differential: Expr,
+pub(super) struct Term {
+    pub energy: Expr,
+    pub stress: Expr,
+    pub differential: Expr,
 }
 
 /// What a sample adds: expressions of numbers.
@@ -62,36 +102,12 @@ struct AtSample {
 }
 
 /// Name of the weight `ω` while a law is differentiated.
-const WEIGHT: &str = "omega";
+pub(super) const WEIGHT: &str = "omega";
 
 pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
     let mut graph = law.graph.clone();
-    let axes = ["x", "y", "z"];
-    let mut symbols = |letter: &str| -> Vec<Vec<Expr>> {
-        (0..element.node_count)
-            .map(|node| {
-                let of_axis = |axis: &&str| graph.symbol(&format!("{letter}{node}{axis}"), Shape::Scalar);
-                axes[..element.dimension].iter().map(of_axis).collect()
-            })
-            .collect()
-    };
-    let (rest, displacements, variations) = (symbols("P"), symbols("U"), symbols("V"));
-    let parameters = law
-        .parameters
-        .iter()
-        .filter(|(_, parameter)| parameter.numbers().len() == 1)
-        .map(|(name, _)| graph.symbol(name, Shape::Scalar))
-        .collect();
-    // directions are plain numbers of the code
-    let directions: Vec<(Expr, Vec<Expr>)> = law
-        .parameters
-        .iter()
-        .filter(|(_, parameter)| parameter.numbers().len() == 3)
-        .map(|(name, parameter)| {
-            let symbol = graph.symbol(name, Shape::Vector);
-            (symbol, parameter.numbers().iter().map(|number| graph.number(*number)).collect())
-        })
-        .collect();
+    let Symbols { rest, displacements, variations, parameters, directions } =
+        Symbols::new(&mut graph, element, law);
     let terms = terms(&mut graph, law);
     let cut_variations = cut.has(super::Axis::Nodes) || cut.has(super::Axis::Dimension);
     let mut samples = Vec::with_capacity(element.samples.len());
@@ -160,7 +176,7 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
 
 /// The terms of the energy times `ω`. The weight is multiplied in before differentiation, so that it meets the
 /// material constants and is grouped with them.
-fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
+pub(super) fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
     let weight = graph.symbol(WEIGHT, Shape::Scalar);
     let seeds = HashMap::from([(law.deformation, law.variation)]);
     let mut list = Vec::new();
@@ -174,13 +190,13 @@ fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
 }
 
 /// The expressions at one sample.
-struct Placing<'a> {
-    graph: &'a mut Graph,
-    element: &'a ElementData,
-    law: &'a EnergyLaw,
-    sample: usize,
-    rest: &'a [Vec<Expr>],
-    directions: &'a [(Expr, Vec<Expr>)],
+pub(super) struct Placing<'a> {
+    pub graph: &'a mut Graph,
+    pub element: &'a ElementData,
+    pub law: &'a EnergyLaw,
+    pub sample: usize,
+    pub rest: &'a [Vec<Expr>],
+    pub directions: &'a [(Expr, Vec<Expr>)],
 }
 
 impl Placing<'_> {
@@ -234,7 +250,7 @@ impl Placing<'_> {
     }
 
     /// `X_ξ⁻¹`, by columns, and `det X_ξ`.
-    fn rest_map(&mut self) -> (Vec<Expr>, Expr) {
+    pub fn rest_map(&mut self) -> (Vec<Expr>, Expr) {
         let (zero, one) = (self.graph.number(0.0), self.graph.number(1.0));
         let dimension = self.element.dimension;
         if let RestMap::Box { low, high } = self.element.map {
@@ -266,7 +282,7 @@ impl Placing<'_> {
     }
 
     /// `Σ values_n ⊗ ∂N_n/∂ξ`, by columns.
-    fn reference_gradient(&mut self, values: &[Vec<Expr>]) -> Vec<Expr> {
+    pub fn reference_gradient(&mut self, values: &[Vec<Expr>]) -> Vec<Expr> {
         let gradients = &self.element.samples[self.sample].gradients;
         (0..9)
             .map(|index| {

@@ -6,9 +6,11 @@
 
 mod cut;
 mod derive;
+mod steps;
 
 pub use cut::{Axis, Cut, Fragment, Sort};
-pub use derive::{Derived, ElementExpressions};
+pub use derive::{Derived, ElementExpressions, Symbols};
+pub use steps::{Step, Steps};
 
 use crate::graph::WithoutFormula;
 
@@ -49,6 +51,11 @@ impl ElementData {
     /// The law needs principal stretches.
     pub fn derive(&self, law: &crate::law::EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
         derive::derive(self, law, cut)
+    }
+
+    /// What is computed at each step, in tensors and without writing them out: any law.
+    pub fn steps(&self, law: &crate::law::EnergyLaw, cut: Cut) -> Steps {
+        steps::steps(self, law, cut)
     }
 }
 

@@ -67,10 +67,13 @@ impl Graph {
 }
 
 impl Extraction<'_> {
-    /// The symbol of a constant; numbers stand for themselves.
+    /// The symbol of a constant; numbers stand for themselves, tensors for the constants of their entries.
     fn constant(&mut self, expr: Expr) -> Expr {
         if self.graph.value(expr).is_some() {
             return expr;
+        }
+        if self.graph.shape(expr) != Shape::Scalar {
+            return self.constant_tensor(expr);
         }
         if let Some(symbol) = self.symbols.get(&expr) {
             return *symbol;
@@ -79,6 +82,20 @@ impl Extraction<'_> {
         self.constants.push((symbol, expr));
         self.symbols.insert(expr, symbol);
         symbol
+    }
+
+    fn constant_tensor(&mut self, expr: Expr) -> Expr {
+        if matches!(self.graph.node(expr), Node::Symbol(_) | Node::Identity | Node::Zero(_)) {
+            return expr;
+        }
+        match self.graph.components(expr, &HashMap::new()) {
+            Ok(entries) => {
+                let entries: Vec<Expr> = entries.into_iter().map(|entry| self.constant(entry)).collect();
+                self.graph.pack(&entries)
+            }
+            // stretches of what does not vary are numbers of the law: they stay in the code
+            Err(_) => expr,
+        }
     }
 
     /// The factors as whole powers of constants that are there already, where all of them are: their product is not

@@ -79,10 +79,17 @@ pub(super) fn lower<'n>(request: &Request, numbers: impl Fn(&Symbol) -> &'n [f64
     {
         *uses.entry(operand).or_insert(0) += 1;
     }
+    // a symbol that stands for what needs the variation needs it too
+    let mut varied = inputs[1].to_vec();
+    for (symbol, definition) in definitions {
+        if graph.depends(&[*definition], &varied)[definition.index()] {
+            varied.push(*symbol);
+        }
+    }
     let mut lowering = Lowering {
         graph,
         uniform: graph.evaluate(&fixed, numbers),
-        needs_variation: graph.depends(&roots, inputs[1]),
+        needs_variation: graph.depends(&roots, &varied),
         varies,
         uses,
         reachable: reachable.into_iter().collect(),

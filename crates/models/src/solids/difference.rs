@@ -5,6 +5,7 @@
 //! without a matrix; blocks, where they are asked for, are the exact ones.
 
 use std::any::Any;
+use std::ops::Range;
 
 use souple_engine::state::Pair;
 use souple_engine::{
@@ -21,6 +22,8 @@ const PART_OF_CELL: f64 = 1e-5;
 /// A force of positions alone, with tangent products by differences.
 pub struct DifferencedForce {
     inner: Box<dyn Force>,
+    /// The only rows that the force reads and pulls.
+    rows: Range<usize>,
     /// The farthest that a point is moved [m].
     distance: f64,
 }
@@ -36,10 +39,11 @@ fn of(scratch: &mut Scratch) -> &mut DifferenceScratch {
 }
 
 impl DifferencedForce {
-    /// Of a force on the cells of a mesh.
-    pub fn new(inner: Box<dyn Force>, mesh: &Mesh) -> Self {
+    /// Of a force on the cells of a mesh whose points are the rows from `first_row`.
+    pub fn new(inner: Box<dyn Force>, mesh: &Mesh, first_row: usize) -> Self {
         let cell = mesh.volume() / mesh.cell_count() as f64;
-        Self { inner, distance: PART_OF_CELL * cell.abs().cbrt() }
+        let rows = first_row..first_row + mesh.points.len();
+        Self { inner, rows, distance: PART_OF_CELL * cell.abs().cbrt() }
     }
 }
 
@@ -81,21 +85,26 @@ impl Force for DifferencedForce {
         scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        let farthest = delta.iter().map(|d| d.length_sq()).fold(0.0, f64::max).sqrt();
+        let rows = self.rows.clone();
+        let farthest = delta[rows.clone()].iter().map(|d| d.length_sq()).fold(0.0, f64::max).sqrt();
         if weights.position == 0.0 || farthest == 0.0 {
             return;
         }
         let step = self.distance / farthest;
         let DifferenceScratch { inner, moved, forces } = of(scratch);
         for (force, step) in forces.iter_mut().zip([step, -step]) {
-            moved.clear();
-            moved.extend(at.positions.iter().zip(delta).map(|(x, d)| *x + *d * step));
-            force.clear();
+            moved.resize(at.positions.len(), Vec3::ZERO);
+            for ((moved, x), d) in
+                moved[rows.clone()].iter_mut().zip(&at.positions[rows.clone()]).zip(&delta[rows.clone()])
+            {
+                *moved = *x + *d * step;
+            }
             force.resize(out.len(), Vec3::ZERO);
+            force[rows.clone()].fill(Vec3::ZERO);
             self.inner.add_force(&Configuration { positions: moved, ..*at }, inner, force);
         }
         let [plus, minus] = forces;
-        for ((out, plus), minus) in out.iter_mut().zip(plus).zip(minus) {
+        for ((out, plus), minus) in out[rows.clone()].iter_mut().zip(&plus[rows.clone()]).zip(&minus[rows]) {
             *out += (*plus - *minus) * (0.5 * weights.position / step);
         }
     }
@@ -132,6 +141,10 @@ impl Force for DifferencedForce {
 
     fn cell_field_at(&self, cell: usize, at: &Configuration) -> Option<CellField> {
         self.inner.cell_field_at(cell, at)
+    }
+
+    fn adapted_law(&self, cell: usize, at: &Configuration) -> Option<f64> {
+        self.inner.adapted_law(cell, at)
     }
 
     fn adapted(&self, cell: usize, at: &Configuration) -> Option<Adapted> {

@@ -51,7 +51,7 @@ pub trait Sorting {
     fn law_of(&self, cell: usize) -> &Self::Law;
     /// Numbers of a cell, as many for every cell of its law.
     fn parameters_of(&self, cell: usize) -> &[f64];
-    fn kernel(&self, kind: ElementKind, law: &Self::Law) -> Self::Kernel;
+    fn kernel(&self, kind: ElementKind, rule: &QuadratureRule, law: &Self::Law) -> Self::Kernel;
     /// How many blocks of lanes a kernel likes to be asked for at once.
     fn blocks_at_once(&self, _kernel: &Self::Kernel) -> usize {
         1
@@ -102,7 +102,8 @@ impl<K: Send + Sync> Elements<K> {
             elements.partial_count += chunks.iter().map(|chunk| chunk.rows.len()).sum::<usize>();
             let first_chunk = elements.chunk_count;
             elements.chunk_count += chunks.len();
-            let (kernel, reference) = (sorting.kernel(kind, law), reference_gradients(kind, body.rule));
+            let (kernel, reference) =
+                (sorting.kernel(kind, body.rule, law), reference_gradients(kind, body.rule));
             let blocks_at_once = sorting.blocks_at_once(&kernel);
             elements.batches.push(Batch { kind, kernel, reference, blocks_at_once, first_chunk, chunks });
         }

@@ -1,19 +1,34 @@
 //! From node positions to the gradient at a sample, and back.
 
 use souple_math::{Mat3, Real, Vec3};
+use souple_mesh::ElementKind;
 
-/// An element's nodes as the kernels see them; `reference` holds `∂N_a/∂ξ` at the sample.
+/// An element as the kernels see it: the parts of a field, those of nodes unless it says otherwise, and its numbers at a
+/// sample, `∂N_a/∂ξ`.
 pub trait Geometry: Copy + Send + Sync + 'static {
     /// Nodes, where their number is known ahead.
     const NODES: Option<usize>;
     /// Samples, where their number does not depend on the rule: one where the gradient is the same everywhere.
     const SAMPLES: Option<usize>;
 
-    /// `∂x/∂ξ = Σ x_a ⊗ ∂N_a/∂ξ`.
-    fn gradient<R: Real>(positions: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R>;
+    /// Its numbers at `ξ`.
+    fn numbers(kind: ElementKind, xi: Vec3) -> Vec<Vec3> {
+        kind.shape_gradients(xi).to_vec()
+    }
 
-    /// `f_a -= H ∂N_a/∂ξ`: the transpose of [`Geometry::gradient`].
-    fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]);
+    /// The parts of a field in the place of its values at the nodes.
+    #[inline(always)]
+    fn to_parts<R: Real>(_field: &mut [Vec3<R>]) {}
+
+    /// `∂x/∂ξ = Σ x_a ⊗ ∂N_a/∂ξ` from the parts of `x`.
+    fn gradient<R: Real>(parts: &[Vec3<R>], numbers: &[Vec3]) -> Mat3<R>;
+
+    /// `f_a -= H ∂N_a/∂ξ`, on parts: the transpose of [`Geometry::gradient`].
+    fn spread<R: Real>(stress: &Mat3<R>, numbers: &[Vec3], forces: &mut [Vec3<R>]);
+
+    /// Forces on nodes in the place of those on parts: the transpose of [`Geometry::to_parts`].
+    #[inline(always)]
+    fn to_nodes<R: Real>(_forces: &mut [Vec3<R>]) {}
 }
 
 /// The linear tetrahedron: gradients are differences of corners.
@@ -58,25 +73,6 @@ impl Geometry for AnyElement {
     }
 }
 
-/// An element of `N` nodes: the same loops, of a length that is known when they are compiled.
-#[derive(Clone, Copy, Debug)]
-pub struct Nodes<const N: usize>;
-
-impl<const N: usize> Geometry for Nodes<N> {
-    const NODES: Option<usize> = Some(N);
-    const SAMPLES: Option<usize> = None;
-
-    #[inline(always)]
-    fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
-        gradient(&x[..N], &reference[..N])
-    }
-
-    #[inline(always)]
-    fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>]) {
-        spread(stress, &reference[..N], &mut forces[..N]);
-    }
-}
-
 #[inline(always)]
 fn gradient<R: Real>(x: &[Vec3<R>], reference: &[Vec3]) -> Mat3<R> {
     let like = x[0].x;
@@ -103,6 +99,6 @@ fn spread<R: Real>(stress: &Mat3<R>, reference: &[Vec3], forces: &mut [Vec3<R>])
 
 /// `sum += factor x`.
 #[inline(always)]
-fn accumulate<R: Real>(sum: &mut Vec3<R>, x: Vec3<R>, factor: R) {
+pub fn accumulate<R: Real>(sum: &mut Vec3<R>, x: Vec3<R>, factor: R) {
     *sum = Vec3::new(x.x.mul_add(factor, sum.x), x.y.mul_add(factor, sum.y), x.z.mul_add(factor, sum.z));
 }

@@ -9,6 +9,7 @@ mod geometry;
 mod group;
 mod kernel;
 pub(crate) mod layout;
+mod linear_elements;
 mod mass;
 mod output;
 pub(crate) mod parallel;
@@ -29,15 +30,16 @@ use std::sync::Arc;
 use souple_engine::state::Pair;
 use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, MAX_NODES, Mesh};
+use souple_mesh::{ElementKind, MAX_NODES, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
 use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters};
 use assembly::{Assembly, Symmetry};
 use elements::{Batch, Elements, Sorting};
-use geometry::{AnyElement, Nodes, Tetrahedron};
+use geometry::{AnyElement, Tetrahedron};
 use kernel::{Kernel, LawKernel};
 use layout::Chunk;
+use linear_elements::{Hexahedron, Prism, Pyramid};
 use row_law::{RowLaw, row_law};
 use sample_law::{Compiled, SampleLaw, Taped};
 use section_kernel::SectionKernel;
@@ -116,15 +118,15 @@ impl SolidScratch {
 /// A cell's batch and chunk, and its number there.
 type Place<'a> = (&'a Batch<Box<dyn Kernel>>, &'a Chunk, usize);
 
-struct MakeKernel(ElementKind);
+struct MakeKernel<'a>(ElementKind, &'a QuadratureRule);
 
-impl LawVisitor for MakeKernel {
+impl LawVisitor for MakeKernel<'_> {
     type Output = Box<dyn Kernel>;
 
     fn visit<L: Law>(self, _: L) -> Box<dyn Kernel> {
         match self.0 {
             ElementKind::Tet4 => Box::new(LawKernel::<L, Tetrahedron, 4>::default()),
-            kind => staged(kind, Box::new(Compiled::<L>::default())),
+            kind => staged(kind, self.1, Box::new(Compiled::<L>::default())),
         }
     }
 }
@@ -154,14 +156,14 @@ impl Sorting for ByLaw<'_> {
         &material.parameters[..count]
     }
 
-    fn kernel(&self, kind: ElementKind, law: &MaterialLaw) -> Box<dyn Kernel> {
+    fn kernel(&self, kind: ElementKind, rule: &QuadratureRule, law: &MaterialLaw) -> Box<dyn Kernel> {
         if self.section != Section::Solid {
             let (law, nodes) = (row_law(law), kind.node_count());
             return Box::new(SectionKernel { law, section: self.section, nodes });
         }
         match law {
-            MaterialLaw::Known(law) => law.visit(MakeKernel(kind)),
-            MaterialLaw::Text(law) => staged(kind, Box::new(Taped(Arc::clone(law)))),
+            MaterialLaw::Known(law) => law.visit(MakeKernel(kind, rule)),
+            MaterialLaw::Text(law) => staged(kind, rule, Box::new(Taped(Arc::clone(law)))),
         }
     }
 
@@ -253,14 +255,13 @@ impl LawVisitor for ParameterCount {
 }
 
 /// The kernel for a law that knows no elements.
-fn staged(kind: ElementKind, law: Box<dyn SampleLaw>) -> Box<dyn Kernel> {
-    match (kind, kind.node_count()) {
-        (ElementKind::Tet4, _) => Box::new(Staged::<Tetrahedron, 4>::new(law, 4)),
-        // loops of known length are twice as fast or more; the others are long anyway
-        (_, 5) => Box::new(Staged::<Nodes<5>, 5>::new(law, 5)),
-        (_, 6) => Box::new(Staged::<Nodes<6>, 6>::new(law, 6)),
-        (_, 8) => Box::new(Staged::<Nodes<8>, 8>::new(law, 8)),
-        (_, nodes) => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, nodes)),
+fn staged(kind: ElementKind, rule: &QuadratureRule, law: Box<dyn SampleLaw>) -> Box<dyn Kernel> {
+    match kind {
+        ElementKind::Tet4 => Box::new(Staged::<Tetrahedron, 4>::new(law, kind, rule)),
+        ElementKind::Pyramid5 => Box::new(Staged::<Pyramid, 5>::new(law, kind, rule)),
+        ElementKind::Prism6 => Box::new(Staged::<Prism, 6>::new(law, kind, rule)),
+        ElementKind::Hex8 => Box::new(Staged::<Hexahedron, 8>::new(law, kind, rule)),
+        _ => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, kind, rule)),
     }
 }
 

@@ -10,6 +10,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use souple_formal::tape::BATCH;
 use souple_math::{Lanes, Mat3, Padded, Vec3};
+use souple_mesh::{ElementKind, QuadratureRule};
 
 use super::geometry::Geometry;
 use super::group::Group;
@@ -22,6 +23,9 @@ pub struct Staged<G, const N: usize> {
     law: Box<dyn SampleLaw>,
     /// Nodes of an element.
     nodes: usize,
+    /// Of the geometry, sample after sample.
+    numbers: Vec<Vec3>,
+    samples: usize,
     geometry: PhantomData<G>,
 }
 
@@ -31,8 +35,9 @@ thread_local! {
 }
 
 impl<G: Geometry, const N: usize> Staged<G, N> {
-    pub fn new(law: Box<dyn SampleLaw>, nodes: usize) -> Self {
-        Self { law, nodes, geometry: PhantomData }
+    pub fn new(law: Box<dyn SampleLaw>, kind: ElementKind, rule: &QuadratureRule) -> Self {
+        let numbers = rule.points.iter().flat_map(|point| G::numbers(kind, point.position)).collect();
+        Self { law, nodes: kind.node_count(), numbers, samples: rule.points.len(), geometry: PhantomData }
     }
 
     /// Runs `work` with memory for an answer, prepared, and for tangents.
@@ -49,23 +54,27 @@ impl<G: Geometry, const N: usize> Staged<G, N> {
         })
     }
 
-    fn stage<'a>(&self, run: Run<'a>, reference: &'a [Vec3]) -> Stage<'a, G, N> {
-        Stage { run, reference, nodes: self.nodes, geometry: PhantomData }
+    fn stage<'a>(&'a self, run: Run<'a>) -> Stage<'a, G, N> {
+        Stage { run, numbers: &self.numbers, nodes: self.nodes, geometry: PhantomData }
+    }
+
+    fn runs<'a>(&self, chunk: &'a Chunk, blocks: Range<usize>) -> impl Iterator<Item = Run<'a>> {
+        runs(chunk, G::SAMPLES.unwrap_or(self.samples), blocks)
     }
 
     /// Adds `scale` times the answer's stresses, spread to the nodes.
     fn add_spread(
         &self,
         answer: Answer,
-        (chunk, reference): (&Chunk, &[Vec3]),
+        chunk: &Chunk,
         [positions, delta]: [&[Padded]; 2],
         scale: f64,
         forces: &mut [Padded],
     ) {
         let places = self.law.places(answer);
         self.with_memory(answer, |memory, _| {
-            for run in runs(chunk, samples_of::<G>(reference, self.nodes), 0..chunk.block_count()) {
-                let stage = self.stage(run, reference);
+            for run in self.runs(chunk, 0..chunk.block_count()) {
+                let stage = self.stage(run);
                 stage.gradients(positions, places.deformation, memory);
                 if answer == Answer::Differential {
                     stage.gradients(delta, places.variation, memory);
@@ -76,10 +85,6 @@ impl<G: Geometry, const N: usize> Staged<G, N> {
             }
         });
     }
-}
-
-fn samples_of<G: Geometry>(reference: &[Vec3], nodes: usize) -> usize {
-    G::SAMPLES.unwrap_or(reference.len() / nodes)
 }
 
 /// Runs over some blocks of a chunk: whole blocks where they fit.
@@ -95,28 +100,28 @@ fn runs(chunk: &Chunk, per_block: usize, blocks: Range<usize>) -> impl Iterator<
 }
 
 impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
-    fn forces(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded], forces: &mut [Padded]) {
-        self.add_spread(Answer::Stress, (chunk, reference), [positions, &[]], 1.0, forces);
+    fn forces(&self, chunk: &Chunk, _: &[Vec3], positions: &[Padded], forces: &mut [Padded]) {
+        self.add_spread(Answer::Stress, chunk, [positions, &[]], 1.0, forces);
     }
 
     fn differential(
         &self,
         chunk: &Chunk,
-        reference: &[Vec3],
+        _: &[Vec3],
         positions: &[Padded],
         delta: &[Padded],
         scale: f64,
         forces: &mut [Padded],
     ) {
-        self.add_spread(Answer::Differential, (chunk, reference), [positions, delta], scale, forces);
+        self.add_spread(Answer::Differential, chunk, [positions, delta], scale, forces);
     }
 
-    fn energy(&self, chunk: &Chunk, reference: &[Vec3], positions: &[Padded]) -> f64 {
+    fn energy(&self, chunk: &Chunk, _: &[Vec3], positions: &[Padded]) -> f64 {
         let places = self.law.places(Answer::Energy);
         let mut sum = 0.0;
         self.with_memory(Answer::Energy, |memory, _| {
-            for run in runs(chunk, samples_of::<G>(reference, self.nodes), 0..chunk.block_count()) {
-                self.stage(run, reference).gradients(positions, places.deformation, memory);
+            for run in self.runs(chunk, 0..chunk.block_count()) {
+                self.stage(run).gradients(positions, places.deformation, memory);
                 self.law.answer(Answer::Energy, &run, memory);
                 let densities = &memory[places.result..];
                 sum += integral(&run, |lane| densities[lane]);
@@ -126,18 +131,12 @@ impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
     }
 
     // ∫ δP : δF dV
-    fn quadratic_form(
-        &self,
-        chunk: &Chunk,
-        reference: &[Vec3],
-        positions: &[Padded],
-        delta: &[Padded],
-    ) -> f64 {
+    fn quadratic_form(&self, chunk: &Chunk, _: &[Vec3], positions: &[Padded], delta: &[Padded]) -> f64 {
         let places = self.law.places(Answer::Differential);
         let mut sum = 0.0;
         self.with_memory(Answer::Differential, |memory, _| {
-            for run in runs(chunk, samples_of::<G>(reference, self.nodes), 0..chunk.block_count()) {
-                let stage = self.stage(run, reference);
+            for run in self.runs(chunk, 0..chunk.block_count()) {
+                let stage = self.stage(run);
                 stage.gradients(positions, places.deformation, memory);
                 stage.gradients(delta, places.variation, memory);
                 self.law.answer(Answer::Differential, &run, memory);
@@ -166,11 +165,11 @@ impl<G: Geometry, const N: usize> Kernel for Staged<G, N> {
         let places = self.law.places(Answer::Differential);
         let first_block = blocks.start;
         self.with_memory(Answer::Differential, |memory, tangents| {
-            for run in runs(chunk, samples_of::<G>(reference, self.nodes), blocks) {
-                let stage = self.stage(run, reference);
+            for run in self.runs(chunk, blocks) {
+                let stage = self.stage(run);
                 stage.gradients(positions, places.deformation, memory);
                 self.law.tangents(&run, memory, tangents);
-                Arch::new().dispatch(Blocks { stage, tangents, first_block, scale, out });
+                Arch::new().dispatch(Blocks { stage, reference, tangents, first_block, scale, out });
             }
         });
     }
@@ -192,8 +191,8 @@ fn integral(run: &Run, density: impl Fn(usize) -> f64) -> f64 {
 /// The elements of a run.
 struct Stage<'a, G, const N: usize> {
     run: Run<'a>,
-    /// `∂N_a/∂ξ`, sample after sample.
-    reference: &'a [Vec3],
+    /// Of the geometry, sample after sample.
+    numbers: &'a [Vec3],
     nodes: usize,
     geometry: PhantomData<G>,
 }
@@ -215,8 +214,9 @@ impl<'a, G: Geometry, const N: usize> Stage<'a, G, N> {
     }
 
     #[inline(always)]
-    fn reference_of(&self, sample: usize) -> &'a [Vec3] {
-        &self.reference[sample * self.nodes()..(sample + 1) * self.nodes()]
+    fn numbers_of(&self, sample: usize) -> &'a [Vec3] {
+        let count = self.numbers.len() / self.per_block();
+        &self.numbers[sample * count..(sample + 1) * count]
     }
 
     #[inline(always)]
@@ -249,9 +249,10 @@ impl<G: Geometry, const N: usize> WithSimd for Gradients<'_, G, N> {
                     // the stages behind this one find the numbers of its samples in the cache
                     group.prefetch(1);
                     x = group.gather(values);
+                    G::to_parts(&mut x[..stage.nodes()]);
                 }
                 let (inverse, _) = group.sample(sample);
-                let gradient = G::gradient(&x, stage.reference_of(sample)) * inverse;
+                let gradient = G::gradient(&x[..stage.nodes()], stage.numbers_of(sample)) * inverse;
                 store_matrix(&gradient, &mut out[run.lane_of(row) + lane..]);
             }
             lane += S::F64_LANES;
@@ -279,17 +280,16 @@ impl<G: Geometry, const N: usize> WithSimd for Spread<'_, G, N> {
             for row in run.rows() {
                 let group = stage.group(simd, row, lane);
                 let sample = row % stage.per_block();
-                if sample == 0 {
-                    f = group.zeros();
-                }
                 let (inverse, volume) = group.sample(sample);
                 let P = load_matrix(simd, &stresses[run.lane_of(row) + lane..]);
                 // H = V P X_ξ⁻ᵀ
                 let H = P.mul_transpose(&inverse).scaled(volume * scale);
-                G::spread(&H, stage.reference_of(sample), &mut f);
+                G::spread(&H, stage.numbers_of(sample), &mut f[..stage.nodes()]);
                 // an element of more samples than a run takes is scattered in parts
                 if sample + 1 == stage.per_block() || row + 1 == run.end {
+                    G::to_nodes(&mut f[..stage.nodes()]);
                     group.scatter(&f, forces);
+                    f = group.zeros();
                 }
             }
             lane += S::F64_LANES;
@@ -299,6 +299,8 @@ impl<G: Geometry, const N: usize> WithSimd for Spread<'_, G, N> {
 
 struct Blocks<'a, G, const N: usize> {
     stage: Stage<'a, G, N>,
+    /// `∂N_a/∂ξ`, sample after sample.
+    reference: &'a [Vec3],
     tangents: &'a [f64],
     /// Block of lanes whose matrices come first in `out`.
     first_block: usize,
@@ -329,7 +331,7 @@ impl<G: Geometry, const N: usize> Blocks<'_, G, N> {
         let (simd, nodes) = (group.simd, group.nodes);
         let (inverse, volume) = group.sample(sample);
         let weight = volume * -self.scale;
-        let gradients = group.gradients(&inverse, self.stage.reference_of(sample));
+        let gradients = group.gradients(&inverse, &self.reference[sample * nodes..(sample + 1) * nodes]);
         // ∂P/∂F : (e_k ⊗ g_b), for k = 0, 1, 2
         let mut rates = [[Mat3::zero(Lanes::constant(simd, 0.0)); 3]; N];
         for k in 0..3 {

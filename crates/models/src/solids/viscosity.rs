@@ -5,7 +5,7 @@ use std::any::Any;
 use souple_engine::state::Pair;
 use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, MAX_NODES};
+use souple_mesh::{ElementKind, MAX_NODES, QuadratureRule};
 use souple_solve::BlockMatrix;
 
 use super::SolidDescription;
@@ -37,7 +37,7 @@ impl Sorting for Alike {
         &self.0
     }
 
-    fn kernel(&self, kind: ElementKind, (): &()) -> Box<dyn ViscousKernel> {
+    fn kernel(&self, kind: ElementKind, _: &QuadratureRule, (): &()) -> Box<dyn ViscousKernel> {
         match kind {
             ElementKind::Tet4 => Box::new(StrainRate::<Tetrahedron, 4>::new(4)),
             _ => Box::new(StrainRate::<AnyElement, MAX_NODES>::new(kind.node_count())),

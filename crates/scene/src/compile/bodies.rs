@@ -16,7 +16,7 @@ use souple_models::solids::{
 use super::frames::PlacedFrames;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, inertial, levels, network, shape};
+use super::{Draft, frames, inertial, levels, network, shape, start};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -267,7 +267,9 @@ fn add_solid(
     };
     forces.push(match body.tangent {
         TangentKind::Exact => elastic,
-        TangentKind::Difference => Box::new(DifferencedForce::new(elastic, description.mesh)),
+        TangentKind::Difference => {
+            Box::new(DifferencedForce::new(elastic, description.mesh, description.first_row))
+        }
     });
     let Damping { rayleigh_stiffness, viscosity, .. } = body.damping;
     if rayleigh_stiffness > 0.0 {
@@ -305,6 +307,12 @@ fn check_together(draft: &Draft, body: &Body) {
         if body.tangent == TangentKind::Difference {
             report(&body.site, message("tangent"), "`tangent = \"exact\"`");
         }
+    }
+    if let Some(start) = &body.start
+        && (body.frames.is_some() || body.levels.is_some())
+    {
+        let message = format!("the points of body `{}` follow its frames or levels", body.name);
+        report(&start.site, message, "`velocity` and `angular_velocity`, or a body of points alone");
     }
     let Some(adapt) = &body.adapt else { return };
     let others = [
@@ -472,6 +480,7 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
                 }
             }
         }
+        start::apply(draft, body, &mut state);
         if let Some(network) = &body.spec.network {
             network::add_velocities(body, network, &mut state.v);
         }

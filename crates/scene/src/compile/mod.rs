@@ -18,6 +18,7 @@ mod selection;
 mod shape;
 mod skin_shape;
 mod skins;
+mod start;
 
 pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;

@@ -31,7 +31,7 @@ fn value(quantity: CellQuantity, solid: &dyn Force, cell: usize, at: &Configurat
         CellQuantity::StrainEnergy => field.energy_density * field.volume,
         CellQuantity::StrainEnergyDensity => field.energy_density,
         CellQuantity::Volume => field.current_volume,
-        CellQuantity::Law => solid.adapted(cell, at)?.law,
+        CellQuantity::Law => solid.adapted_law(cell, at)?,
         CellQuantity::Excess => solid.adapted(cell, at)?.excess,
         CellQuantity::VolumeRatio => field.current_volume / field.volume,
     };

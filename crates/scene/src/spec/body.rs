@@ -13,6 +13,7 @@ use super::mesh::{MESH, MeshSpec};
 use super::network::Network;
 use super::region::{Region, direction};
 use super::skin::BODY_SKIN;
+use super::start::{START, StartSpec};
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Need, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -110,6 +111,11 @@ pub(crate) static BODY: Keys = Keys::new(
         Key::vector("velocity", "m/s", "at the start").or(Value::Vector([0.0; 3])),
         Key::vector("angular_velocity", "rad/s", "at the start, about the centre of mass")
             .or(Value::Vector([0.0; 3])),
+        Key::new(
+            "start",
+            Shape::Table(&START),
+            "how its points stand and move at the start, by where they rest",
+        ),
         Key::new("system", Shape::Text, "the system it steps in"),
         Key::new("pins", Shape::Tables(&PIN), "points that are held or led"),
         Key::new("loads", Shape::Tables(&LOAD), "forces on points"),
@@ -145,6 +151,7 @@ pub struct Body {
     pub velocity: Vec3,
     /// About the centre of mass [rad/s].
     pub angular_velocity: Vec3,
+    pub start: Option<StartSpec>,
     /// Name of its system; the only one, or `main`, where left out.
     pub system: String,
     pub pins: Vec<Pin>,
@@ -266,6 +273,7 @@ impl Body {
             placement: Placement::read(reader),
             velocity: reader.vector("velocity"),
             angular_velocity: reader.vector("angular_velocity"),
+            start: reader.table("start").map(|table| StartSpec::read(&table)),
             system: reader.text("system"),
             pins: reader.tables("pins").iter().map(Pin::read).collect(),
             loads: reader.tables("loads").iter().map(Load::read).collect(),

@@ -16,6 +16,7 @@ pub mod quantity;
 pub mod region;
 mod rules;
 pub mod skin;
+pub mod start;
 pub mod world;
 
 use souple_formal::Formula;

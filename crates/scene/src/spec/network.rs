@@ -245,6 +245,7 @@ impl Network {
             placement: Placement::read(reader),
             velocity: reader.vector("velocity"),
             angular_velocity: reader.vector("angular_velocity"),
+            start: None,
             system: reader.text("system"),
             pins,
             loads: reader.tables("loads").iter().map(Load::read).collect(),

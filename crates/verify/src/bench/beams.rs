@@ -152,6 +152,7 @@ pub fn static_100k(effort: Effort) -> Result<Vec<Figure>, String> {
     };
     let timed = timing.sample(rayon::current_num_threads())?;
     Ok(vec![Figure {
+        by_processor: None,
         name: name.to_owned(),
         value: timed.seconds[0],
         unit: "s",

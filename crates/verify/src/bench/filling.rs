@@ -27,6 +27,7 @@ pub fn fill_100k(effort: Effort) -> Result<Vec<Figure>, String> {
     let count = samples.len();
     let (value, spread) = median(samples);
     Ok(vec![Figure {
+        by_processor: None,
         name: "fill_100k".to_owned(),
         value,
         unit: "s",

@@ -1,7 +1,7 @@
 //! The formulations side by side: time of force and derivative, memory, and the error against the exact force.
 
 use super::laws::{ForceTimes, bar, force_times, off};
-use super::timing::{Held, median};
+use super::timing::Held;
 use super::{Effort, Figure};
 
 /// How often derived expressions must outrun the literal sums (EXP-20), by law.
@@ -93,9 +93,7 @@ fn ratios(name: &str, wanted: Option<f64>, first: &ForceTimes, second: &ForceTim
         [("force", &first.force, &second.force), ("derivative", &first.derivative, &second.derivative)];
     [0, 1].map(|index| {
         let (what, first, second) = pairs[index];
-        let (slow, _) = median(second.seconds.clone());
-        let ratios = first.seconds.iter().map(|seconds| slow / seconds).collect();
         let held = Held { error: errors[index], error_of: format!("the other's {what}"), baseline: wanted };
-        first.figure(&format!("{name}_{what}"), ratios, &held, ("x as fast", true))
+        first.times_as_fast(&format!("{name}_{what}"), second, &held)
     })
 }

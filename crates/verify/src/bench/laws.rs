@@ -5,7 +5,7 @@ use std::time::Instant;
 use souple_engine::{TangentWeights, World};
 use souple_math::Vec3;
 
-use super::timing::{Held, Timed, Timing, bend, median, scene, thread_counts, with_threads};
+use super::timing::{Clock, Held, Timed, Timing, bend, median, over, scene, thread_counts, with_threads};
 use super::{Effort, Figure};
 
 /// Neo-Hookean energy by tensors, as one would write it.
@@ -58,11 +58,16 @@ fn started(settings: &[String]) -> Result<World, String> {
     Ok(world)
 }
 
-/// Seconds of `steps` steps.
-fn seconds_of(world: &mut World, steps: usize) -> Result<f64, String> {
-    let clock = Instant::now();
+/// Adds the seconds of `steps` steps, as they pass and by the processor.
+fn time_steps(
+    world: &mut World,
+    steps: usize,
+    [seconds, processor]: &mut [Vec<f64>; 2],
+) -> Result<(), String> {
+    let clock = Clock::start();
     (0..steps).try_for_each(|_| world.step().map_err(|error| error.to_string()))?;
-    Ok(clock.elapsed().as_secs_f64())
+    clock.stop(seconds, processor, steps);
+    Ok(())
 }
 
 /// Positions of one world against those of another, relative to how far they have moved.
@@ -82,17 +87,22 @@ pub fn law_text(name: &str, writing: Writing, most: f64, effort: Effort) -> Resu
             let mut known = started(&settings(element, cells, None))?;
             let start = known.state().systems[0].q.clone();
             let mut text = started(&settings(element, cells, Some(writing)))?;
-            let mut ratios = Vec::new();
+            let mut of_known = [Vec::new(), Vec::new()];
+            let mut of_text = [Vec::new(), Vec::new()];
             for _ in 0..effort.choose(7, 31) {
-                let of_known = seconds_of(&mut known, steps)?;
-                ratios.push(seconds_of(&mut text, steps)? / of_known);
+                time_steps(&mut known, steps, &mut of_known)?;
+                time_steps(&mut text, steps, &mut of_text)?;
             }
-            Ok::<_, String>((ratios, distance(&known, &text, &start), text.bytes()))
+            let ratios: Vec<f64> =
+                of_text[0].iter().zip(&of_known[0]).map(|(text, known)| text / known).collect();
+            let by_processor = over(&of_text[1], &of_known[1]);
+            Ok::<_, String>((ratios, by_processor, distance(&known, &text, &start), text.bytes()))
         });
-        let (ratios, error, bytes) = measured??;
+        let (ratios, by_processor, error, bytes) = measured??;
         let samples = ratios.len();
         let (value, spread) = median(ratios);
         figures.push(Figure {
+            by_processor,
             name: format!("{name}_{element}_1t"),
             value,
             unit: "x built-in",
@@ -131,6 +141,7 @@ fn ready(name: &str, writing: Writing, effort: Effort) -> Result<Figure, String>
     let count = samples.len();
     let (value, spread) = median(samples);
     Ok(Figure {
+        by_processor: None,
         name: format!("{name}_ready"),
         value,
         unit: "ms",
@@ -176,15 +187,16 @@ pub fn force_times(settings: &[String], threads: usize, samples: usize) -> Resul
             let zeros = vec![Vec3::ZERO; delta.len()];
             let (mut forces, mut derivatives) = (zeros.clone(), zeros.clone());
             let mut seconds = [Vec::new(), Vec::new()];
+            let mut processor = [Vec::new(), Vec::new()];
             for _ in 0..samples + 1 {
                 forces.fill(Vec3::ZERO);
-                let clock = Instant::now();
+                let clock = Clock::start();
                 force.add_force(&at, scratch, &mut forces);
-                seconds[0].push(clock.elapsed().as_secs_f64());
+                clock.stop(&mut seconds[0], &mut processor[0], 1);
                 derivatives.fill(Vec3::ZERO);
-                let clock = Instant::now();
+                let clock = Clock::start();
                 force.add_differential(&at, weights, &delta, scratch, &mut derivatives);
-                seconds[1].push(clock.elapsed().as_secs_f64());
+                clock.stop(&mut seconds[1], &mut processor[1], 1);
             }
             // (f(x + ε δ) - f(x - ε δ)) / 2ε
             let step = 1e-7;
@@ -198,10 +210,16 @@ pub fn force_times(settings: &[String], threads: usize, samples: usize) -> Resul
             }
             let bytes = force.bytes() + force.scratch_bytes(scratch);
             // the first of each fills buffers
-            let [force, derivative] = seconds.map(|mut seconds| {
-                seconds.remove(0);
-                Timed { threads, seconds, cells, bytes }
-            });
+            let [first, second] = seconds;
+            let [of_first, of_second] = processor;
+            let [force, derivative] =
+                [(first, of_first), (second, of_second)].map(|(mut seconds, processor)| {
+                    seconds.remove(0);
+                    // several threads work for one clock
+                    let processor =
+                        if threads == 1 { processor.into_iter().skip(1).collect() } else { Vec::new() };
+                    Timed { threads, seconds, processor, cells, bytes }
+                });
             let derivative_error = off(&derivatives, &difference);
             Ok(ForceTimes { force, derivative, forces, derivatives, derivative_error })
         })
@@ -242,20 +260,26 @@ pub fn forces(
         };
         let of_derivative = "derivative against differences of the force";
         figures.push(times.force.elements_per_second(name, &held(wanted, of_derivative)));
-        let ratios = times.derivative.seconds.iter().zip(&times.force.seconds).map(|(d, f)| d / f).collect();
-        let name = format!("{name}_derivative");
-        figures.push(times.force.figure(&name, ratios, &held(2.5, of_derivative), ("x force", false)));
+        let ForceTimes { force, derivative, .. } = &times;
+        let (name, unit) = (format!("{name}_derivative"), ("x force", false));
+        let ratios = derivative.seconds.iter().zip(&force.seconds).map(|(d, f)| d / f).collect();
+        let by_processor = over(&derivative.processor, &force.processor);
+        let figure = force.figure(&name, ratios, &held(2.5, of_derivative), unit);
+        figures.push(Figure { by_processor, ..figure });
     }
     Ok(figures)
 }
 
-/// Products with the tangent from a stored matrix against products element by element, in one implicit step each: what a
-/// derivative that is computed once per step saves (EXP-41), and what differences in its place cost.
+/// How much faster a derivative that is computed once a step must be than one computed at every product (EXP-41).
+const STORED_OVER_PRODUCTS: f64 = 2.0;
+
+/// Products with the tangent from a stored matrix, element by element, and by differences of forces, in one implicit step
+/// each; then how much faster than element by element the others are.
 pub fn tangents(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let variants = [
-        ("stored", "matrix_free = false", "exact"),
-        ("element_by_element", "matrix_free = true", "exact"),
-        ("differences", "matrix_free = true", "difference"),
+        ("element_by_element", "matrix_free = true", "exact", None),
+        ("stored", "matrix_free = false", "exact", Some(STORED_OVER_PRODUCTS)),
+        ("differences", "matrix_free = true", "difference", None),
     ];
     let step = |stored: &str, tangent: &str| {
         let mut settings = bar("hex8", 4, "st_venant_kirchhoff");
@@ -266,15 +290,11 @@ pub fn tangents(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
         settings
     };
     let tip = |settings: &[String]| super::value_of(scene("cantilever_dynamic", settings)?, 5, "tip", 1);
-    let exact = tip(&step(variants[1].1, variants[1].2))?;
     let mut figures = Vec::new();
-    for (variant, stored, tangent) in variants {
+    // of products element by element
+    let mut exact: Option<(f64, Timed)> = None;
+    for (variant, stored, tangent, wanted) in variants {
         let settings = step(stored, tangent);
-        let held = Held {
-            error: (tip(&settings)? / exact - 1.0).abs(),
-            error_of: "tip after 5 steps, against products element by element".to_owned(),
-            baseline: None,
-        };
         let timing = Timing {
             scene: "cantilever_dynamic",
             settings: &settings,
@@ -283,8 +303,19 @@ pub fn tangents(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
             samples: effort.choose(4, 12),
             steps_per_sample: 1,
         };
-        let timed = with_threads(1, || timing.sample(1))??;
-        figures.push(timed.milliseconds_per_step(&format!("{name}_{variant}"), &held));
+        let (timed, tip) = (with_threads(1, || timing.sample(1))??, tip(&settings)?);
+        let (exact_tip, products) = exact.get_or_insert_with(|| (tip, timed.clone()));
+        let exact_tip = *exact_tip;
+        let held = |baseline| Held {
+            error: (tip / exact_tip - 1.0).abs(),
+            error_of: "tip after 5 steps, against products element by element".to_owned(),
+            baseline,
+        };
+        figures.push(timed.milliseconds_per_step(&format!("{name}_{variant}"), &held(None)));
+        if variant != variants[0].0 {
+            let row = format!("{name}_{variant}_saving");
+            figures.push(timed.times_as_fast(&row, products, &held(wanted)));
+        }
     }
     Ok(figures)
 }

@@ -58,6 +58,7 @@ pub fn adaptive_saving(effort: Effort) -> Result<Vec<Figure>, String> {
     let surface = adaptive.surface.iter().zip(&fine.surface).map(|(a, b)| distance(*a, *b));
     let surface = surface.fold(0.0, f64::max) / fine.size;
     let figure = |name: &str, error: f64, error_of: &str| Figure {
+        by_processor: None,
         name: name.to_owned(),
         value: fine.active / adaptive.active,
         unit: "active points all-fine / adaptive",

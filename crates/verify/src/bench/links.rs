@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use super::timing::{Held, Timed, Timing, as_it_is, scene};
+use super::timing::{Held, Timing, as_it_is, scene};
 use super::{Effort, Figure, value_of};
 
 /// Steps in a period of the world: what is done once a period is shared by them.
@@ -56,8 +56,7 @@ pub fn springs_lattice(
     };
     let mut figures = Vec::new();
     for timed in timing.run()? {
-        let own =
-            Timed { seconds: timed.seconds.iter().map(|s| s / STEPS_PER_PERIOD as f64).collect(), ..timed };
+        let own = timed.in_parts(STEPS_PER_PERIOD);
         let moved = own.cells * BYTES_OF_LINK + n.pow(3) * BYTES_OF_MASS;
         let triad = super::timing::with_threads(own.threads, triad_gigabytes_per_second)?;
         let bandwidth = Held { error: 0.0, error_of: String::new(), baseline: Some(triad) };

@@ -83,6 +83,7 @@ pub fn cost(effort: Effort) -> Result<Vec<Figure>, String> {
     }
     let (exponent, residual) = slope(&points);
     figures.push(Figure {
+        by_processor: None,
         name: "skin_cost_exponent".to_owned(),
         value: exponent,
         unit: "of the cells along an edge",
@@ -183,6 +184,7 @@ pub fn dress_100k(name: &str, voxel_in_radii: f64, effort: Effort) -> Result<Vec
         median(rates)
     };
     let figure = |name: String, (value, spread): (f64, f64), unit, volume: f64, baseline| Figure {
+        by_processor: None,
         name,
         value,
         unit,

@@ -22,6 +22,7 @@ pub fn startup(effort: Effort) -> Result<Vec<Figure>, String> {
     let count = samples.len();
     let (value, spread) = median(samples);
     Ok(vec![Figure {
+        by_processor: None,
         name: "startup".to_owned(),
         value,
         unit: "ms",

@@ -48,6 +48,7 @@ pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
         let samples = ratios.len();
         let (value, spread) = median(ratios);
         figures.push(Figure {
+            by_processor: None,
             name: format!("{name}_{density}_{modulus:e}_1t"),
             value,
             unit: "x implicit",

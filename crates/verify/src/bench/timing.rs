@@ -22,10 +22,14 @@ pub struct Timing<'a> {
 }
 
 /// What was timed.
+#[derive(Clone)]
 pub struct Timed {
     pub threads: usize,
     /// Of a step, sample by sample [s].
     pub seconds: Vec<f64>,
+    /// The same by time of the processor, of one thread where the system tells; else empty. The system tells at ticks of some
+    /// milliseconds: only the sum means something.
+    pub processor: Vec<f64>,
     pub cells: usize,
     pub bytes: usize,
 }
@@ -44,14 +48,45 @@ impl Timing<'_> {
         let mut steps =
             |count: usize| (0..count).try_for_each(|_| world.step().map_err(|error| error.to_string()));
         steps(self.warm_up)?;
-        let mut seconds = Vec::with_capacity(self.samples);
+        let (mut seconds, mut processor) = (Vec::with_capacity(self.samples), Vec::new());
         for _ in 0..self.samples {
-            let clock = Instant::now();
+            let clock = Clock::start();
             steps(self.steps_per_sample)?;
-            seconds.push(clock.elapsed().as_secs_f64() / self.steps_per_sample as f64);
+            clock.stop(&mut seconds, &mut processor, self.steps_per_sample);
         }
-        Ok(Timed { threads, seconds, cells, bytes: world.bytes() })
+        // several threads work for one clock
+        let processor = if threads == 1 { processor } else { Vec::new() };
+        Ok(Timed { threads, seconds, processor, cells, bytes: world.bytes() })
     }
+}
+
+/// Time that passes, and time that this thread has a processor: where others work on the machine too, what the work itself
+/// takes.
+pub struct Clock {
+    start: Instant,
+    on_processor: Option<f64>,
+}
+
+impl Clock {
+    pub fn start() -> Self {
+        let on_processor = seconds_on_processor();
+        Self { start: Instant::now(), on_processor }
+    }
+
+    /// Adds what each of `count` pieces of work took.
+    pub fn stop(self, seconds: &mut Vec<f64>, processor: &mut Vec<f64>, count: usize) {
+        seconds.push(self.start.elapsed().as_secs_f64() / count as f64);
+        if let (Some(start), Some(end)) = (self.on_processor, seconds_on_processor()) {
+            processor.push((end - start) / count as f64);
+        }
+    }
+}
+
+/// Of this thread so far; `None` where the system does not tell.
+fn seconds_on_processor() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
+    Some(1e-9 * nanoseconds)
 }
 
 pub fn as_it_is(_: &mut World) -> Result<(), SnapshotError> {
@@ -76,30 +111,37 @@ pub struct Held {
 
 impl Timed {
     pub fn elements_per_second(&self, name: &str, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| self.cells as f64 / seconds).collect();
-        self.figure(name, rates, held, ("elements/s", true))
+        self.of_seconds(name, |seconds| self.cells as f64 / seconds, held, ("elements/s", true))
     }
 
     /// Of a network, whose cells are its links.
     pub fn links_per_second(&self, name: &str, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| self.cells as f64 / seconds).collect();
-        self.figure(name, rates, held, ("links/s", true))
+        self.of_seconds(name, |seconds| self.cells as f64 / seconds, held, ("links/s", true))
     }
 
     /// Of steps that move so many bytes.
     pub fn gigabytes_per_second(&self, name: &str, bytes: usize, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| 1e-9 * bytes as f64 / seconds).collect();
-        self.figure(name, rates, held, ("GB/s", true))
+        self.of_seconds(name, |seconds| 1e-9 * bytes as f64 / seconds, held, ("GB/s", true))
     }
 
     pub fn milliseconds_per_step(&self, name: &str, held: &Held) -> Figure {
-        let times = self.seconds.iter().map(|seconds| 1e3 * seconds).collect();
-        self.figure(name, times, held, ("ms/step", false))
+        self.of_seconds(name, |seconds| 1e3 * seconds, held, ("ms/step", false))
     }
 
     pub fn steps_per_second(&self, name: &str, held: &Held) -> Figure {
-        let rates = self.seconds.iter().map(|seconds| 1.0 / seconds).collect();
-        self.figure(name, rates, held, ("steps/s", true))
+        self.of_seconds(name, |seconds| 1.0 / seconds, held, ("steps/s", true))
+    }
+
+    fn of_seconds(
+        &self,
+        name: &str,
+        value: impl Fn(f64) -> f64,
+        held: &Held,
+        unit: (&'static str, bool),
+    ) -> Figure {
+        let values = self.seconds.iter().map(|seconds| value(*seconds)).collect();
+        let by_processor = mean(&self.processor).map(value);
+        Figure { by_processor, ..self.figure(name, values, held, unit) }
     }
 
     pub fn figure(
@@ -113,6 +155,7 @@ impl Timed {
         Figure {
             name: format!("{name}_{}t", self.threads),
             value,
+            by_processor: None,
             unit,
             higher_is_better,
             error: held.error,
@@ -123,6 +166,20 @@ impl Timed {
             spread,
             bytes: self.bytes,
         }
+    }
+
+    /// Of one of `count` equal parts of a step.
+    pub fn in_parts(self, count: usize) -> Self {
+        let part = |seconds: &Vec<f64>| seconds.iter().map(|seconds| seconds / count as f64).collect();
+        Self { seconds: part(&self.seconds), processor: part(&self.processor), ..self }
+    }
+
+    /// How many times as fast as `slow`, by medians.
+    pub fn times_as_fast(&self, name: &str, slow: &Self, held: &Held) -> Figure {
+        let (of_slow, _) = median(slow.seconds.clone());
+        let ratios = self.seconds.iter().map(|seconds| of_slow / seconds).collect();
+        let by_processor = over(&slow.processor, &self.processor);
+        Figure { by_processor, ..self.figure(name, ratios, held, ("x as fast", true)) }
     }
 }
 
@@ -142,6 +199,17 @@ pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) ->
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| error.to_string())?;
     Ok(pool.install(work))
+}
+
+/// `None` where nothing was measured.
+fn mean(samples: &[f64]) -> Option<f64> {
+    let sum: f64 = samples.iter().sum();
+    (sum > 0.0).then(|| sum / samples.len() as f64)
+}
+
+/// The mean of one over that of the other, where both are known.
+pub fn over(above: &[f64], below: &[f64]) -> Option<f64> {
+    Some(mean(above)? / mean(below)?)
 }
 
 /// Median and half the interquartile distance over it.

@@ -15,6 +15,7 @@ pub fn frame_20k(effort: Effort) -> Result<Vec<Figure>, String> {
     let samples = cost.seconds.len();
     let (value, spread) = median(cost.seconds.iter().map(|seconds| 1e3 * seconds).collect());
     Ok(vec![Figure {
+        by_processor: None,
         name: "view_frame_20k".to_owned(),
         value,
         unit: "ms",
@@ -39,6 +40,7 @@ pub fn rate(effort: Effort) -> Result<Vec<Figure>, String> {
     let samples = served.latencies.len();
     let (latency, spread) = median(served.latencies.iter().map(|seconds| 1e3 * seconds).collect());
     let figure = |name: &str, value: f64, unit: &'static str, higher_is_better: bool, baseline: f64| Figure {
+        by_processor: None,
         name: name.to_owned(),
         value,
         unit,

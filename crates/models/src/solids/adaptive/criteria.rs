@@ -5,7 +5,7 @@
 
 #![allow(non_snake_case)]
 
-use souple_math::{Mat3, Vec3};
+use souple_math::{Mat3, Real, Vec3};
 use souple_mesh::{ElementKind, MAX_NODES, QuadratureRule};
 
 /// A criterion of elements.
@@ -102,11 +102,12 @@ impl Element<'_> {
 }
 
 /// `abc / (8 (s - a)(s - b)(s - c))` with `s` half the circumference: 1 of an equilateral triangle, without bound as it gets flat.
-pub fn shape_factor([x, y, z]: [Vec3; 3]) -> f64 {
+#[inline(always)]
+pub fn shape_factor<R: Real>([x, y, z]: [Vec3<R>; 3]) -> R {
     let (a, b, c) = ((y - x).length(), (z - y).length(), (x - z).length());
-    let s = 0.5 * (a + b + c);
+    let s = (a + b + c) * 0.5;
     // of corners on a line rounding may say less than nothing
-    a * b * c / (8.0 * ((s - a) * (s - b) * (s - c)).max(0.0))
+    a * b * c / (((s - a) * (s - b) * (s - c)).max(s.zero()) * 8.0)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! counts as dissipated, so that the sum of energies closes (Faure 2014, §6.4).
 
 mod criteria;
+mod measure;
 mod parts;
 
 use std::any::Any;
@@ -20,12 +21,14 @@ use souple_solve::BlockMatrix;
 
 pub use criteria::Criterion;
 use criteria::Element;
+use measure::Measured;
 use parts::{Parts, Split};
 
 use super::assembly::{Assembly, Symmetry};
 use super::elements::Batch;
 use super::kernel::Kernel;
 use super::layout::{Chunk, LANES};
+use super::parallel;
 use super::{FlatCell, Section, SolidDescription, SolidForce};
 use crate::materials::Material;
 
@@ -46,6 +49,10 @@ pub struct AdaptiveForce {
     solids: [SolidForce; 2],
     mesh: Mesh,
     adaptation: Adaptation,
+    /// Rest positions of every chunk's own rows.
+    rest: Vec<Vec<Padded>>,
+    /// Cells of the chunks before each, and of all.
+    first_cell: Vec<usize>,
 }
 
 struct AdaptiveScratch {
@@ -61,6 +68,8 @@ fn of(scratch: &mut Scratch) -> &mut AdaptiveScratch {
 thread_local! {
     /// Element blocks under the second law.
     static BLOCKS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+    /// What criteria are over their thresholds, chunk after chunk.
+    static EXCESS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
 
 type SolidBatch = Batch<Box<dyn Kernel>>;
@@ -85,7 +94,13 @@ impl AdaptiveForce {
             })
         };
         let [first, second] = &laws;
-        Ok(Self { solids: [solid(first)?, solid(second)?], mesh: description.mesh.clone(), adaptation })
+        let (solids, mesh) = ([solid(first)?, solid(second)?], description.mesh.clone());
+        let chunks = || solids[0].elements.chunks().map(|(_, chunk)| chunk);
+        let at_rest = |row: &u32| Padded::from(mesh.points[*row as usize - description.first_row]);
+        let rest = chunks().map(|chunk| chunk.rows.iter().map(at_rest).collect()).collect();
+        let mut first_cell = vec![0];
+        chunks().for_each(|chunk| first_cell.push(first_cell[first_cell.len() - 1] + chunk.cells.len()));
+        Ok(Self { solids, mesh, adaptation, rest, first_cell })
     }
 
     fn laws<'a>(&self, memory: &'a [f64]) -> &'a [f64] {
@@ -116,14 +131,51 @@ impl AdaptiveForce {
 
     /// The greatest criterion of a cell over its threshold; what has no number any more is over any.
     fn excess(&self, cell: usize, law: usize, positions: &[Vec3]) -> f64 {
+        let of = |one: &(Criterion, f64)| self.over(cell, law, *one, positions);
+        self.adaptation.thresholds.iter().map(of).fold(0.0, f64::max)
+    }
+
+    /// One criterion of a cell over its threshold.
+    fn over(
+        &self,
+        cell: usize,
+        law: usize,
+        (criterion, threshold): (Criterion, f64),
+        positions: &[Vec3],
+    ) -> f64 {
         let material = self.material(law);
-        self.with_cell(cell, positions, |element| {
-            let of = |(criterion, threshold): &(Criterion, f64)| {
-                let excess = element.measure(*criterion, |F| material.stress(F)) / threshold;
-                if excess.is_nan() { f64::INFINITY } else { excess }
-            };
-            self.adaptation.thresholds.iter().map(of).fold(0.0, f64::max)
-        })
+        let measure = |element: &Element| element.measure(criterion, |F| material.stress(F));
+        let over = self.with_cell(cell, positions, measure) / threshold;
+        if over.is_nan() { f64::INFINITY } else { over }
+    }
+
+    /// [`Self::excess`] of every cell, chunk after chunk.
+    fn excesses(&self, laws: &[f64], positions: &[Vec3], excesses: &mut Vec<f64>) {
+        excesses.clear();
+        excesses.resize(self.mesh.cell_count(), 0.0);
+        let (elements, first_cell) = (&self.solids[0].elements, |chunk: usize| self.first_cell[chunk]);
+        let chunks = 0..elements.chunk_count();
+        parallel::fill(chunks, parallel::LIGHT, excesses, &first_cell, &|number, excess| {
+            let (batch, chunk) = elements.chunk(number);
+            let (kind, reference, rest) = (batch.kind, &batch.reference, &self.rest[number]);
+            chunk.with_own_rows([positions], |[now]| {
+                let measured = Measured { kind, chunk, reference, rest, now };
+                for (criterion, threshold) in &self.adaptation.thresholds {
+                    if *criterion != Criterion::Force {
+                        measured.raise(*criterion, *threshold, excess);
+                    }
+                }
+            });
+            for (criterion, threshold) in &self.adaptation.thresholds {
+                if *criterion == Criterion::Force {
+                    for (excess, cell) in excess.iter_mut().zip(&chunk.cells) {
+                        let law = usize::from(laws[*cell as usize] != 0.0);
+                        let of_cell = self.over(*cell as usize, law, (*criterion, *threshold), positions);
+                        *excess = excess.max(of_cell);
+                    }
+                }
+            }
+        });
     }
 
     /// Stored energy of a cell under a law [J].
@@ -278,11 +330,13 @@ impl Force for AdaptiveForce {
 
     fn advance_memory(&self, at: &Configuration, _: f64, memory: &mut [f64], _: &mut [Pair]) {
         let count = self.mesh.cell_count();
-        for cell in 0..count {
+        // taken out: where threads share the work, this one may be given a part of another's
+        let mut excesses = EXCESS.take();
+        self.excesses(&memory[..count], at.positions, &mut excesses);
+        let cells = self.solids[0].elements.chunks().flat_map(|(_, chunk)| &chunk.cells);
+        for (cell, excess) in cells.map(|cell| *cell as usize).zip(&excesses) {
             let law = usize::from(memory[cell] != 0.0);
-            let excess = self.excess(cell, law, at.positions);
-            let is_over = excess > 1.0;
-            let is_back = excess < self.adaptation.back;
+            let (is_over, is_back) = (*excess > 1.0, *excess < self.adaptation.back);
             if (law == 0 && is_over) || (law == 1 && is_back) {
                 let [before, after] = [law, 1 - law].map(|law| self.energy_of(cell, law, at.positions));
                 memory[cell] = (1 - law) as f64;
@@ -290,6 +344,7 @@ impl Force for AdaptiveForce {
                 memory[count + 1] += 1.0;
             }
         }
+        EXCESS.set(excesses);
     }
 
     fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
@@ -301,6 +356,10 @@ impl Force for AdaptiveForce {
         self.solids[usize::from(*law != 0.0)].cell_field(cell, at.positions)
     }
 
+    fn adapted_law(&self, cell: usize, at: &Configuration) -> Option<f64> {
+        self.laws(at.memory).get(cell).copied()
+    }
+
     fn adapted(&self, cell: usize, at: &Configuration) -> Option<Adapted> {
         let law = self.laws(at.memory).get(cell)?;
         let excess = self.excess(cell, usize::from(*law != 0.0), at.positions);
@@ -310,6 +369,8 @@ impl Force for AdaptiveForce {
     fn bytes(&self) -> usize {
         self.solids.iter().map(|solid| solid.bytes()).sum::<usize>()
             + size_of_val(self.mesh.points.as_slice())
+            + size_of_val(self.first_cell.as_slice())
+            + self.rest.iter().map(|rest| size_of_val(rest.as_slice())).sum::<usize>()
             + self.mesh.cells().map(|cell| size_of_val(cell.nodes)).sum::<usize>()
     }
 

@@ -13,7 +13,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use souple_engine::Declaration;
 use souple_math::{Lanes, Mat3, Padded, Real, Vec3, polar};
-use souple_mesh::{ElementKind, MAX_NODES};
+use souple_mesh::{ElementKind, MAX_NODES, QuadratureRule};
 use souple_table::Entry;
 
 use super::{BuildFormulation, check_cells, moduli_of};
@@ -62,7 +62,7 @@ impl Sorting for ByModuli<'_> {
         &self.numbers[usize::from(self.description.material_of_cell[cell])]
     }
 
-    fn kernel(&self, kind: ElementKind, _: &MaterialLaw) -> Box<dyn Kernel> {
+    fn kernel(&self, kind: ElementKind, _: &QuadratureRule, _: &MaterialLaw) -> Box<dyn Kernel> {
         match kind {
             ElementKind::Tet4 => Box::new(Corotated::<Tetrahedron, 4> { nodes: 4, geometry: PhantomData }),
             kind => Box::new(Corotated::<AnyElement, MAX_NODES> {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use souple_formal::element::Cut;
 use souple_formal::law::{EnergyLaw, LawParameter};
 use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh};
+use souple_mesh::{Cell, ElementKind, Mesh, QuadratureRule};
 use souple_table::{Entry, Parameter, Value};
 
 use super::{BuildFormulation, FormulationError, check_cells, name_of};
@@ -22,7 +22,7 @@ use expressions::Expressions;
 
 const NAME: &str = "grouped_constants";
 const ELEMENTS: &str = "volume elements";
-const LAWS: &str = "linear, st_venant_kirchhoff, neo_hookean, and laws as text without principal stretches";
+const LAWS: &str = "linear, st_venant_kirchhoff, neo_hookean, and laws as text";
 
 pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     name: NAME,
@@ -62,7 +62,7 @@ impl Sorting for ByAssociation {
         &self.constants[cell]
     }
 
-    fn kernel(&self, _: ElementKind, association: &usize) -> Box<dyn Kernel> {
+    fn kernel(&self, _: ElementKind, _: &QuadratureRule, association: &usize) -> Box<dyn Kernel> {
         Box::new(Arc::clone(&self.kernels[*association]))
     }
 }
@@ -86,8 +86,8 @@ impl ByAssociation {
                 let law = energy_law(law)?;
                 let element = element_data(key.1, quadrature.rule(key.1), key.2)
                     .unwrap_or_else(|error| unreachable!("only hexahedra are found to be boxes: {error}"));
-                let derived = element.derive(&law, cut).map_err(|_| refused(key.0))?;
-                sorting.kernels.push(Arc::new(Expressions::new(&derived, &law, cell.kind.node_count())));
+                let steps = element.steps(&law, cut);
+                sorting.kernels.push(Arc::new(Expressions::new(&steps, &law, cell.kind.node_count())));
             }
         }
         for (association, kernel) in sorting.kernels.iter().enumerate() {

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use pulp::{Arch, Simd, WithSimd};
-use souple_formal::element::{Derived, ElementExpressions};
+use souple_formal::element::{Step, Steps};
 use souple_formal::graph::Expr;
 use souple_formal::law::{EnergyLaw, LawParameter};
 use souple_formal::tape::{BATCH, Part, Tape};
@@ -48,35 +48,36 @@ thread_local! {
 }
 
 impl Expressions {
-    pub fn new(derived: &Derived, law: &EnergyLaw, nodes: usize) -> Self {
+    pub fn new(steps: &Steps, law: &EnergyLaw, nodes: usize) -> Self {
+        let Steps { graph, symbols, .. } = steps;
         let flat = |list: &[Vec<Expr>]| list.iter().flatten().copied().collect::<Vec<Expr>>();
-        let given: Vec<Expr> =
-            flat(&derived.rest).into_iter().chain(derived.parameters.iter().copied()).collect();
-        let (displacements, variations) = (flat(&derived.displacements), flat(&derived.variations));
+        let mut given = flat(&symbols.rest);
+        given.extend(&symbols.parameters);
+        let (displacements, variations) = (flat(&symbols.displacements), flat(&symbols.variations));
         let mut constant_count = 0;
-        let mut fragment = |of: &ElementExpressions, varied: &[Expr]| {
-            let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = of.grouped.constants.iter().copied().unzip();
-            let inputs: Vec<Expr> = displacements.iter().chain(&symbols).copied().collect();
-            let range = constant_count..constant_count + symbols.len();
+        let mut fragment = |of: &Step, varied: &[Expr]| {
+            let (constants, values): (Vec<Expr>, Vec<Expr>) = of.constants.iter().copied().unzip();
+            let inputs: Vec<Expr> = displacements.iter().chain(&constants).copied().collect();
+            let range = constant_count..constant_count + constants.len();
             constant_count = range.end;
-            let (graph, directions) = (&derived.graph, &law.parameters);
-            let known = &of.grouped.constants;
-            let step = Tape::of_expressions(graph, [&inputs, varied], &[], &of.grouped.varying, directions);
+            let directions = &law.parameters;
+            let step =
+                Tape::of_expressions(graph, [&inputs, varied], &of.definitions, &of.outputs, directions);
             Fragment {
-                constants: Tape::of_expressions(graph, [&given, &[]], known, &definitions, directions),
+                constants: Tape::of_expressions(graph, [&given, &[]], &of.constants, &values, directions),
                 range,
                 displacements: (0..displacements.len()).map(|input| step.input(input)).collect(),
                 variations: (0..varied.len()).map(|input| step.varied(input)).collect(),
-                outputs: (0..of.grouped.varying.len()).map(|output| step.output(output, 0)).collect(),
+                outputs: (0..of.outputs.len()).map(|output| step.output(output, 0)).collect(),
                 step,
             }
         };
-        let mut fragments = |all: &[ElementExpressions], varied: &[Expr]| -> Vec<Fragment> {
+        let mut fragments = |all: &[Step], varied: &[Expr]| -> Vec<Fragment> {
             all.iter().map(|of| fragment(of, varied)).collect()
         };
-        let energy = fragments(&derived.energies, &[]);
-        let forces = fragments(&derived.forces, &[]);
-        let differential = fragments(&derived.differentials, &variations);
+        let energy = fragments(&steps.energies, &[]);
+        let forces = fragments(&steps.forces, &[]);
+        let differential = fragments(&steps.differentials, &variations);
         let parameters =
             law.parameters.iter().filter(|(_, value)| matches!(value, LawParameter::Number { .. }));
         let parameters = parameters.map(|(name, _)| name.clone()).collect();

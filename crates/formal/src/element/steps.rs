@@ -1,0 +1,208 @@
+//! What an element computes at each step, in tensors: the same forces as [`super::derive`], not spelled out.
+//!
+//! At a sample `X = X_ξ⁻¹` is grouped into nine constants and the weight with the moduli into one each, which are the eleven
+//! of the source for a tetrahedron; then `F = I + U_ξ X`, `H = -ω P(F) Xᵀ`, `f_n = H ∂N_n/∂ξ`. Spelled out, common factors of
+//! `H` would be multiplied into every addend of every force: twice the operations, and constants for each product.
+
+use std::collections::HashMap;
+
+use super::derive::{Placing, Symbols, Term, WEIGHT, terms};
+use super::{Cut, ElementData, Fragment};
+use crate::graph::{Expr, Graph, Shape};
+use crate::law::EnergyLaw;
+
+/// Steps of an element under one law.
+#[derive(Clone, Debug)]
+pub struct Steps {
+    pub graph: Graph,
+    pub symbols: Symbols,
+    pub energies: Vec<Step>,
+    pub forces: Vec<Step>,
+    pub differentials: Vec<Step>,
+}
+
+/// An addend of the energy (one number), or of the forces or differentials (by node and direction).
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Symbols of numbers that are computed once, and what from.
+    pub constants: Vec<(Expr, Expr)>,
+    /// Symbols of tensors that are computed on the way; later ones may use earlier ones.
+    pub definitions: Vec<(Expr, Expr)>,
+    pub outputs: Vec<Expr>,
+}
+
+/// The symbols of one sample.
+#[derive(Clone, Copy)]
+struct Tensors {
+    /// `X_ξ⁻¹`.
+    inverse: Expr,
+    deformation: Expr,
+    variation: Expr,
+    /// `-ω P X_ξ⁻ᵀ`, or its differential.
+    spread: Expr,
+}
+
+/// What is computed of a law.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sort {
+    Energy,
+    Force,
+    /// Of what varies at some nodes in some directions.
+    Differential,
+}
+
+struct Stepping<'a> {
+    graph: Graph,
+    element: &'a ElementData,
+    law: &'a EnergyLaw,
+    symbols: Symbols,
+    terms: Vec<Term>,
+}
+
+pub(super) fn steps(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Steps {
+    let mut graph = law.graph.clone();
+    let symbols = Symbols::new(&mut graph, element, law);
+    let terms = terms(&mut graph, law);
+    let mut stepping = Stepping { graph, element, law, symbols, terms };
+    let counts = (stepping.terms.len(), element.samples.len());
+    let of_forces = Fragment::of_forces(cut, counts.0, counts.1);
+    let of_differentials = Fragment::of_differentials(cut, counts, (element.node_count, element.dimension));
+    let mut list = |sort, fragments: &[Fragment]| -> Vec<Step> {
+        fragments.iter().map(|fragment| stepping.step(sort, *fragment)).collect()
+    };
+    let (energies, forces) = (list(Sort::Energy, &of_forces), list(Sort::Force, &of_forces));
+    let differentials = list(Sort::Differential, &of_differentials);
+    Steps { graph: stepping.graph, symbols: stepping.symbols, energies, forces, differentials }
+}
+
+impl Stepping<'_> {
+    fn step(&mut self, sort: Sort, fragment: Fragment) -> Step {
+        let samples = fragment.sample.map_or(0..self.element.samples.len(), |sample| sample..sample + 1);
+        let varied = self.varied(fragment);
+        let mut definitions = Vec::new();
+        let mut parts = Vec::new();
+        for sample in samples {
+            let tensors = self.tensors(sample);
+            let weight = self.deform(sample, tensors, &varied, sort, &mut definitions);
+            let of_law = self.of_law(sort, fragment, weight, tensors);
+            if sort == Sort::Energy {
+                parts.push(vec![of_law]);
+                continue;
+            }
+            let transposed = self.graph.transpose(tensors.inverse);
+            definitions.push((tensors.spread, self.graph.multiply(of_law, transposed)));
+            parts.push(self.forces(sample, tensors.spread));
+        }
+        let outputs: Vec<Expr> = (0..parts[0].len())
+            .map(|index| {
+                let addends: Vec<Expr> = parts.iter().map(|part| part[index]).collect();
+                self.graph.sum(&addends)
+            })
+            .collect();
+        self.group(definitions, outputs)
+    }
+
+    /// What varies in a fragment, zero elsewhere.
+    fn varied(&mut self, fragment: Fragment) -> Vec<Vec<Expr>> {
+        let zero = self.graph.number(0.0);
+        let keeps = |wanted: Option<usize>, index: usize| wanted.is_none_or(|wanted| wanted == index);
+        let of_node = |(node, variations): (usize, &Vec<Expr>)| {
+            let of_axis = |(axis, variation): (usize, &Expr)| {
+                let is_kept = keeps(fragment.node, node) && keeps(fragment.direction, axis);
+                if is_kept { *variation } else { zero }
+            };
+            variations.iter().enumerate().map(of_axis).collect()
+        };
+        self.symbols.variations.iter().enumerate().map(of_node).collect()
+    }
+
+    fn tensors(&mut self, sample: usize) -> Tensors {
+        let mut symbol = |letter: &str| self.graph.symbol(&format!("{letter}@{sample}"), Shape::Matrix);
+        Tensors {
+            inverse: symbol("X"),
+            deformation: symbol("F"),
+            variation: symbol("dF"),
+            spread: symbol("H"),
+        }
+    }
+
+    /// Defines `X_ξ⁻¹` and `F` at a sample, and `δF` where it is wanted; gives `ω`.
+    fn deform(
+        &mut self,
+        sample: usize,
+        tensors: Tensors,
+        varied: &[Vec<Expr>],
+        sort: Sort,
+        definitions: &mut Vec<(Expr, Expr)>,
+    ) -> Expr {
+        let Symbols { rest, displacements, directions, .. } = &self.symbols;
+        let (element, law) = (self.element, self.law);
+        let mut at = Placing { graph: &mut self.graph, element, law, sample, rest, directions };
+        let (inverse, determinant) = at.rest_map();
+        let gradient = at.reference_gradient(displacements);
+        let variation = at.reference_gradient(varied);
+        let graph = &mut self.graph;
+        definitions.push((tensors.inverse, graph.pack(&inverse)));
+        let gradient = graph.pack(&gradient);
+        let (product, identity) = (graph.multiply(gradient, tensors.inverse), graph.identity());
+        definitions.push((tensors.deformation, graph.add(identity, product)));
+        if sort == Sort::Differential {
+            let variation = graph.pack(&variation);
+            definitions.push((tensors.variation, graph.multiply(variation, tensors.inverse)));
+        }
+        graph.times_number(element.samples[sample].weight, determinant)
+    }
+
+    /// `ω Ψ`, `-ω P` or `-ω δP` of the terms of a fragment.
+    fn of_law(&mut self, sort: Sort, fragment: Fragment, weight: Expr, tensors: Tensors) -> Expr {
+        let terms = fragment.term.map_or(&self.terms[..], |term| &self.terms[term..=term]);
+        let addends: Vec<Expr> = terms
+            .iter()
+            .map(|term| match sort {
+                Sort::Energy => term.energy,
+                Sort::Force => term.stress,
+                Sort::Differential => term.differential,
+            })
+            .collect();
+        let sum = self.graph.sum(&addends);
+        let signed = if sort == Sort::Energy { weight } else { self.graph.negate(weight) };
+        let symbol = self.graph.symbol(WEIGHT, Shape::Scalar);
+        let at_sample = HashMap::from([
+            (symbol, signed),
+            (self.law.deformation, tensors.deformation),
+            (self.law.variation, tensors.variation),
+        ]);
+        self.graph.substitute(sum, &at_sample)
+    }
+
+    /// `H ∂N_n/∂ξ`, by node and direction.
+    fn forces(&mut self, sample: usize, spread: Expr) -> Vec<Expr> {
+        let dimension = self.element.dimension;
+        let mut forces = Vec::with_capacity(self.element.node_count * dimension);
+        for gradient in &self.element.samples[sample].gradients {
+            for row in 0..dimension {
+                let terms: Vec<Expr> = (0..dimension)
+                    .map(|a| {
+                        let entry = self.graph.entry(spread, (3 * a + row) as u8);
+                        self.graph.times_number(gradient[a], entry)
+                    })
+                    .collect();
+                forces.push(self.graph.sum(&terms));
+            }
+        }
+        forces
+    }
+
+    /// Takes the constants out.
+    fn group(&mut self, definitions: Vec<(Expr, Expr)>, outputs: Vec<Expr>) -> Step {
+        let (symbols, tensors): (Vec<Expr>, Vec<Expr>) = definitions.into_iter().unzip();
+        let Symbols { displacements, variations, .. } = &self.symbols;
+        let variables = displacements.iter().chain(variations).flatten().chain(&symbols).copied();
+        let variables: Vec<Expr> = variables.collect();
+        let roots: Vec<Expr> = tensors.iter().chain(&outputs).copied().collect();
+        let mut grouped = self.graph.group_constants(&roots, &variables);
+        let outputs = grouped.varying.split_off(symbols.len());
+        let definitions = symbols.into_iter().zip(grouped.varying).collect();
+        Step { constants: grouped.constants, definitions, outputs }
+    }
+}
