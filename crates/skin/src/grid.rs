@@ -263,23 +263,41 @@ impl Neighbours {
 pub const WIDE: usize = EDGE + 2;
 
 /// A block with the nodes next to it.
-pub struct Halo(pub [f64; WIDE * WIDE * WIDE]);
+pub struct Halo<T>(pub [T; WIDE * WIDE * WIDE]);
 
 /// Number of a node of [`Halo`]; 1 is the block's first.
 pub const fn wide(x: usize, y: usize, z: usize) -> usize {
     x + WIDE * (y + WIDE * z)
 }
 
-impl Halo {
-    pub const ZERO: Self = Self([0.0; WIDE * WIDE * WIDE]);
+/// What stands for blocks that are not kept.
+static ALL_INSIDE: [f64; NODES] = [BAND; NODES];
+static ALL_OUTSIDE: [f64; NODES] = [-BAND; NODES];
 
-    /// Reads a block and the nodes around it.
-    pub fn read(&mut self, grid: Grid, neighbours: &Neighbours, block: usize) {
-        let around: [Result<&[f64; NODES], f64>; 27] =
-            std::array::from_fn(|number| match neighbours.of(block, number) {
-                Found::Kept(index) => Ok(grid.block(index as usize)),
-                uniform => Err(uniform.uniform()),
-            });
+impl<'a> Grid<'a> {
+    /// The values of the 27 blocks around one.
+    pub fn around(&self, neighbours: &Neighbours, block: usize) -> [&'a [f64; NODES]; 27] {
+        std::array::from_fn(|number| self.of(neighbours.of(block, number)))
+    }
+
+    /// The values of a block that may not be kept.
+    pub fn of(&self, found: Found) -> &'a [f64; NODES] {
+        match found {
+            Found::Kept(index) => self.block(index as usize),
+            Found::Inside => &ALL_INSIDE,
+            Found::Outside => &ALL_OUTSIDE,
+        }
+    }
+}
+
+impl<T: Copy> Halo<T> {
+    pub const fn filled(value: T) -> Self {
+        Self([value; WIDE * WIDE * WIDE])
+    }
+
+    /// Reads a block and the nodes around it from the 27 blocks around it, itself in the middle.
+    #[inline(always)]
+    pub fn read<S: Copy>(&mut self, around: &[&[S; NODES]; 27], convert: impl Fn(S) -> T) {
         // side of a wide coordinate: the neighbour's step, and the coordinate there
         let side = |c: usize| match c {
             0 => (0, EDGE - 1),
@@ -291,14 +309,15 @@ impl Halo {
             for y in 0..WIDE {
                 let (by, ny) = side(y);
                 let (first, node) = (3 * by + 9 * bz, node_of(0, ny, nz));
-                let row: &mut [f64; WIDE] =
+                let row: &mut [T; WIDE] =
                     (&mut self.0[wide(0, y, z)..][..WIDE]).try_into().expect("a row is so wide");
-                row[0] = around[first].map_or_else(|uniform| uniform, |block| block[node + EDGE - 1]);
-                match around[first + 1] {
-                    Ok(block) => row[1..=EDGE].copy_from_slice(&block[node..node + EDGE]),
-                    Err(uniform) => row[1..=EDGE].fill(uniform),
-                }
-                row[EDGE + 1] = around[first + 2].map_or_else(|uniform| uniform, |block| block[node]);
+                row[0] = convert(around[first][node + EDGE - 1]);
+                let middle: &[S; EDGE] =
+                    around[first + 1][node..][..EDGE].try_into().expect("a row has its nodes");
+                // by a copy, which is made of lanes
+                let middle = middle.map(&convert);
+                row[1..=EDGE].copy_from_slice(&middle);
+                row[EDGE + 1] = convert(around[first + 2][node]);
             }
         }
     }

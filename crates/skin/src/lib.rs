@@ -11,11 +11,14 @@ mod field;
 pub mod grid;
 mod level_set;
 mod look_up;
+mod marks;
 pub mod polygons;
 pub mod reaction;
 mod skin;
+mod speeds;
 pub mod strategy;
 pub mod target;
+mod waking;
 mod widest;
 
 pub use dress::dress;

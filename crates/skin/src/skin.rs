@@ -6,11 +6,14 @@ use souple_math::Vec3;
 
 use crate::crossings::Crossings;
 use crate::grid::{BAND, EDGE, FARTHEST, Grid, Halo, Lattice, NODES, Neighbours, key_of, wide};
-use crate::level_set::{Heads, Motion, Runaway, Speeds, TENSION_LIMIT, Waking, advance, curvature_at};
+use crate::level_set::{Motion, Surface, TENSION_LIMIT, advance, curvature_at};
+use crate::marks::Marks;
 use crate::polygons::{Audit, Measures, Polygons, Torn, area_and_volume, normals, polygonise};
 use crate::reaction::{Reaction, ReactionScratch, Tense};
+use crate::speeds::Speeds;
 use crate::strategy::{SurfacePoints, Term, Whole};
 use crate::target::{Followed, Moment, Target, TargetScratch};
+use crate::waking::{Heads, Runaway, Waking};
 
 /// The constant part of a skin.
 pub struct Skin {
@@ -54,6 +57,8 @@ pub const MOST_BLOCKS: usize = 1 << 19;
 pub const MOST_SAMPLED: usize = 1 << 20;
 /// Sub-steps of a step at most.
 const MOST_SUBSTEPS: u32 = 2_000;
+/// Points at which a target is evaluated at once.
+const SOME_POINTS: usize = 256;
 /// The surface moves no further in a sub-step [voxels].
 const FARTHEST_MOVE: f64 = 0.5;
 
@@ -154,6 +159,8 @@ impl<'a> View<'a> {
 /// Scratch of a skin.
 pub struct SkinScratch {
     neighbours: Neighbours,
+    marks: Vec<Marks>,
+    next_marks: Vec<Marks>,
     crossings: Crossings,
     triangles: Vec<[u32; 3]>,
     excess: Vec<f64>,
@@ -178,6 +185,7 @@ impl SkinScratch {
 
     pub fn bytes(&self) -> usize {
         self.neighbours.bytes()
+            + size_of::<Marks>() * (self.marks.capacity() + self.next_marks.capacity())
             + self.crossings.bytes()
             + 12 * self.triangles.capacity()
             + 8 * (self.excess.capacity() + self.speeds.capacity() + self.next.capacity())
@@ -192,6 +200,8 @@ impl Skin {
     pub fn new_scratch(&self) -> SkinScratch {
         SkinScratch {
             neighbours: Neighbours::default(),
+            marks: Vec::new(),
+            next_marks: Vec::new(),
             crossings: Crossings::default(),
             triangles: Vec::new(),
             excess: Vec::new(),
@@ -254,6 +264,7 @@ impl Skin {
             return Err(SkinError::Empty { low, high, voxel: self.voxel() });
         }
         self.make_distance(&mut field, scratch)?;
+        self.find_crossings(&field, scratch);
         self.measure(&mut field, scratch, 0.0)?;
         field.values[REST_AREA] = field.values[AREA];
         field.values[REST_VOLUME] = field.values[VOLUME];
@@ -322,8 +333,8 @@ impl Skin {
     /// Wakes the whole band, and makes values distances.
     fn make_distance(&self, field: &mut FieldState, scratch: &mut SkinScratch) -> Result<(), SkinError> {
         // a kink runs through the band in as many steps as it has half voxels, and as many again settle it
+        self.find_blocks(field, scratch);
         for _ in 0..8 * BAND as usize {
-            self.find_neighbours(field, scratch);
             self.find_crossings(field, scratch);
             scratch.speeds.clear();
             scratch.speeds.resize(scratch.crossings.points.len(), 0.0);
@@ -341,12 +352,14 @@ impl Skin {
         Grid { keys: &field.indices[HEAD_INDICES..], values: &field.values[self.head()..] }
     }
 
-    fn find_neighbours(&self, field: &FieldState, scratch: &mut SkinScratch) {
+    /// What is known of the blocks of a grid that nothing is known of.
+    fn find_blocks(&self, field: &FieldState, scratch: &mut SkinScratch) {
         scratch.neighbours.find(self.grid(field));
+        Marks::find(self.grid(field), &mut scratch.marks);
     }
 
     fn find_crossings(&self, field: &FieldState, scratch: &mut SkinScratch) {
-        scratch.crossings.find(self.grid(field), &scratch.neighbours, &self.lattice);
+        scratch.crossings.find(self.grid(field), &scratch.neighbours, &scratch.marks, &self.lattice);
     }
 
     /// Moves the skin on by `timestep` [s] to the moment `end`.
@@ -365,7 +378,7 @@ impl Skin {
         if let (Some(target), Some(placed)) = (&self.target, &mut scratch.target) {
             target.place(end, placed).map_err(SkinError::Target)?;
         }
-        self.find_neighbours(field, scratch);
+        self.find_blocks(field, scratch);
         while done < timestep {
             let left = timestep - done;
             let now = start + done;
@@ -404,7 +417,7 @@ impl Skin {
         if self.terms.iter().all(|term| term.answer(&whole) == 0.0) {
             return;
         }
-        polygonise(self.grid(field), &scratch.neighbours, &scratch.crossings, &mut scratch.triangles);
+        polygonise(&scratch.neighbours, &scratch.marks, &scratch.crossings, &mut scratch.triangles);
         let (area, volume) = area_and_volume(&scratch.crossings.points, &scratch.triangles);
         field.values[AREA] = area;
         field.values[VOLUME] = volume;
@@ -439,9 +452,8 @@ impl Skin {
         if let (Some(target), Some(placed)) = (&self.target, &scratch.target)
             && self.terms.iter().any(|term| term.needs_target())
         {
-            scratch.excess.par_iter_mut().zip(points).with_min_len(256).for_each(|(excess, point)| {
-                *excess = target.excess(*point, placed);
-            });
+            let chunks = scratch.excess.par_chunks_mut(SOME_POINTS).zip(points.par_chunks(SOME_POINTS));
+            chunks.for_each(|(excess, points)| target.excesses(points, placed, excess));
         }
         let whole = self.whole(field, time);
         let uniform: f64 = self.terms.iter().map(|term| term.uniform(&whole)).sum();
@@ -479,39 +491,44 @@ impl Skin {
         time: f64,
     ) -> Result<f64, SkinError> {
         let head = self.head();
-        let grid = self.grid(field);
         let (neighbours, crossings) = (&scratch.neighbours, &scratch.crossings);
+        let surface = Surface { grid: self.grid(field), neighbours, marks: &scratch.marks, crossings };
         if self.varies() {
-            scratch.spread.spread(grid, neighbours, crossings, &scratch.speeds);
+            scratch.spread.spread(neighbours, crossings, &scratch.speeds);
         }
         let Moves { uniform, tension, redistance } = moves;
         let speeds = self.varies().then_some(&scratch.spread);
-        let motion = Motion { speeds, uniform, tension, redistance };
+        let motion = Motion {
+            speeds,
+            uniform: uniform as f32,
+            tension: tension as f32,
+            redistance: redistance as f32,
+        };
         let next = &mut scratch.next;
         next.resize(field.values.len(), 0.0);
         next[..head].copy_from_slice(&field.values[..head]);
-        let moved = advance(grid, neighbours, crossings, motion, &mut next[head..]);
+        scratch.next_marks.resize(scratch.marks.len(), Marks::default());
+        let moved = f64::from(advance(surface, motion, &mut next[head..], &mut scratch.next_marks));
         std::mem::swap(&mut field.values, next);
+        std::mem::swap(&mut scratch.marks, &mut scratch.next_marks);
         let heads = Heads { indices: HEAD_INDICES, values: head };
         let changed = scratch
             .waking
-            .update(&mut field.indices, &mut field.values, heads, &scratch.neighbours)
+            .update(&mut field.indices, &mut field.values, heads, &scratch.neighbours, &mut scratch.marks)
             .map_err(|Runaway| SkinError::Runaway { time })?;
         if changed {
             let blocks = field.indices.len() - HEAD_INDICES;
             if blocks > MOST_BLOCKS {
                 return Err(SkinError::Grown { blocks, time });
             }
-            self.find_neighbours(field, scratch);
+            scratch.neighbours.find(self.grid(field));
         }
         Ok(moved)
     }
 
-    /// Triangles, their measures, and whether the topology changed.
+    /// Triangles at the crossings found, their measures, and whether the topology changed.
     fn measure(&self, field: &mut FieldState, scratch: &mut SkinScratch, time: f64) -> Result<(), SkinError> {
-        let grid = self.grid(field);
-        scratch.crossings.find(grid, &scratch.neighbours, &self.lattice);
-        polygonise(grid, &scratch.neighbours, &scratch.crossings, &mut scratch.triangles);
+        polygonise(&scratch.neighbours, &scratch.marks, &scratch.crossings, &mut scratch.triangles);
         let (points, triangles) = (&scratch.crossings.points, &scratch.triangles);
         let (area, volume) = area_and_volume(points, triangles);
         let topology = scratch.audit.check(points.len(), triangles);
@@ -609,11 +626,13 @@ fn distances(values: &[f64]) -> Vec<f64> {
 
 /// The surface of a grid.
 pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
-    let (mut neighbours, mut crossings) = (Neighbours::default(), Crossings::default());
+    let (mut neighbours, mut marks, mut crossings) =
+        (Neighbours::default(), Vec::new(), Crossings::default());
     neighbours.find(grid);
-    crossings.find(grid, &neighbours, lattice);
+    Marks::find(grid, &mut marks);
+    crossings.find(grid, &neighbours, &marks, lattice);
     let (mut triangles, mut directions) = (Vec::new(), Vec::new());
-    polygonise(grid, &neighbours, &crossings, &mut triangles);
+    polygonise(&neighbours, &marks, &crossings, &mut triangles);
     normals(grid, &neighbours, &crossings, lattice, &mut directions);
     (Polygons { points: crossings.points, triangles }, directions)
 }
@@ -622,13 +641,13 @@ pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
 pub fn mean_curvature(grid: Grid, lattice: &Lattice) -> f64 {
     let mut neighbours = Neighbours::default();
     neighbours.find(grid);
-    let mut halo = Halo::ZERO;
+    let mut halo = Halo::filled(0.0);
     let (mut sum, mut weight) = (0.0, 0.0);
     for block in 0..grid.keys.len() {
         if grid.block(block).iter().all(|f| f.abs() >= SMEARED) {
             continue;
         }
-        halo.read(grid, &neighbours, block);
+        halo.read(&grid.around(&neighbours, block), |f| f);
         for (node, f) in grid.block(block).iter().enumerate().filter(|(_, f)| f.abs() < SMEARED) {
             let at = wide(node % 8 + 1, node / 8 % 8 + 1, node / 64 + 1);
             let (curvature, slope) = curvature_at(&halo.0, at);

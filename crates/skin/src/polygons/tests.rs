@@ -24,10 +24,11 @@ fn surface(keys: &[u64], values: &[f64]) -> Polygons {
     let grid = Grid { keys, values };
     let mut neighbours = Neighbours::default();
     neighbours.find(grid);
-    let mut crossings = Crossings::default();
-    crossings.find(grid, &neighbours, &Lattice { origin: Vec3::ZERO, voxel: 1.0 });
+    let (mut marks, mut crossings) = (Vec::new(), Crossings::default());
+    Marks::find(grid, &mut marks);
+    crossings.find(grid, &neighbours, &marks, &Lattice { origin: Vec3::ZERO, voxel: 1.0 });
     let mut triangles = Vec::new();
-    polygonise(grid, &neighbours, &crossings, &mut triangles);
+    polygonise(&neighbours, &marks, &crossings, &mut triangles);
     Polygons { points: crossings.points, triangles }
 }
 
