@@ -36,44 +36,47 @@ impl Crossings {
             let mut first = [[0; EDGE]; 3];
             self.starts.push(self.points.len() as u32);
             if cut != [NONE; 3] {
-                self.place(grid, neighbours, lattice, block, &cut, &mut first);
+                first = [
+                    self.place::<0>(grid, neighbours, lattice, block, &cut[0]),
+                    self.place::<1>(grid, neighbours, lattice, block, &cut[1]),
+                    self.place::<2>(grid, neighbours, lattice, block, &cut[2]),
+                ];
             }
             self.cut.push(cut);
             self.first.push(first);
         }
     }
 
-    /// Gives out the numbers of a block's crossings and places them.
-    fn place(
+    /// Gives out the numbers of a block's crossings along an axis and places them.
+    #[inline(always)]
+    fn place<const AXIS: usize>(
         &mut self,
         grid: Grid,
         neighbours: &Neighbours,
         lattice: &Lattice,
         block: usize,
-        cut: &[Layers; 3],
-        first: &mut [[u32; EDGE]; 3],
-    ) {
+        cut: &Layers,
+    ) -> [u32; EDGE] {
         let values = grid.block(block);
-        let [bx, by, bz] = block_of(grid.keys[block]).map(|c| (c * EDGE as i64) as f64);
-        let corner = Vec3::new(bx, by, bz);
-        for axis in 0..3 {
-            let stride = [1, EDGE, EDGE * EDGE][axis];
-            let beyond = grid.of(neighbours.of(block, BESIDE[axis][1]));
-            for z in 0..EDGE {
-                first[axis][z] = self.points.len() as u32;
-                for bit in bits(cut[axis][z]) {
-                    let node = z * EDGE * EDGE + bit;
-                    let place = [bit % EDGE, bit / EDGE, z];
-                    let is_last = place[axis] == EDGE - 1;
-                    let other =
-                        if is_last { beyond[node + stride - EDGE * stride] } else { values[node + stride] };
-                    let t = (values[node] / (values[node] - other)).clamp(FROM_NODES, 1.0 - FROM_NODES);
-                    let mut place = corner + Vec3::from_array(place.map(|c| c as f64));
-                    place[axis] += t;
-                    self.points.push(lattice.to_world(place));
-                }
-            }
-        }
+        let beyond = grid.of(neighbours.of(block, BESIDE[AXIS][1]));
+        let corner = block_of(grid.keys[block]).map(|c| (c * EDGE as i64) as f64);
+        let stride = [1, EDGE, EDGE * EDGE][AXIS];
+        std::array::from_fn(|z| {
+            let first = self.points.len() as u32;
+            self.points.extend(bits(cut[z]).map(|bit| {
+                let node = z * EDGE * EDGE + bit;
+                let place = [bit % EDGE, bit / EDGE, z];
+                let is_last = place[AXIS] == EDGE - 1;
+                let there =
+                    if is_last { beyond[node + stride - EDGE * stride] } else { values[node + stride] };
+                let (here, there) = (f64::from(values[node]), f64::from(there));
+                let t = (here / (here - there)).clamp(FROM_NODES, 1.0 - FROM_NODES);
+                let along =
+                    |axis: usize| corner[axis] + place[axis] as f64 + if axis == AXIS { t } else { 0.0 };
+                lattice.to_world(Vec3::new(along(0), along(1), along(2)))
+            }));
+            first
+        })
     }
 
     pub fn cut(&self, block: usize) -> &[Layers; 3] {

@@ -12,7 +12,7 @@
 use rayon::prelude::*;
 
 use crate::crossings::Crossings;
-use crate::grid::{BAND, EDGE, Grid, Halo, NODES, Neighbours, WIDE, wide};
+use crate::grid::{EDGE, Grid, Halo, NEAR, NODES, Neighbours, WIDE, wide};
 use crate::marks::{Layers, Marks, NONE, widened};
 use crate::speeds::{Speeds, beside};
 use crate::widest::{Rows, run_widest};
@@ -41,12 +41,12 @@ pub struct Surface<'a> {
 }
 
 /// Moves all values by one sub-step into `next`, and marks what they are; the greatest move of the surface [voxels].
-pub fn advance(surface: Surface, motion: Motion, next: &mut [f64], next_marks: &mut [Marks]) -> f32 {
+pub fn advance(surface: Surface, motion: Motion, next: &mut [f32], next_marks: &mut [Marks]) -> f32 {
     let blocks = next.par_chunks_mut(NODES).zip(next_marks).enumerate().with_min_len(8);
     let fastest = blocks.map_init(
         || (Box::new(Halo::filled(0.0)), Box::new(Halo::filled(f32::NAN))),
         |(halo, speeds), (block, (next, next_marks))| {
-            let next: &mut [f64; NODES] = next.try_into().expect("a chunk is a block");
+            let next: &mut [f32; NODES] = next.try_into().expect("a chunk is a block");
             let mut fastest = [0.0; EDGE];
             let moving =
                 Moving { surface, motion, block, halo, speeds, fastest: &mut fastest, next, next_marks };
@@ -71,7 +71,7 @@ struct Moving<'a> {
     speeds: &'a mut Halo<f32>,
     /// The greatest change beside the surface over the slope, column by column.
     fastest: &'a mut [f32; EDGE],
-    next: &'a mut [f64; NODES],
+    next: &'a mut [f32; NODES],
     next_marks: &'a mut Marks,
 }
 
@@ -116,7 +116,7 @@ impl Rows for MovingRows<'_> {
             active,
         } = self;
         let Surface { grid, neighbours, marks, crossings } = surface;
-        halo.read(&grid.around(neighbours, block), |value| value as f32);
+        halo.read(&grid.around(neighbours, block), |value| value);
         let f = &halo.0;
         // those that speeds are carried to, and those beside the surface
         let (mut reached, mut far) = (NONE, motion.uniform);
@@ -158,7 +158,7 @@ impl Rows for MovingRows<'_> {
                     move_row(f, at, &speed, &shrinking, beside, [settling, motion.redistance], fastest);
                 let mut moved = old[row];
                 for x in 0..EDGE {
-                    moved[x] = (moved[x] + f64::from(change[x])).clamp(-BAND, BAND);
+                    moved[x] = (moved[x] + change[x]).clamp(-NEAR, NEAR);
                 }
                 new[row] = moved;
                 next_marks.set_row(y, z, &moved);
@@ -209,9 +209,6 @@ fn where_known(speed: f32, value: f32) -> f32 {
     f32::from_bits(value.to_bits() & u32::from(speed.is_nan()).wrapping_sub(1))
 }
 
-/// The band's half width as the rows see it [voxels].
-const NEAR: f32 = BAND as f32;
-
 /// `−β κ |∇f| Δt` of a row, by (4) of the source with its signs mended.
 #[inline(always)]
 fn shrink_row(f: &Values, at: usize, tension: f32) -> [f32; EDGE] {
@@ -260,36 +257,44 @@ fn move_row(
     let (xm, xp) = (line(at - 1), line(at + 1));
     let (ym, yp) = (line(at - dy), line(at + dy));
     let (zm, zp) = (line(at - dz), line(at + dz));
-    let (mut changes, mut slopes) = ([0.0; EDGE], [0.0; EDGE]);
+    let (mut changes, mut carried, mut slopes) = (*shrinking, [0.0; EDGE], [0.0; EDGE]);
     for i in 0..EDGE {
         let c = c[i];
         let (below, above) = ([c - xm[i], c - ym[i], c - zm[i]], [xp[i] - c, yp[i] - c, zp[i] - c]);
-        // slopes towards larger and towards smaller values, to first order for what is carried by them fast, and to second
-        // order, where f is smooth, for what is slow and for the distance
-        let (mut rising, mut falling, mut rising_2, mut falling_2) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
+        // slopes towards larger and towards smaller values, to second order where f is smooth
+        let (mut rising, mut falling) = (0.0_f32, 0.0_f32);
         for k in 0..3 {
-            let (low, high) = (below[k], above[k]);
-            let half_bend = (0.5 * (high - low)).clamp(-SMOOTH, SMOOTH);
+            let half_bend = (0.5 * (above[k] - below[k])).clamp(-SMOOTH, SMOOTH);
+            let (low, high) = (below[k] + half_bend, above[k] - half_bend);
             let up = high.max(-low).max(0.0);
             let down = low.max(-high).max(0.0);
             rising += up * up;
             falling += down * down;
-            let (low, high) = (low + half_bend, high - half_bend);
-            let up = high.max(-low).max(0.0);
-            let down = low.max(-high).max(0.0);
-            rising_2 += up * up;
-            falling_2 += down * down;
         }
-        let speed = speeds[i];
-        let upwind = if speed > 0.0 { rising } else { falling };
-        let smooth = if speed > 0.0 { rising_2 } else { falling_2 };
-        let carried = speed * if speed.abs() > SLOW { upwind } else { smooth }.sqrt();
-        let slope = if c > 0.0 { falling_2 } else { rising_2 }.sqrt();
+        carried[i] = if speeds[i] > 0.0 { rising } else { falling }.sqrt();
+        let slope = if c > 0.0 { falling } else { rising }.sqrt();
         let far = (c.abs() - SETTLED).clamp(0.0, 1.0);
         let share = settling + (redistance - settling) * far;
         let relaxed = share * (c / (c * c + 1.0).sqrt()) * (1.0 - slope);
-        changes[i] = shrinking[i] + carried + relaxed;
+        changes[i] += relaxed;
         slopes[i] = slope;
+    }
+    if speeds.iter().fold(0.0_f32, |fastest, speed| fastest.max(speed.abs())) > SLOW {
+        // to first order for what is carried fast
+        for i in 0..EDGE {
+            let c = c[i];
+            let (below, above) = ([c - xm[i], c - ym[i], c - zm[i]], [xp[i] - c, yp[i] - c, zp[i] - c]);
+            let sign = if speeds[i] > 0.0 { 1.0 } else { -1.0 };
+            let mut upwind = 0.0_f32;
+            for k in 0..3 {
+                let slope = (sign * above[k]).max(-sign * below[k]).max(0.0);
+                upwind += slope * slope;
+            }
+            carried[i] = if speeds[i].abs() > SLOW { upwind.sqrt() } else { carried[i] };
+        }
+    }
+    for i in 0..EDGE {
+        changes[i] += speeds[i] * carried[i];
     }
     if beside != 0 {
         for i in 0..EDGE {

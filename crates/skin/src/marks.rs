@@ -1,6 +1,6 @@
 //! One bit for each node of a block: which are inside, which are within the band.
 
-use crate::grid::{BAND, EDGE, Found, Grid, NODES, Neighbours, neighbour};
+use crate::grid::{EDGE, Found, Grid, NEAR, NODES, Neighbours, neighbour};
 use crate::widest::{Rows, run_widest};
 
 /// A bit for each node of a block, by layers along z.
@@ -22,7 +22,7 @@ pub struct Marks {
 }
 
 impl Marks {
-    pub fn of(values: &[f64; NODES]) -> Self {
+    pub fn of(values: &[f32; NODES]) -> Self {
         let mut marks = Self::default();
         run_widest(Marking { values, marks: &mut marks });
         marks
@@ -41,9 +41,9 @@ impl Marks {
 
     /// Marks a row of nodes.
     #[inline(always)]
-    pub fn set_row(&mut self, y: usize, z: usize, row: &[f64; EDGE]) {
+    pub fn set_row(&mut self, y: usize, z: usize, row: &[f32; EDGE]) {
         let inside = row_where(row, |value| value > 0.0);
-        let band = row_where(row, |value| value.abs() < BAND);
+        let band = row_where(row, |value| value.abs() < NEAR);
         self.inside[z] |= inside << (EDGE * y);
         self.band[z] |= band << (EDGE * y);
     }
@@ -59,16 +59,16 @@ impl Marks {
 
 /// A bit for each value of a row that fits.
 #[inline(always)]
-fn row_where(row: &[f64; EDGE], fits: impl Fn(f64) -> bool) -> u64 {
-    let mut words = [0; EDGE];
+fn row_where(row: &[f32; EDGE], fits: impl Fn(f32) -> bool) -> u64 {
+    let mut words = [0_u32; EDGE];
     for x in 0..EDGE {
         words[x] = if fits(row[x]) { 1 << x } else { 0 };
     }
-    words.into_iter().fold(0, |bits, word| bits | word)
+    words.into_iter().fold(0, |bits, word| bits | word).into()
 }
 
 struct Marking<'a> {
-    values: &'a [f64; NODES],
+    values: &'a [f32; NODES],
     marks: &'a mut Marks,
 }
 

@@ -150,7 +150,7 @@ pub fn normals(
         if *cut == [[0; EDGE]; 3] {
             continue;
         }
-        halo.read(&grid.around(neighbours, block), |f| f);
+        halo.read(&grid.around(neighbours, block), f64::from);
         let corner = block_of(grid.keys[block]).map(|c| c * EDGE as i64);
         for axis in 0..3 {
             for z in 0..EDGE {
@@ -214,6 +214,9 @@ pub struct Audit {
     starts: Vec<u32>,
     /// For each triangle at a point the edge opposite to it.
     fans: Vec<[u32; 2]>,
+    /// Of each point, from 1: alike only where they are joined.
+    labels: Vec<u32>,
+    /// Labels that others were joined to.
     parents: Vec<u32>,
 }
 
@@ -246,36 +249,51 @@ impl Audit {
         for point in 0..point_count {
             self.starts[point + 1] += self.starts[point];
         }
-        self.fans.clear();
         self.fans.resize(3 * triangles.len(), [0; 2]);
-        for [a, b, c] in triangles {
-            for (point, edge) in [(a, [*b, *c]), (b, [*c, *a]), (c, [*a, *b])] {
+        self.labels.clear();
+        self.labels.resize(point_count, 0);
+        self.parents.clear();
+        self.parents.push(0);
+        for corners in triangles {
+            let [a, b, c] = *corners;
+            for (point, edge) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
                 // starts move to the next point's while filling, and back below
-                let at = &mut self.starts[*point as usize];
+                let at = &mut self.starts[point as usize];
                 self.fans[*at as usize] = edge;
                 *at += 1;
             }
+            self.label(corners);
         }
         self.starts.rotate_right(1);
         self.starts[0] = 0;
-        self.parents.clear();
-        self.parents.extend(0..point_count as u32);
         for point in 0..point_count {
             let fan = &mut self.fans[self.starts[point] as usize..self.starts[point + 1] as usize];
-            let at = point as u32;
-            check_fan(at, fan)?;
-            // neighbours that come later join this one when it is their turn
-            for [other, _] in fan.iter().filter(|edge| edge[0] < at) {
-                join(&mut self.parents, at, *other);
-            }
+            check_fan(point as u32, fan)?;
         }
-        let components = (0..point_count as u32).filter(|p| self.parents[*p as usize] == *p).count() as u64;
+        let is_root = |(label, parent): (usize, &u32)| label as u32 == *parent;
+        // all but the label of points that have none
+        let components = self.parents.iter().enumerate().skip(1).filter(|root| is_root(*root)).count();
         let euler = point_count as i64 - triangles.len() as i64 / 2;
-        Ok((euler, components))
+        Ok((euler, components as u64))
+    }
+
+    /// Gives the corners of a triangle the label of those that have one, and joins labels where they have several.
+    fn label(&mut self, corners: &[u32; 3]) {
+        let own = corners.map(|point| self.labels[point as usize]);
+        let mut label = own[0].max(own[1]).max(own[2]);
+        if label == 0 {
+            label = self.parents.len() as u32;
+            self.parents.push(label);
+        } else if own.iter().fold(false, |differ, own| differ | ((*own != 0) & (*own != label))) {
+            own.iter().filter(|own| **own != 0).for_each(|own| join(&mut self.parents, label, *own));
+            label = root(&mut self.parents, label);
+        }
+        corners.iter().for_each(|point| self.labels[*point as usize] = label);
     }
 
     pub fn bytes(&self) -> usize {
-        4 * (self.starts.capacity() + self.parents.capacity()) + 8 * self.fans.capacity()
+        4 * (self.starts.capacity() + self.labels.capacity() + self.parents.capacity())
+            + 8 * self.fans.capacity()
     }
 }
 
@@ -331,13 +349,13 @@ fn check_fan_by_search(at: u32, fan: &mut [[u32; 2]]) -> Result<(), Torn> {
     Ok(())
 }
 
-fn root(parents: &mut [u32], mut point: u32) -> u32 {
-    while parents[point as usize] != point {
-        let above = parents[parents[point as usize] as usize];
-        parents[point as usize] = above;
-        point = above;
+fn root(parents: &mut [u32], mut label: u32) -> u32 {
+    while parents[label as usize] != label {
+        let above = parents[parents[label as usize] as usize];
+        parents[label as usize] = above;
+        label = above;
     }
-    point
+    label
 }
 
 fn join(parents: &mut [u32], a: u32, b: u32) {

@@ -13,7 +13,7 @@ use crate::reaction::{Reaction, ReactionScratch, Tense};
 use crate::speeds::Speeds;
 use crate::strategy::{SurfacePoints, Term, Whole};
 use crate::target::{Followed, Moment, Target, TargetScratch};
-use crate::waking::{Heads, Runaway, Waking};
+use crate::waking::{Runaway, Waking};
 
 /// The constant part of a skin.
 pub struct Skin {
@@ -51,7 +51,7 @@ const TRIANGLES: usize = 4;
 /// Surfaces so far that were checked to be closed, oriented and manifold: one at the start, one for each step.
 const CHECKED: usize = 5;
 
-/// Blocks that a skin may have: 2 GB of values.
+/// Blocks that a skin may have: 1 GB of values.
 pub const MOST_BLOCKS: usize = 1 << 19;
 /// Blocks that are looked at when a skin starts: half a billion nodes.
 pub const MOST_SAMPLED: usize = 1 << 20;
@@ -112,9 +112,8 @@ pub struct View<'a> {
 impl<'a> View<'a> {
     pub fn new(field: &'a FieldState, reactions: usize) -> Self {
         let (head, rest) = field.values.split_at(HEAD);
-        let (reactions, values) = rest.split_at(3 * reactions);
-        let (head_indices, keys) = field.indices.split_at(HEAD_INDICES);
-        Self { grid: Grid { keys, values }, head, head_indices, reactions }
+        let (head_indices, words) = field.indices.split_at(HEAD_INDICES);
+        Self { grid: Grid::of_words(words), head, head_indices, reactions: &rest[..3 * reactions] }
     }
 
     pub fn measures(&self) -> Measures {
@@ -166,7 +165,9 @@ pub struct SkinScratch {
     excess: Vec<f64>,
     speeds: Vec<f64>,
     spread: Speeds,
-    next: Vec<f64>,
+    next: Vec<u64>,
+    /// The grid that all of this is of, between steps.
+    known: Vec<u64>,
     waking: Waking,
     audit: Audit,
     reaction: ReactionScratch,
@@ -188,7 +189,10 @@ impl SkinScratch {
             + size_of::<Marks>() * (self.marks.capacity() + self.next_marks.capacity())
             + self.crossings.bytes()
             + 12 * self.triangles.capacity()
-            + 8 * (self.excess.capacity() + self.speeds.capacity() + self.next.capacity())
+            + 8 * (self.excess.capacity()
+                + self.speeds.capacity()
+                + self.next.capacity()
+                + self.known.capacity())
             + self.spread.bytes()
             + self.waking.bytes()
             + self.audit.bytes()
@@ -208,6 +212,7 @@ impl Skin {
             speeds: Vec::new(),
             spread: Speeds::default(),
             next: Vec::new(),
+            known: Vec::new(),
             waking: Waking::default(),
             audit: Audit::default(),
             reaction: ReactionScratch::default(),
@@ -259,7 +264,7 @@ impl Skin {
         }
         let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
         self.sample(first.map(|c| c as i64), counts.map(|c| c as i64), value, &mut field)?;
-        if crate::polygons::is_empty(Grid { keys: &[], values: &field.values[self.head()..] }) {
+        if crate::polygons::is_empty(self.grid(&field)) {
             let (low, high) = (low.to_array(), high.to_array());
             return Err(SkinError::Empty { low, high, voxel: self.voxel() });
         }
@@ -284,6 +289,7 @@ impl Skin {
         let at =
             move |node: [i64; 3]| lattice.to_world(Vec3::new(node[0] as f64, node[1] as f64, node[2] as f64));
         let edge = EDGE as i64;
+        let mut words: Vec<u64> = Vec::new();
         // slab by slab of blocks along z: a wide block's values, or nothing where it is uniform
         for z in 0..counts[2] {
             let slab: Vec<Result<Sampled, SkinError>> = (0..counts[0] * counts[1])
@@ -319,7 +325,10 @@ impl Skin {
             for block in slab {
                 if let Some((key, values)) = block? {
                     field.indices.push(key);
-                    field.values.extend(values);
+                    let (pairs, _) = values.as_chunks::<2>();
+                    words.extend(
+                        pairs.iter().map(|pair| bytemuck::cast::<[f32; 2], u64>(pair.map(|f| f as f32))),
+                    );
                     let blocks = field.indices.len() - HEAD_INDICES;
                     if blocks > MOST_BLOCKS {
                         return Err(SkinError::Grown { blocks, time: 0.0 });
@@ -327,6 +336,7 @@ impl Skin {
                 }
             }
         }
+        field.indices.extend(words);
         Ok(())
     }
 
@@ -349,10 +359,20 @@ impl Skin {
     }
 
     fn grid<'a>(&self, field: &'a FieldState) -> Grid<'a> {
-        Grid { keys: &field.indices[HEAD_INDICES..], values: &field.values[self.head()..] }
+        Grid::of_words(&field.indices[HEAD_INDICES..])
     }
 
-    /// What is known of the blocks of a grid that nothing is known of.
+    /// The surface of a grid, where it is not the one that the last step left.
+    fn find_surface(&self, field: &FieldState, scratch: &mut SkinScratch) {
+        let is_known = scratch.known == field.indices[HEAD_INDICES..];
+        // nothing is known of what a step leaves that fails
+        scratch.known.clear();
+        if !is_known {
+            self.find_blocks(field, scratch);
+            self.find_crossings(field, scratch);
+        }
+    }
+
     fn find_blocks(&self, field: &FieldState, scratch: &mut SkinScratch) {
         scratch.neighbours.find(self.grid(field));
         Marks::find(self.grid(field), &mut scratch.marks);
@@ -378,12 +398,12 @@ impl Skin {
         if let (Some(target), Some(placed)) = (&self.target, &mut scratch.target) {
             target.place(end, placed).map_err(SkinError::Target)?;
         }
-        self.find_blocks(field, scratch);
+        self.find_surface(field, scratch);
         while done < timestep {
             let left = timestep - done;
             let now = start + done;
-            self.find_crossings(field, scratch);
             if substeps > 0 {
+                self.find_crossings(field, scratch);
                 self.measure_size(field, scratch);
             }
             let Asked { uniform, fastest, answer } = self.add_speeds(field, scratch, now)?;
@@ -408,6 +428,7 @@ impl Skin {
         field.values[SUBSTEPS] = f64::from(substeps);
         self.find_crossings(field, scratch);
         self.measure(field, scratch, end.time)?;
+        scratch.known.extend_from_slice(&field.indices[HEAD_INDICES..]);
         self.react(field, scratch, end)
     }
 
@@ -490,7 +511,6 @@ impl Skin {
         moves: Moves,
         time: f64,
     ) -> Result<f64, SkinError> {
-        let head = self.head();
         let (neighbours, crossings) = (&scratch.neighbours, &scratch.crossings);
         let surface = Surface { grid: self.grid(field), neighbours, marks: &scratch.marks, crossings };
         if self.varies() {
@@ -505,19 +525,24 @@ impl Skin {
             redistance: redistance as f32,
         };
         let next = &mut scratch.next;
-        next.resize(field.values.len(), 0.0);
-        next[..head].copy_from_slice(&field.values[..head]);
+        let first = HEAD_INDICES + surface.grid.keys.len();
+        next.resize(field.indices.len(), 0);
+        next[..first].copy_from_slice(&field.indices[..first]);
         scratch.next_marks.resize(scratch.marks.len(), Marks::default());
-        let moved = f64::from(advance(surface, motion, &mut next[head..], &mut scratch.next_marks));
-        std::mem::swap(&mut field.values, next);
+        let moved = f64::from(advance(
+            surface,
+            motion,
+            bytemuck::cast_slice_mut(&mut next[first..]),
+            &mut scratch.next_marks,
+        ));
+        std::mem::swap(&mut field.indices, next);
         std::mem::swap(&mut scratch.marks, &mut scratch.next_marks);
-        let heads = Heads { indices: HEAD_INDICES, values: head };
         let changed = scratch
             .waking
-            .update(&mut field.indices, &mut field.values, heads, &scratch.neighbours, &mut scratch.marks)
+            .update(&mut field.indices, HEAD_INDICES, &scratch.neighbours, &mut scratch.marks)
             .map_err(|Runaway| SkinError::Runaway { time })?;
         if changed {
-            let blocks = field.indices.len() - HEAD_INDICES;
+            let blocks = scratch.marks.len();
             if blocks > MOST_BLOCKS {
                 return Err(SkinError::Grown { blocks, time });
             }
@@ -644,11 +669,13 @@ pub fn mean_curvature(grid: Grid, lattice: &Lattice) -> f64 {
     let mut halo = Halo::filled(0.0);
     let (mut sum, mut weight) = (0.0, 0.0);
     for block in 0..grid.keys.len() {
-        if grid.block(block).iter().all(|f| f.abs() >= SMEARED) {
+        if grid.block(block).iter().all(|f| f64::from(f.abs()) >= SMEARED) {
             continue;
         }
-        halo.read(&grid.around(&neighbours, block), |f| f);
-        for (node, f) in grid.block(block).iter().enumerate().filter(|(_, f)| f.abs() < SMEARED) {
+        halo.read(&grid.around(&neighbours, block), f64::from);
+        let near =
+            grid.block(block).iter().map(|f| f64::from(*f)).enumerate().filter(|(_, f)| f.abs() < SMEARED);
+        for (node, f) in near {
             let at = wide(node % 8 + 1, node / 8 % 8 + 1, node / 64 + 1);
             let (curvature, slope) = curvature_at(&halo.0, at);
             // a hat on both sides of the surface in place of Dirac's function

@@ -9,8 +9,9 @@ pub struct Waking {
     /// Whether each block is asked for, by itself or by a neighbour.
     wanted: Vec<bool>,
     woken: Vec<u64>,
-    keys: Vec<u64>,
-    values: Vec<f64>,
+    /// Where each block to be comes from.
+    sources: Vec<Found>,
+    field: Vec<u64>,
     marks: Vec<Marks>,
 }
 
@@ -18,28 +19,20 @@ pub struct Waking {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Runaway;
 
-/// Entries of a list in State before those of the grid.
-#[derive(Clone, Copy, Debug)]
-pub struct Heads {
-    pub indices: usize,
-    pub values: usize,
-}
-
 impl Waking {
-    /// Wakes the blocks that the band has come to, and drops those that it has left; `marks` are those of the values, and
+    /// Of a field of State, its grid after so many integers: wakes the blocks that the band has come to, and drops those that it has left; `marks` are those of the values, and
     /// stay so. `true`: the blocks changed.
     ///
     /// # Errors
     /// A block would lie beyond the farthest.
     pub fn update(
         &mut self,
-        indices: &mut Vec<u64>,
-        values: &mut Vec<f64>,
-        heads: Heads,
+        field: &mut Vec<u64>,
+        head: usize,
         neighbours: &Neighbours,
         marks: &mut Vec<Marks>,
     ) -> Result<bool, Runaway> {
-        let grid = Grid { keys: &indices[heads.indices..], values: &values[heads.values..] };
+        let grid = Grid::of_words(&field[head..]);
         let count = grid.keys.len();
         self.wanted.clear();
         self.wanted.resize(count, false);
@@ -52,7 +45,7 @@ impl Waking {
         }
         self.woken.sort_unstable();
         self.woken.dedup();
-        self.rebuild(indices, values, heads, marks);
+        self.rebuild(field, head, marks);
         Ok(true)
     }
 
@@ -109,51 +102,42 @@ impl Waking {
     }
 
     /// Merges what is kept with what is woken.
-    fn rebuild(
-        &mut self,
-        indices: &mut Vec<u64>,
-        values: &mut Vec<f64>,
-        heads: Heads,
-        marks: &mut Vec<Marks>,
-    ) {
-        self.keys.clear();
-        self.keys.extend_from_slice(&indices[..heads.indices]);
-        self.values.clear();
-        self.values.extend_from_slice(&values[..heads.values]);
-        self.marks.clear();
-        let grid = Grid { keys: &indices[heads.indices..], values: &values[heads.values..] };
-        let list = std::mem::take(&mut self.woken);
-        let mut woken = list.iter().copied().peekable();
+    fn rebuild(&mut self, field: &mut Vec<u64>, head: usize, marks: &mut Vec<Marks>) {
+        let grid = Grid::of_words(&field[head..]);
+        self.field.clear();
+        self.field.extend_from_slice(&field[..head]);
+        self.sources.clear();
+        let mut woken = self.woken.iter().copied().peekable();
         for (index, key) in grid.keys.iter().enumerate() {
             while let Some(new) = woken.next_if(|new| new < key) {
-                self.wake(grid, new);
+                self.field.push(new);
+                self.sources.push(grid.find(new));
             }
             if self.wanted[index] {
-                self.keys.push(*key);
-                self.values.extend_from_slice(grid.block(index));
-                self.marks.push(marks[index]);
+                self.field.push(*key);
+                self.sources.push(Found::Kept(index as u32));
             }
         }
         for new in woken {
-            self.wake(grid, new);
+            self.field.push(new);
+            self.sources.push(grid.find(new));
         }
-        self.woken = list;
-        std::mem::swap(indices, &mut self.keys);
-        std::mem::swap(values, &mut self.values);
+        self.marks.clear();
+        for source in &self.sources {
+            self.field.extend_from_slice(bytemuck::cast_slice(grid.of(*source)));
+            self.marks.push(match *source {
+                Found::Kept(index) => marks[index as usize],
+                uniform => Marks::of_uniform(uniform),
+            });
+        }
+        std::mem::swap(field, &mut self.field);
         std::mem::swap(marks, &mut self.marks);
-    }
-
-    fn wake(&mut self, grid: Grid, key: u64) {
-        let found = grid.find(key);
-        self.keys.push(key);
-        self.values.extend_from_slice(grid.of(found));
-        self.marks.push(Marks::of_uniform(found));
     }
 
     pub fn bytes(&self) -> usize {
         size_of::<Marks>() * self.marks.capacity()
             + self.wanted.capacity()
-            + 8 * (self.woken.capacity() + self.keys.capacity() + self.values.capacity())
+            + 8 * (self.woken.capacity() + self.sources.capacity() + self.field.capacity())
     }
 }
 
