@@ -8,7 +8,8 @@ use souple_math::Vec3;
 
 use crate::grid::{EDGE, FARTHEST, Grid, Lattice, NEAR, NODES, block_of, key_of, steps_to};
 use crate::polygons::Polygons;
-use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, SkinError, surface_of};
+use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, SkinError};
+use crate::surface::surface_of;
 use crate::target::particles::REACH;
 use crate::widest::{Rows, run_widest};
 
