@@ -135,8 +135,15 @@ impl Course {
         if let Some(moment) = &drawable
             && moment.time < session.world.time()
         {
+            let vanished =
+                session.skins.iter().filter(|skin| skin.view(&session.world).measures().components == 0);
+            let names: Vec<String> = vanished.map(|skin| format!("`{}`", skin.name)).collect();
+            let why = match &names[..] {
+                [] => "the bodies have run away".to_owned(),
+                names => format!("nothing is left of the skin {}", names.join(", ")),
+            };
             session.warnings.push(format!(
-                "the bodies have run away: the picture shows {:.6} s, the last frame that can be drawn",
+                "{why}: the picture shows {:.6} s, the last frame that can be drawn",
                 moment.time
             ));
         }

@@ -6,10 +6,11 @@
 use rayon::prelude::*;
 use souple_math::Vec3;
 
-use crate::grid::{BAND, EDGE, FARTHEST, Grid, Lattice, NODES, block_of, key_of, steps_to};
+use crate::grid::{EDGE, FARTHEST, Grid, Lattice, NEAR, NODES, block_of, key_of, steps_to};
 use crate::polygons::Polygons;
-use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, SkinError, surface_of};
-use crate::target::particles::{REACH, kernel};
+use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, SkinError};
+use crate::surface::surface_of;
+use crate::target::particles::REACH;
 use crate::widest::{Rows, run_widest};
 
 /// Particles by their block.
@@ -56,11 +57,11 @@ pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygon
     let densities: Vec<Density> =
         keys.par_iter().map(|key| Density::of(gather(*key), keys.len() <= ROOM)).collect();
     let near = near(&keys, &densities);
-    let values: Vec<Box<[f64; NODES]>> = near
+    let values: Vec<Box<[f32; NODES]>> = near
         .par_iter()
         .map(|index| {
             let kept = densities[*index].values.clone().or_else(|| gather(keys[*index]));
-            kept.unwrap_or_else(|| Box::new([-iso; NODES]))
+            kept.unwrap_or_else(|| Box::new([-iso as f32; NODES]))
         })
         .collect();
     if values.is_empty() {
@@ -69,8 +70,8 @@ pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygon
         return Err(SkinError::Empty { low, high, voxel });
     }
     let kept: Vec<u64> = near.iter().map(|index| keys[*index]).collect();
-    let values: Vec<f64> =
-        values.iter().flat_map(|values| values.iter().map(|value| value.clamp(-BAND, BAND))).collect();
+    let values: Vec<f32> =
+        values.iter().flat_map(|values| values.iter().map(|value| value.clamp(-NEAR, NEAR))).collect();
     Ok(surface_of(Grid { keys: &kept, values: &values }, &lattice))
 }
 
@@ -81,7 +82,7 @@ const ROOM: usize = 1 << 16;
 /// The density on the nodes of a block, less the iso value.
 struct Density {
     sign: Sign,
-    values: Option<Box<[f64; NODES]>>,
+    values: Option<Box<[f32; NODES]>>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -93,7 +94,7 @@ enum Sign {
 
 impl Density {
     /// `None` where no particle reaches.
-    fn of(values: Option<Box<[f64; NODES]>>, has_room: bool) -> Self {
+    fn of(values: Option<Box<[f32; NODES]>>, has_room: bool) -> Self {
         let inside = values.iter().flat_map(|values| values.iter()).filter(|value| **value > 0.0).count();
         let sign = match inside {
             0 => Sign::Outside,
@@ -161,7 +162,7 @@ impl Sorted {
 }
 
 /// Density less `iso` on the nodes of a block; `None` where no particle reaches.
-fn gather(sorted: &Sorted, block: [i64; 3], steps: i64, iso: f64) -> Option<Box<[f64; NODES]>> {
+fn gather(sorted: &Sorted, block: [i64; 3], steps: i64, iso: f64) -> Option<Box<[f32; NODES]>> {
     let low = Vec3::from_array(block.map(|c| (c * EDGE as i64) as f64));
     let high = low + Vec3::new(1.0, 1.0, 1.0) * (EDGE - 1) as f64;
     let mut near = Vec::new();
@@ -182,48 +183,41 @@ fn gather(sorted: &Sorted, block: [i64; 3], steps: i64, iso: f64) -> Option<Box<
     if near.is_empty() {
         return None;
     }
-    let mut values = Box::new([-iso; NODES]);
+    let mut values = Box::new([-iso as f32; NODES]);
     run_widest(Splat { particles: &near, low, values: &mut values });
     Some(values)
 }
-
-/// Nodes of half a row, which many particles reach alone.
-const HALF: usize = EDGE / 2;
 
 /// Kernels of particles on the nodes of a block.
 struct Splat<'a> {
     particles: &'a [(Vec3, f64)],
     low: Vec3,
-    values: &'a mut [f64; NODES],
+    values: &'a mut [f32; NODES],
 }
 
 impl Rows for Splat<'_> {
     #[inline(always)]
     fn run(self) {
+        let (rows, _) = self.values.as_chunks_mut::<EDGE>();
         for &(position, inverse) in self.particles {
             // twice the kernel's length
-            let reach = 2.0 / inverse;
-            let at = position - self.low;
-            let range = |c: f64, reach: f64| {
+            let reach = (2.0 / inverse) as f32;
+            let [x, y, z] = (position - self.low).to_array().map(|c| c as f32);
+            let range = |c: f32, reach: f32| {
                 let first = (c - reach).ceil().max(0.0) as usize;
-                let last = (c + reach).floor().min((EDGE - 1) as f64);
+                let last = (c + reach).floor().min((EDGE - 1) as f32);
                 first..if last < 0.0 { 0 } else { last as usize + 1 }
             };
-            for z in range(at.z, reach) {
-                let dz = z as f64 - at.z;
+            for k in range(z, reach) {
+                let dz = k as f32 - z;
                 let left = (reach * reach - dz * dz).max(0.0).sqrt();
-                for y in range(at.y, left) {
-                    let dy = y as f64 - at.y;
+                for j in range(y, left) {
+                    let dy = j as f32 - y;
                     let across = dy * dy + dz * dz;
-                    let first = EDGE * (y + EDGE * z);
-                    let (halves, _) = self.values[first..first + EDGE].as_chunks_mut::<HALF>();
-                    for (number, half) in halves.iter_mut().enumerate() {
-                        let x = at.x - (HALF * number) as f64;
-                        // from the half's nodes, along the row
-                        let beside = (x - (HALF - 1) as f64).max(-x).max(0.0);
-                        if beside * beside + across < reach * reach {
-                            add_kernels(half, x, across, inverse);
-                        }
+                    // from the nodes of the row, along it
+                    let beside = (x - (EDGE - 1) as f32).max(-x).max(0.0);
+                    if beside * beside + across < reach * reach {
+                        add_kernels(&mut rows[j + EDGE * k], x, across, inverse as f32);
                     }
                 }
             }
@@ -233,11 +227,16 @@ impl Rows for Splat<'_> {
 
 /// Adds the kernel of a particle that stands at `x` along a row of nodes, and `across` from it, squared [voxels].
 #[inline(always)]
-fn add_kernels(nodes: &mut [f64; HALF], x: f64, across: f64, inverse: f64) {
-    for (node, value) in nodes.iter_mut().enumerate() {
-        let dx = node as f64 - x;
-        *value += kernel((dx * dx + across).sqrt() * inverse);
+fn add_kernels(nodes: &mut [f32; EDGE], x: f32, across: f32, inverse: f32) {
+    let mut sums = *nodes;
+    for (node, sum) in sums.iter_mut().enumerate() {
+        let dx = node as f32 - x;
+        let q = (dx * dx + across).sqrt() * inverse;
+        // the kernel of particles, in 32 bits: sums of some tens of it are right to 1e-6
+        let (far, near) = ((2.0 - q).max(0.0), (1.0 - q).max(0.0));
+        *sum += std::f32::consts::FRAC_1_PI * (0.25 * far * far * far - near * near * near);
     }
+    *nodes = sums;
 }
 
 #[cfg(test)]

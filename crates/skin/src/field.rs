@@ -5,7 +5,7 @@ use std::sync::Arc;
 use souple_engine::{CommittedRows, Field, FieldState, Scratch};
 use souple_math::Vec3;
 
-use crate::grid::{BAND, NODES};
+use crate::grid::{Grid, NEAR, WORDS};
 use crate::skin::{HEAD_INDICES, Skin, SkinScratch};
 use crate::target::{Moment, Rows};
 
@@ -29,12 +29,12 @@ impl Field for SkinField {
 
     /// Its blocks come and go: a state fits when its keys ascend and each has its values, within the band.
     fn accepts(&self, field: &FieldState, _: &FieldState) -> bool {
-        let head = self.0.head();
-        let Some(blocks) = field.indices.len().checked_sub(HEAD_INDICES) else { return false };
-        let Some(values) = field.values.get(head..) else { return false };
-        values.len() == NODES * blocks
-            && field.indices[HEAD_INDICES..].is_sorted_by(|a, b| a < b)
-            && values.iter().all(|value| value.abs() <= BAND)
+        let Some(words) = field.indices.get(HEAD_INDICES..) else { return false };
+        let grid = Grid::of_words(words);
+        field.values.len() == self.0.head()
+            && words.len() == (1 + WORDS) * grid.keys.len()
+            && grid.keys.is_sorted_by(|a, b| a < b)
+            && grid.values.iter().all(|value| value.abs() <= NEAR)
     }
 
     fn new_scratch(&self) -> Scratch {

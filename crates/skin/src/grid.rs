@@ -13,6 +13,10 @@ pub const EDGE: usize = 8;
 pub const NODES: usize = EDGE * EDGE * EDGE;
 /// Half the width of the band around the surface [voxels].
 pub const BAND: f64 = 4.0;
+/// The same as values are kept: in 32 bits a surface is placed to 1e-7 voxels, and memory and time are half.
+pub const NEAR: f32 = BAND as f32;
+/// Words that the values of a block take in State.
+pub const WORDS: usize = NODES / 2;
 
 /// Bits of a coordinate of a block in its key.
 const BITS: u32 = 21;
@@ -69,11 +73,17 @@ pub struct Grid<'a> {
     /// Ascending.
     pub keys: &'a [u64],
     /// [`NODES`] for each key.
-    pub values: &'a [f64],
+    pub values: &'a [f32],
 }
 
 impl<'a> Grid<'a> {
-    pub fn block(&self, index: usize) -> &'a [f64; NODES] {
+    /// Blocks as they stand in State: their keys, and then their values, two in a word.
+    pub fn of_words(words: &'a [u64]) -> Self {
+        let (keys, values) = words.split_at(words.len() / (1 + WORDS));
+        Self { keys, values: bytemuck::cast_slice(values) }
+    }
+
+    pub fn block(&self, index: usize) -> &'a [f32; NODES] {
         self.values[NODES * index..][..NODES].try_into().expect("a block has its nodes")
     }
 
@@ -99,7 +109,7 @@ impl<'a> Grid<'a> {
         match self.find(key_of(node.map(|c| c.div_euclid(edge).clamp(-FARTHEST, FARTHEST)))) {
             Found::Kept(index) => {
                 let [x, y, z] = node.map(|c| c.rem_euclid(edge) as usize);
-                self.values[NODES * index as usize + node_of(x, y, z)]
+                self.values[NODES * index as usize + node_of(x, y, z)].into()
             }
             Found::Inside => BAND,
             Found::Outside => -BAND,
@@ -150,7 +160,9 @@ impl<'a> Grid<'a> {
             return match self.find(key_of(low.map(|c| c.div_euclid(edge)))) {
                 Found::Kept(index) => {
                     let block = self.block(index as usize);
-                    std::array::from_fn(|c| block[node_of(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))])
+                    std::array::from_fn(|c| {
+                        block[node_of(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))].into()
+                    })
                 }
                 Found::Inside => [BAND; 8],
                 Found::Outside => [-BAND; 8],
@@ -185,13 +197,6 @@ pub enum Found {
     Kept(u32),
     Inside,
     Outside,
-}
-
-impl Found {
-    /// The value of all nodes of a block that is not kept.
-    pub fn uniform(self) -> f64 {
-        if self == Self::Inside { BAND } else { -BAND }
-    }
 }
 
 /// The 27 blocks around each, itself in the middle.
@@ -263,23 +268,45 @@ impl Neighbours {
 pub const WIDE: usize = EDGE + 2;
 
 /// A block with the nodes next to it.
-pub struct Halo(pub [f64; WIDE * WIDE * WIDE]);
+pub struct Halo<T>(pub [T; WIDE * WIDE * WIDE]);
 
 /// Number of a node of [`Halo`]; 1 is the block's first.
 pub const fn wide(x: usize, y: usize, z: usize) -> usize {
     x + WIDE * (y + WIDE * z)
 }
 
-impl Halo {
-    pub const ZERO: Self = Self([0.0; WIDE * WIDE * WIDE]);
+/// What stands for blocks that are not kept.
+static ALL_INSIDE: Uniform = Uniform([NEAR; NODES]);
+static ALL_OUTSIDE: Uniform = Uniform([-NEAR; NODES]);
 
-    /// Reads a block and the nodes around it.
-    pub fn read(&mut self, grid: Grid, neighbours: &Neighbours, block: usize) {
-        let around: [Result<&[f64; NODES], f64>; 27] =
-            std::array::from_fn(|number| match neighbours.of(block, number) {
-                Found::Kept(index) => Ok(grid.block(index as usize)),
-                uniform => Err(uniform.uniform()),
-            });
+/// Placed so that it can be copied as words.
+#[repr(align(8))]
+struct Uniform([f32; NODES]);
+
+impl<'a> Grid<'a> {
+    /// The values of the 27 blocks around one.
+    pub fn around(&self, neighbours: &Neighbours, block: usize) -> [&'a [f32; NODES]; 27] {
+        std::array::from_fn(|number| self.of(neighbours.of(block, number)))
+    }
+
+    /// The values of a block that may not be kept.
+    pub fn of(&self, found: Found) -> &'a [f32; NODES] {
+        match found {
+            Found::Kept(index) => self.block(index as usize),
+            Found::Inside => &ALL_INSIDE.0,
+            Found::Outside => &ALL_OUTSIDE.0,
+        }
+    }
+}
+
+impl<T: Copy> Halo<T> {
+    pub const fn filled(value: T) -> Self {
+        Self([value; WIDE * WIDE * WIDE])
+    }
+
+    /// Reads a block and the nodes around it from the 27 blocks around it, itself in the middle.
+    #[inline(always)]
+    pub fn read<S: Copy>(&mut self, around: &[&[S; NODES]; 27], convert: impl Fn(S) -> T) {
         // side of a wide coordinate: the neighbour's step, and the coordinate there
         let side = |c: usize| match c {
             0 => (0, EDGE - 1),
@@ -291,14 +318,15 @@ impl Halo {
             for y in 0..WIDE {
                 let (by, ny) = side(y);
                 let (first, node) = (3 * by + 9 * bz, node_of(0, ny, nz));
-                let row: &mut [f64; WIDE] =
+                let row: &mut [T; WIDE] =
                     (&mut self.0[wide(0, y, z)..][..WIDE]).try_into().expect("a row is so wide");
-                row[0] = around[first].map_or_else(|uniform| uniform, |block| block[node + EDGE - 1]);
-                match around[first + 1] {
-                    Ok(block) => row[1..=EDGE].copy_from_slice(&block[node..node + EDGE]),
-                    Err(uniform) => row[1..=EDGE].fill(uniform),
-                }
-                row[EDGE + 1] = around[first + 2].map_or_else(|uniform| uniform, |block| block[node]);
+                row[0] = convert(around[first][node + EDGE - 1]);
+                let middle: &[S; EDGE] =
+                    around[first + 1][node..][..EDGE].try_into().expect("a row has its nodes");
+                // by a copy, which is made of lanes
+                let middle = middle.map(&convert);
+                row[1..=EDGE].copy_from_slice(&middle);
+                row[EDGE + 1] = convert(around[first + 2][node]);
             }
         }
     }
@@ -322,9 +350,9 @@ mod tests {
         let mut keys: Vec<u64> =
             [[0, 0, 0], [1, 0, 0], [4, 0, 0], [0, 1, 0], [-2, 0, 1]].map(key_of).to_vec();
         keys.sort_unstable();
-        let mut values = vec![-BAND; NODES * keys.len()];
+        let mut values = vec![-NEAR; NODES * keys.len()];
         let second = keys.binary_search(&key_of([1, 0, 0])).unwrap();
-        values[NODES * second..][..NODES].fill(BAND);
+        values[NODES * second..][..NODES].fill(NEAR);
         let grid = Grid { keys: &keys, values: &values };
         assert_eq!(grid.find(key_of([2, 0, 0])), Found::Inside);
         assert_eq!(grid.find(key_of([5, 0, 0])), Found::Outside);
@@ -351,15 +379,15 @@ mod tests {
             for node in 0..NODES {
                 let place =
                     Vec3::new((bx + node % 8) as f64, (by + node / 8 % 8) as f64, (bz + node / 64) as f64);
-                values[NODES * index + node] = f(place);
+                values[NODES * index + node] = f(place) as f32;
             }
         }
         let grid = Grid { keys: &keys, values: &values };
         for place in [Vec3::new(3.2, 4.7, 1.1), Vec3::new(7.5, 7.9, 7.25), Vec3::new(7.5, 2.0, 3.0)] {
             let (value, gradient) = grid.sample(place);
-            // a dozen roundings of numbers below four
-            assert!((value - f(place)).abs() < 1e-14);
-            assert!((gradient - Vec3::new(0.1, -0.2, 0.05)).length() < 1e-14);
+            // values below four are kept to 2^-24 of themselves, and a slope is a difference of two
+            assert!((value - f(place)).abs() < 4.0 * 2.0_f64.powi(-24));
+            assert!((gradient - Vec3::new(0.1, -0.2, 0.05)).length() < 3.0 * 8.0 * 2.0_f64.powi(-24));
         }
     }
 }

@@ -68,10 +68,10 @@ mod tests {
     #[test]
     fn normals_turn_by_their_curvature() {
         let keys = [crate::grid::key_of([0, 0, 0])];
-        let values: Vec<f64> = (0..crate::grid::NODES)
+        let values: Vec<f32> = (0..crate::grid::NODES)
             .map(|node| {
                 let (x, y, z) = ((node % 8) as f64, (node / 8 % 8) as f64, (node / 64) as f64);
-                2.0 - 0.3 * x - 0.2 * y - 0.1 * z + 0.05 * x * y - 0.03 * y * z
+                (2.0 - 0.3 * x - 0.2 * y - 0.1 * z + 0.05 * x * y - 0.03 * y * z) as f32
             })
             .collect();
         let grid = Grid { keys: &keys, values: &values };

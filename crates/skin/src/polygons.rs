@@ -1,10 +1,13 @@
 //! Triangles of the cells that the surface runs through, and what is measured of them.
 
+use std::sync::LazyLock;
+
 use souple_math::Vec3;
 
 use crate::cases::{CASES, edge_place};
-use crate::crossings::{Crossings, along_x, along_y, bits};
-use crate::grid::{EDGE, Found, Grid, Halo, Lattice, NODES, Neighbours, block_of, node_of, wide};
+use crate::crossings::Crossings;
+use crate::grid::{EDGE, Found, Grid, Halo, Lattice, NODES, Neighbours, block_of, neighbour, wide};
+use crate::marks::{ALL, FIRST_X, FIRST_Y, Layers, Marks, NONE, along_x, along_y, bits};
 
 /// A closed surface of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,69 +18,112 @@ pub struct Polygons {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What a cell's crossing is called: step to the block of its edge's lower node, and the edge there.
-#[derive(Clone, Copy, Default)]
-struct EdgePlace {
-    axis: usize,
-    /// Steps from the cell's node.
-    x: usize,
-    y: usize,
-    z: usize,
+/// Nodes along an edge of a block with those that its cells end at.
+const CELLS: usize = EDGE + 1;
+
+/// Place of a node's edge along an axis in [`Numbers`].
+const fn slot(axis: usize, x: usize, y: usize, z: usize) -> usize {
+    x + CELLS * (y + CELLS * (z + CELLS * axis))
 }
 
-/// Triangles of all cells whose corners differ in sign, appended to an empty list.
+/// Numbers of the crossings at the cells of a block; where an edge is not cut, anything.
+struct Numbers([u32; 3 * CELLS * CELLS * CELLS]);
+
+impl Numbers {
+    /// Reads those of a block and of the blocks above it.
+    fn read(&mut self, neighbours: &Neighbours, crossings: &Crossings, block: usize) {
+        for side in 0..8 {
+            let steps = [side & 1, side >> 1 & 1, side >> 2];
+            let number = neighbour(steps[0] as i32, steps[1] as i32, steps[2] as i32);
+            let Found::Kept(index) = neighbours.of(block, number) else { continue };
+            let index = index as usize;
+            // of a block further on only the nodes at this one
+            let nodes =
+                (if steps[0] == 1 { FIRST_X } else { !0 }) & (if steps[1] == 1 { FIRST_Y } else { !0 });
+            let layers = if steps[2] == 1 { 1 } else { EDGE };
+            // and edges that run along this one
+            for axis in (0..3).filter(|axis| steps[*axis] == 0) {
+                for z in 0..layers {
+                    for bit in bits(crossings.cut(index)[axis][z] & nodes) {
+                        let (x, y) = (bit % EDGE + EDGE * steps[0], bit / EDGE + EDGE * steps[1]);
+                        self.0[slot(axis, x, y, z + EDGE * steps[2])] = crossings.number(index, axis, z, bit);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The triangles of a pattern of signs, as slots from that of their cell's node.
+#[derive(Clone, Copy, Default)]
+struct Corners {
+    count: u8,
+    /// Five at most.
+    triangles: [[u16; 3]; 5],
+}
+
+static CORNERS: LazyLock<[Corners; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|signs| {
+        let mut corners = Corners { count: CASES[signs].triangles.len() as u8, ..Corners::default() };
+        for (triangle, edges) in corners.triangles.iter_mut().zip(&CASES[signs].triangles) {
+            *triangle = edges.map(|edge| {
+                let (axis, corner) = edge_place(edge.into());
+                slot(axis, corner & 1, corner >> 1 & 1, corner >> 2) as u16
+            });
+        }
+        corners
+    })
+});
+
+/// Triangles of all cells whose corners differ in sign, in place of those in the list.
 ///
 /// Cells belong to the block of their lowest node. Where that block is not kept no cell is cut: a node next to it that
 /// is within the band, or of the other sign, would have woken it.
-pub fn polygonise(grid: Grid, neighbours: &Neighbours, crossings: &Crossings, triangles: &mut Vec<[u32; 3]>) {
-    let places: [EdgePlace; 12] = std::array::from_fn(|edge| {
-        let (axis, corner) = edge_place(edge);
-        EdgePlace { axis, x: corner & 1, y: corner >> 1 & 1, z: corner >> 2 }
-    });
+pub fn polygonise(
+    neighbours: &Neighbours,
+    marks: &[Marks],
+    crossings: &Crossings,
+    triangles: &mut Vec<[u32; 3]>,
+) {
+    let all_corners = &*CORNERS;
+    let mut numbers = Numbers([0; 3 * CELLS * CELLS * CELLS]);
     triangles.clear();
-    for block in 0..grid.keys.len() {
-        // the eight blocks from here upward, by their bits x + 2y + 4z
-        let blocks: [Found; 8] = std::array::from_fn(|corner| {
-            neighbours.of(block, (1 + (corner & 1)) + 3 * (1 + (corner >> 1 & 1)) + 9 * (1 + (corner >> 2)))
+    for block in 0..marks.len() {
+        // signs in the eight blocks from here upward, by their bits x + 2y + 4z
+        let blocks: [&Layers; 8] = std::array::from_fn(|corner| {
+            let number = (1 + (corner & 1)) + 3 * (1 + (corner >> 1 & 1)) + 9 * (1 + (corner >> 2));
+            match neighbours.of(block, number) {
+                Found::Kept(index) => &marks[index as usize].inside,
+                Found::Inside => &ALL,
+                Found::Outside => &NONE,
+            }
         });
-        let layer = |corner: usize, z: usize| match blocks[corner] {
-            Found::Kept(index) => crossings.inside(index as usize)[z],
-            Found::Inside => !0,
-            Found::Outside => 0,
-        };
         // of a layer, of its next nodes along x, along y, along both
         let four = |up: usize, z: usize| {
-            let (own, x, y, xy) = (layer(up, z), layer(up + 1, z), layer(up + 2, z), layer(up + 3, z));
+            let [own, x, y, xy] = [0, 1, 2, 3].map(|corner| blocks[up + corner][z]);
             let (next_x, next_y) = (along_x(own, x), along_y(own, y));
             [own, next_x, next_y, along_x(next_y, along_y(x, xy))]
         };
+        let mut is_read = false;
         let mut below = four(0, 0);
         for z in 0..EDGE {
             let above = if z + 1 < EDGE { four(0, z + 1) } else { four(4, 0) };
             let any = below.iter().chain(&above).fold(0, |word, layer| word | layer);
             let all = below.iter().chain(&above).fold(!0, |word, layer| word & layer);
+            if any & !all != 0 && !is_read {
+                numbers.read(neighbours, crossings, block);
+                is_read = true;
+            }
             for bit in bits(any & !all) {
                 let mut signs = 0;
                 for corner in 0..4 {
                     signs |=
                         (below[corner] >> bit & 1) << corner | (above[corner] >> bit & 1) << (corner + 4);
                 }
-                let case = &CASES[signs as usize];
-                let (x, y) = (bit % EDGE, bit / EDGE);
-                let mut numbers = [0; 12];
-                let mut left = case.edges;
-                while left != 0 {
-                    let edge = left.trailing_zeros() as usize;
-                    left &= left - 1;
-                    let place = places[edge];
-                    let (x, y, z) = (x + place.x, y + place.y, z + place.z);
-                    let at = x / EDGE + 2 * (y / EDGE) + 4 * (z / EDGE);
-                    if let Found::Kept(index) = blocks[at] {
-                        let bit = node_of(x % EDGE, y % EDGE, 0);
-                        numbers[edge] = crossings.number(index as usize, place.axis, z % EDGE, bit);
-                    }
-                }
-                triangles.extend(case.triangles.iter().map(|edges| edges.map(|edge| numbers[edge as usize])));
+                let corners = &all_corners[signs as usize];
+                let numbers = &numbers.0[slot(0, bit % EDGE, bit / EDGE, z)..];
+                let cut = &corners.triangles[..usize::from(corners.count)];
+                triangles.extend(cut.iter().map(|slots| slots.map(|slot| numbers[usize::from(slot)])));
             }
             below = above;
         }
@@ -93,8 +139,8 @@ pub fn normals(
     out: &mut Vec<Vec3>,
 ) {
     out.clear();
-    let mut halo = Halo::ZERO;
-    let gradient = |halo: &Halo, node: usize| {
+    let mut halo = Halo::filled(0.0);
+    let gradient = |halo: &Halo<f64>, node: usize| {
         let f = &halo.0;
         let slope = |stride: usize| f[node + stride] - f[node - stride];
         Vec3::new(slope(1), slope(wide(0, 1, 0)), slope(wide(0, 0, 1)))
@@ -104,7 +150,7 @@ pub fn normals(
         if *cut == [[0; EDGE]; 3] {
             continue;
         }
-        halo.read(grid, neighbours, block);
+        halo.read(&grid.around(neighbours, block), f64::from);
         let corner = block_of(grid.keys[block]).map(|c| c * EDGE as i64);
         for axis in 0..3 {
             for z in 0..EDGE {
@@ -168,6 +214,9 @@ pub struct Audit {
     starts: Vec<u32>,
     /// For each triangle at a point the edge opposite to it.
     fans: Vec<[u32; 2]>,
+    /// Of each point, from 1: alike only where they are joined.
+    labels: Vec<u32>,
+    /// Labels that others were joined to.
     parents: Vec<u32>,
 }
 
@@ -200,66 +249,113 @@ impl Audit {
         for point in 0..point_count {
             self.starts[point + 1] += self.starts[point];
         }
-        self.fans.clear();
         self.fans.resize(3 * triangles.len(), [0; 2]);
-        for [a, b, c] in triangles {
-            for (point, edge) in [(a, [*b, *c]), (b, [*c, *a]), (c, [*a, *b])] {
+        self.labels.clear();
+        self.labels.resize(point_count, 0);
+        self.parents.clear();
+        self.parents.push(0);
+        for corners in triangles {
+            let [a, b, c] = *corners;
+            for (point, edge) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
                 // starts move to the next point's while filling, and back below
-                let at = &mut self.starts[*point as usize];
+                let at = &mut self.starts[point as usize];
                 self.fans[*at as usize] = edge;
                 *at += 1;
             }
+            self.label(corners);
         }
         self.starts.rotate_right(1);
         self.starts[0] = 0;
-        self.parents.clear();
-        self.parents.extend(0..point_count as u32);
         for point in 0..point_count {
             let fan = &mut self.fans[self.starts[point] as usize..self.starts[point + 1] as usize];
-            let at = point as u32;
-            // each edge begins where the one before ends, and the last ends where the first begins
-            for k in 1..fan.len() {
-                let end = fan[k - 1][1];
-                let Some(next) = (k..fan.len()).find(|next| fan[*next][0] == end) else {
-                    return Err(if end == fan[0][0] {
-                        Torn::Pinched { point: at }
-                    } else {
-                        Torn::Link { point: at }
-                    });
-                };
-                fan.swap(k, next);
-            }
-            match fan {
-                [] => return Err(Torn::Link { point: at }),
-                [first, .., last] if last[1] == first[0] && fan.len() > 2 => {}
-                _ => return Err(Torn::Link { point: at }),
-            }
-            if fan.iter().enumerate().any(|(k, edge)| fan[..k].iter().any(|other| other[0] == edge[0])) {
-                return Err(Torn::Pinched { point: at });
-            }
-            let first = fan[0][0];
-            join(&mut self.parents, at, first);
+            check_fan(point as u32, fan)?;
         }
-        for [a, b, _] in triangles {
-            join(&mut self.parents, *a, *b);
-        }
-        let components = (0..point_count as u32).filter(|p| self.parents[*p as usize] == *p).count() as u64;
+        let is_root = |(label, parent): (usize, &u32)| label as u32 == *parent;
+        // all but the label of points that have none
+        let components = self.parents.iter().enumerate().skip(1).filter(|root| is_root(*root)).count();
         let euler = point_count as i64 - triangles.len() as i64 / 2;
-        Ok((euler, components))
+        Ok((euler, components as u64))
+    }
+
+    /// Gives the corners of a triangle the label of those that have one, and joins labels where they have several.
+    fn label(&mut self, corners: &[u32; 3]) {
+        let own = corners.map(|point| self.labels[point as usize]);
+        let mut label = own[0].max(own[1]).max(own[2]);
+        if label == 0 {
+            label = self.parents.len() as u32;
+            self.parents.push(label);
+        } else if own.iter().fold(false, |differ, own| differ | ((*own != 0) & (*own != label))) {
+            own.iter().filter(|own| **own != 0).for_each(|own| join(&mut self.parents, label, *own));
+            label = root(&mut self.parents, label);
+        }
+        corners.iter().for_each(|point| self.labels[*point as usize] = label);
     }
 
     pub fn bytes(&self) -> usize {
-        4 * (self.starts.capacity() + self.parents.capacity()) + 8 * self.fans.capacity()
+        4 * (self.starts.capacity() + self.labels.capacity() + self.parents.capacity())
+            + 8 * self.fans.capacity()
     }
 }
 
-fn root(parents: &mut [u32], mut point: u32) -> u32 {
-    while parents[point as usize] != point {
-        let above = parents[parents[point as usize] as usize];
-        parents[point as usize] = above;
-        point = above;
+/// Checks that the triangles of a point close around it once: each edge opposite to it begins where another ends, and one
+/// after the other they come to all.
+fn check_fan(at: u32, fan: &mut [[u32; 2]]) -> Result<(), Torn> {
+    if fan.len() < 3 {
+        return Err(Torn::Link { point: at });
     }
-    point
+    // neighbours by the last bits of their numbers, which are seldom alike
+    let mut places = [0_u8; 64];
+    let mut seen = 0_u64;
+    for (place, edge) in fan.iter().enumerate() {
+        places[(edge[0] % 64) as usize] = place as u8;
+        seen |= 1 << (edge[0] % 64);
+    }
+    if seen.count_ones() as usize != fan.len() {
+        return check_fan_by_search(at, fan);
+    }
+    let (first, mut end) = (fan[0][0], fan[0][1]);
+    for _ in 1..fan.len() {
+        let next = fan[usize::from(places[(end % 64) as usize])];
+        if next[0] != end {
+            return Err(Torn::Link { point: at });
+        }
+        if end == first {
+            return Err(Torn::Pinched { point: at });
+        }
+        end = next[1];
+    }
+    if end == first { Ok(()) } else { Err(Torn::Link { point: at }) }
+}
+
+/// The same, each edge compared with each.
+fn check_fan_by_search(at: u32, fan: &mut [[u32; 2]]) -> Result<(), Torn> {
+    for k in 1..fan.len() {
+        let end = fan[k - 1][1];
+        let Some(next) = (k..fan.len()).find(|next| fan[*next][0] == end) else {
+            return Err(if end == fan[0][0] {
+                Torn::Pinched { point: at }
+            } else {
+                Torn::Link { point: at }
+            });
+        };
+        fan.swap(k, next);
+    }
+    if fan[fan.len() - 1][1] != fan[0][0] {
+        return Err(Torn::Link { point: at });
+    }
+    if fan.iter().enumerate().any(|(k, edge)| fan[..k].iter().any(|other| other[0] == edge[0])) {
+        return Err(Torn::Pinched { point: at });
+    }
+    Ok(())
+}
+
+fn root(parents: &mut [u32], mut label: u32) -> u32 {
+    while parents[label as usize] != label {
+        let above = parents[parents[label as usize] as usize];
+        parents[label as usize] = above;
+        label = above;
+    }
+    label
 }
 
 fn join(parents: &mut [u32], a: u32, b: u32) {

@@ -5,12 +5,17 @@ use souple_engine::FieldState;
 use souple_math::Vec3;
 
 use crate::crossings::Crossings;
-use crate::grid::{BAND, EDGE, FARTHEST, Grid, Halo, Lattice, NODES, Neighbours, key_of, wide};
-use crate::level_set::{Heads, Motion, Runaway, Speeds, TENSION_LIMIT, Waking, advance, curvature_at};
-use crate::polygons::{Audit, Measures, Polygons, Torn, area_and_volume, normals, polygonise};
+use crate::grid::{FARTHEST, Grid, Lattice, Neighbours};
+use crate::level_set::{Motion, Surface, TENSION_LIMIT, advance};
+use crate::marks::Marks;
+use crate::polygons::{Audit, Torn, area_and_volume, polygonise};
 use crate::reaction::{Reaction, ReactionScratch, Tense};
+use crate::speeds::Speeds;
 use crate::strategy::{SurfacePoints, Term, Whole};
+use crate::surface::surface_of;
 use crate::target::{Followed, Moment, Target, TargetScratch};
+use crate::view::View;
+use crate::waking::{Runaway, Waking};
 
 /// The constant part of a skin.
 pub struct Skin {
@@ -26,34 +31,36 @@ pub struct Skin {
 
 /// Numbers at the beginning of a skin's values in State.
 pub const HEAD: usize = 8;
-const AREA: usize = 0;
-const VOLUME: usize = 1;
-const REST_AREA: usize = 2;
-const REST_VOLUME: usize = 3;
+pub(crate) const AREA: usize = 0;
+pub(crate) const VOLUME: usize = 1;
+pub(crate) const REST_AREA: usize = 2;
+pub(crate) const REST_VOLUME: usize = 3;
 /// Greatest speed of a node beside the surface in the last sub-step [m/s].
-const SPEED: usize = 4;
+pub(crate) const SPEED: usize = 4;
 /// When the topology changed last [s].
-const CHANGED: usize = 5;
+pub(crate) const CHANGED: usize = 5;
 /// Sub-steps of the last step; largest share of a voxel moved.
-const SUBSTEPS: usize = 6;
+pub(crate) const SUBSTEPS: usize = 6;
 
 /// Integers before the keys of the blocks.
 pub const HEAD_INDICES: usize = 6;
-const EULER: usize = 0;
-const COMPONENTS: usize = 1;
+pub(crate) const EULER: usize = 0;
+pub(crate) const COMPONENTS: usize = 1;
 /// Changes of topology so far.
-const EVENTS: usize = 2;
-const POINTS: usize = 3;
-const TRIANGLES: usize = 4;
+pub(crate) const EVENTS: usize = 2;
+pub(crate) const POINTS: usize = 3;
+pub(crate) const TRIANGLES: usize = 4;
 /// Surfaces so far that were checked to be closed, oriented and manifold: one at the start, one for each step.
-const CHECKED: usize = 5;
+pub(crate) const CHECKED: usize = 5;
 
-/// Blocks that a skin may have: 2 GB of values.
+/// Blocks that a skin may have: 1 GB of values.
 pub const MOST_BLOCKS: usize = 1 << 19;
 /// Blocks that are looked at when a skin starts: half a billion nodes.
 pub const MOST_SAMPLED: usize = 1 << 20;
 /// Sub-steps of a step at most.
 const MOST_SUBSTEPS: u32 = 2_000;
+/// Points at which a target is evaluated at once.
+const SOME_POINTS: usize = 256;
 /// The surface moves no further in a sub-step [voxels].
 const FARTHEST_MOVE: f64 = 0.5;
 
@@ -94,72 +101,19 @@ pub enum SkinError {
     Torn { torn: Torn, time: f64 },
 }
 
-/// A skin's part of State, as a reader sees it.
-#[derive(Clone, Copy, Debug)]
-pub struct View<'a> {
-    pub grid: Grid<'a>,
-    head: &'a [f64],
-    head_indices: &'a [u64],
-    /// Forces on the rows it acts on [N], three numbers each.
-    pub reactions: &'a [f64],
-}
-
-impl<'a> View<'a> {
-    pub fn new(field: &'a FieldState, reactions: usize) -> Self {
-        let (head, rest) = field.values.split_at(HEAD);
-        let (reactions, values) = rest.split_at(3 * reactions);
-        let (head_indices, keys) = field.indices.split_at(HEAD_INDICES);
-        Self { grid: Grid { keys, values }, head, head_indices, reactions }
-    }
-
-    pub fn measures(&self) -> Measures {
-        Measures {
-            area: self.head[AREA],
-            volume: self.head[VOLUME],
-            euler: self.head_indices[EULER] as i64,
-            components: self.head_indices[COMPONENTS],
-        }
-    }
-
-    /// Greatest speed of a node beside the surface in the last sub-step [m/s].
-    pub fn speed(&self) -> f64 {
-        self.head[SPEED]
-    }
-
-    /// Times that the number of components or the Euler characteristic changed.
-    pub fn events(&self) -> u64 {
-        self.head_indices[EVENTS]
-    }
-
-    /// When that was last [s].
-    pub fn changed(&self) -> f64 {
-        self.head[CHANGED]
-    }
-
-    pub fn substeps(&self) -> f64 {
-        self.head[SUBSTEPS]
-    }
-
-    /// Surfaces so far that were checked to be closed, oriented and manifold, and were.
-    pub fn checked(&self) -> u64 {
-        self.head_indices[CHECKED]
-    }
-
-    /// Points and triangles of the surface.
-    pub fn counts(&self) -> [u64; 2] {
-        [self.head_indices[POINTS], self.head_indices[TRIANGLES]]
-    }
-}
-
 /// Scratch of a skin.
 pub struct SkinScratch {
     neighbours: Neighbours,
-    crossings: Crossings,
+    marks: Vec<Marks>,
+    next_marks: Vec<Marks>,
+    pub(crate) crossings: Crossings,
     triangles: Vec<[u32; 3]>,
     excess: Vec<f64>,
-    speeds: Vec<f64>,
+    pub(crate) speeds: Vec<f64>,
     spread: Speeds,
-    next: Vec<f64>,
+    next: Vec<u64>,
+    /// The grid that all of this is of, between steps.
+    known: Vec<u64>,
     waking: Waking,
     audit: Audit,
     reaction: ReactionScratch,
@@ -178,9 +132,13 @@ impl SkinScratch {
 
     pub fn bytes(&self) -> usize {
         self.neighbours.bytes()
+            + size_of::<Marks>() * (self.marks.capacity() + self.next_marks.capacity())
             + self.crossings.bytes()
             + 12 * self.triangles.capacity()
-            + 8 * (self.excess.capacity() + self.speeds.capacity() + self.next.capacity())
+            + 8 * (self.excess.capacity()
+                + self.speeds.capacity()
+                + self.next.capacity()
+                + self.known.capacity())
             + self.spread.bytes()
             + self.waking.bytes()
             + self.audit.bytes()
@@ -192,12 +150,15 @@ impl Skin {
     pub fn new_scratch(&self) -> SkinScratch {
         SkinScratch {
             neighbours: Neighbours::default(),
+            marks: Vec::new(),
+            next_marks: Vec::new(),
             crossings: Crossings::default(),
             triangles: Vec::new(),
             excess: Vec::new(),
             speeds: Vec::new(),
             spread: Speeds::default(),
             next: Vec::new(),
+            known: Vec::new(),
             waking: Waking::default(),
             audit: Audit::default(),
             reaction: ReactionScratch::default(),
@@ -216,7 +177,7 @@ impl Skin {
         parts.flat_map(|part| part.potential.followed()).collect()
     }
 
-    fn voxel(&self) -> f64 {
+    pub(crate) fn voxel(&self) -> f64 {
         self.lattice.voxel
     }
 
@@ -225,128 +186,32 @@ impl Skin {
         self.terms.iter().map(|term| term.tension()).sum()
     }
 
-    /// The state of a skin that begins as the zero level of `value` within a box [m].
-    ///
-    /// # Errors
-    /// There is no inside, it does not end within the box, or it is too large for its voxels.
-    pub fn start(
-        &self,
-        low: Vec3,
-        high: Vec3,
-        value: &(dyn Fn(Vec3) -> f64 + Sync),
-        scratch: &mut SkinScratch,
-    ) -> Result<FieldState, SkinError> {
-        let edge = EDGE as f64;
-        // one block around, so that all ends within
-        let first = self.lattice.to_voxels(low).to_array().map(|c| (c / edge).floor() - 1.0);
-        let last = self.lattice.to_voxels(high).to_array().map(|c| (c / edge).floor() + 1.0);
-        let counts = [0, 1, 2].map(|axis| (last[axis] - first[axis] + 1.0).max(1.0));
-        let blocks: f64 = counts.iter().product();
-        let far = first.iter().chain(&last).any(|c| c.is_nan() || c.abs() >= FARTHEST as f64);
-        if far || blocks.is_nan() || blocks > MOST_SAMPLED as f64 {
-            let size = (high - low).to_array();
-            return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
-        }
-        let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
-        self.sample(first.map(|c| c as i64), counts.map(|c| c as i64), value, &mut field)?;
-        if crate::polygons::is_empty(Grid { keys: &[], values: &field.values[self.head()..] }) {
-            let (low, high) = (low.to_array(), high.to_array());
-            return Err(SkinError::Empty { low, high, voxel: self.voxel() });
-        }
-        self.make_distance(&mut field, scratch)?;
-        self.measure(&mut field, scratch, 0.0)?;
-        field.values[REST_AREA] = field.values[AREA];
-        field.values[REST_VOLUME] = field.values[VOLUME];
-        field.indices[EVENTS] = 0;
-        Ok(field)
-    }
-
-    /// Values in voxels, by the slope between neighbours, of the blocks within the band.
-    fn sample(
-        &self,
-        first: [i64; 3],
-        counts: [i64; 3],
-        value: &(dyn Fn(Vec3) -> f64 + Sync),
-        field: &mut FieldState,
-    ) -> Result<(), SkinError> {
-        let lattice = self.lattice;
-        let at =
-            move |node: [i64; 3]| lattice.to_world(Vec3::new(node[0] as f64, node[1] as f64, node[2] as f64));
-        let edge = EDGE as i64;
-        // slab by slab of blocks along z: a wide block's values, or nothing where it is uniform
-        for z in 0..counts[2] {
-            let slab: Vec<Result<Sampled, SkinError>> = (0..counts[0] * counts[1])
-                .into_par_iter()
-                .map(|i| {
-                    let block = [first[0] + i % counts[0], first[1] + i / counts[0], first[2] + z];
-                    let is_border = [i % counts[0], i / counts[0], z]
-                        .iter()
-                        .zip(counts)
-                        .any(|(c, count)| *c == 0 || *c == count - 1);
-                    let mut values = vec![0.0; 1000];
-                    let (mut inside, mut outside) = (false, false);
-                    for (index, out) in values.iter_mut().enumerate() {
-                        let i = index as i64;
-                        let node = [i % 10, i / 10 % 10, i / 100];
-                        let place = at([0, 1, 2].map(|axis| edge * block[axis] + node[axis] - 1));
-                        let f = value(place);
-                        let is_own = node.iter().all(|c| (1..=edge).contains(c));
-                        if !f.is_finite() {
-                            return Err(SkinError::TargetNotANumber { value: f, place: place.to_array() });
-                        }
-                        if is_border && is_own && f > 0.0 {
-                            return Err(SkinError::BeyondDomain { place: place.to_array() });
-                        }
-                        (inside, outside) = (inside | (f > 0.0), outside | (f <= 0.0));
-                        *out = f;
-                    }
-                    let distances = distances(&values);
-                    let is_near = (inside && outside) || distances.iter().any(|f| f.abs() < BAND);
-                    Ok(is_near.then(|| (key_of(block), distances)))
-                })
-                .collect();
-            for block in slab {
-                if let Some((key, values)) = block? {
-                    field.indices.push(key);
-                    field.values.extend(values);
-                    let blocks = field.indices.len() - HEAD_INDICES;
-                    if blocks > MOST_BLOCKS {
-                        return Err(SkinError::Grown { blocks, time: 0.0 });
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Wakes the whole band, and makes values distances.
-    fn make_distance(&self, field: &mut FieldState, scratch: &mut SkinScratch) -> Result<(), SkinError> {
-        // a kink runs through the band in as many steps as it has half voxels, and as many again settle it
-        for _ in 0..8 * BAND as usize {
-            self.find_neighbours(field, scratch);
-            self.find_crossings(field, scratch);
-            scratch.speeds.clear();
-            scratch.speeds.resize(scratch.crossings.points.len(), 0.0);
-            let moves = Moves { uniform: 0.0, tension: 0.0, redistance: 2.0 * self.redistance };
-            self.move_by(field, scratch, moves, 0.0)?;
-        }
-        Ok(())
-    }
-
     pub(crate) fn head(&self) -> usize {
         HEAD + 3 * self.reactions()
     }
 
-    fn grid<'a>(&self, field: &'a FieldState) -> Grid<'a> {
-        Grid { keys: &field.indices[HEAD_INDICES..], values: &field.values[self.head()..] }
+    pub(crate) fn grid<'a>(&self, field: &'a FieldState) -> Grid<'a> {
+        Grid::of_words(&field.indices[HEAD_INDICES..])
     }
 
-    fn find_neighbours(&self, field: &FieldState, scratch: &mut SkinScratch) {
+    /// The surface of a grid, where it is not the one that the last step left.
+    fn find_surface(&self, field: &FieldState, scratch: &mut SkinScratch) {
+        let is_known = scratch.known == field.indices[HEAD_INDICES..];
+        // nothing is known of what a step leaves that fails
+        scratch.known.clear();
+        if !is_known {
+            self.find_blocks(field, scratch);
+            self.find_crossings(field, scratch);
+        }
+    }
+
+    pub(crate) fn find_blocks(&self, field: &FieldState, scratch: &mut SkinScratch) {
         scratch.neighbours.find(self.grid(field));
+        Marks::find(self.grid(field), &mut scratch.marks);
     }
 
-    fn find_crossings(&self, field: &FieldState, scratch: &mut SkinScratch) {
-        scratch.crossings.find(self.grid(field), &scratch.neighbours, &self.lattice);
+    pub(crate) fn find_crossings(&self, field: &FieldState, scratch: &mut SkinScratch) {
+        scratch.crossings.find(self.grid(field), &scratch.neighbours, &scratch.marks, &self.lattice);
     }
 
     /// Moves the skin on by `timestep` [s] to the moment `end`.
@@ -365,12 +230,12 @@ impl Skin {
         if let (Some(target), Some(placed)) = (&self.target, &mut scratch.target) {
             target.place(end, placed).map_err(SkinError::Target)?;
         }
-        self.find_neighbours(field, scratch);
+        self.find_surface(field, scratch);
         while done < timestep {
             let left = timestep - done;
             let now = start + done;
-            self.find_crossings(field, scratch);
             if substeps > 0 {
+                self.find_crossings(field, scratch);
                 self.measure_size(field, scratch);
             }
             let Asked { uniform, fastest, answer } = self.add_speeds(field, scratch, now)?;
@@ -395,6 +260,7 @@ impl Skin {
         field.values[SUBSTEPS] = f64::from(substeps);
         self.find_crossings(field, scratch);
         self.measure(field, scratch, end.time)?;
+        scratch.known.extend_from_slice(&field.indices[HEAD_INDICES..]);
         self.react(field, scratch, end)
     }
 
@@ -404,7 +270,7 @@ impl Skin {
         if self.terms.iter().all(|term| term.answer(&whole) == 0.0) {
             return;
         }
-        polygonise(self.grid(field), &scratch.neighbours, &scratch.crossings, &mut scratch.triangles);
+        polygonise(&scratch.neighbours, &scratch.marks, &scratch.crossings, &mut scratch.triangles);
         let (area, volume) = area_and_volume(&scratch.crossings.points, &scratch.triangles);
         field.values[AREA] = area;
         field.values[VOLUME] = volume;
@@ -439,9 +305,8 @@ impl Skin {
         if let (Some(target), Some(placed)) = (&self.target, &scratch.target)
             && self.terms.iter().any(|term| term.needs_target())
         {
-            scratch.excess.par_iter_mut().zip(points).with_min_len(256).for_each(|(excess, point)| {
-                *excess = target.excess(*point, placed);
-            });
+            let chunks = scratch.excess.par_chunks_mut(SOME_POINTS).zip(points.par_chunks(SOME_POINTS));
+            chunks.for_each(|(excess, points)| target.excesses(points, placed, excess));
         }
         let whole = self.whole(field, time);
         let uniform: f64 = self.terms.iter().map(|term| term.uniform(&whole)).sum();
@@ -471,47 +336,61 @@ impl Skin {
     }
 
     /// One sub-step, with the speeds of the crossings in voxels; how far the surface moved [voxels].
-    fn move_by(
+    pub(crate) fn move_by(
         &self,
         field: &mut FieldState,
         scratch: &mut SkinScratch,
         moves: Moves,
         time: f64,
     ) -> Result<f64, SkinError> {
-        let head = self.head();
-        let grid = self.grid(field);
         let (neighbours, crossings) = (&scratch.neighbours, &scratch.crossings);
+        let surface = Surface { grid: self.grid(field), neighbours, marks: &scratch.marks, crossings };
         if self.varies() {
-            scratch.spread.spread(grid, neighbours, crossings, &scratch.speeds);
+            scratch.spread.spread(neighbours, crossings, &scratch.speeds);
         }
         let Moves { uniform, tension, redistance } = moves;
         let speeds = self.varies().then_some(&scratch.spread);
-        let motion = Motion { speeds, uniform, tension, redistance };
+        let motion = Motion {
+            speeds,
+            uniform: uniform as f32,
+            tension: tension as f32,
+            redistance: redistance as f32,
+        };
         let next = &mut scratch.next;
-        next.resize(field.values.len(), 0.0);
-        next[..head].copy_from_slice(&field.values[..head]);
-        let moved = advance(grid, neighbours, crossings, motion, &mut next[head..]);
-        std::mem::swap(&mut field.values, next);
-        let heads = Heads { indices: HEAD_INDICES, values: head };
+        let first = HEAD_INDICES + surface.grid.keys.len();
+        next.resize(field.indices.len(), 0);
+        next[..first].copy_from_slice(&field.indices[..first]);
+        scratch.next_marks.resize(scratch.marks.len(), Marks::default());
+        let moved = f64::from(advance(
+            surface,
+            motion,
+            bytemuck::cast_slice_mut(&mut next[first..]),
+            &mut scratch.next_marks,
+        ));
+        std::mem::swap(&mut field.indices, next);
+        std::mem::swap(&mut scratch.marks, &mut scratch.next_marks);
         let changed = scratch
             .waking
-            .update(&mut field.indices, &mut field.values, heads, &scratch.neighbours)
+            .update(&mut field.indices, HEAD_INDICES, &scratch.neighbours, &mut scratch.marks)
             .map_err(|Runaway| SkinError::Runaway { time })?;
         if changed {
-            let blocks = field.indices.len() - HEAD_INDICES;
+            let blocks = scratch.marks.len();
             if blocks > MOST_BLOCKS {
                 return Err(SkinError::Grown { blocks, time });
             }
-            self.find_neighbours(field, scratch);
+            scratch.neighbours.find(self.grid(field));
         }
         Ok(moved)
     }
 
-    /// Triangles, their measures, and whether the topology changed.
-    fn measure(&self, field: &mut FieldState, scratch: &mut SkinScratch, time: f64) -> Result<(), SkinError> {
-        let grid = self.grid(field);
-        scratch.crossings.find(grid, &scratch.neighbours, &self.lattice);
-        polygonise(grid, &scratch.neighbours, &scratch.crossings, &mut scratch.triangles);
+    /// Triangles at the crossings found, their measures, and whether the topology changed.
+    pub(crate) fn measure(
+        &self,
+        field: &mut FieldState,
+        scratch: &mut SkinScratch,
+        time: f64,
+    ) -> Result<(), SkinError> {
+        polygonise(&scratch.neighbours, &scratch.marks, &scratch.crossings, &mut scratch.triangles);
         let (points, triangles) = (&scratch.crossings.points, &scratch.triangles);
         let (area, volume) = area_and_volume(points, triangles);
         let topology = scratch.audit.check(points.len(), triangles);
@@ -572,74 +451,8 @@ struct Asked {
 
 /// A sub-step in voxels.
 #[derive(Clone, Copy)]
-struct Moves {
-    uniform: f64,
-    tension: f64,
-    redistance: f64,
+pub(crate) struct Moves {
+    pub uniform: f64,
+    pub tension: f64,
+    pub redistance: f64,
 }
-
-/// The key and the values of a block; nothing of one beyond the band.
-type Sampled = Option<(u64, Vec<f64>)>;
-
-/// Values over the greatest slope to a neighbour, of a block with the nodes around it: near distances in voxels.
-fn distances(values: &[f64]) -> Vec<f64> {
-    let mut out = Vec::with_capacity(NODES);
-    for z in 0..EDGE {
-        for y in 0..EDGE {
-            for x in 0..EDGE {
-                let at = wide(x + 1, y + 1, z + 1);
-                let f = values[at];
-                let slope_sq: f64 = [1, wide(0, 1, 0), wide(0, 0, 1)]
-                    .iter()
-                    .map(|d| {
-                        let (low, high) = (f - values[at - d], values[at + d] - f);
-                        // at a ridge the greater slope, where it is smooth the middle one
-                        let is_ridge = low * high < 0.0;
-                        let slope = if is_ridge { low.abs().max(high.abs()) } else { 0.5 * (low + high) };
-                        slope * slope
-                    })
-                    .sum();
-                let distance = if slope_sq > 0.0 { f / slope_sq.sqrt() } else { f.signum() * BAND };
-                out.push(if f == 0.0 { 0.0 } else { distance.clamp(-BAND, BAND) });
-            }
-        }
-    }
-    out
-}
-
-/// The surface of a grid.
-pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
-    let (mut neighbours, mut crossings) = (Neighbours::default(), Crossings::default());
-    neighbours.find(grid);
-    crossings.find(grid, &neighbours, lattice);
-    let (mut triangles, mut directions) = (Vec::new(), Vec::new());
-    polygonise(grid, &neighbours, &crossings, &mut triangles);
-    normals(grid, &neighbours, &crossings, lattice, &mut directions);
-    (Polygons { points: crossings.points, triangles }, directions)
-}
-
-/// `κ = div n`, twice the mean curvature, averaged over the surface [1/m].
-pub fn mean_curvature(grid: Grid, lattice: &Lattice) -> f64 {
-    let mut neighbours = Neighbours::default();
-    neighbours.find(grid);
-    let mut halo = Halo::ZERO;
-    let (mut sum, mut weight) = (0.0, 0.0);
-    for block in 0..grid.keys.len() {
-        if grid.block(block).iter().all(|f| f.abs() >= SMEARED) {
-            continue;
-        }
-        halo.read(grid, &neighbours, block);
-        for (node, f) in grid.block(block).iter().enumerate().filter(|(_, f)| f.abs() < SMEARED) {
-            let at = wide(node % 8 + 1, node / 8 % 8 + 1, node / 64 + 1);
-            let (curvature, slope) = curvature_at(&halo.0, at);
-            // a hat on both sides of the surface in place of Dirac's function
-            let share = (1.0 - f.abs() / SMEARED) * slope;
-            sum += share * curvature;
-            weight += share;
-        }
-    }
-    if weight > 0.0 { sum / weight / lattice.voxel } else { 0.0 }
-}
-
-/// Nodes nearer than this take part in means over the surface [voxels].
-const SMEARED: f64 = 1.0;

@@ -4,7 +4,7 @@ use super::*;
 use crate::grid::{BAND, key_of};
 
 /// A grid of `n³` blocks whose nodes have the values of a function of their coordinates, outside at the border.
-fn grid_of(n: i64, f: impl Fn([i64; 3]) -> f64) -> (Vec<u64>, Vec<f64>) {
+fn grid_of(n: i64, f: impl Fn([i64; 3]) -> f64) -> (Vec<u64>, Vec<f32>) {
     let mut keys: Vec<u64> = (0..n * n * n).map(|i| key_of([i % n, i / n % n, i / (n * n)])).collect();
     keys.sort_unstable();
     let last = n * EDGE as i64 - 1;
@@ -16,18 +16,19 @@ fn grid_of(n: i64, f: impl Fn([i64; 3]) -> f64) -> (Vec<u64>, Vec<f64>) {
             if node.iter().any(|c| *c == 0 || *c == last) { -BAND } else { f(node).clamp(-BAND, BAND) }
         })
     });
-    let values = values.collect();
+    let values = values.map(|value| value as f32).collect();
     (keys, values)
 }
 
-fn surface(keys: &[u64], values: &[f64]) -> Polygons {
+fn surface(keys: &[u64], values: &[f32]) -> Polygons {
     let grid = Grid { keys, values };
     let mut neighbours = Neighbours::default();
     neighbours.find(grid);
-    let mut crossings = Crossings::default();
-    crossings.find(grid, &neighbours, &Lattice { origin: Vec3::ZERO, voxel: 1.0 });
+    let (mut marks, mut crossings) = (Vec::new(), Crossings::default());
+    Marks::find(grid, &mut marks);
+    crossings.find(grid, &neighbours, &marks, &Lattice { origin: Vec3::ZERO, voxel: 1.0 });
     let mut triangles = Vec::new();
-    polygonise(grid, &neighbours, &crossings, &mut triangles);
+    polygonise(&neighbours, &marks, &crossings, &mut triangles);
     Polygons { points: crossings.points, triangles }
 }
 

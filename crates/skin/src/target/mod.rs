@@ -79,6 +79,11 @@ pub trait Potential: Send + Sync {
 
     fn value(&self, point: Vec3, scratch: &PartScratch) -> f64;
 
+    /// Values at points, in place of what stands in `out`.
+    fn values(&self, points: &[Vec3], scratch: &PartScratch, out: &mut [f64]) {
+        out.iter_mut().zip(points).for_each(|(out, point)| *out = self.value(*point, scratch));
+    }
+
     /// A box around all that is inside; `None` where it is not known.
     fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox>;
 
@@ -221,6 +226,21 @@ impl Target {
             sum = Some(sum.map_or(value, |before| part.combine.of(before, value, self.iso)));
         }
         sum.unwrap_or(0.0) - self.iso
+    }
+
+    /// [`Target::excess`] at points, in place of what stands in `out`.
+    pub fn excesses(&self, points: &[Vec3], scratch: &TargetScratch, out: &mut [f64]) {
+        // one part as it is: all points at once
+        if let ([part], Some(placed)) = (&self.parts[..], scratch.parts.first())
+            && part.warps.is_empty()
+            && part.motion.is_none()
+            && scratch.there[0]
+        {
+            part.potential.values(points, placed, out);
+            out.iter_mut().for_each(|value| *value -= self.iso);
+            return;
+        }
+        out.iter_mut().zip(points).for_each(|(out, point)| *out = self.excess(*point, scratch));
     }
 
     /// The distance of a point from the surface, by the slope of the potential over `step`, to first order [m].

@@ -38,21 +38,27 @@ impl Falloff {
     }
 }
 
+enum Piece {
+    Point(Vec3),
+    /// A segment has its second corner twice.
+    Triangle([Vec3; 3]),
+}
+
 struct Skeleton {
-    /// One corner: a point; two: a segment; three: a triangle; a polyline is several segments.
-    pieces: Vec<[Vec3; 3]>,
+    /// A polyline is several segments.
+    pieces: Vec<Piece>,
     radius: f64,
     falloff: Falloff,
 }
 
 impl Skeleton {
     fn distance_sq(&self, point: Vec3) -> f64 {
-        let to_piece = |corners: &[Vec3; 3]| {
-            if corners[0] == corners[2] && corners[0] == corners[1] {
-                return (corners[0] - point).length_sq();
+        let to_piece = |piece: &Piece| match piece {
+            Piece::Point(at) => (*at - point).length_sq(),
+            Piece::Triangle(corners) => {
+                let ([a, b, c], _) = closest_point_on_triangle(point, *corners);
+                (corners[0] * a + corners[1] * b + corners[2] * c - point).length_sq()
             }
-            let ([a, b, c], _) = closest_point_on_triangle(point, *corners);
-            (corners[0] * a + corners[1] * b + corners[2] * c - point).length_sq()
         };
         self.pieces.iter().map(to_piece).fold(f64::INFINITY, f64::min)
     }
@@ -65,7 +71,10 @@ impl Potential for Skeleton {
 
     fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {
         // blends reach further than each part alone
-        let corners = self.pieces.iter().flatten().copied();
+        let corners = self.pieces.iter().flat_map(|piece| match piece {
+            Piece::Point(at) => [*at; 3],
+            Piece::Triangle(corners) => *corners,
+        });
         Some(BoundingBox::of(corners).grown(2.5 * self.radius))
     }
 }
@@ -81,6 +90,11 @@ const FALLOFF: Parameter = Parameter::choice(
 
 fn build(values: &Values, pieces: Vec<[Vec3; 3]>) -> Box<dyn Potential> {
     let falloff = Falloff::named(values.text("falloff"));
+    let pieces = pieces.into_iter().map(|corners| match corners {
+        [a, b, c] if a == b && a == c => Piece::Point(a),
+        corners => Piece::Triangle(corners),
+    });
+    let pieces = pieces.collect();
     Box::new(Skeleton { pieces, radius: values.number("radius"), falloff })
 }
 

@@ -90,24 +90,26 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "skin_tension_none",
         capabilities: &["DC-5"],
-        what: "area of the skin of masses that turn, without tension",
-        scene: "skin_tensions",
-        reading: Reading::last("rough"),
-        // as measured: that two tensions make two looks of one animation is what counts
-        reference: 0.0925,
-        tolerance: Tolerance::Relative(0.02),
-        mutation: "skins.rough.terms=[{ term = \"attraction\", strength = 1 }, { term = \"tension\", strength = 0.005 }]",
+        what: "volume at which a skin without tension rests on the same ball: that of the ball itself",
+        scene: "skin_ball",
+        settings: &["skins.ball.terms[1].strength=0"],
+        // 4/3 π 0.85³
+        reference: 2.572_440_784_514_441_7,
+        // a hundredth of a voxel of 62.5 mm
+        tolerance: Tolerance::Relative(2.5e-3),
+        mutation: "skins.ball.terms[1].strength=5e-4",
         ..SKIN
     },
     Case {
         id: "skin_tension_strong",
         capabilities: &["DC-5"],
-        what: "area of another skin of the same masses with strong tension: three fifths",
-        scene: "skin_tensions",
-        reading: Reading::last("smooth"),
-        reference: 0.0555,
-        tolerance: Tolerance::Relative(0.02),
-        mutation: "skins.smooth.terms[1].strength=0",
+        what: "volume at which ten times that tension and the same attraction are equal",
+        scene: "skin_ball",
+        settings: &["skins.ball.terms[1].strength=5e-3"],
+        // R = 0.823532 m
+        reference: 2.339_539_144_285_654_4,
+        tolerance: Tolerance::Relative(2.5e-3),
+        mutation: "skins.ball.terms[1].strength=4e-3",
         ..SKIN
     },
     Case {

@@ -1,0 +1,50 @@
+//! The surface of a grid that nothing else is known of, and its mean curvature.
+
+use souple_math::Vec3;
+
+use crate::crossings::Crossings;
+use crate::grid::{Grid, Halo, Lattice, Neighbours, wide};
+use crate::level_set::curvature_at;
+use crate::marks::Marks;
+use crate::polygons::{Polygons, normals, polygonise};
+
+/// The surface of a grid.
+pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
+    let (mut neighbours, mut marks, mut crossings) =
+        (Neighbours::default(), Vec::new(), Crossings::default());
+    neighbours.find(grid);
+    Marks::find(grid, &mut marks);
+    crossings.find(grid, &neighbours, &marks, lattice);
+    let (mut triangles, mut directions) = (Vec::new(), Vec::new());
+    polygonise(&neighbours, &marks, &crossings, &mut triangles);
+    normals(grid, &neighbours, &crossings, lattice, &mut directions);
+    (Polygons { points: crossings.points, triangles }, directions)
+}
+
+/// `κ = div n`, twice the mean curvature, averaged over the surface [1/m].
+pub fn mean_curvature(grid: Grid, lattice: &Lattice) -> f64 {
+    let mut neighbours = Neighbours::default();
+    neighbours.find(grid);
+    let mut halo = Halo::filled(0.0);
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for block in 0..grid.keys.len() {
+        if grid.block(block).iter().all(|f| f64::from(f.abs()) >= SMEARED) {
+            continue;
+        }
+        halo.read(&grid.around(&neighbours, block), f64::from);
+        let near =
+            grid.block(block).iter().map(|f| f64::from(*f)).enumerate().filter(|(_, f)| f.abs() < SMEARED);
+        for (node, f) in near {
+            let at = wide(node % 8 + 1, node / 8 % 8 + 1, node / 64 + 1);
+            let (curvature, slope) = curvature_at(&halo.0, at);
+            // a hat on both sides of the surface in place of Dirac's function
+            let share = (1.0 - f.abs() / SMEARED) * slope;
+            sum += share * curvature;
+            weight += share;
+        }
+    }
+    if weight > 0.0 { sum / weight / lattice.voxel } else { 0.0 }
+}
+
+/// Nodes nearer than this take part in means over the surface [voxels].
+const SMEARED: f64 = 1.0;

@@ -1,0 +1,66 @@
+//! A skin's part of State, for those who read it.
+
+use souple_engine::FieldState;
+
+use crate::grid::Grid;
+use crate::polygons::Measures;
+use crate::skin::{
+    AREA, CHANGED, CHECKED, COMPONENTS, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, SUBSTEPS,
+    TRIANGLES, VOLUME,
+};
+
+/// A skin's part of State, as a reader sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    pub grid: Grid<'a>,
+    head: &'a [f64],
+    head_indices: &'a [u64],
+    /// Forces on the rows it acts on [N], three numbers each.
+    pub reactions: &'a [f64],
+}
+
+impl<'a> View<'a> {
+    pub fn new(field: &'a FieldState, reactions: usize) -> Self {
+        let (head, rest) = field.values.split_at(HEAD);
+        let (head_indices, words) = field.indices.split_at(HEAD_INDICES);
+        Self { grid: Grid::of_words(words), head, head_indices, reactions: &rest[..3 * reactions] }
+    }
+
+    pub fn measures(&self) -> Measures {
+        Measures {
+            area: self.head[AREA],
+            volume: self.head[VOLUME],
+            euler: self.head_indices[EULER] as i64,
+            components: self.head_indices[COMPONENTS],
+        }
+    }
+
+    /// Greatest speed of a node beside the surface in the last sub-step [m/s].
+    pub fn speed(&self) -> f64 {
+        self.head[SPEED]
+    }
+
+    /// Times that the number of components or the Euler characteristic changed.
+    pub fn events(&self) -> u64 {
+        self.head_indices[EVENTS]
+    }
+
+    /// When that was last [s].
+    pub fn changed(&self) -> f64 {
+        self.head[CHANGED]
+    }
+
+    pub fn substeps(&self) -> f64 {
+        self.head[SUBSTEPS]
+    }
+
+    /// Surfaces so far that were checked to be closed, oriented and manifold, and were.
+    pub fn checked(&self) -> u64 {
+        self.head_indices[CHECKED]
+    }
+
+    /// Points and triangles of the surface.
+    pub fn counts(&self) -> [u64; 2] {
+        [self.head_indices[POINTS], self.head_indices[TRIANGLES]]
+    }
+}
