@@ -12,6 +12,7 @@ mod filling;
 mod formulations;
 mod frames;
 mod frequencies;
+mod hands;
 mod implicit;
 mod levels;
 mod long_beam;
@@ -64,6 +65,7 @@ pub const TABLES: &[&[Case]] = &[
     rheology::CASES,
     frames::CASES,
     levels::CASES,
+    hands::CASES,
     skins::CASES,
 ];
 
