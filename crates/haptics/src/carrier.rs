@@ -3,7 +3,9 @@
 //! The tool is a mass that the coupling draws to the device and that bodies push back. Where a person is at a device of flesh
 //! and steel, the loop of that device leads it instead ([`Carrier::lead`]), and the same tool follows.
 
-use souple_engine::{Editable, InHand, ParameterError};
+use std::sync::Arc;
+
+use souple_engine::{Editable, InHand, Motion, ParameterError};
 use souple_math::{Mat3, Vec3};
 use souple_models::contact::{Carrier, Pressed};
 use souple_models::loads::Pose;
@@ -186,6 +188,10 @@ impl Carrier for HandCarrier {
 
     fn lead(&mut self, place: Vec3) {
         self.led = Some(place);
+    }
+
+    fn planned(&self) -> Option<Arc<dyn Motion>> {
+        self.arm.as_ref().map(|arm| arm.intent.clone())
     }
 
     fn in_hand(&self, memory: &[f64]) -> InHand {

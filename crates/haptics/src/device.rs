@@ -8,18 +8,30 @@ use souple_table::{Entry, Parameter, Range, Table, Value, Values};
 
 use crate::arm::Arm;
 use crate::emulated::EmulatedHand;
+use crate::osc::OscDevice;
 
 /// A device in use.
 pub trait Device: Send {
     /// Gives the device a force [N] for the tick that begins, and tells where it is, from where it started [m]; `None` while it
     /// is lost. It does not wait.
     fn exchange(&mut self, force: Vec3) -> Option<Vec3>;
+
+    /// What it has said so far that made no sense.
+    fn refused(&self) -> u64 {
+        0
+    }
 }
 
 /// A device as a scene names it.
 #[derive(Clone, Debug)]
 pub enum DeviceChoice {
     Emulated(Arm),
+    /// Heard on a port of this machine, enlarged; lost after so many seconds of silence.
+    Osc {
+        port: u16,
+        scale: f64,
+        patience: f64,
+    },
 }
 
 impl DeviceChoice {
@@ -27,6 +39,7 @@ impl DeviceChoice {
     pub fn arm(&self) -> Option<&Arm> {
         match self {
             Self::Emulated(arm) => Some(arm),
+            Self::Osc { .. } => None,
         }
     }
 
@@ -37,6 +50,11 @@ impl DeviceChoice {
     pub fn open(&self) -> Result<Box<dyn Device>, String> {
         match self {
             Self::Emulated(arm) => Ok(Box::new(EmulatedHand::new(arm.clone()))),
+            Self::Osc { port, scale, patience } => {
+                let device = OscDevice::open(*port, *scale, *patience);
+                let device = device.map_err(|error| format!("port {port} of this machine: {error}"))?;
+                Ok(Box::new(device))
+            }
         }
     }
 }
@@ -47,7 +65,7 @@ pub type ChooseDevice = fn(&Values, Arc<dyn Motion>) -> DeviceChoice;
 pub type Devices = Table<ChooseDevice>;
 
 /// All devices.
-pub static DEVICES: Devices = Table { kind: "device", entries: &[&EMULATED] };
+pub static DEVICES: Devices = Table { kind: "device", entries: &[&EMULATED, &OSC] };
 
 static EMULATED: Entry<ChooseDevice> = Entry {
     name: "emulated",
@@ -78,5 +96,23 @@ static EMULATED: Entry<ChooseDevice> = Entry {
             lost: (values.number("lost_at"), values.number("lost_for")),
             intent,
         })
+    },
+};
+
+static OSC: Entry<ChooseDevice> = Entry {
+    name: "osc",
+    summary: "Open Sound Control over UDP on this machine: places come in, forces go out; for drivers of real devices",
+    source: "Wright 2002, Open Sound Control 1.0",
+    parameters: &[
+        Parameter::integer("port", Range::closed(1.0, 65535.0), "where it is heard").or(Value::Integer(7879)),
+        Parameter::number("scale", "", Range::POSITIVE, "motion in the world over motion of the device")
+            .or(Value::Number(1.0)),
+        Parameter::number("patience", "s", Range::POSITIVE, "silence after which the device is lost")
+            .or(Value::Number(0.1)),
+    ],
+    build: |values, _| DeviceChoice::Osc {
+        port: values.integer("port") as u16,
+        scale: values.number("scale"),
+        patience: values.number("patience"),
     },
 };

@@ -11,6 +11,7 @@ mod coupling;
 mod device;
 mod emulated;
 mod exchange;
+pub mod osc;
 mod pace;
 mod port;
 mod service;

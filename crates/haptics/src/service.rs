@@ -67,6 +67,8 @@ pub struct Served {
     /// Of each hand.
     pub ticks: Vec<Vec<Tick>>,
     pub ports: Vec<PortState>,
+    /// What devices said that made no sense.
+    pub refused: Vec<u64>,
 }
 
 /// The loop cannot be.
@@ -204,8 +206,9 @@ fn serve(stations: Vec<Station>, wires: &[Arc<Wire>], stop: &AtomicBool, room: u
     for desk in &mut desks {
         let _ = desk.station.device.exchange(Vec3::ZERO);
     }
+    let refused = desks.iter().map(|desk| desk.station.device.refused()).collect();
     let (ticks, ports) = desks.into_iter().map(|desk| (desk.ticks, desk.port)).unzip();
-    Served { toll, ticks, ports }
+    Served { toll, ticks, ports, refused }
 }
 
 #[cfg(test)]

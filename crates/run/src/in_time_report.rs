@@ -32,7 +32,7 @@ fn of_periods(periods: &Histogram) -> Value {
     })
 }
 
-fn of_hand(ticks: &[Tick], jump: f64) -> Value {
+fn of_hand(ticks: &[Tick], jump: f64, refused: u64) -> Value {
     let greatest = ticks.iter().map(|tick| tick.force.length()).fold(0.0, f64::max);
     let least_energy = ticks.iter().map(|tick| tick.energy).fold(0.0, f64::min);
     json!({
@@ -41,6 +41,7 @@ fn of_hand(ticks: &[Tick], jump: f64) -> Value {
         "greatest_jump_n": jump,
         "least_energy_j": least_energy,
         "energy_j": ticks.last().map_or(0.0, |tick| tick.energy),
+        "refused": refused,
     })
 }
 
@@ -52,8 +53,10 @@ impl InTime {
         loads.sort_by(f64::total_cmp);
         let mean = loads.iter().sum::<f64>() / loads.len().max(1) as f64;
         let period = session.world.model().period;
-        let hands = session.hands.iter().zip(&self.served.ticks).zip(&self.served.ports);
-        let hands = hands.map(|((hand, ticks), port)| (hand.name.clone(), of_hand(ticks, port.jump)));
+        let served = &self.served;
+        let felt = served.ticks.iter().zip(&served.ports).zip(&served.refused);
+        let felt = felt.map(|((ticks, port), refused)| of_hand(ticks, port.jump, *refused));
+        let hands = session.hands.iter().map(|hand| hand.name.clone()).zip(felt);
         let status = match &session.failure {
             Some(_) => "failed",
             None if self.was_stopped => "interrupted",

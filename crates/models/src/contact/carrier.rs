@@ -1,8 +1,9 @@
 //! What carries a shape about and feels what the shape presses on: a hand with a tool.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
-use souple_engine::{Editable, InHand, ParameterError};
+use souple_engine::{Editable, InHand, Motion, ParameterError};
 use souple_math::Vec3;
 
 use crate::loads::Pose;
@@ -30,6 +31,9 @@ pub trait Carrier: Send + Sync + Debug {
 
     /// Where the device is to be at the end of the period, from where it started [m].
     fn lead(&mut self, place: Vec3);
+
+    /// Where a person means it to be, for pictures that know no more than the time.
+    fn planned(&self) -> Option<Arc<dyn Motion>>;
 
     fn in_hand(&self, memory: &[f64]) -> InHand;
 

@@ -473,8 +473,9 @@ impl Force for ShapeContact {
     fn obstacle(&self) -> Option<Obstacle> {
         let motion = match &self.leading {
             Leading::Motion(motion) => motion.clone(),
-            // where it starts: a picture of a moment moves it by what is in the hand then
-            Leading::Carrier(_) => RigidMotion::default(),
+            Leading::Carrier(carrier) => {
+                RigidMotion { translation: carrier.planned(), ..RigidMotion::default() }
+            }
         };
         let form = match (self.shape.as_plane(), self.shape.outline()) {
             (Some((point, normal)), _) => Form::Plane { point, normal },

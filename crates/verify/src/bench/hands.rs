@@ -17,9 +17,11 @@ struct Kept {
 }
 
 fn keep(name: &str, duration: f64) -> Result<Kept, String> {
-    let mut session = Session::start(scene(name, &[])?, &Options::default()).map_err(|error| error.to_string())?;
+    let mut session =
+        Session::start(scene(name, &[])?, &Options::default()).map_err(|error| error.to_string())?;
     let bytes = session.world.bytes();
-    let run = run_in_time(&mut session, duration, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
+    let run =
+        run_in_time(&mut session, duration, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
     match &session.failure {
         Some(failure) => Err(failure.message()),
         None => Ok(Kept { run, bytes }),
