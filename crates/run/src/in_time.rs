@@ -89,9 +89,14 @@ pub fn run_in_time(
     session.measure(&mut |probe, time, value| traces[probe].push(time, value));
     let mut budgets = budgets(session);
     let mut held = vec![true; session.hands.len()];
-    let (mut start, mut begun) = (Instant::now(), Instant::now());
+    let began = Instant::now();
+    let (mut start, mut begun) = (began, began);
     let mut was_stopped = false;
     for step in 1..=steps {
+        // a world that is slower than the clock makes fewer periods, and no longer run
+        if began.elapsed().as_secs_f64() >= duration {
+            break;
+        }
         let clock = Instant::now();
         toll.begun.push((clock - begun).as_secs_f64());
         begun = clock;

@@ -35,11 +35,12 @@ fn what_was_led_replays() {
     let quick = ["hands.right.motion.formula=[0, 0, \"-0.025 * smoothstep(0, 0.1, t)\"]"];
     let mut session = Session::start(scene(&quick), &Options::default()).expect("a session");
     let in_time = run_in_time(&mut session, 0.3, &mut |_| Control::Continue).expect("a run in time");
-    assert_eq!(in_time.world.periods, 30);
+    let periods = in_time.world.periods;
+    assert!((1..=30).contains(&periods));
     assert!(in_time.served.toll.periods.count() > 0);
     let commands = session.world.log().to_vec();
     assert!(!commands.is_empty());
-    let options = Options { steps: Some(30), commands, ..Options::default() };
+    let options = Options { steps: Some(periods), commands, ..Options::default() };
     let outcome = run(scene(&quick), &options, &mut |_| Control::Continue).expect("a replay");
     assert_eq!(outcome.world.state(), session.world.state());
 }
