@@ -34,6 +34,8 @@ pub enum Edit {
     Touch { system: usize, hand: u32, tool: Tool },
     /// Leads a hand, or the tool in it, to a place [m].
     MoveHand { system: usize, hand: u32, place: Vec3 },
+    /// Leads the device of a hand of the scene to where it is at the end of the period, from where it started [m].
+    Lead { system: usize, force: String, place: Vec3 },
     /// Lets go.
     Release { system: usize, hand: u32 },
 }
@@ -82,6 +84,7 @@ impl Edit {
             | Self::Grab { system, .. }
             | Self::Touch { system, .. }
             | Self::MoveHand { system, .. }
+            | Self::Lead { system, .. }
             | Self::Release { system, .. } => *system,
         }
     }
@@ -108,11 +111,7 @@ impl Edit {
         };
         match self {
             Self::SetParameter { force: name, parameter, value, .. } => {
-                let known = || system.forces.iter().map(|force| force.name().to_owned()).collect();
-                let error =
-                    EditError::NoForce { system: system.name.clone(), force: name.clone(), known: known() };
-                let force = system.forces.iter_mut().find(|force| force.name() == name).ok_or(error)?;
-                force.set_parameter(parameter, *value)?;
+                force_named(system, name)?.set_parameter(parameter, *value)?;
             }
             Self::Pin { block, .. } => {
                 check_block(*block)?;
@@ -171,6 +170,10 @@ impl Edit {
                 let force = find_hand(system, *hand)?;
                 system.forces[force].lead(*place);
             }
+            Self::Lead { force, place, .. } => {
+                check_place("place", *place)?;
+                force_named(system, force)?.lead(*place);
+            }
             Self::Release { hand, .. } => {
                 let force = find_hand(system, *hand)?;
                 release(system, state, force);
@@ -178,6 +181,12 @@ impl Edit {
         }
         Ok(())
     }
+}
+
+fn force_named<'s>(system: &'s mut System, name: &str) -> Result<&'s mut Box<dyn Force>, EditError> {
+    let known = || system.forces.iter().map(|force| force.name().to_owned()).collect();
+    let error = EditError::NoForce { system: system.name.clone(), force: name.to_owned(), known: known() };
+    system.forces.iter_mut().find(|force| force.name() == name).ok_or(error)
 }
 
 /// Adds the force of a hand or tool. Hands come after all other forces: those keep their numbers, which pairs hold.

@@ -10,6 +10,7 @@ use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
+use crate::hand::InHand;
 use crate::levels::Levels;
 use crate::state::{FieldState, Pair};
 
@@ -287,6 +288,11 @@ pub trait Force: Send + Sync {
 
     /// Leads what a hand holds to a place [m]; forces that no hand holds stay where they are.
     fn lead(&mut self, _place: Vec3) {}
+
+    /// What a person does and feels with the tool that this force is of; `None` where it is of none.
+    fn in_hand(&self, _at: &Configuration) -> Option<InHand> {
+        None
+    }
 
     /// What this force keeps bodies away from, where that is something rigid, for pictures.
     fn obstacle(&self) -> Option<Obstacle> {

@@ -89,6 +89,23 @@ pub(crate) fn check_place(field: &'static str, place: Vec3) -> Result<(), GripEr
     }
 }
 
+/// A hand of a scene as it stands: where its device and its tool are, and what it feels (see [`Force::in_hand`]).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InHand {
+    /// Of the device from where it started [m].
+    pub device: Vec3,
+    /// Of the tool from where it started [m].
+    pub tool: Vec3,
+    /// [m/s]
+    pub tool_velocity: Vec3,
+    /// Of the device on the person [N].
+    pub force: Vec3,
+    /// What the person has put into the device, less what came back [J].
+    pub energy: f64,
+    /// The greatest change of the force from one tick of the device to the next, so far [N].
+    pub jump: f64,
+}
+
 /// The name of the force of a hand.
 pub fn hand_name(hand: u32) -> String {
     format!("hand[{hand}]")

@@ -32,7 +32,7 @@ pub use force::{
     Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown,
     LinkState, ParameterError, Scratch, TangentWeights,
 };
-pub use hand::{Grip, Hand, Held};
+pub use hand::{Grip, Hand, Held, InHand};
 pub use hash::Fingerprint;
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
 pub use levels::{Census, Levels};

@@ -40,6 +40,9 @@ pub fn command_to_json(command: &Command) -> Value {
         Edit::MoveHand { system, hand, place } => {
             json!({"kind": "move_hand", "system": system, "hand": hand, "place": place.to_array()})
         }
+        Edit::Lead { system, force, place } => {
+            json!({"kind": "lead", "system": system, "force": force, "place": place.to_array()})
+        }
         Edit::Release { system, hand } => json!({"kind": "release", "system": system, "hand": hand}),
     };
     json!({"period": command.period, "edit": edit})
@@ -98,6 +101,7 @@ pub fn command_from_json(value: &Value) -> Result<Command, String> {
             Edit::Touch { system, hand: index("hand")?, tool }
         }
         Some("move_hand") => Edit::MoveHand { system, hand: index("hand")?, place: vector("place")? },
+        Some("lead") => Edit::Lead { system, force: text("force")?, place: vector("place")? },
         Some("release") => Edit::Release { system, hand: index("hand")? },
         other => return Err(format!("there is no command of kind {other:?}")),
     };
@@ -162,6 +166,7 @@ mod tests {
             },
             Edit::Push { system: 0, blocks: 2..7, velocity: Vec3::new(0.1, -2.0, 3e-7) },
             Edit::MoveHand { system: 0, hand: 3, place: Vec3::new(0.1, -2.0, 3e-7) },
+            Edit::Lead { system: 0, force: "hands.right".into(), place: Vec3::new(0.1, -2.0, 3e-7) },
             Edit::Release { system: 0, hand: 3 },
         ];
         for edit in edits {

@@ -7,7 +7,7 @@ use std::time::Instant;
 use souple_engine::{Edit, EditError, ResumeError, StepReport, World};
 use souple_io::IoError;
 use souple_scene::{
-    Adjustable, BodyInfo, Diagnostics, Measurement, ProbeInfo, Scene, SkinInfo, inputs::Inputs,
+    Adjustable, BodyInfo, Diagnostics, HandInfo, Measurement, ProbeInfo, Scene, SkinInfo, inputs::Inputs,
 };
 
 use crate::failure::Failure;
@@ -28,6 +28,7 @@ pub struct Session {
     pub world: World,
     pub bodies: Vec<BodyInfo>,
     pub skins: Vec<SkinInfo>,
+    pub hands: Vec<HandInfo>,
     pub probes: Vec<ProbeInfo>,
     /// Values of the scene that may be set, see [`Session::change`].
     pub adjustables: Vec<Adjustable>,
@@ -67,7 +68,7 @@ impl Session {
     /// # Errors
     /// The snapshot or the commands to go on from do not fit the scene.
     pub fn start(scene: Scene, options: &Options) -> Result<Self, RunError> {
-        let Scene { title, model, state, bodies, skins, probes, adjustables, .. } = scene;
+        let Scene { title, model, state, bodies, skins, hands, probes, adjustables, .. } = scene;
         let Scene { scene_sha256, inputs, warnings, run, .. } = scene;
         let mut world = model.start(state);
         if let Some(snapshot) = &options.resume {
@@ -92,6 +93,7 @@ impl Session {
             world,
             bodies,
             skins,
+            hands,
             probes,
             adjustables,
             warnings,
@@ -203,6 +205,7 @@ impl Session {
         let period = world.state().period;
         self.recording.changes.push(Change { period, setting: setting.to_owned() });
         (self.world, self.bodies, self.skins) = (world, scene.bodies, scene.skins);
+        self.hands = scene.hands;
         self.probes = scene.probes;
         self.adjustables = scene.adjustables;
         self.scene_sha256 = scene.scene_sha256;

@@ -25,7 +25,7 @@ pub use adjust::Adjustable;
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{Measurement, ProbeInfo};
 pub use scene::{
-    BodyInfo, FramesInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec, read_text,
+    BodyInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec, read_text,
 };
 pub use schema::schema;
 pub use spec::Spec;

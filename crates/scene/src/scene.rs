@@ -6,7 +6,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use souple_engine::{Census, Model, State, World};
+use souple_engine::{Census, InHand, Model, State, World};
+use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::Carried;
@@ -38,6 +39,7 @@ pub struct Scene {
     pub state: State,
     pub bodies: Vec<BodyInfo>,
     pub skins: Vec<SkinInfo>,
+    pub hands: Vec<HandInfo>,
     pub probes: Vec<ProbeInfo>,
     pub expects: Vec<Expect>,
     /// Values that may be set while it runs.
@@ -147,6 +149,27 @@ impl SkinInfo {
     pub fn distance(&self, world: &World) -> Option<f64> {
         let rows = world.committed_rows();
         self.skin.distance(&Moment { time: world.time(), rows: &rows }, &world.state().fields[self.field])
+    }
+}
+
+/// A hand with a tool, and what a loop at its device needs to know.
+#[derive(Clone, Debug)]
+pub struct HandInfo {
+    pub name: String,
+    /// Index of its system.
+    pub system: usize,
+    /// Name of its tool's force.
+    pub force: String,
+    pub device: DeviceChoice,
+    pub port: Port,
+    pub between: Between,
+}
+
+impl HandInfo {
+    /// As committed.
+    pub fn of(&self, world: &World) -> InHand {
+        let force = world.force_named(self.system, &self.force);
+        force.and_then(|(force, at)| force.in_hand(&at)).unwrap_or_default()
     }
 }
 

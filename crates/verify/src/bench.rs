@@ -7,6 +7,7 @@ mod contact;
 mod filling;
 mod formulations;
 mod frames;
+mod hands;
 mod laws;
 mod levels;
 mod links;
@@ -157,6 +158,11 @@ pub const BENCHES: &[Bench] = &[
         name: "adaptive_saving",
         what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
         run: levels::adaptive_saving,
+    },
+    Bench {
+        name: "haptic_period_99_9",
+        what: "periods of the devices' loop beside the liver in an emulated hand, against the clock [ms]; loads of the worlds",
+        run: hands::period,
     },
     Bench {
         name: "skin_step_128",

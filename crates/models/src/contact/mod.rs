@@ -3,6 +3,7 @@
 //! [`law`] says what force two things exert that touch; [`shape`] says where shapes are; [`ShapeContact`] and
 //! [`SurfaceContact`] find what touches and hand the forces to rows.
 
+mod carrier;
 pub mod law;
 #[cfg(test)]
 mod pair_tests;
@@ -13,6 +14,7 @@ mod surface_contact;
 mod tests;
 mod toolbox;
 
+pub use carrier::{Carrier, Pressed};
 pub use law::{ContactForce, ContactLaw, penalty_stiffness};
 pub use shape::{Nearest, Outline, SHAPES, Shape, ShapeError};
 pub use shape_contact::{ContactPoint, ShapeContact, Touch};

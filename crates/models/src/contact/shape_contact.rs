@@ -13,7 +13,7 @@ use std::sync::Arc;
 use souple_engine::obstacle::Form;
 use souple_engine::tangent::add_block;
 use souple_engine::{
-    Configuration, Declaration, Editable, Energy, Force, Obstacle, Pair, ParameterError, Scratch,
+    Configuration, Declaration, Editable, Energy, Force, InHand, Obstacle, Pair, ParameterError, Scratch,
     TangentWeights,
 };
 use souple_math::{Dual, Mat3, Vec3};
@@ -21,6 +21,7 @@ use souple_solve::BlockMatrix;
 
 use crate::loads::{LoadError, finite, not_negative};
 
+use super::carrier::{Carrier, Pressed};
 use super::law::Approach;
 use super::{ContactForce, ContactLaw, Nearest, Outline, Shape};
 use crate::loads::{Pose, RigidMotion};
@@ -43,8 +44,17 @@ pub struct ShapeContact {
     shape: Box<dyn Shape>,
     /// What other contacts with the same shape call it too.
     shape_name: String,
-    motion: RigidMotion,
+    leading: Leading,
     law: ContactLaw,
+}
+
+/// Who moves the shape.
+#[derive(Debug)]
+enum Leading {
+    /// A motion that is known beforehand.
+    Motion(RigidMotion),
+    /// Something that gives way.
+    Carrier(Box<dyn Carrier>),
 }
 
 /// One point that touches.
@@ -80,6 +90,30 @@ impl ShapeContact {
         motion: RigidMotion,
         law: ContactLaw,
     ) -> Result<Self, LoadError> {
+        Self::led(name.into(), points, shape, Leading::Motion(motion), law)
+    }
+
+    /// The same with a shape that is carried about.
+    ///
+    /// # Errors
+    /// As of [`ShapeContact::new`].
+    pub fn carried(
+        name: impl Into<String>,
+        points: Vec<ContactPoint>,
+        shape: Box<dyn Shape>,
+        carrier: Box<dyn Carrier>,
+        law: ContactLaw,
+    ) -> Result<Self, LoadError> {
+        Self::led(name.into(), points, shape, Leading::Carrier(carrier), law)
+    }
+
+    fn led(
+        name: String,
+        points: Vec<ContactPoint>,
+        shape: Box<dyn Shape>,
+        leading: Leading,
+        law: ContactLaw,
+    ) -> Result<Self, LoadError> {
         if points.is_empty() {
             return Err(LoadError::Empty { field: "points", expected: "point of a body's surface" });
         }
@@ -90,8 +124,27 @@ impl ShapeContact {
             }
         }
         law.check()?;
-        let name = name.into();
-        Ok(Self { shape_name: name.clone(), name, points, shape, motion, law })
+        Ok(Self { shape_name: name.clone(), name, points, shape, leading, law })
+    }
+
+    /// Where the shape is.
+    fn pose(&self, at: &Configuration) -> Pose {
+        match &self.leading {
+            Leading::Motion(motion) => motion.pose(at.time),
+            Leading::Carrier(carrier) => carrier.pose(&at.memory[self.burdens().end..]),
+        }
+    }
+
+    /// What the points do to the shape, were it there.
+    fn pressed(&self, pose: &Pose, at: &Configuration) -> Pressed {
+        let mut pressed = Pressed::default();
+        for (point, local) in self.touching(pose, at) {
+            if let Some(force) = self.law.force(point.share, &local.approach, |number| number) {
+                pressed.force -= pose.direction_to_world(force.total());
+                pressed.stiffness += self.law.stiffest() * point.share;
+            }
+        }
+        pressed
     }
 
     /// With the name of the shape, by which one that several bodies touch is known as one.
@@ -110,7 +163,7 @@ impl ShapeContact {
 
     /// Points that touch, with the forces on them.
     pub fn touches(&self, at: &Configuration) -> Vec<Touch> {
-        let pose = self.motion.pose(at.time);
+        let pose = self.pose(at);
         let touch = |(index, point): (usize, &ContactPoint)| {
             let local = self.local(index, &pose, at)?;
             let force = self.law.force(point.share, &local.approach, |number| number)?;
@@ -244,26 +297,37 @@ impl Force for ShapeContact {
     }
 
     fn memory_len(&self) -> usize {
-        self.burdens().end
+        let carrier = match &self.leading {
+            Leading::Motion(_) => 0,
+            Leading::Carrier(carrier) => carrier.memory_len(),
+        };
+        self.burdens().end + carrier
     }
 
     fn initial_memory(&self, memory: &mut [f64]) {
         memory.fill(0.0);
-        let pose = self.motion.pose(0.0);
+        let pose = match &self.leading {
+            Leading::Motion(motion) => motion.pose(0.0),
+            Leading::Carrier(carrier) => {
+                let own = &mut memory[self.burdens().end..];
+                carrier.initial_memory(own);
+                carrier.pose(own)
+            }
+        };
         for (index, point) in self.points.iter().enumerate() {
             remember(memory, index, pose.to_shape(point.start), Vec3::ZERO);
         }
     }
 
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let pose = self.motion.pose(at.time);
+        let pose = self.pose(at);
         let stored =
             self.touching(&pose, at).map(|(point, local)| self.law.stored(point.share, &local.approach));
         Energy { stored: stored.sum(), dissipated: at.memory[0] }
     }
 
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        let pose = self.motion.pose(at.time);
+        let pose = self.pose(at);
         for (point, local) in self.touching(&pose, at) {
             if let Some(force) = self.law.force(point.share, &local.approach, |number| number) {
                 out[point.row as usize] += pose.direction_to_world(force.total());
@@ -283,7 +347,7 @@ impl Force for ShapeContact {
         _scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        let pose = self.motion.pose(at.time);
+        let pose = self.pose(at);
         for (point, local) in self.touching(&pose, at) {
             let delta = delta[point.row as usize];
             let (position, velocity) = (delta * weights.position, delta * weights.velocity);
@@ -302,7 +366,7 @@ impl Force for ShapeContact {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        let pose = self.motion.pose(at.time);
+        let pose = self.pose(at);
         for (point, local) in self.touching(&pose, at) {
             let column =
                 |e: Vec3| self.change(point.share, &local, &pose, e * weights.position, e * weights.velocity);
@@ -318,7 +382,7 @@ impl Force for ShapeContact {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        let pose = self.motion.pose(at.time);
+        let pose = self.pose(at);
         for (point, local) in self.touching(&pose, at) {
             if let Some(stiffness) = self.law.lagged_stiffness(point.share, &local.approach) {
                 let block = pose.tensor_to_world(&stiffness.weighted(weights));
@@ -328,7 +392,7 @@ impl Force for ShapeContact {
     }
 
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
-        let pose = self.motion.pose(at.time);
+        let pose = self.pose(at);
         for (index, point) in self.points.iter().enumerate() {
             let (_, before) = remembered(at.memory, index);
             let position = pose.to_shape(at.positions[point.row as usize]);
@@ -347,6 +411,10 @@ impl Force for ShapeContact {
         if !self.shape.bearers().is_empty() {
             self.burden(&pose, at, &mut memory[self.burdens()]);
         }
+        if let Leading::Carrier(carrier) = &self.leading {
+            let own = &mut memory[self.burdens().end..];
+            carrier.advance(&|pose| self.pressed(pose, at), timestep, own);
+        }
     }
 
     // k n nᵀ + k_t (I - n nᵀ)
@@ -356,11 +424,20 @@ impl Force for ShapeContact {
     }
 
     fn editable(&self) -> Vec<Editable> {
-        self.law.editable()
+        let mut all = self.law.editable();
+        if let Leading::Carrier(carrier) = &self.leading {
+            all.extend(carrier.editable());
+        }
+        all
     }
 
     fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
-        self.law.set_parameter(&self.name, name, value)
+        match &mut self.leading {
+            Leading::Carrier(carrier) if carrier.editable().iter().any(|own| own.name == name) => {
+                carrier.set_parameter(&self.name, name, value)
+            }
+            _ => self.law.set_parameter(&self.name, name, value),
+        }
     }
 
     fn bytes(&self) -> usize {
@@ -380,10 +457,26 @@ impl Force for ShapeContact {
     }
 
     fn lead(&mut self, place: Vec3) {
-        self.motion = RigidMotion::at(place);
+        match &mut self.leading {
+            Leading::Motion(motion) => *motion = RigidMotion::at(place),
+            Leading::Carrier(carrier) => carrier.lead(place),
+        }
+    }
+
+    fn in_hand(&self, at: &Configuration) -> Option<InHand> {
+        match &self.leading {
+            Leading::Motion(_) => None,
+            Leading::Carrier(carrier) => Some(carrier.in_hand(&at.memory[self.burdens().end..])),
+        }
     }
 
     fn obstacle(&self) -> Option<Obstacle> {
+        let motion = match &self.leading {
+            Leading::Motion(motion) => motion.clone(),
+            Leading::Carrier(carrier) => {
+                RigidMotion { translation: carrier.planned(), ..RigidMotion::default() }
+            }
+        };
         let form = match (self.shape.as_plane(), self.shape.outline()) {
             (Some((point, normal)), _) => Form::Plane { point, normal },
             (None, Some(Outline { surface, bodies })) => {
@@ -391,7 +484,7 @@ impl Force for ShapeContact {
             }
             (None, None) => return None,
         };
-        Some(Obstacle { name: self.shape_name.clone(), form, motion: Arc::new(self.motion.clone()) })
+        Some(Obstacle { name: self.shape_name.clone(), form, motion: Arc::new(motion) })
     }
 
     fn as_any(&self) -> &dyn Any {

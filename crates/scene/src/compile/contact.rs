@@ -5,8 +5,9 @@ use std::path::Path;
 use souple_engine::Force;
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
+use souple_models::contact::shape::BuildShape;
 use souple_models::contact::{
-    ContactLaw, ContactPoint, ContactSurface, ShapeContact, SurfaceContact, penalty_stiffness,
+    ContactLaw, ContactPoint, ContactSurface, Shape, ShapeContact, SurfaceContact, penalty_stiffness,
 };
 use souple_models::loads::RigidMotion;
 
@@ -16,14 +17,15 @@ use super::freedom::{Joint, touching_joints};
 use super::motion::motion;
 use super::skin_shape::SkinShape;
 use crate::diagnostic::Code;
+use crate::reader::Chosen;
 use crate::scene::SkinInfo;
 use crate::spec::contact::{Against, Contact, ShapeSpec};
 
 /// A body's points that touch, with the areas around them.
-struct Touching {
-    points: Vec<ContactPoint>,
+pub(super) struct Touching {
+    pub points: Vec<ContactPoint>,
     /// [m²]
-    mean_area: f64,
+    pub mean_area: f64,
 }
 
 impl Touching {
@@ -73,7 +75,7 @@ pub fn add(draft: &mut Draft) {
 
 /// Surface points in the region of a contact, or masses of a network, which count alike; `None` where there are none, which is
 /// reported.
-fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching> {
+pub(super) fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching> {
     let inside: Option<Vec<u32>> = contact.region.as_ref().map(|region| draft.selector(body).points(region));
     if inside.as_ref().is_some_and(Vec::is_empty) {
         return None;
@@ -106,7 +108,12 @@ fn touching(draft: &Draft, body: &Placed, contact: &Contact) -> Option<Touching>
 }
 
 /// Young's modulus behind the points of a contact [Pa]; `None` where a stiffness must be told, and is not.
-fn modulus_of(draft: &Draft, contact: &Contact, body: &Placed, touching: &Touching) -> Option<f64> {
+pub(super) fn modulus_of(
+    draft: &Draft,
+    contact: &Contact,
+    body: &Placed,
+    touching: &Touching,
+) -> Option<f64> {
     if body.spec.network.is_none() {
         return Some(modulus_behind(body, touching.shares()));
     }
@@ -145,7 +152,7 @@ fn modulus_between(a: f64, b: f64) -> f64 {
 }
 
 /// `modulus`: of what gives way [Pa].
-fn law(contact: &Contact, modulus: f64, mean_area: f64) -> ContactLaw {
+pub(super) fn law(contact: &Contact, modulus: f64, mean_area: f64) -> ContactLaw {
     // the material behind a point resists over about the width of an element
     let stiffness =
         contact.stiffness.unwrap_or_else(|| penalty_stiffness(modulus, mean_area, mean_area.sqrt()));
@@ -158,14 +165,8 @@ fn law(contact: &Contact, modulus: f64, mean_area: f64) -> ContactLaw {
     }
 }
 
-fn against_shape(
-    draft: &Draft,
-    contact: &Contact,
-    shape: &ShapeSpec,
-    touching: Touching,
-    body: &Placed,
-) -> Option<(ShapeContact, Vec<Joint>)> {
-    let chosen = shape.shape.as_ref()?;
+/// A shape as it is written; `None` where it was refused.
+pub(super) fn built(draft: &Draft, chosen: &Chosen<BuildShape>) -> Option<Box<dyn Shape>> {
     let source = chosen.site.place.source;
     let open = |file: &str| {
         let path = draft.sources.get(source).folder.join(file);
@@ -174,14 +175,23 @@ fn against_shape(
             .open(source, file)
             .map_err(|error| format!("`{}` cannot be read: {error}", path.display()))
     };
-    let built = (chosen.entry.build)(&chosen.values, &|file| read_surface(&open(file)?));
-    let built = match built {
-        Ok(built) => built,
+    match (chosen.entry.build)(&chosen.values, &|file| read_surface(&open(file)?)) {
+        Ok(built) => Some(built),
         Err(error) => {
             draft.log.add(Code::Mesh, &chosen.site, error.to_string(), "a shape that can be");
-            return None;
+            None
         }
-    };
+    }
+}
+
+fn against_shape(
+    draft: &Draft,
+    contact: &Contact,
+    shape: &ShapeSpec,
+    touching: Touching,
+    body: &Placed,
+) -> Option<(ShapeContact, Vec<Joint>)> {
+    let built = built(draft, shape.shape.as_ref()?)?;
     let led = |spec| motion(draft.log, spec, &shape.site);
     let motion = RigidMotion {
         translation: led(shape.motion.as_ref())?,

@@ -7,6 +7,7 @@ mod depth;
 mod doubts;
 mod frames;
 mod freedom;
+mod hands;
 mod inertial;
 mod levels;
 mod links;
@@ -34,7 +35,7 @@ use souple_models::contact::ShapeToolbox;
 use crate::diagnostic::{Code, Log, Site};
 use crate::inputs::Inputs;
 use crate::measure::ProbeInfo;
-use crate::scene::{BodyInfo, Scene, SkinInfo};
+use crate::scene::{BodyInfo, HandInfo, Scene, SkinInfo};
 use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
@@ -56,6 +57,7 @@ pub(crate) struct Draft<'a> {
     /// What hinders rigid motions besides pins.
     pub joints: Vec<Joint>,
     pub skins: Vec<SkinInfo>,
+    pub hands: Vec<HandInfo>,
 }
 
 impl Draft<'_> {
@@ -102,6 +104,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         warnings: Vec::new(),
         joints: Vec::new(),
         skins: Vec::new(),
+        hands: Vec::new(),
     };
     bodies::place(&mut draft)?;
     memory::check_placed(spec, &draft.bodies, log);
@@ -117,6 +120,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     pins::add(&mut draft);
     skins::add(&mut draft);
     contact::add(&mut draft);
+    hands::add(&mut draft);
     links::attach(&mut draft);
     links::couple(&mut draft);
     check_force_names(&draft);
@@ -142,7 +146,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     depth::warn(&mut draft);
-    let Draft { bodies, systems, mut model, state, warnings, skins, .. } = draft;
+    let Draft { bodies, systems, mut model, state, warnings, skins, hands, .. } = draft;
     model.systems = systems;
     let bodies = bodies.into_iter().map(|body| {
         let radii = network::radii(&body, spec);
@@ -154,6 +158,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         shows: spec.shows.clone(),
         bodies: bodies.collect(),
         skins,
+        hands,
         model,
         state,
         probes,

@@ -5,6 +5,7 @@
 mod body;
 mod cells;
 mod contact;
+mod hand;
 mod levels;
 mod points;
 mod reaction;
@@ -15,11 +16,11 @@ use souple_math::Vec3;
 
 use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
-use crate::scene::SkinInfo;
+use crate::scene::{HandInfo, SkinInfo};
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
-    BodyQuantity, CellQuantity, LevelsQuantity, Momentum, PointQuantity, Rank, Reduction, SkinQuantity,
-    Subject, WorldQuantity,
+    BodyQuantity, CellQuantity, HandQuantity, LevelsQuantity, Momentum, PointQuantity, Rank, Reduction,
+    SkinQuantity, Subject, WorldQuantity,
 };
 
 /// A probe that knows where to read.
@@ -48,6 +49,7 @@ enum Target {
     Cells(CellQuantity, CellPart),
     Skin(SkinQuantity, SkinInfo),
     Levels(LevelsQuantity, LevelsPart),
+    Hand(HandQuantity, HandInfo),
 }
 
 /// Points of a body.
@@ -130,6 +132,10 @@ impl ProbeInfo {
                 }
                 Target::Skin(quantity, info.clone())
             }
+            (Subject::Hand(quantity), _) => {
+                let name = probe.hand.as_deref()?;
+                Target::Hand(quantity, draft.hands.iter().find(|hand| hand.name == name)?.clone())
+            }
             (Subject::BodyOrWorld(momentum), None) => {
                 Target::WorldMomentum(momentum, probe.about.unwrap_or(Vec3::ZERO))
             }
@@ -163,6 +169,10 @@ impl ProbeInfo {
             Target::World(quantity) => Measurement::Number(of_world(*quantity, world)),
             Target::Skin(quantity, skin) => Measurement::Number(skin::measure(*quantity, skin, world)),
             Target::Levels(quantity, part) => Measurement::Number(levels::measure(*quantity, part, world)),
+            Target::Hand(quantity, hand) => match hand::measure(*quantity, hand, world) {
+                Measurement::Vector(vector) => self.vector(vector),
+                number => number,
+            },
             Target::WorldMomentum(momentum, about) => {
                 let (linear, angular) = world.momentum();
                 self.vector(match momentum {

@@ -6,6 +6,7 @@ pub mod boundary;
 pub mod contact;
 pub mod expect;
 pub mod frames;
+pub mod hand;
 pub mod interaction;
 pub mod levels;
 pub mod mesh;
@@ -33,6 +34,7 @@ use crate::values::{Reading, quoted};
 use body::{BODY, Body};
 use contact::{Against, CONTACT, Contact, SHAPE, ShapeSpec};
 use expect::{EXPECT, Expect};
+use hand::{HAND, HandSpec};
 use interaction::{ATTACHMENT, COUPLING, Link};
 use network::{NETWORK, Network};
 use picture::{PICTURE, PictureSpec, PictureView};
@@ -63,6 +65,7 @@ pub(crate) static SCENE: Keys = Keys::new(
         Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
         Key::new("couplings", Shape::Tables(&COUPLING), "what joins systems"),
         Key::new("skins", Shape::Named(&SKIN), "surfaces with behaviour of their own"),
+        Key::new("hands", Shape::Named(&HAND), "people at devices that press on bodies and feel them"),
         Key::new("probes", Shape::Named(&PROBE), "what is measured"),
         Key::new("expect", Shape::Tables(&EXPECT), "what the probes must read"),
         Key::new("run", Shape::Table(&RUN), "what a run does unless told otherwise"),
@@ -85,6 +88,7 @@ pub struct Spec {
     pub couplings: Vec<Link>,
     /// Those of bodies among them, by the name of the body.
     pub skins: Vec<SkinSpec>,
+    pub hands: Vec<HandSpec>,
     pub probes: Vec<Probe>,
     pub expects: Vec<Expect>,
     pub run: RunSpec,
@@ -135,6 +139,11 @@ impl Spec {
                 .map_or_else(PictureSpec::default, |picture| PictureSpec::read(&picture)),
             run: reader.table("run").map_or(empty.run, |run| RunSpec::read(&run)),
             skins: skins(&reader),
+            hands: reader
+                .named("hands")
+                .into_iter()
+                .map(|(name, hand)| HandSpec::read(name, &hand))
+                .collect(),
             systems,
             probes,
             expects,
@@ -167,6 +176,7 @@ impl Spec {
             attachments: Vec::new(),
             couplings: Vec::new(),
             skins: Vec::new(),
+            hands: Vec::new(),
             probes: Vec::new(),
             expects: Vec::new(),
             run: RunSpec::default(),
@@ -224,6 +234,15 @@ impl Spec {
         for probe in &self.probes {
             if let Some(contact) = &probe.contact {
                 check("contact", contact, &contacts, &probe.site);
+            }
+        }
+        let hands: Vec<&str> = self.hands.iter().map(|hand| hand.name.as_str()).collect();
+        for hand in &self.hands {
+            check("body", &hand.touch.body, &bodies, &hand.site);
+        }
+        for probe in &self.probes {
+            if let Some(hand) = &probe.hand {
+                check("hand", hand, &hands, &probe.site);
             }
         }
         for link in self.attachments.iter().chain(&self.couplings) {

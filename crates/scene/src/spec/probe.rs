@@ -27,6 +27,7 @@ pub(crate) static PROBE: Keys = Keys::new(
         ),
         Key::new("skin", Shape::Text, "whose, for quantities of skins; a body's skin has the body's name"),
         Key::new("contact", Shape::Text, "only what this contact does (for quantities of contacts)"),
+        Key::new("hand", Shape::Text, "whose, for quantities of hands and their tools"),
         Key::integer(
             "level",
             Range::NOT_NEGATIVE,
@@ -47,6 +48,7 @@ pub struct Probe {
     pub reduction: Reduction,
     pub contact: Option<String>,
     pub skin: Option<String>,
+    pub hand: Option<String>,
     /// Only this level of a body.
     pub level: Option<usize>,
     /// The place that moments are taken about [m]; the centre of mass where `None`.
@@ -105,6 +107,7 @@ impl Probe {
             reduction,
             contact: reader.maybe_text("contact"),
             skin: reader.maybe_text("skin"),
+            hand: reader.maybe_text("hand"),
             level: reader.maybe_integer("level").map(|level| level as usize),
             about: reader.maybe_vector("about"),
             site: reader.site(),
@@ -136,6 +139,15 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
                     format!("`{name}` is of a skin, and none is named"),
                     "skin = \"…\"",
                 );
+            }
+        }
+        Subject::Hand(_) => {
+            for key in reader.written(&["body", "region"]) {
+                refuse(reader, key, format!("`{name}` is of a hand"), "no body and no region");
+            }
+            if !reader.has("hand") {
+                let message = format!("`{name}` is of a hand, and none is named");
+                refuse(reader, "quantity", message, "hand = \"…\"");
             }
         }
         Subject::World(_) => {
@@ -184,6 +196,14 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             "skin",
             format!("`{name}` is of no skin"),
             "a quantity of skins, such as \"skin.area\"",
+        );
+    }
+    if reader.has("hand") && !matches!(quantity.subject, Subject::Hand(_)) {
+        refuse(
+            reader,
+            "hand",
+            format!("`{name}` is of no hand"),
+            "a quantity of hands, such as \"hand.force\"",
         );
     }
     if reader.has("level") && !matches!(quantity.subject, Subject::Levels(_)) {

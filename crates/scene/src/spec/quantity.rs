@@ -50,6 +50,18 @@ pub enum Subject {
     Skin(SkinQuantity),
     /// One value of a body with levels, or of one of its levels.
     Levels(LevelsQuantity),
+    Hand(HandQuantity),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HandQuantity {
+    Position,
+    Force,
+    Energy,
+    Jump,
+    ToolPosition,
+    ToolForce,
+    ToolPenetration,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -164,6 +176,7 @@ const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
 const ADAPTATION: &str = "Faure 2014, §6.4";
 const LEVELS: &str = "Debunne 2000, 5 §2.3";
+const HAPTICS: &str = "Debunne 2000, 6 §3; Colgate, Stanley & Brown 1995";
 const MECHANICS: &str = "balance of momentum";
 
 const fn entry(
@@ -189,6 +202,10 @@ const fn skin(unit: &'static str, quantity: SkinQuantity) -> Quantity {
 
 const fn levels(quantity: LevelsQuantity) -> Quantity {
     Quantity::of("", Rank::Number, Reduction::Sum, Subject::Levels(quantity))
+}
+
+const fn hand(unit: &'static str, rank: Rank, quantity: HandQuantity) -> Quantity {
+    Quantity::of(unit, rank, Reduction::Sum, Subject::Hand(quantity))
 }
 
 const fn world(unit: &'static str, quantity: WorldQuantity) -> Quantity {
@@ -406,6 +423,43 @@ const ENTRIES: &[&QuantityEntry] = &[
         "points that follow because active ones see them, of all levels or of the key `level`",
         LEVELS,
         levels(LevelsQuantity::Ghosts),
+    ),
+    &entry(
+        "hand.position",
+        "of the device, from where it started",
+        HAPTICS,
+        hand("m", Vector, HandQuantity::Position),
+    ),
+    &entry("hand.force", "of the device on the person", HAPTICS, hand("N", Vector, HandQuantity::Force)),
+    &entry(
+        "hand.energy",
+        "that the person has put into the device, less what came back: never negative where the device is passive",
+        "Hannaford & Ryu 2002",
+        hand("J", Number, HandQuantity::Energy),
+    ),
+    &entry(
+        "hand.jump",
+        "the greatest change of the force on the person from one millisecond to the next, so far",
+        HAPTICS,
+        hand("N", Number, HandQuantity::Jump),
+    ),
+    &entry(
+        "tool.position",
+        "of the tool of a hand, from where it started",
+        HAPTICS,
+        hand("m", Vector, HandQuantity::ToolPosition),
+    ),
+    &entry(
+        "tool.force",
+        "of the tool of a hand on the body, friction included",
+        HAPTICS,
+        hand("N", Vector, HandQuantity::ToolForce),
+    ),
+    &entry(
+        "tool.penetration",
+        "how deep points of the body are in the tool of a hand",
+        HAPTICS,
+        hand("m", Number, HandQuantity::ToolPenetration),
     ),
     &entry("skin.blocks", "blocks of 512 nodes that its grid keeps", SKIN, skin("", SkinQuantity::Blocks)),
 ];

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod compare;
 mod derive;
+mod haptics;
 mod interruption;
 mod law_steps;
 mod list;
@@ -39,6 +40,9 @@ enum Command {
     View(view::Arguments),
     /// Runs a scene headless: report, probes, frames
     Run(run::Arguments),
+    /// Puts a scene into people's hands, in true real time: forces a thousand times a second, emulated people where there
+    /// are no devices
+    Haptics(haptics::Arguments),
     /// Validates a scene without running it: every error with its place, a forecast of stability and cost
     Check(check::Arguments),
     /// Computes natural frequencies about a scene's first state
@@ -243,6 +247,7 @@ pub fn execute(cli: Cli) -> ExitCode {
     let (ended, as_json) = match command {
         Command::View(arguments) => (view::view(&arguments), false),
         Command::Run(arguments) => (run::run(&arguments), arguments.json),
+        Command::Haptics(arguments) => (haptics::haptics(&arguments), arguments.json),
         Command::Sweep(arguments) => (sweep::sweep(&arguments), arguments.json),
         Command::Check(arguments) => (check::check(&arguments), arguments.json),
         Command::Modes(arguments) => (modes::modes(&arguments), arguments.json),

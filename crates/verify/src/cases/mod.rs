@@ -13,6 +13,7 @@ mod filling;
 mod formulations;
 mod frames;
 mod frequencies;
+mod hands;
 mod implicit;
 mod levels;
 mod long_beam;
@@ -66,6 +67,7 @@ pub const TABLES: &[&[Case]] = &[
     rheology::CASES,
     frames::CASES,
     levels::CASES,
+    hands::CASES,
     skins::CASES,
 ];
 

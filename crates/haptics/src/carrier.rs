@@ -1,0 +1,225 @@
+//! A hand as memory of the world: arm, port and tool move together, in the time of the world.
+//!
+//! The tool is a mass that the coupling draws to the device and that bodies push back. Where a person is at a device of flesh
+//! and steel, the loop of that device leads it instead ([`Carrier::lead`]), and the same tool follows.
+
+use std::sync::Arc;
+
+use souple_engine::{Editable, InHand, Motion, ParameterError};
+use souple_math::{Mat3, Vec3};
+use souple_models::contact::{Carrier, Pressed};
+use souple_models::loads::Pose;
+
+use crate::TICK;
+use crate::arm::{Arm, ArmState};
+use crate::coupling::Moving;
+use crate::port::{Port, PortState};
+
+/// What a hand is beside its device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    pub port: Port,
+    /// Of the tool [kg].
+    pub mass: f64,
+    /// A world period [s].
+    pub period: f64,
+}
+
+/// A hand with a tool.
+#[derive(Clone, Debug)]
+pub struct HandCarrier {
+    rest: Rest,
+    /// The emulated arm; `None`: a device that only lives with its loop.
+    arm: Option<Arm>,
+    /// Where the loop of a device leads it to, as soon as it does [m].
+    led: Option<Vec3>,
+    /// Whether the loop has its device.
+    is_held: bool,
+}
+
+/// All that evolves, but for what reflexes remember.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct HandState {
+    arm: ArmState,
+    tool: Moving,
+    port: PortState,
+    /// Since the last tick [s].
+    since_tick: f64,
+}
+
+/// Numbers of a [`HandState`].
+const LEN: usize = 24;
+/// A tick that lacks this part of it is over: times are sums.
+const ROUNDING: f64 = 1e-9;
+/// The name of the parameter that tells whether a device is there.
+const HELD: &str = "held";
+
+impl HandState {
+    fn read(numbers: &[f64]) -> Self {
+        let vector = |at: usize| Vec3::new(numbers[at], numbers[at + 1], numbers[at + 2]);
+        let moving = |at: usize| Moving { place: vector(at), velocity: vector(at + 3) };
+        Self {
+            arm: ArmState { hand: moving(0), time: numbers[6], ticks: numbers[7] as u64 },
+            tool: moving(8),
+            port: PortState {
+                place: vector(14),
+                force: vector(17),
+                energy: numbers[20],
+                engaged: numbers[21],
+                jump: numbers[22],
+            },
+            since_tick: numbers[23],
+        }
+    }
+
+    fn write(&self, numbers: &mut [f64]) {
+        let mut at = 0;
+        let mut put = |values: &[f64]| {
+            numbers[at..at + values.len()].copy_from_slice(values);
+            at += values.len();
+        };
+        let Self { arm, tool, port, since_tick } = self;
+        for moving in [arm.hand.place, arm.hand.velocity] {
+            put(&moving.to_array());
+        }
+        put(&[arm.time, arm.ticks as f64]);
+        for vector in [tool.place, tool.velocity, port.place, port.force] {
+            put(&vector.to_array());
+        }
+        put(&[port.energy, port.engaged, port.jump, *since_tick]);
+    }
+}
+
+impl HandCarrier {
+    pub fn new(rest: Rest, arm: Option<Arm>) -> Self {
+        Self { rest, arm, led: None, is_held: true }
+    }
+
+    /// Whether somebody is at the device.
+    fn has_device(&self, state: &HandState) -> bool {
+        let led = self.led.is_some() && self.is_held;
+        led || (self.led.is_none() && self.arm.as_ref().is_some_and(|arm| !arm.is_lost(state.arm.time)))
+    }
+
+    /// The device moves on: led evenly to where it is to be at the end of the period, or held by the arm.
+    fn move_device(&self, h: f64, history: &[f64], state: &mut HandState) {
+        if let Some(place) = self.led {
+            let period = self.rest.period;
+            let into = state.arm.time / period;
+            let left = (into.floor() + 1.0 - into).max(ROUNDING) * period;
+            // at the very end of a period by rounding, the next one is meant
+            let left = if left < ROUNDING * period * 2.0 { period } else { left };
+            let velocity = (place - state.arm.hand.place) / left.max(h);
+            state.arm.hand = Moving { place: state.arm.hand.place + velocity * h, velocity };
+            state.arm.time += h;
+        } else if let Some(arm) = &self.arm {
+            let force = if arm.is_lost(state.arm.time) { Vec3::ZERO } else { state.port.force };
+            arm.advance(force, h, history, &mut state.arm);
+        } else {
+            state.arm.time += h;
+        }
+    }
+
+    /// The tool moves on between what presses on it and what draws it: implicit in both, along its own motion.
+    fn move_tool(&self, h: f64, pressed: &Pressed, state: &mut HandState) {
+        let (coupling, engaged) = (self.rest.port.coupling, state.port.engaged);
+        let Moving { place, velocity } = state.tool;
+        let pull = coupling.pull(state.arm.hand, state.tool) * engaged;
+        let mut carried = self.rest.mass + h * h * pressed.stiffness;
+        let mut impulse = velocity * self.rest.mass + pressed.force * h;
+        if !self.has_device(state) {
+            // let go of, it is braked as the coupling would brake it, and rests wherever it comes to lie
+            carried += h * coupling.damping;
+        } else if pull.length() > coupling.limit {
+            impulse += coupling.limited(pull) * h;
+        } else {
+            carried += h * engaged * (coupling.damping + h * coupling.stiffness);
+            impulse += (pull + velocity * (coupling.damping * engaged)) * h;
+        }
+        let velocity = impulse / carried;
+        state.tool = Moving { place: place + velocity * h, velocity };
+    }
+}
+
+impl Carrier for HandCarrier {
+    fn memory_len(&self) -> usize {
+        LEN + self.arm.as_ref().map_or(0, Arm::history_len)
+    }
+
+    fn initial_memory(&self, memory: &mut [f64]) {
+        memory.fill(0.0);
+        HandState { port: Port::start(), ..HandState::default() }.write(&mut memory[..LEN]);
+    }
+
+    fn pose(&self, memory: &[f64]) -> Pose {
+        let Moving { place, velocity } = HandState::read(memory).tool;
+        Pose {
+            origin: place,
+            turn: Mat3::IDENTITY,
+            pivot: Vec3::ZERO,
+            velocity,
+            angular_velocity: Vec3::ZERO,
+        }
+    }
+
+    fn advance(&self, pressed: &dyn Fn(&Pose) -> Pressed, timestep: f64, memory: &mut [f64]) {
+        let mut left = timestep;
+        while left > ROUNDING * TICK {
+            let mut state = HandState::read(memory);
+            let pose = self.pose(memory);
+            let history = &mut memory[LEN..];
+            let h = left.min(TICK - state.since_tick);
+            let pressed = pressed(&pose);
+            self.move_tool(h, &pressed, &mut state);
+            self.move_device(h, history, &mut state);
+            state.since_tick += h;
+            left -= h;
+            if state.since_tick >= TICK * (1.0 - ROUNDING) {
+                state.since_tick = 0.0;
+                let device = self.has_device(&state).then_some(state.arm.hand.place);
+                self.rest.port.tick(&mut state.port, device, state.tool);
+                if let Some(arm) = &self.arm {
+                    arm.tick(history, &mut state.arm);
+                }
+            }
+            state.write(&mut memory[..LEN]);
+        }
+    }
+
+    fn lead(&mut self, place: Vec3) {
+        self.led = Some(place);
+    }
+
+    fn planned(&self) -> Option<Arc<dyn Motion>> {
+        self.arm.as_ref().map(|arm| arm.intent.clone())
+    }
+
+    fn in_hand(&self, memory: &[f64]) -> InHand {
+        let HandState { arm, tool, port, .. } = HandState::read(memory);
+        InHand {
+            device: arm.hand.place,
+            tool: tool.place,
+            tool_velocity: tool.velocity,
+            force: port.force,
+            energy: port.energy,
+            jump: port.jump,
+        }
+    }
+
+    fn editable(&self) -> Vec<Editable> {
+        vec![Editable { name: HELD, unit: "", value: f64::from(u8::from(self.is_held)) }]
+    }
+
+    fn set_parameter(&mut self, force: &str, name: &str, value: f64) -> Result<(), ParameterError> {
+        let (force, name) = (force.to_owned(), name.to_owned());
+        if name != HELD {
+            return Err(ParameterError::Unknown { force, name, known: vec![HELD.to_owned()] });
+        }
+        if value != 0.0 && value != 1.0 {
+            let expected = "0 of a device that is lost, 1 of one that is there".to_owned();
+            return Err(ParameterError::Unfit { force, name, value, expected });
+        }
+        self.is_held = value == 1.0;
+        Ok(())
+    }
+}

@@ -1,0 +1,171 @@
+//! A thousand times a second: waking in time, and an account of how well that went.
+
+use std::time::{Duration, Instant};
+
+use crate::TICK;
+
+/// Wakes at even times.
+#[derive(Debug)]
+pub struct Pace {
+    period: Duration,
+    next: Instant,
+}
+
+/// The end of a wait is spent awake: sleeping ends late by about so much.
+const AWAKE: Duration = Duration::from_micros(80);
+/// A tick that begins so much too late leaves those out that it has missed.
+const GIVEN_UP: u32 = 3;
+
+impl Pace {
+    pub fn new(period: Duration) -> Self {
+        Self { period, next: Instant::now() + period }
+    }
+
+    /// Waits for the next date; how late it is, and how many dates were left out before it.
+    pub fn wait(&mut self) -> (Duration, u32) {
+        loop {
+            let left = self.next.saturating_duration_since(Instant::now());
+            if left > AWAKE {
+                std::thread::sleep(left.saturating_sub(AWAKE));
+            } else if left.is_zero() {
+                break;
+            } else {
+                std::hint::spin_loop();
+            }
+        }
+        let late = self.next.elapsed();
+        let missed = u32::try_from(late.as_nanos() / self.period.as_nanos().max(1)).unwrap_or(u32::MAX);
+        let left_out = if missed >= GIVEN_UP { missed } else { 0 };
+        self.next += self.period * (left_out + 1);
+        (late, left_out)
+    }
+}
+
+/// Puts this thread before all others of the machine where the system allows it; what that came to, in words.
+pub fn hurry() -> String {
+    if has_hurried() {
+        format!("real-time priority {PRIORITY}")
+    } else {
+        "no real-time priority: the system refuses it, and other programs may delay the loop".to_owned()
+    }
+}
+
+/// Of real-time threads, of which the system's own stand higher.
+const PRIORITY: i32 = 80;
+
+#[cfg(target_os = "linux")]
+fn has_hurried() -> bool {
+    // SAFETY: plain calls about the calling thread, with a structure made here that lives through them.
+    unsafe {
+        // sleeps end when they are due, not when it suits the system
+        libc::prctl(libc::PR_SET_TIMERSLACK, 1);
+        let parameters = libc::sched_param { sched_priority: PRIORITY };
+        libc::pthread_setschedparam(libc::pthread_self(), libc::SCHED_FIFO, &parameters) == 0
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn has_hurried() -> bool {
+    false
+}
+
+/// How long periods were, in bins of ten microseconds.
+#[derive(Clone, Debug)]
+pub struct Histogram {
+    bins: Vec<u64>,
+    /// Longer than the last bin.
+    beyond: u64,
+    longest: f64,
+    sum: f64,
+}
+
+/// Width of a bin [s].
+const BIN: f64 = 10e-6;
+/// What is longer is counted together [s].
+const SPAN: f64 = 10.0 * TICK;
+
+impl Default for Histogram {
+    fn default() -> Self {
+        Self { bins: vec![0; (SPAN / BIN).round() as usize], beyond: 0, longest: 0.0, sum: 0.0 }
+    }
+}
+
+impl Histogram {
+    /// Notes a period [s].
+    pub fn push(&mut self, seconds: f64) {
+        match self.bins.get_mut((seconds / BIN) as usize) {
+            Some(bin) => *bin += 1,
+            None => self.beyond += 1,
+        }
+        self.longest = self.longest.max(seconds);
+        self.sum += seconds;
+    }
+
+    pub fn count(&self) -> u64 {
+        self.bins.iter().sum::<u64>() + self.beyond
+    }
+
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
+
+    pub fn mean(&self) -> f64 {
+        self.sum / self.count().max(1) as f64
+    }
+
+    /// The share of periods no longer than this, to a bin.
+    pub fn share_within(&self, seconds: f64) -> f64 {
+        let last = (seconds / BIN).round() as usize;
+        self.bins.iter().take(last).sum::<u64>() as f64 / self.count().max(1) as f64
+    }
+
+    /// The length that this share of the periods does not exceed [s], to a bin; the longest of all beyond the bins.
+    pub fn quantile(&self, share: f64) -> f64 {
+        let wanted = (share * self.count() as f64).ceil() as u64;
+        let mut seen = 0;
+        for (bin, count) in self.bins.iter().enumerate() {
+            seen += count;
+            if seen >= wanted.max(1) {
+                return ((bin + 1) as f64 * BIN).min(self.longest);
+            }
+        }
+        self.longest
+    }
+
+    /// Upper ends of bins that are not empty [s], and their counts.
+    pub fn bins(&self) -> Vec<(f64, u64)> {
+        let filled = self.bins.iter().enumerate().filter(|(_, count)| **count > 0);
+        let filled = filled.map(|(bin, count)| ((bin + 1) as f64 * BIN, *count));
+        filled.chain((self.beyond > 0).then_some((self.longest, self.beyond))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Quantiles and shares of known periods, to a bin.
+    #[test]
+    fn periods_are_counted() {
+        let mut histogram = Histogram::default();
+        (0..999).for_each(|_| histogram.push(1.004e-3));
+        histogram.push(25e-3);
+        assert_eq!((histogram.count(), histogram.longest()), (1000, 25e-3));
+        assert!((histogram.quantile(0.999) - 1.01e-3).abs() < 1e-12);
+        assert_eq!(histogram.quantile(1.0), 25e-3);
+        assert!((histogram.share_within(1.2e-3) - 0.999).abs() < 1e-12);
+        assert_eq!(histogram.share_within(1.0e-3), 0.0);
+        assert_eq!(histogram.bins().iter().map(|(_, count)| count).sum::<u64>(), 1000);
+    }
+
+    /// No date comes too soon, and dates do not drift: after `n` waits `n` periods have passed, whatever each took.
+    #[test]
+    fn dates_do_not_drift() {
+        let (start, mut pace) = (Instant::now(), Pace::new(Duration::from_millis(2)));
+        let mut dates = 0;
+        for _ in 0..20 {
+            dates += 1 + pace.wait().1;
+            assert!(start.elapsed() >= Duration::from_millis(2) * dates.min(20));
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! A world in true real time under hands: one second on the clock is one second of the world.
+//!
+//! The loop of the devices has a thread of its own ([`Service`]); the world steps in this one, a period after the other, each
+//! begun when its time has come. Devices come in as recorded edits, and so does what the clock decides (the budget of bodies
+//! with levels): a recording replays without a clock. While a period is computed, the person feels the one before.
+
+use std::time::{Duration, Instant};
+
+use souple_engine::{Edit, EditError};
+use souple_haptics::{DeviceNow, Histogram, Moving, Served, Service, ServiceError, Smoothing, Station};
+
+use crate::{Control, Progress, Session, Trace};
+
+/// How the world kept its time.
+#[derive(Clone, Debug, Default)]
+pub struct WorldToll {
+    pub periods: u64,
+    /// Time of computing over time of the world, of each period.
+    pub loads: Vec<f64>,
+    /// Periods that were not ready in time.
+    pub late: u64,
+    /// Time that was given up because the world could not catch up [s].
+    pub lost: f64,
+    /// Clock less world at the end, what was given up left out [s].
+    pub drift: f64,
+    /// Budgets that the clock has set.
+    pub budgets: u64,
+    /// How long periods took from beginning to beginning.
+    pub begun: Histogram,
+}
+
+/// What a run in time was.
+pub struct InTime {
+    pub world: WorldToll,
+    pub served: Served,
+    pub traces: Vec<Trace>,
+    /// It was stopped before its end.
+    pub was_stopped: bool,
+}
+
+/// Why there is no run in time.
+#[derive(Debug, thiserror::Error)]
+pub enum TimeError {
+    #[error("the scene has no hand; it needs [hands.NAME]")]
+    NoHand,
+    #[error("the device of hand `{hand}`: {why}")]
+    Device { hand: String, why: String },
+    #[error(transparent)]
+    Service(#[from] ServiceError),
+    #[error("hand `{hand}`: {error}")]
+    Edit { hand: String, error: EditError },
+    #[error("the loop of the devices has ended by a fault of the program")]
+    Lost,
+}
+
+/// A world that is behind by more periods gives up catching up.
+const CATCHING_UP: f64 = 3.0;
+/// Load above which bodies with levels may do less, and below which they may do more again (Debunne 2000, 5 §5.2).
+const FULL: f64 = 0.95;
+const EASY: f64 = 0.75;
+/// How much less and more that is, at once.
+const LESS: f64 = 0.9;
+const MORE: f64 = 1.02;
+
+/// A budget that the clock rules.
+struct Budget {
+    system: usize,
+    force: String,
+    /// As the scene says.
+    most: f64,
+    now: f64,
+}
+
+/// Steps a world for `duration` seconds of the clock.
+///
+/// # Errors
+/// It has no hands, or their devices are not there. A step that is refused ends the run; the session tells of it.
+pub fn run_in_time(
+    session: &mut Session,
+    duration: f64,
+    watch: &mut dyn FnMut(&Progress) -> Control,
+) -> Result<InTime, TimeError> {
+    let period = session.world.model().period;
+    let steps = (duration / period).round().max(1.0) as u64;
+    let mut service = Service::start(stations(session, period)?, duration)?;
+    let mut toll =
+        WorldToll { loads: Vec::with_capacity(steps.min(1 << 24) as usize), ..WorldToll::default() };
+    let mut traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
+    session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+    let mut budgets = budgets(session);
+    let mut held = vec![true; session.hands.len()];
+    let began = Instant::now();
+    let (mut start, mut begun) = (began, began);
+    let mut was_stopped = false;
+    for step in 1..=steps {
+        // a world that is slower than the clock makes fewer periods, and no longer run
+        if began.elapsed().as_secs_f64() >= duration {
+            break;
+        }
+        let clock = Instant::now();
+        toll.begun.push((clock - begun).as_secs_f64());
+        begun = clock;
+        lead(session, &service, &mut held)?;
+        if !session.step() {
+            break;
+        }
+        service.tell(session.hands.iter().map(|hand| {
+            let in_hand = hand.of(&session.world);
+            Moving { place: in_hand.tool, velocity: in_hand.tool_velocity }
+        }));
+        session.measure(&mut |probe, time, value| traces[probe].push(time, value));
+        toll.periods = step;
+        let load = clock.elapsed().as_secs_f64() / period;
+        toll.loads.push(load);
+        toll.budgets += govern(session, &mut budgets, load);
+        // its time has come
+        let date = start + Duration::from_secs_f64(step as f64 * period);
+        let left = date.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            toll.late += 1;
+            let behind = date.elapsed().as_secs_f64();
+            if behind > CATCHING_UP * period {
+                toll.lost += behind;
+                start += Duration::from_secs_f64(behind);
+            }
+        } else {
+            std::thread::sleep(left);
+        }
+        let wall_seconds = start.elapsed().as_secs_f64() + toll.lost;
+        let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
+        if watch(&progress) == Control::Stop {
+            was_stopped = step < steps;
+            break;
+        }
+    }
+    toll.drift = start.elapsed().as_secs_f64() - toll.periods as f64 * period;
+    let served = service.end().ok_or(TimeError::Lost)?;
+    Ok(InTime { world: toll, served, traces, was_stopped })
+}
+
+fn stations(session: &Session, period: f64) -> Result<Vec<Station>, TimeError> {
+    if session.hands.is_empty() {
+        return Err(TimeError::NoHand);
+    }
+    let station = |hand: &souple_scene::HandInfo| {
+        let device = hand.device.open();
+        let device = device.map_err(|why| TimeError::Device { hand: hand.name.clone(), why })?;
+        let smoothing = Smoothing::new(hand.between, period);
+        Ok(Station { name: hand.name.clone(), device, port: hand.port, smoothing })
+    };
+    session.hands.iter().map(station).collect()
+}
+
+/// Devices lead their tools for a period.
+fn lead(session: &mut Session, service: &Service, held: &mut [bool]) -> Result<(), TimeError> {
+    for hand in 0..session.hands.len() {
+        // a device that cannot be told just now stays where it was
+        let Some(device) = service.device(hand) else { continue };
+        let (system, force) = (session.hands[hand].system, session.hands[hand].force.clone());
+        let is_held = device != DeviceNow::Lost;
+        let mut edits = Vec::new();
+        if let DeviceNow::At(place) = device {
+            edits.push(Edit::Lead { system, force: force.clone(), place });
+        }
+        if std::mem::replace(&mut held[hand], is_held) != is_held {
+            let value = f64::from(u8::from(is_held));
+            edits.push(Edit::SetParameter { system, force, parameter: "held".to_owned(), value });
+        }
+        for edit in edits {
+            let error = |error| TimeError::Edit { hand: session.hands[hand].name.clone(), error };
+            session.world.edit(edit).map_err(error)?;
+        }
+    }
+    Ok(())
+}
+
+fn budgets(session: &Session) -> Vec<Budget> {
+    let mut all = Vec::new();
+    for (system, of) in session.world.model().systems.iter().enumerate() {
+        for force in &of.forces {
+            let budget = force.editable().into_iter().find(|editable| editable.name == "budget");
+            all.extend(budget.map(|budget| Budget {
+                system,
+                force: force.name().to_owned(),
+                most: budget.value,
+                now: budget.value,
+            }));
+        }
+    }
+    all
+}
+
+/// Lets bodies with levels do less while the world is late, and more again when it is not; how many budgets that sets.
+fn govern(session: &mut Session, budgets: &mut [Budget], load: f64) -> u64 {
+    let mut set = 0;
+    for budget in budgets {
+        let value = match load {
+            load if load > FULL => budget.now * LESS,
+            load if load < EASY => (budget.now * MORE).min(budget.most),
+            _ => budget.now,
+        };
+        if value == budget.now {
+            continue;
+        }
+        let (system, force) = (budget.system, budget.force.clone());
+        let edit = Edit::SetParameter { system, force, parameter: "budget".to_owned(), value };
+        if session.world.edit(edit).is_ok() {
+            budget.now = value;
+            set += 1;
+        }
+    }
+    set
+}

@@ -1,0 +1,158 @@
+//! What a run against the clock leaves: its report, what each hand did and felt, how well the loop kept its time.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use souple_haptics::{Histogram, TICK, Tick};
+use souple_io::plot::{Axis, Curve, Plot, Scale};
+use souple_io::{Column, IoError};
+use souple_math::Vec3;
+
+use crate::{InTime, Session, write_csv};
+
+/// A period of the loop that is still one of a millisecond [s].
+const IN_TIME: f64 = 1.2 * TICK;
+
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1);
+    sorted.get((share * last as f64).round() as usize).copied().unwrap_or(0.0)
+}
+
+fn of_periods(periods: &Histogram) -> Value {
+    json!({
+        "count": periods.count(),
+        "mean_ms": 1e3 * periods.mean(),
+        "p50_ms": 1e3 * periods.quantile(0.5),
+        "p99_ms": 1e3 * periods.quantile(0.99),
+        "p99_9_ms": 1e3 * periods.quantile(0.999),
+        "longest_ms": 1e3 * periods.longest(),
+        "share_within_1_2_ms": periods.share_within(IN_TIME),
+        "histogram": periods.bins().iter().map(|(end, count)| json!([1e3 * end, count])).collect::<Vec<_>>(),
+    })
+}
+
+fn of_hand(ticks: &[Tick], jump: f64, refused: u64) -> Value {
+    let greatest = ticks.iter().map(|tick| tick.force.length()).fold(0.0, f64::max);
+    let least_energy = ticks.iter().map(|tick| tick.energy).fold(0.0, f64::min);
+    json!({
+        "ticks": ticks.len(),
+        "greatest_force_n": greatest,
+        "greatest_jump_n": jump,
+        "least_energy_j": least_energy,
+        "energy_j": ticks.last().map_or(0.0, |tick| tick.energy),
+        "refused": refused,
+    })
+}
+
+impl InTime {
+    /// The report.
+    pub fn to_json(&self, session: &Session) -> Value {
+        let (world, toll) = (&self.world, &self.served.toll);
+        let mut loads = world.loads.clone();
+        loads.sort_by(f64::total_cmp);
+        let mean = loads.iter().sum::<f64>() / loads.len().max(1) as f64;
+        let period = session.world.model().period;
+        let served = &self.served;
+        let felt = served.ticks.iter().zip(&served.ports).zip(&served.refused);
+        let felt = felt.map(|((ticks, port), refused)| of_hand(ticks, port.jump, *refused));
+        let hands = session.hands.iter().map(|hand| hand.name.clone()).zip(felt);
+        let status = match &session.failure {
+            Some(_) => "failed",
+            None if self.was_stopped => "interrupted",
+            None => "done",
+        };
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "status": status,
+            "scene": session.scene_name,
+            "scene_sha256": session.scene_sha256,
+            "failure": session.failure.as_ref().map(crate::Failure::message),
+            "warnings": session.warnings,
+            "devices": {
+                "priority": toll.priority,
+                "periods": of_periods(&toll.periods),
+                "left_out": toll.left_out,
+                "load": toll.busy / (toll.periods.count().max(1) as f64 * toll.periods.mean()).max(TICK),
+            },
+            "hands": hands.collect::<serde_json::Map<String, Value>>(),
+            "world": {
+                "periods": world.periods,
+                "simulated_seconds": world.periods as f64 * period,
+                "load": {
+                    "mean": mean,
+                    "p50": quantile(&loads, 0.5),
+                    "p99": quantile(&loads, 0.99),
+                    "greatest": loads.last(),
+                    "share_above_95_percent":
+                        loads.iter().filter(|load| **load > 0.95).count() as f64 / loads.len().max(1) as f64,
+                },
+                "late": world.late,
+                "lost_seconds": world.lost,
+                "drift_seconds": world.drift,
+                "budgets_set": world.budgets,
+                "begun": of_periods(&world.begun),
+            },
+        })
+    }
+
+    /// Writes `report.json`, `probes.csv`, and for each hand `hand_NAME.csv` and its force as `hand_NAME.svg`; the periods of
+    /// the loop as `periods.svg`.
+    ///
+    /// # Errors
+    /// A file or the folder cannot be written.
+    pub fn write(&self, folder: &Path, session: &Session) -> Result<(), IoError> {
+        fs::create_dir_all(folder).map_err(|source| IoError::Write { path: folder.to_owned(), source })?;
+        let report = format!("{:#}\n", self.to_json(session));
+        souple_io::write_file(&folder.join("report.json"), |out| out.write_all(report.as_bytes()))?;
+        write_csv(&folder.join("probes.csv"), &self.traces)?;
+        for (hand, ticks) in session.hands.iter().zip(&self.served.ticks) {
+            write_ticks(&folder.join(format!("hand_{}.csv", hand.name)), ticks)?;
+            force_plot(&hand.name, ticks).write_svg(&folder.join(format!("hand_{}.svg", hand.name)))?;
+        }
+        periods_plot(&self.served.toll.periods).write_svg(&folder.join("periods.svg"))
+    }
+}
+
+fn write_ticks(path: &Path, ticks: &[Tick]) -> Result<(), IoError> {
+    let numbers = |of: &dyn Fn(&Tick) -> f64| ticks.iter().map(of).collect::<Vec<f64>>();
+    let mut columns = vec![Column::new("time [s]", numbers(&|tick| tick.time))];
+    let vectors: [(&str, &str, fn(&Tick) -> Vec3); 3] = [
+        ("device", "m", |tick| tick.device),
+        ("tool", "m", |tick| tick.tool),
+        ("force", "N", |tick| tick.force),
+    ];
+    for (name, unit, vector) in vectors {
+        for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
+            columns
+                .push(Column::new(format!("{name}.{letter} [{unit}]"), numbers(&|tick| vector(tick)[axis])));
+        }
+    }
+    columns.push(Column::new("energy [J]", numbers(&|tick| tick.energy)));
+    souple_io::write_csv(path, &columns)
+}
+
+fn force_plot(hand: &str, ticks: &[Tick]) -> Plot {
+    let times: Vec<f64> = ticks.iter().map(|tick| tick.time).collect();
+    let curve = |(axis, name): (usize, &str)| {
+        Curve::new(name, times.clone(), ticks.iter().map(|tick| tick.force[axis]).collect())
+    };
+    Plot {
+        title: format!("force on hand {hand}"),
+        x: Axis::new("time", "s"),
+        y: Axis::new("force", "N"),
+        curves: ["x", "y", "z"].into_iter().enumerate().map(curve).collect(),
+        ..Plot::default()
+    }
+}
+
+fn periods_plot(periods: &Histogram) -> Plot {
+    let (ends, counts) = periods.bins().into_iter().map(|(end, count)| (1e3 * end, count as f64)).unzip();
+    Plot {
+        title: "periods of the devices' loop".to_owned(),
+        x: Axis::new("period", "ms"),
+        y: Axis { scale: Scale::Logarithmic, ..Axis::new("count", "") },
+        curves: vec![Curve { mark: souple_io::plot::Mark::DottedLine, ..Curve::new("", ends, counts) }],
+        ..Plot::default()
+    }
+}

@@ -1,0 +1,30 @@
+//! What a hand does and feels, and what its tool does.
+
+use souple_engine::World;
+use souple_math::Vec3;
+
+use super::Measurement;
+use crate::scene::HandInfo;
+use crate::spec::quantity::HandQuantity;
+
+pub fn measure(quantity: HandQuantity, hand: &HandInfo, world: &World) -> Measurement {
+    let (mut force, mut penetration) = (Vec3::ZERO, 0.0_f64);
+    if matches!(quantity, HandQuantity::ToolForce | HandQuantity::ToolPenetration)
+        && let Some((tool, at)) = world.force_named(hand.system, &hand.force)
+    {
+        tool.visit_contacts(&at, &mut |point| {
+            force += point.normal_force + point.friction;
+            penetration = penetration.max(point.penetration);
+        });
+    }
+    let held = hand.of(world);
+    match quantity {
+        HandQuantity::Position => Measurement::Vector(held.device),
+        HandQuantity::Force => Measurement::Vector(held.force),
+        HandQuantity::Energy => Measurement::Number(held.energy),
+        HandQuantity::Jump => Measurement::Number(held.jump),
+        HandQuantity::ToolPosition => Measurement::Vector(held.tool),
+        HandQuantity::ToolForce => Measurement::Vector(force),
+        HandQuantity::ToolPenetration => Measurement::Number(penetration),
+    }
+}
