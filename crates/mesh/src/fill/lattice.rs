@@ -45,6 +45,7 @@ impl Side {
 }
 
 /// The lattice points and tetrahedra that matter: those with a corner inside.
+#[derive(Clone)]
 pub(super) struct Background {
     pub places: Vec<Place>,
     pub points: Vec<Vec3>,

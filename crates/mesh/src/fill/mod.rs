@@ -18,6 +18,7 @@ mod groups;
 mod hexes;
 mod lattice;
 mod options;
+mod prisms;
 mod stencil;
 mod surface;
 mod warp;
@@ -64,7 +65,7 @@ pub enum Reach {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
     Tetrahedra,
-    /// Hexahedra inside, tetrahedra at the surface, pyramids between.
+    /// Hexahedra inside, tetrahedra at the surface, prisms and pyramids between.
     HexDominant,
 }
 
