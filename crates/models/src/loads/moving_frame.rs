@@ -55,11 +55,17 @@ impl MovingFrame {
             let pose = self.motion.pose(time + steps * self.resolution);
             (pose.velocity, pose.angular_velocity)
         };
-        let [far_before, before, after, far_after] = [-2.0, -1.0, 1.0, 2.0].map(at);
-        // ẏ = (8 (y₊₁ - y₋₁) - (y₊₂ - y₋₂)) / 12 δ
+        // before the start a motion need not be defined: there differences look ahead, to the same order
+        let (steps, weights) = if time < 2.0 * self.resolution {
+            ([0.0, 1.0, 2.0, 3.0, 4.0], [-25.0, 48.0, -36.0, 16.0, -3.0])
+        } else {
+            ([-2.0, -1.0, 0.0, 1.0, 2.0], [1.0, -8.0, 0.0, 8.0, -1.0])
+        };
+        let sampled = steps.map(at);
+        // ẏ = Σ w y / 12 δ
         let rate = |of: fn((Vec3, Vec3)) -> Vec3| {
-            ((of(after) - of(before)) * 8.0 - (of(far_after) - of(far_before)))
-                * (1.0 / (12.0 * self.resolution))
+            let sum: Vec3 = sampled.iter().zip(weights).map(|(y, weight)| of(*y) * weight).sum();
+            sum * (1.0 / (12.0 * self.resolution))
         };
         Acceleration {
             linear: pose.direction_to_shape(rate(|(velocity, _)| velocity)),

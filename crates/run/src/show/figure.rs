@@ -1,5 +1,7 @@
 //! How a run is drawn: from where, in what colours, cut open, taken apart, with arrows.
 
+use std::sync::Arc;
+
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
     Backdrop, Colour, ColourMap, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace, MeshSurface,
@@ -267,6 +269,19 @@ impl Figure {
             let bodies: Vec<&BodyMoment> =
                 moments.iter().filter_map(|moment| moment.bodies.get(index)).collect();
             let Some(last) = bodies.last() else { continue };
+            let is_another = |body: &&BodyMoment| {
+                !Arc::ptr_eq(&body.mesh, &last.mesh) && body.mesh.blocks != last.mesh.blocks
+            };
+            if bodies.iter().any(is_another) {
+                return Err(ShowError::Request {
+                    what: "file",
+                    value: format!(
+                        "a .glb of `{}`, whose surface has other triangles in each frame",
+                        last.name
+                    ),
+                    expected: "one frame (`--frames 1`), or a film: .gif, .apng, .mp4".to_owned(),
+                });
+            }
             let of = if last.is_of_edges() {
                 last.tubes(&common, None, None)
             } else {

@@ -158,6 +158,7 @@ impl From<ShowError> for Refusal {
 pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let kind = kind_of(&arguments.out)?;
+    refuse_idle(arguments, kind)?;
     let figure = figure::figure(arguments, kind)?;
     let (mut show, mut notes) = show(arguments, kind)?;
     if let Some(other) = &arguments.against {
@@ -222,6 +223,27 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     Ok(End::Done)
 }
 
+/// Refuses options that would change nothing in what is asked for.
+fn refuse_idle(arguments: &Arguments, kind: Kind) -> Result<(), Refusal> {
+    let is_film = matches!(kind, Kind::Gif | Kind::AnimatedPng | Kind::Film);
+    let is_one = kind == Kind::Picture && arguments.sheet.is_none();
+    let idle = [
+        ("time", arguments.time.is_some() && !is_one, "one picture: .png without `--sheet`"),
+        ("sheet", arguments.sheet.is_some() && kind != Kind::Picture, ".png"),
+        ("compact", arguments.compact && kind != Kind::Picture, ".png"),
+        ("per-second", arguments.per_second.is_some() && !is_film, ".gif, .apng or .mp4"),
+    ];
+    if let Some((name, _, of)) = idle.into_iter().find(|(_, is_idle, _)| *is_idle) {
+        let message = format!("`--{name}` changes nothing in {}; it is for {of}", arguments.out.display());
+        return Err(Refusal::request(name, arguments.out.display().to_string(), of, message));
+    }
+    if let Some(scale) = arguments.arrow_scale.filter(|scale| !scale.is_finite()) {
+        let message = format!("arrows of {scale} m for each unit cannot be drawn");
+        return Err(Refusal::request("arrow_scale", scale.to_string(), "a finite number", message));
+    }
+    Ok(())
+}
+
 fn kind_of(out: &Path) -> Result<Kind, Refusal> {
     let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     KINDS.iter().find(|(name, _)| *name == extension).map(|(_, kind)| *kind).ok_or_else(|| {
@@ -234,6 +256,15 @@ fn kind_of(out: &Path) -> Result<Kind, Refusal> {
 fn show(arguments: &Arguments, kind: Kind) -> Result<(Show, Vec<String>), Refusal> {
     let source = &arguments.source;
     let is_run = source.join("frames").is_dir() || source.join("report.json").is_file();
+    if let (true, Some(setting)) = (is_run, arguments.settings.first()) {
+        let message = format!("{} is a run that has been made: nothing can be set in it", source.display());
+        return Err(Refusal::request("set", setting.clone(), "the scene in place of the run", message));
+    }
+    if souple_io::format_of(source).is_ok() {
+        let message = format!("{} is a mesh and no scene", source.display());
+        let expected = "a scene with `mesh = { file = … }`, or the folder of a run";
+        return Err(Refusal::request("source", source.display().to_string(), expected, message));
+    }
     if is_run {
         let (stage, note) = Stage::of_report(source);
         return Ok((Show::of_run(source, stage)?, note.into_iter().collect()));
