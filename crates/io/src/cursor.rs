@@ -1,6 +1,5 @@
 //! A place in the bytes of a file, and numbers read from it as text or as binary.
 
-use std::cell::Cell;
 use std::fmt::Arguments;
 use std::str::FromStr;
 
@@ -26,13 +25,11 @@ pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     position: usize,
     pub encoding: Encoding,
-    /// A position and the number of its line: lines are counted on from here, not from the start for every one of them.
-    counted: Cell<(usize, usize)>,
 }
 
 impl<'a> Cursor<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, position: 0, encoding: Encoding::Text, counted: Cell::new((0, 1)) }
+        Self { bytes, position: 0, encoding: Encoding::Text }
     }
 
     pub fn position(&self) -> usize {
@@ -54,19 +51,9 @@ impl<'a> Cursor<'a> {
 
     fn place_of(&self, position: usize) -> Place {
         match self.encoding {
-            Encoding::Text => Place::Line(self.line_of(position)),
+            Encoding::Text => Place::Line(line_of(self.bytes, position)),
             Encoding::Binary(_) => Place::Byte(position),
         }
-    }
-
-    fn line_of(&self, position: usize) -> usize {
-        let (known, line) = self.counted.get();
-        let number = match self.bytes.get(known..position) {
-            Some(between) => line + line_ends(between),
-            None => line_of(self.bytes, position),
-        };
-        self.counted.set((position, number));
-        number
     }
 
     /// The fault of what has just been read.
@@ -206,11 +193,7 @@ impl<'a> Cursor<'a> {
 
 /// The number of the line of a position, from 1.
 pub(crate) fn line_of(bytes: &[u8], position: usize) -> usize {
-    1 + line_ends(&bytes[..position.min(bytes.len())])
-}
-
-fn line_ends(bytes: &[u8]) -> usize {
-    bytes.iter().filter(|byte| **byte == b'\n').count()
+    1 + bytes[..position.min(bytes.len())].iter().filter(|byte| **byte == b'\n').count()
 }
 
 pub(crate) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {

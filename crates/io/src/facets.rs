@@ -112,17 +112,10 @@ pub(crate) struct Polygons {
 }
 
 impl Polygons {
-    /// A triangle, a quadrilateral, or triangles around the first corner; corners that coincide with their neighbour make no
-    /// side, and what has fewer than three sides or meets itself is none.
+    /// A triangle, a quadrilateral, or triangles around the first corner; none where corners repeat.
     pub fn push(&mut self, mesh: &mut Mesh, corners: &[u32]) {
         let repeated = |corners: &[u32]| (1..corners.len()).any(|k| corners[..k].contains(&corners[k]));
-        let mut sides = corners.to_vec();
-        sides.dedup();
-        if sides.len() > 1 && sides.first() == sides.last() {
-            sides.pop();
-        }
-        match &sides[..] {
-            [_] | [_, _] => self.degenerate += 1,
+        match corners {
             [_, _, _] | [_, _, _, _] if repeated(corners) => self.degenerate += 1,
             [_, _, _] => mesh.push_facet(ElementKind::Tri3, corners),
             [_, _, _, _] => mesh.push_facet(ElementKind::Quad4, corners),

@@ -224,14 +224,9 @@ pub fn format_of(path: &Path) -> Result<&'static str, IoError> {
 /// The format is unknown, or has other extensions.
 pub fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
     let entry = FORMATS.find(format)?;
-    let family = entry.name.split('_').next().unwrap_or_default();
-    // a variant that no extension stands for has those of the format that reads it
-    let known = match entry.build.extensions {
-        [] => FORMATS.find(family)?.build.extensions,
-        own => own,
-    };
+    let known = entry.build.extensions;
     let found = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    if known.contains(&found.as_str()) {
+    if known.is_empty() || known.contains(&found.as_str()) {
         return Ok(entry.name);
     }
     let expected = format!("{} for the format `{}`", known.join(" or "), entry.name);

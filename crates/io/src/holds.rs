@@ -77,20 +77,17 @@ impl Holds {
     /// Refuses what the format cannot be written from at all.
     pub(crate) fn check(&self, format: &str, output: &Output<'_>) -> Result<(), IoError> {
         let mesh = output.mesh;
-        let is_of_edges = mesh.cell_count() > 0 && mesh.dimension() == 1;
-        if self.is_surface() && mesh.facet_count() == 0 && (mesh.cell_count() == 0 || is_of_edges) {
-            let subject =
-                format!("the number of cells and facets with a surface of a mesh for the format `{format}`");
+        if self.is_surface() && mesh.cell_count() + mesh.facet_count() == 0 {
+            let subject = format!("the number of cells and facets of a mesh for the format `{format}`");
             return Err(IoError::request(subject, 0, "1 or more"));
         }
         if self.shapes == Shapes::Tetrahedra {
             let known = [ElementKind::Tet4, ElementKind::Tri3];
-            let is_other = |block: &&CellBlock| !block.is_empty() && !known.contains(&block.kind);
-            let is_surface_cell = |block: &&CellBlock| !block.is_empty() && block.kind.dimension() != 3;
-            let other = output.blocks().find(is_other).or_else(|| mesh.blocks.iter().find(is_surface_cell));
-            if let Some(block) = other {
+            if let Some(block) =
+                output.blocks().find(|block| !block.is_empty() && !known.contains(&block.kind))
+            {
                 let subject = format!("an element of a mesh for the format `{format}`");
-                return Err(IoError::request(subject, block.kind.name(), "tet4, and tri3 among the facets"));
+                return Err(IoError::request(subject, block.kind.name(), "tet4 or tri3"));
             }
         }
         Ok(())

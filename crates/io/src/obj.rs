@@ -233,12 +233,9 @@ fn memberships<'a>(output: &Output<'a>, part: &SurfacePart) -> Result<Vec<Vec<&'
     }
     for (name, group) in &output.mesh.groups {
         if !group.facets.is_empty()
-            && (name.is_empty()
-                || name == "default"
-                || name.contains(|letter: char| letter.is_whitespace() || "#\\".contains(letter)))
+            && (name.is_empty() || name.contains(char::is_whitespace) || name.contains('#'))
         {
-            let expected =
-                "in an OBJ file, a word without spaces, # and \\, other than `default`, which is no group";
+            let expected = "a word without spaces in an OBJ file";
             return Err(IoError::request("the name of a group", format!("`{name}`"), expected));
         }
         for facet in &group.facets {

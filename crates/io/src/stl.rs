@@ -109,12 +109,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
         .get(80..HEAD)
         .map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
     let binary = count.is_some_and(|count| bytes.len() == HEAD + count * TRIANGLE);
-    if binary || !is_solid(bytes) { read_binary(bytes) } else { read_text(bytes) }
-}
-
-/// Whether content begins with the word of text files.
-fn is_solid(bytes: &[u8]) -> bool {
-    bytes.trim_ascii_start().get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"))
+    if binary || !bytes.trim_ascii_start().starts_with(b"solid") {
+        read_binary(bytes)
+    } else {
+        read_text(bytes)
+    }
 }
 
 fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {

@@ -56,10 +56,6 @@ pub(crate) fn read(joined: &[u8]) -> Result<Dataset, Fault> {
     if let Some(faces) = find("face") {
         reader.read_faces(faces).map_err(|fault| parts::in_part("face", fault))?;
     }
-    let cut = [("node", Some(nodes)), ("ele", Some(elements)), ("face", find("face"))];
-    for (name, _) in cut.iter().filter(|(_, part)| part.is_some_and(|part| !part.bytes.ends_with(b"\n"))) {
-        reader.dataset.notes.push(format!("the last line of the .{name} file has no end: it may be cut off"));
-    }
     tidy_groups(&mut reader.dataset.mesh);
     Ok(reader.dataset)
 }
@@ -87,15 +83,6 @@ impl<'a> Rows<'a> {
                 return Some(words);
             }
         }
-    }
-
-    /// Refuses rows beyond the count.
-    fn end(&mut self, what: &str) -> Result<(), Fault> {
-        if let Some(words) = self.next() {
-            let subject = format!("the line behind the last of the {what}");
-            return Err(self.fault(subject, quoted(&words.join(&b' ')), "as many lines as the head counts"));
-        }
-        Ok(())
     }
 
     fn expect(&mut self, subject: &str, expected: &str) -> Result<Vec<&'a [u8]>, Fault> {
@@ -137,14 +124,11 @@ impl<'a> Rows<'a> {
     fn marker(&self, words: &[&[u8]], place: usize, subject: &str) -> Result<i64, Fault> {
         let Some(word) = words.get(place) else { return Ok(0) };
         match parse::<f64>(word) {
-            Some(number) if number.fract() == 0.0 && number.abs() < MOST_NUMBER as f64 => Ok(number as i64),
+            Some(number) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64),
             _ => Err(self.fault(subject, quoted(word), "a whole number")),
         }
     }
 }
-
-/// Markers are written as real numbers: whole ones below this are exact.
-const MOST_NUMBER: i64 = 9_000_000_000_000_000;
 
 #[derive(Default)]
 struct Reader {
@@ -192,7 +176,7 @@ impl Reader {
                 group.points.push(index as u32);
             }
         }
-        rows.end("points")
+        Ok(())
     }
 
     /// Points of `words` from the second on.
@@ -244,7 +228,7 @@ impl Reader {
         if node_count == 10 {
             self.dataset.notes.push("tetrahedra of ten nodes were read by their corners".to_owned());
         }
-        rows.end("tetrahedra")
+        Ok(())
     }
 
     /// `number corners… [marker]`
@@ -260,7 +244,7 @@ impl Reader {
                 group.facets.push(index as u32);
             }
         }
-        rows.end("triangles")
+        Ok(())
     }
 }
 
@@ -272,10 +256,8 @@ fn numbers<'a>(
 ) -> BTreeMap<&'a str, i64> {
     let groups = output.mesh.groups.iter().filter(|(_, group)| !members(group).is_empty());
     let own = |name: &str| -> Option<i64> {
-        let number: i64 = name.strip_prefix(kind)?.strip_prefix('_')?.parse().ok()?;
-        // `volume_07` would come back as `volume_7`, and from other numbers nothing is read
-        let is_kept = number != 0 && number.abs() < MOST_NUMBER && format!("{kind}_{number}") == name;
-        is_kept.then_some(number)
+        let number = name.strip_prefix(kind)?.strip_prefix('_')?.parse().ok()?;
+        (number != 0).then_some(number)
     };
     let mut numbers: BTreeMap<&str, i64> =
         groups.clone().filter_map(|(name, _)| Some((name.as_str(), own(name)?))).collect();

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, Group, MAX_NODES};
+use souple_mesh::{Group, MAX_NODES};
 
 use super::element_type::{self, ElementType};
 use crate::Dataset;
@@ -25,8 +25,6 @@ pub(super) struct Assembly {
     /// Physical groups of each entity (version 4).
     pub entities: HashMap<PhysicalTag, Vec<i64>>,
     skipped: BTreeMap<i64, usize>,
-    /// Lines with their physical groups: cells where a file has nothing else, else curves around what it meshes.
-    lines: Vec<(ElementKind, Vec<u32>, Vec<i64>)>,
     pub has_nodes: bool,
     pub has_elements: bool,
 }
@@ -92,9 +90,6 @@ impl Assembly {
             }
             None => Destination::Skipped,
         };
-        if let Some(kind) = element_type::line(element.number) {
-            self.lines.push((kind, nodes.to_vec(), physical.to_vec()));
-        }
         if destination == Destination::Skipped && (element.dimension == 2 || physical.is_empty()) {
             *self.skipped.entry(element.number).or_default() += 1;
         }
@@ -110,25 +105,6 @@ impl Assembly {
         Ok(())
     }
 
-    /// Makes lines the cells of a file that has no others.
-    fn take_lines(&mut self) {
-        let mesh = &mut self.dataset.mesh;
-        if mesh.cell_count() + mesh.facet_count() > 0 {
-            return;
-        }
-        for (cell, (kind, nodes, physical)) in std::mem::take(&mut self.lines).into_iter().enumerate() {
-            mesh.push_cell(kind, &nodes);
-            for tag in physical {
-                let group = self.groups.entry((1, tag.saturating_abs())).or_default();
-                if group.cells.is_empty() {
-                    group.points.clear();
-                }
-                group.cells.push(cell as u32);
-            }
-        }
-        self.skipped.retain(|number, _| element_type::line(*number).is_none());
-    }
-
     pub fn finish(mut self, cursor: &Cursor<'_>) -> Result<Dataset, Fault> {
         for (present, section) in [(self.has_nodes, "$Nodes"), (self.has_elements, "$Elements")] {
             if !present {
@@ -139,7 +115,6 @@ impl Assembly {
                 ));
             }
         }
-        self.take_lines();
         for (tag, name) in &self.names {
             self.groups.entry(*tag).or_default();
             if name.is_empty() {

@@ -62,11 +62,6 @@ pub(super) fn find(number: i64) -> Option<ElementType> {
     TYPES.iter().copied().find(|element| element.number == number)
 }
 
-/// The element of a line, which is a cell where there is nothing else.
-pub(super) fn line(number: i64) -> Option<ElementKind> {
-    [ElementKind::Edge2, ElementKind::Edge3].into_iter().find(|kind| number_of(*kind) == Some(number))
-}
-
 /// The number of an element of ours; `None` for elements that Gmsh has no type of.
 pub(super) fn number_of(kind: ElementKind) -> Option<i64> {
     match kind {

@@ -143,12 +143,11 @@ pub(super) fn decode<T: Number>(bytes: &[u8], number_type: NumberType, endian: E
         .collect()
 }
 
-/// The numbers of a `<DataArray>`, which has a use for so many of them at most.
+/// The numbers of a `<DataArray>`.
 pub(super) fn read<T: Number>(
     document: &Document<'_>,
     element: &Element<'_>,
     layout: &Layout<'_>,
-    most: usize,
 ) -> Result<Vec<T>, Fault> {
     let name = element.attribute("Name").unwrap_or("without a name");
     let subject = |what: &str| format!("{what} of the array `{name}`");
@@ -192,8 +191,7 @@ pub(super) fn read<T: Number>(
             ));
         }
     };
-    let most = most.saturating_mul(number_type.width());
-    let bytes = content(&bytes, layout, most).map_err(|(found, expected)| {
+    let bytes = content(&bytes, layout).map_err(|(found, expected)| {
         document.fault(element.position, subject("the data"), found, expected)
     })?;
     if bytes.len() % number_type.width() != 0 {
@@ -319,8 +317,8 @@ fn header_number(bytes: &[u8], layout: &Layout<'_>) -> usize {
     usize::try_from(value).unwrap_or(usize::MAX)
 }
 
-/// The content behind the header, decompressed, if it is `most` bytes at most; or what was found and what is expected.
-fn content(bytes: &[u8], layout: &Layout<'_>, most: usize) -> Result<Vec<u8>, (String, String)> {
+/// The content behind the header, decompressed; or what was found and what is expected.
+fn content(bytes: &[u8], layout: &Layout<'_>) -> Result<Vec<u8>, (String, String)> {
     let width = layout.header_width;
     let number = |index: usize| -> Result<usize, (String, String)> {
         bytes.get(index * width..(index + 1) * width).map(|bytes| header_number(bytes, layout)).ok_or_else(
@@ -344,15 +342,6 @@ fn content(bytes: &[u8], layout: &Layout<'_>, most: usize) -> Result<Vec<u8>, (S
         return Ok(Vec::new());
     }
     let (blocks, block_size, last_size) = (number(0)?, number(1)?, number(2)?);
-    // what the header promises is asked of before anything is made of it: a small file could fill the memory
-    let last = if last_size > 0 { last_size } else { block_size };
-    let promised = block_size.saturating_mul(blocks.saturating_sub(1)).saturating_add(last);
-    if blocks > 0 && promised > most {
-        return Err((
-            format!("{promised} bytes once inflated"),
-            format!("{most} bytes at most for the counts of this piece"),
-        ));
-    }
     let mut plain = Vec::new();
     let mut start =
         blocks.checked_add(3).and_then(|numbers| numbers.checked_mul(width)).unwrap_or(usize::MAX);

@@ -128,9 +128,6 @@ fn appended<'a>(
     Ok(Some(Appended { bytes, base64, position: element.text_position + start + 1, unclaimed }))
 }
 
-/// Most nodes of a cell: of a polyhedron or a polygon there may be more than of elements.
-const MOST_NODES: usize = 256;
-
 fn read_piece(document: &Document<'_>, piece: usize, layout: &Layout<'_>) -> Result<Grid, Fault> {
     let element = &document.elements[piece];
     let count = |key: &str| -> Result<usize, Fault> {
@@ -143,22 +140,22 @@ fn read_piece(document: &Document<'_>, piece: usize, layout: &Layout<'_>) -> Res
 
     let points = document.child(piece, "Points")?;
     let points = &document.elements[document.child(points, "DataArray")?];
-    let coordinates = array::read::<f64>(document, points, layout, point_count.saturating_mul(3))?;
+    let coordinates = array::read::<f64>(document, points, layout)?;
     check_length(document, points, "coordinates", coordinates.len(), point_count, 3)?;
 
     let cells = document.child(piece, "Cells")?;
-    let list = |name: &str, most: usize| -> Result<(&Element<'_>, Vec<i64>), Fault> {
+    let list = |name: &str| -> Result<(&Element<'_>, Vec<i64>), Fault> {
         let mut arrays = document.children(cells, "DataArray");
         let found = arrays.find(|(_, element)| element.attribute("Name") == Some(name));
         let (_, element) = found.ok_or_else(|| {
             let position = document.elements[cells].position;
             document.fault(position, format!("the array `{name}` of the cells"), "missing", "a <DataArray>")
         })?;
-        Ok((element, array::read(document, element, layout, most)?))
+        Ok((element, array::read(document, element, layout)?))
     };
-    let (_, connectivity) = list("connectivity", cell_count.saturating_mul(MOST_NODES))?;
-    let (offsets_element, offsets) = list("offsets", cell_count)?;
-    let (types_element, types) = list("types", cell_count)?;
+    let (_, connectivity) = list("connectivity")?;
+    let (offsets_element, offsets) = list("offsets")?;
+    let (types_element, types) = list("types")?;
     check_length(document, offsets_element, "offsets", offsets.len(), cell_count, 1)?;
     check_length(document, types_element, "types", types.len(), cell_count, 1)?;
 
@@ -189,7 +186,7 @@ fn read_field(
             document.fault(element.position, subject, given, format!("1 to {MOST_COMPONENTS}"))
         })?;
     let components = components.max(1);
-    let values = array::read::<f64>(document, element, layout, tuples.saturating_mul(components))?;
+    let values = array::read::<f64>(document, element, layout)?;
     check_length(document, element, name, values.len(), tuples, components)?;
     Ok(Field::new(name, components, values))
 }

@@ -79,7 +79,7 @@ fn scale_doubt(mesh: &Mesh) -> Option<String> {
     let hint = if largest > USUAL[1] { ": in millimetres it takes scale=0.001" } else { "" };
     (largest > 0.0 && !(USUAL[0]..=USUAL[1]).contains(&largest)).then(|| {
         format!(
-            "the surface measures {:.4} x {:.4} x {:.4} m, an unusual size for a soft body{hint}",
+            "the surface measures {:.3e} x {:.3e} x {:.3e} m, an unusual size for a soft body{hint}",
             extent.x, extent.y, extent.z
         )
     })
