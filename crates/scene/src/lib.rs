@@ -24,6 +24,8 @@ mod values;
 pub use adjust::Adjustable;
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{Measurement, ProbeInfo};
-pub use scene::{BodyInfo, FramesInfo, Scene, SkinInfo, read_again, read_file, read_spec, read_text};
+pub use scene::{
+    BodyInfo, FramesInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec, read_text,
+};
 pub use schema::schema;
 pub use spec::Spec;

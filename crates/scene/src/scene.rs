@@ -22,6 +22,7 @@ use crate::inputs::{Inputs, Library};
 use crate::measure::ProbeInfo;
 use crate::source::{Source, Sources};
 use crate::spec::Spec;
+use crate::spec::body::Body;
 use crate::spec::expect::Expect;
 use crate::spec::picture::PictureView;
 use crate::spec::world::RunSpec;
@@ -65,11 +66,39 @@ pub struct BodyInfo {
     pub surface: TriangleSurface,
     /// Name of its elastic force.
     pub force: String,
+    pub laws: LawsInfo,
     /// What carries it, where that is not its points.
     pub frames: Option<FramesInfo>,
     /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
     /// where no body is a network.
     pub radii: Vec<f64>,
+}
+
+/// The laws of a body's cells.
+#[derive(Clone, Debug)]
+pub struct LawsInfo {
+    /// Of the body, then of its regions, each with the name of its region; of none where links have laws of their own.
+    pub names: Vec<String>,
+    /// Of each cell its number among the names.
+    pub of_cell: Vec<u16>,
+    /// That of cells which exceed a criterion.
+    pub second: Option<String>,
+}
+
+impl LawsInfo {
+    fn new(spec: &Body, of_cell: Vec<u16>) -> Self {
+        let main = spec.material.iter().map(|law| law.entry.name.to_owned());
+        // those without a law or a region have no number either
+        let whole = spec.regions.iter().filter(|part| part.region.is_some());
+        let parts =
+            whole.filter_map(|part| Some(format!("{} ({})", part.material.as_ref()?.entry.name, part.name)));
+        let second = spec.adapt.as_ref().and_then(|adapt| adapt.material.as_ref());
+        Self {
+            names: main.chain(parts).collect(),
+            of_cell,
+            second: second.map(|law| law.entry.name.to_owned()),
+        }
+    }
 }
 
 /// The frames that carry a body.
@@ -136,8 +165,25 @@ impl BodyInfo {
         Some(census(world, self.system, &self.force)?.level_of_point)
     }
 
+    /// Rows that are moved to move it: origins of its frames, points of all its meshes, or its own.
+    pub fn moving_rows(&self, world: &World) -> Vec<u32> {
+        if let Some(frames) = &self.frames {
+            return frames.rows.clone();
+        }
+        let forces = &world.model().systems[self.system].forces;
+        let own = forces.iter().find(|force| force.name() == self.force);
+        let rows = own.and_then(|force| Some(force.levels()?.rows())).unwrap_or_else(|| self.rows.clone());
+        (rows.start as u32..rows.end as u32).collect()
+    }
+
+    /// How many meshes it has, where it has levels.
+    pub fn level_count(&self, world: &World) -> Option<usize> {
+        Some(census(world, self.system, &self.force)?.active.len())
+    }
+
     pub(crate) fn new(placed: Placed, radii: Vec<f64>) -> Self {
-        let Placed { spec, system, rows, mesh, frames, .. } = placed;
+        let Placed { spec, system, rows, mesh, frames, materials, .. } = placed;
+        let laws = LawsInfo::new(spec, materials.of_cell);
         let surface = mesh.boundary_surface();
         let force = crate::compile::solid_name(&spec.name);
         let shown = spec.frames.as_ref().map_or(0, |frames| frames.shown as u32);
@@ -152,7 +198,7 @@ impl BodyInfo {
                 rows: frames.rows,
             }
         });
-        Self { name: spec.name.clone(), system, rows, mesh, surface, force, frames, radii }
+        Self { name: spec.name.clone(), system, rows, mesh, surface, force, laws, frames, radii }
     }
 }
 

@@ -2,13 +2,16 @@
 
 use rayon::prelude::*;
 use souple_engine::{CellField, LinkShown, World};
+use souple_io::picture::Colour;
 use souple_math::Vec3;
+use souple_run::Session;
 use souple_scene::BodyInfo;
 use souple_table::{Entry, Table};
 
+use crate::classes::{Classes, KINDS, LAWS, LEVELS};
 use crate::session::Shown;
 
-/// A number at each point of a body, or of each of its links.
+/// A number at each point of a body, of each of its cells or links.
 #[derive(Clone, Copy)]
 pub struct Field {
     pub unit: &'static str,
@@ -26,6 +29,8 @@ pub enum Source {
     Cells(fn(&CellField) -> f64),
     /// Of a link.
     Links(fn(&LinkShown) -> f64),
+    /// Of a cell the number of its class.
+    Classes(Classes),
 }
 
 const fn entry(
@@ -71,6 +76,9 @@ pub static FIELDS: Table<Field> = Table {
             Source::Links(|link| link.push),
             "of links, positive where they push their ends apart",
         ),
+        &entry("element", "", Source::Classes(KINDS), "the kinds of elements"),
+        &entry("law", "", Source::Classes(LAWS), "the law of each element, also where it changes"),
+        &entry("level", "", Source::Classes(LEVELS), "which of a body's meshes is at work"),
     ],
 };
 
@@ -139,15 +147,17 @@ fn contact_forces(world: &World, body: &BodyInfo) -> Vec<Vec3> {
 }
 
 impl Field {
-    /// A value at each point that is shown of a body, or at each of its `links`; `None` where it has no such field.
+    /// A value at each point that is shown of a body, or at each of its `links`, or at each triangle of its surface and then
+    /// at each cell if the inside is shown; `None` where it has no such field.
     pub fn values(
         &self,
-        world: &World,
+        session: &Session,
         body: &BodyInfo,
         shown: &Shown,
         with_inside: bool,
         links: &[LinkShown],
     ) -> Option<Vec<f32>> {
+        let world = &session.world;
         let points = &shown.points[..shown.count(with_inside)];
         match self.source {
             Source::Point(value) => {
@@ -167,6 +177,13 @@ impl Field {
             Source::Links(value) if !links.is_empty() => {
                 Some(links.iter().map(|link| value(link) as f32).collect())
             }
+            Source::Classes(_) if body.surface.triangles.is_empty() => None,
+            Source::Classes(classes) => {
+                let of_cells = (classes.of)(session, body)?;
+                let outer = body.surface.cells.iter().map(|cell| of_cells[*cell as usize]);
+                let inner = if with_inside { &of_cells[..] } else { &[] };
+                Some(outer.chain(inner.iter().copied()).map(|class| class as f32).collect())
+            }
             Source::Links(_) => None,
         }
     }
@@ -175,7 +192,16 @@ impl Field {
     pub fn of(&self) -> &'static str {
         match self.source {
             Source::Links(_) => "links",
+            Source::Classes(_) => "cells",
             Source::Point(_) | Source::Weights(_) | Source::Cells(_) => "points",
+        }
+    }
+
+    /// Names and colours of what its numbers stand for; `None` where they are quantities.
+    pub fn classes(&self, session: &Session) -> Option<Vec<(String, Colour)>> {
+        match self.source {
+            Source::Classes(classes) => Some((classes.all)(session)),
+            _ => None,
         }
     }
 }

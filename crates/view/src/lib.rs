@@ -5,6 +5,7 @@
 //! do holds up the world. The protocol is in `docs/protocol.md`.
 
 mod catalogue;
+mod classes;
 mod dropped;
 mod fields;
 mod guard;

@@ -24,6 +24,7 @@ use crate::Session;
 pub use figure::{Arrows, Figure, Floor};
 pub use film::{FilmError, write_film};
 pub use gap::GAP;
+pub use quantity::number_of;
 pub use stage::{Stage, obstacles_of};
 
 /// The map whose colours mean what a quantity says, `element` or `adaptation`; `None` where any will do.

@@ -14,7 +14,7 @@ const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 const ELEMENT: &str = "element";
 
 /// The number of a kind among [`ELEMENT_KINDS`], which has one for linear and quadratic elements alike.
-pub(super) fn number_of(kind: ElementKind) -> usize {
+pub fn number_of(kind: ElementKind) -> usize {
     let name = kind.corners().name().trim_end_matches(|letter: char| letter.is_ascii_digit());
     ELEMENT_KINDS.iter().position(|known| *known == name).unwrap_or(ELEMENT_KINDS.len() - 1)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 use souple_engine::obstacle::{Form, Obstacle, Side};
-use souple_io::picture::COLOUR_MAPS;
+use souple_io::picture::{COLOUR_MAPS, Colour};
 use souple_run::Session;
 use souple_scene::{Adjustable, BodyInfo, ProbeInfo, SkinInfo};
 use souple_table::{Entry, Kind};
@@ -96,7 +96,7 @@ impl Stage {
             "skins": skins.iter().map(skin).collect::<Vec<_>>(),
             "obstacles": self.obstacles().iter().map(obstacle_to_json).collect::<Vec<_>>(),
             "probes": probes.iter().map(probe).collect::<Vec<_>>(),
-            "fields": FIELDS.entries.iter().map(field_to_json).collect::<Vec<_>>(),
+            "fields": FIELDS.entries.iter().map(|field| field_to_json(field, self.session())).collect::<Vec<_>>(),
             "arrows": ARROWS.entries.iter().map(arrow_to_json).collect::<Vec<_>>(),
             "counts": souple_run::counts(world, bodies),
             "warnings": warnings,
@@ -130,9 +130,16 @@ impl Stage {
     }
 }
 
-fn field_to_json(field: &&Entry<Field>) -> Value {
+fn field_to_json(field: &Entry<Field>, session: &Session) -> Value {
     let Entry { name, summary, build, .. } = field;
-    json!({"name": name, "summary": summary, "unit": build.unit, "of": build.of()})
+    let class = |(name, colour): (String, Colour)| json!({"name": name, "colour": hexadecimal(colour)});
+    let classes = build.classes(session).map(|all| all.into_iter().map(class).collect::<Vec<_>>());
+    json!({"name": name, "summary": summary, "unit": build.unit, "of": build.of(), "classes": classes})
+}
+
+fn hexadecimal(colour: Colour) -> String {
+    let [red, green, blue] = colour.to_screen();
+    format!("{red:02x}{green:02x}{blue:02x}")
 }
 
 fn arrow_to_json(arrow: &&Entry<ArrowKind>) -> Value {
@@ -168,10 +175,7 @@ fn adjustable_to_json(adjustable: &Adjustable) -> Value {
 /// Colour maps as 256 colours of six hexadecimal digits, the same as in pictures.
 pub fn colour_maps() -> Value {
     let map = |entry: &&souple_table::Entry<souple_io::picture::ColourMap>| {
-        let colour = |step: i32| {
-            let [red, green, blue] = entry.build.colour(f64::from(step) / 255.0).to_screen();
-            format!("{red:02x}{green:02x}{blue:02x}")
-        };
+        let colour = |step: i32| hexadecimal(entry.build.colour(f64::from(step) / 255.0));
         json!({"name": entry.name, "summary": entry.summary, "colours": (0..256).map(colour).collect::<String>()})
     };
     COLOUR_MAPS.entries.iter().map(map).collect()

@@ -1,5 +1,7 @@
 //! Hands on the world: how firmly they hold, and what they do becomes edits.
 
+use std::ops::Range;
+
 use souple_engine::hand::hand_name;
 use souple_engine::steppers::Stability;
 use souple_engine::{Edit, Force, Grip, Hand, Tool, World};
@@ -215,14 +217,27 @@ fn pressed(held: &Holding, world: &World) -> Vec3 {
 }
 
 /// Edits that need no memory of hands.
-pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo, shown: &Shown) -> Vec<Edit> {
+///
+/// # Errors
+/// Points of the body cannot be held.
+pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo, shown: &Shown) -> Result<Vec<Edit>, String> {
     let system = body.system;
+    let kinematics = &world.model().systems[system].kinematics;
     let blocks = |points: &[u32]| {
         let row = |point: &u32| body.rows.start as u32 + shown.points[*point as usize];
-        let kinematics = &world.model().systems[system].kinematics;
         points.iter().map(row).filter_map(|row| kinematics.point_block(row)).collect::<Vec<u32>>()
     };
-    match wish {
+    Ok(match wish {
+        Wish::Pin { .. } if body.frames.is_some() => {
+            return Err(format!(
+                "frames carry body `{}`: its points cannot be pinned; hold them by a hand",
+                body.name
+            ));
+        }
+        Wish::Pin { .. } if body.level_count(world).is_some() => {
+            let why = "points of its other meshes would go on without those seen";
+            return Err(format!("body `{}` has levels: {why}; hold it by a hand", body.name));
+        }
         Wish::Pin { points, .. } => {
             blocks(points).into_iter().map(|block| Edit::Pin { system, block }).collect()
         }
@@ -230,12 +245,17 @@ pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo, shown: &Shown) -> V
             blocks(points).into_iter().map(|block| Edit::Unpin { system, block }).collect()
         }
         Wish::Throw { velocity, .. } => {
-            let kinematics = &world.model().systems[system].kinematics;
-            let block = |row: usize| kinematics.point_block(row as u32);
-            let ends = block(body.rows.start).zip(block(body.rows.end - 1));
-            let push = |(first, last)| Edit::Push { system, blocks: first..last + 1, velocity: *velocity };
-            ends.map(push).into_iter().collect()
+            let block = |row: &u32| kinematics.block_of(*row);
+            // neighbours together: a body of points is one edit
+            let mut runs: Vec<Range<u32>> = Vec::new();
+            for block in body.moving_rows(world).iter().map(block) {
+                match runs.last_mut() {
+                    Some(run) if run.end == block => run.end += 1,
+                    _ => runs.push(block..block + 1),
+                }
+            }
+            runs.into_iter().map(|blocks| Edit::Push { system, blocks, velocity: *velocity }).collect()
         }
         _ => Vec::new(),
-    }
+    })
 }

@@ -3,6 +3,7 @@
 use souple_engine::World;
 use souple_engine::obstacle::{Form, Obstacle};
 use souple_math::{Mat3, Vec3};
+use souple_run::Session;
 use souple_scene::{BodyInfo, SkinInfo};
 
 use super::Shown;
@@ -23,14 +24,15 @@ impl Stage {
         self.average();
         let number = self.next_frame();
         let wanted = self.wanted();
-        let world = &self.session().world;
+        let session = self.session();
+        let world = &session.world;
         let time = world.time();
-        let bodies = self.session().bodies.iter().zip(self.shown());
+        let bodies = session.bodies.iter().zip(self.shown());
         let mut positions: Vec<_> =
             bodies.clone().map(|(body, shown)| positions(world, body, shown, wanted.inside)).collect();
         let bodies = bodies
             .zip(&mut positions)
-            .map(|((body, shown), positions)| of_body(world, body, shown, &wanted, positions))
+            .map(|((body, shown), positions)| of_body(session, body, shown, &wanted, positions))
             .collect();
         let is_bounded = |obstacle: &&Obstacle| matches!(obstacle.form, Form::Surface { .. });
         let obstacles = self.obstacles().iter().filter(is_bounded);
@@ -45,7 +47,7 @@ impl Stage {
             hands: self.hands().shown(world),
             poses: obstacles.map(|obstacle| pose(obstacle, time)).collect(),
             bodies,
-            skins: self.session().skins.iter().map(|skin| of_skin(world, skin)).collect(),
+            skins: session.skins.iter().map(|skin| of_skin(world, skin)).collect(),
         };
         frame.encode()
     }
@@ -63,15 +65,16 @@ fn positions<'a>(
 }
 
 fn of_body<'a>(
-    world: &World,
+    session: &Session,
     body: &BodyInfo,
     shown: &Shown,
     wanted: &Wanted,
     positions: &'a mut impl ExactSizeIterator<Item = Vec3>,
 ) -> FrameBody<'a> {
+    let world = &session.world;
     let links = souple_run::links_of(world, body);
     let field = |field: &usize| {
-        let values = FIELDS.entries[*field].build.values(world, body, shown, wanted.inside, &links);
+        let values = FIELDS.entries[*field].build.values(session, body, shown, wanted.inside, &links);
         Some((*field as u32, values?))
     };
     let arrow = |kind: &usize| {

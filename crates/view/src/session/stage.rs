@@ -272,19 +272,19 @@ impl Stage {
             }
             Wish::Pin { body, points } | Wish::Unpin { body, points } => {
                 self.check_points(*body, points)?;
-                self.edit(self.edits_of(*body, &wish))?;
+                self.edit(self.edits_of(*body, &wish)?)?;
                 hub.tell_all(&self.pins());
             }
             Wish::Throw { body, .. } => {
                 self.check_points(*body, &[])?;
-                self.edit(self.edits_of(*body, &wish))?;
+                self.edit(self.edits_of(*body, &wish)?)?;
             }
             _ => {}
         }
         Ok(())
     }
 
-    fn edits_of(&self, body: usize, wish: &Wish) -> Vec<Edit> {
+    fn edits_of(&self, body: usize, wish: &Wish) -> Result<Vec<Edit>, String> {
         hands::edits_of(wish, &self.session.world, &self.session.bodies[body], &self.shown[body])
     }
 

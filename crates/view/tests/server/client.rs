@@ -165,6 +165,8 @@ pub struct Frame {
     /// Fields and kinds of arrows of the first body.
     pub field_count: u32,
     pub arrow_count: u32,
+    /// Values of the fields of the first body.
+    pub values: Vec<Vec<f32>>,
     /// Frames that carry each body.
     pub frame_counts: Vec<u32>,
     /// Links that do not hold.
@@ -189,12 +191,17 @@ impl Frame {
             let float = |place: usize| f32::from_le_bytes(bytes[place..place + 4].try_into().unwrap());
             let height = |k: usize| float(at + 12 * k + 4);
             frame.height.push((0..points as usize).map(height).sum::<f32>() / points as f32);
-            if frame.point_counts.is_empty() {
+            let is_first = frame.point_counts.is_empty();
+            if is_first {
                 (frame.field_count, frame.arrow_count) = (fields, arrows);
             }
             at += 12 * points as usize;
             for _ in 0..fields {
-                at += 8 + 4 * u32_at(at + 4) as usize;
+                let count = u32_at(at + 4) as usize;
+                if is_first {
+                    frame.values.push((0..count).map(|k| float(at + 8 + 4 * k)).collect());
+                }
+                at += 8 + 4 * count;
             }
             at += arrows as usize * (4 + 12 * points as usize);
             frame.torn += bytes[at..at + links as usize].iter().filter(|state| **state == 0).count();

@@ -137,6 +137,74 @@ fn the_inside_comes_on_demand() {
     page.frame_where(|frame| frame.point_counts == [66]);
 }
 
+/// Colours tell the cells of a surface apart, then those of the inside: by kind, by law, by the mesh at work.
+#[test]
+fn cells_are_told_apart() {
+    let region = r#"
+    [bodies.block.regions.side]
+    region = { box = [[-1, -1, -1], [0.05, 1, 1]] }
+    material = { name = "corotational", youngs_modulus = "80 kPa", poissons_ratio = 0.3, density = 1000 }
+    "#;
+    let world = World::of(&format!("{BLOCK}{region}"));
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    let names = |field: &str| {
+        let fields = scene["fields"].as_array().expect("there are fields");
+        let found = fields.iter().find(|entry| entry["name"] == field).expect("the field is there");
+        assert_eq!(found["of"], "cells");
+        let classes = found["classes"].as_array().expect("they have names");
+        classes.iter().map(|class| class["name"].as_str().unwrap_or("").to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(names("law"), ["stable_neo_hookean", "corotational (side)"]);
+    assert!(names("level").is_empty());
+    let hex = names("element").iter().position(|name| name == "hex").expect("a kind of its own");
+
+    page.wish(json!({"do": "colour", "field": "element"}));
+    let triangles = scene["bodies"][0]["surface_triangles"].as_u64().expect("a number") as usize;
+    let frame = page.frame_where(|frame| !frame.values.is_empty());
+    assert_eq!(frame.values[0], vec![hex as f32; triangles]);
+
+    page.wish(json!({"do": "colour", "field": "law"}));
+    page.wish(json!({"do": "inside", "is_shown": true}));
+    let frame = page.frame_where(|frame| frame.values.first().is_some_and(|values| values.len() > triangles));
+    // the block is four cells long, and one layer of eight has the other law
+    let of_cells = &frame.values[0][triangles..];
+    assert_eq!(of_cells.len(), 32);
+    assert_eq!(of_cells.iter().filter(|law| **law == 1.0).count(), 8);
+}
+
+/// Bodies that frames carry, or meshes of several sizes, fly when they are thrown; points of theirs that could not be held
+/// are refused in words.
+#[test]
+fn what_carries_a_body_is_thrown() {
+    let coarse = r#"
+    [bodies.bar.levels]
+    coarser = [{ mesh = { generate = "bar", size = [0.4, 0.1, 0.1], cells = [2, 1, 1], element = "tet4" } }]
+    fixed = "0"
+    "#;
+    let fine = CARRIED.split("[bodies.bar.frames]").next().expect("a body stands before its frames");
+    let of_levels = fine
+        .replace(
+            "[world]",
+            "[systems.main]\n    stepper = { name = \"staggered\", halvings = 6 }\n    [world]",
+        )
+        .replace("hex8", "tet4");
+    for (scene, reason) in
+        [(CARRIED.to_owned(), "frames carry"), (format!("{of_levels}{coarse}"), "has levels")]
+    {
+        let world = World::of(&scene);
+        let mut page = Page::open(&world);
+        page.document("scene");
+        let start = page.frame();
+        page.wish(json!({"do": "throw", "body": 0, "velocity": [0, 1, 0]}));
+        let flown = page.frame_where(|frame| frame.time > start.time + 0.2);
+        assert!(flown.height[0] > start.height[0] + 0.05, "{start:?} {flown:?}");
+        page.wish(json!({"do": "pin", "body": 0, "points": [0]}));
+        let refused = page.document("refused")["message"].as_str().expect("words").to_owned();
+        assert!(refused.contains(reason), "{refused}");
+    }
+}
+
 /// A tool presses the top of a block down, is seen by all pages, and is gone when its page lets go; what it did is
 /// repeated from the recording.
 #[test]

@@ -189,7 +189,7 @@ class Page {
     if (look.arrows !== asked.arrows) this.send({ do: "arrows", of: look.arrows });
     if (inside !== asked.inside) this.send({ do: "inside", is_shown: inside });
     this.asked = { field: look.field, arrows: look.arrows, inside };
-    if (map) this.picture.setColours(index, fields[index]?.of ?? "points", map, null);
+    if (map) this.picture.setColours(index, fields[index], map);
     this.legend.set(fields[index] ?? null, map);
     this.picture.setStyle(look.style, this.dark);
     this.picture.setCut(look.cut);
@@ -227,7 +227,7 @@ class Page {
         this.picture.show(frame);
         this.transport.show(frame);
         this.stages.show(frame);
-        this.legend.show(this.picture.range);
+        this.legend.show(this.picture.range, this.picture.classes);
         document.body.dataset.frame = String(frame.number);
         document.body.dataset.time = String(frame.time);
         document.body.dataset.cells = String(this.picture.cellCount);

@@ -70,7 +70,16 @@ export interface FieldInfo {
   name: string;
   summary: string;
   unit: string;
-  of: "points" | "links";
+  /** Of cells: a value for each triangle of the surface, then one for each cell while the inside comes as well. */
+  of: "points" | "links" | "cells";
+  /** What the numbers stand for; null: they are quantities. */
+  classes: Class[] | null;
+}
+
+export interface Class {
+  name: string;
+  /** Six hexadecimal digits. */
+  colour: string;
 }
 
 export interface ArrowInfo {

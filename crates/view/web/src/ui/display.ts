@@ -84,11 +84,13 @@ export class Display {
   }
 
   setFields(fields: FieldInfo[]): void {
-    const entry = ({ name, summary, unit }: FieldInfo) =>
-      element("option", { value: name, title: `${summary} [${unit || "1"}]` }, label(name));
-    this.field.replaceChildren(element("option", { value: "" }, "Material"), ...fields.map(entry));
+    const entry = ({ name, summary, unit, classes }: FieldInfo) =>
+      element("option", { value: name, title: classes ? summary : `${summary} [${unit || "1"}]` }, label(name));
+    // bodies that are not told apart so have no classes
+    const here = fields.filter(({ classes }) => classes === null || classes.length > 0);
+    this.field.replaceChildren(element("option", { value: "" }, "Material"), ...here.map(entry));
     const wanted = remembered("field") ?? "";
-    this.field.value = fields.some((field) => field.name === wanted) ? wanted : "";
+    this.field.value = here.some((field) => field.name === wanted) ? wanted : "";
     this.read();
   }
 

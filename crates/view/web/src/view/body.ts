@@ -20,7 +20,9 @@ import {
 import type { Object3D, Plane } from "three";
 import type { BodyFrame, BodyInfo, FieldInfo, InsideShape, NetworkShape, Surface } from "../protocol";
 import { Axes } from "./axes";
+import { Facets } from "./facets";
 import { Inside } from "./inside";
+import type { Paint } from "./inside";
 import { Network } from "./network";
 import { smoothNormals } from "./normals";
 import { BODY_COLOURS, paint } from "./palette";
@@ -40,6 +42,9 @@ export class Body {
   private readonly network: Network | null;
   private readonly axes: Axes;
   private inside: Inside | null = null;
+  /** Made when cells are first coloured. */
+  private facets: Facets | null = null;
+  private ofCells = false;
   private last: BodyFrame | null = null;
   private cut: Plane | null = null;
   private explode = 0;
@@ -143,7 +148,11 @@ export class Body {
       material.roughness = values ? 0.7 : 0.5;
       material.needsUpdate = true;
     }
-    if (values) {
+    this.setOfCells(of === "cells" && values !== undefined);
+    const count = this.triangles.length / 3;
+    if (values && this.ofCells) {
+      this.facets?.update(this.positions, this.normals, values, map);
+    } else if (values) {
       paint(values, range, map, this.colours.array as Float32Array);
       this.colours.needsUpdate = true;
     }
@@ -151,7 +160,9 @@ export class Body {
     this.network?.update(this.last, values, of, range, map);
     // a frame that left before the page looked inside has no points there
     const hasInside = this.last.positions.length > this.positions.length || this.info.points === this.info.surface_points;
-    if (hasInside) this.inside?.update(this.last.positions, { values, range, map }, this.cut, this.explode);
+    if (!hasInside) return;
+    const inner: Paint = { values: this.ofCells ? values?.subarray(count) : values, ofCells: this.ofCells, range, map };
+    this.inside?.update(this.last.positions, inner, this.cut, this.explode);
   }
 
   setStyle(style: Style, dark: boolean): void {
@@ -228,6 +239,7 @@ export class Body {
     this.pins?.dispose();
     this.network?.dispose();
     this.inside?.dispose();
+    this.facets?.dispose();
     this.axes.dispose();
   }
 
@@ -235,9 +247,23 @@ export class Body {
   private setVisible(): void {
     const isApart = this.explode > 0 && this.inside !== null;
     const isSurface = !isApart && !this.info.is_worn;
-    this.mesh.visible = isSurface;
+    this.mesh.visible = isSurface && !this.ofCells;
+    if (this.facets) {
+      this.facets.mesh.visible = isSurface && this.ofCells;
+      this.facets.mesh.castShadow = this.mesh.castShadow;
+    }
     this.edges.visible = isSurface && this.style !== "smooth";
     if (this.inside) this.inside.group.visible = !this.info.is_worn;
+  }
+
+  private setOfCells(ofCells: boolean): void {
+    if (ofCells === this.ofCells) return;
+    this.ofCells = ofCells;
+    if (ofCells && !this.facets) {
+      this.facets = new Facets(this.triangles, this.mesh.material);
+      this.group.add(this.facets.mesh);
+    }
+    this.setVisible();
   }
 
   private moved(): void {

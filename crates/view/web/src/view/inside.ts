@@ -6,9 +6,10 @@ import type { InsideShape } from "../protocol";
 import { BODY_COLOURS, paint } from "./palette";
 import type { Range } from "./palette";
 
-/** Values of points and how they are coloured; none where a body has its own colour. */
+/** Values of points or cells and how they are coloured; none where a body has its own colour. */
 export interface Paint {
   values: Float32Array | undefined;
+  ofCells: boolean;
   range: Range;
   map: Float32Array;
 }
@@ -48,7 +49,8 @@ export class Inside {
   }
 
   /** The section of each tetrahedron that the plane meets. */
-  private cutThrough(positions: Float32Array, { values, range, map }: Paint, plane: Plane): void {
+  private cutThrough(positions: Float32Array, paint: Paint, plane: Plane): void {
+    const values = valueBy(paint);
     const count = positions.length / 3;
     if (this.heights.length !== count) this.heights = new Float32Array(count);
     const { heights } = this;
@@ -81,16 +83,17 @@ export class Inside {
           const a = around[2 * corner]!;
           const b = around[2 * corner + 1]!;
           const share = heights[a]! / (heights[a]! - heights[b]!);
-          sheet.between(positions, a, b, share, values);
+          sheet.between(positions, a, b, share, values(a, tetrahedra[t + 4]!), values(b, tetrahedra[t + 4]!));
         }
       }
     }
     // outward is towards what was cut away
-    sheet.end({ values, range, map }, [-normal.x, -normal.y, -normal.z]);
+    sheet.end(paint, [-normal.x, -normal.y, -normal.z]);
   }
 
   /** All cells, each away from the middle by a part of its distance. */
   private takeApart(positions: Float32Array, paint: Paint, explode: number): void {
+    const values = valueBy(paint);
     const { triangles } = this.shape;
     const middle = [0, 0, 0];
     for (let i = 0; i < positions.length; i++) middle[i % 3]! += (3 * positions[i]!) / positions.length;
@@ -106,12 +109,18 @@ export class Inside {
       const corners = (3 * (end - first)) / 4;
       const offset = own.map((sum, k) => (sum / corners - middle[k]!) * explode);
       for (let t = first; t < end; t += 4) {
-        for (let k = 0; k < 3; k++) sheet.moved(positions, triangles[t + k]!, offset, paint.values);
+        for (let k = 0; k < 3; k++) sheet.moved(positions, triangles[t + k]!, offset, values(triangles[t + k]!, cell));
       }
       first = end;
     }
     sheet.end(paint, null);
   }
+}
+
+/** The value at a point of a cell. */
+function valueBy({ values, ofCells }: Paint): (point: number, cell: number) => number {
+  if (!values) return () => 0;
+  return ofCells ? (_, cell) => values[cell]! : (point) => values[point]!;
 }
 
 /** Triangles that are made anew for each picture, three corners each. */
@@ -136,21 +145,21 @@ class Sheet {
   }
 
   /** A corner between two points. */
-  between(positions: Float32Array, a: number, b: number, share: number, values: Float32Array | undefined): void {
+  between(positions: Float32Array, a: number, b: number, share: number, valueA: number, valueB: number): void {
     const at = this.room();
     for (let k = 0; k < 3; k++) {
       const from = positions[3 * a + k]!;
       this.places[at + k] = from + share * (positions[3 * b + k]! - from);
     }
-    if (values) this.numbers[this.count] = values[a]! + share * (values[b]! - values[a]!);
+    this.numbers[this.count] = valueA + share * (valueB - valueA);
     this.count += 1;
   }
 
   /** A corner at a point, moved. */
-  moved(positions: Float32Array, point: number, offset: number[], values: Float32Array | undefined): void {
+  moved(positions: Float32Array, point: number, offset: number[], value: number): void {
     const at = this.room();
     for (let k = 0; k < 3; k++) this.places[at + k] = positions[3 * point + k]! + offset[k]!;
-    if (values) this.numbers[this.count] = values[point]!;
+    this.numbers[this.count] = value;
     this.count += 1;
   }
 

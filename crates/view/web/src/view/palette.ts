@@ -1,7 +1,7 @@
 // Colours of bodies, and maps from values to colours.
 
 import { Color } from "three";
-import type { ColourMap } from "../protocol";
+import type { Class, ColourMap } from "../protocol";
 
 /** Bodies in colours of their own, where no field colours them: the same as in pictures. */
 export const BODY_COLOURS = [0xd67a68, 0x7096c4, 0xa0b260, 0xcea860, 0xa080b8];
@@ -21,11 +21,22 @@ export function linearColours(map: ColourMap): Float32Array {
   return colours;
 }
 
+/** A map in which the colour of a class stands at its number, see `CLASS_RANGE`. */
+export function coloursOf(classes: Class[]): Float32Array {
+  const colours = new Float32Array(3 * 256);
+  const colour = new Color();
+  classes.slice(0, 256).forEach(({ colour: digits }, index) => colour.setStyle(`#${digits}`).toArray(colours, 3 * index));
+  return colours;
+}
+
 /** Values of the first and the last colour. */
 export interface Range {
   low: number;
   high: number;
 }
+
+/** The range in which numbers of classes are places in a map. */
+export const CLASS_RANGE: Range = { low: 0, high: 255 };
 
 /** A colour as three numbers in linear light. */
 export function linearOf(colour: number): Float32Array {

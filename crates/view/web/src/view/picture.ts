@@ -19,13 +19,13 @@ import {
 import type { BufferGeometry, Object3D, Texture } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
-import type { FieldInfo, Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
+import type { ColourMap, FieldInfo, Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
 import { Arrows } from "./arrows";
 import { Body } from "./body";
 import type { Style } from "./body";
 import { Hands } from "./hands";
 import { Obstacles } from "./obstacles";
-import { linearColours } from "./palette";
+import { CLASS_RANGE, coloursOf, linearColours } from "./palette";
 import type { Range } from "./palette";
 import { Quality } from "./quality";
 import { Skin } from "./skin";
@@ -87,7 +87,9 @@ export class Picture {
   private readonly cutPlane = new Plane();
   /** Of the values seen lately. */
   range: Range = { low: 0, high: 1 };
-  private fixedRange = false;
+  /** Numbers of the classes that are seen, in order; none where colours stand for quantities. */
+  classes: number[] = [];
+  private hasClasses = false;
   private hasSkins = false;
 
   constructor(
@@ -202,13 +204,15 @@ export class Picture {
     frame.bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.of, this.range, this.colours));
   }
 
-  setColours(field: number, of: FieldInfo["of"], map: Parameters<typeof linearColours>[0], fixed: Range | null): void {
-    if (field !== this.field) this.range = { low: Infinity, high: -Infinity };
-    this.field = field;
-    this.of = of;
-    this.colours = linearColours(map);
-    this.fixedRange = fixed !== null;
-    if (fixed) this.range = fixed;
+  /** Colours by a field with this number; `map` is for quantities, classes have colours of their own. */
+  setColours(number: number, field: FieldInfo | undefined, map: ColourMap): void {
+    if (number !== this.field) this.range = { low: Infinity, high: -Infinity };
+    this.field = number;
+    this.of = field?.of ?? "points";
+    const classes = field?.classes ?? null;
+    this.hasClasses = classes !== null;
+    this.colours = classes ? coloursOf(classes) : linearColours(map);
+    if (classes) this.range = CLASS_RANGE;
   }
 
   setStyle(style: Style, dark: boolean): void {
@@ -340,7 +344,13 @@ export class Picture {
 
   /** Widens the range of colours at once, and lets it shrink slowly: a legend that jumps cannot be read. */
   private follow(values: (Float32Array | undefined)[]): void {
-    if (this.fixedRange) return;
+    this.classes = [];
+    if (this.hasClasses) {
+      const seen = new Set<number>();
+      for (const list of values) list?.forEach((value) => seen.add(value));
+      this.classes = [...seen].sort((a, b) => a - b);
+      return;
+    }
     let low = Infinity;
     let high = -Infinity;
     for (const list of values) {
