@@ -119,6 +119,11 @@ impl Lattice {
         Ok(lattice)
     }
 
+    /// How many leaves have their middle inside.
+    pub fn inside_count(&self) -> usize {
+        self.leaves().filter(|leaf| self.value(leaf.centre()) < 0.0).count()
+    }
+
     /// The least value on its points.
     pub fn least_value(&self) -> f64 {
         self.corners.iter().chain(&self.centres).copied().fold(f64::INFINITY, f64::min)

@@ -40,7 +40,7 @@ enum Action {
         /// A surface file, or a name that `souple list bodies` prints
         input: String,
         out: PathBuf,
-        /// NAME=VALUE: size, count, growth, largest, size_inside, element, scale, and those of the shape
+        /// NAME=VALUE: size or count; growth, largest, size_inside or size_everywhere (formulas of x, y, z), element (tet4, hex_dominant), scale of a file, and those of the shape
         parameters: Vec<String>,
         #[arg(long)]
         json: bool,
@@ -270,7 +270,8 @@ fn shapes(mesh: &Mesh, quality: &[CellQuality]) -> Json {
     );
     let aspect = histogram(|cell| cell.aspect_ratio);
     let volume = histogram(|cell| cell.volume);
-    let worst = mesh.quality_summary(1).worst_cell;
+    let worst =
+        (0..quality.len()).min_by(|a, b| quality[*a].scaled_jacobian.total_cmp(&quality[*b].scaled_jacobian));
     json!({
         "dihedral_degrees": {
             "min": least.low,

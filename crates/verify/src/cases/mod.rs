@@ -14,6 +14,7 @@ mod frames;
 mod frequencies;
 mod implicit;
 mod levels;
+mod loads;
 mod long_beam;
 mod mixed_models;
 mod motion;
@@ -47,6 +48,7 @@ pub const TABLES: &[&[Case]] = &[
     motion::CASES,
     moving_frame::CASES,
     pressure::CASES,
+    loads::CASES,
     stepper_orders::CASES,
     energy::CASES,
     explicit::CASES,
