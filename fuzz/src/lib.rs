@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use souple_formal::{Condition, Formula, parse_quantity, parse_unit};
-use souple_io::{FORMATS, Output, read_dataset_bytes, read_particle_bytes};
+use souple_io::{FORMATS, Output, read_dataset_bytes, read_particle_bytes, read_series_bytes};
+use souple_sweep::Study;
 
 /// Reads a content; what is read must refer to points that exist, validate without a panic, and come back the
 /// same from the format's own writer.
@@ -54,6 +55,21 @@ pub fn read_scene(content: &[u8]) {
             let _ = (errors.to_string(), errors.to_json());
         }
     }
+}
+
+/// Reads a content as a list of frames.
+pub fn read_series(content: &[u8]) {
+    let Ok(frames) = read_series_bytes(Path::new("fuzzed.pvd"), content) else { return };
+    assert!(!frames.is_empty() && frames.iter().all(|(time, _)| time.is_finite()));
+}
+
+/// Reads a content as a study, what stands behind a line `--- table` as its table; each run has a value for each path.
+pub fn read_study(content: &[u8]) {
+    let Ok(text) = std::str::from_utf8(content) else { return };
+    let (study, table) = text.split_once("\n--- table\n").unwrap_or((text, ""));
+    let Ok(study) = Study::parse(Path::new("fuzzed.toml"), study, |_| Ok(table.to_owned())) else { return };
+    let count = study.paths().count();
+    assert!(study.runs.iter().all(|run| run.values.len() == count));
 }
 
 /// Reads a content as a table of particles and dresses them, where they are few.

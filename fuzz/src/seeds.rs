@@ -31,6 +31,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let particles = Path::new(&folder).join("particles");
     std::fs::create_dir_all(&particles)?;
     std::fs::write(particles.join("columns"), "x, y, z, radius, from\n0, 0, 0, 0.1, -1\n0.2, 0, 0, 0.1, 0\n")?;
+    let series = Path::new(&folder).join("series");
+    std::fs::create_dir_all(&series)?;
+    souple_io::Series::new(&series, "frames").push(0.5, &Output::new(&mesh))?;
+    // the frame itself is no list
+    std::fs::remove_file(series.join("frames_0000.vtu"))?;
+    let studies = Path::new(&folder).join("study");
+    std::fs::create_dir_all(&studies)?;
+    let vary = "scene = \"x.toml\"\nsteps = 20\n[vary]\n\"a.b\" = [1, 2.5]\nc = [\"tet4\", [1, 2]]\n\
+                [graphs.g]\nx = \"a.b\"\ny = \"tip.y\"\nlines = \"c\"\nlogarithmic = \"xy\"\n";
+    std::fs::write(studies.join("vary"), vary)?;
+    let table = "scene = \"x.toml\"\ntable = \"runs.csv\"\n--- table\na.b,c\n1,\"[1, 2]\"\n5 kPa,tet4\n";
+    std::fs::write(studies.join("table"), table)?;
     write_formulas(&Path::new(&folder).join("formula"))?;
     let mut words = Vec::new();
     collect_words(&souple_scene::schema(), &mut words);

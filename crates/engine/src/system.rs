@@ -48,8 +48,8 @@ pub struct SystemWorkspace {
     /// A buffer for steppers in the size of the configuration, likewise.
     pub configuration: Vec<Vec3>,
     pub found_pairs: Vec<Pair>,
-    /// A buffer for steppers that may have to take pairs back.
-    pub pairs: Vec<Pair>,
+    /// Where a step in parts is taken back to.
+    mark: Mark,
     /// Rows at the last search of pairs; every step begins with one, so nothing of it outlives the step.
     searched: Vec<Vec3>,
     /// Memories and pairs while they are moved on.
@@ -59,6 +59,14 @@ pub struct SystemWorkspace {
     pub implicit: Option<ImplicitBuffers>,
     pub staggered: StaggeredBuffers,
     pub stages: StageTimes,
+}
+
+/// What a solve that fails leaves other than it was.
+#[derive(Default)]
+struct Mark {
+    q: Vec<Vec3>,
+    pairs: Vec<Pair>,
+    searched: Vec<Vec3>,
 }
 
 /// Rows as they stand for one evaluation.
@@ -94,16 +102,35 @@ impl StageTimes {
 }
 
 impl SystemWorkspace {
+    /// Remembers configuration and pairs of a state, and where these were searched.
+    pub(crate) fn mark(&mut self, state: &SystemState) {
+        self.mark.q.clone_from(&state.q);
+        self.mark.pairs.clone_from(&state.pairs);
+        self.mark.searched.clone_from(&self.searched);
+    }
+
+    /// Takes a state back to the mark.
+    pub(crate) fn return_to_mark(&mut self, state: &mut SystemState) {
+        state.q.clone_from(&self.mark.q);
+        state.pairs.clone_from(&self.mark.pairs);
+        self.searched.clone_from(&self.mark.searched);
+    }
+
     /// Bytes held for a system, scratches of its forces included.
     pub fn bytes(&self, system: &System) -> usize {
         let Rows { positions, velocities, .. } = &self.rows;
+        let marked = [&self.mark.q, &self.mark.searched];
         let buffers = [positions, velocities, &self.row_force, &self.row_scratch, &self.searched];
-        let buffers = buffers.into_iter().chain(&self.blocks).chain([&self.taken_along, &self.configuration]);
+        let buffers = buffers
+            .into_iter()
+            .chain(&self.blocks)
+            .chain([&self.taken_along, &self.configuration])
+            .chain(marked);
         let scratches = system.forces.iter().zip(&self.scratches);
         buffers.map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
             + scratches.map(|(force, scratch)| force.scratch_bytes(scratch)).sum::<usize>()
             + size_of::<Pair>()
-                * (self.found_pairs.capacity() + self.pairs.capacity() + self.before.pairs.capacity())
+                * (self.found_pairs.capacity() + self.mark.pairs.capacity() + self.before.pairs.capacity())
             + 8 * self.before.memory.capacity()
             + self.tangent.bytes()
             + self.linear.bytes()
@@ -162,7 +189,7 @@ impl System {
             taken_along: Vec::new(),
             configuration: Vec::new(),
             found_pairs: Vec::new(),
-            pairs: Vec::new(),
+            mark: Mark::default(),
             searched: Vec::new(),
             before: SystemState::default(),
             tangent: Tangent::default(),

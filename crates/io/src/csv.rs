@@ -1,5 +1,6 @@
 //! Tables of numbers as CSV: probes over time.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use crate::{IoError, write_file};
@@ -33,7 +34,7 @@ pub fn write_csv(path: &Path, columns: &[Column]) -> Result<(), IoError> {
         ));
     }
     write_file(path, |out| {
-        let names: Vec<_> = columns.iter().map(|column| quoted(&column.name)).collect();
+        let names: Vec<_> = columns.iter().map(|column| csv_cell(&column.name)).collect();
         writeln!(out, "{}", names.join(","))?;
         for row in 0..rows {
             for (index, column) in columns.iter().enumerate() {
@@ -51,12 +52,12 @@ fn number(value: f64) -> String {
     if value.is_nan() { String::new() } else { format!("{value:?}") }
 }
 
-/// Quotes where commas, quotes or line ends ask for them (RFC 4180).
-fn quoted(name: &str) -> String {
-    if name.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", name.replace('"', "\"\""))
+/// A text as it stands between commas: in quotes where commas, quotes or line ends ask for them (RFC 4180).
+pub fn csv_cell(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
     } else {
-        name.to_owned()
+        Cow::Borrowed(text)
     }
 }
 

@@ -1,5 +1,6 @@
 //! A place in the bytes of a file, and numbers read from it as text or as binary.
 
+use std::cell::Cell;
 use std::fmt::Arguments;
 use std::str::FromStr;
 
@@ -24,12 +25,15 @@ pub enum Encoding {
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
     position: usize,
+    /// A position and the line ends before it, from the last place that was asked for: the places of all lines together
+    /// are one pass over the file.
+    counted: Cell<(usize, usize)>,
     pub encoding: Encoding,
 }
 
 impl<'a> Cursor<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, position: 0, encoding: Encoding::Text }
+        Self { bytes, position: 0, counted: Cell::new((0, 0)), encoding: Encoding::Text }
     }
 
     pub fn position(&self) -> usize {
@@ -46,14 +50,22 @@ impl<'a> Cursor<'a> {
 
     /// Here: a line for text, a byte for binary.
     pub fn place(&self) -> Place {
-        self.place_of(self.position)
+        match self.encoding {
+            Encoding::Text => Place::Line(1 + self.line_ends()),
+            Encoding::Binary(_) => Place::Byte(self.position),
+        }
     }
 
-    fn place_of(&self, position: usize) -> Place {
-        match self.encoding {
-            Encoding::Text => Place::Line(line_of(self.bytes, position)),
-            Encoding::Binary(_) => Place::Byte(position),
-        }
+    /// Line ends before the position.
+    fn line_ends(&self) -> usize {
+        let (from, ends) = match self.counted.get() {
+            // a cursor that was set back
+            (from, _) if from > self.position => (0, 0),
+            counted => counted,
+        };
+        let ends = ends + count_line_ends(&self.bytes[from..self.position]);
+        self.counted.set((self.position, ends));
+        ends
     }
 
     /// The fault of what has just been read.
@@ -193,7 +205,17 @@ impl<'a> Cursor<'a> {
 
 /// The number of the line of a position, from 1.
 pub(crate) fn line_of(bytes: &[u8], position: usize) -> usize {
-    1 + bytes[..position.min(bytes.len())].iter().filter(|byte| **byte == b'\n').count()
+    1 + count_line_ends(&bytes[..position.min(bytes.len())])
+}
+
+fn count_line_ends(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|byte| **byte == b'\n').count()
+}
+
+/// What a text without a mark of its end may hide: cut within its last number it is another number.
+pub(crate) fn open_end(bytes: &[u8], last_line: &str) -> Option<String> {
+    let is_open = bytes.last().is_some_and(|byte| *byte != b'\n');
+    is_open.then(|| format!("{last_line} has no end: the file may be cut off"))
 }
 
 pub(crate) fn parse<T: FromStr>(word: &[u8]) -> Option<T> {
@@ -221,6 +243,17 @@ mod tests {
         assert_eq!(fault.to_string(), "line 3: the count is \"x\"; expected a whole number");
         let end = cursor.double(format_args!("x")).unwrap_err();
         assert_eq!(end.found, "missing, the file ends here");
+    }
+
+    /// Places are those of a count from the start, asked for in any order and after a step back.
+    #[test]
+    fn places_go_on_from_the_last() {
+        let bytes = b"a\n\nb\nc";
+        let mut cursor = Cursor::new(bytes);
+        for position in [0, 2, 2, 6, 3, 7, 0, 5, 99] {
+            cursor.seek(position);
+            assert_eq!(cursor.place(), Place::Line(line_of(bytes, position)), "{position}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use souple_mesh::{CellBlock, ElementKind, Mesh};
 
 use crate::IoError;
+use crate::facets::Polygons;
 
 /// A mesh with fields, as read from a file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -146,8 +147,23 @@ impl<'a> Output<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Destination {
     Cell(u32),
-    Facet(u32),
+    /// A polygon may have become several, or none.
+    Facets {
+        first: u32,
+        count: u32,
+    },
     Skipped,
+}
+
+impl Destination {
+    /// Cells and facets that it has become.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Cell(_) => 1,
+            Self::Facets { count, .. } => *count as usize,
+            Self::Skipped => 0,
+        }
+    }
 }
 
 /// Puts cells of a file among the cells or the facets of a mesh, and counts them.
@@ -155,6 +171,7 @@ pub(crate) enum Destination {
 pub(crate) struct Sorter {
     cell_count: u32,
     facet_count: u32,
+    polygons: Polygons,
 }
 
 impl Sorter {
@@ -166,9 +183,25 @@ impl Sorter {
             Destination::Cell(self.cell_count - 1)
         } else {
             mesh.push_facet(kind, nodes);
-            self.facet_count += 1;
-            Destination::Facet(self.facet_count - 1)
+            self.facets(1)
         }
+    }
+
+    /// A polygon, as the facets that it becomes.
+    pub fn push_polygon(&mut self, mesh: &mut Mesh, corners: &[u32]) -> Destination {
+        let count = self.polygons.push(mesh, corners) as u32;
+        self.facets(count)
+    }
+
+    fn facets(&mut self, count: u32) -> Destination {
+        let first = self.facet_count;
+        self.facet_count += count;
+        Destination::Facets { first, count }
+    }
+
+    /// What of the polygons was not taken as it stands.
+    pub fn notes(&self) -> Vec<String> {
+        self.polygons.notes()
     }
 }
 

@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
 
-use crate::cursor::Cursor;
+use crate::cursor::{Cursor, line_of, open_end};
 use crate::dataset::Output;
 use crate::error::{Fault, Place};
 
@@ -104,36 +104,60 @@ impl SurfacePart {
     }
 }
 
-/// Puts polygons of any number of corners among the facets of a mesh.
-#[derive(Clone, Copy, Debug, Default)]
+/// Puts polygons of any number of corners among the facets of a mesh: one rule for all formats.
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Polygons {
+    /// Corners of the polygon at hand without repetitions.
+    distinct: Vec<u32>,
     cut: usize,
     degenerate: usize,
 }
 
 impl Polygons {
-    /// A triangle, a quadrilateral, or triangles around the first corner; none where corners repeat.
-    pub fn push(&mut self, mesh: &mut Mesh, corners: &[u32]) {
-        let repeated = |corners: &[u32]| (1..corners.len()).any(|k| corners[..k].contains(&corners[k]));
-        match corners {
-            [_, _, _] | [_, _, _, _] if repeated(corners) => self.degenerate += 1,
-            [_, _, _] => mesh.push_facet(ElementKind::Tri3, corners),
-            [_, _, _, _] => mesh.push_facet(ElementKind::Quad4, corners),
-            [start, others @ ..] => {
-                self.cut += 1;
-                for pair in others.windows(2).filter(|pair| !pair.contains(start) && pair[0] != pair[1]) {
-                    mesh.push_facet(ElementKind::Tri3, &[*start, pair[0], pair[1]]);
-                }
+    /// Corners that coincide with their neighbour make no side and are dropped: a quadrilateral may stand for a triangle. What
+    /// is left is a triangle, a quadrilateral, or triangles around the first corner; none where it encloses nothing. Returns
+    /// how many facets it has become.
+    pub fn push(&mut self, mesh: &mut Mesh, corners: &[u32]) -> usize {
+        let distinct = &mut self.distinct;
+        distinct.clear();
+        distinct.extend_from_slice(corners);
+        distinct.dedup();
+        while distinct.len() > 1 && distinct.first() == distinct.last() {
+            distinct.pop();
+        }
+        match distinct.as_slice() {
+            [_, _, _] => {
+                mesh.push_facet(ElementKind::Tri3, distinct);
+                1
             }
-            [] => {}
+            [a, b, c, d] if a != c && b != d => {
+                mesh.push_facet(ElementKind::Quad4, distinct);
+                1
+            }
+            [start, others @ ..] if others.len() > 3 => {
+                self.cut += 1;
+                let mut made = 0;
+                for pair in others.windows(2).filter(|pair| !pair.contains(start)) {
+                    mesh.push_facet(ElementKind::Tri3, &[*start, pair[0], pair[1]]);
+                    made += 1;
+                }
+                made
+            }
+            _ => {
+                self.degenerate += 1;
+                0
+            }
         }
     }
 
     /// What was not taken as it stands.
-    pub fn notes(self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<String> {
         let told = [
             (self.cut, "polygons of more than four corners were cut into triangles"),
-            (self.degenerate, "facets with repeated corners were left out"),
+            (
+                self.degenerate,
+                "facets of fewer than three different corners, or folded onto themselves, were left out",
+            ),
         ];
         told.into_iter()
             .filter(|(count, _)| *count > 0)
@@ -156,6 +180,7 @@ pub(crate) fn check_facets(cursor: &Cursor<'_>, mesh: &Mesh) -> Result<(), Fault
     }
     Ok(())
 }
+
 /// What the end of a text tells of whether it is all of the file: one that ends within a line, with points that no facet has
 /// come to use, is cut off; either alone may be meant, and is told.
 pub(crate) fn check_end(bytes: &[u8], mesh: &Mesh, notes: &mut Vec<String>) -> Result<(), Fault> {
@@ -164,19 +189,20 @@ pub(crate) fn check_end(bytes: &[u8], mesh: &Mesh, notes: &mut Vec<String>) -> R
         facet.nodes.iter().for_each(|node| is_used[*node as usize] = true);
     }
     let loose = is_used.iter().filter(|used| !**used).count();
-    let first = is_used.iter().position(|used| !used).unwrap_or(0);
-    let ends_a_line = bytes.ends_with(b"\n");
-    match (ends_a_line, loose) {
-        (true, 0) => {}
-        (false, 0) => notes.push("the last line has no end: the file may be cut off".to_owned()),
-        (true, _) => notes.push(format!(
+    match (open_end(bytes, "the last line"), is_used.iter().position(|used| !used)) {
+        (open, None) => notes.extend(open),
+        (None, Some(first)) => notes.push(format!(
             "{loose} points are in no facet, the first is points[{first}]: a file that is cut off looks like that"
         )),
-        (false, _) => {
-            let place = Place::Line(crate::cursor::line_of(bytes, bytes.len()));
-            let subject = format!("the last line has no end, and {loose} points are in no facet yet: the next facet");
+        (Some(_), Some(_)) => {
+            let place = Place::Line(line_of(bytes, bytes.len()));
+            let subject =
+                format!("the last line has no end, and {loose} points are in no facet yet: the next facet");
             return Err(Fault::cut_off(place, subject, "facets of all points, and an end of the last line"));
         }
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -23,6 +23,8 @@ pub type WriteInto = fn(&Output<'_>, &mut dyn Write) -> Result<(), WriteError>;
 pub struct Format {
     /// File name extensions that stand for it, in lower case, without the dot.
     pub extensions: &'static [&'static str],
+    /// Extensions that stand for another format of its family, whose reader takes it too.
+    pub family: &'static [&'static str],
     /// Extensions of the files that one mesh is kept in, for formats of several; `read` and `write` then take
     /// them joined (see `parts.rs`). Empty for formats of one file.
     pub parts: &'static [&'static str],
@@ -78,15 +80,6 @@ pub fn files_of_mesh(path: &Path) -> Vec<PathBuf> {
     let mut files = vec![path.to_owned()];
     files.extend(parts::others_of(path, parts));
     files
-}
-
-/// The mesh of a file whose content is already in memory; `path` says its extension and is named in errors.
-///
-/// # Errors
-/// The extension is unknown, the content is faulty.
-pub fn read_mesh_content(path: &Path, bytes: &[u8]) -> Result<(Mesh, Vec<String>), IoError> {
-    let dataset = read_content(path, bytes)?;
-    Ok((dataset.mesh, dataset.notes))
 }
 
 /// The mesh and the fields of a file; the format goes by the extension, or by the content where that says more.
@@ -170,7 +163,60 @@ pub fn write_dataset_as(format: &str, path: &Path, output: &Output<'_>) -> Resul
     write_with(FORMATS.find(format)?, path, output)
 }
 
+/// Writes like [`write_dataset_as`], once what will be in the file has been read back; what was read, `None` where the format is
+/// only written.
+///
+/// # Errors
+/// Those of [`write_dataset_as`], or the format's own reader refuses the content: nothing is written then.
+pub fn write_and_read_back(
+    format: &str,
+    path: &Path,
+    output: &Output<'_>,
+) -> Result<Option<Dataset>, IoError> {
+    let entry = FORMATS.find(format)?;
+    let content = content_of(entry, path, output)?;
+    let read_back = |read: Read| read(&content).map_err(|fault| IoError::content(path, fault));
+    let dataset = entry.build.read.map(read_back).transpose()?;
+    if entry.build.parts.is_empty() {
+        write_file(path, |out| out.write_all(&content))?;
+    } else {
+        write_files(&parts::split_for(path, &content))?;
+    }
+    Ok(dataset)
+}
+
 fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -> Result<(), IoError> {
+    if !entry.build.parts.is_empty() {
+        return write_files(&parts::split_for(path, &content_of(entry, path, output)?));
+    }
+    let write = checked_writer(entry, output)?;
+    let mut refusal = None;
+    let written = write_file(path, |out| match write(output, out) {
+        Ok(()) => Ok(()),
+        Err(WriteError::System(error)) => Err(error),
+        Err(WriteError::Request(error)) => {
+            refusal = Some(error);
+            Err(std::io::ErrorKind::InvalidInput.into())
+        }
+    });
+    match refusal {
+        Some(error) => Err(error),
+        None => written,
+    }
+}
+
+/// What the file or the files of that path will hold.
+fn content_of(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -> Result<Vec<u8>, IoError> {
+    let mut content = Vec::new();
+    match checked_writer(entry, output)?(output, &mut content) {
+        Ok(()) => Ok(content),
+        Err(WriteError::System(source)) => Err(IoError::write(path, source)),
+        Err(WriteError::Request(error)) => Err(error),
+    }
+}
+
+/// The writer of a format, for a mesh that it can be asked to write.
+fn checked_writer(entry: &'static Entry<Format>, output: &Output<'_>) -> Result<WriteInto, IoError> {
     let write = entry.build.write.ok_or_else(|| IoError::Unsupported {
         format: entry.name,
         action: "written",
@@ -178,26 +224,7 @@ fn write_with(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -
     })?;
     output.check()?;
     entry.build.holds.check(entry.name, output)?;
-    let mut refusal = None;
-    let mut content = |out: &mut dyn Write| match write(output, out) {
-        Ok(()) => Ok(()),
-        Err(WriteError::System(error)) => Err(error),
-        Err(WriteError::Request(error)) => {
-            refusal = Some(error);
-            Err(std::io::ErrorKind::InvalidInput.into())
-        }
-    };
-    let written = if entry.build.parts.is_empty() {
-        write_file(path, content)
-    } else {
-        let mut joined = Vec::new();
-        let made = content(&mut joined).map_err(|source| IoError::write(path, source));
-        made.and_then(|()| write_files(&parts::split_for(path, &joined)))
-    };
-    match refusal {
-        Some(error) => Err(error),
-        None => written,
-    }
+    Ok(write)
 }
 
 /// What a file of the format will not hold of a mesh, in words; nothing where all of it is kept.
@@ -217,24 +244,28 @@ pub fn format_of(path: &Path) -> Result<&'static str, IoError> {
     Ok(by_extension(path)?.name)
 }
 
-/// The name of the format, where a file of that path can be read again: by its extension, or by what it begins with where the
-/// format is one of several that share an extension.
+/// The name of the format, where a file of that path can be read again: its extension stands for it, or for one of its family.
 ///
 /// # Errors
 /// The format is unknown, or has other extensions.
 pub fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
     let entry = FORMATS.find(format)?;
-    let known = entry.build.extensions;
-    let found = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    if known.is_empty() || known.contains(&found.as_str()) {
+    let known = [entry.build.extensions, entry.build.family].concat();
+    let found = extension_of(path);
+    if known.contains(&found.as_str()) {
         return Ok(entry.name);
     }
     let expected = format!("{} for the format `{}`", known.join(" or "), entry.name);
     Err(IoError::request(format!("the extension of {}", path.display()), format!("`{found}`"), expected))
 }
 
+/// In lower case, without the dot; empty where there is none.
+fn extension_of(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
 fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let extension = extension_of(path);
     FORMATS
         .entries
         .iter()
@@ -245,7 +276,7 @@ fn by_extension(path: &Path) -> Result<&'static Entry<Format>, IoError> {
 
 /// The extensions that would be known are those of formats that fit what is wanted.
 fn unknown_extension(path: &Path, fits: impl Fn(&Format) -> bool) -> IoError {
-    let found = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let found = extension_of(path);
     let fitting = FORMATS.entries.iter().filter(|entry| fits(&entry.build));
     let known: Vec<&str> = fitting.flat_map(|entry| entry.build.extensions).copied().collect();
     let expected = format!("one of {}", known.join(", "));

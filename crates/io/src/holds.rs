@@ -1,7 +1,7 @@
 //! What a file format has room for, declared in the table of formats: what a writer will leave out is told by it,
 //! and the tests of round trips go by it.
 
-use souple_mesh::{CellBlock, ElementKind};
+use souple_mesh::{CellBlock, ElementKind, Mesh};
 
 use crate::IoError;
 use crate::dataset::{Facets, Output};
@@ -18,11 +18,11 @@ pub struct Holds {
 /// Which elements a format keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shapes {
-    /// Cells and facets of every kind.
+    /// Cells and facets of every kind; edges where there is nothing else.
     All,
-    /// Tetrahedra and triangles; other cells are refused.
+    /// Tetrahedra as cells and triangles as facets; others are refused.
     Tetrahedra,
-    /// Triangles and quadrilaterals: the facets of a mesh, or the boundary of its cells.
+    /// Triangles and quadrilaterals: the facets of a mesh, or the boundary of its cells, of which edges have none.
     Facets,
     /// Triangles; quadrilaterals are cut in two.
     Triangles,
@@ -76,18 +76,21 @@ impl Holds {
 
     /// Refuses what the format cannot be written from at all.
     pub(crate) fn check(&self, format: &str, output: &Output<'_>) -> Result<(), IoError> {
-        let mesh = output.mesh;
-        if self.is_surface() && mesh.cell_count() + mesh.facet_count() == 0 {
-            let subject = format!("the number of cells and facets of a mesh for the format `{format}`");
+        let of_format = |what: &str| format!("{what} of a mesh for the format `{format}`");
+        if self.is_surface() && !has_surface(output.mesh) {
+            let subject = of_format("the number of facets, and of cells that have a boundary,");
             return Err(IoError::request(subject, 0, "1 or more"));
         }
         if self.shapes == Shapes::Tetrahedra {
-            let known = [ElementKind::Tet4, ElementKind::Tri3];
-            if let Some(block) =
-                output.blocks().find(|block| !block.is_empty() && !known.contains(&block.kind))
-            {
-                let subject = format!("an element of a mesh for the format `{format}`");
-                return Err(IoError::request(subject, block.kind.name(), "tet4 or tri3"));
+            let facets = if output.facets == Facets::Written { &output.mesh.facet_blocks[..] } else { &[] };
+            let lists = [
+                ("a cell", &output.mesh.blocks[..], ElementKind::Tet4),
+                ("a facet", facets, ElementKind::Tri3),
+            ];
+            for (what, blocks, kind) in lists {
+                if let Some(block) = blocks.iter().find(|block| !block.is_empty() && block.kind != kind) {
+                    return Err(IoError::request(of_format(what), block.kind.name(), kind.name()));
+                }
             }
         }
         Ok(())
@@ -102,6 +105,15 @@ impl Holds {
                 losses.push(format!("the format `{format}` does not keep {count} {what}"));
             }
         };
+        if self.shapes == Shapes::All {
+            let count = |is_edge: bool| -> usize {
+                let blocks = output.blocks().filter(|block| (block.kind.dimension() == 1) == is_edge);
+                blocks.map(CellBlock::len).sum()
+            };
+            if count(false) > 0 {
+                lose(count(true), "edges: beside other elements they are read as lines around them");
+            }
+        }
         if self.is_surface() {
             let left = if mesh.facet_count() > 0 { "only facets are" } else { "their boundary is" };
             lose(mesh.cell_count(), &format!("cells: {left} written"));
@@ -159,4 +171,10 @@ impl Holds {
         }
         losses
     }
+}
+
+/// Whether a mesh has facets, or cells with a boundary.
+fn has_surface(mesh: &Mesh) -> bool {
+    let bounds = |block: &CellBlock| !block.is_empty() && block.kind.dimension() > 1;
+    mesh.facet_count() > 0 || mesh.blocks.iter().any(bounds)
 }

@@ -27,14 +27,14 @@ mod tetgen;
 mod vtk;
 
 pub use beside::write_file;
-pub use csv::{Column, write_csv};
+pub use csv::{Column, csv_cell, write_csv};
 pub use dataset::{Dataset, Facets, Field, Output, Precision};
 pub use error::{Fault, IoError, Place};
 pub use format::{
     FORMATS, Format, Read, WriteError, WriteInto, files_of_mesh, format_for, format_of, losses, read_dataset,
-    read_dataset_bytes, read_mesh, read_mesh_bytes, read_mesh_content, write_dataset, write_dataset_as,
+    read_dataset_bytes, read_mesh, read_mesh_bytes, write_and_read_back, write_dataset, write_dataset_as,
     write_mesh,
 };
 pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
 pub use particles::{ParticleRow, read_particle_bytes, read_particles};
-pub use vtk::{Series, read_series};
+pub use vtk::{Series, read_series, read_series_bytes};

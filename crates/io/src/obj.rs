@@ -6,13 +6,13 @@
 use std::io::Write;
 
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, Mesh};
+use souple_mesh::Mesh;
 use souple_table::Entry;
 
 use crate::cursor::parse;
 use crate::dataset::{Output, tidy_groups};
 use crate::error::{Fault, Place, quoted};
-use crate::facets::{Origin, SurfacePart, check_end};
+use crate::facets::{Origin, Polygons, SurfacePart, check_end};
 use crate::format::{Format, WriteError};
 use crate::holds::{HeldGroups, Holds, Shapes};
 use crate::{Dataset, IoError};
@@ -24,6 +24,7 @@ pub(crate) static OBJ: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["obj"],
+        family: &[],
         parts: &[],
         recognises: |_| false,
         read: Some(read),
@@ -56,14 +57,20 @@ const WITHOUT_GEOMETRY: &[&[u8]] = &[
 /// Most groups that one facet is in.
 const MOST_GROUPS: usize = 16;
 
+/// The group of facets that are in no other.
+const DEFAULT: &str = "default";
+
 #[derive(Default)]
 struct Reader {
     mesh: Mesh,
     facet_count: u32,
     /// Groups of the facets that follow.
     groups: Vec<String>,
-    cut_polygons: usize,
-    degenerate: usize,
+    /// Lines of more groups than are read.
+    crowded: usize,
+    /// Corners of the facet at hand.
+    corners: Vec<u32>,
+    polygons: Polygons,
 }
 
 pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
@@ -106,8 +113,10 @@ impl Reader {
             }
             b"f" => self.facet(words, place)?,
             b"g" | b"o" => {
-                let names = words.take(MOST_GROUPS).map(|word| String::from_utf8_lossy(word).into_owned());
-                self.groups = names.filter(|name| name != "default").collect();
+                let names = words.by_ref().take(MOST_GROUPS);
+                let names = names.map(|word| String::from_utf8_lossy(word).into_owned());
+                self.groups = names.filter(|name| name != DEFAULT).collect();
+                self.crowded += usize::from(words.next().is_some());
             }
             other if WITHOUT_GEOMETRY.contains(&other) => {}
             other => {
@@ -121,10 +130,8 @@ impl Reader {
     /// `f point/texture/normal …`, numbers from 1, or from the latest back if negative.
     fn facet<'a>(&mut self, words: impl Iterator<Item = &'a [u8]>, place: Place) -> Result<(), Fault> {
         let count = self.mesh.points.len();
-        let mut corners: Vec<u32> = Vec::with_capacity(4);
-        let mut given = 0;
+        self.corners.clear();
         for word in words {
-            given += 1;
             let number = word.split(|byte| *byte == b'/').next().unwrap_or_default();
             let index = match parse::<i64>(number) {
                 Some(number) if number > 0 => Some(number - 1),
@@ -133,44 +140,27 @@ impl Reader {
             };
             let corner =
                 index.and_then(|index| u32::try_from(index).ok()).filter(|corner| (*corner as usize) < count);
-            let corner = corner.ok_or_else(|| {
+            self.corners.push(corner.ok_or_else(|| {
                 let expected = format!("1 to {count}, or -{count} to -1: a point given before");
                 Fault::new(place, "a corner of the facet", quoted(word), expected)
-            })?;
-            // corners that coincide with their neighbour make no side
-            if corners.last() != Some(&corner) && (corners.len() < 2 || corners[0] != corner) {
-                corners.push(corner);
-            }
+            })?);
         }
-        if given < 3 {
-            return Err(Fault::new(place, "the number of corners", given.to_string(), "3 or more"));
+        if self.corners.len() < 3 {
+            let found = self.corners.len().to_string();
+            return Err(Fault::new(place, "the number of corners", found, "3 or more"));
         }
-        match corners.as_slice() {
-            [a, b, c] => self.push(ElementKind::Tri3, &[*a, *b, *c]),
-            [a, b, c, d] if a != c && b != d => self.push(ElementKind::Quad4, &[*a, *b, *c, *d]),
-            [start, others @ ..] if others.len() > 2 => {
-                self.cut_polygons += 1;
-                for pair in others.windows(2).filter(|pair| !pair.contains(start)) {
-                    self.push(ElementKind::Tri3, &[*start, pair[0], pair[1]]);
-                }
-            }
-            _ => self.degenerate += 1,
-        }
-        Ok(())
-    }
-
-    fn push(&mut self, kind: ElementKind, corners: &[u32]) {
-        self.mesh.push_facet(kind, corners);
+        let made = self.polygons.push(&mut self.mesh, &self.corners) as u32;
         for name in &self.groups {
             // the name is there already, but for the first facet of each group
             if !self.mesh.groups.contains_key(name) {
                 self.mesh.groups.insert(name.clone(), Default::default());
             }
             if let Some(group) = self.mesh.groups.get_mut(name) {
-                group.facets.push(self.facet_count);
+                group.facets.extend(self.facet_count..self.facet_count + made);
             }
         }
-        self.facet_count += 1;
+        self.facet_count += made;
+        Ok(())
     }
 
     fn finish(mut self, bytes: &[u8]) -> Result<Dataset, Fault> {
@@ -180,15 +170,12 @@ impl Reader {
             return Err(Fault::new(place, "the number of facets", found, "points (v) and facets (f)"));
         }
         tidy_groups(&mut self.mesh);
-        let mut notes = Vec::new();
-        if self.cut_polygons > 0 {
+        let mut notes = self.polygons.notes();
+        if self.crowded > 0 {
             notes.push(format!(
-                "{} polygons of more than four corners were cut into triangles",
-                self.cut_polygons
+                "{} lines of more than {MOST_GROUPS} groups: those behind were left out",
+                self.crowded
             ));
-        }
-        if self.degenerate > 0 {
-            notes.push(format!("{} facets with repeated corners were left out", self.degenerate));
         }
         Ok(Dataset { mesh: self.mesh, notes, ..Dataset::default() })
     }
@@ -217,7 +204,7 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     for (facet, groups) in part.facets.iter().zip(&memberships) {
         if groups != current {
             // a group line without names means the default group
-            writeln!(out, "g {}", if groups.is_empty() { "default".to_owned() } else { groups.join(" ") })?;
+            writeln!(out, "g {}", if groups.is_empty() { DEFAULT.to_owned() } else { groups.join(" ") })?;
             current = groups;
         }
         write_facet(facet.corners(), out)?;
@@ -232,10 +219,9 @@ fn memberships<'a>(output: &Output<'a>, part: &SurfacePart) -> Result<Vec<Vec<&'
         return Ok(memberships);
     }
     for (name, group) in &output.mesh.groups {
-        if !group.facets.is_empty()
-            && (name.is_empty() || name.contains(char::is_whitespace) || name.contains('#'))
-        {
-            let expected = "a word without spaces in an OBJ file";
+        let breaks = |letter: char| letter.is_whitespace() || matches!(letter, '#' | '\\');
+        if !group.facets.is_empty() && (name.is_empty() || name.contains(breaks) || name == DEFAULT) {
+            let expected = "a word without spaces, # and \\, which is not `default`, in an OBJ file";
             return Err(IoError::request("the name of a group", format!("`{name}`"), expected));
         }
         for facet in &group.facets {
@@ -249,6 +235,12 @@ fn memberships<'a>(output: &Output<'a>, part: &SurfacePart) -> Result<Vec<Vec<&'
             })?;
             list.push(name.as_str());
         }
+    }
+    if let Some((facet, names)) = memberships.iter().enumerate().find(|(_, names)| names.len() > MOST_GROUPS)
+    {
+        let subject = format!("the number of groups of facet {facet}");
+        let expected = format!("at most {MOST_GROUPS} in an OBJ file");
+        return Err(IoError::request(subject, names.len(), expected));
     }
     Ok(memberships)
 }
@@ -268,6 +260,7 @@ fn write_facet(nodes: &[u32], out: &mut dyn Write) -> std::io::Result<()> {
 mod tests {
     use super::*;
     use crate::testing::{real_input, survives_faults};
+    use souple_mesh::ElementKind;
 
     const SURFACE: &str = "# a lid\nmtllib x.mtl\nv 0 0 0\nv 1 0 0 # c\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1e0\nvn 0 0 1\n\
                            g lid top\nf 1//1 2/1/1 3 4\ng side\nf -5 -4 \\\n -1\ns off\n";
@@ -292,11 +285,49 @@ mod tests {
 
     #[test]
     fn polygons_are_cut_and_degenerate_facets_left_out() {
-        let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 1 0\nf 1 2 3 4 5\nf 1 1 2\nf 1 2 2 1\n";
+        let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv -1 1 0\ng a\nf 1 2 3 4 5\ng b\nf 1 1 2\nf 1 2 2 1\nf 1 2 3\n";
         let dataset = read(text.as_bytes()).unwrap();
         assert_eq!(dataset.mesh.count_of(ElementKind::Tet4), 0);
-        assert_eq!(dataset.mesh.facet_count(), 3);
+        assert_eq!(dataset.mesh.facet_count(), 4);
+        assert_eq!(
+            (&dataset.mesh.groups["a"].facets[..], &dataset.mesh.groups["b"].facets[..]),
+            (&[0, 1, 2][..], &[3][..])
+        );
         assert_eq!(dataset.notes.len(), 2);
+    }
+
+    /// Names that the reader takes for something else are refused, and more groups than it reads.
+    #[test]
+    fn groups_that_cannot_be_held_are_refused() {
+        let mesh = read(SURFACE.as_bytes()).unwrap().mesh;
+        let refused = |names: Vec<String>| {
+            let mut mesh = mesh.clone();
+            let group = souple_mesh::Group { facets: vec![0], ..Default::default() };
+            mesh.groups = names.into_iter().map(|name| (name, group.clone())).collect();
+            let mut bytes = Vec::new();
+            match write(&Output::new(&mesh), &mut bytes) {
+                Err(error) => Some(error.to_string()),
+                Ok(()) => {
+                    assert_eq!(read(&bytes).unwrap().mesh, mesh);
+                    None
+                }
+            }
+        };
+        for name in ["", "two words", "a#b", "a\\", "default"] {
+            let message = refused(vec![name.to_owned()]).unwrap();
+            assert!(
+                message.starts_with(&format!("the name of a group is `{name}`; expected a word")),
+                "{message}"
+            );
+        }
+        let many = |count: usize| (0..count).map(|k| format!("g{k:02}")).collect::<Vec<String>>();
+        assert_eq!(refused(many(MOST_GROUPS)), None);
+        let message = refused(many(MOST_GROUPS + 1)).unwrap();
+        assert!(message.contains("the number of groups of facet 0 is 17; expected at most 16"), "{message}");
+        let notes = read(SURFACE.replace("g lid top", &format!("g {}", many(17).join(" "))).as_bytes())
+            .unwrap()
+            .notes;
+        assert_eq!(notes, ["1 lines of more than 16 groups: those behind were left out"]);
     }
 
     #[test]

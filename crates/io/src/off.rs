@@ -22,6 +22,7 @@ pub(crate) static OFF: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["off"],
+        family: &[],
         parts: &[],
         recognises,
         read: Some(read),

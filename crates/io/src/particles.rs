@@ -22,6 +22,11 @@ pub struct ParticleRow {
     pub during: [f64; 2],
 }
 
+/// Whether a column holds a number: times may be those of always.
+fn is_taken(column: usize, number: f64) -> bool {
+    number.is_finite() || (number.is_infinite() && matches!(COLUMNS[column], "from" | "until"))
+}
+
 const COLUMNS: [&str; 9] = ["x", "y", "z", "radius", "vx", "vy", "vz", "from", "until"];
 
 /// Reads a table of particles.
@@ -53,6 +58,9 @@ pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>,
     let mut places = [None; COLUMNS.len()];
     for (place, column) in head.split(',').map(str::trim).enumerate() {
         match COLUMNS.iter().position(|known| *known == column) {
+            Some(known) if places[known].is_some() => {
+                return refuse("a column".to_owned(), column, "each column once".to_owned());
+            }
             Some(known) => places[known] = Some(place),
             None => return refuse("a column".to_owned(), column, format!("one of {}", COLUMNS.join(", "))),
         }
@@ -60,22 +68,25 @@ pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>,
     if places[..3].contains(&None) {
         return refuse("the columns".to_owned(), head, "x, y and z among them".to_owned());
     }
+    let columns = places.iter().flatten().count();
     let mut rows = Vec::new();
     for (number, line) in lines {
+        let number = number + 1;
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        if cells.len() != columns {
+            let what = format!("the number of cells of line {number}");
+            return refuse(what, &cells.len().to_string(), format!("{columns}, as of the first line"));
+        }
         let mut values = [None; COLUMNS.len()];
-        for (value, place) in values.iter_mut().zip(places) {
-            let Some(place) = place else { continue };
-            let cell = cells.get(place).copied().unwrap_or_default();
-            match cell.parse::<f64>() {
-                Ok(number) if !number.is_nan() => *value = Some(number),
-                _ => {
-                    return refuse(
-                        format!("line {}", number + 1),
-                        cell,
-                        "a number in each column".to_owned(),
-                    );
-                }
+        for (column, (value, place)) in values.iter_mut().zip(places).enumerate() {
+            let Some(cell) = place.map(|place| cells[place]) else { continue };
+            *value = cell.parse().ok().filter(|number| is_taken(column, *number));
+            if value.is_none() {
+                return refuse(
+                    format!("{} in line {number}", COLUMNS[column]),
+                    cell,
+                    "a finite number; `from` and `until` may be infinite".to_owned(),
+                );
             }
         }
         let at = |column: usize, default: f64| values[column].unwrap_or(default);
@@ -87,4 +98,48 @@ pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>,
         });
     }
     Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_name_line_value_and_range() {
+        let message = |text: &str| match read_particle_bytes("drops.csv", text.as_bytes()) {
+            Ok(rows) => panic!("{text:?} is read as {rows:?}"),
+            Err(error) => error.to_string(),
+        };
+        for (text, words) in [
+            ("", "the first line of drops.csv is ``; expected names of columns among x, y"),
+            ("x,y,w\n", "a column of drops.csv is `w`; expected one of x, y"),
+            ("x,y\n", "the columns of drops.csv is `x,y`; expected x, y and z among them"),
+            ("x,y,z,x\n0,0,0,1\n", "a column of drops.csv is `x`; expected each column once"),
+            (
+                "x,y,z\n0,0,0,1\n",
+                "the number of cells of line 2 of drops.csv is `4`; expected 3, as of the first line",
+            ),
+            ("x,y,z\n\n0,0\n", "the number of cells of line 3 of drops.csv is `2`; expected 3"),
+            ("x,y,z\n0,inf,0\n", "y in line 2 of drops.csv is `inf`; expected a finite number"),
+            ("x,y,z,vy\n0,0,0,-inf\n", "vy in line 2 of drops.csv is `-inf`"),
+            ("x,y,z,until\n0,0,0,nan\n", "until in line 2 of drops.csv is `nan`"),
+            ("x,y,z,radius\n0,0,0,\n", "radius in line 2 of drops.csv is ``"),
+        ] {
+            let message = message(text);
+            assert!(message.contains(words), "{text:?}: {message}");
+        }
+    }
+
+    #[test]
+    fn columns_in_any_order() {
+        let text = "until, z, y, x, vx\ninf, 3, 2, 1, 4\n5, 3, 2, 1, 4\n";
+        let rows = read_particle_bytes("drops.csv", text.as_bytes()).unwrap();
+        let row = ParticleRow {
+            position: Vec3::new(1.0, 2.0, 3.0),
+            velocity: Vec3::new(4.0, 0.0, 0.0),
+            radius: None,
+            during: [f64::NEG_INFINITY, f64::INFINITY],
+        };
+        assert_eq!(rows, [row, ParticleRow { during: [f64::NEG_INFINITY, 5.0], ..row }]);
+    }
 }

@@ -1,8 +1,10 @@
 //! Meshes kept in several files of one stem: the files joined to one content, and taken apart again.
 //!
-//! Joined, each part follows a line `# part EXTENSION`. Readers and writers of such formats work on joined content,
-//! as other formats work on the bytes of their one file; faults name the part and the line within it.
+//! Joined, each part follows a line `# part EXTENSION` and ends with a line end that is not its own, the last one excepted: what
+//! is joined comes apart byte for byte. Readers and writers of such formats work on joined content, as other formats work on the
+//! bytes of their one file; faults name the part and the line within it.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::IoError;
@@ -10,9 +12,10 @@ use crate::error::{Fault, Place, quoted};
 
 const MARK: &[u8] = b"# part ";
 
-/// The head of a part in joined content.
-pub(crate) fn mark(extension: &str) -> String {
-    format!("# part {extension}\n")
+/// Begins the next part of joined content.
+pub(crate) fn begin(joined: &mut dyn Write, index: usize, extension: &str) -> std::io::Result<()> {
+    let end_of_last = if index > 0 { "\n" } else { "" };
+    writeln!(joined, "{end_of_last}# part {extension}")
 }
 
 /// Reads the files of the stem of `path` that exist, joined in the order of `extensions`.
@@ -23,14 +26,13 @@ pub(crate) fn read_joined(path: &Path, extensions: &[&str]) -> Result<Vec<u8>, I
     let mut joined = Vec::new();
     for (index, extension) in extensions.iter().enumerate() {
         let part = beside(path, extension);
-        match std::fs::read(&part) {
-            Ok(bytes) => {
-                joined.extend_from_slice(mark(extension).as_bytes());
-                joined.extend_from_slice(&bytes);
-                if !joined.ends_with(b"\n") {
-                    joined.push(b'\n');
-                }
-            }
+        let read_into = |joined: &mut Vec<u8>| {
+            let bytes = std::fs::read(&part)?;
+            begin(joined, index, extension)?;
+            joined.write_all(&bytes)
+        };
+        match read_into(&mut joined) {
+            Ok(()) => {}
             Err(error) if error.kind() == std::io::ErrorKind::NotFound && index > 0 && part != path => {}
             Err(source) => return Err(IoError::Read { path: part, source }),
         }
@@ -72,7 +74,10 @@ pub(crate) fn split(joined: &[u8]) -> Result<Vec<Part<'_>>, Fault> {
         let extension = line.strip_prefix(MARK).and_then(|name| std::str::from_utf8(name.trim_ascii()).ok());
         let end = offset + line.len();
         match (extension, parts.last_mut()) {
-            (Some(extension), _) => {
+            (Some(extension), last) => {
+                if let Some(part) = last {
+                    part.bytes = part.bytes.strip_suffix(b"\n").unwrap_or_default();
+                }
                 parts.push(Part { extension, bytes: &joined[end..end] });
                 start = end;
             }
@@ -106,7 +111,7 @@ mod tests {
 
     #[test]
     fn parts_come_apart() {
-        let joined = b"# part node\n1 2\n# a comment\n# part ele\n# part face\nx";
+        let joined = b"# part node\n1 2\n# a comment\n\n# part ele\n\n# part face\nx";
         let parts: Vec<_> = split(joined).unwrap().iter().map(|part| (part.extension, part.bytes)).collect();
         let expected: [(&str, &[u8]); 3] = [("node", b"1 2\n# a comment\n"), ("ele", b""), ("face", b"x")];
         assert_eq!(parts, expected);

@@ -25,6 +25,7 @@ pub(crate) static STL: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["stl"],
+        family: &[],
         parts: &[],
         recognises: |_| false,
         read: Some(read),
@@ -40,6 +41,7 @@ pub(crate) static STL_TEXT: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &[],
+        family: &["stl"],
         parts: &[],
         recognises: |_| false,
         read: Some(read),
@@ -108,12 +110,14 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     let count = bytes
         .get(80..HEAD)
         .map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
-    let binary = count.is_some_and(|count| bytes.len() == HEAD + count * TRIANGLE);
-    if binary || !bytes.trim_ascii_start().starts_with(b"solid") {
-        read_binary(bytes)
-    } else {
-        read_text(bytes)
-    }
+    let is_binary = count.is_some_and(|count| bytes.len() == HEAD + count * TRIANGLE);
+    let starts = |word: &[u8]| {
+        let start = bytes.trim_ascii_start().get(..word.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(word))
+    };
+    // the count of a binary file with bytes behind it has a zero, which no text has
+    let is_text = starts(b"solid") && !bytes[..bytes.len().min(HEAD)].contains(&0);
+    if is_binary || !is_text { read_binary(bytes) } else { read_text(bytes) }
 }
 
 fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {

@@ -4,14 +4,14 @@
 //! of such names keep their number and others get the next free one. Tetrahedra of ten nodes are read by their
 //! corners.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
 
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Group};
 use souple_table::Entry;
 
-use crate::cursor::{Cursor, parse};
+use crate::cursor::{Cursor, open_end, parse};
 use crate::dataset::{Facets, Output, tidy_groups};
 use crate::error::{Fault, Place, quoted};
 use crate::format::{Format, WriteError};
@@ -26,6 +26,7 @@ pub(crate) static TETGEN: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: PARTS,
+        family: &[],
         parts: PARTS,
         recognises: |_| false,
         read: Some(read),
@@ -41,6 +42,9 @@ pub(crate) static TETGEN: Entry<Format> = Entry {
 
 const PARTS: &[&str] = &["node", "ele", "face"];
 
+/// Markers and regions are below this: they may be written as real numbers, which are exact so far.
+const MARKERS_BELOW: i64 = 9_000_000_000_000_000;
+
 pub(crate) fn read(joined: &[u8]) -> Result<Dataset, Fault> {
     let files = parts::split(joined)?;
     let find = |extension: &str| files.iter().find(|part| part.extension == extension);
@@ -51,12 +55,19 @@ pub(crate) fn read(joined: &[u8]) -> Result<Dataset, Fault> {
     let mut reader = Reader::default();
     let nodes = find("node").ok_or_else(|| missing("node"))?;
     let elements = find("ele").ok_or_else(|| missing("ele"))?;
+    if let Some(part) = files.iter().find(|part| !PARTS.contains(&part.extension)) {
+        let expected = format!("one of {}", PARTS.join(", "));
+        return Err(Fault::new(Place::Line(1), "a part", format!("`{}`", part.extension), expected));
+    }
     reader.read_nodes(nodes).map_err(|fault| parts::in_part("node", fault))?;
     reader.read_elements(elements).map_err(|fault| parts::in_part("ele", fault))?;
     if let Some(faces) = find("face") {
         reader.read_faces(faces).map_err(|fault| parts::in_part("face", fault))?;
     }
     tidy_groups(&mut reader.dataset.mesh);
+    for Part { extension, bytes } in files {
+        reader.dataset.notes.extend(open_end(bytes, &format!("the last line of the .{extension} file")));
+    }
     Ok(reader.dataset)
 }
 
@@ -87,6 +98,17 @@ impl<'a> Rows<'a> {
 
     fn expect(&mut self, subject: &str, expected: &str) -> Result<Vec<&'a [u8]>, Fault> {
         self.next().ok_or_else(|| Fault::cut_off(self.cursor.place(), subject, expected))
+    }
+
+    /// Refuses what follows the last of `count` rows.
+    fn end(&mut self, what: &str, count: usize) -> Result<(), Fault> {
+        match self.next() {
+            None => Ok(()),
+            Some(words) => {
+                let subject = format!("a line behind the last of {count} {what}");
+                Err(self.fault(subject, quoted(&words.join(&b' ')), "as many lines as the head says"))
+            }
+        }
     }
 
     fn fault(
@@ -124,7 +146,7 @@ impl<'a> Rows<'a> {
     fn marker(&self, words: &[&[u8]], place: usize, subject: &str) -> Result<i64, Fault> {
         let Some(word) = words.get(place) else { return Ok(0) };
         match parse::<f64>(word) {
-            Some(number) if number.fract() == 0.0 && number.abs() < 9e15 => Ok(number as i64),
+            Some(number) if number.fract() == 0.0 && number.abs() < MARKERS_BELOW as f64 => Ok(number as i64),
             _ => Err(self.fault(subject, quoted(word), "a whole number")),
         }
     }
@@ -139,7 +161,7 @@ struct Reader {
 
 impl Reader {
     fn group(&mut self, kind: &str, number: i64) -> Option<&mut Group> {
-        (number != 0).then(|| self.dataset.mesh.groups.entry(format!("{kind}_{number}")).or_default())
+        (number != 0).then(|| self.dataset.mesh.groups.entry(name_of(kind, number)).or_default())
     }
 
     /// `number x y z [attributes] [marker]`
@@ -176,7 +198,7 @@ impl Reader {
                 group.points.push(index as u32);
             }
         }
-        Ok(())
+        rows.end("points", count)
     }
 
     /// Points of `words` from the second on.
@@ -228,7 +250,7 @@ impl Reader {
         if node_count == 10 {
             self.dataset.notes.push("tetrahedra of ten nodes were read by their corners".to_owned());
         }
-        Ok(())
+        rows.end("tetrahedra", count)
     }
 
     /// `number corners… [marker]`
@@ -244,11 +266,12 @@ impl Reader {
                 group.facets.push(index as u32);
             }
         }
-        Ok(())
+        rows.end("triangles", count)
     }
 }
 
-/// A number for each group that has members: its own for `volume_7`, else the next that is free.
+/// A number for each group that has members: its own where the group is called as one of that number is when it is read
+/// (`volume_7`), else the next that is free.
 fn numbers<'a>(
     output: &'a Output<'_>,
     kind: &str,
@@ -256,18 +279,23 @@ fn numbers<'a>(
 ) -> BTreeMap<&'a str, i64> {
     let groups = output.mesh.groups.iter().filter(|(_, group)| !members(group).is_empty());
     let own = |name: &str| -> Option<i64> {
-        let number = name.strip_prefix(kind)?.strip_prefix('_')?.parse().ok()?;
-        (number != 0).then_some(number)
+        let number: i64 = name.strip_prefix(kind)?.strip_prefix('_')?.parse().ok()?;
+        let is_read = number != 0 && number.unsigned_abs() < MARKERS_BELOW.unsigned_abs();
+        (is_read && name_of(kind, number) == name).then_some(number)
     };
     let mut numbers: BTreeMap<&str, i64> =
         groups.clone().filter_map(|(name, _)| Some((name.as_str(), own(name)?))).collect();
-    for (name, _) in groups {
-        if own(name).is_none() {
-            let free = (1..).find(|number| !numbers.values().any(|taken| taken == number)).unwrap_or(1);
-            numbers.insert(name, free);
-        }
+    let taken: BTreeSet<i64> = numbers.values().copied().collect();
+    let free = (1..).filter(|number| !taken.contains(number));
+    for ((name, _), free) in groups.filter(|(name, _)| own(name).is_none()).zip(free) {
+        numbers.insert(name, free);
     }
     numbers
+}
+
+/// What a group of a number is called.
+fn name_of(kind: &str, number: i64) -> String {
+    format!("{kind}_{number}")
 }
 
 /// A line for each group whose name is lost: what it is called when the file is read.
@@ -280,9 +308,8 @@ pub(crate) fn renamed(output: &Output<'_>) -> Vec<String> {
     ];
     let mut lines = Vec::new();
     for name in output.mesh.groups.keys() {
-        let given = kinds
-            .iter()
-            .filter_map(|(kind, numbers)| Some(format!("{kind}_{}", numbers.get(name.as_str())?)));
+        let given =
+            kinds.iter().filter_map(|(kind, numbers)| Some(name_of(kind, *numbers.get(name.as_str())?)));
         let given: Vec<String> = given.filter(|given| given != name).collect();
         if !given.is_empty() {
             lines.push(format!("the group `{name}` is called {} in the file", given.join(" and ")));
@@ -321,14 +348,14 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let regions = marks(output, "volume", mesh.cell_count(), |group| &group.cells)?;
     let any = |marks: &[i64]| u8::from(marks.iter().any(|mark| *mark != 0));
 
-    out.write_all(parts::mark("node").as_bytes())?;
+    parts::begin(out, 0, "node")?;
     writeln!(out, "{} 3 0 {}", mesh.points.len(), any(&point_marks))?;
     for (index, (position, mark)) in output.positions().iter().zip(&point_marks).enumerate() {
         let [x, y, z] = position.to_array();
         write!(out, "{} {x:?} {y:?} {z:?}", index + 1)?;
         write_mark(out, any(&point_marks), *mark)?;
     }
-    out.write_all(parts::mark("ele").as_bytes())?;
+    parts::begin(out, 1, "ele")?;
     writeln!(out, "{} 4 {}", mesh.cell_count(), any(&regions))?;
     for (index, (cell, region)) in mesh.cells().zip(&regions).enumerate() {
         write!(out, "{}", index + 1)?;
@@ -338,7 +365,7 @@ fn write(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     // always there: an older one of the stem must not be taken for a part of this mesh
     let facet_count = if output.facets == Facets::Written { mesh.facet_count() } else { 0 };
     let markers = marks(output, "surface", mesh.facet_count(), |group| &group.facets)?;
-    out.write_all(parts::mark("face").as_bytes())?;
+    parts::begin(out, 2, "face")?;
     writeln!(out, "{facet_count} {}", any(&markers))?;
     for (index, (facet, marker)) in mesh.facets().zip(&markers).take(facet_count).enumerate() {
         write!(out, "{}", index + 1)?;

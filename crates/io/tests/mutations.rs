@@ -6,6 +6,8 @@
 #[path = "../../../fuzz/src/mutator.rs"]
 mod mutator;
 
+use std::path::Path;
+
 use mutator::{Mutator, guard, repeat};
 use souple_io::{FORMATS, Field, Format, Output, Shapes, read_dataset_bytes};
 use souple_math::Vec3;
@@ -159,5 +161,35 @@ fn mutated_particles_are_read_or_refused() {
         });
     });
     println!("{read} of {cases} mutated tables are particles");
+    assert!(read > cases / 50, "{read} of {cases}");
+}
+
+/// Lists of frames: what is read has finite times.
+#[test]
+fn mutated_series_are_read_or_refused() {
+    let seeds: Vec<Vec<u8>> = [
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n\
+         <DataSet timestep=\"0.0\" part=\"0\" file=\"a_0000.vtu\"/>\n\
+         <DataSet timestep=\"0.1\" part=\"0\" file=\"a &amp; b.vtu\"/>\n</Collection>\n</VTKFile>\n",
+        "<VTKFile><Collection><DataSet timestep='1e-3' file='x.vtu'></DataSet><!-- > --></Collection></VTKFile>",
+    ]
+    .map(|text| text.as_bytes().to_vec())
+    .into();
+    let words: Vec<Vec<u8>> =
+        ["DataSet", "Collection", "VTKFile", "timestep", "file", "amp", "&#65;", "/>", "<!--", "?>"]
+            .map(|word| word.as_bytes().to_vec())
+            .into();
+    let mut read = 0;
+    let cases = repeat(4000, |seed| {
+        let content = Mutator::new(seed, words.clone()).mutated(&seeds);
+        guard(seed, &content, 5.0, || {
+            let Ok(frames) = souple_io::read_series_bytes(Path::new("run/mutated.pvd"), &content) else {
+                return;
+            };
+            assert!(!frames.is_empty() && frames.iter().all(|(time, _)| time.is_finite()));
+            read += 1;
+        });
+    });
+    println!("{read} of {cases} mutated lists are series");
     assert!(read > cases / 50, "{read} of {cases}");
 }

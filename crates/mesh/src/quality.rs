@@ -245,18 +245,20 @@ fn least_corner(kind: ElementKind, positions: &[Vec3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A hexahedron of which one corner is pushed inward has edges that are valleys: more than a half turn inside.
+    /// A hexahedron of which an edge is pushed inward beyond its diagonal has a valley there: more than a half turn inside.
     #[test]
     fn edges_that_are_valleys() {
         let mut points: Vec<Vec3> = ElementKind::Hex8.regular();
-        let middle = points.iter().copied().sum::<Vec3>() / 8.0;
         let largest = |points: &[Vec3]| {
             Mesh::new(points.to_vec(), ElementKind::Hex8, (0..8).collect()).quality()[0].largest_dihedral
         };
         assert!((largest(&points) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-        points[6] = points[6] + (middle - points[6]) * 0.95;
-        points[2] = points[2] + (middle - points[2]) * 0.9;
-        assert!(largest(&points) > std::f64::consts::PI, "{}", largest(&points));
+        for (pushed, across) in [(2, 0), (6, 4)] {
+            points[pushed] = points[across] + (points[pushed] - points[across]) * 0.35;
+        }
+        // a full turn less the angle between (0.65, -0.35) and (-0.35, 0.65)
+        let expected = 2.0 * std::f64::consts::PI - libm::acos(-0.455 / 0.545);
+        assert!((largest(&points) - expected).abs() < 1e-12, "{}", largest(&points));
     }
 
     /// The regular cell of each kind has aspect ratio 1 and scaled Jacobian 1; its dihedral angles are known.

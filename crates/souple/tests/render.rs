@@ -2,11 +2,15 @@
 
 mod common;
 
+use std::path::Path;
+
 use common::{Answer, CUBE, Folder, assert_errors, souple_in};
 
 fn render(folder: &Folder, source: &str, out: &str, more: &[&str]) -> Answer {
-    let call = ["render", source, "--out", out, "--size", "96,64", "--samples", "1", "--json"];
-    souple_in(folder.path(), call.iter().chain(more))
+    // surfaces have no pixels
+    let small: &[&str] = if out.ends_with(".glb") { &[] } else { &["--size", "96,64", "--samples", "1"] };
+    let call = ["render", source, "--out", out, "--json"];
+    souple_in(folder.path(), call.iter().chain(small).chain(more))
 }
 
 /// Width and height of a PNG.
@@ -108,6 +112,27 @@ fn sheets_films_and_surfaces() {
         _ => assert!(film.status == Some(1) && film.stderr.contains("ffmpeg"), "{film:#?}"),
     }
     assert!(folder.files().iter().all(|file| !file.contains(".part")));
+}
+
+/// A film of surfaces shows a skin, whose triangles change, moment after moment; a mesh is drawn from its file.
+#[test]
+fn skins_and_meshes() {
+    let folder = Folder::new("skins");
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let scene = scenes.join("skin_metamorphosis").display().to_string();
+    render(&folder, &scene, "skin.glb", &["--frames", "3", "--quiet"]).ends(0);
+    let bytes = std::fs::read(folder.path().join("skin.glb")).expect("a file");
+    let length = u32::from_le_bytes([bytes[12], bytes[13], bytes[14], bytes[15]]) as usize;
+    let document: serde_json::Value = serde_json::from_slice(&bytes[20..20 + length]).expect("a document");
+    let meshes = document["meshes"].as_array().expect("meshes").len();
+    let turns = document["animations"][0]["channels"].as_array().expect("channels");
+    assert!(meshes >= 3 && turns.iter().all(|channel| channel["target"]["path"] == "scale"), "{document:#}");
+
+    let make = ["mesh", "generate", "box", "box.msh", "size=1,1,1", "cells=2,2,2", "element=hex8"];
+    souple_in(folder.path(), make).ends(0);
+    let answer = render(&folder, "box.msh", "box.png", &["--white", "--no-time"]).ends(0).json();
+    assert_eq!(answer["moments"], 1);
+    assert_eq!(size_of(&folder, "box.png"), [96, 64]);
 }
 
 /// Runs that went astray are drawn as they were when they could be.
@@ -237,6 +262,18 @@ fn faulty_requests() {
         ("run", "a.png", &["--field-of-view", "180"], "1 to 140"),
         ("run", "a.png", &["--samples", "0"], "--samples"),
         ("run", "a.png", &["--sheet", "0"], "--sheet"),
+        ("run", "a.gif", &["--time", "0.1"], "--time says nothing about a.gif"),
+        ("run", "a.gif", &["--sheet", "4"], ".png"),
+        ("run", "a.png", &["--frames", "4"], ".gif, .apng, .mp4, .glb"),
+        ("run", "a.glb", &["--dark"], ".png, .gif, .apng, .mp4"),
+        (
+            "run",
+            "a.png",
+            &["--set", "world.period=1"],
+            "--set changes a scene before it is run, and run is none",
+        ),
+        ("run", "a.png", &["--arrows", "velocity", "--arrow-scale", "nan"], "a number above 0"),
+        ("run", "none/a.png", &[], "there is no folder none"),
         ("run", "a.gif", &["--per-second", "0"], "0.1 to 100"),
         ("scene.toml", "a.png", &["--set", "bodies.cube.material.density=0"], "density"),
     ] {

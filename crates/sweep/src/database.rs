@@ -213,13 +213,12 @@ pub fn plain(value: &toml::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// The number of a value, where it is one, in SI units where it has one; of a list, the first.
+/// The number of a value, where it is one, in SI units where it has one.
 pub fn number(value: &toml::Value) -> Option<f64> {
     match value {
         toml::Value::Integer(number) => Some(*number as f64),
         toml::Value::Float(number) => Some(*number),
         toml::Value::String(text) => Some(souple_formal::parse_quantity(text).ok()?.value),
-        toml::Value::Array(list) => number(list.first()?),
         _ => None,
     }
 }

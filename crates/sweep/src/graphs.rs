@@ -67,13 +67,13 @@ fn plot_of(study: &Study, graph: &Graph, table: &Table) -> Result<Plot, SweepErr
 /// A number of a run, or what the runs have in its place.
 fn number(table: &Table, row: &Row, place: &str, name: &str) -> Result<(f64, String), SweepError> {
     table.find(row, name).ok_or_else(|| {
-        let results = table.results().into_iter().map(|(name, _)| name);
+        let names = table.paths.iter().cloned().chain(table.results().into_iter().map(|(name, _)| name));
         let known: Vec<String> =
-            table.paths.iter().cloned().chain(results).chain(["wall_seconds".to_owned()]).collect();
+            names.filter(|name| table.find(row, name).is_some()).chain(["wall_seconds".to_owned()]).collect();
         SweepError::value(
             place,
             format!("`{name}`"),
-            format!("a number that every run has: {}", known.join(", ")),
+            format!("a number that every run has; this one has {}", known.join(", ")),
         )
     })
 }

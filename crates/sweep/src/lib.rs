@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 pub use database::Database;
 pub use study::{Graph, Plan, Study};
-pub use sweep::{Progress, Summary, Workers, sweep};
+pub use sweep::{Progress, Summary, Workers, fingerprints, sweep};
 pub use table::{Table, table_of};
 
 /// A study that cannot be made.

@@ -1,5 +1,6 @@
 //! What a study asks for: a scene, what is the same in all runs, what varies, and the graphs to draw.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
@@ -49,7 +50,18 @@ impl Study {
     /// # Errors
     /// The file cannot be read, is no TOML, or asks for something that cannot be.
     pub fn read(path: &Path) -> Result<Self, SweepError> {
-        let text = read(path)?;
+        Self::parse(path, &read(path)?, read)
+    }
+
+    /// Reads the text of a study, of which `path` is the name and the folder, and its table, if it has one, by `table`.
+    ///
+    /// # Errors
+    /// It is no TOML, asks for something that cannot be, or what `table` fails with.
+    pub fn parse(
+        path: &Path,
+        text: &str,
+        table: impl FnOnce(&Path) -> Result<String, SweepError>,
+    ) -> Result<Self, SweepError> {
         let document: Table = text.parse().map_err(|error: toml::de::Error| SweepError::Syntax {
             path: path.to_owned(),
             message: error.to_string(),
@@ -61,8 +73,8 @@ impl Study {
         let runs = match (document.get("vary"), document.get("table")) {
             (Some(vary), None) => products(vary)?,
             (None, Some(_)) => {
-                let table = folder.join(text_of(&document, "table")?.unwrap_or_default());
-                rows(&table)?
+                let path = folder.join(text_of(&document, "table")?.unwrap_or_default());
+                rows(&path, &table(&path)?)?
             }
             (Some(_), Some(_)) => {
                 return Err(SweepError::value("vary", "there beside `table`", "one of them"));
@@ -172,15 +184,24 @@ fn products(vary: &Value) -> Result<Vec<Plan>, SweepError> {
 
 /// A file of values with commas, paths at the head: a run for each line. A value is read as TOML, or as text where it is none;
 /// lists stand in quotes.
-fn rows(path: &Path) -> Result<Vec<Plan>, SweepError> {
-    let text = read(path)?;
+fn rows(path: &Path, text: &str) -> Result<Vec<Plan>, SweepError> {
     let place = |line: usize| format!("{}, line {}", path.display(), line + 1);
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let (_, head) = lines.next().ok_or_else(|| SweepError::value(place(0), "empty", "paths with commas"))?;
-    let paths = cells(head);
+    let (first, head) =
+        lines.next().ok_or_else(|| SweepError::value(place(0), "empty", "paths with commas"))?;
+    let cells_of = |number: usize, line: &str| {
+        cells(line)
+            .ok_or_else(|| SweepError::value(place(number), "a quote that is not closed", "quotes in pairs"))
+    };
+    let paths = cells_of(first, head)?;
+    let mut known = BTreeSet::new();
+    if let Some(path) = paths.iter().find(|path| path.is_empty() || !known.insert(*path)) {
+        let found = if path.is_empty() { "an empty path".to_owned() } else { format!("`{path}` twice") };
+        return Err(SweepError::value(place(first), found, "different paths with commas"));
+    }
     let mut plans = Vec::new();
     for (number, line) in lines {
-        let values = cells(line);
+        let values = cells_of(number, line)?;
         if values.len() != paths.len() {
             let found = format!("{} values", values.len());
             return Err(SweepError::value(
@@ -199,8 +220,8 @@ fn rows(path: &Path) -> Result<Vec<Plan>, SweepError> {
     Ok(plans)
 }
 
-/// What stands between commas; in quotes commas may stand, and two quotes for one.
-fn cells(line: &str) -> Vec<String> {
+/// What stands between commas; in quotes commas may stand, and two quotes for one. `None` where a quote is not closed.
+fn cells(line: &str) -> Option<Vec<String>> {
     let (mut all, mut cell, mut quoted) = (Vec::new(), String::new(), false);
     let mut characters = line.trim().chars().peekable();
     while let Some(character) = characters.next() {
@@ -215,7 +236,7 @@ fn cells(line: &str) -> Vec<String> {
         }
     }
     all.push(cell.trim().to_owned());
-    all
+    (!quoted).then_some(all)
 }
 
 fn value_of(text: &str) -> Value {
@@ -264,16 +285,17 @@ fn graphs(document: &Table) -> Result<Vec<Graph>, SweepError> {
 mod tests {
     use super::*;
 
+    const TABLE: &str = "a.b,c.d[0]\n1,\"[1, 2]\"\n\n5 kPa,tet4\n";
+
     fn study(text: &str) -> Result<Study, SweepError> {
-        let folder = std::env::temp_dir().join(format!("souple-study-{}-{}", std::process::id(), text.len()));
-        std::fs::create_dir_all(&folder).expect("a folder of temporary files");
-        let path = folder.join("study.toml");
-        std::fs::write(&path, text).expect("the study is written");
-        std::fs::write(folder.join("runs.csv"), "a.b,c.d[0]\n1,\"[1, 2]\"\n\n5 kPa,tet4\n")
-            .expect("the table");
-        let read = Study::read(&path);
-        std::fs::remove_dir_all(&folder).expect("the folder is removed");
-        read
+        with_table(text, TABLE)
+    }
+
+    fn with_table(text: &str, table: &str) -> Result<Study, SweepError> {
+        Study::parse(Path::new("study.toml"), text, |path| {
+            assert_eq!(path, Path::new("runs.csv"));
+            Ok(table.to_owned())
+        })
     }
 
     /// All combinations, the last list running fastest, as settings of a scene.
@@ -299,6 +321,24 @@ mod tests {
         let read = study("scene = \"x.toml\"\ntable = \"runs.csv\"\n").unwrap();
         let settings: Vec<Vec<String>> = read.runs.iter().map(Plan::settings).collect();
         assert_eq!(settings, [["a.b=1", "c.d[0]=[1, 2]"], ["a.b=\"5 kPa\"", "c.d[0]=\"tet4\""]]);
+    }
+
+    /// What SQLite would refuse after the first run, and what would swallow the rest of a line, is refused with its line.
+    #[test]
+    fn faults_of_a_table_are_named() {
+        let text = "scene = \"x.toml\"\ntable = \"runs.csv\"\n";
+        for (table, words) in [
+            ("a.b,c,a.b\n1,2,3\n", "`runs.csv, line 1` is `a.b` twice; expected different paths"),
+            ("\n\na.b,\n1,2\n", "`runs.csv, line 3` is an empty path"),
+            ("a.b,c\n1,\"[1, 2]\n", "`runs.csv, line 2` is a quote that is not closed"),
+            ("a.b,\"c\n1,2\n", "`runs.csv, line 1` is a quote that is not closed"),
+            ("a.b,c\n1\n", "`runs.csv, line 2` is 1 values; expected 2"),
+            ("a.b,c\n", "0 lines of values"),
+            ("", "`runs.csv, line 1` is empty"),
+        ] {
+            let message = with_table(text, table).map(|_| ()).unwrap_err().to_string();
+            assert!(message.contains(words), "{table:?}: {message}");
+        }
     }
 
     #[test]

@@ -4,12 +4,13 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
+use rayon::prelude::*;
 use souple_run::{Control, Options, Outcome, Status};
 use souple_scene::Scene;
 
 use crate::SweepError;
 use crate::database::{Database, is_kept};
-use crate::study::{Plan, Study};
+use crate::study::Study;
 
 /// How many runs at once, with how many threads each: results do not depend on either, times do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,14 +42,46 @@ pub struct Summary {
     pub of_others: usize,
 }
 
-/// Makes the runs that the file does not hold, stores each as it ends, and stops where `stop` is set.
-///
-/// All scenes are read before the first is run, so that a value that cannot be is said at once.
+impl Summary {
+    /// Counts a run that ended so; whether it is kept.
+    fn count(&mut self, status: Status) -> bool {
+        let is_kept = is_kept(status);
+        self.made += usize::from(is_kept);
+        self.interrupted += usize::from(!is_kept);
+        self.failed += usize::from(status == Status::Failed);
+        is_kept
+    }
+}
+
+/// The fingerprint of the scene of each run, by which the file of results knows it. All scenes are read, as many at once as there
+/// are workers: a value that cannot be is said before the first run.
 ///
 /// # Errors
-/// A scene cannot be read or started, the file cannot be written.
+/// A scene cannot be read, the first in the order of the runs.
+pub fn fingerprints(study: &Study, workers: Workers) -> Result<Vec<String>, SweepError> {
+    let count = workers.count.clamp(1, study.runs.len().max(1));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
+    let numbers: Vec<usize> = (0..study.runs.len()).collect();
+    let mut fingerprints = Vec::with_capacity(numbers.len());
+    // a fault is said before the scenes behind it are read
+    for portion in numbers.chunks(4 * count) {
+        let of = |number: &usize| read(study, *number).map(|scene| scene.scene_sha256);
+        let found: Vec<Result<String, SweepError>> = pool.install(|| portion.par_iter().map(of).collect());
+        for fingerprint in found {
+            fingerprints.push(fingerprint?);
+        }
+    }
+    Ok(fingerprints)
+}
+
+/// Makes the runs that the file does not hold by the [`fingerprints`] of their scenes, stores each as it ends, and stops where
+/// `stop` is set.
+///
+/// # Errors
+/// A scene cannot be started, the file cannot be written.
 pub fn sweep(
     study: &Study,
+    fingerprints: &[String],
     database: &mut Database,
     workers: Workers,
     stop: &AtomicBool,
@@ -56,9 +89,8 @@ pub fn sweep(
 ) -> Result<Summary, SweepError> {
     let mut summary = Summary::default();
     let mut wanted = Vec::new();
-    for (number, plan) in study.runs.iter().enumerate() {
-        let scene = read(study, number, plan)?;
-        match database.find(&scene.scene_sha256, study.steps)?.filter(|_| !workers.again) {
+    for (number, fingerprint) in fingerprints.iter().enumerate() {
+        match database.find(fingerprint, study.steps)?.filter(|_| !workers.again) {
             Some(held) => {
                 summary.held += 1;
                 summary.failed += usize::from(held.status == Status::Failed.as_str());
@@ -91,14 +123,10 @@ pub fn sweep(
         let mut result = Ok(());
         for (number, made) in &receiver {
             let stored = made.and_then(|outcome| {
-                let status = outcome.report.status;
-                if !is_kept(status) {
-                    summary.interrupted += 1;
-                    return Ok(());
+                if summary.count(outcome.report.status) {
+                    database.store(&study.runs[number], study.steps, &outcome)?;
                 }
-                summary.made += 1;
-                summary.failed += usize::from(status == Status::Failed);
-                database.store(&study.runs[number], study.steps, &outcome)
+                Ok(())
             });
             if let (Err(error), true) = (stored, result.is_ok()) {
                 failed.store(true, Ordering::Relaxed);
@@ -111,8 +139,8 @@ pub fn sweep(
     Ok(summary)
 }
 
-fn read(study: &Study, number: usize, plan: &Plan) -> Result<Scene, SweepError> {
-    let settings: Vec<String> = study.settings.iter().cloned().chain(plan.settings()).collect();
+fn read(study: &Study, number: usize) -> Result<Scene, SweepError> {
+    let settings: Vec<String> = study.settings.iter().cloned().chain(study.runs[number].settings()).collect();
     souple_scene::read_file(&study.scene, &settings).map_err(|diagnostics| SweepError::Scene {
         run: number + 1,
         settings: settings.join(", "),
@@ -132,7 +160,7 @@ fn run(
     pool.install(|| {
         let options = Options { steps: study.steps, scene_name: name(&study.scene), ..Options::default() };
         let mut watch = |_: &souple_run::Progress| if is_over() { Control::Stop } else { Control::Continue };
-        souple_run::run(read(study, number, plan)?, &options, &mut watch).map_err(|error| SweepError::Scene {
+        souple_run::run(read(study, number)?, &options, &mut watch).map_err(|error| SweepError::Scene {
             run: number + 1,
             settings: plan.settings().join(", "),
             message: error.to_string(),
@@ -143,10 +171,4 @@ fn run(
 /// A scene as reports call it.
 fn name(scene: &Path) -> String {
     scene.display().to_string()
-}
-
-/// The fingerprint of the scene of each run.
-pub fn fingerprints(study: &Study) -> Result<Vec<String>, SweepError> {
-    let numbered = study.runs.iter().enumerate();
-    numbered.map(|(number, plan)| Ok(read(study, number, plan)?.scene_sha256)).collect()
 }

@@ -1,12 +1,14 @@
 //! A table of a study: a line for each run, a column for each value and each result.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
+
+use souple_io::csv_cell;
 
 use crate::SweepError;
 use crate::database::{Database, Stored, number, plain};
 use crate::study::Study;
-use crate::sweep::fingerprints;
 
 /// The runs of a study that its file holds.
 pub struct Table {
@@ -24,17 +26,23 @@ pub struct Row {
     pub stored: Stored,
 }
 
+impl Row {
+    fn is_vector(&self, probe: &str) -> bool {
+        self.stored.results.contains_key(&(probe.to_owned(), 1))
+    }
+}
+
 /// Letters of components.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The runs of a study as the file has them.
+/// The runs of a study as the file has them, by the fingerprints of their scenes.
 ///
 /// # Errors
-/// A scene or the file cannot be read.
-pub fn table_of(study: &Study, database: &Database) -> Result<Table, SweepError> {
+/// The file cannot be read.
+pub fn table_of(study: &Study, fingerprints: &[String], database: &Database) -> Result<Table, SweepError> {
     let mut rows = Vec::new();
-    for (plan, sha) in study.runs.iter().zip(fingerprints(study)?) {
-        let Some(stored) = database.find(&sha, study.steps)? else { continue };
+    for (plan, fingerprint) in study.runs.iter().zip(fingerprints) {
+        let Some(stored) = database.find(fingerprint, study.steps)? else { continue };
         rows.push(Row {
             values: plan.values.iter().map(|(_, value)| plain(value)).collect(),
             numbers: plan.values.iter().map(|(_, value)| number(value)).collect(),
@@ -45,19 +53,23 @@ pub fn table_of(study: &Study, database: &Database) -> Result<Table, SweepError>
 }
 
 impl Table {
-    /// Names of the last values of all probes, component by component, with their units.
+    /// Names of the last values of all probes that any run has, component by component, with their units.
     pub fn results(&self) -> Vec<(String, String)> {
-        let Some(row) = self.rows.first() else { return Vec::new() };
-        let results = &row.stored.results;
-        let name = |(probe, component): &(String, usize)| match results.contains_key(&(probe.clone(), 1)) {
-            true => format!("{probe}.{}", AXES.get(*component).unwrap_or(&"?")),
-            false => probe.clone(),
+        let mut units = BTreeMap::new();
+        for row in &self.rows {
+            for ((probe, component), held) in &row.stored.results {
+                let axis = row.is_vector(probe).then(|| AXES.get(*component)).flatten();
+                units.entry((probe, axis)).or_insert(&held.unit);
+            }
+        }
+        let name = |probe: &str, axis: Option<&&str>| {
+            axis.map_or_else(|| probe.to_owned(), |axis| format!("{probe}.{axis}"))
         };
-        results.iter().map(|(key, held)| (name(key), held.unit.clone())).collect()
+        units.into_iter().map(|((probe, axis), unit)| (name(probe, axis), unit.clone())).collect()
     }
 
-    /// A number of a row with its unit: a path, `wall_seconds`, or a probe with its component and `first`, `min` or `max`
-    /// behind points.
+    /// A number of a row with its unit: a path, `wall_seconds`, or a probe with its component, which a vector needs, and `first`,
+    /// `min` or `max` behind points.
     pub fn find(&self, row: &Row, name: &str) -> Option<(f64, String)> {
         if let Some(path) = self.paths.iter().position(|path| path == name) {
             return Some((row.numbers[path]?, String::new()));
@@ -67,14 +79,17 @@ impl Table {
         }
         let mut parts = name.split('.');
         let probe = parts.next()?;
-        let (mut component, mut value) = (0, None);
+        let (mut component, mut value) = (None, None);
         for part in parts {
             match AXES.iter().position(|axis| *axis == part) {
-                Some(axis) => component = axis,
+                Some(axis) => component = Some(axis),
                 None => value = Some(part),
             }
         }
-        let held = row.stored.results.get(&(probe.to_owned(), component))?;
+        if component.is_some() != row.is_vector(probe) {
+            return None;
+        }
+        let held = row.stored.results.get(&(probe.to_owned(), component.unwrap_or(0)))?;
         let number = match value {
             None | Some("last") => held.last,
             Some("first") => held.first,
@@ -108,18 +123,59 @@ impl Table {
     /// # Errors
     /// The file cannot be written.
     pub fn write_csv(&self, path: &Path) -> Result<(), SweepError> {
-        let quoted = |cell: &String| {
-            if cell.contains([',', '"', '\n']) {
-                format!("\"{}\"", cell.replace('"', "\"\""))
-            } else {
-                cell.clone()
-            }
-        };
         Ok(souple_io::write_file(path, |out: &mut dyn Write| {
             for line in self.cells() {
-                writeln!(out, "{}", line.iter().map(quoted).collect::<Vec<_>>().join(","))?;
+                writeln!(out, "{}", line.iter().map(|cell| csv_cell(cell)).collect::<Vec<_>>().join(","))?;
             }
             Ok(())
         })?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::database::Held;
+
+    /// A run with the last values of probes.
+    fn row(last: &[(&str, usize, f64)]) -> Row {
+        let held = |value: f64| Held {
+            unit: "m".to_owned(),
+            first: None,
+            last: Some(value),
+            least: None,
+            greatest: None,
+        };
+        let results =
+            last.iter().map(|(name, component, value)| (((*name).to_owned(), *component), held(*value)));
+        let stored = Stored {
+            status: "done".to_owned(),
+            binary: String::new(),
+            wall_seconds: 1.0,
+            results: results.collect(),
+        };
+        Row { values: vec!["[0, 1, 0]".to_owned()], numbers: vec![None], stored }
+    }
+
+    /// A run that failed at its start, or has other probes, hides nothing of the others; what is no number has no number.
+    #[test]
+    fn results_of_all_runs_have_columns() {
+        let rows = vec![row(&[]), row(&[("place", 0, 1.0), ("place", 1, 2.0)]), row(&[("speed", 0, 3.0)])];
+        let table = Table { paths: vec!["gravity".to_owned()], rows };
+        let names: Vec<String> = table.results().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["place.x", "place.y", "speed"]);
+        let cells = table.cells();
+        assert_eq!(cells[0][..4], ["gravity", "place.x [m]", "place.y [m]", "speed [m]"]);
+        assert_eq!(cells[1][1..4], ["", "", ""]);
+        assert_eq!(cells[2][1..4], ["1.000000000e0", "2.000000000e0", ""]);
+        assert_eq!(cells[3][1..4], ["", "", "3.000000000e0"]);
+        let found = |name: &str| table.find(&table.rows[1], name).map(|(number, _)| number);
+        assert_eq!(
+            (found("place.y"), found("place.y.last"), found("wall_seconds")),
+            (Some(2.0), Some(2.0), Some(1.0))
+        );
+        // a vector is no number, nor is a list of numbers
+        assert_eq!((found("place"), found("place.z"), found("gravity")), (None, None, None));
+        assert_eq!(number(&toml::Value::Array(vec![toml::Value::Integer(1)])), None);
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use souple_sweep::{Database, Study, Summary, SweepError, Workers, graphs, sweep, table_of};
+use souple_sweep::{Database, Study, Summary, SweepError, Workers, fingerprints, graphs, sweep, table_of};
 
 /// A folder of temporary files with a study of the block on springs.
 struct Folder(PathBuf);
@@ -54,8 +54,12 @@ fn workers(again: bool) -> Workers {
     Workers { count: 2, threads: 1, again }
 }
 
+fn read(study: &Study) -> Vec<String> {
+    fingerprints(study, workers(false)).unwrap()
+}
+
 fn made(study: &Study, database: &mut Database, again: bool) -> Summary {
-    sweep(study, database, workers(again), &AtomicBool::new(false), &mut |_| {}).unwrap()
+    sweep(study, &read(study), database, workers(again), &AtomicBool::new(false), &mut |_| {}).unwrap()
 }
 
 /// Four runs fall as far as `g t²/2` says, are in rows that SQL finds, and on a graph; runs that are held are not made again.
@@ -67,7 +71,7 @@ fn runs_are_made_once_and_kept() {
     assert_eq!(made(&study, &mut database, false), Summary { made: 4, ..Summary::default() });
     assert_eq!(made(&study, &mut database, false), Summary { held: 4, ..Summary::default() });
     assert_eq!(made(&study, &mut database, true), Summary { made: 4, ..Summary::default() });
-    let table = table_of(&study, &database).unwrap();
+    let table = table_of(&study, &read(&study), &database).unwrap();
     assert_eq!(table.rows.len(), 4);
     for row in &table.rows {
         let (fall, unit) = table.find(row, "place.y").unwrap();
@@ -109,7 +113,7 @@ fn a_study_goes_on_where_it_stopped() {
             stop.store(true, Ordering::Relaxed);
         }
     };
-    let first = sweep(&study, &mut database, one, &stop, &mut watch).unwrap();
+    let first = sweep(&study, &read(&study), &mut database, one, &stop, &mut watch).unwrap();
     assert!(first.made >= 1 && first.made < RUNS, "{first:?}");
     let rest = made(&study, &mut database, false);
     assert_eq!((rest.held, rest.made + rest.held), (first.made, RUNS));
@@ -120,9 +124,8 @@ fn a_study_goes_on_where_it_stopped() {
 fn what_cannot_be_is_refused() {
     let folder = Folder::new("refused", "[vary]\n\"bodies.block.material.density\" = [1000, -1]\n");
     let study = folder.study();
-    let mut database = folder.database(&study);
-    let stop = AtomicBool::new(false);
-    let error = sweep(&study, &mut database, workers(false), &stop, &mut |_| {}).unwrap_err();
+    let _made = folder.database(&study);
+    let error = fingerprints(&study, workers(false)).unwrap_err();
     assert!(
         matches!(&error, SweepError::Scene { run: 2, message, .. } if message.contains("density")),
         "{error}"

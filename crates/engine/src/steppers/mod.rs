@@ -5,6 +5,7 @@ mod bdf2;
 mod explicit;
 mod implicit_formula;
 mod newmark;
+mod parts;
 mod position_verlet;
 mod quasi_static;
 mod runge_kutta;

@@ -6,6 +6,7 @@ use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
 use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
+use super::parts::in_parts;
 use super::static_equilibrium::conserves;
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
@@ -99,43 +100,18 @@ impl Stepper for QuasiStatic {
     ) -> Result<StepReport, StepError> {
         let Step { system, around, start, timestep } = *step;
         let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
-        let mut pairs = std::mem::take(&mut ws.pairs);
-        let mut report = StepReport::default();
         // loads that act from the start on find the body at rest
         let load_at = |reached: f64| if start == 0.0 { reached } else { 1.0 };
-        let (mut reached, mut part, mut halvings) = (0.0, 1.0, 0);
-        let outcome = loop {
-            let to = f64::min(1.0, reached + part);
-            let around = Surroundings { load: load_at(to), ..*around };
-            pairs.clone_from(&next.pairs);
-            let part_of = Step {
-                system,
-                around: &around,
-                start: start + reached * timestep,
-                timestep: (to - reached) * timestep,
-            };
-            match self.follow(&part_of, next, ws, &mut buffers) {
-                Ok(followed) => {
-                    report.merge(&followed);
-                    reached = to;
-                    if reached >= 1.0 {
-                        break Ok(report);
-                    }
-                }
-                Err(error) => {
-                    halvings += 1;
-                    if halvings > MAX_HALVINGS {
-                        let (from, parts) = (start + reached * timestep, part * timestep);
-                        break Err(StepError::NoEquilibrium { from, parts, error: Box::new(error) });
-                    }
-                    part *= 0.5;
-                    next.q.copy_from_slice(&buffers.q_start);
-                    next.pairs.clone_from(&pairs);
-                }
-            }
-        };
-        ws.pairs = pairs;
+        let outcome = in_parts(1.0, MAX_HALVINGS, next, ws, |part, next, ws| {
+            let around = Surroundings { load: load_at(part.end), ..*around };
+            let (from, timestep) = (start + part.start * timestep, (part.end - part.start) * timestep);
+            self.follow(&Step { system, around: &around, start: from, timestep }, next, ws, &mut buffers)
+        });
         ws.implicit = Some(buffers);
-        outcome
+        outcome.map_err(|stuck| StepError::NoEquilibrium {
+            from: start + stuck.reached * timestep,
+            parts: stuck.part * timestep,
+            error: Box::new(stuck.error),
+        })
     }
 }

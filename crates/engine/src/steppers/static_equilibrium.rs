@@ -9,6 +9,7 @@ use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
 use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
+use super::parts::in_parts;
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// Equilibrium at the end of every step: loads and prescribed motion grow over `load_steps` in the first
@@ -104,35 +105,15 @@ impl Stepper for StaticEquilibrium {
     ) -> Result<StepReport, StepError> {
         let Step { system, around, start, timestep } = *step;
         let mut buffers = ws.implicit.take().unwrap_or_else(|| ImplicitBuffers::new(system));
-        let mut report = StepReport::default();
         // the first step of a world starts from nothing; later ones continue under full load
-        let first = start == 0.0;
-        let mut reached = 0.0;
-        let mut stride = if first { 1.0 / f64::from(self.load_steps) } else { 1.0 };
-        let mut halvings = 0;
-        let outcome = loop {
-            let load = f64::min(1.0, reached + stride);
-            let around = Surroundings { load: if first { load } else { 1.0 }, ..*around };
-            match self.equilibrate(system, around, step.end(), next, ws, &mut buffers) {
-                Ok(part) => {
-                    report.merge(&part);
-                    reached = load;
-                    if reached >= 1.0 {
-                        break Ok(report);
-                    }
-                }
-                // `next.q` is still where the last load step led
-                Err(error) => {
-                    halvings += 1;
-                    stride *= 0.5;
-                    if halvings > MAX_HALVINGS || !first {
-                        break Err(error);
-                    }
-                }
-            }
-        };
+        let (first, halvings) =
+            if start == 0.0 { (1.0 / f64::from(self.load_steps), MAX_HALVINGS) } else { (1.0, 0) };
+        let outcome = in_parts(first, halvings, next, ws, |part, next, ws| {
+            let around = Surroundings { load: if start == 0.0 { part.end } else { 1.0 }, ..*around };
+            self.equilibrate(system, around, step.end(), next, ws, &mut buffers)
+        });
         ws.implicit = Some(buffers);
-        let report = outcome?;
+        let report = outcome.map_err(|stuck| stuck.error)?;
         next.v.fill(Vec3::ZERO);
         system.place_rows(&next.q, &next.v, step.end(), &mut ws.rows);
         system.advance_memory(ws, next, around, timestep);

@@ -2,11 +2,13 @@
 //!
 //! A moving surface is one mesh with a morph target for each frame after the first, displacements of positions and of
 //! normals, and an animation of the weights that lets exactly one frame show at its time and blends between. All
-//! programs that play morph targets play it; numbers are of 4 bytes.
+//! programs that play morph targets play it; numbers are of 4 bytes. A surface that is there for a part of the time has the
+//! size zero before and after: a surface whose triangles change is several, one after the other.
 
 mod buffer;
 
 use std::io::Write;
+use std::ops::Range;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -18,7 +20,7 @@ use crate::dataset::Output;
 use crate::facets::SurfacePart;
 use crate::format::{Format, WriteError};
 use crate::holds::{Digits, Holds};
-use crate::picture::{Colour, Paint};
+use crate::picture::Colour;
 use crate::{IoError, write_file};
 use buffer::{Buffer, Target};
 
@@ -29,6 +31,7 @@ pub(crate) static GLTF: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["glb"],
+        family: &[],
         parts: &[],
         recognises: |bytes| bytes.starts_with(MAGIC),
         read: None,
@@ -45,7 +48,9 @@ pub struct MovingSurface {
     pub name: String,
     /// Corners, counterclockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Positions [m] of all points, frame after frame.
+    /// Which of the times it is there at.
+    pub during: Range<usize>,
+    /// Positions [m] of all points at each of these, or once for all.
     pub frames: Vec<Vec<Vec3>>,
     pub colour: Colour,
     /// A colour for each point, in place of one for all; or none.
@@ -74,36 +79,20 @@ impl Animation {
     pub fn to_glb(&self) -> Result<Vec<u8>, IoError> {
         self.check()?;
         let mut buffer = Buffer::default();
-        let (mut meshes, mut nodes, mut materials, mut channels, mut samplers) =
-            (Vec::new(), Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut meshes, mut nodes, mut materials) = (Vec::new(), Vec::new(), Vec::new());
+        let seconds = self.times_from_start();
+        let mut motions = Motions::default();
         for (index, surface) in self.surfaces.iter().enumerate() {
             materials.push(material(surface));
             meshes.push(mesh(surface, index, &mut buffer));
-            nodes.push(json!({"name": surface.name, "mesh": index}));
-        }
-        let first = |frames: usize| self.times[..frames].iter().map(|time| (time - self.times[0]) as f32);
-        let moving: Vec<(usize, usize)> = self
-            .surfaces
-            .iter()
-            .enumerate()
-            .filter(|(_, surface)| surface.frames.len() > 1)
-            .map(|(index, surface)| (index, surface.frames.len()))
-            .collect();
-        if let Some((_, frames)) = moving.first() {
-            let times = first(*frames).collect::<Vec<f32>>();
-            let input = buffer.scalars(&times, Target::None);
-            for (node, frames) in moving {
-                let targets = frames - 1;
-                let mut weights = vec![0.0; frames * targets];
-                for frame in 1..frames {
-                    weights[frame * targets + frame - 1] = 1.0;
-                }
-                let output = buffer.scalars(&weights, Target::None);
-                channels.push(json!({
-                    "sampler": samplers.len(), "target": {"node": node, "path": "weights"},
-                }));
-                samplers.push(json!({"input": input, "output": output, "interpolation": "LINEAR"}));
+            let mut node = json!({"name": surface.name, "mesh": index});
+            if surface.during.start > 0 {
+                // for programs that do not play
+                node["scale"] = json!([0.0, 0.0, 0.0]);
             }
+            nodes.push(node);
+            motions.add_blending(index, surface, &seconds, &mut buffer);
+            motions.add_presence(index, &surface.during, &seconds, &mut buffer);
         }
         let children: Vec<usize> = (0..nodes.len()).collect();
         let root = nodes.len();
@@ -119,10 +108,43 @@ impl Animation {
             "bufferViews": buffer.views,
             "buffers": [{"byteLength": buffer.bytes.len()}],
         });
-        if !channels.is_empty() {
+        if !motions.channels.is_empty() {
+            let Motions { channels, samplers, .. } = motions;
             document["animations"] = json!([{"name": "run", "channels": channels, "samplers": samplers}]);
         }
-        Ok(container(&document, &buffer.bytes))
+        container(&document, &buffer.bytes)
+    }
+
+    /// Times as the file has them: numbers of 4 bytes, from the first on [s].
+    fn times_from_start(&self) -> Vec<f32> {
+        self.times.iter().map(|time| (time - self.times[0]) as f32).collect()
+    }
+
+    /// Bytes of the numbers of the file, known before they are made.
+    fn number_bytes(&self) -> u64 {
+        let of_surface = |surface: &MovingSurface| {
+            let [frames, points, triangles, coloured] = [
+                surface.frames.len(),
+                surface.frames[0].len(),
+                surface.triangles.len(),
+                surface.point_colours.len(),
+            ]
+            .map(|count| count as u64);
+            // positions and normals; a weight of each target at each time
+            12 * (2 * frames * points + triangles + coloured) + 4 * frames * (frames - 1)
+        };
+        let count = self.times.len();
+        let mut ranges: Vec<&Range<usize>> = Vec::new();
+        for surface in self.surfaces.iter().filter(|surface| surface.frames.len() > 1) {
+            if !ranges.contains(&&surface.during) {
+                ranges.push(&surface.during);
+            }
+        }
+        let in_part = self.surfaces.iter().filter(|surface| surface.during != (0..count));
+        let keys = in_part.map(|surface| turns(&surface.during, count).len() as u64).sum::<u64>();
+        let times = ranges.into_iter().map(|range| range.len() as u64).sum::<u64>();
+        // a time and three scales of each key
+        4 * times + 16 * keys + self.surfaces.iter().map(of_surface).sum::<u64>()
     }
 
     /// Writes the file.
@@ -149,14 +171,28 @@ impl Animation {
                 format!("more than {:?}", pair[0]),
             );
         }
+        // glTF wants them to increase as it has them
+        let times = self.times_from_start();
+        if let Some(frame) = (1..times.len()).find(|frame| times[*frame] <= times[frame - 1]) {
+            return refuse(
+                "the time of a frame".to_owned(),
+                format!("{:?} s, {:?} s from the start", self.times[frame], times[frame]),
+                "times that are apart also as numbers of 4 bytes".to_owned(),
+            );
+        }
         if self.surfaces.is_empty() {
             return refuse("the number of surfaces".to_owned(), "0".to_owned(), "1 or more".to_owned());
         }
         for (index, surface) in self.surfaces.iter().enumerate() {
             let of = |what: &str| format!("{what} of surfaces[{index}]");
             let frames = surface.frames.len();
-            if frames != 1 && frames != self.times.len() {
-                let expected = format!("1, or {}, one for each time", self.times.len());
+            let Range { start, end } = surface.during;
+            if start >= end || end > self.times.len() {
+                let expected = format!("a part of 0..{}", self.times.len());
+                return refuse(of("the range of times"), format!("{start}..{end}"), expected);
+            }
+            if frames != 1 && frames != end - start {
+                let expected = format!("1, or {}, one for each time", end - start);
                 return refuse(of("the number of frames"), frames.to_string(), expected);
             }
             let count = surface.frames[0].len();
@@ -181,8 +217,67 @@ impl Animation {
                 return refuse(of("a position"), found, "finite numbers of 4 bytes".to_owned());
             }
         }
-        Ok(())
+        length(self.number_bytes()).map(drop)
     }
+}
+
+/// What moves in a file, channel by channel.
+#[derive(Default)]
+struct Motions {
+    channels: Vec<Value>,
+    samplers: Vec<Value>,
+    /// Accessor of the times of a range, shared by all surfaces that have it.
+    inputs: Vec<(Range<usize>, usize)>,
+}
+
+impl Motions {
+    fn add(&mut self, node: usize, path: &str, input: usize, output: usize, interpolation: &str) {
+        self.channels.push(json!({"sampler": self.samplers.len(), "target": {"node": node, "path": path}}));
+        self.samplers.push(json!({"input": input, "output": output, "interpolation": interpolation}));
+    }
+
+    /// Lets each frame show at its time, and blends between.
+    fn add_blending(&mut self, node: usize, surface: &MovingSurface, times: &[f32], buffer: &mut Buffer) {
+        let frames = surface.frames.len();
+        if frames < 2 {
+            return;
+        }
+        let targets = frames - 1;
+        let mut weights = vec![0.0; frames * targets];
+        for frame in 1..frames {
+            weights[frame * targets + frame - 1] = 1.0;
+        }
+        let known = self.inputs.iter().find(|(range, _)| *range == surface.during).map(|(_, input)| *input);
+        let input = known.unwrap_or_else(|| {
+            let input = buffer.scalars(&times[surface.during.clone()], Target::None);
+            self.inputs.push((surface.during.clone(), input));
+            input
+        });
+        let output = buffer.scalars(&weights, Target::None);
+        self.add(node, "weights", input, output, "LINEAR");
+    }
+
+    /// Lets a surface be there for its part of the time.
+    fn add_presence(&mut self, node: usize, during: &Range<usize>, times: &[f32], buffer: &mut Buffer) {
+        if *during == (0..times.len()) {
+            return;
+        }
+        let there = |at: usize| if during.contains(&at) { 1.0 } else { 0.0 };
+        let keys = turns(during, times.len());
+        let seconds: Vec<f32> = keys.iter().map(|at| times[*at]).collect();
+        let input = buffer.scalars(&seconds, Target::None);
+        let output =
+            buffer.vectors(keys.iter().map(|at| Vec3::new(1.0, 1.0, 1.0) * there(*at)), Target::None);
+        self.add(node, "scale", input, output, "STEP");
+    }
+}
+
+/// When it is said whether a surface is there: at the first time, and where it comes and goes.
+fn turns(during: &Range<usize>, count: usize) -> Vec<usize> {
+    let mut keys = vec![0, during.start, during.end];
+    keys.retain(|at| *at < count);
+    keys.dedup();
+    keys
 }
 
 fn mesh(surface: &MovingSurface, material: usize, buffer: &mut Buffer) -> Value {
@@ -246,35 +341,45 @@ fn rotation_to_y(up: Vec3) -> [f64; 4] {
     [axis.x / length, axis.y / length, axis.z / length, w / length]
 }
 
+/// A length as glTF writes it.
+fn length(bytes: u64) -> Result<u32, IoError> {
+    u32::try_from(bytes).map_err(|_| {
+        let expected = "less than 2^32, the most that a .glb file holds: fewer frames, or smaller surfaces";
+        IoError::request("the number of bytes of the .glb file", bytes, expected)
+    })
+}
+
 /// Head, document and numbers as one file; lengths are multiples of four.
-fn container(document: &Value, numbers: &[u8]) -> Vec<u8> {
+fn container(document: &Value, numbers: &[u8]) -> Result<Vec<u8>, IoError> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let padded = numbers.len().next_multiple_of(4);
     let total = 12 + 8 + text.len() + 8 + padded;
+    // the parts are shorter than the whole
+    let whole = length(total as u64)?;
     let mut bytes = Vec::with_capacity(total);
-    let word = |bytes: &mut Vec<u8>, number: usize| bytes.extend((number as u32).to_le_bytes());
+    let word = |bytes: &mut Vec<u8>, number: u32| bytes.extend(number.to_le_bytes());
     bytes.extend(MAGIC);
     word(&mut bytes, 2);
-    word(&mut bytes, total);
-    word(&mut bytes, text.len());
+    word(&mut bytes, whole);
+    word(&mut bytes, text.len() as u32);
     bytes.extend(b"JSON");
     bytes.extend(text);
-    word(&mut bytes, padded);
+    word(&mut bytes, padded as u32);
     bytes.extend(b"BIN\0");
     bytes.extend(numbers);
     bytes.resize(total, 0);
-    bytes
+    Ok(bytes)
 }
 
 fn write_mesh(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     let part = SurfacePart::of(output);
-    let Paint::Plain(colour) = Paint::default() else { return Ok(()) };
     let surface = MovingSurface {
         name: "surface".to_owned(),
         triangles: part.facets.iter().flat_map(|facet| facet.triangles()).collect(),
+        during: 0..1,
         frames: vec![part.positions],
-        colour,
+        colour: Colour::tissue(),
         point_colours: Vec::new(),
     };
     let animation = Animation { surfaces: vec![surface], times: vec![0.0], up: Vec3::Y };

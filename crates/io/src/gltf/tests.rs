@@ -40,6 +40,7 @@ fn swing() -> Animation {
     let surface = MovingSurface {
         name: "flag".into(),
         triangles,
+        during: 0..4,
         frames: (0..4).map(frame).collect(),
         colour: Colour::WHITE,
         point_colours: Vec::new(),
@@ -78,6 +79,37 @@ fn frames_come_back_from_targets_and_weights() {
     }
 }
 
+/// A surface that becomes another one: each is there, at its size, at its own times alone.
+#[test]
+fn surfaces_take_turns() {
+    let mut animation = swing();
+    let mut later = animation.surfaces[0].clone();
+    later.triangles.pop();
+    (later.during, later.frames) = (2..4, later.frames.split_off(2));
+    animation.surfaces[0].during = 0..2;
+    animation.surfaces[0].frames.truncate(2);
+    animation.surfaces.push(later);
+    let (document, numbers) = opened(&animation.to_glb().unwrap());
+    let of = |node: u64, path: &str| {
+        let animation = &document["animations"][0];
+        let is_it = |channel: &&Value| channel["target"]["node"] == node && channel["target"]["path"] == path;
+        let channel = animation["channels"].as_array().unwrap().iter().find(is_it).unwrap();
+        let sampler = &animation["samplers"][channel["sampler"].as_u64().unwrap() as usize];
+        let read = |what: &str| floats(&document, &numbers, &sampler[what]);
+        (read("input"), read("output"), sampler["interpolation"].clone())
+    };
+    let close =
+        |a: &[f32], b: &[f32]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+    let (times, scales, how) = of(0, "scale");
+    assert!(close(&times, &[0.0, 0.2]) && close(&scales, &[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]) && how == "STEP");
+    let (times, scales, _) = of(1, "scale");
+    assert!(close(&times, &[0.0, 0.2]) && close(&scales, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]));
+    let (times, weights, _) = of(1, "weights");
+    assert!(close(&times, &[0.2, 0.3]) && close(&weights, &[0.0, 1.0]));
+    assert_eq!(document["nodes"][1]["scale"], json!([0.0, 0.0, 0.0]));
+    assert!(document["nodes"][0].get("scale").is_none());
+}
+
 /// `up` becomes `y`: the quaternion turns it there.
 #[test]
 fn up_is_turned_to_y() {
@@ -102,6 +134,27 @@ fn a_mesh_is_written_as_its_surface() {
     assert_eq!(document["accessors"][0]["count"], 9);
 }
 
+/// Lengths are numbers of 4 bytes: what is longer is refused, by counts alone, which are those of the file.
+#[test]
+fn lengths_are_known_before() {
+    for colours in [0, 6] {
+        let mut animation = swing();
+        animation.surfaces[0].point_colours = vec![Colour::BLACK; colours];
+        let mut still = animation.surfaces[0].clone();
+        still.frames.truncate(1);
+        still.during = 1..2;
+        animation.surfaces.push(still);
+        let (document, _) = opened(&animation.to_glb().unwrap());
+        assert_eq!(document["buffers"][0]["byteLength"], animation.number_bytes());
+    }
+    assert_eq!(length(u64::from(u32::MAX)).unwrap(), u32::MAX);
+    let error = length(1 << 32).unwrap_err().to_string();
+    assert!(
+        error.starts_with("the number of bytes of the .glb file is 4294967296; expected less than 2^32"),
+        "{error}"
+    );
+}
+
 #[test]
 fn faulty_animations_are_refused() {
     let refused = |change: fn(&mut Animation), words: &str| {
@@ -111,11 +164,21 @@ fn faulty_animations_are_refused() {
         assert!(message.contains(words), "{message}");
     };
     refused(|a| a.times[2] = 1.1, "the time of a frame is 1.1; expected more than 1.1");
+    // a millisecond after nine hours is nothing to a number of 4 bytes, whose steps are 2⁻⁸ s there
+    refused(
+        |a| a.times = vec![0.0, 1.0, 32768.0, 32768.001],
+        "the time of a frame is 32768.001 s, 32768.0 s from the start",
+    );
     refused(|a| a.times.clear(), "the number of frames is 0");
     refused(|a| a.surfaces.clear(), "the number of surfaces is 0");
     refused(|a| a.surfaces[0].triangles[0] = [0, 1, 99], "a corner of surfaces[0] is 99");
     refused(|a| a.surfaces[0].triangles.clear(), "the number of triangles");
     refused(|a| a.surfaces[0].frames.truncate(3), "the number of frames of surfaces[0] is 3");
+    refused(
+        |a| a.surfaces[0].during = 2..2,
+        "the range of times of surfaces[0] is 2..2; expected a part of 0..4",
+    );
+    refused(|a| a.surfaces[0].during = 1..5, "the range of times of surfaces[0] is 1..5");
     refused(|a| a.surfaces[0].frames[1].truncate(5), "expected 6, as of the first frame");
     refused(|a| a.surfaces[0].frames[1][0].x = f64::NAN, "a position of surfaces[0] is [NaN");
     refused(|a| a.surfaces[0].point_colours.push(Colour::BLACK), "one for each point");

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use souple_math::Vec3;
-use souple_mesh::{Group, MAX_NODES};
+use souple_mesh::{ElementKind, Group, MAX_NODES};
 
 use super::element_type::{self, ElementType};
 use crate::Dataset;
@@ -13,6 +13,15 @@ use crate::error::Fault;
 
 /// A physical group: dimension and number.
 type PhysicalTag = (u8, i64);
+
+/// An edge of a file.
+#[derive(Debug)]
+struct Edge {
+    element: ElementType,
+    /// As many as its type has.
+    nodes: [u32; 3],
+    physical: Vec<i64>,
+}
 
 #[derive(Debug, Default)]
 pub(super) struct Assembly {
@@ -24,7 +33,13 @@ pub(super) struct Assembly {
     names: BTreeMap<PhysicalTag, String>,
     /// Physical groups of each entity (version 4).
     pub entities: HashMap<PhysicalTag, Vec<i64>>,
+    /// Edges of the file: what they are shows when all other elements are known.
+    edges: Vec<Edge>,
+    /// Whether the file has elements of more dimensions than edges.
+    is_more_than_edges: bool,
     skipped: BTreeMap<i64, usize>,
+    /// Sections that were left out, by name.
+    skipped_sections: BTreeMap<Vec<u8>, usize>,
     pub has_nodes: bool,
     pub has_elements: bool,
 }
@@ -50,10 +65,18 @@ impl Assembly {
         Ok(())
     }
 
+    /// Notes a section that is not read; remarks say nothing about the mesh.
+    pub fn leave_out(&mut self, section: &[u8]) {
+        if section != b"Comments" {
+            *self.skipped_sections.entry(section.to_vec()).or_default() += 1;
+        }
+    }
+
     /// The type of a number, refused if its elements cannot be used.
     pub fn element_type(&self, cursor: &Cursor<'_>, number: i64) -> Result<ElementType, Fault> {
         let Some(element) = element_type::find(number) else {
-            let expected = "4, 11 (tetrahedra), 5, 17 (hexahedra), 6, 18 (prisms), 7, 19 (pyramids), or 2, 3, 9, 16 (facets)";
+            let expected = "4, 11 (tetrahedra), 5, 17 (hexahedra), 6, 18 (prisms), 7, 19 (pyramids), \
+                            2, 3, 9, 16 (facets) or 1, 8 (edges)";
             return Err(cursor.fault("the element type", number.to_string(), expected));
         };
         if element.dimension == 3 && element.kind.is_none() {
@@ -79,8 +102,19 @@ impl Assembly {
                 cursor.fault(subject, node_tag.to_string(), "the number of a node of $Nodes")
             })?;
         }
-        let nodes = &nodes[..node_tags.len()];
-        let destination = match element.kind {
+        self.is_more_than_edges |= element.dimension > 1;
+        if element.dimension == 1 && element.kind.is_some() {
+            let [start, end, middle, ..] = nodes;
+            self.edges.push(Edge { element, nodes: [start, end, middle], physical: physical.to_vec() });
+        } else {
+            self.take(element, element.kind, &nodes[..node_tags.len()], physical);
+        }
+        Ok(())
+    }
+
+    /// Puts an element among the cells or the facets, or its points into its groups where it is none of ours.
+    fn take(&mut self, element: ElementType, kind: Option<ElementKind>, nodes: &[u32], physical: &[i64]) {
+        let destination = match kind {
             Some(kind) => {
                 let mut ours = [0; MAX_NODES];
                 for (slot, theirs) in ours.iter_mut().zip(element_type::order(kind)) {
@@ -98,11 +132,18 @@ impl Assembly {
             let group = self.groups.entry((element.dimension, tag.saturating_abs())).or_default();
             match destination {
                 Destination::Cell(cell) => group.cells.push(cell),
-                Destination::Facet(facet) => group.facets.push(facet),
+                Destination::Facets { first, count } => group.facets.extend(first..first + count),
                 Destination::Skipped => group.points.extend_from_slice(nodes),
             }
         }
-        Ok(())
+    }
+
+    /// Edges are cells where a file has nothing else, and the curves around what it meshes beside other elements.
+    fn take_edges(&mut self) {
+        for Edge { element, nodes, physical } in std::mem::take(&mut self.edges) {
+            let kind = element.kind.filter(|_| !self.is_more_than_edges);
+            self.take(element, kind, &nodes[..element.node_count], &physical);
+        }
     }
 
     pub fn finish(mut self, cursor: &Cursor<'_>) -> Result<Dataset, Fault> {
@@ -115,6 +156,7 @@ impl Assembly {
                 ));
             }
         }
+        self.take_edges();
         for (tag, name) in &self.names {
             self.groups.entry(*tag).or_default();
             if name.is_empty() {
@@ -137,6 +179,19 @@ impl Assembly {
         for (number, count) in self.skipped {
             let name = element_type::find(number).map_or("element", |element| element.name);
             self.dataset.notes.push(format!("{count} elements of type {number} ({name}) were left out"));
+        }
+        if !self.skipped_sections.is_empty() {
+            let names: Vec<String> = self
+                .skipped_sections
+                .iter()
+                .map(|(name, count)| match count {
+                    1 => format!("${}", name.escape_ascii()),
+                    count => format!("${} ({count} times)", name.escape_ascii()),
+                })
+                .collect();
+            self.dataset
+                .notes
+                .push(format!("sections that are not read were left out: {}", names.join(", ")));
         }
         Ok(self.dataset)
     }

@@ -24,14 +24,14 @@ const fn other(number: i64, name: &'static str, dimension: u8, node_count: usize
 
 /// All types up to the fifth order in the plane and the third in space.
 const TYPES: &[ElementType] = &[
-    other(1, "line of 2 nodes", 1, 2),
+    ours(1, "line of 2 nodes", ElementKind::Edge2, 1),
     ours(2, "triangle of 3 nodes", ElementKind::Tri3, 2),
     ours(3, "quadrangle of 4 nodes", ElementKind::Quad4, 2),
     ours(4, "tetrahedron of 4 nodes", ElementKind::Tet4, 3),
     ours(5, "hexahedron of 8 nodes", ElementKind::Hex8, 3),
     ours(6, "prism of 6 nodes", ElementKind::Prism6, 3),
     ours(7, "pyramid of 5 nodes", ElementKind::Pyramid5, 3),
-    other(8, "line of 3 nodes", 1, 3),
+    ours(8, "line of 3 nodes", ElementKind::Edge3, 1),
     ours(9, "triangle of 6 nodes", ElementKind::Tri6, 2),
     other(10, "quadrangle of 9 nodes", 2, 9),
     ours(11, "tetrahedron of 10 nodes", ElementKind::Tet10, 3),
@@ -64,12 +64,7 @@ pub(super) fn find(number: i64) -> Option<ElementType> {
 
 /// The number of an element of ours; `None` for elements that Gmsh has no type of.
 pub(super) fn number_of(kind: ElementKind) -> Option<i64> {
-    match kind {
-        // read as curves around what they mesh, written as cells
-        ElementKind::Edge2 => Some(1),
-        ElementKind::Edge3 => Some(8),
-        _ => TYPES.iter().find(|element| element.kind == Some(kind)).map(|element| element.number),
-    }
+    TYPES.iter().find(|element| element.kind == Some(kind)).map(|element| element.number)
 }
 
 /// The node of Gmsh's list that each of our nodes is. Corners agree; Gmsh lists the middles of edges by the corner of

@@ -27,6 +27,7 @@ pub(crate) static GMSH: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["msh"],
+        family: &[],
         parts: &[],
         recognises,
         read: Some(read),
@@ -42,6 +43,7 @@ pub(crate) static GMSH_BINARY: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &[],
+        family: &["msh"],
         parts: &[],
         recognises,
         read: Some(read),
@@ -57,6 +59,7 @@ pub(crate) static GMSH_2: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["msh2"],
+        family: &["msh"],
         parts: &[],
         recognises,
         read: Some(read),
@@ -96,7 +99,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
                     "one section $MeshFormat before all others",
                 ));
             }
-            _ => skip_section(&mut cursor, section)?,
+            _ => skip_section(&mut cursor, section, &mut assembly)?,
         }
         close_section(&mut cursor, section)?;
     }
@@ -206,7 +209,8 @@ fn close_section(cursor: &mut Cursor<'_>, section: &[u8]) -> Result<(), Fault> {
 }
 
 /// Up to the closing word of a section that holds no mesh.
-fn skip_section(cursor: &mut Cursor<'_>, section: &[u8]) -> Result<(), Fault> {
+fn skip_section(cursor: &mut Cursor<'_>, section: &[u8], assembly: &mut Assembly) -> Result<(), Fault> {
+    assembly.leave_out(section);
     let closing = closing_word(section);
     let rest = cursor.rest();
     match rest.windows(closing.len()).position(|window| window == closing) {

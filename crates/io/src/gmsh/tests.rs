@@ -53,6 +53,23 @@ fn hand_made_files_survive_faults() {
     }
 }
 
+/// Fields, and the groups of partitioned files, stand in sections of their own: that they are not read is said.
+#[test]
+fn sections_left_out_are_told() {
+    let data = "$NodeData\n1\n\"a\"\n1\n0\n3\n0\n1\n1\n10 0.5\n$EndNodeData\n";
+    let periodic = "$Periodic\n0\n$EndPeriodic\n";
+    let notes = |text: String| read(text.as_bytes()).unwrap().notes;
+    assert!(notes(VERSION_2.to_owned()).is_empty());
+    assert_eq!(
+        notes(format!("{VERSION_2}{data}{periodic}{data}")),
+        ["sections that are not read were left out: $NodeData (2 times), $Periodic"]
+    );
+    assert_eq!(
+        notes(VERSION_4.replacen("$Nodes", "$PartitionedEntities\n0\n$EndPartitionedEntities\n$Nodes", 1)),
+        ["sections that are not read were left out: $PartitionedEntities"]
+    );
+}
+
 /// Lines without a group and curved facets are left out and said; curved cells are refused.
 #[test]
 fn elements_of_other_kinds() {

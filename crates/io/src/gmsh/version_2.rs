@@ -32,7 +32,7 @@ pub(super) fn read_section(
             }
             assembly.has_elements = true;
         }
-        other => super::skip_section(cursor, other)?,
+        other => super::skip_section(cursor, other, assembly)?,
     }
     Ok(())
 }

@@ -10,6 +10,11 @@ impl Colour {
     pub const BLACK: Self = Self([0.0; 3]);
     pub const WHITE: Self = Self([1.0; 3]);
 
+    /// Of soft things that have no colour of their own.
+    pub fn tissue() -> Self {
+        Self::from_screen([214, 122, 104])
+    }
+
     /// From the numbers of a screen, as in `#c8705a`.
     pub fn from_screen([red, green, blue]: [u8; 3]) -> Self {
         Self([red, green, blue].map(|value| linear_from_screen(f64::from(value) / 255.0) as f32))

@@ -100,6 +100,8 @@ pub enum Backdrop {
     Graded,
     /// One colour: pictures that stand under each other make no bands.
     Plain,
+    /// That of paper.
+    White,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -220,6 +222,7 @@ impl Picture {
         match self.backdrop {
             Backdrop::Graded => palette,
             Backdrop::Plain => Palette { top: palette.bottom, ..palette },
+            Backdrop::White => Palette { top: Colour::WHITE, bottom: Colour::WHITE, ..palette },
         }
     }
 

@@ -42,9 +42,8 @@ pub enum Paint {
 }
 
 impl Default for Paint {
-    /// The colour of tissue.
     fn default() -> Self {
-        Self::Plain(Colour::from_screen([214, 122, 104]))
+        Self::Plain(Colour::tissue())
     }
 }
 

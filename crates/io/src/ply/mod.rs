@@ -23,6 +23,7 @@ pub(crate) static PLY: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["ply"],
+        family: &[],
         parts: &[],
         recognises,
         read: Some(read::read),
@@ -38,6 +39,7 @@ pub(crate) static PLY_TEXT: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &[],
+        family: &["ply"],
         parts: &[],
         recognises,
         read: Some(read::read),

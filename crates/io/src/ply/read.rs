@@ -5,7 +5,7 @@ use souple_math::Vec3;
 use super::header::{self, Element, Header, Property, Scalar};
 use super::recognises;
 use crate::Dataset;
-use crate::cursor::{Cursor, Encoding, Endian};
+use crate::cursor::{Cursor, Encoding, Endian, open_end};
 use crate::dataset::Field;
 use crate::error::Fault;
 use crate::facets::{Polygons, check_facets};
@@ -53,6 +53,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     check_facets(&cursor, &dataset.mesh)?;
     if encoding == Encoding::Text {
         cursor.skip_space();
+        dataset.notes.extend(open_end(bytes, "the last line"));
     }
     if !cursor.rest().is_empty() {
         dataset.notes.push(format!("{} bytes behind the last element were left out", cursor.rest().len()));

@@ -27,6 +27,18 @@ fn text_and_binary_agree() {
     assert_eq!((text.mesh.points.len(), text.mesh.facet_count()), (4, 2));
 }
 
+/// Words of a text are of either case, its first one too; a binary file may begin with the same word, and have bytes behind it.
+#[test]
+fn what_begins_with_solid() {
+    let text = read(TEXT.as_bytes()).unwrap();
+    assert_eq!(read(TEXT.to_uppercase().as_bytes()), Ok(text.clone()));
+    let mut named = binary();
+    named[..10].copy_from_slice(b"solid name");
+    assert_eq!(read(&named).unwrap().mesh, text.mesh);
+    named.extend([0; 2]);
+    assert_eq!(read(&named).unwrap().mesh, text.mesh);
+}
+
 #[test]
 fn cuts_are_faults() {
     let bytes = binary();

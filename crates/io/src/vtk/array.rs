@@ -16,6 +16,57 @@ pub(super) struct Layout<'a> {
     pub header_width: usize,
     pub compression: Compression,
     pub appended: Option<Appended<'a>>,
+    /// Bytes of memory that the arrays of the file may still become.
+    pub room: &'a Cell<usize>,
+}
+
+/// What all arrays of a file of this length may become in memory [bytes]. Compressed zeros are a thousandth of what they stand
+/// for, and bytes become numbers of eight: without a bound a small file fills any memory. Meshes with their fields stay
+/// below a tenth of it.
+pub(super) fn most_memory(file_length: usize) -> usize {
+    const ALWAYS: usize = 1 << 30;
+    const PER_BYTE: usize = 64;
+    file_length.saturating_mul(PER_BYTE).max(ALWAYS)
+}
+
+/// How many numbers an array must have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Length {
+    pub tuples: usize,
+    pub components: usize,
+}
+
+impl Length {
+    fn check(self, array: &Array<'_>, found: usize) -> Result<(), Fault> {
+        if self.tuples.checked_mul(self.components) == Some(found) {
+            return Ok(());
+        }
+        let expected = format!("{} x {}", self.tuples, self.components);
+        Err(array.fault("the number of values", found.to_string(), expected))
+    }
+}
+
+/// An element `<DataArray>`.
+struct Array<'a> {
+    document: &'a Document<'a>,
+    element: &'a Element<'a>,
+    name: &'a str,
+}
+
+impl Array<'_> {
+    fn fault(&self, what: &str, found: impl Into<String>, expected: impl Into<String>) -> Fault {
+        self.fault_at(self.element.position, what, found, expected)
+    }
+
+    fn fault_at(
+        &self,
+        position: usize,
+        what: &str,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Fault {
+        self.document.fault(position, format!("{what} of the array `{}`", self.name), found, expected)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,103 +194,101 @@ pub(super) fn decode<T: Number>(bytes: &[u8], number_type: NumberType, endian: E
         .collect()
 }
 
-/// The numbers of a `<DataArray>`.
+/// The numbers of a `<DataArray>`, as many as there must be: what a header promises is held against that before any of it is
+/// made.
 pub(super) fn read<T: Number>(
     document: &Document<'_>,
     element: &Element<'_>,
     layout: &Layout<'_>,
+    wanted: Length,
 ) -> Result<Vec<T>, Fault> {
-    let name = element.attribute("Name").unwrap_or("without a name");
-    let subject = |what: &str| format!("{what} of the array `{name}`");
+    let array = Array { document, element, name: element.attribute("Name").unwrap_or("without a name") };
     let type_name = element.attribute("type").unwrap_or("missing");
-    let number_type = NumberType::from_xml(type_name).ok_or_else(|| {
-        let expected = "Int8 to UInt64, Float32 or Float64";
-        document.fault(element.position, subject("the type"), type_name, expected)
-    })?;
-    let bytes = match element.attribute("format").unwrap_or("ascii") {
-        "ascii" => return read_text(document, element, name),
-        "binary" => {
-            let (bytes, end) = base64::decode(element.text).map_err(|bad| {
-                let position = element.text_position + bad.offset;
-                document.fault(
-                    position,
-                    subject("the base64 text"),
-                    "a broken group",
-                    "groups of four letters",
-                )
-            })?;
-            if end != element.text.len() {
-                let stray = &element.text[end..(end + 1).min(element.text.len())];
-                let position = element.text_position + end;
-                return Err(document.fault(
-                    position,
-                    subject("the base64 text"),
-                    quoted(stray),
-                    "A-Z a-z 0-9 + / =",
-                ));
-            }
-            bytes
+    let number_type = NumberType::from_xml(type_name)
+        .ok_or_else(|| array.fault("the type", type_name, "Int8 to UInt64, Float32 or Float64"))?;
+    let stored = match element.attribute("format").unwrap_or("ascii") {
+        "ascii" => {
+            let values = read_text(&array)?;
+            wanted.check(&array, values.len())?;
+            return Ok(values);
         }
-        "appended" => appended(document, element, layout, name)?,
+        "binary" => inline(&array)?,
+        "appended" => appended(&array, layout)?,
         other => {
-            let expected = "ascii, binary or appended";
-            return Err(document.fault(
-                element.position,
-                subject("the format"),
-                format!("`{other}`"),
-                expected,
-            ));
+            return Err(array.fault("the format", format!("`{other}`"), "ascii, binary or appended"));
         }
     };
-    let bytes = content(&bytes, layout).map_err(|(found, expected)| {
-        document.fault(element.position, subject("the data"), found, expected)
-    })?;
-    if bytes.len() % number_type.width() != 0 {
+    let of_data = |(found, expected): Mismatch| array.fault("the data", found, expected);
+    let packed = Packed::of(&stored, layout).map_err(of_data)?;
+    let length = packed.length();
+    if length % number_type.width() != 0 {
         let expected = format!("a multiple of {}, the width of {type_name}", number_type.width());
-        return Err(document.fault(
-            element.position,
-            subject("the length in bytes"),
-            bytes.len().to_string(),
-            expected,
-        ));
+        return Err(array.fault("the length in bytes", length.to_string(), expected));
     }
-    Ok(decode(&bytes, number_type, layout.endian))
+    let count = length / number_type.width();
+    wanted.check(&array, count)?;
+    take_room(&array, layout, count)?;
+    let plain = packed.unpacked(layout.compression).map_err(of_data)?;
+    Ok(decode(&plain, number_type, layout.endian))
 }
 
-fn read_text<T: Number>(document: &Document<'_>, element: &Element<'_>, name: &str) -> Result<Vec<T>, Fault> {
+/// Puts the numbers of an array to the account of the file.
+fn take_room(array: &Array<'_>, layout: &Layout<'_>, count: usize) -> Result<(), Fault> {
+    let (size, room) = (count.saturating_mul(size_of::<f64>()), layout.room.get());
+    if size > room {
+        let found = format!("{size} bytes in memory");
+        let expected = format!("at most {room} bytes, what is left for a file of this length");
+        return Err(array.fault("the size", found, expected));
+    }
+    layout.room.set(room - size);
+    Ok(())
+}
+
+fn read_text<T: Number>(array: &Array<'_>) -> Result<Vec<T>, Fault> {
+    let element = array.element;
     let words = element.text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     words
         .map(|word| {
             T::parse(word).ok_or_else(|| {
                 let offset = word.as_ptr() as usize - element.text.as_ptr() as usize;
-                let position = element.text_position + offset;
-                document.fault(position, format!("a value of the array `{name}`"), quoted(word), T::EXPECTED)
+                array.fault_at(element.text_position + offset, "a value", quoted(word), T::EXPECTED)
             })
         })
         .collect()
 }
 
-/// The bytes of the appended data from the offset of the array on, decoded if they are base64.
-fn appended(
-    document: &Document<'_>,
-    element: &Element<'_>,
-    layout: &Layout<'_>,
-    name: &str,
-) -> Result<Vec<u8>, Fault> {
-    let Some(appended) = layout.appended else {
-        let subject = format!("the data of the array `{name}`");
-        return Err(document.fault(
-            element.position,
-            subject,
-            "missing",
-            "an element <AppendedData> with it",
+/// The base64 text of the element, decoded.
+fn inline(array: &Array<'_>) -> Result<Vec<u8>, Fault> {
+    let Element { text, text_position, .. } = *array.element;
+    let (bytes, end) = base64::decode(text).map_err(|bad| {
+        array.fault_at(
+            text_position + bad.offset,
+            "the base64 text",
+            "a broken group",
+            "groups of four letters",
+        )
+    })?;
+    if let Some(stray) = text.get(end..end + 1) {
+        return Err(array.fault_at(
+            text_position + end,
+            "the base64 text",
+            quoted(stray),
+            "A-Z a-z 0-9 + / =",
         ));
+    }
+    Ok(bytes)
+}
+
+/// The bytes of the appended data from the offset of the array on, decoded if they are base64.
+fn appended(array: &Array<'_>, layout: &Layout<'_>) -> Result<Vec<u8>, Fault> {
+    let Some(appended) = layout.appended else {
+        return Err(array.fault("the data", "missing", "an element <AppendedData> with it"));
     };
-    let given = element.attribute("offset").unwrap_or("missing");
+    let given = array.element.attribute("offset").unwrap_or("missing");
     let offset = given.parse().ok().filter(|offset| *offset <= appended.bytes.len()).ok_or_else(|| {
         let expected =
             format!("a number of at most {}, the length of the appended data", appended.bytes.len());
-        document.fault(element.position, format!("the offset of the array `{name}`"), given, expected)
+        array.fault("the offset", given, expected)
     })?;
     let bytes = &appended.bytes[offset..];
     // only as far as the length before the data reaches: the rest belongs to other arrays
@@ -247,14 +296,8 @@ fn appended(
     let extent = extent.min(bytes.len());
     let unclaimed = appended.unclaimed.get();
     if extent > unclaimed {
-        let subject = format!("the data of the array `{name}`");
         let found = format!("{extent} bytes, which other arrays have already");
-        return Err(document.fault(
-            element.position,
-            subject,
-            found,
-            format!("at most {unclaimed} bytes of its own"),
-        ));
+        return Err(array.fault("the data", found, format!("at most {unclaimed} bytes of its own")));
     }
     appended.unclaimed.set(unclaimed - extent);
     if !appended.base64 {
@@ -262,8 +305,7 @@ fn appended(
     }
     base64::decode(&bytes[..extent]).map(|decoded| decoded.0).map_err(|bad| {
         let position = appended.position + offset + bad.offset;
-        let subject = format!("the base64 text of the array `{name}`");
-        document.fault(position, subject, "a broken group", "groups of four letters")
+        array.fault_at(position, "the base64 text", "a broken group", "groups of four letters")
     })
 }
 
@@ -317,47 +359,73 @@ fn header_number(bytes: &[u8], layout: &Layout<'_>) -> usize {
     usize::try_from(value).unwrap_or(usize::MAX)
 }
 
-/// The content behind the header, decompressed; or what was found and what is expected.
-fn content(bytes: &[u8], layout: &Layout<'_>) -> Result<Vec<u8>, (String, String)> {
-    let width = layout.header_width;
-    let number = |index: usize| -> Result<usize, (String, String)> {
-        bytes.get(index * width..(index + 1) * width).map(|bytes| header_number(bytes, layout)).ok_or_else(
-            || {
+/// What was found and what is expected.
+type Mismatch = (String, String);
+
+/// The data of an array as its header says: pieces, each with its length when it is unpacked.
+struct Packed<'a> {
+    pieces: Vec<(usize, &'a [u8])>,
+}
+
+impl<'a> Packed<'a> {
+    fn of(bytes: &'a [u8], layout: &Layout<'_>) -> Result<Self, Mismatch> {
+        // an array of nothing may have no header
+        if bytes.is_empty() {
+            return Ok(Self { pieces: Vec::new() });
+        }
+        let width = layout.header_width;
+        let number = |index: usize| -> Result<usize, Mismatch> {
+            let number = bytes.get(index * width..(index + 1) * width);
+            number.map(|bytes| header_number(bytes, layout)).ok_or_else(|| {
                 let expected = format!("a header of {} bytes", (index + 1) * width);
                 (format!("cut off after {} bytes", bytes.len()), expected)
-            },
-        )
-    };
-    let piece = |start: usize, length: usize| {
-        start.checked_add(length).and_then(|end| bytes.get(start..end)).ok_or_else(|| {
-            let left = bytes.len() - start.min(bytes.len());
-            (format!("cut off after {left} bytes"), format!("{length} bytes, as its header says"))
-        })
-    };
-    if layout.compression == Compression::None {
-        // an array of nothing may have no header
-        return if bytes.is_empty() { Ok(Vec::new()) } else { Ok(piece(width, number(0)?)?.to_vec()) };
-    }
-    if bytes.is_empty() {
-        return Ok(Vec::new());
-    }
-    let (blocks, block_size, last_size) = (number(0)?, number(1)?, number(2)?);
-    let mut plain = Vec::new();
-    let mut start =
-        blocks.checked_add(3).and_then(|numbers| numbers.checked_mul(width)).unwrap_or(usize::MAX);
-    piece(0, start)?;
-    for block in 0..blocks {
-        let size = if block + 1 == blocks && last_size > 0 { last_size } else { block_size };
-        let packed = piece(start, number(3 + block)?)?;
-        start += packed.len();
-        let before = plain.len();
-        // no more than was promised, so that a small file cannot fill the memory
-        let mut inflater = flate2::read::ZlibDecoder::new(packed).take(size as u64);
-        let result = inflater.read_to_end(&mut plain);
-        if result.is_err() || plain.len() - before != size {
-            let found = format!("a broken block of {} compressed bytes", packed.len());
-            return Err((found, format!("zlib data of {size} bytes")));
+            })
+        };
+        let piece = |start: usize, length: usize| {
+            start.checked_add(length).and_then(|end| bytes.get(start..end)).ok_or_else(|| {
+                let left = bytes.len() - start.min(bytes.len());
+                (format!("cut off after {left} bytes"), format!("{length} bytes, as its header says"))
+            })
+        };
+        if layout.compression == Compression::None {
+            let length = number(0)?;
+            return Ok(Self { pieces: vec![(length, piece(width, length)?)] });
         }
+        let (blocks, block_size, last_size) = (number(0)?, number(1)?, number(2)?);
+        let mut start =
+            blocks.checked_add(3).and_then(|numbers| numbers.checked_mul(width)).unwrap_or(usize::MAX);
+        piece(0, start)?;
+        let mut pieces = Vec::with_capacity(blocks);
+        for block in 0..blocks {
+            let size = if block + 1 == blocks && last_size > 0 { last_size } else { block_size };
+            let packed = piece(start, number(3 + block)?)?;
+            start += packed.len();
+            pieces.push((size, packed));
+        }
+        Ok(Self { pieces })
     }
-    Ok(plain)
+
+    /// Bytes of all pieces when they are unpacked.
+    fn length(&self) -> usize {
+        self.pieces.iter().fold(0, |sum: usize, (size, _)| sum.saturating_add(*size))
+    }
+
+    fn unpacked(&self, compression: Compression) -> Result<Vec<u8>, Mismatch> {
+        let mut plain = Vec::new();
+        for (size, packed) in &self.pieces {
+            if compression == Compression::None {
+                plain.extend_from_slice(packed);
+                continue;
+            }
+            let before = plain.len();
+            // no more than was promised
+            let mut inflater = flate2::read::ZlibDecoder::new(*packed).take(*size as u64);
+            let result = inflater.read_to_end(&mut plain);
+            if result.is_err() || plain.len() - before != *size {
+                let found = format!("a broken block of {} compressed bytes", packed.len());
+                return Err((found, format!("zlib data of {size} bytes")));
+            }
+        }
+        Ok(plain)
+    }
 }

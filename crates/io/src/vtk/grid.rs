@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use souple_math::Vec3;
 use souple_mesh::{Group, MAX_NODES, Mesh};
 
-use super::{CELL_TYPES, EDGE_TYPES, GROUP_PREFIX, WITHOUT_VOLUME};
+use super::{CELL_TYPES, EDGE_TYPES, GROUP_PREFIX, POLYGON, WITHOUT_VOLUME};
 use crate::Dataset;
 use crate::dataset::{Destination, Field, Sorter, tidy_groups};
 use crate::error::{Fault, Place};
@@ -33,10 +33,11 @@ pub(super) struct Grid {
 
 impl Grid {
     /// Checks everything against everything else; faults are said to be at `place`.
-    pub fn into_dataset(self, place: Place) -> Result<Dataset, Fault> {
+    pub fn into_dataset(mut self, place: Place) -> Result<Dataset, Fault> {
         let mut dataset = Dataset::default();
         dataset.mesh.points = self.points(place)?;
         let destinations = self.sort_cells(place, &mut dataset)?;
+        self.bound_fields(&mut dataset, &destinations);
 
         for field in self.point_fields {
             match field.name.strip_prefix(GROUP_PREFIX) {
@@ -79,11 +80,19 @@ impl Grid {
             let found = format!("{}, but there are {} offsets", self.types.len(), self.offsets.len());
             return Err(Fault::new(place, "the number of cell types", found, "one for each cell"));
         }
+        let count = mesh.points.len();
+        let point = |cell: usize, node: i64| {
+            u32::try_from(node).ok().filter(|node| (*node as usize) < count).ok_or_else(|| {
+                let expected = format!("a point, of which there are {count}");
+                Fault::new(place, format!("a node of cell {cell}"), node.to_string(), expected)
+            })
+        };
         let mut sorter = Sorter::default();
         let is_edge = |number: &i64| EDGE_TYPES.iter().any(|edge| edge.number == *number);
         let is_of_edges = self.types.iter().all(is_edge);
         let mut skipped: BTreeMap<i64, usize> = BTreeMap::new();
         let mut destinations = Vec::with_capacity(self.types.len());
+        let mut corners = Vec::new();
         let mut start = 0;
         for (cell, (number, end)) in self.types.iter().zip(&self.offsets).enumerate() {
             let most = self.connectivity.len();
@@ -98,10 +107,18 @@ impl Grid {
                 })?;
             let listed = &self.connectivity[start..end];
             start = end;
+            if *number == POLYGON && listed.len() > 2 {
+                corners.clear();
+                for node in listed {
+                    corners.push(point(cell, *node)?);
+                }
+                destinations.push(sorter.push_polygon(mesh, &corners));
+                continue;
+            }
             let edge = EDGE_TYPES.iter().find(|edge| is_of_edges && edge.number == *number);
-            let Some(cell_type) = cell_type(*number, listed.len()).or(edge) else {
+            let Some(cell_type) = CELL_TYPES.iter().find(|cell| cell.number == *number).or(edge) else {
                 if !WITHOUT_VOLUME.contains(number) {
-                    let expected = "5, 8, 9, 22, 23 (facets), 10, 24 (tets), 11, 12, 25 (hexes), 13, 26 (wedges) or 14, 27 (pyramids)";
+                    let expected = "5, 7, 8, 9, 22, 23 (facets), 10, 24 (tets), 11, 12, 25 (hexes), 13, 26 (wedges) or 14, 27 (pyramids)";
                     return Err(Fault::new(place, format!("types[{cell}]"), number.to_string(), expected));
                 }
                 *skipped.entry(*number).or_default() += 1;
@@ -115,13 +132,7 @@ impl Grid {
             }
             let mut nodes = [0; MAX_NODES];
             for (slot, source) in nodes.iter_mut().zip(cell_type.order) {
-                let node = listed[*source];
-                let count = mesh.points.len();
-                *slot =
-                    u32::try_from(node).ok().filter(|node| (*node as usize) < count).ok_or_else(|| {
-                        let expected = format!("a point, of which there are {count}");
-                        Fault::new(place, format!("a node of cell {cell}"), node.to_string(), expected)
-                    })?;
+                *slot = point(cell, listed[*source])?;
             }
             destinations.push(sorter.push(mesh, cell_type.kind, &nodes[..cell_type.order.len()]));
         }
@@ -129,6 +140,7 @@ impl Grid {
             let found = format!("{}, but the cells use {start}", self.connectivity.len());
             return Err(Fault::new(place, "the length of the connectivity", found, "the last offset"));
         }
+        dataset.notes.extend(sorter.notes());
         for (number, count) in skipped {
             dataset
                 .notes
@@ -136,16 +148,24 @@ impl Grid {
         }
         Ok(destinations)
     }
-}
 
-/// Polygons (type 7) of three and four corners are facets too.
-fn cell_type(number: i64, node_count: usize) -> Option<&'static super::CellType> {
-    let number = match (number, node_count) {
-        (7, 3) => 5,
-        (7, 4) => 9,
-        _ => number,
-    };
-    CELL_TYPES.iter().find(|cell| cell.number == number)
+    /// Drops the values of cells, their groups among them, where polygons of very many corners would multiply them beyond what a
+    /// file may ask for.
+    fn bound_fields(&mut self, dataset: &mut Dataset, destinations: &[Destination]) {
+        const ALWAYS: usize = 1 << 24;
+        const MOST_PER_VALUE: usize = 16;
+        let elements: usize = destinations.iter().map(Destination::count).sum();
+        let of_each: usize = self.cell_fields.iter().map(|field| field.components).sum();
+        let given: usize = self.cell_fields.iter().map(|field| field.values.len()).sum();
+        if of_each.saturating_mul(elements) > given.saturating_mul(MOST_PER_VALUE).max(ALWAYS) {
+            self.cell_fields.clear();
+            let note = format!(
+                "the values and groups of {} cells were left out: their polygons became {elements} facets",
+                destinations.len()
+            );
+            dataset.notes.push(note);
+        }
+    }
 }
 
 fn group<'a>(mesh: &'a mut Mesh, name: &str) -> &'a mut Group {
@@ -163,7 +183,7 @@ fn assign(group: &mut Group, destinations: &[Destination], cells: impl Iterator<
     for cell in cells {
         match destinations[cell] {
             Destination::Cell(cell) => group.cells.push(cell),
-            Destination::Facet(facet) => group.facets.push(facet),
+            Destination::Facets { first, count } => group.facets.extend(first..first + count),
             Destination::Skipped => {}
         }
     }
@@ -192,11 +212,12 @@ fn groups_of_marks(dataset: &mut Dataset, field: &Field, destinations: &[Destina
     }
 }
 
-/// Tuples of volume cells first, then those of facets.
+/// Tuples of volume cells first, then those of facets, each of which has that of the cell it is of.
 fn sorted(field: Field, destinations: &[Destination]) -> Field {
     let tuples = || field.values.chunks_exact(field.components).zip(destinations);
-    let cells = tuples().filter(|(_, to)| matches!(to, Destination::Cell(_)));
-    let facets = tuples().filter(|(_, to)| matches!(to, Destination::Facet(_)));
-    let values = cells.chain(facets).flat_map(|(tuple, _)| tuple).copied().collect();
+    let cells = tuples().filter(|(_, to)| matches!(to, Destination::Cell(_))).map(|(tuple, _)| tuple);
+    let of_facets = tuples().filter(|(_, to)| matches!(to, Destination::Facets { .. }));
+    let facets = of_facets.flat_map(|(tuple, to)| std::iter::repeat_n(tuple, to.count()));
+    let values = cells.chain(facets).flatten().copied().collect();
     Field { values, ..field }
 }

@@ -8,8 +8,8 @@ use souple_table::Entry;
 
 use super::array::{self, Number, NumberType};
 use super::grid::Grid;
-use super::{GROUP_PREFIX, cell_type_of};
-use crate::cursor::{Cursor, Encoding, Endian};
+use super::{GROUP_PREFIX, POLYGON, cell_type_of};
+use crate::cursor::{Cursor, Encoding, Endian, open_end};
 use crate::dataset::{Field, Output};
 use crate::error::{Fault, quoted};
 use crate::format::{Format, WriteError, wrong_start};
@@ -23,6 +23,7 @@ pub(crate) static VTK_LEGACY: Entry<Format> = Entry {
     parameters: &[],
     build: Format {
         extensions: &["vtk"],
+        family: &[],
         parts: &[],
         recognises,
         read: Some(read),
@@ -39,9 +40,6 @@ fn recognises(bytes: &[u8]) -> bool {
 
 /// Most components of a field.
 const MOST_COMPONENTS: usize = 1024;
-
-/// Type of polygons among cells.
-const POLYGON: i64 = 7;
 
 /// What the values that follow belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +84,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     while let Some(word) = reader.cursor.word() {
         reader.section(word)?;
     }
-    reader.finish()
+    let mut dataset = reader.finish()?;
+    if encoding == Encoding::Text {
+        dataset.notes.extend(open_end(bytes, "the last line"));
+    }
+    Ok(dataset)
 }
 
 impl<'a> Reader<'a> {

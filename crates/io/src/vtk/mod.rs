@@ -11,7 +11,7 @@ mod vtu;
 mod vtu_write;
 mod xml;
 
-pub use series::{Series, read_series};
+pub use series::{Series, read_series, read_series_bytes};
 
 pub(crate) use legacy::VTK_LEGACY;
 pub(crate) use vtu::VTU;
@@ -60,7 +60,11 @@ const EDGE_TYPES: [CellType; 2] = [
 /// Nodes of quadratic cells: VTK lists them as we do.
 const PLAIN: &[usize] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19];
 
-/// Types that hold no volume and no facet of ours: vertices, lines, strips, polygons, curved curves and some facets.
+/// The type of polygons of any number of corners.
+const POLYGON: i64 = 7;
+
+/// Types that hold no volume and no facet of ours: vertices, lines, strips, polygons of two corners, curved curves and some
+/// facets.
 const WITHOUT_VOLUME: &[i64] = &[0, 1, 2, 3, 4, 6, 7, 21, 28, 30, 34, 35, 36];
 
 /// The number of the VTK type of an element.

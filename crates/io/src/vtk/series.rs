@@ -82,28 +82,69 @@ impl Series {
 /// The file cannot be read, or is no list of frames with finite times.
 pub fn read_series(path: &Path) -> Result<Vec<(f64, PathBuf)>, IoError> {
     let bytes = std::fs::read(path).map_err(|source| IoError::Read { path: path.to_owned(), source })?;
+    read_series_bytes(path, &bytes)
+}
+
+/// The same from the content of the file, which would stand at `path`.
+///
+/// # Errors
+/// The content is no list of frames with finite times.
+pub fn read_series_bytes(path: &Path, bytes: &[u8]) -> Result<Vec<(f64, PathBuf)>, IoError> {
     let folder = path.parent().unwrap_or(Path::new("."));
-    let read = || -> Result<Vec<(f64, PathBuf)>, Fault> {
-        let document = Document::parse(&bytes, "AppendedData")?;
-        let mut frames = Vec::new();
-        for element in document.elements.iter().filter(|element| element.name == "DataSet") {
-            let missing = |what: &str| document.fault(element.position, what, "missing", "a time and a file");
-            let time = element.attribute("timestep").ok_or_else(|| missing("the attribute `timestep`"))?;
-            let file = element.attribute("file").ok_or_else(|| missing("the attribute `file`"))?;
-            let time = time.parse().ok().filter(|time: &f64| time.is_finite()).ok_or_else(|| {
-                document.fault(
-                    element.position,
-                    "the time of a frame",
-                    quoted(time.as_bytes()),
-                    "a finite number",
-                )
-            })?;
-            frames.push((time, folder.join(file)));
+    frames(bytes, folder).map_err(|fault| IoError::content(path, fault))
+}
+
+fn frames(bytes: &[u8], folder: &Path) -> Result<Vec<(f64, PathBuf)>, Fault> {
+    let document = Document::parse(bytes, "AppendedData")?;
+    let mut frames = Vec::new();
+    for element in document.elements.iter().filter(|element| element.name == "DataSet") {
+        let attribute = |key: &str| {
+            let missing = || {
+                let subject = format!("the attribute `{key}`");
+                document.fault(element.position, subject, "missing", "a time and a file")
+            };
+            element.attribute(key).ok_or_else(missing)
+        };
+        let (time, file) = (attribute("timestep")?, attribute("file")?);
+        let time = time.parse().ok().filter(|time: &f64| time.is_finite()).ok_or_else(|| {
+            let found = quoted(time.as_bytes());
+            document.fault(element.position, "the time of a frame", found, "a finite number")
+        })?;
+        frames.push((time, folder.join(file)));
+    }
+    if frames.is_empty() {
+        return Err(document.fault(0, "the number of frames", "0", "elements <DataSet>, one or more"));
+    }
+    Ok(frames)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::read_mesh;
+    use crate::testing::{TemporaryFolder, mixed_mesh};
+
+    /// A series lists its frames with their times, and each frame is a mesh.
+    #[test]
+    fn series_of_frames() {
+        let folder = TemporaryFolder::new("series");
+        let mesh = mixed_mesh();
+        let mut series = Series::new(folder.path(""), "run & hide");
+        for time in [0.0, 0.1, 0.2] {
+            let frame = series.push(time, &Output::new(&mesh)).unwrap();
+            assert_eq!(read_mesh(&frame).unwrap().0, mesh);
         }
-        if frames.is_empty() {
-            return Err(document.fault(0, "the number of frames", "0", "elements <DataSet>, one or more"));
+        let list = std::fs::read_to_string(series.path()).unwrap();
+        assert!(list.contains("timestep=\"0.1\" part=\"0\" file=\"run &amp; hide_0001.vtu\""), "{list}");
+        assert_eq!(list.matches("<DataSet").count(), series.len());
+        let read = read_series(&series.path()).unwrap();
+        assert_eq!(read.iter().map(|frame| frame.0).collect::<Vec<_>>(), [0.0, 0.1, 0.2]);
+        assert!(read.iter().all(|frame| frame.1.is_file()));
+        for (from, to) in
+            [("\"0.1\"", "\"nan\""), ("file=", "fill="), ("DataSet", "Datum"), ("<VTKFile", "<VTK")]
+        {
+            std::fs::write(folder.path("bad.pvd"), list.replace(from, to)).unwrap();
+            assert!(read_series(&folder.path("bad.pvd")).is_err(), "{from}");
         }
-        Ok(frames)
-    };
-    read().map_err(|fault| IoError::content(path, fault))
+    }
 }

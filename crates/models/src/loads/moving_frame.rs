@@ -35,7 +35,8 @@ struct Acceleration {
 
 impl MovingFrame {
     /// Accelerations are differences of the motion's velocities, over a hundredth of the `timestep` [s]: of a motion that steps
-    /// resolve, `ω h < 1`, they are off by `(ω h/100)⁴/30`.
+    /// resolve, `ω h < 1`, they are off by `(ω h/100)⁴/30`; at the start, before which a motion may not be known, by
+    /// `(ω h/100)⁴/5`.
     pub fn new(motion: RigidMotion, timestep: f64) -> Self {
         Self { motion, resolution: 0.01 * timestep }
     }
@@ -55,17 +56,16 @@ impl MovingFrame {
             let pose = self.motion.pose(time + steps * self.resolution);
             (pose.velocity, pose.angular_velocity)
         };
-        // before the start a motion need not be defined: there differences look ahead, to the same order
+        // ẏ = (8 (y₊₁ - y₋₁) - (y₊₂ - y₋₂)) / 12 δ, or from y₀ on
         let (steps, weights) = if time < 2.0 * self.resolution {
             ([0.0, 1.0, 2.0, 3.0, 4.0], [-25.0, 48.0, -36.0, 16.0, -3.0])
         } else {
             ([-2.0, -1.0, 0.0, 1.0, 2.0], [1.0, -8.0, 0.0, 8.0, -1.0])
         };
-        let sampled = steps.map(at);
-        // ẏ = Σ w y / 12 δ
+        let velocities = steps.map(at);
         let rate = |of: fn((Vec3, Vec3)) -> Vec3| {
-            let sum: Vec3 = sampled.iter().zip(weights).map(|(y, weight)| of(*y) * weight).sum();
-            sum * (1.0 / (12.0 * self.resolution))
+            let terms = velocities.into_iter().zip(weights).map(|(velocity, weight)| of(velocity) * weight);
+            terms.sum::<Vec3>() * (1.0 / (12.0 * self.resolution))
         };
         Acceleration {
             linear: pose.direction_to_shape(rate(|(velocity, _)| velocity)),

@@ -337,6 +337,27 @@ fn frames_press_as_paths_bend() {
     assert!(expected.length() > 1.0);
 }
 
+/// A motion that is not known before the start presses from the start on: `x = t^2.5` by `-m 3.75 √t`.
+#[test]
+fn frames_begin_at_the_start() {
+    let mut kinematics = Kinematics::default();
+    kinematics.add_unknowns(UnknownKind::Point, 1);
+    let mass = Mass { diagonal: vec![2.0], couplings: vec![] };
+    let motion = RigidMotion { translation: led("[t^2.5, 0, 0]"), ..pushed() };
+    let timestep = 0.01;
+    let frame = FictitiousForce::new("frame", MovingFrame::new(motion, timestep), &mass, &kinematics);
+    for time in [0.0, 0.5 * timestep, 1.0] {
+        let at = Setting { time, ..Setting::new(&frame, vec![Vec3::ZERO], vec![Vec3::ZERO]) };
+        let felt = at.force(&frame)[0].x / 0.75;
+        // at the start, where 2.5 t^1.5 has no second derivative, the differences see it up to four hundredths of a step
+        let reach = if time == 0.0 { 3.75 * (0.04 * timestep).sqrt() } else { 1e-9 };
+        assert!(
+            (felt + mass.diagonal[0] * 3.75 * time.sqrt()).abs() < mass.diagonal[0] * reach,
+            "{time}: {felt}"
+        );
+    }
+}
+
 /// Gravity keeps its direction in the world at rest: a frame that turns by a right angle sees it turn back.
 #[test]
 fn gravity_seen_from_a_frame() {

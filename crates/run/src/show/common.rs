@@ -1,5 +1,7 @@
 //! What all pictures of a show have in common, so that neither camera nor colours jump.
 
+use std::sync::Arc;
+
 use souple_io::picture::{Cut, MeshSurface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
@@ -179,6 +181,13 @@ impl BodyMoment {
         };
         let of_cell = |cell: usize| if is_drawn(cell) { radius } else { 0.0 };
         MeshSurface::tubes(&self.mesh, &self.positions, of_cell, cut)
+    }
+
+    /// Whether its cells join the same points as those of another moment.
+    pub(super) fn has_mesh_of(&self, other: &Self) -> bool {
+        let (a, b) = (&self.mesh, &other.mesh);
+        Arc::ptr_eq(a, b)
+            || (a.points.len() == b.points.len() && a.blocks == b.blocks && a.facet_blocks == b.facet_blocks)
     }
 
     /// Of each link, see [`LINK_STATE`]; `None` of a body that is no network.

@@ -1,7 +1,5 @@
 //! How a run is drawn: from where, in what colours, cut open, taken apart, with arrows.
 
-use std::sync::Arc;
-
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
     Backdrop, Colour, ColourMap, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace, MeshSurface,
@@ -26,6 +24,8 @@ pub struct Figure {
     pub legend: LegendPlace,
     /// In place of the scene's title; none if empty.
     pub title: Option<String>,
+    /// Whether the time of a moment stands under the title.
+    pub clock: bool,
     /// In place of the scene's, with everything in it; `bounds` are filled in where `None`.
     pub view: Option<View>,
     /// A field, its magnitude or component; one colour where `None`.
@@ -72,6 +72,7 @@ impl Default for Figure {
             floor: Floor::default(),
             legend: LegendPlace::default(),
             title: None,
+            clock: true,
             view: None,
             colour_by: Some("von_mises".to_owned()),
             colours: ColourMap::default(),
@@ -157,7 +158,7 @@ impl Figure {
             theme: self.theme,
             backdrop: self.backdrop,
             title: self.title.clone().unwrap_or_else(|| show.stage.title.clone()),
-            subtitle: format!("{:.3} s", moment.time),
+            subtitle: if self.clock { format!("{:.3} s", moment.time) } else { String::new() },
             legend,
             colours: self.colours,
         }
@@ -274,46 +275,7 @@ impl Figure {
         for index in 0..count {
             let bodies: Vec<&BodyMoment> =
                 moments.iter().filter_map(|moment| moment.bodies.get(index)).collect();
-            let Some(last) = bodies.last() else { continue };
-            let is_another = |body: &&BodyMoment| {
-                !Arc::ptr_eq(&body.mesh, &last.mesh) && body.mesh.blocks != last.mesh.blocks
-            };
-            if bodies.iter().any(is_another) {
-                return Err(ShowError::Request {
-                    what: "file",
-                    value: format!(
-                        "a .glb of `{}`, whose surface has other triangles in each frame",
-                        last.name
-                    ),
-                    expected: "one frame (`--frames 1`), or a film: .gif, .apng, .mp4".to_owned(),
-                });
-            }
-            let of = if last.is_of_edges() {
-                last.tubes(&common, None, None)
-            } else {
-                MeshSurface::of(&last.mesh)
-            };
-            let frame = |body: &&BodyMoment| {
-                if body.is_of_edges() {
-                    return body.tubes(&common, None, None).surface.points;
-                }
-                let mut surface = of.clone();
-                surface.move_to(&body.positions);
-                surface.surface.points
-            };
-            let values = self.quantity().and_then(|quantity| quantity.at_points(last));
-            let (low, high) = common.range.unwrap_or((0.0, 1.0));
-            let colour =
-                |value: f64| self.colours.colour((value - low) / (high - low).max(f64::MIN_POSITIVE));
-            surfaces.push(MovingSurface {
-                name: last.name.clone(),
-                triangles: of.surface.triangles.clone(),
-                frames: bodies.iter().map(frame).collect(),
-                colour: colour_of(index, 0),
-                point_colours: values.map_or_else(Vec::new, |values| {
-                    of.points.iter().map(|point| colour(values[point.from as usize])).collect()
-                }),
-            });
+            surfaces.extend(self.moving(&bodies, index, &common));
         }
         let scenery = |time: f64| show.stage.surfaces(time, common.bounds);
         let first = moments.first().map_or_else(Vec::new, |moment| scenery(moment.time));
@@ -321,6 +283,7 @@ impl Figure {
             surfaces.push(MovingSurface {
                 name: format!("shape {}", index + 1),
                 triangles,
+                during: 0..moments.len(),
                 frames: moments
                     .iter()
                     .filter_map(|m| scenery(m.time).into_iter().nth(index))
@@ -335,6 +298,57 @@ impl Figure {
             times: moments.iter().map(|moment| moment.time).collect(),
             up: show.stage.view.up,
         })
+    }
+}
+
+impl Figure {
+    /// A body over all moments: a surface for each run of moments in which its triangles stay the same, coloured as at the
+    /// last of them. Those of a skin are others at each moment.
+    fn moving(&self, bodies: &[&BodyMoment], index: usize, common: &Common) -> Vec<MovingSurface> {
+        let (low, high) = common.range.unwrap_or((0.0, 1.0));
+        let colour = |value: f64| self.colours.colour((value - low) / (high - low).max(f64::MIN_POSITIVE));
+        let mut all: Vec<MovingSurface> = Vec::new();
+        let mut of: Option<(&BodyMoment, MeshSurface)> = None;
+        for (at, body) in bodies.iter().enumerate() {
+            let surface = match of.take() {
+                Some((before, surface)) if !body.is_of_edges() && before.has_mesh_of(body) => surface,
+                _ if body.is_of_edges() => body.tubes(common, None, None),
+                _ => MeshSurface::of(&body.mesh),
+            };
+            let mut moved = surface.clone();
+            if !body.is_of_edges() {
+                moved.move_to(&body.positions);
+            }
+            let positions = moved.surface.points;
+            let goes_on = |last: &&mut MovingSurface| {
+                last.triangles == surface.surface.triangles && last.frames[0].len() == positions.len()
+            };
+            match all.last_mut().filter(goes_on) {
+                Some(last) => {
+                    last.during.end = at + 1;
+                    last.frames.push(positions);
+                }
+                None => all.push(MovingSurface {
+                    name: body.name.clone(),
+                    triangles: surface.surface.triangles.clone(),
+                    during: at..at + 1,
+                    frames: vec![positions],
+                    colour: colour_of(index, 0),
+                    point_colours: Vec::new(),
+                }),
+            }
+            let is_last = bodies.get(at + 1).is_none_or(|next| body.is_of_edges() || !body.has_mesh_of(next));
+            if let (true, Some(run)) = (is_last, all.last_mut())
+                && let Some(values) = self.quantity().and_then(|quantity| quantity.at_points(body))
+            {
+                run.point_colours =
+                    surface.points.iter().map(|point| colour(values[point.from as usize])).collect();
+            }
+            of = Some((body, surface));
+        }
+        // nothing is there where a skin has gone, or all links are torn
+        all.retain(|surface| !surface.triangles.is_empty());
+        all
     }
 }
 

@@ -110,6 +110,22 @@ impl Show {
         Ok(Self { stage, moments })
     }
 
+    /// A mesh by itself, as it stands.
+    pub fn of_mesh(name: &str, mesh: Mesh) -> Self {
+        let mut stage = Stage::default();
+        name.clone_into(&mut stage.title);
+        let mesh = if mesh.cell_count() == 0 { mesh.facets_as_cells() } else { mesh };
+        let body = BodyMoment {
+            name: name.to_owned(),
+            positions: mesh.points.clone(),
+            mesh: Arc::new(mesh),
+            point_fields: Vec::new(),
+            cell_fields: Vec::new(),
+            frames: Vec::new(),
+        };
+        Self { stage, moments: vec![Moment { time: 0.0, bodies: vec![body] }] }
+    }
+
     /// At most `count` moments, evenly chosen, the first and the last among them.
     #[must_use]
     pub fn thinned(mut self, count: usize) -> Self {

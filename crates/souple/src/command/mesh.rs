@@ -168,16 +168,14 @@ fn write(
         Some(name) => souple_io::format_for(name, path)?,
         None => souple_io::format_of(path)?,
     };
-    souple_io::write_dataset_as(format, path, output)?;
-    notes.extend(souple_io::losses(format, output)?);
-    let written = match souple_io::read_mesh(path) {
-        Ok((written, _)) => written,
+    let written = match souple_io::write_and_read_back(format, path, output)? {
+        Some(dataset) => dataset.mesh,
         // a format that is only written, and for surfaces
-        Err(souple_io::IoError::Unsupported { .. }) => {
+        None => {
             surface_of(output.mesh).map_or_else(|| output.mesh.clone(), |surface| fill::mesh_of(&surface))
         }
-        Err(error) => return Err(error.into()),
     };
+    notes.extend(souple_io::losses(format, output)?);
     report(path, &written, &notes, as_json);
     Ok(End::Done)
 }

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod compare;
 mod derive;
+mod interruption;
 mod law_steps;
 mod list;
 mod mesh;

@@ -1,6 +1,7 @@
-//! `souple render`: pictures, contact sheets, films and animated surfaces of a scene or of a run's folder.
+//! `souple render`: pictures, contact sheets, films and animated surfaces of a scene, of a run's folder or of a mesh.
 
 mod figure;
+mod fit;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -8,17 +9,22 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 use serde_json::json;
 use souple_io::picture::{Backdrop, Cut, Image, LegendPlace, Picture, write_animated_png, write_gif};
+use souple_io::read_mesh;
 use souple_run::Options;
-use souple_run::show::{Figure, FilmError, Moment, Show, ShowError, Stage, write_film};
+use souple_run::show::{Figure, Moment, Show, ShowError, Stage, write_film};
 
+use self::fit::Source;
 use super::progress::Meter;
 use super::run::play;
-use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path, seconds, use_threads};
+use super::{
+    End, Refusal, interruption, print_json, print_line, print_note, read_scene, scene_path, seconds,
+    use_threads,
+};
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Arguments {
-    /// Scene file or folder with a scene.toml, which is run; or the folder of a run, whose frames are shown
+    /// Scene file or folder with a scene.toml, which is run; the folder of a run, whose frames are shown; or a file of a mesh
     source: PathBuf,
     /// .png: one picture or a sheet; .gif, .apng, .mp4: a film; .glb: the moving surfaces
     #[arg(long)]
@@ -32,11 +38,11 @@ pub struct Arguments {
     /// Several moments in one picture
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100))]
     sheet: Option<u64>,
-    /// Most frames of a film
-    #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=4096))]
-    frames: u64,
-    /// Frames of a film per second; in real time if left out
-    #[arg(long)]
+    /// Most frames of a film; 60 if left out
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=4096))]
+    frames: Option<u64>,
+    /// Frames of a film per second, 0.1 to 100; in real time if left out
+    #[arg(long, value_parser = per_second)]
     per_second: Option<f64>,
     /// Quantity of the colours: `von_mises`, `displacement`, `velocity.x`, `stress.xx`, `element`, `adaptation`, `gap`, …,
     /// `none`; `von_mises` if left out, where there is stress
@@ -64,11 +70,11 @@ pub struct Arguments {
     #[arg(long, value_name = "FIELD")]
     arrows: Option<String>,
     /// Metres of arrow for each unit of the field; fitted if left out
-    #[arg(long, requires = "arrows")]
+    #[arg(long, requires = "arrows", value_parser = positive)]
     arrow_scale: Option<f64>,
-    /// Edges of the mesh: drawn, hidden, wireframe
-    #[arg(long, default_value = "drawn")]
-    edges: String,
+    /// Edges of the mesh: drawn, hidden, wireframe; drawn if left out
+    #[arg(long)]
+    edges: Option<String>,
     /// From the eye towards the bodies, everything in the picture; the scene's if left out
     #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
     direction: Option<[f64; 3]>,
@@ -87,14 +93,20 @@ pub struct Arguments {
     /// A floor below the bodies that their shadows fall on, where the scene has no ground
     #[arg(long)]
     floor: bool,
-    /// Angle between the upper and the lower border [deg]
-    #[arg(long, default_value_t = 28.65)]
-    field_of_view: f64,
+    /// Angle between the upper and the lower border [deg], 1 to 140; 28.65 if left out
+    #[arg(long)]
+    field_of_view: Option<f64>,
     /// In place of the scene's; "" for none
     #[arg(long)]
     title: Option<String>,
+    /// No time under the title
+    #[arg(long)]
+    no_time: bool,
     #[arg(long)]
     dark: bool,
+    /// A white background, as that of a page
+    #[arg(long, conflicts_with = "dark")]
+    white: bool,
     /// A PNG of at most 255 colours, a third of the size
     #[arg(long)]
     compact: bool,
@@ -121,6 +133,19 @@ fn list<const N: usize>(text: &str) -> Result<[f64; N], String> {
         .and_then(|numbers| numbers.try_into().ok())
         .ok_or_else(|| format!("expected {N} numbers with commas, as {}", vec!["1"; N].join(",")))
 }
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "expected a number above 0".to_owned())
+}
+
+fn per_second(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number| (0.1..=100.0).contains(number));
+    number.ok_or_else(|| "a film can be played at 0.1 to 100 frames per second".to_owned())
+}
+
+/// Most frames of a film where nothing is said.
+const FRAMES: u64 = 60;
 
 /// What a file's name asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,9 +183,14 @@ impl From<ShowError> for Refusal {
 pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let kind = kind_of(&arguments.out)?;
-    refuse_idle(arguments, kind)?;
+    let source = fit::source(&arguments.source);
+    fit::check(arguments, kind, source)?;
+    interruption::heed();
     let figure = figure::figure(arguments, kind)?;
-    let (mut show, mut notes) = show(arguments, kind)?;
+    let (mut show, mut notes) = show(arguments, kind, source)?;
+    if interruption::is_interrupted() {
+        return Ok(End::Interrupted);
+    }
     if let Some(other) = &arguments.against {
         let other = Show::of_run(other, show.stage.clone())?;
         show.against(&other)?;
@@ -183,7 +213,7 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     let mut count = 1;
     match kind {
         Kind::Surfaces => {
-            let show = show.thinned(arguments.frames as usize);
+            let show = show.thinned(arguments.frames.unwrap_or(FRAMES) as usize);
             count = show.moments.len();
             figure.animation(&show)?.write_glb(out)?;
         }
@@ -192,10 +222,12 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
             count = show.moments.len();
             // one title for all of them
             let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
-            let (backdrop, legend) = (Backdrop::Plain, LegendPlace::Apart);
+            let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
+            let legend = LegendPlace::Apart;
             let figure = Figure { title: Some(String::new()), backdrop, legend, ..figure };
             let pictures = figure.pictures(&show)?;
-            let sheet = Image::sheet(&images(&pictures, arguments.quiet)?, columns(count));
+            let Some(images) = images(&pictures, arguments.quiet)? else { return Ok(End::Interrupted) };
+            let sheet = Image::sheet(&images, columns(count));
             let legend = pictures.iter().find_map(|picture| picture.legend_strip(sheet.height));
             let sheet = legend.map_or_else(|| sheet.clone(), |legend| sheet.beside(&legend));
             let sheet = if title.is_empty() { sheet } else { sheet.titled(&title, figure.theme) };
@@ -208,10 +240,12 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
             write_picture(arguments, &figure.picture(&show, moment)?.render()?)?;
         }
         Kind::Gif | Kind::AnimatedPng | Kind::Film => {
-            let show = show.thinned(arguments.frames as usize);
+            let show = show.thinned(arguments.frames.unwrap_or(FRAMES) as usize);
             count = show.moments.len();
-            let images = images(&figure.pictures(&show)?, arguments.quiet)?;
-            write_moving(kind, out, &images, seconds_per_frame(arguments, &show)?)?;
+            let Some(images) = images(&figure.pictures(&show)?, arguments.quiet)? else {
+                return Ok(End::Interrupted);
+            };
+            write_moving(kind, out, &images, seconds_per_frame(arguments, &show))?;
         }
     }
     notes.iter().for_each(print_note);
@@ -223,27 +257,6 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     Ok(End::Done)
 }
 
-/// Refuses options that would change nothing in what is asked for.
-fn refuse_idle(arguments: &Arguments, kind: Kind) -> Result<(), Refusal> {
-    let is_film = matches!(kind, Kind::Gif | Kind::AnimatedPng | Kind::Film);
-    let is_one = kind == Kind::Picture && arguments.sheet.is_none();
-    let idle = [
-        ("time", arguments.time.is_some() && !is_one, "one picture: .png without `--sheet`"),
-        ("sheet", arguments.sheet.is_some() && kind != Kind::Picture, ".png"),
-        ("compact", arguments.compact && kind != Kind::Picture, ".png"),
-        ("per-second", arguments.per_second.is_some() && !is_film, ".gif, .apng or .mp4"),
-    ];
-    if let Some((name, _, of)) = idle.into_iter().find(|(_, is_idle, _)| *is_idle) {
-        let message = format!("`--{name}` changes nothing in {}; it is for {of}", arguments.out.display());
-        return Err(Refusal::request(name, arguments.out.display().to_string(), of, message));
-    }
-    if let Some(scale) = arguments.arrow_scale.filter(|scale| !scale.is_finite()) {
-        let message = format!("arrows of {scale} m for each unit cannot be drawn");
-        return Err(Refusal::request("arrow_scale", scale.to_string(), "a finite number", message));
-    }
-    Ok(())
-}
-
 fn kind_of(out: &Path) -> Result<Kind, Refusal> {
     let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     KINDS.iter().find(|(name, _)| *name == extension).map(|(_, kind)| *kind).ok_or_else(|| {
@@ -252,30 +265,28 @@ fn kind_of(out: &Path) -> Result<Kind, Refusal> {
     })
 }
 
-/// A run's folder as it is; a scene after a run into a folder that is removed again.
-fn show(arguments: &Arguments, kind: Kind) -> Result<(Show, Vec<String>), Refusal> {
-    let source = &arguments.source;
-    let is_run = source.join("frames").is_dir() || source.join("report.json").is_file();
-    if let (true, Some(setting)) = (is_run, arguments.settings.first()) {
-        let message = format!("{} is a run that has been made: nothing can be set in it", source.display());
-        return Err(Refusal::request("set", setting.clone(), "the scene in place of the run", message));
+/// A run's folder and a mesh as they are; a scene after a run into a folder that is removed again.
+fn show(arguments: &Arguments, kind: Kind, source: Source) -> Result<(Show, Vec<String>), Refusal> {
+    let from = &arguments.source;
+    match source {
+        Source::Run => {
+            let (stage, note) = Stage::of_report(from);
+            return Ok((Show::of_run(from, stage)?, note.into_iter().collect()));
+        }
+        Source::Mesh => {
+            let (mesh, notes) = read_mesh(from)?;
+            let name = from.file_stem().unwrap_or_default().to_string_lossy();
+            return Ok((Show::of_mesh(&name, mesh), notes));
+        }
+        Source::Scene => {}
     }
-    if souple_io::format_of(source).is_ok() {
-        let message = format!("{} is a mesh and no scene", source.display());
-        let expected = "a scene with `mesh = { file = … }`, or the folder of a run";
-        return Err(Refusal::request("source", source.display().to_string(), expected, message));
-    }
-    if is_run {
-        let (stage, note) = Stage::of_report(source);
-        return Ok((Show::of_run(source, stage)?, note.into_iter().collect()));
-    }
-    let path = source.display().to_string();
+    let path = from.display().to_string();
     let scene = read_scene(&path, &arguments.settings)?;
     let stage = Stage::of(&scene);
     let folder = Scratch::new()?;
     let wanted = match kind {
         Kind::Picture => arguments.sheet.unwrap_or(if arguments.time.is_some() { 200 } else { 1 }),
-        _ => arguments.frames,
+        _ => arguments.frames.unwrap_or(FRAMES),
     };
     let options = Options {
         out: Some(folder.0.clone()),
@@ -345,15 +356,18 @@ fn all_cut_away(cut: Cut, shown: &[Moment]) -> Option<String> {
     })
 }
 
-/// Pictures drawn side by side on all threads.
-fn images(pictures: &[Picture], quiet: bool) -> Result<Vec<Image>, Refusal> {
+/// Pictures drawn side by side on all threads; `None` where Ctrl-C ends it.
+fn images(pictures: &[Picture], quiet: bool) -> Result<Option<Vec<Image>>, Refusal> {
     let (meter, done) = (Meter::new("pictures", quiet), AtomicU64::new(0));
     let draw = |picture: &Picture| {
-        let image = picture.render();
+        if interruption::is_interrupted() {
+            return Ok(None);
+        }
+        let image = picture.render()?;
         meter.show(done.fetch_add(1, Ordering::Relaxed) + 1, pictures.len() as u64, "");
-        image
+        Ok(Some(image))
     };
-    Ok(pictures.par_iter().map(draw).collect::<Result<Vec<_>, _>>()?)
+    pictures.par_iter().map(draw).collect()
 }
 
 fn write_picture(arguments: &Arguments, image: &Image) -> Result<(), Refusal> {
@@ -368,32 +382,22 @@ fn columns(count: usize) -> usize {
 }
 
 /// [s]
-fn seconds_per_frame(arguments: &Arguments, show: &Show) -> Result<f64, Refusal> {
+fn seconds_per_frame(arguments: &Arguments, show: &Show) -> f64 {
     if let Some(per_second) = arguments.per_second {
-        if !(0.1..=100.0).contains(&per_second) {
-            let message = format!("a film of {per_second} frames per second cannot be played");
-            return Err(Refusal::request("per_second", per_second.to_string(), "0.1 to 100", message));
-        }
-        return Ok(1.0 / per_second);
+        return 1.0 / per_second;
     }
     let times: Vec<f64> = show.moments.iter().map(|moment| moment.time).collect();
     let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
     // what programs can play
-    Ok((span / (times.len().max(2) - 1) as f64).clamp(0.02, 1.0))
+    (span / (times.len().max(2) - 1) as f64).clamp(0.02, 1.0)
 }
 
 fn write_moving(kind: Kind, out: &Path, images: &[Image], seconds: f64) -> Result<(), Refusal> {
     match kind {
         Kind::Gif => Ok(write_gif(out, images, seconds)?),
-        Kind::Film => write_film(out, images, 1.0 / seconds).map_err(|error| match error {
-            FilmError::Odd { width, height } => Refusal::request(
-                "size",
-                format!("{width},{height}"),
-                "even numbers of pixels",
-                error.to_string(),
-            ),
-            _ => Refusal::work("film", error.to_string()),
-        }),
+        Kind::Film => {
+            write_film(out, images, 1.0 / seconds).map_err(|error| Refusal::work("film", error.to_string()))
+        }
         _ => Ok(write_animated_png(out, images, seconds)?),
     }
 }

@@ -1,7 +1,6 @@
 //! `souple run`: a scene from start to end.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use souple_run::{Control, Finding, Options, Outcome, Progress, Report, Status};
 use souple_scene::Scene;
@@ -9,7 +8,8 @@ use souple_table::counted;
 
 use super::progress::Meter;
 use super::{
-    End, Refusal, count, print_json, print_line, print_note, read_scene, scene_path, seconds, use_threads,
+    End, Refusal, count, interruption, print_json, print_line, print_note, read_scene, scene_path, seconds,
+    use_threads,
 };
 
 #[derive(clap::Args)]
@@ -72,9 +72,6 @@ pub enum Strictness {
     Warn,
 }
 
-/// Set by the first Ctrl-C, or by the system's wish that the program ends (SIGTERM).
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
 pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
@@ -126,13 +123,12 @@ fn read_resumed(path: &Path, scene_sha256: &str) -> Result<souple_run::Snapshot,
 
 /// Runs with progress, stopping cleanly at Ctrl-C and SIGTERM.
 pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Refusal> {
-    // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
-    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    interruption::heed();
     let meter = Meter::new("steps", quiet);
     let mut watch = |progress: &Progress| {
         let factor = progress.simulated_seconds / progress.wall_seconds.max(1e-9);
         meter.show(progress.step, progress.steps, format_args!("{factor:.2} x real time"));
-        if INTERRUPTED.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
+        if interruption::is_interrupted() { Control::Stop } else { Control::Continue }
     };
     let outcome = souple_run::run(scene, options, &mut watch)?;
     drop(meter);

@@ -1,14 +1,15 @@
 //! `souple sweep`: the runs of a study, their table and graphs.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 use serde_json::json;
-use souple_sweep::{Database, Progress, Study, SweepError, Workers, graphs, sweep as make_runs, table_of};
+use souple_sweep::{
+    Database, Progress, Study, SweepError, Workers, fingerprints, graphs, sweep as make_runs, table_of,
+};
 use souple_table::counted;
 
 use super::progress::Meter;
-use super::{End, Refusal, print_json, print_line, print_note};
+use super::{End, Refusal, interruption, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -32,9 +33,6 @@ pub struct Arguments {
     #[arg(long)]
     quiet: bool,
 }
-
-/// Set by the first Ctrl-C, or by the system's wish that the program ends (SIGTERM).
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 impl From<SweepError> for Refusal {
     fn from(error: SweepError) -> Self {
@@ -66,13 +64,14 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
         threads: arguments.threads as usize,
         again: arguments.again,
     };
-    // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
-    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, std::sync::atomic::Ordering::Relaxed));
+    interruption::heed();
     let meter = Meter::new("runs", arguments.quiet);
     let mut watch = |progress: Progress| meter.show(progress.done as u64, progress.runs as u64, "");
-    let summary = make_runs(&study, &mut database, workers, &INTERRUPTED, &mut watch)?;
+    let fingerprints = fingerprints(&study, workers)?;
+    let summary =
+        make_runs(&study, &fingerprints, &mut database, workers, &interruption::INTERRUPTED, &mut watch)?;
     drop(meter);
-    let table = table_of(&study, &database)?;
+    let table = table_of(&study, &fingerprints, &database)?;
     let csv = out.with_extension("csv");
     table.write_csv(&csv)?;
     let mut files = vec![out.clone(), csv];
@@ -110,7 +109,7 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
         ));
         names.iter().for_each(|name| print_line(format_args!("  {name}")));
     }
-    if INTERRUPTED.load(std::sync::atomic::Ordering::Relaxed) {
+    if interruption::is_interrupted() {
         return Ok(End::Interrupted);
     }
     Ok(if summary.failed > 0 { End::Failed } else { End::Done })

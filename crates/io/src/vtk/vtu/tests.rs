@@ -184,7 +184,7 @@ fn faults_name_place_value_and_range() {
     assert!(fault("type='UnstructuredGrid'", "type='ImageData'").contains("expected UnstructuredGrid"));
     assert!(
         fault("9 10 11 12", "9 10 11 12 0")
-            .contains("the length of the connectivity is 19, but the cells use 18")
+            .contains("the number of values of the array `connectivity` is 19; expected 18 x 1")
     );
     assert!(fault("4 8 10 18", "4 8 7 18").contains("offsets[2] is 7; expected 8 to 18"));
     assert!(fault("10 10 3 11", "10 42 3 11").contains("types[1] is 42"));
@@ -200,6 +200,46 @@ fn faults_name_place_value_and_range() {
     assert!(fault("Name='types'", "Name='kinds'").contains("the array `types` of the cells is missing"));
     assert!(fault("0 0 0 1", "0 0 nan 1").contains("points[0] is NaN"));
     assert!(fault("</Piece>", "</Piece><Piece/>").contains("expected one <Piece>"));
+}
+
+/// A header that promises more than there are points for, or more than a file of its length may become, is refused by the header
+/// alone: the data behind it are no zlib data, which would be said if they were looked at.
+#[test]
+fn promises_are_refused_before_they_are_unpacked() {
+    let style = Style { form: Form::Inline, big: false, wide_header: true, zlib: true, header_apart: true };
+    let text = String::from_utf8(file(style)).unwrap();
+    // blocks of 16 MiB, of 4 bytes each in the file
+    let array = |blocks: i64| {
+        let sizes = std::iter::repeat_n(4, blocks as usize);
+        let header: Vec<i64> = [blocks, 1 << 24, 0].into_iter().chain(sizes).collect();
+        let data = encode(&bytes_of(&header, 8, false)) + &encode(&b"rest".repeat(blocks as usize));
+        format!("<DataArray type='Int8' Name='bomb' format='binary'>{data}</DataArray>")
+    };
+    let with = |text: &str, array: &str| {
+        let changed = text.replace("</CellData>", &format!("</CellData><PointData>{array}</PointData>"));
+        read(changed.as_bytes()).unwrap_err().to_string()
+    };
+    let fault = with(&text, &array(64));
+    assert!(
+        fault.contains("the number of values of the array `bomb` is 1073741824; expected 13 x 1"),
+        "{fault}"
+    );
+    // a file that says itself to be so large
+    let points = format!(
+        "<DataArray type='Int8' Name='Points' {}",
+        &array(192)["<DataArray type='Int8' Name='bomb' ".len()..]
+    );
+    let start = text.find("<Points>").unwrap() + "<Points>".len();
+    let end = text.find("</Points>").unwrap();
+    let large = format!("{}{points}{}", &text[..start], &text[end..])
+        .replace("NumberOfPoints='13'", &format!("NumberOfPoints='{}'", 1 << 30));
+    let fault = read(large.as_bytes()).unwrap_err().to_string();
+    assert!(
+        fault.contains(
+            "the size of the array `Points` is 25769803776 bytes in memory; expected at most 1073741824"
+        ),
+        "{fault}"
+    );
 }
 
 /// Arrays that all claim the same appended bytes are refused before they fill the memory.

@@ -1,6 +1,6 @@
 //! From what a person asks for to how a picture is drawn and from where it is seen.
 
-use souple_io::picture::{COLOUR_MAPS, Cut, EdgeStyle, Theme, View};
+use souple_io::picture::{Backdrop, COLOUR_MAPS, Cut, EdgeStyle, Theme, View};
 use souple_math::Vec3;
 use souple_run::show::{Arrows, Figure, Floor, Stage, map_of};
 use souple_scene::spec::picture::PictureSpec;
@@ -23,7 +23,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         }
         None => map_of(colour).unwrap_or_default(),
     };
-    let edges = match arguments.edges.as_str() {
+    let edges = match arguments.edges.as_deref().unwrap_or("drawn") {
         "drawn" => EdgeStyle::Drawn,
         "hidden" => EdgeStyle::Hidden,
         "wireframe" => EdgeStyle::Wireframe,
@@ -72,7 +72,9 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         size: size.map(|side| side.round().clamp(0.0, 1e9) as usize),
         samples_per_pixel: samples as usize,
         theme: if arguments.dark { Theme::Dark } else { Theme::Light },
+        backdrop: if arguments.white { Backdrop::White } else { Backdrop::default() },
         title: arguments.title.clone(),
+        clock: !arguments.no_time,
         view: None,
         colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
         colours,
@@ -112,16 +114,13 @@ pub fn view(arguments: &Arguments, stage: &Stage) -> Result<View, Refusal> {
         _ => asked.view(-stage.view.up),
     };
     let mut view = View { eye, ..View::along(seen.direction, seen.up) };
-    if !(1.0..=140.0).contains(&arguments.field_of_view) {
-        let message = format!("the field of view is {} degrees", arguments.field_of_view);
-        return Err(Refusal::request(
-            "field_of_view",
-            arguments.field_of_view.to_string(),
-            "1 to 140",
-            message,
-        ));
+    if let Some(angle) = arguments.field_of_view {
+        if !(1.0..=140.0).contains(&angle) {
+            let message = format!("the field of view is {angle} degrees");
+            return Err(Refusal::request("field_of_view", angle.to_string(), "1 to 140", message));
+        }
+        view.field_of_view = angle.to_radians();
     }
-    view.field_of_view = arguments.field_of_view.to_radians();
     view.light = arguments.light.map(|light| unit("light", Vec3::from_array(light))).transpose()?;
     Ok(view)
 }
