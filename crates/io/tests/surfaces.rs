@@ -1,5 +1,5 @@
-//! Surfaces as found in the wild, from a folder beside the project where it is present (`SOUPLE_DATA`): each is
-//! filled, with angles within the proven bounds, or refused in words.
+//! Surfaces as found in the wild, from a folder beside the project where it is present (`SOUPLE_DATA`, else `../shared/data`): each
+//! is filled, with angles within the proven bounds.
 
 use std::path::PathBuf;
 
@@ -10,8 +10,12 @@ use souple_table::{Value, Values};
 
 /// The surface files of the folder; none where it is not there.
 fn files() -> Vec<PathBuf> {
-    let Some(folder) = std::env::var_os("SOUPLE_DATA") else { return Vec::new() };
-    let entries = std::fs::read_dir(&folder).expect("SOUPLE_DATA names a folder that can be read");
+    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let folder = std::env::var_os("SOUPLE_DATA").map_or(beside, PathBuf::from);
+    let Ok(entries) = std::fs::read_dir(&folder) else {
+        println!("not tried: there is no folder {}", folder.display());
+        return Vec::new();
+    };
     let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     files.retain(|file| {
         file.extension().is_some_and(|e| ["obj", "stl", "vtu", "msh"].iter().any(|known| e == *known))
@@ -28,7 +32,7 @@ fn angles(mesh: &Mesh) -> [f64; 2] {
 }
 
 #[test]
-fn every_surface_is_filled_or_refused_in_words() {
+fn every_surface_is_filled() {
     let values = Values::new().with("count", Value::Integer(3000)).completed(PARAMETERS).unwrap();
     let options = Options::from_values(&values).unwrap();
     for file in files() {
@@ -56,10 +60,7 @@ fn every_surface_is_filled_or_refused_in_words() {
                     assert!((ratio - 1.0).abs() < 0.2, "{name}: {ratio} of the enclosed volume");
                 }
             }
-            Err(error) => {
-                println!("  refused: {error}");
-                assert!(!error.to_string().is_empty());
-            }
+            Err(error) => panic!("{name}: {error}"),
         }
     }
 }

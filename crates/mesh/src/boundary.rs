@@ -115,8 +115,9 @@ impl Mesh {
         if self.dimension() == 2 {
             self.cells().enumerate().for_each(|(cell, view)| push(cell as u32, view.kind, view.nodes));
         } else {
+            let by_number = self.cells_by_number();
             for BoundaryFace { cell, face } in self.faces().boundary {
-                let Some(view) = self.cell(cell) else { continue };
+                let Some(view) = by_number.get(cell) else { continue };
                 let (kind, nodes) = view.face_nodes(face.into());
                 push(cell, kind, &nodes.collect::<Vec<_>>());
             }

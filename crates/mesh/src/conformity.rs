@@ -19,6 +19,9 @@ pub struct Conformity {
     pub coincident: Vec<[u32; 2]>,
     /// Points on an edge or a face of the boundary that has them not as corners.
     pub hanging: Vec<HangingPoint>,
+    /// Parts of volume cells joined by whole faces that share only points or edges with each other: they turn there freely. How
+    /// many more these are than parts that share nothing.
+    pub hinged_parts: usize,
     /// Cells that are nearly flat, with their aspect ratio: flattest first.
     pub slivers: Vec<(u32, f64)>,
 }
@@ -42,11 +45,50 @@ const SLIVER: f64 = 1e3;
 impl Conformity {
     /// One line for each kind of fault, with how many there are and the place of the first.
     pub fn messages(&self, mesh: &Mesh) -> Vec<String> {
+        let mut messages = self.problems(mesh);
+        messages.extend(self.hinges());
+        if let Some((cell, ratio)) = self.slivers.first() {
+            let count = self.slivers.len();
+            messages.push(format!(
+                "{count} cells have nearly no volume, the flattest is cells[{cell}] with an aspect ratio of {ratio:.1e}"
+            ));
+        }
+        messages
+    }
+
+    /// Cells that lie on the same side of a common face, in words; of the two, the one that was rewound was inverted.
+    pub fn overlap(&self, rewound_cells: &[u32]) -> Option<String> {
+        let &[a, b] = self.overlapping.first()?;
+        let was_inverted = |cell: u32| rewound_cells.binary_search(&cell).is_ok();
+        let which = match (was_inverted(a), was_inverted(b)) {
+            (true, false) => format!("; cells[{a}] is inverted"),
+            (false, true) => format!("; cells[{b}] is inverted"),
+            _ => String::new(),
+        };
+        let count = self.overlapping.len();
+        Some(format!(
+            "cells[{a}] and cells[{b}] overlap: both lie on the same side of their common face{which} ({count} such pairs)"
+        ))
+    }
+
+    /// What hangs on points and edges alone, in words.
+    pub fn hinges(&self) -> Option<String> {
+        (self.hinged_parts > 0).then(|| {
+            format!(
+                "{} parts of the body share no face with the rest: they hang on points or edges and turn there freely; a \
+                 smaller size of cells may join them",
+                self.hinged_parts
+            )
+        })
+    }
+
+    /// What is wrong between cells, in the same way: without what is wrong with single ones.
+    pub fn problems(&self, mesh: &Mesh) -> Vec<String> {
         let at = |point: u32| {
             let x = mesh.points[point as usize];
             format!("({}, {}, {})", x.x, x.y, x.z)
         };
-        let mut messages = Vec::new();
+        let mut messages: Vec<String> = self.overlap(&[]).into_iter().collect();
         if let Some((cell, [a, b])) = self.split.first() {
             let count = self.split.len();
             messages.push(format!(
@@ -68,14 +110,17 @@ impl Conformity {
                  points[{point}] at {place} on a face of cells[{cell}]"
             ));
         }
-        if let Some((cell, ratio)) = self.slivers.first() {
-            let count = self.slivers.len();
-            messages.push(format!(
-                "{count} cells have nearly no volume, the flattest is cells[{cell}] with an aspect ratio of {ratio:.1e}"
-            ));
-        }
         messages
     }
+}
+
+/// The lowest number of the part that a cell belongs to.
+fn root(parent: &mut [u32], mut cell: u32) -> u32 {
+    while parent[cell as usize] != cell {
+        parent[cell as usize] = parent[parent[cell as usize] as usize];
+        cell = parent[cell as usize];
+    }
+    cell
 }
 
 impl Mesh {
@@ -89,8 +134,33 @@ impl Mesh {
             split,
             coincident,
             hanging,
+            hinged_parts: self.hinged_parts(),
             slivers: self.slivers(),
         }
+    }
+
+    /// How many parts of volume cells hang on the others by points or edges alone.
+    pub fn hinged_parts(&self) -> usize {
+        if self.dimension() != 3 {
+            return 0;
+        }
+        let mut parent: Vec<u32> = (0..self.cell_count() as u32).collect();
+        let mut uses: Vec<([u32; 4], u32)> = Vec::new();
+        for (number, cell) in self.cells().enumerate() {
+            for face in 0..cell.kind.faces().len() {
+                let mut key = around_face(cell, face);
+                key.sort_unstable();
+                uses.push((key, number as u32));
+            }
+        }
+        uses.sort_unstable();
+        let mut parts = self.cell_count();
+        for pair in uses.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            let [a, b] = [pair[0].1, pair[1].1].map(|cell| root(&mut parent, cell));
+            parts -= usize::from(a != b);
+            parent[a.max(b) as usize] = a.min(b);
+        }
+        parts.saturating_sub(self.components().1)
     }
 
     /// Cells that go around a common face in the same direction, each pair once.

@@ -35,7 +35,7 @@ pub use error::MeshError;
 pub use generate::{Build, GENERATORS, MAX_CELLS, MeshSize, generate};
 pub use locate::{CellLocator, Location};
 pub use measure::BoundingBox;
-pub use mesh::{Cell, CellBlock, Group, Mesh};
+pub use mesh::{Cell, CellBlock, CellsByNumber, Group, Mesh};
 pub use ordering::{morton_order, recursive_bisection};
 pub use quadrature::{QuadraturePoint, QuadratureRule};
 pub use quality::{CellQuality, Histogram, QualitySummary};

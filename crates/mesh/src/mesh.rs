@@ -65,6 +65,23 @@ impl CellBlock {
     }
 }
 
+/// The cells of a mesh by number, each found without a walk along all blocks.
+pub struct CellsByNumber<'a> {
+    mesh: &'a Mesh,
+    offsets: Vec<u32>,
+}
+
+impl<'a> CellsByNumber<'a> {
+    pub fn get(&self, index: u32) -> Option<Cell<'a>> {
+        // blocks without cells begin where the next one does: the last that begins there has the cell
+        let number = self.offsets.partition_point(|offset| *offset <= index).checked_sub(1)?;
+        let block = &self.mesh.blocks[number];
+        let n = block.kind.node_count();
+        let start = (index - self.offsets[number]) as usize * n;
+        Some(Cell { kind: block.kind, nodes: block.nodes.get(start..start + n)? })
+    }
+}
+
 impl Mesh {
     /// A mesh of one kind of cell, not yet validated.
     pub fn new(points: Vec<Vec3>, kind: ElementKind, nodes: Vec<u32>) -> Self {
@@ -111,6 +128,11 @@ impl Mesh {
             local -= block.len();
         }
         None
+    }
+
+    /// Cells by number, for many of them: where kinds alternate there are as many blocks as cells.
+    pub fn cells_by_number(&self) -> CellsByNumber<'_> {
+        CellsByNumber { mesh: self, offsets: self.block_offsets() }
     }
 
     /// Number of the first cell of each block.

@@ -97,7 +97,7 @@ impl Mesh {
             let positions = self.positions_into(cell.nodes, &mut buffer);
             let normals: Vec<Vec3> =
                 cell.kind.faces().iter().map(|face| area_vector(face, positions)).collect();
-            for angle in edge_angles(cell.kind, &normals) {
+            for angle in edge_angles(cell.kind, &normals, positions) {
                 let bin = angle / std::f64::consts::PI * counts.len() as f64;
                 let last = counts.len() - 1;
                 counts[(bin as usize).min(last)] += 1;
@@ -156,7 +156,7 @@ impl Shape {
                 .map(|p| p.weight * kind.jacobian(positions, p.position).determinant())
                 .sum(),
             corner: least_corner(kind, positions) * bending(kind, positions),
-            dihedrals: dihedrals(kind, &normals),
+            dihedrals: dihedrals(kind, &normals, positions),
         }
     }
 
@@ -186,20 +186,37 @@ fn bending(kind: ElementKind, positions: &[Vec3]) -> f64 {
     kind.full_rule().points.iter().map(ratio).fold(f64::INFINITY, f64::min)
 }
 
-/// The interior angle at each edge is `π` less the angle between the outward normals.
-fn edge_angles(kind: ElementKind, normals: &[Vec3]) -> impl Iterator<Item = f64> + '_ {
+/// Angles between the two faces at each edge, inside the cell: `π` less the angle between the outward normals, and above π where a
+/// warped face makes the edge a valley.
+fn edge_angles<'a>(
+    kind: ElementKind,
+    normals: &'a [Vec3],
+    positions: &'a [Vec3],
+) -> impl Iterator<Item = f64> + 'a {
     kind.edges().iter().filter_map(move |edge| {
         let mut sides =
             (0..normals.len()).filter(|f| edge.iter().all(|n| kind.faces()[*f].nodes.contains(n)));
-        let (u, v) = (normals[sides.next()?], normals[sides.next()?]);
-        Some(std::f64::consts::PI - libm::atan2(u.cross(v).length(), u.dot(v)))
+        let (first, second) = (sides.next()?, sides.next()?);
+        let (u, v) = (normals[first], normals[second]);
+        let [a, b] = *edge;
+        // along the edge as the first face goes around: there `u x v` points where the edge is a ridge
+        let face = &kind.faces()[first];
+        let corners = &face.nodes[..face.kind.corner_count()];
+        let place = corners.iter().position(|node| *node == a)?;
+        let forward = corners[(place + 1) % corners.len()] == b;
+        let [from, to] = if forward { [a, b] } else { [b, a] };
+        let along = positions[usize::from(to)] - positions[usize::from(from)];
+        let turn = u.cross(v);
+        let sine = if turn.dot(along) < 0.0 { -turn.length() } else { turn.length() };
+        Some(std::f64::consts::PI - libm::atan2(sine, u.dot(v)))
     })
 }
 
-fn dihedrals(kind: ElementKind, normals: &[Vec3]) -> (f64, f64) {
-    edge_angles(kind, normals).fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), angle| {
-        (least.min(angle), greatest.max(angle))
-    })
+fn dihedrals(kind: ElementKind, normals: &[Vec3], positions: &[Vec3]) -> (f64, f64) {
+    edge_angles(kind, normals, positions)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, greatest), angle| {
+            (least.min(angle), greatest.max(angle))
+        })
 }
 
 fn least_corner(kind: ElementKind, positions: &[Vec3]) -> f64 {
@@ -227,6 +244,22 @@ fn least_corner(kind: ElementKind, positions: &[Vec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A hexahedron of which an edge is pushed inward beyond its diagonal has a valley there: more than a half turn inside.
+    #[test]
+    fn edges_that_are_valleys() {
+        let mut points: Vec<Vec3> = ElementKind::Hex8.regular();
+        let largest = |points: &[Vec3]| {
+            Mesh::new(points.to_vec(), ElementKind::Hex8, (0..8).collect()).quality()[0].largest_dihedral
+        };
+        assert!((largest(&points) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        for (pushed, across) in [(2, 0), (6, 4)] {
+            points[pushed] = points[across] + (points[pushed] - points[across]) * 0.35;
+        }
+        // a full turn less the angle between (0.65, -0.35) and (-0.35, 0.65)
+        let expected = 2.0 * std::f64::consts::PI - libm::acos(-0.455 / 0.545);
+        assert!((largest(&points) - expected).abs() < 1e-12, "{}", largest(&points));
+    }
 
     /// The regular cell of each kind has aspect ratio 1 and scaled Jacobian 1; its dihedral angles are known.
     #[test]

@@ -64,13 +64,11 @@ impl TriangleSurface {
         let mut mesh_points: Vec<u32> = triangles.iter().flatten().copied().collect();
         mesh_points.sort_unstable();
         mesh_points.dedup();
-        let mut number = vec![0; points.len()];
-        for (new, old) in mesh_points.iter().enumerate() {
-            number[*old as usize] = new as u32;
-        }
+        // searched for, so that of a small part not all points of the mesh are looked at
+        let number = |node: u32| mesh_points.partition_point(|point| *point < node) as u32;
         Self {
             points: mesh_points.iter().map(|point| points[*point as usize]).collect(),
-            triangles: triangles.iter().map(|corners| corners.map(|node| number[node as usize])).collect(),
+            triangles: triangles.iter().map(|corners| corners.map(number)).collect(),
             mesh_points,
             cells,
         }

@@ -26,6 +26,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("levels_free", include_str!("../../../scenes/levels_free/scene.toml")),
     ("ligament", include_str!("../../../scenes/ligament/scene.toml")),
     ("liver", include_str!("../../../scenes/liver/scene.toml")),
+    ("loaded_bar", include_str!("../../../scenes/loaded_bar/scene.toml")),
     ("long_beam", include_str!("../../../scenes/long_beam/scene.toml")),
     ("mixed_bar", include_str!("../../../scenes/mixed_bar/scene.toml")),
     ("mixed_beam", include_str!("../../../scenes/mixed_beam/scene.toml")),

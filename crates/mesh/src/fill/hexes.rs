@@ -1,24 +1,25 @@
-//! Hexahedra inside, tetrahedra at the surface, pyramids between.
+//! Hexahedra inside, tetrahedra at the surface, prisms and pyramids between.
 //!
 //! Cubes of the octree with all corners inside or on the surface, and no point of smaller cubes on their edges, become
 //! hexahedra. On each of their faces towards a cube that does not, of the same size or twice as large, stands a
 //! pyramid with its apex in that cube's centre, whose sides are those of the lattice's tetrahedra: the mesh is
 //! conforming. A pyramid with its apex outside is cut off like the tetrahedra beside it, and what is left is cut into
 //! cells around its middle. Cubes of which a cell would be too flat, because corners have moved onto the surface, are
-//! filled with tetrahedra after all.
+//! filled with tetrahedra after all. Where the hexahedra end in a step, a prism lies in it (`prisms`).
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use souple_math::Vec3;
 
 use super::lattice::{Background, Lattice, Leaf, Place, Side};
+use super::prisms::Notches;
 use super::stencil::Stencils;
 use super::warp::{self, Warped};
 use crate::implicit::Shape;
 use crate::quality::scaled_jacobian;
 use crate::{CellBlock, ElementKind, Mesh};
 
-/// Least scaled Jacobian of hexahedra and pyramids, and of the tetrahedra in cut-off pyramids.
+/// Least scaled Jacobian of hexahedra, prisms and pyramids, and of the tetrahedra in cut-off pyramids and beside prisms.
 const LEAST_JACOBIAN: f64 = 0.15;
 const LEAST_JACOBIAN_CUT: f64 = 0.04;
 
@@ -46,47 +47,83 @@ struct Transition {
 }
 
 /// A face of a hexahedron, its normal to the centre of the leaf across, which is none.
-struct OpenFace {
-    face: [u32; 4],
+pub(super) struct OpenFace {
+    pub face: [u32; 4],
     /// `None` where the centre is no point of the lattice.
-    apex: Option<u32>,
+    pub apex: Option<u32>,
     /// The leaf across is larger.
-    is_quarter: bool,
+    pub is_quarter: bool,
 }
 
-struct Filling<'a> {
-    lattice: &'a Lattice,
-    background: &'a Background,
-    warped: &'a Warped,
+pub(super) struct Filling<'a> {
+    pub lattice: &'a Lattice,
+    pub background: &'a Background,
+    pub warped: &'a Warped,
     stencils: Stencils<'a>,
-    numbers: HashMap<Place, u32>,
+    pub numbers: &'a HashMap<Place, u32>,
     /// By the first smallest cube of each leaf.
-    is_hex: Vec<bool>,
+    pub is_hex: Vec<bool>,
+    /// Cubes that hold a prism.
+    pub notches: &'a Notches,
+    /// Of each notch by its centre, the edge that its prism shares with two hexahedra.
+    pub inner_edges: BTreeMap<u32, [u32; 2]>,
     /// Points beyond those of lattice and cuts.
     middles: Vec<Vec3>,
 }
 
 /// The mesh of a shape on a lattice.
 pub(super) fn hex_dominant(lattice: &Lattice, shape: &dyn Shape) -> Mesh {
-    let mut background = lattice.background();
-    let warped = warp::warp(&mut background, shape);
-    let numbers =
+    let background = lattice.background();
+    let numbers: HashMap<Place, u32> =
         background.places.iter().enumerate().map(|(number, place)| (*place, number as u32)).collect();
-    let mut filling = Filling {
-        lattice,
-        background: &background,
-        warped: &warped,
-        stencils: Stencils::new(&background, &warped),
-        numbers,
-        is_hex: vec![false; lattice.counts.iter().product()],
-        middles: Vec::new(),
-    };
-    filling.choose();
-    filling.mesh()
+    let mut notches = Notches::new();
+    let mut is_first = true;
+    // the surface cuts other edges where a centre has moved, and cells around it may be bad after all: such a notch is left out,
+    // and the surface is looked at again
+    loop {
+        let mut background = background.clone();
+        for notch in notches.values() {
+            let Some(centre) = numbers.get(&notch.leaf.centre()) else { continue };
+            let moved = notch.moved_centre(lattice);
+            background.points[*centre as usize] = moved;
+            background.values[*centre as usize] = shape.value(moved);
+        }
+        let warped = warp::warp(&mut background, shape);
+        let mut filling = Filling::new(lattice, &background, &warped, &numbers, &notches);
+        filling.choose();
+        let fit = if is_first { filling.find_notches(shape) } else { filling.fit_notches() };
+        if fit.len() == notches.len() {
+            return filling.mesh();
+        }
+        notches = fit;
+        is_first = false;
+    }
 }
 
-impl Filling<'_> {
-    fn corners(&self, leaf: &Leaf) -> Option<[u32; 8]> {
+impl<'a> Filling<'a> {
+    fn new(
+        lattice: &'a Lattice,
+        background: &'a Background,
+        warped: &'a Warped,
+        numbers: &'a HashMap<Place, u32>,
+        notches: &'a Notches,
+    ) -> Self {
+        let mut filling = Self {
+            lattice,
+            background,
+            warped,
+            stencils: Stencils::new(background, warped),
+            numbers,
+            is_hex: vec![false; lattice.counts.iter().product()],
+            notches,
+            inner_edges: BTreeMap::new(),
+            middles: Vec::new(),
+        };
+        filling.inner_edges = filling.edges_of_notches();
+        filling
+    }
+
+    pub fn corners(&self, leaf: &Leaf) -> Option<[u32; 8]> {
         let mut corners = [0; 8];
         for (slot, corner) in corners.iter_mut().zip(CORNERS) {
             let place = [0, 1, 2].map(|axis| leaf.low[axis] + leaf.edge * corner[axis]);
@@ -95,23 +132,23 @@ impl Filling<'_> {
         Some(corners)
     }
 
-    fn centre(&self, leaf: &Leaf) -> Option<u32> {
+    pub fn centre(&self, leaf: &Leaf) -> Option<u32> {
         self.numbers.get(&leaf.centre()).copied()
     }
 
-    fn index(&self, leaf: &Leaf) -> usize {
+    pub fn index(&self, leaf: &Leaf) -> usize {
         self.lattice.cube(leaf.low.map(|c| (c / 2) as usize))
     }
 
     /// Whether no smaller cube has a point on an edge of the leaf.
-    fn is_plain(&self, leaf: &Leaf) -> bool {
+    pub fn is_plain(&self, leaf: &Leaf) -> bool {
         let corner = |c: usize| [0, 1, 2].map(|axis| leaf.low[axis] + leaf.edge * CORNERS[c][axis]);
         let halved = |[a, b]: [usize; 2]| self.lattice.is_halved(corner(a), corner(b), leaf.level);
         let around = (0..4).flat_map(|i| [[i, (i + 1) % 4], [4 + i, 4 + (i + 1) % 4], [i, i + 4]]);
         leaf.level == 0 || !around.into_iter().any(halved)
     }
 
-    fn side(&self, node: u32) -> Side {
+    pub fn side(&self, node: u32) -> Side {
         self.warped.sides[node as usize]
     }
 
@@ -123,9 +160,17 @@ impl Filling<'_> {
         }
     }
 
-    fn jacobian(&self, kind: ElementKind, nodes: &[u32]) -> f64 {
+    pub fn jacobian(&self, kind: ElementKind, nodes: &[u32]) -> f64 {
         let positions: Vec<Vec3> = nodes.iter().map(|node| self.position(*node)).collect();
         scaled_jacobian(kind, &positions)
+    }
+
+    pub fn is_fit(&self, kind: ElementKind, nodes: &[u32]) -> bool {
+        self.jacobian(kind, nodes) > LEAST_JACOBIAN
+    }
+
+    pub fn is_fit_cut(&self, tet: &[u32; 4]) -> bool {
+        self.jacobian(ElementKind::Tet4, tet) > LEAST_JACOBIAN_CUT
     }
 
     /// Decides which cubes are hexahedra: all that can be, less those with a bad cell on one of their faces, until
@@ -135,8 +180,7 @@ impl Filling<'_> {
             let (Some(corners), Some(centre)) = (self.corners(&leaf), self.centre(&leaf)) else { continue };
             let is_inside = corners.iter().all(|node| self.side(*node) != Side::Outside)
                 && self.side(centre) == Side::Inside;
-            let is_fit = || self.jacobian(ElementKind::Hex8, &corners) > LEAST_JACOBIAN;
-            let is_hex = is_inside && is_fit() && self.is_plain(&leaf);
+            let is_hex = is_inside && self.is_fit(ElementKind::Hex8, &corners) && self.is_plain(&leaf);
             let index = self.index(&leaf);
             self.is_hex[index] = is_hex;
         }
@@ -162,12 +206,16 @@ impl Filling<'_> {
             .filter_map(|leaf| Some((leaf, self.corners(&leaf)?)))
     }
 
-    /// Faces of a hexahedron towards leaves that are none, with the centres of these.
+    /// Faces of a hexahedron towards leaves that are none and hold no prism on it, with the centres of these.
     fn open_faces(&self, leaf: &Leaf, corners: [u32; 8]) -> impl Iterator<Item = OpenFace> {
         let leaf = *leaf;
         FACES.into_iter().filter_map(move |(face, step)| {
             let across = self.lattice.across(&leaf, step)?;
-            (!self.is_hex[self.index(&across)]).then(|| OpenFace {
+            let index = self.index(&across);
+            let back = step.map(|s| -s);
+            let is_closed = self.is_hex[index]
+                || self.notches.get(&index).is_some_and(|notch| notch.is_on_hexahedron(back));
+            (!is_closed).then(|| OpenFace {
                 face: face.map(|corner| corners[corner]),
                 apex: self.centre(&across),
                 is_quarter: across.level > leaf.level,
@@ -175,7 +223,7 @@ impl Filling<'_> {
         })
     }
 
-    fn is_good(&self, face: [u32; 4], apex: Option<u32>) -> bool {
+    pub fn is_good(&self, face: [u32; 4], apex: Option<u32>) -> bool {
         let Some(apex) = apex else { return false };
         let Transition { pyramids, tets, middle } = self.transition(face, apex);
         let next = (self.background.points.len() + self.warped.cuts.len() + self.middles.len()) as u32;
@@ -252,44 +300,57 @@ impl Filling<'_> {
 
     fn mesh(mut self) -> Mesh {
         let mut hexes = CellBlock::new(ElementKind::Hex8);
+        let mut prisms = CellBlock::new(ElementKind::Prism6);
         let mut pyramids = CellBlock::new(ElementKind::Pyramid5);
         let mut transitions = CellBlock::new(ElementKind::Tet4);
         // what hexahedra and pyramids stand for: tetrahedra around centres, and those of larger cubes on small faces
         let mut is_hex_centre = vec![false; self.background.points.len()];
         let mut on_quarters = HashSet::new();
-        for (leaf, corners) in self.hexes().collect::<Vec<_>>() {
+        let mut open = Vec::new();
+        for (leaf, corners) in self.hexes() {
             hexes.nodes.extend(corners);
             if let Some(centre) = self.centre(&leaf) {
                 is_hex_centre[centre as usize] = true;
             }
-            let faces: Vec<_> = self.open_faces(&leaf, corners).collect();
-            for OpenFace { face, apex, is_quarter } in faces {
-                let Some(apex) = apex else { continue };
-                let transition = self.transition(face, apex);
-                pyramids.nodes.extend(transition.pyramids.as_flattened());
-                transitions.nodes.extend(transition.tets.as_flattened());
-                self.middles.extend(transition.middle);
-                if is_quarter {
-                    on_quarters.extend((0..4).map(|left_out| {
-                        let mut tet = face;
-                        tet[left_out] = apex;
-                        tet.sort_unstable();
-                        tet
-                    }));
-                }
+            open.extend(self.open_faces(&leaf, corners));
+        }
+        let mut beyond_prisms = Vec::new();
+        for notch in self.notches.values() {
+            let Some(points) = self.points_of(notch) else { continue };
+            prisms.nodes.extend(notch.prism(&points));
+            open.push(notch.diagonal_face(&points));
+            beyond_prisms.extend(self.beyond_ends(notch, &points));
+        }
+        for OpenFace { face, apex, is_quarter } in open {
+            let Some(apex) = apex else { continue };
+            let transition = self.transition(face, apex);
+            pyramids.nodes.extend(transition.pyramids.as_flattened());
+            transitions.nodes.extend(transition.tets.as_flattened());
+            self.middles.extend(transition.middle);
+            if is_quarter {
+                on_quarters.extend((0..4).map(|left_out| {
+                    let mut tet = face;
+                    tet[left_out] = apex;
+                    tet.sort_unstable();
+                    tet
+                }));
             }
         }
         let stands_for = |tet: &[u32; 4]| {
             let mut sorted = *tet;
             sorted.sort_unstable();
-            tet.iter().any(|node| is_hex_centre[*node as usize]) || on_quarters.contains(&sorted)
+            tet.iter().any(|node| is_hex_centre[*node as usize])
+                || on_quarters.contains(&sorted)
+                || self.gives_way(tet)
         };
-        self.background.tets.iter().filter(|tet| !stands_for(tet)).for_each(|tet| self.stencils.fill(*tet));
-        let mut tets = CellBlock { kind: ElementKind::Tet4, nodes: self.stencils.tets.into_flattened() };
+        let left = self.background.tets.iter().filter(|tet| !stands_for(tet));
+        let mut stencils = Stencils::new(self.background, self.warped);
+        left.chain(&beyond_prisms).for_each(|tet| stencils.fill(*tet));
+        let mut tets = CellBlock { kind: ElementKind::Tet4, nodes: stencils.tets.into_flattened() };
         tets.nodes.extend(transitions.nodes);
         let cuts = self.warped.cuts.iter().map(|cut| cut.position);
         let points = self.background.points.iter().copied().chain(cuts).chain(self.middles).collect();
-        let blocks = [hexes, pyramids, tets].into_iter().filter(|block| !block.is_empty()).collect();
+        let blocks = [hexes, prisms, pyramids, tets].into_iter().filter(|block| !block.is_empty()).collect();
         Mesh { points, blocks, ..Mesh::default() }
     }
 }

@@ -45,6 +45,7 @@ impl Side {
 }
 
 /// The lattice points and tetrahedra that matter: those with a corner inside.
+#[derive(Clone)]
 pub(super) struct Background {
     pub places: Vec<Place>,
     pub points: Vec<Vec3>,
@@ -116,6 +117,11 @@ impl Lattice {
             lattice.join(size, coarsest)?;
         }
         Ok(lattice)
+    }
+
+    /// How many leaves have their middle inside.
+    pub fn inside_count(&self) -> usize {
+        self.leaves().filter(|leaf| self.value(leaf.centre()) < 0.0).count()
     }
 
     /// The least value on its points.

@@ -18,6 +18,7 @@ mod groups;
 mod hexes;
 mod lattice;
 mod options;
+mod prisms;
 mod stencil;
 mod surface;
 mod warp;
@@ -25,7 +26,7 @@ mod warp;
 use souple_math::Vec3;
 
 use crate::implicit::Shape;
-use crate::{ElementKind, Group, Mesh};
+use crate::{ElementKind, Group, MAX_CELLS, Mesh};
 
 pub use options::{Options, PARAMETERS};
 pub use surface::{FilledSurface, fill_mesh, fill_surface, surface_of};
@@ -64,7 +65,7 @@ pub enum Reach {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
     Tetrahedra,
-    /// Hexahedra inside, tetrahedra at the surface, pyramids between.
+    /// Hexahedra inside, tetrahedra at the surface, prisms and pyramids between.
     HexDominant,
 }
 
@@ -86,6 +87,11 @@ pub enum FillError {
         metres(.extent)
     )]
     TooManyPoints { size: f64, extent: [f64; 3], requested: f64, limit: f64 },
+    #[error(
+        "cells of {size} m in a shape that measures {} make about {requested:.1e} of them; expected at most {limit:.0e}: a larger size, or `growth`",
+        metres(.extent)
+    )]
+    TooManyCells { size: f64, extent: [f64; 3], requested: f64, limit: f64 },
     #[error("the shape has no value at {position:?}; expected a number: negative inside, positive outside")]
     NotANumber { position: [f64; 3] },
     #[error("the shape is inside at {position:?}, on the border of its bounds; expected larger bounds")]
@@ -147,6 +153,12 @@ impl Size {
 /// The size, the bounds or a value of the shape cannot be used; nothing of the lattice is inside.
 pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) -> Result<Mesh, FillError> {
     let lattice = Lattice::new(shape, size)?;
+    // twelve tetrahedra to a cube
+    let requested = 12.0 * lattice.inside_count() as f64;
+    if requested > MAX_CELLS as f64 {
+        let (size, extent) = (size.smallest, shape.bounds().size().to_array());
+        return Err(FillError::TooManyCells { size, extent, requested, limit: MAX_CELLS as f64 });
+    }
     let mut mesh = match cells {
         Cells::Tetrahedra => tetrahedra(&lattice, shape),
         Cells::HexDominant => hexes::hex_dominant(&lattice, shape),
@@ -160,7 +172,7 @@ pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) ->
         groups::SURFACE.to_owned(),
         Group { points: mesh.boundary_surface().mesh_points, ..Group::default() },
     );
-    let centres = mesh.cell_centres();
+    let centres = if parts.is_empty() { Vec::new() } else { mesh.cell_centres() };
     for Part { name, shape } in parts {
         let group = group_of_cells(&mesh, &centres, *shape);
         mesh.groups.insert((*name).to_owned(), group);

@@ -120,9 +120,24 @@ impl Options {
             (None, everywhere) => everywhere.map(|formula| (formula, Reach::Everywhere)),
         };
         let largest = Some(values.number("largest")).filter(|largest| *largest > 0.0);
+        let growth = values.number("growth");
+        if let (Some((formula, _)), true) = (&field, growth > 0.0) {
+            return Err(MeshError::Parameter {
+                name: "growth",
+                value: format!("{growth}, and sizes follow \"{}\"", formula.text()),
+                expected: "one of them".to_owned(),
+            });
+        }
+        if let (Some(largest), None, true) = (largest, &field, growth == 0.0) {
+            return Err(MeshError::Parameter {
+                name: "largest",
+                value: format!("{largest} m, and all cells have one size"),
+                expected: "`growth` above 0, `size_inside` or `size_everywhere` with it".to_owned(),
+            });
+        }
         let cells =
             if values.text("element") == "hex_dominant" { Cells::HexDominant } else { Cells::Tetrahedra };
-        Ok(Self { wanted, growth: values.number("growth"), largest, field, cells })
+        Ok(Self { wanted, growth, largest, field, cells })
     }
 
     fn size(&self, smallest: f64) -> Size {

@@ -1,7 +1,7 @@
 //! Fills what triangles enclose: mended first, everything said.
 
 use super::{FillError, Options, groups};
-use crate::implicit::{Sign, SurfaceShape};
+use crate::implicit::{Shape, Sign, SurfaceShape};
 use crate::repair::{RepairLimits, SurfaceRepairs, repair};
 use crate::{Mesh, MeshError, TriangleSurface};
 
@@ -83,6 +83,7 @@ fn filled(
     if parts > 1 {
         notes.push(format!("the filling has {parts} parts that share no point"));
     }
+    notes.extend(lost_reach(&shape, &mesh));
     let volume = mesh.volume();
     if volume < KEPT * enclosed {
         let percent = 100.0 * volume / enclosed;
@@ -97,6 +98,22 @@ fn filled(
         ));
     }
     Ok((FilledSurface { mesh, repairs, notes }, shape))
+}
+
+/// Part of a surface's extent that a filling may not reach without a word: cells cut off what is thinner than they are.
+const REACHED: f64 = 0.9;
+
+/// What to say where a whole end of the surface is not filled.
+fn lost_reach(shape: &SurfaceShape, mesh: &Mesh) -> Option<String> {
+    let (wanted, found) = (shape.bounds().size().to_array(), mesh.bounds().size().to_array());
+    let axis = (0..3).find(|axis| found[*axis] < REACHED * wanted[*axis])?;
+    Some(format!(
+        "the filling is {:.3e} m long along {}, where the surface is {:.3e} m: ends that are thinner than its cells, or around \
+         which the surface does not wind, are not filled",
+        found[axis],
+        ["x", "y", "z"][axis],
+        wanted[axis]
+    ))
 }
 
 /// Fills the surface of a mesh and carries its groups along.

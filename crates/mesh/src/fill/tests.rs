@@ -10,6 +10,21 @@ fn ball(radius: f64) -> Solid {
     Solid::sphere(Vec3::new(0.01, -0.02, 0.03), radius)
 }
 
+/// Waves in a ball: bubbles, bridges and walls of every thickness.
+struct Noise;
+impl Shape for Noise {
+    fn value(&self, p: Vec3) -> f64 {
+        let wave = |k: f64, a: f64| {
+            libm::sin(k * p.x + a) * libm::sin(k * 1.1 * p.y + 2.0 * a) * libm::sin(k * 0.9 * p.z)
+        };
+        let out = p.length() - 2.2;
+        out.max(wave(7.3, 0.4) + 0.8 * wave(11.9, 1.7) + 0.6 * wave(23.0, 0.1))
+    }
+    fn bounds(&self) -> crate::BoundingBox {
+        crate::BoundingBox::of([Vec3::ZERO]).grown(2.3)
+    }
+}
+
 fn angles(mesh: &Mesh) -> [f64; 2] {
     let quality = mesh.quality();
     let least = quality.iter().map(|cell| cell.smallest_dihedral).fold(f64::INFINITY, f64::min);
@@ -58,19 +73,6 @@ fn angles_of_uniform_fillings() {
 /// Random signs: the surface cuts edges anywhere, which no smooth shape does.
 #[test]
 fn angles_of_wild_fillings() {
-    struct Noise;
-    impl Shape for Noise {
-        fn value(&self, p: Vec3) -> f64 {
-            let wave = |k: f64, a: f64| {
-                libm::sin(k * p.x + a) * libm::sin(k * 1.1 * p.y + 2.0 * a) * libm::sin(k * 0.9 * p.z)
-            };
-            let out = p.length() - 2.2;
-            out.max(wave(7.3, 0.4) + 0.8 * wave(11.9, 1.7) + 0.6 * wave(23.0, 0.1))
-        }
-        fn bounds(&self) -> crate::BoundingBox {
-            crate::BoundingBox::of([Vec3::ZERO]).grown(2.3)
-        }
-    }
     let mut mesh = fill(&Noise, &Size::uniform(0.2), Cells::Tetrahedra, &[]).unwrap();
     assert_sound(&mut mesh);
     let [least, greatest] = angles(&mesh);
@@ -211,7 +213,7 @@ fn formulas_and_refusals() {
     }
 }
 
-/// Hexahedra inside, tetrahedra at the surface, pyramids between: conforming, with positive Jacobians, and most of
+/// Hexahedra inside, tetrahedra at the surface, prisms and pyramids between: conforming, with positive Jacobians, and most of
 /// the volume in hexahedra.
 #[test]
 fn hex_dominant_fillings() {
@@ -226,12 +228,44 @@ fn hex_dominant_fillings() {
         let share = in_hexes / mesh.volume();
         let worst = mesh.quality().iter().map(|cell| cell.scaled_jacobian).fold(1.0, f64::min);
         let tets = fill(&*body.shape, &Size::uniform(extent / count), Cells::Tetrahedra, &[]).unwrap();
+        let prisms = mesh.count_of(ElementKind::Prism6);
+        println!(
+            "{name}: {prisms} prisms of {} cells, hexahedra {share:.3}, worst {worst:.3}",
+            mesh.cell_count()
+        );
         assert!(worst > 0.0, "{name}: {worst}");
         assert!(share > 0.5, "{name}: {share} of {} cells", mesh.cell_count());
+        assert!(prisms * 200 > mesh.cell_count(), "{name}: {prisms} prisms");
         // another triangulation of nearly the same surface
         let difference = (mesh.volume() / tets.volume() - 1.0).abs();
         assert!(difference < 0.01, "{name}: {difference}");
     }
+}
+
+/// Mixed fillings are sound however a shape lies to the lattice, and where it has edges and thin walls.
+#[test]
+fn mixed_fillings_lie_any_way() {
+    let mut prisms = 0;
+    for shift in 0..8 {
+        let t = f64::from(shift) * 0.117;
+        let turn = Vec3::new(1.0 + t, 2.3 * t, -0.7);
+        let long = Solid::turned_ellipsoid(Vec3::new(t, t * t, 0.3), Vec3::new(0.5 + t, 0.41, 0.3), turn);
+        let axis = turn.try_normalised().unwrap();
+        let ring = Solid::Torus { centre: Vec3::new(0.3 * t, 0.2, t), axis, ring: 0.6, tube: 0.2 + 0.1 * t };
+        for (shape, size) in [(&long as &dyn Shape, 0.08), (&ring, 0.08), (&Noise, 0.2)] {
+            let mut mesh = fill(shape, &Size::uniform(size + 0.01 * t), Cells::HexDominant, &[]).unwrap();
+            assert_sound(&mut mesh);
+            let worst = mesh.quality().iter().map(|cell| cell.scaled_jacobian).fold(1.0, f64::min);
+            println!(
+                "{shift}: {} prisms of {} cells, worst {worst:.3}",
+                mesh.count_of(ElementKind::Prism6),
+                mesh.cell_count()
+            );
+            assert!(worst > 0.0, "{worst}");
+            prisms += mesh.count_of(ElementKind::Prism6);
+        }
+    }
+    assert!(prisms > 0);
 }
 
 /// Hexahedra of several sizes meet through pyramids: conforming, sound, and most of the volume in them; with fewer cells

@@ -170,10 +170,8 @@ struct Shells {
     n: usize,
     layers: usize,
     core: Core,
-    /// Points on the outside of the core.
+    /// Points on the outside of the core, in the order of the core's points.
     outside: Vec<[usize; 3]>,
-    /// Place in `outside` of each point of the core.
-    rank: Vec<u32>,
 }
 
 /// The corners of a cube and, in the shell, its layer and the face turned outward.
@@ -184,35 +182,50 @@ struct Cube {
 
 impl Shells {
     fn new(n: usize, layers: usize, core: Core) -> Self {
-        let mut outside = Vec::new();
-        let mut rank = Vec::with_capacity((n + 1).pow(3));
+        let mut outside = Vec::with_capacity(6 * n * n + 2);
         for k in 0..=n {
             for j in 0..=n {
-                for i in 0..=n {
-                    rank.push(outside.len() as u32);
-                    if [i, j, k].iter().any(|index| *index == 0 || *index == n) {
-                        outside.push([i, j, k]);
-                    }
-                }
+                let is_inner = [j, k].iter().all(|index| *index > 0 && *index < n);
+                // of a row through the inside only its ends
+                outside.extend((0..=n).step_by(if is_inner { n } else { 1 }).map(|i| [i, j, k]));
             }
         }
-        Self { n, layers, core, outside, rank }
+        Self { n, layers, core, outside }
+    }
+
+    /// Place in `outside` of a point of the core that is there.
+    fn rank(&self, [i, j, k]: [usize; 3]) -> usize {
+        let n = self.n;
+        // whole planes at the ends, and between them rings: two whole rows and the ends of the others
+        if k == 0 || k == n {
+            let before = if k == 0 { 0 } else { (n + 1).pow(2) + 4 * n * (n - 1) };
+            return before + i + (n + 1) * j;
+        }
+        let in_ring = match j {
+            0 => i,
+            j if j == n => (n + 1) + 2 * (n - 1) + i,
+            _ => (n + 1) + 2 * (j - 1) + i / n,
+        };
+        (n + 1).pow(2) + 4 * n * (k - 1) + in_ring
+    }
+
+    fn core_count(&self) -> usize {
+        (self.n + 1).pow(3)
     }
 
     /// Point of the core (layer 0) or above its outside.
-    fn point(&self, [i, j, k]: [usize; 3], layer: usize) -> u32 {
-        let core = i + (self.n + 1) * (j + (self.n + 1) * k);
+    fn point(&self, place: [usize; 3], layer: usize) -> u32 {
+        let [i, j, k] = place;
         match (self.core, layer) {
-            (Core::Solid, 0) => core as u32,
-            (Core::Solid, _) => self.first_of(layer) + self.rank[core],
-            (Core::Hollow { .. }, _) => self.first_of(layer) + self.rank[core],
+            (Core::Solid, 0) => (i + (self.n + 1) * (j + (self.n + 1) * k)) as u32,
+            _ => self.first_of(layer) + self.rank(place) as u32,
         }
     }
 
     /// Number of the first point of a layer; layer 0 only where there is a hollow.
     fn first_of(&self, layer: usize) -> u32 {
         let before = match self.core {
-            Core::Solid => self.rank.len() + (layer - 1) * self.outside.len(),
+            Core::Solid => self.core_count() + (layer - 1) * self.outside.len(),
             Core::Hollow { .. } => layer * self.outside.len(),
         };
         before as u32
@@ -225,10 +238,11 @@ impl Shells {
             let [x, y, z] = index.map(|i| 2.0 * i as f64 / n - 1.0);
             Vec3::new(x, y, z)
         };
-        let mut points = Vec::with_capacity(self.rank.len() + self.layers * self.outside.len());
+        let mut points = Vec::new();
         let first_layer = match self.core {
             Core::Hollow { .. } => 0,
             Core::Solid => {
+                points.reserve(self.core_count());
                 for k in 0..=self.n {
                     for j in 0..=self.n {
                         points.extend((0..=self.n).map(|i| core_position(unit([i, j, k]))));

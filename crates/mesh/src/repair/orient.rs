@@ -3,7 +3,7 @@
 use super::SurfaceRepairs;
 use super::diagnose::components;
 use crate::winding::WindingNumber;
-use crate::{BoundingBox, TriangleSurface};
+use crate::{Aabb, AabbTree, TriangleSurface};
 
 /// Turns triangles so that the two at an edge run along it in opposite directions, starting from the first triangle
 /// of each part; of each part the smaller number is turned. Edges of three triangles or more are not crossed.
@@ -70,14 +70,20 @@ pub(super) fn face_outward(surface: &mut TriangleSurface, repairs: &mut SurfaceR
         .map(|triangles| TriangleSurface::from_mesh(&surface.points, triangles, Vec::new()))
         .collect();
     let windings: Vec<WindingNumber> = parts.iter().map(WindingNumber::new).collect();
-    let boxes: Vec<BoundingBox> = parts.iter().map(TriangleSurface::bounds).collect();
+    let boxes: Vec<Aabb> = parts.iter().map(|part| Aabb::of(part.points.iter().copied())).collect();
+    let tree = AabbTree::build(&boxes);
     let volumes: Vec<f64> = parts.iter().map(TriangleSurface::enclosed_volume).collect();
     let around = |inner: usize| -> Vec<usize> {
         let point = parts[inner].points[0];
-        let is_around = |outer: &usize| {
-            *outer != inner && boxes[*outer].contains(point) && windings[*outer].at(point).abs() > 0.5
-        };
-        (0..count).filter(is_around).collect()
+        let mut around = Vec::new();
+        tree.overlapping(Aabb::of([point]), |outer| {
+            let outer = outer as usize;
+            if outer != inner && windings[outer].at(point).abs() > 0.5 {
+                around.push(outer);
+            }
+        });
+        around.sort_unstable();
+        around
     };
     let around: Vec<Vec<usize>> = (0..count).map(around).collect();
     // the outermost part that goes around this one decides

@@ -92,6 +92,8 @@ const BODIES: [[u8; 3]; 5] =
 /// Links in a state beyond that of the start: yielded ones are amber.
 const STATES: [[u8; 3]; 5] = [[230, 170, 40], [88, 164, 120], [170, 96, 180], [60, 130, 190], [190, 90, 60]];
 const ARROW: [u8; 3] = [40, 44, 52];
+/// The same on a dark backdrop.
+const ARROW_ON_DARK: [u8; 3] = [236, 238, 242];
 /// Axes x, y, z of frames.
 const AXES: [[u8; 3]; 3] = [[200, 48, 48], [40, 150, 70], [50, 90, 210]];
 /// Their length next to all that is seen.
@@ -252,10 +254,14 @@ impl Figure {
         };
         let points = MeshSurface::of(&body.mesh).points;
         let every = points.len().div_ceil(MOST_ARROWS).max(1);
+        let colour = Colour::from_screen(match self.theme {
+            Theme::Light => ARROW,
+            Theme::Dark => ARROW_ON_DARK,
+        });
         let stroke = |point: &souple_io::picture::Between| {
             let (from, vector) = (body.positions[point.from as usize], field[point.from as usize] * scale);
             let shape = StrokeShape::Arrow(from, from + vector);
-            vector.is_finite().then(|| Stroke { shape, colour: Colour::from_screen(ARROW), width: 2.0 })
+            vector.is_finite().then(|| Stroke { shape, colour, width: 2.0 })
         };
         points.iter().step_by(every).filter_map(stroke).collect()
     }

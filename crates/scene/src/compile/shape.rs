@@ -2,7 +2,7 @@
 
 use souple_mesh::fill::{FillError, fill_mesh};
 use souple_mesh::repair::RepairLimits;
-use souple_mesh::{Conformity, Mesh, MeshError, Repairs};
+use souple_mesh::{Mesh, MeshError};
 
 use super::Draft;
 use crate::diagnostic::{Code, Site};
@@ -93,7 +93,7 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
     // what generators make of one kind of cells conforms by their own tests
     if matches!(spec, MeshSpec::File { .. }) || mesh.blocks.len() > 1 {
         let found = mesh.conformity();
-        if let Some(message) = overlap(&found, &repairs) {
+        if let Some(message) = found.overlap(&repairs.rewound_cells) {
             return refuse(
                 message,
                 "cells on both sides of each face: a point moved through a face is moved back",
@@ -159,21 +159,6 @@ fn read(draft: &Draft, site: &Site, file: &str, scale: f64, warnings: &mut Vec<S
             None
         }
     }
-}
-
-/// Cells that lie on the same side of a common face, in words; of the two, the one that was rewound was inverted.
-fn overlap(found: &Conformity, repairs: &Repairs) -> Option<String> {
-    let &[a, b] = found.overlapping.first()?;
-    let was_inverted = |cell: u32| repairs.rewound_cells.binary_search(&cell).is_ok();
-    let which = match (was_inverted(a), was_inverted(b)) {
-        (true, false) => format!("; cells[{a}] is inverted"),
-        (false, true) => format!("; cells[{b}] is inverted"),
-        _ => String::new(),
-    };
-    let count = found.overlapping.len();
-    Some(format!(
-        "cells[{a}] and cells[{b}] overlap: both lie on the same side of their common face{which} ({count} such pairs)"
-    ))
 }
 
 /// Facets on points that no cell uses would keep those points: all facets go then, and their groups keep the

@@ -5,6 +5,7 @@ mod parameters;
 mod skin;
 mod summary;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value as Json, json};
@@ -39,7 +40,7 @@ enum Action {
         /// A surface file, or a name that `souple list bodies` prints
         input: String,
         out: PathBuf,
-        /// NAME=VALUE: size, count, growth, largest, size_inside, element, scale, and those of the shape
+        /// NAME=VALUE: size or count; growth, largest, size_inside or size_everywhere (formulas of x, y, z), element (tet4, hex_dominant), scale of a file, and those of the shape
         parameters: Vec<String>,
         #[arg(long)]
         json: bool,
@@ -194,26 +195,30 @@ fn report(path: &Path, mesh: &Mesh, notes: &[String], as_json: bool) {
 }
 
 fn of_cells(mesh: &Mesh, notes: &[String]) -> Json {
-    let conforming = mesh.faces().conforming().err().map(|error| error.to_string());
+    let found = mesh.conformity();
+    let mut problems = found.problems(mesh);
+    problems.extend(mesh.faces().conforming().err().map(|error| error.to_string()));
+    let notes: Vec<&String> = notes.iter().chain(&problems[problems.len().min(1)..]).collect();
+    let hinges = found.hinges();
+    let notes: Vec<&String> = notes.into_iter().chain(&hinges).collect();
     let quality = mesh.quality();
     let bounds = mesh.bounds();
-    let kinds: serde_json::Map<String, Json> = mesh
-        .blocks
-        .iter()
-        .map(|block| (block.kind.name().to_owned(), json!(mesh.count_of(block.kind))))
-        .collect();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for block in &mesh.blocks {
+        *counts.entry(block.kind.name()).or_default() += block.len();
+    }
     let smallest = quality.iter().map(|cell| cell.scaled_jacobian).fold(f64::INFINITY, f64::min);
     let mut document = json!({
         "points": mesh.points.len(),
-        "cells": kinds,
+        "cells": counts,
         "facets": mesh.facet_count(),
         "groups": mesh.groups.keys().collect::<Vec<_>>(),
         "components": mesh.components().1,
         "volume": mesh.volume(),
         "bounds": [bounds.low.to_array(), bounds.high.to_array()],
         "smallest_scaled_jacobian": (!quality.is_empty()).then_some(smallest),
-        "conforming": conforming.is_none(),
-        "problem": conforming,
+        "conforming": problems.is_empty(),
+        "problem": problems.first(),
         "notes": notes,
     });
     if !quality.is_empty() {
@@ -263,7 +268,8 @@ fn shapes(mesh: &Mesh, quality: &[CellQuality]) -> Json {
     );
     let aspect = histogram(|cell| cell.aspect_ratio);
     let volume = histogram(|cell| cell.volume);
-    let worst = mesh.quality_summary(1).worst_cell;
+    let worst =
+        (0..quality.len()).min_by(|a, b| quality[*a].scaled_jacobian.total_cmp(&quality[*b].scaled_jacobian));
     json!({
         "dihedral_degrees": {
             "min": least.low,

@@ -57,7 +57,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "liver_weight_mixed",
         capabilities: &["DEB-56", "FAU-53", "FAU-59"],
-        what: "the same on hexahedra inside, pyramids and tetrahedra around them",
+        what: "the same on hexahedra inside, prisms, pyramids and tetrahedra around them",
         settings: &[
             "bodies.liver.mesh.size=0",
             "bodies.liver.mesh.count=10000",

@@ -16,6 +16,7 @@ mod frequencies;
 mod hands;
 mod implicit;
 mod levels;
+mod loads;
 mod long_beam;
 mod mixed_models;
 mod motion;
@@ -49,6 +50,7 @@ pub const TABLES: &[&[Case]] = &[
     motion::CASES,
     moving_frame::CASES,
     pressure::CASES,
+    loads::CASES,
     stepper_orders::CASES,
     energy::CASES,
     explicit::CASES,

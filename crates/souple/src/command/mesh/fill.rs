@@ -79,7 +79,7 @@ fn scale_doubt(mesh: &Mesh) -> Option<String> {
     let hint = if largest > USUAL[1] { ": in millimetres it takes scale=0.001" } else { "" };
     (largest > 0.0 && !(USUAL[0]..=USUAL[1]).contains(&largest)).then(|| {
         format!(
-            "the surface measures {:.4} x {:.4} x {:.4} m, an unusual size for a soft body{hint}",
+            "the surface measures {:.3e} x {:.3e} x {:.3e} m, an unusual size for a soft body{hint}",
             extent.x, extent.y, extent.z
         )
     })
@@ -109,6 +109,9 @@ const SIMPLIFY: &[Parameter] = &[
     .or(Value::Number(0.0)),
     Parameter::integer("triangles", Range::NOT_NEGATIVE, "least number of triangles").or(Value::Integer(0)),
 ];
+
+/// A wanted number of triangles is told where it is missed by more than this.
+const MET_TRIANGLES: f64 = 1.05;
 
 /// A surface of fewer triangles, and what was done.
 pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
@@ -142,6 +145,12 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
         surface.triangles.len(),
         simple.distance
     ));
+    let left = simple.surface.triangles.len();
+    if !(distance > 0.0) && left as f64 > MET_TRIANGLES * triangles as f64 {
+        notes.push(format!(
+            "{left} are more than the {triangles} asked for: the rest cannot be joined without turning a triangle over or tearing the surface"
+        ));
+    }
     if simple.crossings > 0 {
         notes.push(format!(
             "{} pairs of triangles pass through each other, as in the given surface",

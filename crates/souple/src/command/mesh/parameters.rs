@@ -12,6 +12,10 @@ pub fn values(texts: &[String], known: &[&Parameter]) -> Result<Values, Refusal>
         let refuse =
             |message: &str| Refusal::request("parameter", text, "NAME=VALUE", format!("`{text}`: {message}"));
         let (key, value) = text.split_once('=').ok_or_else(|| refuse("there is no `=`"))?;
+        if texts.iter().filter(|text| text.split_once('=').is_some_and(|(other, _)| other == key)).count() > 1
+        {
+            return Err(refuse("the name is given twice"));
+        }
         let parameter = known.iter().find(|parameter| parameter.name == key);
         let unit = parameter.map_or("", |parameter| parameter.unit);
         let number = |text: &str| match text.trim().parse() {
