@@ -117,17 +117,14 @@ impl InTime {
 fn write_ticks(path: &Path, ticks: &[Tick]) -> Result<(), IoError> {
     let numbers = |of: &dyn Fn(&Tick) -> f64| ticks.iter().map(of).collect::<Vec<f64>>();
     let mut columns = vec![Column::new("time [s]", numbers(&|tick| tick.time))];
-    let vectors: [(&str, &str, fn(&Tick) -> Vec3); 3] = [
-        ("device", "m", |tick| tick.device),
-        ("tool", "m", |tick| tick.tool),
-        ("force", "N", |tick| tick.force),
-    ];
-    for (name, unit, vector) in vectors {
+    let mut vector = |name: &str, unit: &str, of: fn(&Tick) -> Vec3| {
         for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
-            columns
-                .push(Column::new(format!("{name}.{letter} [{unit}]"), numbers(&|tick| vector(tick)[axis])));
+            columns.push(Column::new(format!("{name}.{letter} [{unit}]"), numbers(&|tick| of(tick)[axis])));
         }
-    }
+    };
+    vector("device", "m", |tick| tick.device);
+    vector("tool", "m", |tick| tick.tool);
+    vector("force", "N", |tick| tick.force);
     columns.push(Column::new("energy [J]", numbers(&|tick| tick.energy)));
     souple_io::write_csv(path, &columns)
 }

@@ -150,7 +150,7 @@ impl Filling<'_> {
     pub fn fit_notches(&self) -> Notches {
         let by_centre = self.notches_by_centre();
         let mut fit: Notches = self.notches.clone();
-        fit.retain(|_, notch| self.suits(notch, &self.notches) && self.is_good_notch(notch));
+        fit.retain(|_, notch| self.suits(notch, self.notches) && self.is_good_notch(notch));
         for tet in &self.background.tets {
             let mut around = tet.iter().filter_map(|node| by_centre.get(node)).peekable();
             if around.peek().is_some() && !self.gives_way(tet) && !self.is_good_part(*tet) {

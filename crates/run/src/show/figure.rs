@@ -261,7 +261,7 @@ impl Figure {
         let stroke = |point: &souple_io::picture::Between| {
             let (from, vector) = (body.positions[point.from as usize], field[point.from as usize] * scale);
             let shape = StrokeShape::Arrow(from, from + vector);
-            vector.is_finite().then(|| Stroke { shape, colour, width: 2.0 })
+            vector.is_finite().then_some(Stroke { shape, colour, width: 2.0 })
         };
         points.iter().step_by(every).filter_map(stroke).collect()
     }

@@ -1,13 +1,15 @@
 //! `souple haptics`: a scene in the hands of people, in true real time.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::Value;
 use souple_run::{Control, InTime, Options, Progress, Session, TimeError, run_in_time};
 
 use super::progress::Meter;
-use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path, seconds, use_threads};
+use super::{
+    End, Refusal, interruption, print_json, print_line, print_note, read_scene, scene_path, seconds,
+    use_threads,
+};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -36,8 +38,6 @@ pub struct Arguments {
     quiet: bool,
 }
 
-/// Set by Ctrl-C, or by the system's wish that the program ends.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// Longest run [s]: every tick of it is kept.
 const LONGEST: f64 = 3600.0;
 
@@ -52,13 +52,12 @@ pub fn haptics(arguments: &Arguments) -> Result<End, Refusal> {
     let scene_name = scene_path(&arguments.scene).display().to_string();
     let mut session = Session::start(scene, &Options { scene_name, ..Options::default() })?;
     session.forecast();
-    // a second handler in one process (never, for a command line) would be refused: then Ctrl-C just ends it
-    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    interruption::heed();
     let meter = Meter::new("periods", arguments.quiet);
     let mut watch = |progress: &Progress| {
         let behind = progress.wall_seconds - progress.simulated_seconds;
         meter.show(progress.step, progress.steps, format_args!("clock less world {:.1} ms", 1e3 * behind));
-        if INTERRUPTED.load(Ordering::Relaxed) { Control::Stop } else { Control::Continue }
+        if interruption::is_interrupted() { Control::Stop } else { Control::Continue }
     };
     let run = run_in_time(&mut session, duration, &mut watch).map_err(refuse)?;
     drop(meter);

@@ -50,6 +50,7 @@ pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
             samples: world.loads.len(),
             spread: 0.0,
             bytes: kept.bytes,
+            by_processor: None,
         }
     };
     Ok(vec![
@@ -65,6 +66,7 @@ pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
             samples: periods.count() as usize,
             spread: (periods.quantile(0.75) - periods.quantile(0.25)) / (2.0 * periods.quantile(0.5)),
             bytes: liver.bytes,
+            by_processor: None,
         },
         load("haptic_load_liver", &liver),
         load("haptic_load_block_30k", &block),

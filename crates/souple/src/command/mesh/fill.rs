@@ -146,7 +146,7 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
         simple.distance
     ));
     let left = simple.surface.triangles.len();
-    if !(distance > 0.0) && left as f64 > MET_TRIANGLES * triangles as f64 {
+    if distance <= 0.0 && left as f64 > MET_TRIANGLES * triangles as f64 {
         notes.push(format!(
             "{left} are more than the {triangles} asked for: the rest cannot be joined without turning a triangle over or tearing the surface"
         ));
