@@ -96,7 +96,7 @@ fn row_fault(row: &Value) -> Option<String> {
 fn blindness(row: &Value) -> Option<String> {
     let field = |name| field(row, name);
     let (id, mutation) = (field("id"), field("mutation"));
-    if row["problem"].is_string() {
+    if row["problem"].is_string() && row["has_run"] != Value::Bool(true) {
         Some(format!("{id} has no number under its mutation {mutation}: {}", field("problem")))
     } else if row["pass"] == Value::Bool(true) {
         Some(format!("{id} still holds under its mutation {mutation}: {} was measured", field("measured")))
@@ -130,8 +130,12 @@ mod tests {
         row["pass"] = Value::Bool(true);
         let holds = "bar_tip still holds under its mutation x=2: 1.5 was measured";
         assert_eq!(blindness(&row).as_deref(), Some(holds));
-        row["problem"] = "blew up".into();
-        let broken = "bar_tip has no number under its mutation x=2: blew up";
+        row["pass"] = Value::Bool(false);
+        row["problem"] = "no such key".into();
+        let broken = "bar_tip has no number under its mutation x=2: no such key";
         assert_eq!(blindness(&row).as_deref(), Some(broken));
+        row["has_run"] = Value::Bool(true);
+        row["problem"] = "blew up".into();
+        assert_eq!(blindness(&row), None);
     }
 }

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::reading::Reading;
 use crate::refinement::Refinement;
-use crate::row::{Row, RunOfRow};
+use crate::row::{Problem, Row, RunOfRow};
 
 /// How far a number may be from its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,7 +86,7 @@ impl Case {
     }
 
     /// Unit and values of the runs; one where nothing is refined.
-    fn runs(&self, more: &[&str]) -> Result<(&'static str, Vec<RunOfRow>), String> {
+    fn runs(&self, more: &[&str]) -> Result<(&'static str, Vec<RunOfRow>), Problem> {
         let mut unit = "";
         let mut runs = Vec::new();
         for (size, settings, command) in self.variants() {
@@ -95,7 +95,7 @@ impl Case {
             let (value, unit_of_value) = self
                 .reading
                 .read(self.scene, &settings)
-                .map_err(|problem| format!("{command}: {problem}"))?;
+                .map_err(|problem| Problem { message: format!("{command}: {problem}"), ..problem })?;
             unit = unit_of_value;
             runs.push(RunOfRow { size, value, error: None, command });
         }

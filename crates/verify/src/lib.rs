@@ -19,4 +19,4 @@ pub use cases::{TABLES, all};
 pub use derivation::Count;
 pub use reading::{Observation, Reading, Statistic};
 pub use refinement::{Limit, Refinement, Variant};
-pub use row::{Row, RunOfRow};
+pub use row::{Problem, Row, RunOfRow};

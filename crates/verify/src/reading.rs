@@ -6,6 +6,7 @@ use souple_run::{Control, Options, Status, Trace};
 use souple_scene::Scene;
 
 use crate::derivation::{self, Count};
+use crate::row::Problem;
 use crate::scenes;
 
 /// What is read.
@@ -102,7 +103,7 @@ impl Reading {
     ///
     /// # Errors
     /// Why there is none, in words.
-    pub(crate) fn read(&self, name: &str, settings: &[String]) -> Result<(f64, &'static str), String> {
+    pub(crate) fn read(&self, name: &str, settings: &[String]) -> Result<(f64, &'static str), Problem> {
         if let Self::Derived(count) = self {
             return Ok((derivation::count(*count, settings)?, ""));
         }
@@ -130,12 +131,12 @@ impl Reading {
 }
 
 impl Observation {
-    fn read(&self, name: &str, scene: Scene) -> Result<(f64, &'static str), String> {
+    fn read(&self, name: &str, scene: Scene) -> Result<(f64, &'static str), Problem> {
         let options = Options { steps: self.steps, scene_name: name.to_owned(), ..Options::default() };
         let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue)
             .map_err(|error| error.to_string())?;
         if outcome.report.status != Status::Done {
-            return Err(outcome.report.warnings.join("; "));
+            return Err(Problem { message: outcome.report.warnings.join("; "), has_run: true });
         }
         let trace = outcome.traces.iter().find(|trace| trace.name == self.probe);
         let trace = trace.ok_or_else(|| format!("the scene has no probe `{}`", self.probe))?;

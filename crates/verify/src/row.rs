@@ -17,7 +17,34 @@ pub struct Row {
     /// One, or one for each size.
     pub runs: Vec<RunOfRow>,
     /// Why there is no number.
-    pub problem: Option<String>,
+    pub problem: Option<Problem>,
+}
+
+/// Why there is no number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    pub message: String,
+    /// The scene was taken, and its run ended before it was due: blown up, or without a solution. That is an answer as well;
+    /// a scene that is refused is none.
+    pub has_run: bool,
+}
+
+impl From<String> for Problem {
+    fn from(message: String) -> Self {
+        Self { message, has_run: false }
+    }
+}
+
+impl From<&str> for Problem {
+    fn from(message: &str) -> Self {
+        Self::from(message.to_owned())
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
 }
 
 /// One run of a case.
@@ -33,6 +60,11 @@ pub struct RunOfRow {
 }
 
 impl Row {
+    /// Whether the row, run under its mutation, saw it: the number is another, or the run did not come to its end.
+    pub fn sees_mutation(&self) -> bool {
+        !self.pass && self.problem.as_ref().is_none_or(|problem| problem.has_run)
+    }
+
     pub fn to_json(&self) -> Value {
         let mut row = self.case.to_json();
         row["measured"] = json!(self.measured);
@@ -43,7 +75,8 @@ impl Row {
             row["runs"] = self.runs.iter().map(RunOfRow::to_json).collect();
         }
         if let Some(problem) = &self.problem {
-            row["problem"] = json!(problem);
+            row["problem"] = json!(problem.message);
+            row["has_run"] = json!(problem.has_run);
         }
         row
     }

@@ -34,9 +34,8 @@ pub fn verify(arguments: &Arguments) -> Result<End, Refusal> {
         }
         return Ok(End::Done);
     }
-    // under its mutation a case that still holds, or that has no number at all, sees nothing
-    let is_as_wanted =
-        |row: &Row| if arguments.mutations { !row.pass && row.problem.is_none() } else { row.pass };
+    // under its mutation a case that still holds, or whose scene is refused, sees nothing
+    let is_as_wanted = |row: &Row| if arguments.mutations { row.sees_mutation() } else { row.pass };
     let verdict = if arguments.mutations { "seen" } else { "ok" };
     let mut rows: Vec<Row> = Vec::new();
     for case in cases {
