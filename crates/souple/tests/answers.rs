@@ -161,7 +161,11 @@ fn fillings_are_refused_in_words() {
         (&["flat.obj", "a.msh", "size=0.1"][..], &["the surface is flat", "1.000 x 1.000 x 0.000"][..]),
         (&["open.obj", "a.msh", "size=0.1"], &["the surface has holes", "6 edges"]),
         (&["large.stl", "a.msh", "size=0.5"], &["measures 900.000 x 900.000 x 900.000 m", "scale=0.001"]),
-        (&["liver", "a.msh", "size=0.02", "largest=0.01"], &["`largest` is 0.01 m", "at least the size"]),
+        (
+            &["liver", "a.msh", "size=0.02", "growth=0.5", "largest=0.01"],
+            &["`largest` is 0.01 m", "at least the size"],
+        ),
+        (&["liver", "a.msh", "size=0.02", "largest=0.03"], &["`largest` is 0.03 m", "`growth` above 0"]),
         (&["liver", "a.msh", "count=3000", "largest=0.001"], &["`largest` is 0.001 m"]),
     ] {
         let refused = fill(arguments);

@@ -226,7 +226,7 @@ fn conversions_tell_what_they_lose() {
     }
     let before = folder.files();
     for (from, to, words) in [
-        ("mixed.vtu", "b.ele", "expected tet4 or tri3"),
+        ("mixed.vtu", "b.ele", "is hex8; expected tet4"),
         ("a.stl", "b.xyz", "no format has the extension `xyz`"),
         ("a.glb", "b.stl", "the format `gltf` cannot be read"),
         ("a.stl", "no/such/folder.ply", "its folder is missing"),
@@ -387,7 +387,8 @@ fn overlapping_cells_are_told() {
     folder.write("thrice.vtk", vtk(&points, "4 0 1 2 3\n4 0 1 2 4\n4 0 1 2 5", "10 10 10"));
     let mesh = quality(&folder, "thrice.vtk").unwrap_or_else(|message| panic!("{message}"));
     assert_eq!(mesh["conforming"], false);
-    assert!(mesh["problem"].to_string().contains("is used 3 times"), "{mesh:#}");
+    assert!(mesh["problem"].to_string().contains("cells[0] and cells[1] overlap"), "{mesh:#}");
+    assert!(mesh["notes"].to_string().contains("is used 3 times"), "{mesh:#}");
 }
 
 /// Meshes that do not conform: overlapping cells are refused by scenes, cracks and hanging points are told.
