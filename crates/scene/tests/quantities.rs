@@ -189,13 +189,30 @@ material = { name = "neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.
 levels = { count = 2, refine = 0.1, coarsen = 0.03 }
 "#;
 
+const FELT: &str = r#"[hands.right]
+device = { name = "emulated", mass = "0.4 kg", stiffness = "300 N/m", damping = 8 }
+tool = { name = "sphere", centre = [0.5, 1.3, 0.5], radius = 0.2 }
+mass = "50 g"
+body = "cube"
+region = "y_max"
+motion = { formula = [0, "-0.1 * t", 0] }
+"#;
+
 /// Every quantity of the table can be measured, and gives what its rank says; none is not finite at rest.
 #[test]
 fn every_quantity_is_measured() {
     let skin = format!("{CUBE}{SKIN}");
     let changing = CUBE.replace("neo_hookean", "linear") + CHANGING;
     let cube = "body = \"cube\"";
-    let probed = [(CUBE, ""), (CUBE, cube), (&skin, "skin = \"ball\""), (&changing, cube), (LAYERED, cube)];
+    let felt = format!("{CUBE}{FELT}");
+    let probed = [
+        (CUBE, ""),
+        (CUBE, cube),
+        (&skin, "skin = \"ball\""),
+        (&changing, cube),
+        (LAYERED, cube),
+        (&felt, "hand = \"right\""),
+    ];
     for entry in QUANTITIES.entries {
         let scene = |(scene, of)| format!("{scene}[probes.q]\n{of}\nquantity = \"{}\"\n", entry.name);
         let text =
