@@ -128,19 +128,21 @@ impl Mesh {
     /// [`Mesh::validate`].
     pub fn conformity(&self) -> Conformity {
         let (coincident, hanging) = boundary_faults(&self.boundary_surface());
-        let split = self.faces().split.iter().map(|split| (split.cell, split.triangle_cells)).collect();
+        let split: Vec<(u32, [u32; 2])> =
+            self.faces().split.iter().map(|split| (split.cell, split.triangle_cells)).collect();
         Conformity {
             overlapping: self.overlapping_cells(),
+            hinged_parts: self.hinged_parts(&split),
             split,
             coincident,
             hanging,
-            hinged_parts: self.hinged_parts(),
             slivers: self.slivers(),
         }
     }
 
-    /// How many parts of volume cells hang on the others by points or edges alone.
-    pub fn hinged_parts(&self) -> usize {
+    /// How many parts of volume cells hang on the others by points or edges alone; those that meet with two triangles on a
+    /// quadrilateral do not.
+    fn hinged_parts(&self, split: &[(u32, [u32; 2])]) -> usize {
         if self.dimension() != 3 {
             return 0;
         }
@@ -155,8 +157,10 @@ impl Mesh {
         }
         uses.sort_unstable();
         let mut parts = self.cell_count();
-        for pair in uses.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-            let [a, b] = [pair[0].1, pair[1].1].map(|cell| root(&mut parent, cell));
+        let same = uses.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
+        let across = split.iter().flat_map(|(cell, others)| others.map(|other| [*cell, other]));
+        for pair in same.chain(across) {
+            let [a, b] = pair.map(|cell| root(&mut parent, cell));
             parts -= usize::from(a != b);
             parent[a.max(b) as usize] = a.min(b);
         }
