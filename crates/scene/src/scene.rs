@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use souple_engine::{Census, InHand, Model, State, World};
+use souple_engine::{Census, InHand, Levels, Model, State, World};
 use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
@@ -176,10 +176,16 @@ impl HandInfo {
 /// Who does what in the body of a force; `None` where it has no levels.
 pub fn census(world: &World, system: usize, force: &str) -> Option<Census> {
     let of = &world.model().systems[system];
-    let index = of.forces.iter().position(|candidate| candidate.name() == force)?;
-    let levels = of.forces[index].levels()?;
+    let (index, levels) = levels(world, system, force)?;
     let memory = of.memory_ranges()[index].clone();
     Some(levels.census(&world.state().systems[system].memory[memory]))
+}
+
+/// The meshes of the body of a force, and its number in its system; `None` where it has one mesh.
+fn levels<'a>(world: &'a World, system: usize, force: &str) -> Option<(usize, &'a dyn Levels)> {
+    let forces = &world.model().systems[system].forces;
+    let index = forces.iter().position(|candidate| candidate.name() == force)?;
+    Some((index, forces[index].levels()?))
 }
 
 impl BodyInfo {
@@ -193,9 +199,8 @@ impl BodyInfo {
         if let Some(frames) = &self.frames {
             return frames.rows.clone();
         }
-        let forces = &world.model().systems[self.system].forces;
-        let own = forces.iter().find(|force| force.name() == self.force);
-        let rows = own.and_then(|force| Some(force.levels()?.rows())).unwrap_or_else(|| self.rows.clone());
+        let levels = levels(world, self.system, &self.force);
+        let rows = levels.map_or_else(|| self.rows.clone(), |(_, levels)| levels.rows());
         (rows.start as u32..rows.end as u32).collect()
     }
 

@@ -25,6 +25,21 @@ pub(crate) static SHAPE: Keys = Keys::new(
     ],
 );
 
+pub(super) const FRICTION: Key =
+    Key::number("friction", "", Range::NOT_NEGATIVE, "Coulomb's coefficient").or(Value::Number(0.0));
+pub(super) const DAMPING: Key = Key::number(
+    "damping",
+    "s/m",
+    Range::NOT_NEGATIVE,
+    "Hunt–Crossley: a collision at speed u gives back 1 - 2/3 d u",
+)
+.or(Value::Number(0.0));
+pub(super) const TANGENTIAL_STIFFNESS: Key =
+    Key::number("tangential_stiffness", "N/m", Range::POSITIVE, "of sticking; the stiffness where left out");
+pub(super) const THICKNESS: Key =
+    Key::number("thickness", "m", Range::NOT_NEGATIVE, "distance at which touching starts")
+        .or(Value::Number(0.0));
+
 pub(crate) static CONTACT: Keys = Keys::new(
     "contact",
     "points of a body against a shape or a skin, or the surfaces of two bodies",
@@ -41,22 +56,10 @@ pub(crate) static CONTACT: Keys = Keys::new(
             Range::POSITIVE,
             "of a point of mean area, or of each mass of a network; where left out, that of the body's material behind it",
         ),
-        Key::number("friction", "", Range::NOT_NEGATIVE, "Coulomb's coefficient").or(Value::Number(0.0)),
-        Key::number(
-            "damping",
-            "s/m",
-            Range::NOT_NEGATIVE,
-            "Hunt–Crossley: a collision at speed u gives back 1 - 2/3 d u",
-        )
-        .or(Value::Number(0.0)),
-        Key::number(
-            "tangential_stiffness",
-            "N/m",
-            Range::POSITIVE,
-            "of sticking; the stiffness where left out",
-        ),
-        Key::number("thickness", "m", Range::NOT_NEGATIVE, "distance at which touching starts")
-            .or(Value::Number(0.0)),
+        FRICTION,
+        DAMPING,
+        TANGENTIAL_STIFFNESS,
+        THICKNESS,
     ],
 );
 

@@ -6,7 +6,7 @@ use souple_models::contact::shape::BuildShape;
 use souple_table::{Range, Value};
 
 use super::boundary::{MOTION, MotionSpec};
-use super::contact::Contact;
+use super::contact::{Contact, DAMPING, FRICTION, TANGENTIAL_STIFFNESS, THICKNESS};
 use super::region::Region;
 use crate::diagnostic::Site;
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
@@ -27,16 +27,10 @@ static TOUCH: Keys = Keys::new(
             Range::POSITIVE,
             "of a point of mean area; where left out, that of the body's material behind it",
         ),
-        Key::number("friction", "", Range::NOT_NEGATIVE, "Coulomb's coefficient").or(Value::Number(0.0)),
-        Key::number("damping", "s/m", Range::NOT_NEGATIVE, "Hunt–Crossley").or(Value::Number(0.0)),
-        Key::number(
-            "tangential_stiffness",
-            "N/m",
-            Range::POSITIVE,
-            "of sticking; the stiffness where left out",
-        ),
-        Key::number("thickness", "m", Range::NOT_NEGATIVE, "distance at which touching starts")
-            .or(Value::Number(0.0)),
+        FRICTION,
+        DAMPING,
+        TANGENTIAL_STIFFNESS,
+        THICKNESS,
     ],
 );
 
