@@ -261,7 +261,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "skin_thread_pinches",
-        capabilities: &["DC-1", "DC-5"],
+        capabilities: &["DC-1"],
         what: "parts of a stretched drop's skin",
         scene: "skin_pinch",
         reading: Reading::last("components").taking(Statistic::Max),
