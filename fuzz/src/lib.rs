@@ -82,7 +82,7 @@ pub fn dress_particles(content: &[u8]) {
     if particles.len() > 100 || largest > 4.0 * smallest {
         return;
     }
-    if let Ok((surface, normals)) = souple_skin::dress(&particles, smallest, 0.5) {
+    if let Ok(souple_skin::Dressed { surface, normals, .. }) = souple_skin::dress(&particles, smallest, 0.5) {
         assert_eq!(normals.len(), surface.points.len());
         let mut audit = souple_skin::polygons::Audit::default();
         audit.check(surface.points.len(), &surface.triangles).expect("a closed surface");

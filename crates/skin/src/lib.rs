@@ -24,7 +24,7 @@ mod view;
 mod waking;
 mod widest;
 
-pub use dress::dress;
+pub use dress::{Dressed, dress};
 pub use field::SkinField;
 pub use grid::{Grid, Lattice};
 pub use look_up::{Seen, look_up};

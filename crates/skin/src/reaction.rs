@@ -2,13 +2,14 @@
 //!
 //! The force on a point of the surface is that of its triangles, `-σ ∂A/∂x + p n A/3` with `p = k (V0 - V)/V0`. It is shared
 //! among the particles around by their kernels, with weights whose sum is one: since the surface is closed, the forces on
-//! all rows add up to nothing. They are computed on the committed grid at the end of a step, kept in State, and act in the
+//! all rows add up to nothing. Sharing moves forces from the surface to the particles within, which makes a couple; a force
+//! field of a rotation takes it out again, so that the angular momentum stays too. They are computed on the committed grid at the end of a step, kept in State, and act in the
 //! next.
 
 use std::any::Any;
 
 use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use crate::skin::HEAD;
@@ -86,7 +87,26 @@ impl Reaction {
                 numbers.iter_mut().zip(part.to_array()).for_each(|(sum, part)| *sum += part);
             }
         }
+        take_out_couple(scratch.cloud.particles(), out);
         Ok(())
+    }
+}
+
+/// Adds `ω × (x − x̄)` to the forces on particles, with the `ω` that leaves them no moment; their sum stays.
+fn take_out_couple(particles: &[(Vec3, f64)], forces: &mut [f64]) {
+    let centre = particles.iter().map(|(x, _)| *x).sum::<Vec3>() * (1.0 / particles.len() as f64);
+    let (mut moment, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+    for ((x, _), force) in particles.iter().zip(forces.chunks_exact(3)) {
+        let arm = *x - centre;
+        moment += arm.cross(Vec3::new(force[0], force[1], force[2]));
+        spread = spread + Mat3::IDENTITY * arm.length_sq() - arm.outer(arm);
+    }
+    // particles on a line bear no moment about it, and have none
+    let Some(inverse) = spread.try_inverse() else { return };
+    let rate = inverse * -moment;
+    for ((x, _), force) in particles.iter().zip(forces.chunks_exact_mut(3)) {
+        let part = rate.cross(*x - centre).to_array();
+        force.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
     }
 }
 

@@ -6,7 +6,7 @@ use souple_math::Vec3;
 
 use crate::crossings::Crossings;
 use crate::grid::{FARTHEST, Grid, Lattice, Neighbours};
-use crate::level_set::{Motion, Surface, TENSION_LIMIT, advance};
+use crate::level_set::{Advance, MOVING, Motion, Surface, TENSION_LIMIT, advance, relaxable, taken};
 use crate::marks::Marks;
 use crate::polygons::{Audit, Torn, area_and_volume, polygonise};
 use crate::reaction::{Reaction, ReactionScratch, Tense};
@@ -39,11 +39,11 @@ pub(crate) const REST_VOLUME: usize = 3;
 pub(crate) const SPEED: usize = 4;
 /// When the topology changed last [s].
 pub(crate) const CHANGED: usize = 5;
-/// Sub-steps of the last step; largest share of a voxel moved.
+/// Sub-steps of the last step.
 pub(crate) const SUBSTEPS: usize = 6;
 
 /// Integers before the keys of the blocks.
-pub const HEAD_INDICES: usize = 6;
+pub const HEAD_INDICES: usize = 7;
 pub(crate) const EULER: usize = 0;
 pub(crate) const COMPONENTS: usize = 1;
 /// Changes of topology so far.
@@ -52,6 +52,8 @@ pub(crate) const POINTS: usize = 3;
 pub(crate) const TRIANGLES: usize = 4;
 /// Surfaces so far that were checked to be closed, oriented and manifold: one at the start, one for each step.
 pub(crate) const CHECKED: usize = 5;
+/// Nodes that the last step worked out, in all its sub-steps.
+pub(crate) const WORK: usize = 6;
 
 /// Blocks that a skin may have: 1 GB of values.
 pub const MOST_BLOCKS: usize = 1 << 19;
@@ -61,8 +63,8 @@ pub const MOST_SAMPLED: usize = 1 << 20;
 const MOST_SUBSTEPS: u32 = 2_000;
 /// Points at which a target is evaluated at once.
 const SOME_POINTS: usize = 256;
-/// The surface moves no further in a sub-step [voxels].
-const FARTHEST_MOVE: f64 = 0.5;
+/// Points of the surface at which the slope of a target is measured in a sub-step, about so many.
+const SLOPES: usize = 128;
 
 /// Why a skin cannot start or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -76,6 +78,10 @@ pub enum SkinError {
     )]
     Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
     #[error(
+        "its density is {most:.3} at most, and {iso} on the skin (a particle by itself comes to 0.318); expected particles nearer to each other than four times their radius, a larger radius, or a lower iso value"
+    )]
+    Sparse { most: f64, iso: f64 },
+    #[error(
         "its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`"
     )]
     BeyondDomain { place: [f64; 3] },
@@ -85,6 +91,10 @@ pub enum SkinError {
         "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_SAMPLED}: larger voxels"
     )]
     TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },
+    #[error(
+        "the box from {low:?} to {high:?} is farther from the origin of its grid than {FARTHEST} blocks of 8 voxels of {voxel} m; expected an `origin` near it, or larger voxels"
+    )]
+    TooFar { low: [f64; 3], high: [f64; 3], voxel: f64 },
     #[error(
         "it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth"
     )]
@@ -231,6 +241,7 @@ impl Skin {
             target.place(end, placed).map_err(SkinError::Target)?;
         }
         self.find_surface(field, scratch);
+        field.indices[WORK] = 0;
         while done < timestep {
             let left = timestep - done;
             let now = start + done;
@@ -239,7 +250,7 @@ impl Skin {
                 self.measure_size(field, scratch);
             }
             let Asked { uniform, fastest, answer } = self.add_speeds(field, scratch, now)?;
-            let substep = self.longest_substep(fastest, answer);
+            let substep = self.longest_substep(fastest, answer + self.answer_of_target(field, scratch, now));
             let count = (left / substep).ceil().max(1.0);
             if count.is_nan() || count + f64::from(substeps) > f64::from(MOST_SUBSTEPS) {
                 return Err(SkinError::TooManySubsteps { timestep, substep });
@@ -247,10 +258,11 @@ impl Skin {
             let substep = left / count;
             let h = self.voxel();
             scratch.speeds.iter_mut().for_each(|speed| *speed *= substep / h);
+            let tension = self.tension() * substep / (h * h);
             let moves = Moves {
                 uniform: uniform * substep / h,
-                tension: self.tension() * substep / (h * h),
-                redistance: self.redistance,
+                tension,
+                redistance: self.redistance.min(relaxable(taken(fastest * substep / h, tension))),
             };
             let moved = self.move_by(field, scratch, moves, now + substep)?;
             field.values[SPEED] = moved * h / substep;
@@ -326,13 +338,29 @@ impl Skin {
         Ok(Asked { uniform, fastest, answer })
     }
 
+    /// How fast terms that follow the target answer a move of the surface [1/s], the most of some points spread over it: beyond
+    /// that they would overshoot, and the skin never rest.
+    fn answer_of_target(&self, field: &FieldState, scratch: &SkinScratch, time: f64) -> f64 {
+        let (Some(target), Some(placed)) = (&self.target, &scratch.target) else { return 0.0 };
+        let whole = self.whole(field, time);
+        let (points, excess) = (&scratch.crossings.points, &scratch.excess);
+        let stride = points.len().div_ceil(SLOPES).max(1);
+        let answer = |(point, excess): (&Vec3, &f64)| {
+            let stiffness: f64 = self.terms.iter().map(|term| term.stiffness(*point, *excess, &whole)).sum();
+            let is_followed = stiffness > 0.0;
+            // over a voxel: a jump of the potential is as steep as the grid can tell
+            if is_followed { stiffness * target.slope(*point, 0.5 * self.voxel(), placed) } else { 0.0 }
+        };
+        points.iter().zip(excess).step_by(stride).map(answer).fold(0.0, f64::max)
+    }
+
     fn longest_substep(&self, fastest: f64, answer: f64) -> f64 {
         let h = self.voxel();
-        let by_speed = FARTHEST_MOVE * h / fastest;
+        let by_motion = MOVING / taken(fastest / h, self.tension() / (h * h));
         let by_tension = TENSION_LIMIT * h * h / self.tension();
         // a term that answers itself goes half the way at most
         let by_answer = 0.5 / answer;
-        by_speed.min(by_tension).min(by_answer)
+        by_motion.min(by_tension).min(by_answer)
     }
 
     /// One sub-step, with the speeds of the crossings in voxels; how far the surface moved [voxels].
@@ -361,12 +389,9 @@ impl Skin {
         next.resize(field.indices.len(), 0);
         next[..first].copy_from_slice(&field.indices[..first]);
         scratch.next_marks.resize(scratch.marks.len(), Marks::default());
-        let moved = f64::from(advance(
-            surface,
-            motion,
-            bytemuck::cast_slice_mut(&mut next[first..]),
-            &mut scratch.next_marks,
-        ));
+        let Advance { moved, nodes } =
+            advance(surface, motion, bytemuck::cast_slice_mut(&mut next[first..]), &mut scratch.next_marks);
+        next[WORK] += nodes;
         std::mem::swap(&mut field.indices, next);
         std::mem::swap(&mut scratch.marks, &mut scratch.next_marks);
         let changed = scratch
@@ -380,7 +405,7 @@ impl Skin {
             }
             scratch.neighbours.find(self.grid(field));
         }
-        Ok(moved)
+        Ok(moved.into())
     }
 
     /// Triangles at the crossings found, their measures, and whether the topology changed.
@@ -423,14 +448,17 @@ impl Skin {
         reaction.act(surface, at, &mut scratch.reaction, out).map_err(SkinError::Target)
     }
 
-    /// The greatest distance of the surface from that of its target at a moment [m]; `None` without a target that can be placed.
+    /// Hausdorff's distance between its surface and that of its target at a moment, both as triangles of its lattice [m]; `None`
+    /// where one of them is not there.
     pub fn distance(&self, at: &Moment, field: &FieldState) -> Option<f64> {
         let target = self.target.as_ref()?;
         let mut placed = target.new_scratch();
         target.place(at, &mut placed).ok()?;
-        let (surface, _) = surface_of(self.view(field).grid, &self.lattice);
-        let distance = |point: &Vec3| target.distance(*point, 0.1 * self.voxel(), &placed);
-        Some(surface.points.par_iter().map(distance).reduce(|| 0.0, f64::max))
+        let bounds = target.bounds(&placed)?;
+        let excess = |point: Vec3| target.excess(point, &placed);
+        let sampled = self.sampled(bounds.low, bounds.high, &excess).ok()?;
+        let [own, aim] = [field, &sampled].map(|field| surface_of(self.view(field).grid, &self.lattice).0);
+        Some(own.farthest_from(&aim)?.max(aim.farthest_from(&own)?))
     }
 
     /// A reader's view of the state.

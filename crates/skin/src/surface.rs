@@ -1,6 +1,8 @@
 //! The surface of a grid that nothing else is known of, and its mean curvature.
 
+use rayon::prelude::*;
 use souple_math::Vec3;
+use souple_mesh::{SignedDistance, TriangleSurface};
 
 use crate::crossings::Crossings;
 use crate::grid::{Grid, Halo, Lattice, Neighbours, wide};
@@ -19,6 +21,16 @@ pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
     polygonise(&neighbours, &marks, &crossings, &mut triangles);
     normals(grid, &neighbours, &crossings, lattice, &mut directions);
     (Polygons { points: crossings.points, triangles }, directions)
+}
+
+impl Polygons {
+    /// The greatest distance of its points from another surface [m]; `None` where one of them has no points.
+    pub fn farthest_from(&self, other: &Self) -> Option<f64> {
+        let (points, triangles) = (other.points.clone(), other.triangles.clone());
+        let other = TriangleSurface { points, triangles, ..TriangleSurface::default() };
+        let other = SignedDistance::new(other).ok()?;
+        self.points.par_iter().map(|point| other.distance(*point).abs()).reduce_with(f64::max)
+    }
 }
 
 /// `κ = div n`, twice the mean curvature, averaged over the surface [1/m].

@@ -6,7 +6,7 @@ use crate::grid::Grid;
 use crate::polygons::Measures;
 use crate::skin::{
     AREA, CHANGED, CHECKED, COMPONENTS, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, SUBSTEPS,
-    TRIANGLES, VOLUME,
+    TRIANGLES, VOLUME, WORK,
 };
 
 /// A skin's part of State, as a reader sees it.
@@ -57,6 +57,11 @@ impl<'a> View<'a> {
     /// Surfaces so far that were checked to be closed, oriented and manifold, and were.
     pub fn checked(&self) -> u64 {
         self.head_indices[CHECKED]
+    }
+
+    /// Nodes that the last step worked out, in all its sub-steps.
+    pub fn work(&self) -> u64 {
+        self.head_indices[WORK]
     }
 
     /// Points and triangles of the surface.

@@ -311,3 +311,61 @@ fn splitting_particles_do_not_show() {
     let moved = (after - before).abs() / skin.view(&field).measures().area;
     assert!(moved < 0.5 * skin.lattice.voxel, "{moved}");
 }
+
+/// The radius of a ball of as much volume.
+fn radius_of(skin: &Skin, field: &FieldState) -> f64 {
+    (0.75 / PI * skin.view(field).measures().volume).cbrt()
+}
+
+/// A speed that is the same everywhere moves a ball by as much, in short steps and in the longest.
+#[test]
+fn a_uniform_speed_moves_a_ball_by_as_much() {
+    for cells in [8.0, 16.0] {
+        for step in [0.1, 0.5] {
+            let voxel = 1.0 / cells;
+            let skin = skin(voxel, vec![term("pressure", &[("speed", Value::Text("1"))])]);
+            let mut scratch = skin.new_scratch();
+            let mut field = ball(&skin, 1.0, &mut scratch);
+            let before = radius_of(&skin, &field);
+            let steps = (0.5 * cells / step) as usize;
+            run(&skin, &mut field, &mut scratch, steps, step * voxel);
+            // to second order in the voxel over the radius, which is less than a hundredth for each voxel of the way
+            let off = (radius_of(&skin, &field) - before) / voxel - steps as f64 * step;
+            assert!(off.abs() < 0.1, "{off} voxels, {cells} cells, steps of {step}");
+        }
+    }
+}
+
+/// A speed that goes to and fro leaves the ball as it was: ten times by three voxels each way.
+#[test]
+fn a_pulsing_speed_comes_back() {
+    let (voxel, step) = (0.05, 0.2);
+    let speed = Value::Text("cos(6.283185307179586*t)");
+    let skin = skin(voxel, vec![term("pressure", &[("speed", speed)])]);
+    let mut scratch = skin.new_scratch();
+    let mut field = ball(&skin, 0.4, &mut scratch);
+    let before = radius_of(&skin, &field);
+    run(&skin, &mut field, &mut scratch, (10.0 / (voxel * step)) as usize, voxel * step);
+    // it went 127 voxels in all
+    let off = (radius_of(&skin, &field) - before) / voxel;
+    assert!(off.abs() < 0.3, "{off} voxels");
+}
+
+/// However strongly it is drawn, a skin rests on its target: sub-steps are as short as the slope of the target asks.
+#[test]
+fn a_skin_rests_however_strongly_it_is_drawn() {
+    for strength in [1.0, 100.0, 2000.0] {
+        let voxel = 0.05;
+        let mut skin = skin(voxel, vec![term("attraction", &[("strength", number(strength))])]);
+        let point = part("point", &[("at", Value::Vector([0.0; 3])), ("radius", number(0.4))]);
+        skin.target = Some(Target { parts: vec![point], iso: ISO });
+        let mut scratch = skin.new_scratch();
+        let mut field = ball(&skin, 0.45, &mut scratch);
+        // twenty times what it takes to come nearer by a factor e, in steps that are long for the strongest
+        run(&skin, &mut field, &mut scratch, 30, (0.2 / strength).max(2e-3));
+        let view = skin.view(&field);
+        // a tenth of what it keeps running at in steps that overshoot
+        assert!(view.speed() < 1e-3 * strength, "{} m/s at {strength}", view.speed());
+        assert!((radius_of(&skin, &field) - 0.4).abs() < 0.1 * voxel, "{strength}");
+    }
+}

@@ -271,6 +271,41 @@ pub(super) const CASES: &[Case] = &[
         ..SKIN
     },
     Case {
+        id: "skin_thread_parts",
+        capabilities: &["DC-1", "DC-5"],
+        what: "parts of a thread of loose masses whose skin is tense, waves longer than its girth",
+        scene: "skin_thread",
+        reading: Reading::last("components"),
+        reference: 3.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "networks.thread.skin.push.tension=0",
+        ..SKIN
+    },
+    Case {
+        id: "skin_thread_holds",
+        capabilities: &["DC-1", "DC-5"],
+        what: "parts of the same thread with waves shorter than its girth, after as long a time",
+        scene: "skin_thread",
+        settings: &["parameters.wavelength=0.25"],
+        reading: Reading::last("components"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "parameters.wavelength=0.44",
+        ..SKIN
+    },
+    Case {
+        id: "skin_thread_still",
+        capabilities: &["DC-1", "DC-5"],
+        what: "parts of the thread with the longer waves under a skin that does not pull",
+        scene: "skin_thread",
+        settings: &["networks.thread.skin.push.tension=0"],
+        reading: Reading::last("components"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "networks.thread.skin.push.tension=1",
+        ..SKIN
+    },
+    Case {
         id: "skin_touched_momentum",
         capabilities: &["DC-1"],
         what: "momentum of a cube and the network whose skin it ran into, after they parted",
@@ -320,6 +355,38 @@ pub(super) const CASES: &[Case] = &[
         reference: -2.0,
         tolerance: Tolerance::Absolute(0.15),
         mutation: "skins.ball.start[0].formula=\"0.05 - sqrt(x^2 + y^2 + z^2)\"",
+        ..SKIN
+    },
+    Case {
+        id: "skin_work_order",
+        capabilities: &["DC-8"],
+        what: "order of the nodes that a step works out, by the voxel, from 64 to 256 cells in an edge",
+        scene: "skin_ball",
+        reading: Reading::last("work").after(1),
+        refinement: Some(Refinement {
+            size_of: "voxel [m]",
+            runs: &[
+                Variant { size: 0.03125, settings: &["skins.ball.voxel=0.03125"] },
+                Variant { size: 0.007_812_5, settings: &["skins.ball.voxel=0.0078125"] },
+            ],
+            limit: Limit::Known(0.0),
+        }),
+        reference: -2.0,
+        // rows of eight nodes are worked out as wholes, which are more where the ball is few of them across
+        tolerance: Tolerance::Absolute(0.1),
+        mutation: "skins.ball.start[0].formula=\"0.05 - sqrt(x^2 + y^2 + z^2)\"",
+        ..SKIN
+    },
+    Case {
+        id: "skin_strong_rest",
+        capabilities: &["DC-6"],
+        what: "greatest speed of a skin that is drawn thirty times as strongly: it rests as well",
+        scene: "skin_at_rest",
+        settings: &["skins.peanut.terms[0].strength=30"],
+        reading: Reading::last("speed"),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(1e-3),
+        mutation: "skins.peanut.parts[0].motion=[\"0.2*sin(3*t)\", 0, 0]",
         ..SKIN
     },
     Case {
