@@ -96,7 +96,8 @@ pub fn step_skins(content: &[u8]) {
     let Ok(spec) = souple_scene::read_spec("fuzzed.toml", text, folder, &[]) else { return };
     let is_small = |skin: &souple_scene::spec::skin::SkinSpec| {
         skin.domain.is_some_and(|[low, high]| {
-            let nodes: f64 = ((high - low) * skin.voxel.recip()).to_array().iter().map(|c| c + 16.0).product();
+            let nodes: f64 =
+                ((high - low) * skin.voxel.recip()).to_array().iter().map(|c| c + 16.0).product();
             nodes < 1e5
         })
     };

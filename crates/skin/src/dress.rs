@@ -6,9 +6,10 @@
 use rayon::prelude::*;
 use souple_math::Vec3;
 
+use crate::error::SkinError;
 use crate::grid::{EDGE, FARTHEST, Grid, Lattice, NEAR, NODES, block_of, key_of, steps_to};
 use crate::polygons::Polygons;
-use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, SkinError};
+use crate::skin::{MOST_BLOCKS, MOST_SAMPLED};
 use crate::surface::surface_of;
 use crate::target::particles::{Cloud, REACH};
 use crate::widest::{Rows, run_widest};

@@ -63,7 +63,8 @@ impl Advance {
 pub fn advance(surface: Surface, motion: Motion, next: &mut [f32], next_marks: &mut [Marks]) -> Advance {
     let blocks = next.par_chunks_mut(NODES).zip(next_marks).enumerate().with_min_len(8);
     let advances = blocks.map_init(
-        || (Box::new(Halo::filled(0.0)), Box::new(Halo::filled(f32::NAN))),
+        // on the stack: a step allocates nothing
+        || (Halo::filled(0.0), Halo::filled(f32::NAN)),
         |(halo, speeds), (block, (next, next_marks))| {
             let next: &mut [f32; NODES] = next.try_into().expect("a chunk is a block");
             let mut fastest = [0.0; EDGE];
@@ -122,7 +123,7 @@ struct MovingRows<'a> {
 const SMOOTH: f32 = 0.125;
 /// Speeds up to this need no second order in time [voxels per sub-step]: what grows for want of it has left the band before it
 /// shows.
-const SLOW: f32 = 0.02;
+const SLOW: f32 = 0.05;
 /// Nodes further out are relaxed by the whole share. Nearer ones keep the distance they came with, since speeds are carried along
 /// normals, but for what tension does to it, which is as much less as its step is short of the longest [voxels].
 const SETTLED: f32 = 2.5;

@@ -7,12 +7,14 @@
 mod cases;
 mod crossings;
 mod dress;
+mod error;
 mod field;
 pub mod grid;
 mod level_set;
 mod look_up;
 mod marks;
 pub mod polygons;
+mod pressing;
 pub mod reaction;
 mod skin;
 mod speeds;
@@ -25,10 +27,11 @@ mod waking;
 mod widest;
 
 pub use dress::{Dressed, dress};
+pub use error::SkinError;
 pub use field::SkinField;
 pub use grid::{Grid, Lattice};
 pub use look_up::{Seen, look_up};
 pub use polygons::{Measures, Polygons};
-pub use skin::{Skin, SkinError, SkinScratch};
+pub use skin::{Skin, SkinScratch};
 pub use surface::{mean_curvature, surface_of};
 pub use view::View;

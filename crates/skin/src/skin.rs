@@ -5,11 +5,12 @@ use souple_engine::FieldState;
 use souple_math::Vec3;
 
 use crate::crossings::Crossings;
-use crate::grid::{FARTHEST, Grid, Lattice, Neighbours};
+use crate::error::SkinError;
+use crate::grid::{Grid, Lattice, Neighbours};
 use crate::level_set::{Advance, MOVING, Motion, Surface, TENSION_LIMIT, advance, relaxable, taken};
 use crate::marks::Marks;
-use crate::polygons::{Audit, Torn, area_and_volume, polygonise};
-use crate::reaction::{Reaction, ReactionScratch, Tense};
+use crate::polygons::{Audit, area_and_volume, polygonise};
+use crate::reaction::{Reaction, ReactionScratch};
 use crate::speeds::Speeds;
 use crate::strategy::{SurfacePoints, Term, Whole};
 use crate::surface::surface_of;
@@ -41,6 +42,8 @@ pub(crate) const SPEED: usize = 4;
 pub(crate) const CHANGED: usize = 5;
 /// Sub-steps of the last step.
 pub(crate) const SUBSTEPS: usize = 6;
+/// Volume of what it dresses at the end of the first step in which it acts on it, at which its pressure is nothing [m³].
+pub(crate) const FLESH: usize = 7;
 
 /// Integers before the keys of the blocks.
 pub const HEAD_INDICES: usize = 7;
@@ -60,55 +63,28 @@ pub const MOST_BLOCKS: usize = 1 << 19;
 /// Blocks that are looked at when a skin starts: half a billion nodes.
 pub const MOST_SAMPLED: usize = 1 << 20;
 /// Sub-steps of a step at most.
-const MOST_SUBSTEPS: u32 = 2_000;
+pub(crate) const MOST_SUBSTEPS: u32 = 2_000;
 /// Points at which a target is evaluated at once.
 const SOME_POINTS: usize = 256;
 /// Points of the surface at which the slope of a target is measured in a sub-step, about so many.
 const SLOPES: usize = 128;
 
-/// Why a skin cannot start or go on.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SkinError {
-    #[error("its target cannot be placed: {0}")]
-    Target(String),
-    #[error("its target is {value} at {place:?}; expected a number")]
-    TargetNotANumber { value: f64, place: [f64; 3] },
-    #[error(
-        "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside, or smaller voxels where it is thinner than one"
-    )]
-    Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
-    #[error(
-        "its density is {most:.3} at most, and {iso} on the skin (a particle by itself comes to 0.318); expected particles nearer to each other than four times their radius, a larger radius, or a lower iso value"
-    )]
-    Sparse { most: f64, iso: f64 },
-    #[error(
-        "its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`"
-    )]
-    BeyondDomain { place: [f64; 3] },
-    #[error("its target does not say where it is; expected a `domain`")]
-    NoDomain,
-    #[error(
-        "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_SAMPLED}: larger voxels"
-    )]
-    TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },
-    #[error(
-        "the box from {low:?} to {high:?} is farther from the origin of its grid than {FARTHEST} blocks of 8 voxels of {voxel} m; expected an `origin` near it, or larger voxels"
-    )]
-    TooFar { low: [f64; 3], high: [f64; 3], voxel: f64 },
-    #[error(
-        "it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth"
-    )]
-    Grown { blocks: usize, time: f64 },
-    #[error("it left its space, {FARTHEST} blocks of 8 voxels, at t = {time} s")]
-    Runaway { time: f64 },
-    #[error("its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
-    Speed { speed: f64, place: [f64; 3], time: f64 },
-    #[error(
-        "a step of {timestep} s would be more than {MOST_SUBSTEPS} sub-steps of {substep:.3e} s: larger voxels, slower terms or shorter steps"
-    )]
-    TooManySubsteps { timestep: f64, substep: f64 },
-    #[error("{torn} at t = {time} s")]
-    Torn { torn: Torn, time: f64 },
+/// What tells one state of a skin from all others: its area and volume are sums over all of its surface, bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Fingerprint {
+    values: [u64; HEAD],
+    indices: [u64; HEAD_INDICES],
+    words: usize,
+}
+
+impl Fingerprint {
+    fn of(field: &FieldState) -> Self {
+        Self {
+            values: std::array::from_fn(|k| field.values[k].to_bits()),
+            indices: std::array::from_fn(|k| field.indices[k]),
+            words: field.indices.len(),
+        }
+    }
 }
 
 /// Scratch of a skin.
@@ -117,17 +93,19 @@ pub struct SkinScratch {
     marks: Vec<Marks>,
     next_marks: Vec<Marks>,
     pub(crate) crossings: Crossings,
-    triangles: Vec<[u32; 3]>,
-    excess: Vec<f64>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) excess: Vec<f64>,
     pub(crate) speeds: Vec<f64>,
     spread: Speeds,
     next: Vec<u64>,
     /// The grid that all of this is of, between steps.
-    known: Vec<u64>,
+    known: Option<Fingerprint>,
     waking: Waking,
     audit: Audit,
-    reaction: ReactionScratch,
-    target: Option<TargetScratch>,
+    /// Of its points: a third of each triangle around.
+    pub(crate) area_vectors: Vec<Vec3>,
+    pub(crate) reaction: ReactionScratch,
+    pub(crate) target: Option<TargetScratch>,
 }
 
 impl SkinScratch {
@@ -145,13 +123,11 @@ impl SkinScratch {
             + size_of::<Marks>() * (self.marks.capacity() + self.next_marks.capacity())
             + self.crossings.bytes()
             + 12 * self.triangles.capacity()
-            + 8 * (self.excess.capacity()
-                + self.speeds.capacity()
-                + self.next.capacity()
-                + self.known.capacity())
+            + 8 * (self.excess.capacity() + self.speeds.capacity() + self.next.capacity())
             + self.spread.bytes()
             + self.waking.bytes()
             + self.audit.bytes()
+            + 24 * self.area_vectors.capacity()
             + self.reaction.bytes()
     }
 }
@@ -168,9 +144,10 @@ impl Skin {
             speeds: Vec::new(),
             spread: Speeds::default(),
             next: Vec::new(),
-            known: Vec::new(),
+            known: None,
             waking: Waking::default(),
             audit: Audit::default(),
+            area_vectors: Vec::new(),
             reaction: ReactionScratch::default(),
             target: self.target.as_ref().map(Target::new_scratch),
         }
@@ -206,10 +183,9 @@ impl Skin {
 
     /// The surface of a grid, where it is not the one that the last step left.
     fn find_surface(&self, field: &FieldState, scratch: &mut SkinScratch) {
-        let is_known = scratch.known == field.indices[HEAD_INDICES..];
         // nothing is known of what a step leaves that fails
-        scratch.known.clear();
-        if !is_known {
+        let known = scratch.known.take();
+        if known != Some(Fingerprint::of(field)) {
             self.find_blocks(field, scratch);
             self.find_crossings(field, scratch);
         }
@@ -272,7 +248,7 @@ impl Skin {
         field.values[SUBSTEPS] = f64::from(substeps);
         self.find_crossings(field, scratch);
         self.measure(field, scratch, end.time)?;
-        scratch.known.extend_from_slice(&field.indices[HEAD_INDICES..]);
+        scratch.known = Some(Fingerprint::of(field));
         self.react(field, scratch, end)
     }
 
@@ -311,17 +287,22 @@ impl Skin {
         scratch: &mut SkinScratch,
         time: f64,
     ) -> Result<Asked, SkinError> {
-        let points = &scratch.crossings.points;
         scratch.excess.clear();
-        scratch.excess.resize(points.len(), 0.0);
-        if let (Some(target), Some(placed)) = (&self.target, &scratch.target)
-            && self.terms.iter().any(|term| term.needs_target())
-        {
-            let chunks = scratch.excess.par_chunks_mut(SOME_POINTS).zip(points.par_chunks(SOME_POINTS));
-            chunks.for_each(|(excess, points)| target.excesses(points, placed, excess));
+        scratch.excess.resize(scratch.crossings.points.len(), 0.0);
+        if self.terms.iter().any(|term| term.needs_target()) {
+            self.find_excess(scratch);
         }
+        let points = &scratch.crossings.points;
         let whole = self.whole(field, time);
-        let uniform: f64 = self.terms.iter().map(|term| term.uniform(&whole)).sum();
+        let mut uniform = 0.0;
+        for (term, entry) in self.terms.iter().enumerate() {
+            let speed = entry.uniform(&whole);
+            if !speed.is_finite() {
+                let Whole { area, volume, .. } = whole;
+                return Err(SkinError::Term { term, speed, area, volume, time });
+            }
+            uniform += speed;
+        }
         let answer: f64 = self.terms.iter().map(|term| term.answer(&whole)).sum();
         scratch.speeds.clear();
         scratch.speeds.resize(points.len(), uniform);
@@ -336,6 +317,17 @@ impl Skin {
             fastest = fastest.max(speed.abs());
         }
         Ok(Asked { uniform, fastest, answer })
+    }
+
+    /// The target's potential less its iso value at the crossings.
+    pub(crate) fn find_excess(&self, scratch: &mut SkinScratch) {
+        let points = &scratch.crossings.points;
+        scratch.excess.clear();
+        scratch.excess.resize(points.len(), 0.0);
+        if let (Some(target), Some(placed)) = (&self.target, &scratch.target) {
+            let chunks = scratch.excess.par_chunks_mut(SOME_POINTS).zip(points.par_chunks(SOME_POINTS));
+            chunks.for_each(|(excess, points)| target.excesses(points, placed, excess));
+        }
     }
 
     /// How fast terms that follow the target answer a move of the surface [1/s], the most of some points spread over it: beyond
@@ -433,19 +425,6 @@ impl Skin {
         indices[POINTS] = points.len() as u64;
         indices[TRIANGLES] = triangles.len() as u64;
         Ok(())
-    }
-
-    /// Forces on rows, from the surface as it stands now.
-    fn react(&self, field: &mut FieldState, scratch: &mut SkinScratch, at: &Moment) -> Result<(), SkinError> {
-        let Some(reaction) = &self.reaction else { return Ok(()) };
-        let surface = Tense {
-            points: &scratch.crossings.points,
-            triangles: &scratch.triangles,
-            volume: field.values[VOLUME],
-            rest_volume: field.values[REST_VOLUME],
-        };
-        let out = &mut field.values[HEAD..HEAD + 3 * reaction.rows.len()];
-        reaction.act(surface, at, &mut scratch.reaction, out).map_err(SkinError::Target)
     }
 
     /// Hausdorff's distance between its surface and that of its target at a moment, both as triangles of its lattice [m]; `None`

@@ -4,11 +4,12 @@ use rayon::prelude::*;
 use souple_engine::FieldState;
 use souple_math::Vec3;
 
+use crate::error::SkinError;
 use crate::grid::{BAND, EDGE, FARTHEST, NODES, key_of, wide};
 use crate::level_set::relaxable;
 use crate::skin::{
-    AREA, EVENTS, HEAD_INDICES, MOST_BLOCKS, MOST_SAMPLED, Moves, REST_AREA, REST_VOLUME, Skin, SkinError,
-    SkinScratch, VOLUME,
+    AREA, EVENTS, HEAD_INDICES, MOST_BLOCKS, MOST_SAMPLED, Moves, REST_AREA, REST_VOLUME, Skin, SkinScratch,
+    VOLUME,
 };
 
 impl Skin {
