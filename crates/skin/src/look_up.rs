@@ -40,16 +40,18 @@ const FARTHEST_STEPS: i32 = 1 << 16;
 /// Depth [voxels] and outward normal where the nearest of the six ways along the axes comes to the band.
 fn way_out(grid: Grid, place: Vec3) -> Option<(f64, Vec3)> {
     let along = |axis: Vec3| {
-        (1..FARTHEST_STEPS).find_map(|step| {
-            let way = BAND * f64::from(step);
+        let mut way = 0.0;
+        for _ in 0..FARTHEST_STEPS {
             let (value, gradient) = grid.sample(place + axis * way);
-            if value >= BAND {
-                return None;
+            if value < 0.5 * BAND {
+                // a plane's depth along its normal, whatever the axis
+                let normal = (-gradient).try_normalised()?;
+                return Some((value + way * axis.dot(normal), normal));
             }
-            // a plane's depth along its normal, whatever the axis
-            let normal = (-gradient).try_normalised()?;
-            Some((value + way * axis.dot(normal), normal))
-        })
+            // slopes are of the surface in the inner half of the band
+            way += if value >= BAND { 0.5 * BAND } else { 0.25 * BAND };
+        }
+        None
     };
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
     let ways = axes.into_iter().flat_map(|axis| [axis, -axis]).filter_map(along);

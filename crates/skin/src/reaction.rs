@@ -2,8 +2,8 @@
 //!
 //! The force on a point of the surface is that of its triangles, `-σ ∂A/∂x + p n A/3` with `p = k (V0 - V)/V0`. It is shared
 //! among the particles around by their kernels, with weights whose sum is one: since the surface is closed, the forces on
-//! all rows add up to nothing. Sharing moves forces from the surface to the particles within, which makes a couple; a force
-//! field of a rotation takes it out again, so that the angular momentum stays too. They are computed on the committed grid at the end of a step, kept in State, and act in the
+//! all rows add up to nothing. Sharing moves forces from the surface to the particles within, which makes a couple; where the forces
+//! act, those of a rotation take it out again, so that the angular momentum stays too. They are computed on the committed grid at the end of a step, kept in State, and act in the
 //! next.
 
 use std::any::Any;
@@ -87,27 +87,23 @@ impl Reaction {
                 numbers.iter_mut().zip(part.to_array()).for_each(|(sum, part)| *sum += part);
             }
         }
-        take_out_couple(scratch.cloud.particles(), out);
         Ok(())
     }
 }
 
-/// Adds `ω × (x − x̄)` to the forces on particles, with the `ω` that leaves them no moment; their sum stays.
-fn take_out_couple(particles: &[(Vec3, f64)], forces: &mut [f64]) {
-    let centre = particles.iter().map(|(x, _)| *x).sum::<Vec3>() * (1.0 / particles.len() as f64);
+/// The centre `x̄` of points and the rate `ω` with which forces `ω × (x − x̄)` take out the moment of forces on them, each pair a
+/// position and a force; the sum of these forces is nothing.
+fn counter_couple(pairs: impl Iterator<Item = (Vec3, Vec3)> + Clone) -> (Vec3, Vec3) {
+    let (sum, count) = pairs.clone().fold((Vec3::ZERO, 0.0), |(sum, count), (x, _)| (sum + x, count + 1.0));
+    let centre = sum * (1.0 / count);
     let (mut moment, mut spread) = (Vec3::ZERO, Mat3::ZERO);
-    for ((x, _), force) in particles.iter().zip(forces.chunks_exact(3)) {
-        let arm = *x - centre;
-        moment += arm.cross(Vec3::new(force[0], force[1], force[2]));
+    for (x, force) in pairs {
+        let arm = x - centre;
+        moment += arm.cross(force);
         spread = spread + Mat3::IDENTITY * arm.length_sq() - arm.outer(arm);
     }
     // particles on a line bear no moment about it, and have none
-    let Some(inverse) = spread.try_inverse() else { return };
-    let rate = inverse * -moment;
-    for ((x, _), force) in particles.iter().zip(forces.chunks_exact_mut(3)) {
-        let part = rate.cross(*x - centre).to_array();
-        force.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-    }
+    (centre, spread.try_inverse().map_or(Vec3::ZERO, |inverse| inverse * -moment))
 }
 
 /// The particles that bear a point of the surface, and the sum of their shares.
@@ -176,8 +172,12 @@ impl Force for SkinPush {
 
     fn add_force(&self, at: &Configuration, _: &mut Scratch, out: &mut [Vec3]) {
         let forces = at.fields[self.field].values[HEAD..].chunks_exact(3);
-        for (row, force) in self.rows.iter().zip(forces) {
-            out[*row as usize] += Vec3::new(force[0], force[1], force[2]);
+        let forces = forces.map(|force| Vec3::new(force[0], force[1], force[2]));
+        let rows = self.rows.iter().map(|row| *row as usize).zip(forces);
+        let pairs = rows.clone().map(|(row, force)| (at.positions[row], force));
+        let (centre, rate) = counter_couple(pairs);
+        for (row, force) in rows {
+            out[row] += force + rate.cross(at.positions[row] - centre);
         }
     }
 

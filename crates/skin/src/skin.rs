@@ -13,7 +13,7 @@ use crate::polygons::{Audit, area_and_volume, polygonise};
 use crate::reaction::{Reaction, ReactionScratch};
 use crate::speeds::Speeds;
 use crate::strategy::{SurfacePoints, Term, Whole};
-use crate::surface::surface_of;
+use crate::surface::{farthest_within, surface_of};
 use crate::target::{Followed, Moment, Target, TargetScratch};
 use crate::view::View;
 use crate::waking::{Runaway, Waking};
@@ -31,7 +31,7 @@ pub struct Skin {
 }
 
 /// Numbers at the beginning of a skin's values in State.
-pub const HEAD: usize = 8;
+pub const HEAD: usize = 7;
 pub(crate) const AREA: usize = 0;
 pub(crate) const VOLUME: usize = 1;
 pub(crate) const REST_AREA: usize = 2;
@@ -40,10 +40,8 @@ pub(crate) const REST_VOLUME: usize = 3;
 pub(crate) const SPEED: usize = 4;
 /// When the topology changed last [s].
 pub(crate) const CHANGED: usize = 5;
-/// Sub-steps of the last step.
-pub(crate) const SUBSTEPS: usize = 6;
 /// Volume of what it dresses at the end of the first step in which it acts on it, at which its pressure is nothing [m³].
-pub(crate) const FLESH: usize = 7;
+pub(crate) const FLESH: usize = 6;
 
 /// Integers before the keys of the blocks.
 pub const HEAD_INDICES: usize = 7;
@@ -226,6 +224,9 @@ impl Skin {
                 self.measure_size(field, scratch);
             }
             let Asked { uniform, fastest, answer } = self.add_speeds(field, scratch, now)?;
+            // what is told as a formula of time may be faster at the end
+            let later = self.uniform(&self.whole(field, end.time))?;
+            let fastest = fastest + (later - uniform).abs();
             let substep = self.longest_substep(fastest, answer + self.answer_of_target(field, scratch, now));
             let count = (left / substep).ceil().max(1.0);
             if count.is_nan() || count + f64::from(substeps) > f64::from(MOST_SUBSTEPS) {
@@ -233,10 +234,12 @@ impl Skin {
             }
             let substep = left / count;
             let h = self.voxel();
-            scratch.speeds.iter_mut().for_each(|speed| *speed *= substep / h);
+            let middle = self.uniform(&self.whole(field, now + 0.5 * substep))?;
+            let change = middle - uniform;
+            scratch.speeds.iter_mut().for_each(|speed| *speed = (*speed + change) * (substep / h));
             let tension = self.tension() * substep / (h * h);
             let moves = Moves {
-                uniform: uniform * substep / h,
+                uniform: middle * substep / h,
                 tension,
                 redistance: self.redistance.min(relaxable(taken(fastest * substep / h, tension))),
             };
@@ -245,7 +248,6 @@ impl Skin {
             done = if count == 1.0 { timestep } else { done + substep };
             substeps += 1;
         }
-        field.values[SUBSTEPS] = f64::from(substeps);
         self.find_crossings(field, scratch);
         self.measure(field, scratch, end.time)?;
         scratch.known = Some(Fingerprint::of(field));
@@ -280,6 +282,20 @@ impl Skin {
         self.terms.iter().any(|term| term.varies())
     }
 
+    /// The part of the speed that is the same everywhere [m/s].
+    fn uniform(&self, whole: &Whole) -> Result<f64, SkinError> {
+        let mut sum = 0.0;
+        for (term, entry) in self.terms.iter().enumerate() {
+            let speed = entry.uniform(whole);
+            if !speed.is_finite() {
+                let Whole { time, area, volume, .. } = *whole;
+                return Err(SkinError::Term { term, speed, area, volume, time });
+            }
+            sum += speed;
+        }
+        Ok(sum)
+    }
+
     /// Speeds of the crossings without tension [m/s].
     fn add_speeds(
         &self,
@@ -294,15 +310,7 @@ impl Skin {
         }
         let points = &scratch.crossings.points;
         let whole = self.whole(field, time);
-        let mut uniform = 0.0;
-        for (term, entry) in self.terms.iter().enumerate() {
-            let speed = entry.uniform(&whole);
-            if !speed.is_finite() {
-                let Whole { area, volume, .. } = whole;
-                return Err(SkinError::Term { term, speed, area, volume, time });
-            }
-            uniform += speed;
-        }
+        let uniform = self.uniform(&whole)?;
         let answer: f64 = self.terms.iter().map(|term| term.answer(&whole)).sum();
         scratch.speeds.clear();
         scratch.speeds.resize(points.len(), uniform);
@@ -436,8 +444,17 @@ impl Skin {
         let bounds = target.bounds(&placed)?;
         let excess = |point: Vec3| target.excess(point, &placed);
         let sampled = self.sampled(bounds.low, bounds.high, &excess).ok()?;
-        let [own, aim] = [field, &sampled].map(|field| surface_of(self.view(field).grid, &self.lattice).0);
-        Some(own.farthest_from(&aim)?.max(aim.farthest_from(&own)?))
+        let [own_grid, aim_grid] = [field, &sampled].map(|field| self.view(field).grid);
+        let [own, aim] = [own_grid, aim_grid].map(|grid| surface_of(grid, &self.lattice).0);
+        if own.points.is_empty() || aim.points.is_empty() {
+            return None;
+        }
+        // by a look-up of the other's values while both are within each other's band, else among its triangles
+        let near = farthest_within(&own.points, aim_grid, &self.lattice);
+        match near.zip(farthest_within(&aim.points, own_grid, &self.lattice)) {
+            Some((there, back)) => Some(there.max(back)),
+            None => Some(own.farthest_from(&aim)?.max(aim.farthest_from(&own)?)),
+        }
     }
 
     /// A reader's view of the state.

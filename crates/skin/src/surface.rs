@@ -5,7 +5,7 @@ use souple_math::Vec3;
 use souple_mesh::{SignedDistance, TriangleSurface};
 
 use crate::crossings::Crossings;
-use crate::grid::{Grid, Halo, Lattice, Neighbours, wide};
+use crate::grid::{BAND, Grid, Halo, Lattice, Neighbours, wide};
 use crate::level_set::curvature_at;
 use crate::marks::Marks;
 use crate::polygons::{Polygons, normals, polygonise};
@@ -21,6 +21,15 @@ pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
     polygonise(&neighbours, &marks, &crossings, &mut triangles);
     normals(grid, &neighbours, &crossings, lattice, &mut directions);
     (Polygons { points: crossings.points, triangles }, directions)
+}
+
+/// The greatest distance of points from the surface of a grid [m]; `None` where one of them is beyond its band.
+pub(crate) fn farthest_within(points: &[Vec3], grid: Grid, lattice: &Lattice) -> Option<f64> {
+    let distance = |point: &Vec3| {
+        let (value, _) = grid.sample(lattice.to_voxels(*point));
+        (value.abs() < BAND).then_some(value.abs() * lattice.voxel)
+    };
+    points.par_iter().map(distance).try_reduce(|| 0.0, |a, b| Some(f64::max(a, b)))
 }
 
 impl Polygons {

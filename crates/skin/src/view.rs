@@ -5,8 +5,8 @@ use souple_engine::FieldState;
 use crate::grid::Grid;
 use crate::polygons::Measures;
 use crate::skin::{
-    AREA, CHANGED, CHECKED, COMPONENTS, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, SUBSTEPS,
-    TRIANGLES, VOLUME, WORK,
+    AREA, CHANGED, CHECKED, COMPONENTS, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, TRIANGLES, VOLUME,
+    WORK,
 };
 
 /// A skin's part of State, as a reader sees it.
@@ -48,10 +48,6 @@ impl<'a> View<'a> {
     /// When that was last [s].
     pub fn changed(&self) -> f64 {
         self.head[CHANGED]
-    }
-
-    pub fn substeps(&self) -> f64 {
-        self.head[SUBSTEPS]
     }
 
     /// Surfaces so far that were checked to be closed, oriented and manifold, and were.

@@ -271,6 +271,18 @@ pub(super) const CASES: &[Case] = &[
         ..SKIN
     },
     Case {
+        id: "skin_drop_spin",
+        capabilities: &["DC-1"],
+        what: "angular momentum of these masses, which starts as nothing",
+        scene: "skin_drop",
+        reading: Reading::last("spin").taking(Statistic::Max),
+        reference: 0.0,
+        // a hundred-millionth of what a hundredth of a radian per second would be, and roundings of 3200 evaluations below it
+        tolerance: Tolerance::Absolute(1e-12),
+        mutation: "networks.drop.angular_velocity=[0, 0, 0.01]",
+        ..SKIN
+    },
+    Case {
         id: "skin_drop_pressed",
         capabilities: &["DC-1"],
         what: "momentum of these masses with a pressure of the skin that holds the volume against its tension",
