@@ -82,7 +82,7 @@ pub fn dress_particles(content: &[u8]) {
     if particles.len() > 100 || largest > 4.0 * smallest {
         return;
     }
-    if let Ok((surface, normals)) = souple_skin::dress(&particles, smallest, 0.5) {
+    if let Ok(souple_skin::Dressed { surface, normals, .. }) = souple_skin::dress(&particles, smallest, 0.5) {
         assert_eq!(normals.len(), surface.points.len());
         let mut audit = souple_skin::polygons::Audit::default();
         audit.check(surface.points.len(), &surface.triangles).expect("a closed surface");
@@ -96,7 +96,8 @@ pub fn step_skins(content: &[u8]) {
     let Ok(spec) = souple_scene::read_spec("fuzzed.toml", text, folder, &[]) else { return };
     let is_small = |skin: &souple_scene::spec::skin::SkinSpec| {
         skin.domain.is_some_and(|[low, high]| {
-            let nodes: f64 = ((high - low) * skin.voxel.recip()).to_array().iter().map(|c| c + 16.0).product();
+            let nodes: f64 =
+                ((high - low) * skin.voxel.recip()).to_array().iter().map(|c| c + 16.0).product();
             nodes < 1e5
         })
     };

@@ -43,7 +43,8 @@ pub fn read_particles(path: &Path) -> Result<Vec<ParticleRow>, IoError> {
 /// # Errors
 /// A column is unknown or missing, a line holds what is no number.
 pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>, IoError> {
-    let text = String::from_utf8_lossy(bytes);
+    // spreadsheets begin their tables with a mark of byte order
+    let text = String::from_utf8_lossy(bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes));
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let refuse = |what: String, value: &str, expected: String| {
         Err(IoError::request(format!("{what} of {name}"), format!("`{value}`"), expected))

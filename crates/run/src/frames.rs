@@ -87,7 +87,8 @@ impl Frames {
         }
         for (series, skin) in self.skins.iter_mut().zip(&session.skins) {
             let (mesh, normals) = mesh_of_skin(skin, &session.world);
-            for format in &skin.formats {
+            // of a skin that is gone there is no surface to write
+            for format in skin.formats.iter().filter(|_| mesh.facet_count() + mesh.cell_count() > 0) {
                 let [frame, _] = series.next_names();
                 let name = frame.replace(".vtu", &format!(".{format}"));
                 folder.claim(&format!("{FRAMES}/{name}"))?;
@@ -124,10 +125,15 @@ fn push(
     Ok(())
 }
 
+/// The name of the files of the skin that a body wears.
+pub fn worn_by(body: &str) -> String {
+    format!("{body}.skin")
+}
+
 /// The name of a skin's files: its own, `NAME.skin` for that of a body.
 pub fn name_of_skin(skin: &SkinInfo, bodies: &[BodyInfo]) -> String {
     let is_worn = bodies.iter().any(|body| body.name == skin.name);
-    if is_worn { format!("{}.skin", skin.name) } else { skin.name.clone() }
+    if is_worn { worn_by(&skin.name) } else { skin.name.clone() }
 }
 
 /// A skin's triangles as they stand, and its normals.

@@ -24,7 +24,7 @@ pub fn write_last(
 ) -> Result<(), OutputError> {
     let mut stage = Stage::of_model(session.world.model(), &session.bodies, from);
     stage.title = title.to_owned();
-    let moment = moment.clone().without_worn(session);
+    let moment = moment.clone().without_worn();
     let show = Show { stage, moments: Vec::new() };
     let figure = Figure { samples_per_pixel: 2, ..Figure::default() };
     let plain = Figure { colour_by: None, ..figure.clone() };

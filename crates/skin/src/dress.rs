@@ -6,11 +6,12 @@
 use rayon::prelude::*;
 use souple_math::Vec3;
 
+use crate::error::SkinError;
 use crate::grid::{EDGE, FARTHEST, Grid, Lattice, NEAR, NODES, block_of, key_of, steps_to};
 use crate::polygons::Polygons;
-use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, SkinError};
+use crate::skin::{MOST_BLOCKS, MOST_SAMPLED};
 use crate::surface::surface_of;
-use crate::target::particles::REACH;
+use crate::target::particles::{Cloud, REACH};
 use crate::widest::{Rows, run_widest};
 
 /// Particles by their block.
@@ -21,11 +22,31 @@ struct Sorted {
     particles: Vec<(Vec3, f64)>,
 }
 
-/// The surface where the density of particles, position and radius [m], is `iso`, with outward normals.
+/// Particles that wear a surface.
+#[derive(Clone, Debug)]
+pub struct Dressed {
+    pub surface: Polygons,
+    /// Outward, of the surface's points.
+    pub normals: Vec<Vec3>,
+    lattice: Lattice,
+    keys: Vec<u64>,
+    values: Vec<f32>,
+}
+
+impl Dressed {
+    /// Whether a point is within the surface.
+    pub fn holds(&self, point: Vec3) -> bool {
+        let grid = Grid { keys: &self.keys, values: &self.values };
+        grid.sample(self.lattice.to_voxels(point)).0 > 0.0
+    }
+}
+
+/// The surface where the density of particles, position and radius [m], is `iso`.
 ///
 /// # Errors
-/// A particle is nowhere or has no radius; the voxels are too small for so large a cloud, or too large to see it.
-pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygons, Vec<Vec3>), SkinError> {
+/// A particle is nowhere or has no radius; they are too far from each other, or `iso` too high, for any density to come up to it;
+/// the voxels are too small for so large a cloud, or too large to see it.
+pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<Dressed, SkinError> {
     let is_wrong = |(x, radius): &(Vec3, f64)| !(x.is_finite() && *radius > 0.0 && radius.is_finite());
     if let Some(index) = particles.iter().position(is_wrong) {
         let (position, radius) = particles[index];
@@ -65,14 +86,28 @@ pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<(Polygon
         })
         .collect();
     if values.is_empty() {
-        let bounds = souple_mesh::BoundingBox::of(particles.iter().map(|(x, _)| *x));
-        let (low, high) = (bounds.low.to_array(), bounds.high.to_array());
-        return Err(SkinError::Empty { low, high, voxel });
+        return Err(nothing_inside(particles, voxel, iso));
     }
-    let kept: Vec<u64> = near.iter().map(|index| keys[*index]).collect();
+    let keys: Vec<u64> = near.iter().map(|index| keys[*index]).collect();
     let values: Vec<f32> =
         values.iter().flat_map(|values| values.iter().map(|value| value.clamp(-NEAR, NEAR))).collect();
-    Ok(surface_of(Grid { keys: &kept, values: &values }, &lattice))
+    let (surface, normals) = surface_of(Grid { keys: &keys, values: &values }, &lattice);
+    Ok(Dressed { surface, normals, lattice, keys, values })
+}
+
+/// Why no node is inside: the density comes up to `iso` nowhere, or only between nodes.
+fn nothing_inside(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> SkinError {
+    let mut cloud = Cloud::default();
+    if let Err(why) = cloud.place(particles.iter().copied()) {
+        return SkinError::Target(why);
+    }
+    // a kernel is highest at its particle, and so is a sum of kernels near one of them
+    let most = particles.par_iter().map(|(position, _)| cloud.density(*position)).reduce(|| 0.0, f64::max);
+    if most <= iso {
+        return SkinError::Sparse { most, iso };
+    }
+    let bounds = souple_mesh::BoundingBox::of(particles.iter().map(|(x, _)| *x));
+    SkinError::Empty { low: bounds.low.to_array(), high: bounds.high.to_array(), voxel }
 }
 
 /// Blocks of which all values are kept, 256 MB; of more only those that the surface runs through, and those around these
@@ -255,15 +290,32 @@ mod tests {
         };
         let mut audit = Audit::default();
         let one: Vec<(Vec3, f64)> = cube(Vec3::ZERO).collect();
-        let (surface, normals) = dress(&one, 0.01, 0.5).unwrap();
+        let Dressed { surface, normals, .. } = dress(&one, 0.01, 0.5).unwrap();
         assert_eq!(normals.len(), surface.points.len());
         assert_eq!(audit.check(surface.points.len(), &surface.triangles).unwrap(), (2, 1));
         let volume = area_and_volume(&surface.points, &surface.triangles).1;
         // corners are rounded, by less than a tenth of the cube
         assert!((volume / 0.16_f64.powi(3) - 1.0).abs() < 0.1, "{volume}");
         let two: Vec<(Vec3, f64)> = cube(Vec3::ZERO).chain(cube(Vec3::X)).collect();
-        let (surface, _) = dress(&two, 0.01, 0.5).unwrap();
+        let Dressed { surface, .. } = dress(&two, 0.01, 0.5).unwrap();
         assert_eq!(audit.check(surface.points.len(), &surface.triangles).unwrap(), (4, 2));
+    }
+
+    /// A particle apart from all others is outside the surface of those, and so is one that is between the nodes.
+    #[test]
+    fn particles_outside_are_known() {
+        let row = |count: i32| (0..count).map(|i| (Vec3::X * f64::from(i), 0.8));
+        let particles: Vec<(Vec3, f64)> = row(10).chain([(Vec3::Y * 9.0, 0.8)]).collect();
+        let dressed = dress(&particles, 0.2, 0.5).unwrap();
+        let outside: Vec<usize> =
+            (0..particles.len()).filter(|index| !dressed.holds(particles[*index].0)).collect();
+        assert_eq!(outside, [10]);
+        // deep inside, where no block is kept
+        let ball: Vec<(Vec3, f64)> = (0..32_768)
+            .map(|i: i32| (Vec3::new((i % 32).into(), (i / 32 % 32).into(), (i / 1024).into()), 0.5))
+            .collect();
+        let dressed = dress(&ball, 0.5, 0.5).unwrap();
+        assert!(ball.iter().all(|(position, _)| dressed.holds(*position)));
     }
 
     /// What cannot be dressed is said.
@@ -274,8 +326,17 @@ mod tests {
         assert!(refused(&[], 1.0).contains("no particle"));
         assert!(refused(&[(Vec3::X * f64::NAN, 1.0)], 1.0).contains("particle 0"));
         assert!(refused(&[(Vec3::ZERO, 0.0)], 1.0).contains("radius above 0"));
-        // one particle alone has no density of one half
-        assert!(refused(&[(Vec3::ZERO, 1.0)], 1.0).contains("inside nowhere"));
+        // one particle alone has a density of 1/π
+        assert!(refused(&[(Vec3::ZERO, 1.0)], 1.0).contains("0.318 at most"));
+        // one of 64 in a cube of two spacings is a node; the others fall through a grid of ten
+        let cube: Vec<(Vec3, f64)> = (0..64)
+            .map(|i: i32| {
+                (Vec3::new((i % 4).into(), (i / 4 % 4).into(), (i / 16).into()) + Vec3::X * 5.0, 0.5)
+            })
+            .chain([(Vec3::ZERO, 0.5)])
+            .rev()
+            .collect();
+        assert!(refused(&cube, 10.0).contains("inside nowhere"));
         assert!(refused(&[(Vec3::ZERO, 1.0)], 1e-4).contains("larger voxels"));
     }
 }

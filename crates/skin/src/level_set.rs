@@ -6,6 +6,10 @@
 //! upwind slopes (Godunov). Tension takes the curvature of the level through each node, by central differences: all levels
 //! of the band then shrink as they would by themselves, so the surface feels no edge of the band, to second order.
 //!
+//! Speed, tension and relaxation act on the same values at once, so their limits are one budget: the shortest wave across
+//! a cell changes by `√3 (c + ρ) + 4 τ` of what would turn it over, with `c` voxels moved, the share `ρ` relaxed and
+//! `τ = β Δt/voxel²` ((5, 6) of the source ask for each alone).
+//!
 //! What drifts is relaxed towards `|∇f| = 1` by `S (1 − |∇f|)` with the smooth sign `S = f/√(f² + 1)` (Sussman et al. 1994;
 //! Peng et al. 1999): near the surface this is a factor that varies slowly, so it leaves the surface where it is.
 
@@ -40,11 +44,27 @@ pub struct Surface<'a> {
     pub crossings: &'a Crossings,
 }
 
-/// Moves all values by one sub-step into `next`, and marks what they are; the greatest move of the surface [voxels].
-pub fn advance(surface: Surface, motion: Motion, next: &mut [f32], next_marks: &mut [Marks]) -> f32 {
+/// What a sub-step did.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Advance {
+    /// The greatest move of the surface [voxels].
+    pub moved: f32,
+    /// Nodes whose values were worked out.
+    pub nodes: u64,
+}
+
+impl Advance {
+    fn and(self, other: Self) -> Self {
+        Self { moved: self.moved.max(other.moved), nodes: self.nodes + other.nodes }
+    }
+}
+
+/// Moves all values by one sub-step into `next`, and marks what they are.
+pub fn advance(surface: Surface, motion: Motion, next: &mut [f32], next_marks: &mut [Marks]) -> Advance {
     let blocks = next.par_chunks_mut(NODES).zip(next_marks).enumerate().with_min_len(8);
-    let fastest = blocks.map_init(
-        || (Box::new(Halo::filled(0.0)), Box::new(Halo::filled(f32::NAN))),
+    let advances = blocks.map_init(
+        // on the stack: a step allocates nothing
+        || (Halo::filled(0.0), Halo::filled(f32::NAN)),
         |(halo, speeds), (block, (next, next_marks))| {
             let next: &mut [f32; NODES] = next.try_into().expect("a chunk is a block");
             let mut fastest = [0.0; EDGE];
@@ -53,13 +73,19 @@ pub fn advance(surface: Surface, motion: Motion, next: &mut [f32], next_marks: &
             let active = moving.active();
             if active == NONE {
                 moving.rest();
-            } else {
-                run_widest(MovingRows { moving, active });
+                return Advance::default();
             }
-            fastest.into_iter().fold(0.0, f32::max)
+            run_widest(MovingRows { moving, active });
+            Advance { moved: fastest.into_iter().fold(0.0, f32::max), nodes: worked_out(&active) }
         },
     );
-    fastest.reduce(|| 0.0, f32::max)
+    advances.reduce(Advance::default, Advance::and)
+}
+
+/// Nodes of the rows that have one of a set: rows are worked out as wholes.
+fn worked_out(set: &Layers) -> u64 {
+    let rows = set.iter().flat_map(|layer| layer.to_le_bytes());
+    rows.filter(|row| *row != 0).count() as u64 * EDGE as u64
 }
 
 /// A block whose values move.
@@ -95,14 +121,26 @@ struct MovingRows<'a> {
 
 /// Half second differences up to this are curvature, larger ones kinks [voxels].
 const SMOOTH: f32 = 0.125;
-/// Speeds up to this are carried by slopes of second order [voxels per sub-step]: what grows by their want of damping has left
-/// the band before it shows.
-const SLOW: f32 = 0.1;
+/// Speeds up to this need no second order in time [voxels per sub-step]: what grows for want of it has left the band before it
+/// shows.
+const SLOW: f32 = 0.05;
 /// Nodes further out are relaxed by the whole share. Nearer ones keep the distance they came with, since speeds are carried along
 /// normals, but for what tension does to it, which is as much less as its step is short of the longest [voxels].
 const SETTLED: f32 = 2.5;
 /// `β Δt ≤ voxel²/6` (6).
 pub const TENSION_LIMIT: f64 = 1.0 / 6.0;
+/// Of the budget of a sub-step, what speed and tension may take.
+pub const MOVING: f64 = 0.8;
+
+/// What a sub-step takes of its budget by its speed [voxels] and its tension.
+pub fn taken(speed: f64, tension: f64) -> f64 {
+    3.0_f64.sqrt() * speed + 4.0 * tension
+}
+
+/// The most that can be relaxed in a sub-step that took so much of its budget.
+pub fn relaxable(taken: f64) -> f64 {
+    (1.0 - taken).max(0.0) / 3.0_f64.sqrt()
+}
 /// Of squared slopes: a level that is flat has no curvature.
 const FLAT: f32 = 1e-3;
 /// No curvature is told beyond that of a ball of one voxel's radius [1/voxel].
@@ -232,10 +270,34 @@ fn shrink_row(f: &Values, at: usize, tension: f32) -> [f32; EDGE] {
         let xy = 0.5 * ((xpyp[i] - xpym[i]) - (xmyp[i] - xmym[i]));
         let yz = 0.5 * ((ypzp[i] - ypzm[i]) - (ymzp[i] - ymzm[i]));
         let xz = 0.5 * ((xpzp[i] - xpzm[i]) - (xmzp[i] - xmzm[i]));
-        let slope_sq = x * x + y * y + z * z + FLAT;
+        let slope_sq = (x * x + y * y + z * z).max(FLAT);
         let sum = x * x * (yy + zz) + y * y * (xx + zz) + z * z * (xx + yy)
             - (x * y * xy + y * z * yz + x * z * xz);
         out[i] = tension * sum / slope_sq;
+    }
+    out
+}
+
+/// `n·∇∇f n` of a row.
+#[inline(always)]
+fn bend_row(f: &Values, at: usize) -> [f32; EDGE] {
+    let (dy, dz) = (wide(0, 1, 0), wide(0, 0, 1));
+    let line = |offset: usize| line(f, offset);
+    let c = line(at);
+    let (xm, xp, ym, yp, zm, zp) =
+        (line(at - 1), line(at + 1), line(at - dy), line(at + dy), line(at - dz), line(at + dz));
+    let twist = |d: usize, e: usize| [line(at + d + e), line(at + d - e), line(at + e - d), line(at - d - e)];
+    let (xy, yz, xz) = (twist(1, dy), twist(dy, dz), twist(1, dz));
+    let mixed = |[pp, pm, mp, mm]: [&[f32; EDGE]; 4], i: usize| 0.25 * ((pp[i] - pm[i]) - (mp[i] - mm[i]));
+    let mut out = [0.0; EDGE];
+    for i in 0..EDGE {
+        let twice = 2.0 * c[i];
+        let (x, y, z) = (0.5 * (xp[i] - xm[i]), 0.5 * (yp[i] - ym[i]), 0.5 * (zp[i] - zm[i]));
+        let straight = x * x * (xp[i] + xm[i] - twice)
+            + y * y * (yp[i] + ym[i] - twice)
+            + z * z * (zp[i] + zm[i] - twice);
+        let across = x * y * mixed(xy, i) + y * z * mixed(yz, i) + x * z * mixed(xz, i);
+        out[i] = (straight + 2.0 * across) / (x * x + y * y + z * z).max(FLAT);
     }
     out
 }
@@ -280,17 +342,10 @@ fn move_row(
         slopes[i] = slope;
     }
     if speeds.iter().fold(0.0_f32, |fastest, speed| fastest.max(speed.abs())) > SLOW {
-        // to first order for what is carried fast
+        // f_tt = a² n·∇∇f n  (Lax & Wendroff): nothing of a distance, but it keeps waves from growing
+        let bends = bend_row(f, at);
         for i in 0..EDGE {
-            let c = c[i];
-            let (below, above) = ([c - xm[i], c - ym[i], c - zm[i]], [xp[i] - c, yp[i] - c, zp[i] - c]);
-            let sign = if speeds[i] > 0.0 { 1.0 } else { -1.0 };
-            let mut upwind = 0.0_f32;
-            for k in 0..3 {
-                let slope = (sign * above[k]).max(-sign * below[k]).max(0.0);
-                upwind += slope * slope;
-            }
-            carried[i] = if speeds[i].abs() > SLOW { upwind.sqrt() } else { carried[i] };
+            changes[i] += 0.5 * speeds[i] * speeds[i] * bends[i].clamp(-2.0 * SMOOTH, 2.0 * SMOOTH);
         }
     }
     for i in 0..EDGE {

@@ -1,4 +1,5 @@
-//! Collision with a skin by one look-up of its potential, whatever its shape.
+//! Collision with a skin by one look-up of its potential, whatever its shape; a point deeper than the band of values around it
+//! looks for the way out.
 
 use souple_math::{Mat3, Vec3};
 
@@ -15,11 +16,15 @@ pub struct Seen {
     pub curvature: Mat3,
 }
 
-/// Between the eight nodes around a point; `None` beyond the band of voxels around the skin, where no value changes.
+/// Between the eight nodes around a point; `None` outside of the band of voxels around the skin, where no value changes.
 pub fn look_up(grid: Grid, lattice: &Lattice, point: Vec3) -> Option<Seen> {
     let place = lattice.to_voxels(point);
     let (value, gradient) = grid.sample(place);
-    if value.abs() >= BAND {
+    if value >= BAND {
+        let (depth, normal) = way_out(grid, place)?;
+        return Some(Seen { distance: -depth * lattice.voxel, normal, curvature: Mat3::ZERO });
+    }
+    if value <= -BAND {
         return None;
     }
     let normal = (-gradient).try_normalised()?;
@@ -27,6 +32,30 @@ pub fn look_up(grid: Grid, lattice: &Lattice, point: Vec3) -> Option<Seen> {
     let across = Mat3::IDENTITY - normal.outer(normal);
     let curvature = across * grid.bend(place) * across * (-1.0 / (gradient.length() * lattice.voxel));
     Some(Seen { distance: -value * lattice.voxel, normal, curvature })
+}
+
+/// Steps of a way along an axis, at most: those of a skin that goes through all of its space.
+const FARTHEST_STEPS: i32 = 1 << 16;
+
+/// Depth [voxels] and outward normal where the nearest of the six ways along the axes comes to the band.
+fn way_out(grid: Grid, place: Vec3) -> Option<(f64, Vec3)> {
+    let along = |axis: Vec3| {
+        let mut way = 0.0;
+        for _ in 0..FARTHEST_STEPS {
+            let (value, gradient) = grid.sample(place + axis * way);
+            if value < 0.5 * BAND {
+                // a plane's depth along its normal, whatever the axis
+                let normal = (-gradient).try_normalised()?;
+                return Some((value + way * axis.dot(normal), normal));
+            }
+            // slopes are of the surface in the inner half of the band
+            way += if value >= BAND { 0.5 * BAND } else { 0.25 * BAND };
+        }
+        None
+    };
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    let ways = axes.into_iter().flat_map(|axis| [axis, -axis]).filter_map(along);
+    ways.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 #[cfg(test)]
@@ -59,7 +88,13 @@ mod tests {
                 assert!((seen.normal - n).length() < 2.0 * voxel, "{seen:?} at {depth}");
             }
         }
-        assert_eq!(look_up(grid, &skin.lattice, Vec3::ZERO), None);
+        // deep inside along an axis, and at the middle, where all ways are as long
+        for x in [0.0, 0.3, -0.5] {
+            let seen = look_up(grid, &skin.lattice, Vec3::X * x).unwrap();
+            // what it sees at the end of its way lies within the band, aside by less than a voxel
+            assert!((seen.distance + radius - x.abs()).abs() < voxel, "{seen:?} at {x}");
+            assert!(x == 0.0 || seen.normal.x * x > 0.9 * x.abs(), "{seen:?} at {x}");
+        }
         assert_eq!(look_up(grid, &skin.lattice, Vec3::new(2.0, 0.0, 0.0)), None);
         assert_eq!(look_up(grid, &skin.lattice, Vec3::new(f64::NAN, 0.0, 0.0)), None);
     }

@@ -220,6 +220,17 @@ pub struct Audit {
     parents: Vec<u32>,
 }
 
+/// A third of the area vectors of the triangles around each point, in place of what stands in `out`.
+pub fn area_vectors(points: &[Vec3], triangles: &[[u32; 3]], out: &mut Vec<Vec3>) {
+    out.clear();
+    out.resize(points.len(), Vec3::ZERO);
+    for corners in triangles {
+        let [a, b, c] = corners.map(|corner| points[corner as usize]);
+        let third = (b - a).cross(c - a) * (1.0 / 6.0);
+        corners.iter().for_each(|corner| out[*corner as usize] += third);
+    }
+}
+
 /// Area and volume.
 pub fn area_and_volume(points: &[Vec3], triangles: &[[u32; 3]]) -> (f64, f64) {
     // about a point of the surface: volumes of far skins lose no digits

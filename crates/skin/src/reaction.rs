@@ -2,13 +2,14 @@
 //!
 //! The force on a point of the surface is that of its triangles, `-σ ∂A/∂x + p n A/3` with `p = k (V0 - V)/V0`. It is shared
 //! among the particles around by their kernels, with weights whose sum is one: since the surface is closed, the forces on
-//! all rows add up to nothing. They are computed on the committed grid at the end of a step, kept in State, and act in the
+//! all rows add up to nothing. Sharing moves forces from the surface to the particles within, which makes a couple; where the forces
+//! act, those of a rotation take it out again, so that the angular momentum stays too. They are computed on the committed grid at the end of a step, kept in State, and act in the
 //! next.
 
 use std::any::Any;
 
 use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
 use crate::skin::HEAD;
@@ -90,6 +91,21 @@ impl Reaction {
     }
 }
 
+/// The centre `x̄` of points and the rate `ω` with which forces `ω × (x − x̄)` take out the moment of forces on them, each pair a
+/// position and a force; the sum of these forces is nothing.
+fn counter_couple(pairs: impl Iterator<Item = (Vec3, Vec3)> + Clone) -> (Vec3, Vec3) {
+    let (sum, count) = pairs.clone().fold((Vec3::ZERO, 0.0), |(sum, count), (x, _)| (sum + x, count + 1.0));
+    let centre = sum * (1.0 / count);
+    let (mut moment, mut spread) = (Vec3::ZERO, Mat3::ZERO);
+    for (x, force) in pairs {
+        let arm = x - centre;
+        moment += arm.cross(force);
+        spread = spread + Mat3::IDENTITY * arm.length_sq() - arm.outer(arm);
+    }
+    // particles on a line bear no moment about it, and have none
+    (centre, spread.try_inverse().map_or(Vec3::ZERO, |inverse| inverse * -moment))
+}
+
 /// The particles that bear a point of the surface, and the sum of their shares.
 fn shares(cloud: &Cloud, point: Vec3, shares: &mut Vec<(u32, f64)>) -> f64 {
     shares.clear();
@@ -156,8 +172,12 @@ impl Force for SkinPush {
 
     fn add_force(&self, at: &Configuration, _: &mut Scratch, out: &mut [Vec3]) {
         let forces = at.fields[self.field].values[HEAD..].chunks_exact(3);
-        for (row, force) in self.rows.iter().zip(forces) {
-            out[*row as usize] += Vec3::new(force[0], force[1], force[2]);
+        let forces = forces.map(|force| Vec3::new(force[0], force[1], force[2]));
+        let rows = self.rows.iter().map(|row| *row as usize).zip(forces);
+        let pairs = rows.clone().map(|(row, force)| (at.positions[row], force));
+        let (centre, rate) = counter_couple(pairs);
+        for (row, force) in rows {
+            out[row] += force + rate.cross(at.positions[row] - centre);
         }
     }
 

@@ -5,14 +5,15 @@ use souple_engine::FieldState;
 use souple_math::Vec3;
 
 use crate::crossings::Crossings;
-use crate::grid::{FARTHEST, Grid, Lattice, Neighbours};
-use crate::level_set::{Motion, Surface, TENSION_LIMIT, advance};
+use crate::error::SkinError;
+use crate::grid::{Grid, Lattice, Neighbours};
+use crate::level_set::{Advance, MOVING, Motion, Surface, TENSION_LIMIT, advance, relaxable, taken};
 use crate::marks::Marks;
-use crate::polygons::{Audit, Torn, area_and_volume, polygonise};
-use crate::reaction::{Reaction, ReactionScratch, Tense};
+use crate::polygons::{Audit, area_and_volume, polygonise};
+use crate::reaction::{Reaction, ReactionScratch};
 use crate::speeds::Speeds;
 use crate::strategy::{SurfacePoints, Term, Whole};
-use crate::surface::surface_of;
+use crate::surface::{farthest_within, surface_of};
 use crate::target::{Followed, Moment, Target, TargetScratch};
 use crate::view::View;
 use crate::waking::{Runaway, Waking};
@@ -30,7 +31,7 @@ pub struct Skin {
 }
 
 /// Numbers at the beginning of a skin's values in State.
-pub const HEAD: usize = 8;
+pub const HEAD: usize = 7;
 pub(crate) const AREA: usize = 0;
 pub(crate) const VOLUME: usize = 1;
 pub(crate) const REST_AREA: usize = 2;
@@ -39,11 +40,11 @@ pub(crate) const REST_VOLUME: usize = 3;
 pub(crate) const SPEED: usize = 4;
 /// When the topology changed last [s].
 pub(crate) const CHANGED: usize = 5;
-/// Sub-steps of the last step; largest share of a voxel moved.
-pub(crate) const SUBSTEPS: usize = 6;
+/// Volume of what it dresses at the end of the first step in which it acts on it, at which its pressure is nothing [m³].
+pub(crate) const FLESH: usize = 6;
 
 /// Integers before the keys of the blocks.
-pub const HEAD_INDICES: usize = 6;
+pub const HEAD_INDICES: usize = 7;
 pub(crate) const EULER: usize = 0;
 pub(crate) const COMPONENTS: usize = 1;
 /// Changes of topology so far.
@@ -52,53 +53,36 @@ pub(crate) const POINTS: usize = 3;
 pub(crate) const TRIANGLES: usize = 4;
 /// Surfaces so far that were checked to be closed, oriented and manifold: one at the start, one for each step.
 pub(crate) const CHECKED: usize = 5;
+/// Nodes that the last step worked out, in all its sub-steps.
+pub(crate) const WORK: usize = 6;
 
 /// Blocks that a skin may have: 1 GB of values.
 pub const MOST_BLOCKS: usize = 1 << 19;
 /// Blocks that are looked at when a skin starts: half a billion nodes.
 pub const MOST_SAMPLED: usize = 1 << 20;
 /// Sub-steps of a step at most.
-const MOST_SUBSTEPS: u32 = 2_000;
+pub(crate) const MOST_SUBSTEPS: u32 = 2_000;
 /// Points at which a target is evaluated at once.
 const SOME_POINTS: usize = 256;
-/// The surface moves no further in a sub-step [voxels].
-const FARTHEST_MOVE: f64 = 0.5;
+/// Points of the surface at which the slope of a target is measured in a sub-step, about so many.
+const SLOPES: usize = 128;
 
-/// Why a skin cannot start or go on.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SkinError {
-    #[error("its target cannot be placed: {0}")]
-    Target(String),
-    #[error("its target is {value} at {place:?}; expected a number")]
-    TargetNotANumber { value: f64, place: [f64; 3] },
-    #[error(
-        "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside, or smaller voxels where it is thinner than one"
-    )]
-    Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
-    #[error(
-        "its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`"
-    )]
-    BeyondDomain { place: [f64; 3] },
-    #[error("its target does not say where it is; expected a `domain`")]
-    NoDomain,
-    #[error(
-        "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_SAMPLED}: larger voxels"
-    )]
-    TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },
-    #[error(
-        "it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth"
-    )]
-    Grown { blocks: usize, time: f64 },
-    #[error("it left its space, {FARTHEST} blocks of 8 voxels, at t = {time} s")]
-    Runaway { time: f64 },
-    #[error("its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
-    Speed { speed: f64, place: [f64; 3], time: f64 },
-    #[error(
-        "a step of {timestep} s would be more than {MOST_SUBSTEPS} sub-steps of {substep:.3e} s: larger voxels, slower terms or shorter steps"
-    )]
-    TooManySubsteps { timestep: f64, substep: f64 },
-    #[error("{torn} at t = {time} s")]
-    Torn { torn: Torn, time: f64 },
+/// What tells one state of a skin from all others: its area and volume are sums over all of its surface, bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Fingerprint {
+    values: [u64; HEAD],
+    indices: [u64; HEAD_INDICES],
+    words: usize,
+}
+
+impl Fingerprint {
+    fn of(field: &FieldState) -> Self {
+        Self {
+            values: std::array::from_fn(|k| field.values[k].to_bits()),
+            indices: std::array::from_fn(|k| field.indices[k]),
+            words: field.indices.len(),
+        }
+    }
 }
 
 /// Scratch of a skin.
@@ -107,17 +91,19 @@ pub struct SkinScratch {
     marks: Vec<Marks>,
     next_marks: Vec<Marks>,
     pub(crate) crossings: Crossings,
-    triangles: Vec<[u32; 3]>,
-    excess: Vec<f64>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) excess: Vec<f64>,
     pub(crate) speeds: Vec<f64>,
     spread: Speeds,
     next: Vec<u64>,
     /// The grid that all of this is of, between steps.
-    known: Vec<u64>,
+    known: Option<Fingerprint>,
     waking: Waking,
     audit: Audit,
-    reaction: ReactionScratch,
-    target: Option<TargetScratch>,
+    /// Of its points: a third of each triangle around.
+    pub(crate) area_vectors: Vec<Vec3>,
+    pub(crate) reaction: ReactionScratch,
+    pub(crate) target: Option<TargetScratch>,
 }
 
 impl SkinScratch {
@@ -135,13 +121,11 @@ impl SkinScratch {
             + size_of::<Marks>() * (self.marks.capacity() + self.next_marks.capacity())
             + self.crossings.bytes()
             + 12 * self.triangles.capacity()
-            + 8 * (self.excess.capacity()
-                + self.speeds.capacity()
-                + self.next.capacity()
-                + self.known.capacity())
+            + 8 * (self.excess.capacity() + self.speeds.capacity() + self.next.capacity())
             + self.spread.bytes()
             + self.waking.bytes()
             + self.audit.bytes()
+            + 24 * self.area_vectors.capacity()
             + self.reaction.bytes()
     }
 }
@@ -158,9 +142,10 @@ impl Skin {
             speeds: Vec::new(),
             spread: Speeds::default(),
             next: Vec::new(),
-            known: Vec::new(),
+            known: None,
             waking: Waking::default(),
             audit: Audit::default(),
+            area_vectors: Vec::new(),
             reaction: ReactionScratch::default(),
             target: self.target.as_ref().map(Target::new_scratch),
         }
@@ -196,10 +181,9 @@ impl Skin {
 
     /// The surface of a grid, where it is not the one that the last step left.
     fn find_surface(&self, field: &FieldState, scratch: &mut SkinScratch) {
-        let is_known = scratch.known == field.indices[HEAD_INDICES..];
         // nothing is known of what a step leaves that fails
-        scratch.known.clear();
-        if !is_known {
+        let known = scratch.known.take();
+        if known != Some(Fingerprint::of(field)) {
             self.find_blocks(field, scratch);
             self.find_crossings(field, scratch);
         }
@@ -231,6 +215,7 @@ impl Skin {
             target.place(end, placed).map_err(SkinError::Target)?;
         }
         self.find_surface(field, scratch);
+        field.indices[WORK] = 0;
         while done < timestep {
             let left = timestep - done;
             let now = start + done;
@@ -239,28 +224,33 @@ impl Skin {
                 self.measure_size(field, scratch);
             }
             let Asked { uniform, fastest, answer } = self.add_speeds(field, scratch, now)?;
-            let substep = self.longest_substep(fastest, answer);
+            // what is told as a formula of time may be faster at the end
+            let later = self.uniform(&self.whole(field, end.time))?;
+            let fastest = fastest + (later - uniform).abs();
+            let substep = self.longest_substep(fastest, answer + self.answer_of_target(field, scratch, now));
             let count = (left / substep).ceil().max(1.0);
             if count.is_nan() || count + f64::from(substeps) > f64::from(MOST_SUBSTEPS) {
                 return Err(SkinError::TooManySubsteps { timestep, substep });
             }
             let substep = left / count;
             let h = self.voxel();
-            scratch.speeds.iter_mut().for_each(|speed| *speed *= substep / h);
+            let middle = self.uniform(&self.whole(field, now + 0.5 * substep))?;
+            let change = middle - uniform;
+            scratch.speeds.iter_mut().for_each(|speed| *speed = (*speed + change) * (substep / h));
+            let tension = self.tension() * substep / (h * h);
             let moves = Moves {
-                uniform: uniform * substep / h,
-                tension: self.tension() * substep / (h * h),
-                redistance: self.redistance,
+                uniform: middle * substep / h,
+                tension,
+                redistance: self.redistance.min(relaxable(taken(fastest * substep / h, tension))),
             };
             let moved = self.move_by(field, scratch, moves, now + substep)?;
             field.values[SPEED] = moved * h / substep;
             done = if count == 1.0 { timestep } else { done + substep };
             substeps += 1;
         }
-        field.values[SUBSTEPS] = f64::from(substeps);
         self.find_crossings(field, scratch);
         self.measure(field, scratch, end.time)?;
-        scratch.known.extend_from_slice(&field.indices[HEAD_INDICES..]);
+        scratch.known = Some(Fingerprint::of(field));
         self.react(field, scratch, end)
     }
 
@@ -292,6 +282,20 @@ impl Skin {
         self.terms.iter().any(|term| term.varies())
     }
 
+    /// The part of the speed that is the same everywhere [m/s].
+    fn uniform(&self, whole: &Whole) -> Result<f64, SkinError> {
+        let mut sum = 0.0;
+        for (term, entry) in self.terms.iter().enumerate() {
+            let speed = entry.uniform(whole);
+            if !speed.is_finite() {
+                let Whole { time, area, volume, .. } = *whole;
+                return Err(SkinError::Term { term, speed, area, volume, time });
+            }
+            sum += speed;
+        }
+        Ok(sum)
+    }
+
     /// Speeds of the crossings without tension [m/s].
     fn add_speeds(
         &self,
@@ -299,17 +303,14 @@ impl Skin {
         scratch: &mut SkinScratch,
         time: f64,
     ) -> Result<Asked, SkinError> {
-        let points = &scratch.crossings.points;
         scratch.excess.clear();
-        scratch.excess.resize(points.len(), 0.0);
-        if let (Some(target), Some(placed)) = (&self.target, &scratch.target)
-            && self.terms.iter().any(|term| term.needs_target())
-        {
-            let chunks = scratch.excess.par_chunks_mut(SOME_POINTS).zip(points.par_chunks(SOME_POINTS));
-            chunks.for_each(|(excess, points)| target.excesses(points, placed, excess));
+        scratch.excess.resize(scratch.crossings.points.len(), 0.0);
+        if self.terms.iter().any(|term| term.needs_target()) {
+            self.find_excess(scratch);
         }
+        let points = &scratch.crossings.points;
         let whole = self.whole(field, time);
-        let uniform: f64 = self.terms.iter().map(|term| term.uniform(&whole)).sum();
+        let uniform = self.uniform(&whole)?;
         let answer: f64 = self.terms.iter().map(|term| term.answer(&whole)).sum();
         scratch.speeds.clear();
         scratch.speeds.resize(points.len(), uniform);
@@ -326,13 +327,40 @@ impl Skin {
         Ok(Asked { uniform, fastest, answer })
     }
 
+    /// The target's potential less its iso value at the crossings.
+    pub(crate) fn find_excess(&self, scratch: &mut SkinScratch) {
+        let points = &scratch.crossings.points;
+        scratch.excess.clear();
+        scratch.excess.resize(points.len(), 0.0);
+        if let (Some(target), Some(placed)) = (&self.target, &scratch.target) {
+            let chunks = scratch.excess.par_chunks_mut(SOME_POINTS).zip(points.par_chunks(SOME_POINTS));
+            chunks.for_each(|(excess, points)| target.excesses(points, placed, excess));
+        }
+    }
+
+    /// How fast terms that follow the target answer a move of the surface [1/s], the most of some points spread over it: beyond
+    /// that they would overshoot, and the skin never rest.
+    fn answer_of_target(&self, field: &FieldState, scratch: &SkinScratch, time: f64) -> f64 {
+        let (Some(target), Some(placed)) = (&self.target, &scratch.target) else { return 0.0 };
+        let whole = self.whole(field, time);
+        let (points, excess) = (&scratch.crossings.points, &scratch.excess);
+        let stride = points.len().div_ceil(SLOPES).max(1);
+        let answer = |(point, excess): (&Vec3, &f64)| {
+            let stiffness: f64 = self.terms.iter().map(|term| term.stiffness(*point, *excess, &whole)).sum();
+            let is_followed = stiffness > 0.0;
+            // over a voxel: a jump of the potential is as steep as the grid can tell
+            if is_followed { stiffness * target.slope(*point, 0.5 * self.voxel(), placed) } else { 0.0 }
+        };
+        points.iter().zip(excess).step_by(stride).map(answer).fold(0.0, f64::max)
+    }
+
     fn longest_substep(&self, fastest: f64, answer: f64) -> f64 {
         let h = self.voxel();
-        let by_speed = FARTHEST_MOVE * h / fastest;
+        let by_motion = MOVING / taken(fastest / h, self.tension() / (h * h));
         let by_tension = TENSION_LIMIT * h * h / self.tension();
         // a term that answers itself goes half the way at most
         let by_answer = 0.5 / answer;
-        by_speed.min(by_tension).min(by_answer)
+        by_motion.min(by_tension).min(by_answer)
     }
 
     /// One sub-step, with the speeds of the crossings in voxels; how far the surface moved [voxels].
@@ -361,12 +389,9 @@ impl Skin {
         next.resize(field.indices.len(), 0);
         next[..first].copy_from_slice(&field.indices[..first]);
         scratch.next_marks.resize(scratch.marks.len(), Marks::default());
-        let moved = f64::from(advance(
-            surface,
-            motion,
-            bytemuck::cast_slice_mut(&mut next[first..]),
-            &mut scratch.next_marks,
-        ));
+        let Advance { moved, nodes } =
+            advance(surface, motion, bytemuck::cast_slice_mut(&mut next[first..]), &mut scratch.next_marks);
+        next[WORK] += nodes;
         std::mem::swap(&mut field.indices, next);
         std::mem::swap(&mut scratch.marks, &mut scratch.next_marks);
         let changed = scratch
@@ -380,7 +405,7 @@ impl Skin {
             }
             scratch.neighbours.find(self.grid(field));
         }
-        Ok(moved)
+        Ok(moved.into())
     }
 
     /// Triangles at the crossings found, their measures, and whether the topology changed.
@@ -410,27 +435,26 @@ impl Skin {
         Ok(())
     }
 
-    /// Forces on rows, from the surface as it stands now.
-    fn react(&self, field: &mut FieldState, scratch: &mut SkinScratch, at: &Moment) -> Result<(), SkinError> {
-        let Some(reaction) = &self.reaction else { return Ok(()) };
-        let surface = Tense {
-            points: &scratch.crossings.points,
-            triangles: &scratch.triangles,
-            volume: field.values[VOLUME],
-            rest_volume: field.values[REST_VOLUME],
-        };
-        let out = &mut field.values[HEAD..HEAD + 3 * reaction.rows.len()];
-        reaction.act(surface, at, &mut scratch.reaction, out).map_err(SkinError::Target)
-    }
-
-    /// The greatest distance of the surface from that of its target at a moment [m]; `None` without a target that can be placed.
+    /// Hausdorff's distance between its surface and that of its target at a moment, both as triangles of its lattice [m]; `None`
+    /// where one of them is not there.
     pub fn distance(&self, at: &Moment, field: &FieldState) -> Option<f64> {
         let target = self.target.as_ref()?;
         let mut placed = target.new_scratch();
         target.place(at, &mut placed).ok()?;
-        let (surface, _) = surface_of(self.view(field).grid, &self.lattice);
-        let distance = |point: &Vec3| target.distance(*point, 0.1 * self.voxel(), &placed);
-        Some(surface.points.par_iter().map(distance).reduce(|| 0.0, f64::max))
+        let bounds = target.bounds(&placed)?;
+        let excess = |point: Vec3| target.excess(point, &placed);
+        let sampled = self.sampled(bounds.low, bounds.high, &excess).ok()?;
+        let [own_grid, aim_grid] = [field, &sampled].map(|field| self.view(field).grid);
+        let [own, aim] = [own_grid, aim_grid].map(|grid| surface_of(grid, &self.lattice).0);
+        if own.points.is_empty() || aim.points.is_empty() {
+            return None;
+        }
+        // by a look-up of the other's values while both are within each other's band, else among its triangles
+        let near = farthest_within(&own.points, aim_grid, &self.lattice);
+        match near.zip(farthest_within(&aim.points, own_grid, &self.lattice)) {
+            Some((there, back)) => Some(there.max(back)),
+            None => Some(own.farthest_from(&aim)?.max(aim.farthest_from(&own)?)),
+        }
     }
 
     /// A reader's view of the state.

@@ -32,7 +32,7 @@ impl Speeds {
         let beside = &self.beside;
         let chunks = self.values.par_chunks_mut(NODES).enumerate().with_min_len(16);
         chunks.for_each_init(
-            || Box::new([(0.0, 0.0); NODES]),
+            || [(0.0, 0.0); NODES],
             |sums, (block, values)| {
                 if beside[block] == NONE {
                     return;

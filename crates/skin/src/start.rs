@@ -4,10 +4,12 @@ use rayon::prelude::*;
 use souple_engine::FieldState;
 use souple_math::Vec3;
 
+use crate::error::SkinError;
 use crate::grid::{BAND, EDGE, FARTHEST, NODES, key_of, wide};
+use crate::level_set::relaxable;
 use crate::skin::{
-    AREA, EVENTS, HEAD_INDICES, MOST_BLOCKS, MOST_SAMPLED, Moves, REST_AREA, REST_VOLUME, Skin, SkinError,
-    SkinScratch, VOLUME,
+    AREA, EVENTS, HEAD_INDICES, MOST_BLOCKS, MOST_SAMPLED, Moves, REST_AREA, REST_VOLUME, Skin, SkinScratch,
+    VOLUME,
 };
 
 impl Skin {
@@ -22,14 +24,40 @@ impl Skin {
         value: &(dyn Fn(Vec3) -> f64 + Sync),
         scratch: &mut SkinScratch,
     ) -> Result<FieldState, SkinError> {
+        let mut field = self.sampled(low, high, value)?;
+        self.make_distance(&mut field, scratch)?;
+        self.find_crossings(&field, scratch);
+        self.measure(&mut field, scratch, 0.0)?;
+        field.values[REST_AREA] = field.values[AREA];
+        field.values[REST_VOLUME] = field.values[VOLUME];
+        field.indices[EVENTS] = 0;
+        Ok(field)
+    }
+
+    /// The zero level of `value` within a box [m], on the nodes around it; nothing is measured.
+    ///
+    /// # Errors
+    /// There is no inside, it does not end within the box, or it is too large for its voxels.
+    pub(crate) fn sampled(
+        &self,
+        low: Vec3,
+        high: Vec3,
+        value: &(dyn Fn(Vec3) -> f64 + Sync),
+    ) -> Result<FieldState, SkinError> {
         let edge = EDGE as f64;
         // one block around, so that all ends within
         let first = self.lattice.to_voxels(low).to_array().map(|c| (c / edge).floor() - 1.0);
         let last = self.lattice.to_voxels(high).to_array().map(|c| (c / edge).floor() + 1.0);
         let counts = [0, 1, 2].map(|axis| (last[axis] - first[axis] + 1.0).max(1.0));
         let blocks: f64 = counts.iter().product();
-        let far = first.iter().chain(&last).any(|c| c.is_nan() || c.abs() >= FARTHEST as f64);
-        if far || blocks.is_nan() || blocks > MOST_SAMPLED as f64 {
+        if first.iter().chain(&last).any(|c| c.is_nan() || c.abs() >= FARTHEST as f64) {
+            return Err(SkinError::TooFar {
+                low: low.to_array(),
+                high: high.to_array(),
+                voxel: self.voxel(),
+            });
+        }
+        if blocks > MOST_SAMPLED as f64 {
             let size = (high - low).to_array();
             return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
         }
@@ -39,12 +67,6 @@ impl Skin {
             let (low, high) = (low.to_array(), high.to_array());
             return Err(SkinError::Empty { low, high, voxel: self.voxel() });
         }
-        self.make_distance(&mut field, scratch)?;
-        self.find_crossings(&field, scratch);
-        self.measure(&mut field, scratch, 0.0)?;
-        field.values[REST_AREA] = field.values[AREA];
-        field.values[REST_VOLUME] = field.values[VOLUME];
-        field.indices[EVENTS] = 0;
         Ok(field)
     }
 
@@ -119,7 +141,8 @@ impl Skin {
             self.find_crossings(field, scratch);
             scratch.speeds.clear();
             scratch.speeds.resize(scratch.crossings.points.len(), 0.0);
-            let moves = Moves { uniform: 0.0, tension: 0.0, redistance: 2.0 * self.redistance };
+            let moves =
+                Moves { uniform: 0.0, tension: 0.0, redistance: (2.0 * self.redistance).min(relaxable(0.0)) };
             self.move_by(field, scratch, moves, 0.0)?;
         }
         Ok(())

@@ -41,6 +41,11 @@ pub trait Term: Send + Sync {
         0.0
     }
 
+    /// How much the speed at a point changes with the potential there [m/s]. With the slope of the target it limits sub-steps.
+    fn stiffness(&self, _point: Vec3, _excess: f64, _whole: &Whole) -> f64 {
+        0.0
+    }
+
     /// Whether [`Term::add_at`] adds anything.
     fn varies(&self) -> bool {
         self.needs_target()
@@ -105,6 +110,10 @@ impl Term for Attraction {
     // α (G − iso)
     fn add_at(&self, at: SurfacePoints, _: &Whole, out: &mut [f64]) {
         out.iter_mut().zip(at.excess).for_each(|(out, excess)| *out += self.0 * excess);
+    }
+
+    fn stiffness(&self, _: Vec3, _: f64, _: &Whole) -> f64 {
+        self.0
     }
 
     fn needs_target(&self) -> bool {
@@ -244,16 +253,32 @@ static PRESSURE: TermEntry = Entry {
 struct Speed(Formula);
 
 const SPEED_VARIABLES: &[&str] = &["x", "y", "z", "t", "g", "area", "volume"];
+/// Where `g` stands among them.
+const POTENTIAL: usize = 4;
+
+fn speed_values(p: Vec3, excess: f64, whole: &Whole) -> [f64; SPEED_VARIABLES.len()] {
+    [p.x, p.y, p.z, whole.time, excess, whole.area, whole.volume]
+}
 
 impl Term for Speed {
     fn varies(&self) -> bool {
         true
     }
 
+    fn needs_target(&self) -> bool {
+        self.0.depends_on(POTENTIAL)
+    }
+
     fn add_at(&self, at: SurfacePoints, whole: &Whole, out: &mut [f64]) {
         for ((out, p), excess) in out.iter_mut().zip(at.points).zip(at.excess) {
-            *out += self.0.evaluate(&[p.x, p.y, p.z, whole.time, *excess, whole.area, whole.volume]);
+            *out += self.0.evaluate(&speed_values(*p, *excess, whole));
         }
+    }
+
+    fn stiffness(&self, point: Vec3, excess: f64, whole: &Whole) -> f64 {
+        let change = self.0.differentiate(&speed_values(point, excess, whole), POTENTIAL).derivative;
+        // a formula without a slope here has none that could be followed
+        if change.is_finite() { change.abs() } else { 0.0 }
     }
 }
 

@@ -1,9 +1,11 @@
 //! The surface of a grid that nothing else is known of, and its mean curvature.
 
+use rayon::prelude::*;
 use souple_math::Vec3;
+use souple_mesh::{SignedDistance, TriangleSurface};
 
 use crate::crossings::Crossings;
-use crate::grid::{Grid, Halo, Lattice, Neighbours, wide};
+use crate::grid::{BAND, Grid, Halo, Lattice, Neighbours, wide};
 use crate::level_set::curvature_at;
 use crate::marks::Marks;
 use crate::polygons::{Polygons, normals, polygonise};
@@ -19,6 +21,25 @@ pub fn surface_of(grid: Grid, lattice: &Lattice) -> (Polygons, Vec<Vec3>) {
     polygonise(&neighbours, &marks, &crossings, &mut triangles);
     normals(grid, &neighbours, &crossings, lattice, &mut directions);
     (Polygons { points: crossings.points, triangles }, directions)
+}
+
+/// The greatest distance of points from the surface of a grid [m]; `None` where one of them is beyond its band.
+pub(crate) fn farthest_within(points: &[Vec3], grid: Grid, lattice: &Lattice) -> Option<f64> {
+    let distance = |point: &Vec3| {
+        let (value, _) = grid.sample(lattice.to_voxels(*point));
+        (value.abs() < BAND).then_some(value.abs() * lattice.voxel)
+    };
+    points.par_iter().map(distance).try_reduce(|| 0.0, |a, b| Some(f64::max(a, b)))
+}
+
+impl Polygons {
+    /// The greatest distance of its points from another surface [m]; `None` where one of them has no points.
+    pub fn farthest_from(&self, other: &Self) -> Option<f64> {
+        let (points, triangles) = (other.points.clone(), other.triangles.clone());
+        let other = TriangleSurface { points, triangles, ..TriangleSurface::default() };
+        let other = SignedDistance::new(other).ok()?;
+        self.points.par_iter().map(|point| other.distance(*point).abs()).reduce_with(f64::max)
+    }
 }
 
 /// `κ = div n`, twice the mean curvature, averaged over the surface [1/m].

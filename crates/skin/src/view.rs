@@ -5,8 +5,8 @@ use souple_engine::FieldState;
 use crate::grid::Grid;
 use crate::polygons::Measures;
 use crate::skin::{
-    AREA, CHANGED, CHECKED, COMPONENTS, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, SUBSTEPS,
-    TRIANGLES, VOLUME,
+    AREA, CHANGED, CHECKED, COMPONENTS, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, TRIANGLES, VOLUME,
+    WORK,
 };
 
 /// A skin's part of State, as a reader sees it.
@@ -50,13 +50,14 @@ impl<'a> View<'a> {
         self.head[CHANGED]
     }
 
-    pub fn substeps(&self) -> f64 {
-        self.head[SUBSTEPS]
-    }
-
     /// Surfaces so far that were checked to be closed, oriented and manifold, and were.
     pub fn checked(&self) -> u64 {
         self.head_indices[CHECKED]
+    }
+
+    /// Nodes that the last step worked out, in all its sub-steps.
+    pub fn work(&self) -> u64 {
+        self.head_indices[WORK]
     }
 
     /// Points and triangles of the surface.

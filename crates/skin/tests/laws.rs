@@ -5,9 +5,12 @@ use std::f64::consts::PI;
 
 use souple_engine::FieldState;
 use souple_math::Vec3;
+use souple_mesh::BoundingBox;
 use souple_skin::strategy::{TERMS, Term};
 use souple_skin::target::particles::Density;
-use souple_skin::target::{ISO, Moment, PARTS, Part, Particle, Particles, Surroundings, Target};
+use souple_skin::target::{
+    Combine, ISO, Moment, PARTS, Part, Particle, Particles, Surroundings, Target, WARPS,
+};
 use souple_skin::{Lattice, Skin, SkinScratch};
 use souple_table::{Value, Values};
 
@@ -299,15 +302,139 @@ fn splitting_particles_do_not_show() {
         skin.step(&Moment::at(f64::from(step) * timestep), timestep, &mut field, &mut scratch).unwrap();
         let view = skin.view(&field);
         assert_eq!((view.measures().components, view.events()), (1, 0));
-        if step > 10 {
-            assert!(view.speed() * timestep < 0.5 * skin.lattice.voxel, "{} at step {step}", view.speed());
-        }
         if step == 19 {
             before = view.measures().volume;
+            // how far the level that the skin is drawn to goes when all split at once, by its slope
+            let mut split = target.new_scratch();
+            target.place(&Moment::at(1.0), &mut split).unwrap();
+            let jumps: Vec<f64> = scratch
+                .points()
+                .iter()
+                .map(|p| {
+                    let slope = target.slope(*p, 0.5 * skin.lattice.voxel, &placed);
+                    (target.excess(*p, &split) - target.excess(*p, &placed)).abs() / slope
+                })
+                .collect();
+            let mean = jumps.iter().sum::<f64>() / jumps.len() as f64;
+            // kernels of half the length round edges and corners by half as much: a third of a radius on the mean of this cube,
+            // which is nearly all edges
+            assert!(mean < radius / 3.0, "{mean}");
         }
     }
     let after = skin.view(&field).measures().volume;
     // the finer kernel follows edges and corners more closely: on the mean by less than half a voxel
     let moved = (after - before).abs() / skin.view(&field).measures().area;
     assert!(moved < 0.5 * skin.lattice.voxel, "{moved}");
+}
+
+/// The radius of a ball of as much volume.
+fn radius_of(skin: &Skin, field: &FieldState) -> f64 {
+    (0.75 / PI * skin.view(field).measures().volume).cbrt()
+}
+
+/// A speed that is the same everywhere moves a ball by as much, in short steps and in the longest.
+#[test]
+fn a_uniform_speed_moves_a_ball_by_as_much() {
+    for cells in [8.0, 16.0] {
+        for step in [0.1, 0.5] {
+            let voxel = 1.0 / cells;
+            let skin = skin(voxel, vec![term("pressure", &[("speed", Value::Text("1"))])]);
+            let mut scratch = skin.new_scratch();
+            let mut field = ball(&skin, 1.0, &mut scratch);
+            let before = radius_of(&skin, &field);
+            let steps = (0.5 * cells / step) as usize;
+            run(&skin, &mut field, &mut scratch, steps, step * voxel);
+            // to second order in the voxel over the radius, which is less than a hundredth for each voxel of the way
+            let off = (radius_of(&skin, &field) - before) / voxel - steps as f64 * step;
+            assert!(off.abs() < 0.1, "{off} voxels, {cells} cells, steps of {step}");
+        }
+    }
+}
+
+/// A speed that goes to and fro leaves the ball as it was: ten times by three voxels each way.
+#[test]
+fn a_pulsing_speed_comes_back() {
+    let (voxel, step) = (0.05, 0.2);
+    let speed = Value::Text("cos(6.283185307179586*t)");
+    let skin = skin(voxel, vec![term("pressure", &[("speed", speed)])]);
+    let mut scratch = skin.new_scratch();
+    let mut field = ball(&skin, 0.4, &mut scratch);
+    let before = radius_of(&skin, &field);
+    run(&skin, &mut field, &mut scratch, (10.0 / (voxel * step)) as usize, voxel * step);
+    // it went 127 voxels in all
+    let off = (radius_of(&skin, &field) - before) / voxel;
+    assert!(off.abs() < 0.3, "{off} voxels");
+}
+
+/// However strongly it is drawn, a skin rests on its target: sub-steps are as short as the slope of the target asks.
+#[test]
+fn a_skin_rests_however_strongly_it_is_drawn() {
+    for strength in [1.0, 100.0, 2000.0] {
+        let voxel = 0.05;
+        let mut skin = skin(voxel, vec![term("attraction", &[("strength", number(strength))])]);
+        let point = part("point", &[("at", Value::Vector([0.0; 3])), ("radius", number(0.4))]);
+        skin.target = Some(Target { parts: vec![point], iso: ISO });
+        let mut scratch = skin.new_scratch();
+        let mut field = ball(&skin, 0.45, &mut scratch);
+        // twenty times what it takes to come nearer by a factor e, in steps that are long for the strongest
+        run(&skin, &mut field, &mut scratch, 30, (0.2 / strength).max(2e-3));
+        let view = skin.view(&field);
+        // a tenth of what it keeps running at in steps that overshoot
+        assert!(view.speed() < 1e-3 * strength, "{} m/s at {strength}", view.speed());
+        assert!((radius_of(&skin, &field) - 0.4).abs() < 0.1 * voxel, "{strength}");
+    }
+}
+
+/// Each way to combine two parts says of every place what it says of sets; nothing can be taken from nothing.
+#[test]
+fn parts_combine_as_sets() {
+    let point = |x: f64, combine: Combine| {
+        let at = ("at", Value::Vector([x, 0.0, 0.0]));
+        Part { combine, ..part("point", &[at, ("radius", number(0.5))]) }
+    };
+    let is_in = |x: f64, p: Vec3| (p - Vec3::X * x).length() < 0.5;
+    for (combine, holds) in [
+        (Combine::Union, (|a, b| a || b) as fn(bool, bool) -> bool),
+        (Combine::Difference, |a, b| a && !b),
+        (Combine::Intersection, |a, b| a && b),
+    ] {
+        let target = Target { parts: vec![point(0.0, Combine::Blend), point(0.4, combine)], iso: ISO };
+        let mut placed = target.new_scratch();
+        target.place(&Moment::at(0.0), &mut placed).unwrap();
+        for i in 0..1000_i32 {
+            let steps = Vec3::new((i % 10).into(), (i / 10 % 10).into(), (i / 100).into());
+            let p = steps * 0.183 - Vec3::new(0.7, 0.81, 0.79);
+            let expected = holds(is_in(0.0, p), is_in(0.4, p));
+            assert_eq!(target.excess(p, &placed) > 0.0, expected, "{combine:?} at {p:?}");
+        }
+        let alone = Target { parts: vec![point(0.0, combine)], iso: ISO };
+        let placed = alone.place(&Moment::at(0.0), &mut alone.new_scratch());
+        assert_eq!(placed.is_ok(), combine == Combine::Union, "{combine:?}");
+    }
+}
+
+/// What a warp makes of a box lies in the box that it tells: points of the box are found where the warp brings them.
+#[test]
+fn warps_stay_in_their_bounds() {
+    let low = Vec3::new(-0.6, -0.3, -0.2);
+    let high = Vec3::new(0.5, 0.3, 0.4);
+    for (name, rate) in
+        [("twist", 3.0), ("bend", 1.5), ("bend", -2.0), ("taper", 1.0), ("taper", -3.0), ("taper", 10.0)]
+    {
+        let entry = WARPS.find(name).unwrap();
+        let mut values = Values::new();
+        values.set("rate".to_owned(), number(rate));
+        let warp = (entry.build)(&entry.values(values).unwrap());
+        let bounds = warp.bounds(BoundingBox { low, high });
+        let far = bounds.grown(0.5);
+        let size = far.high - far.low;
+        for i in 0..64_000_i32 {
+            let share = Vec3::new((i % 40).into(), (i / 40 % 40).into(), (i / 1600).into()) * (1.0 / 39.0);
+            let p = far.low + Vec3::new(share.x * size.x, share.y * size.y, share.z * size.z);
+            let before = warp.undo(p);
+            let was_inside = (0..3).all(|axis| low[axis] <= before[axis] && before[axis] <= high[axis]);
+            let is_told = (0..3).all(|axis| bounds.low[axis] <= p[axis] && p[axis] <= bounds.high[axis]);
+            assert!(is_told || !was_inside, "{name} {rate}: {p:?} was {before:?}");
+        }
+    }
 }

@@ -225,3 +225,35 @@ fn the_page_of_the_command_line_is_complete() {
     common::REPORT_KEYS.iter().for_each(|key| want(format!("`{key}`")));
     assert!(missing.is_empty(), "docs/command-line.md does not name {missing:?}");
 }
+
+/// The surface of particles says which it leaves out, and shows those that are there at the time asked for.
+#[test]
+fn particles_are_dressed_and_what_is_left_out_is_said() {
+    let folder = Folder::new("dressed");
+    let dress = |table: &str, more: &[&str]| {
+        let input = folder.write("particles.csv", table);
+        let out = folder.at("skin.ply");
+        let mut call = vec!["mesh", "skin", &input, &out, "--json"];
+        call.extend(more);
+        souple(call)
+    };
+    let notes = |table: &str, more: &[&str]| dress(table, more).ends(0).json()["notes"].to_string();
+    let pair = "x,y,z,radius\n0,0,0,0.01\n0.02,0,0,0.02\n";
+    assert!(notes(pair, &[]).contains("1 of 2 particles are outside"));
+    assert_eq!(notes(pair, &["iso=0.25"]), "[]");
+    let row: String = (0..8).map(|i| format!("{},0,0\n", 0.01 * f64::from(i))).collect();
+    let row = format!("x,y,z\n{row}");
+    assert!(notes(&row, &["radius=0.008", "voxel=0.02"]).contains("larger than 2 radii"));
+    let refusal = |table: &str, more: &[&str]| dress(table, more).ends(2).json()["errors"].to_string();
+    assert!(refusal(&row, &[]).contains("`radius` is missing"));
+    let alone = refusal("x,y,z\n0,0,0\n", &["radius=0.01"]);
+    assert!(alone.contains("0.318 at most") && alone.contains("lower iso"));
+    // two that are there one after the other, and the second moves
+    let two = "x,y,z,radius,vx,from,until\n0,0,0,0.01,0,-inf,1\n0,0,0,0.01,1,1,inf\n";
+    let middle = |time: &str| {
+        let document = dress(two, &["iso=0.2", time]).ends(0).json();
+        let bounds = |corner: usize| document["bounds"][corner][0].as_f64().expect("a number");
+        0.5 * (bounds(0) + bounds(1))
+    };
+    assert!(middle("time=0").abs() < 1e-3 && (middle("time=2") - 2.0).abs() < 1e-3);
+}

@@ -57,6 +57,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("skin_pinch", include_str!("../../../scenes/skin_pinch/scene.toml")),
     ("skin_ring", include_str!("../../../scenes/skin_ring/scene.toml")),
     ("skin_tensions", include_str!("../../../scenes/skin_tensions/scene.toml")),
+    ("skin_thread", include_str!("../../../scenes/skin_thread/scene.toml")),
     ("skin_touched", include_str!("../../../scenes/skin_touched/scene.toml")),
     ("skin_two_way", include_str!("../../../scenes/skin_two_way/scene.toml")),
     ("skin_untwists", include_str!("../../../scenes/skin_untwists/scene.toml")),

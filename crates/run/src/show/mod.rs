@@ -126,6 +126,13 @@ impl Show {
         Self { stage, moments: vec![Moment { time: 0.0, bodies: vec![body] }] }
     }
 
+    /// Without the bodies that wear a skin, which hides them.
+    #[must_use]
+    pub fn without_worn(mut self) -> Self {
+        self.moments = self.moments.into_iter().map(Moment::without_worn).collect();
+        self
+    }
+
     /// At most `count` moments, evenly chosen, the first and the last among them.
     #[must_use]
     pub fn thinned(mut self, count: usize) -> Self {
@@ -223,15 +230,12 @@ impl Moment {
     }
 
     /// Without the bodies that wear a skin, which hides them.
-    pub fn without_worn(mut self, session: &Session) -> Self {
-        self.bodies.retain(|body| !is_worn(&body.name, session));
+    #[must_use]
+    pub fn without_worn(mut self) -> Self {
+        let skins: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
+        self.bodies.retain(|body| !skins.contains(&crate::frames::worn_by(&body.name)));
         self
     }
-}
-
-/// Whether a skin has the name of a body, not that of a skin that stands alone.
-fn is_worn(name: &str, session: &Session) -> bool {
-    session.bodies.iter().any(|body| body.name == name) && session.skins.iter().any(|skin| skin.name == name)
 }
 
 fn frames_of(world: &World, info: &BodyInfo) -> Vec<[Vec3; 4]> {

@@ -17,6 +17,9 @@ use crate::diagnostic::{Code, Site};
 use crate::scene::SkinInfo;
 use crate::spec::skin::{PartSpec, SkinSpec};
 
+/// A ball of five voxels has as many.
+const FEW_POINTS: u64 = 100;
+
 /// All skins, each with its first state.
 pub fn add(draft: &mut Draft) {
     for spec in &draft.spec.skins {
@@ -26,6 +29,13 @@ pub fn add(draft: &mut Draft) {
             let rows = reaction.rows.iter().map(|(row, _)| *row).collect();
             let push = SkinPush { name: format!("{}.skin", spec.name), field, rows };
             draft.systems[reaction.system].forces.push(Box::new(push));
+        }
+        let [points, _] = skin.view(&state).counts();
+        if points < FEW_POINTS {
+            draft.warnings.push(format!(
+                "skin `{}` has {points} points at voxels of {} m: it is hardly seen by its grid; smaller voxels would show it",
+                spec.name, spec.voxel
+            ));
         }
         draft.model.fields.push(Box::new(SkinField(Arc::clone(&skin))));
         draft.state.fields.push(state);

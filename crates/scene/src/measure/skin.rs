@@ -10,6 +10,14 @@ use crate::spec::quantity::SkinQuantity;
 pub fn measure(quantity: SkinQuantity, skin: &SkinInfo, world: &World) -> f64 {
     let view = skin.view(world);
     let measures = view.measures();
+    let is_shape = matches!(
+        quantity,
+        SkinQuantity::Curvature | SkinQuantity::Speed | SkinQuantity::Roundness | SkinQuantity::Distance
+    );
+    // of a skin that is gone nothing holds
+    if is_shape && measures.components == 0 {
+        return f64::NAN;
+    }
     match quantity {
         SkinQuantity::Area => measures.area,
         SkinQuantity::Volume => measures.volume,
@@ -21,6 +29,7 @@ pub fn measure(quantity: SkinQuantity, skin: &SkinInfo, world: &World) -> f64 {
         // of a ball of the same volume
         SkinQuantity::Roundness => (36.0 * PI * measures.volume * measures.volume).cbrt() / measures.area,
         SkinQuantity::Distance => skin.distance(world).unwrap_or(f64::NAN),
+        SkinQuantity::Work => view.work() as f64,
         SkinQuantity::Blocks => view.grid.keys.len() as f64,
     }
 }

@@ -21,6 +21,9 @@ const LINK: EntryShape =
 /// Masses of a network, at most.
 const MASSES_MAX: f64 = 1e8;
 
+/// Places of a lattice that a condition is asked about, at most: those where it holds are kept one by one.
+const ASKED_MAX: f64 = 1e7;
+
 static LINE: Keys = Keys::new(
     "mass_line",
     "masses at equal distances on a line",
@@ -38,6 +41,11 @@ static LATTICE: Keys = Keys::new(
         Key::vector("origin", "m", "the first").or(Value::Vector([0.0; 3])),
         Key::number("spacing", "m", Range::POSITIVE, "between neighbours").required(),
         Key::new("counts", Shape::Vector, "how many along x, y and z").required(),
+        Key::new(
+            "within",
+            Shape::Condition(&["x", "y", "z"]),
+            "only where this holds, before the network is placed",
+        ),
     ],
 );
 
@@ -346,14 +354,29 @@ impl Places {
     fn on_lattice(reader: &Reader) -> Option<Self> {
         let counts = reader.vector("counts");
         let is_count = |number: f64| number >= 1.0 && number.fract() == 0.0;
-        if !counts.to_array().into_iter().all(is_count) || counts.x * counts.y * counts.z > MASSES_MAX {
+        let most = if reader.has("within") { ASKED_MAX } else { MASSES_MAX };
+        if !counts.to_array().into_iter().all(is_count) || counts.x * counts.y * counts.z > most {
             let message = format!("a lattice of ({}, {}, {}) masses", counts.x, counts.y, counts.z);
-            let expected = format!("three whole numbers from 1, at most {MASSES_MAX:.0e} masses together");
+            let expected = format!("three whole numbers from 1, at most {most:.0e} masses together");
             reader.log().add(Code::OutOfRange, &reader.site_of("counts"), message, expected);
             return None;
         }
         let counts = counts.to_array().map(|count| count as u64);
-        Some(Self::Lattice { origin: reader.vector("origin"), spacing: reader.number("spacing"), counts })
+        let lattice =
+            Self::Lattice { origin: reader.vector("origin"), spacing: reader.number("spacing"), counts };
+        if !reader.has("within") {
+            return Some(lattice);
+        }
+        let within = reader.maybe_condition("within")?;
+        let places = (0..lattice.count()).map(|index| lattice.place(index));
+        let kept: Vec<Vec3> = places.filter(|place| within.holds(&place.to_array())).collect();
+        if kept.is_empty() {
+            let message = format!("none of the {} masses of this lattice is within", lattice.count());
+            let expected = "a condition that holds at some of them";
+            reader.log().add(Code::EmptyRegion, &reader.site_of("within"), message, expected);
+            return None;
+        }
+        Some(Self::Listed(kept))
     }
 
     pub fn count(&self) -> u64 {

@@ -82,6 +82,7 @@ pub enum SkinQuantity {
     Roundness,
     Distance,
     Blocks,
+    Work,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -462,6 +463,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         hand("m", Number, HandQuantity::ToolPenetration),
     ),
     &entry("skin.blocks", "blocks of 512 nodes that its grid keeps", SKIN, skin("", SkinQuantity::Blocks)),
+    &entry(
+        "skin.work",
+        "nodes of its grid that the last step worked out, in all its sub-steps",
+        SKIN,
+        skin("", SkinQuantity::Work),
+    ),
 ];
 
 /// All quantities.

@@ -103,6 +103,12 @@ pub(crate) static BODY_SKIN: Keys = Keys::new(
             "of the body's points as particles, half the distance between them; where left out the skin dresses the body's surface, which networks have not",
         ),
         Key::new("group", Shape::Text, "only the points of this group, as particles"),
+        Key::number(
+            "offset",
+            "m",
+            Range::ANY,
+            "outward from the body's surface; a voxel where left out, so that the skin covers the body",
+        ),
         TERMS_KEY,
         Key::new("push", Shape::Table(&SKIN_PUSH), "what it does to the body's points"),
     ],
@@ -194,7 +200,12 @@ impl PartSpec {
 }
 
 fn parts(reader: &Reader, key: &str) -> Vec<PartSpec> {
-    reader.tables(key).iter().map(PartSpec::read).collect()
+    let parts: Vec<PartSpec> = reader.tables(key).iter().map(PartSpec::read).collect();
+    if let Some(first) = parts.first().filter(|first| !first.combine.adds()) {
+        let message = format!("nothing stands before the first of `{key}` that it could be combined with");
+        reader.log().add(Code::Conflict, &first.site, message, "blend or union for the first part");
+    }
+    parts
 }
 
 impl SkinSpec {
@@ -267,8 +278,17 @@ impl SkinSpec {
                 values.set("group".to_owned(), Value::Text(&group));
                 ("particles", "from")
             }
-            None => ("surface", "body"),
+            None => {
+                let offset = reader.maybe_number("offset").unwrap_or(bare.voxel);
+                values.set("offset".to_owned(), Value::Number(offset));
+                ("surface", "body")
+            }
         };
+        if reader.has("radius") && reader.has("offset") {
+            let message =
+                "an `offset` is that of a skin on the body's surface, and a `radius` dresses its points";
+            reader.log().add(Code::Conflict, &reader.site_of("offset"), message, "one of radius, offset");
+        }
         values.set(text.to_owned(), Value::Text(body));
         let part = PartSpec {
             part: PartSpec::written(&PARTS, part, values, &bare.site),

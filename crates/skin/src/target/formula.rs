@@ -20,7 +20,9 @@ impl Potential for Text {
     }
 
     fn place(&self, at: &Moment, scratch: &mut PartScratch) -> Result<(), String> {
-        *scratch = Box::new(at.time);
+        if let Some(time) = scratch.downcast_mut::<f64>() {
+            *time = at.time;
+        }
         Ok(())
     }
 

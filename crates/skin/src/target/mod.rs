@@ -125,13 +125,20 @@ impl Combine {
         }
     }
 
-    fn of(self, before: f64, value: f64, iso: f64) -> f64 {
-        match self {
+    /// Whether it makes something where there was nothing.
+    pub fn adds(self) -> bool {
+        matches!(self, Self::Blend | Self::Union)
+    }
+
+    /// `before`: nothing where no part was there.
+    fn of(self, before: Option<f64>, value: f64, iso: f64) -> Option<f64> {
+        let Some(before) = before else { return self.adds().then_some(value) };
+        Some(match self {
             Self::Blend => before + value,
             Self::Union => before.max(value),
             Self::Difference => before.min(2.0 * iso - value),
             Self::Intersection => before.min(value),
-        }
+        })
     }
 }
 
@@ -204,8 +211,9 @@ impl Target {
                 placed.map_err(|why| format!("parts[{index}]: {why}"))?;
             }
         }
-        if !self.parts.is_empty() && !scratch.there.contains(&true) {
-            return Err(format!("no part of the target is there at t = {} s", at.time));
+        let makes = |(part, is_there): (&Part, &bool)| *is_there && part.combine.adds();
+        if !self.parts.is_empty() && !self.parts.iter().zip(&scratch.there).any(makes) {
+            return Err(format!("no part of the target that adds to it is there at t = {} s", at.time));
         }
         Ok(())
     }
@@ -223,7 +231,7 @@ impl Target {
                 place = warp.undo(place);
             }
             let value = part.potential.value(place, &scratch.parts[index]);
-            sum = Some(sum.map_or(value, |before| part.combine.of(before, value, self.iso)));
+            sum = part.combine.of(sum, value, self.iso);
         }
         sum.unwrap_or(0.0) - self.iso
     }
@@ -243,19 +251,18 @@ impl Target {
         out.iter_mut().zip(points).for_each(|(out, point)| *out = self.excess(*point, scratch));
     }
 
-    /// The distance of a point from the surface, by the slope of the potential over `step`, to first order [m].
-    pub fn distance(&self, point: Vec3, step: f64, scratch: &TargetScratch) -> f64 {
+    /// The slope of the potential, by differences over `step` to both sides [1/m].
+    pub fn slope(&self, point: Vec3, step: f64, scratch: &TargetScratch) -> f64 {
         let excess = |axis: Vec3, sign: f64| self.excess(point + axis * (sign * step), scratch);
         let slope = |axis: Vec3| (excess(axis, 1.0) - excess(axis, -1.0)) / (2.0 * step);
-        let slope = Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).length();
-        self.excess(point, scratch).abs() / slope
+        Vec3::new(slope(Vec3::X), slope(Vec3::Y), slope(Vec3::Z)).length()
     }
 
     /// A box around all that is inside; `None` where it is not known.
     pub fn bounds(&self, scratch: &TargetScratch) -> Option<BoundingBox> {
         let mut all: Option<BoundingBox> = None;
         for (index, part) in self.parts.iter().enumerate() {
-            if !scratch.there[index] || matches!(part.combine, Combine::Difference) {
+            if !scratch.there[index] || !part.combine.adds() {
                 continue;
             }
             let bounds = part.potential.bounds(&scratch.parts[index])?;

@@ -22,6 +22,14 @@ pub struct Particle {
     pub during: [f64; 2],
 }
 
+impl Particle {
+    /// Where it is at a time, and its radius [m], while it is there.
+    pub fn at(&self, time: f64) -> Option<(Vec3, f64)> {
+        let is_there = self.during[0] <= time && time < self.during[1];
+        is_there.then(|| (self.position + self.velocity * time, self.radius))
+    }
+}
+
 /// Where particles are.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Particles {
@@ -170,10 +178,9 @@ impl Potential for Density {
     fn place(&self, at: &Moment, scratch: &mut PartScratch) -> Result<(), String> {
         let Some(cloud) = scratch.downcast_mut::<Cloud>() else { return Ok(()) };
         match &self.particles {
-            Particles::Led(particles) => cloud.place(particles.iter().filter_map(|particle| {
-                let there = particle.during[0] <= at.time && at.time < particle.during[1];
-                there.then(|| (particle.position + particle.velocity * at.time, particle.radius))
-            })),
+            Particles::Led(particles) => {
+                cloud.place(particles.iter().filter_map(|particle| particle.at(at.time)))
+            }
             Particles::Rows { system, rows } => {
                 let positions = at.rows.positions(*system);
                 cloud.place(rows.iter().map(|(row, radius)| (positions[*row as usize], *radius)))

@@ -48,7 +48,7 @@ pub(super) static SHAPE: PartEntry = Entry {
     summary: "a body shape by its name, such as torus, ellipsoid, bunny, liver, as it is by default or scaled",
     source: "own",
     parameters: &[
-        Parameter::text("shape", "its name, see `souple list shapes`"),
+        Parameter::text("shape", "its name, see `souple list bodies`"),
         Parameter::number("scale", "", Range::POSITIVE, "times its size by default").or(Value::Number(1.0)),
         WIDTH,
     ],

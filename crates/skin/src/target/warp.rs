@@ -113,8 +113,10 @@ impl Warp for Bend {
         self.frame.join(angle * radius, [radius - distance, b])
     }
 
+    // with c = 1 − cos(s/R) ≤ (s/R)²/2 a point at (s, a) comes to a² + 2 R (R − a) c ≤ a² + (1 + |a/R|) s²
     fn bounds(&self, bounds: BoundingBox) -> BoundingBox {
-        self.frame.ball(bounds, 1.0)
+        let across = [bounds.low, bounds.high].map(|p| self.frame.split(p).1[0].abs());
+        self.frame.ball(bounds, (1.0 + across[0].max(across[1]) * self.rate.abs()).sqrt())
     }
 }
 
@@ -148,8 +150,14 @@ impl Warp for Taper {
     }
 
     fn bounds(&self, bounds: BoundingBox) -> BoundingBox {
-        let ends = [bounds.low, bounds.high].map(|p| (1.0 + self.rate * self.frame.split(p).0).abs());
-        self.frame.ball(bounds, ends[0].max(ends[1]).clamp(1.0, THICKEST))
+        let [low, high] = [bounds.low, bounds.high].map(|p| self.frame.split(p));
+        let scale = |along: f64| (1.0 + self.rate * along).clamp(THINNEST, THICKEST);
+        let scales = [scale(low.0), scale(high.0)];
+        // what is at an end goes by the scale there, and what is between by one between
+        let spread = |c: f64| scales.map(|scale| c * scale);
+        let least = low.1.map(|c| spread(c)[0].min(spread(c)[1]));
+        let most = high.1.map(|c| spread(c)[0].max(spread(c)[1]));
+        BoundingBox { low: self.frame.join(low.0, least), high: self.frame.join(high.0, most) }
     }
 }
 

@@ -13,7 +13,7 @@ use super::{End, Refusal, did_you_mean, print_json, print_line};
 #[derive(clap::Args)]
 pub struct ListArguments {
     /// materials, laws, elements, sections, links, placements, weights, points, steppers, solvers, preconditioners,
-    /// generators, bodies, shapes, devices, formats, quantities, functions, units, colour_maps
+    /// generators, bodies, shapes, skin_parts, skin_terms, skin_warps, devices, formats, quantities, functions, units, colour_maps
     ///
     /// The kinds themselves if left out.
     kind: Option<String>,
@@ -118,6 +118,9 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("generators", pages_of(&souple_mesh::GENERATORS)),
         ("bodies", pages_of(&souple_mesh::implicit::SHAPES)),
         ("shapes", pages_of(&souple_models::contact::SHAPES)),
+        ("skin_parts", pages_of(&souple_skin::target::PARTS)),
+        ("skin_terms", pages_of(&souple_skin::strategy::TERMS)),
+        ("skin_warps", pages_of(&souple_skin::target::WARPS)),
         ("devices", pages_of(&souple_haptics::DEVICES)),
         ("formats", pages_of(&souple_io::FORMATS)),
         ("quantities", pages_of(&souple_scene::spec::quantity::QUANTITIES)),

@@ -59,7 +59,7 @@ enum Action {
         /// A table x,y,z[,radius] with commas, or a mesh file, of which the points are taken
         input: PathBuf,
         out: PathBuf,
-        /// NAME=VALUE: radius (half the distance between particles, m), voxel (the radius where left out), iso
+        /// NAME=VALUE: radius (half the distance between particles, m), voxel (the radius where left out), iso, time (of particles that move, come and go)
         parameters: Vec<String>,
         #[arg(long)]
         json: bool,
@@ -109,7 +109,8 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
-            write(&out, None, &Output::new(&skin::dressed(&input, &parameters)?), Vec::new(), json)
+            let (mesh, notes) = skin::dressed(&input, &parameters)?;
+            write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Convert { input, out, format, json } => {
             let Dataset { mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;

@@ -125,6 +125,14 @@ pub struct Arguments {
     quiet: bool,
 }
 
+impl Arguments {
+    /// Whether what is asked for is of bodies, also of those that a skin hides.
+    fn looks_inside(&self) -> bool {
+        let has_colour = self.colour.as_ref().is_some_and(|colour| colour != "none");
+        has_colour || self.cut.is_some() || self.arrows.is_some() || self.explode > 0.0 || self.shrink > 0.0
+    }
+}
+
 /// `N` finite numbers with commas.
 fn list<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
@@ -194,6 +202,9 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     if let Some(other) = &arguments.against {
         let other = Show::of_run(other, show.stage.clone())?;
         show.against(&other)?;
+    }
+    if !arguments.looks_inside() {
+        show = show.without_worn();
     }
     let view = figure::view(arguments, &show.stage)?;
     let mut figure = Figure { view: Some(view), ..figure };

@@ -175,7 +175,7 @@ pub fn dress_100k(name: &str, voxel_in_radii: f64, effort: Effort) -> Result<Vec
         let clock = Instant::now();
         let dressed = with_threads(1, || dress(&particles, voxel, 0.5))?;
         seconds.push(clock.elapsed().as_secs_f64());
-        let (surface, _) = dressed.map_err(|error| error.to_string())?;
+        let surface = dressed.map_err(|error| error.to_string())?.surface;
         volume = souple_skin::polygons::area_and_volume(&surface.points, &surface.triangles).1;
     }
     let exact = PARTICLES as f64 * (2.0 * PARTICLE).powi(3);

@@ -191,6 +191,17 @@ pub(super) const CASES: &[Case] = &[
         ..SKIN
     },
     Case {
+        id: "skin_metamorphosis_events",
+        capabilities: &["DC-4"],
+        what: "changes of topology from six lobes to two balls: the filament separates, once",
+        scene: "skin_metamorphosis",
+        reading: Reading::last("events"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "skins.shape.terms[0].strength=0",
+        ..SKIN
+    },
+    Case {
         id: "skin_untwisted",
         capabilities: &["DC-3"],
         what: "changes of topology while a twisted bundle becomes a bean",
@@ -260,6 +271,42 @@ pub(super) const CASES: &[Case] = &[
         ..SKIN
     },
     Case {
+        id: "skin_drop_spin",
+        capabilities: &["DC-1"],
+        what: "angular momentum of these masses, which starts as nothing",
+        scene: "skin_drop",
+        reading: Reading::last("spin").taking(Statistic::Max),
+        reference: 0.0,
+        // a hundred-millionth of what a hundredth of a radian per second would be, and roundings of 3200 evaluations below it
+        tolerance: Tolerance::Absolute(1e-12),
+        mutation: "networks.drop.angular_velocity=[0, 0, 0.01]",
+        ..SKIN
+    },
+    Case {
+        id: "skin_drop_pressed",
+        capabilities: &["DC-1"],
+        what: "momentum of these masses with a pressure of the skin that holds the volume against its tension",
+        scene: "skin_drop",
+        settings: &["networks.drop.skin.push.pressure=1000"],
+        reading: Reading::component("momentum", 0),
+        reference: 0.030_72,
+        tolerance: Tolerance::Relative(1e-9),
+        mutation: "networks.drop.masses.water.drag=0.001",
+        ..SKIN
+    },
+    Case {
+        id: "skin_drop_keeps_volume",
+        capabilities: &["DC-1"],
+        what: "the least volume of that drop, of what it has before it is round: tension alone presses it by a twentieth",
+        scene: "skin_drop",
+        settings: &["networks.drop.skin.push.pressure=1000"],
+        reading: Reading::last("volume").taking(Statistic::Min),
+        reference: 1.63e-3,
+        tolerance: Tolerance::Relative(0.03),
+        mutation: "networks.drop.skin.push.pressure=0",
+        ..SKIN
+    },
+    Case {
         id: "skin_thread_pinches",
         capabilities: &["DC-1"],
         what: "parts of a stretched drop's skin",
@@ -268,6 +315,41 @@ pub(super) const CASES: &[Case] = &[
         reference: 2.0,
         tolerance: Tolerance::Absolute(0.5),
         mutation: "networks.drop.masses.left.velocity=[0.2, 0, 0]",
+        ..SKIN
+    },
+    Case {
+        id: "skin_thread_parts",
+        capabilities: &["DC-1", "DC-5"],
+        what: "parts of a thread of loose masses whose skin is tense, waves longer than its girth",
+        scene: "skin_thread",
+        reading: Reading::last("components"),
+        reference: 3.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "networks.thread.skin.push.tension=0",
+        ..SKIN
+    },
+    Case {
+        id: "skin_thread_holds",
+        capabilities: &["DC-1", "DC-5"],
+        what: "parts of the same thread with waves shorter than its girth, after as long a time",
+        scene: "skin_thread",
+        settings: &["parameters.wavelength=0.25"],
+        reading: Reading::last("components"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "parameters.wavelength=0.44",
+        ..SKIN
+    },
+    Case {
+        id: "skin_thread_still",
+        capabilities: &["DC-1", "DC-5"],
+        what: "parts of the thread with the longer waves under a skin that does not pull",
+        scene: "skin_thread",
+        settings: &["networks.thread.skin.push.tension=0"],
+        reading: Reading::last("components"),
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "networks.thread.skin.push.tension=1",
         ..SKIN
     },
     Case {
@@ -320,6 +402,39 @@ pub(super) const CASES: &[Case] = &[
         reference: -2.0,
         tolerance: Tolerance::Absolute(0.15),
         mutation: "skins.ball.start[0].formula=\"0.05 - sqrt(x^2 + y^2 + z^2)\"",
+        ..SKIN
+    },
+    Case {
+        id: "skin_work_order",
+        capabilities: &["DC-8"],
+        what: "order of the nodes that a step works out, by the voxel, from 64 to 256 cells in an edge",
+        scene: "skin_ball",
+        reading: Reading::last("work").after(1),
+        refinement: Some(Refinement {
+            size_of: "voxel [m]",
+            runs: &[
+                Variant { size: 0.03125, settings: &["skins.ball.voxel=0.03125"] },
+                Variant { size: 0.007_812_5, settings: &["skins.ball.voxel=0.0078125"] },
+            ],
+            limit: Limit::Known(0.0),
+        }),
+        reference: -2.0,
+        // rows of eight nodes are worked out as wholes, which are more where the ball is few of them across
+        tolerance: Tolerance::Absolute(0.1),
+        mutation: "skins.ball.start[0].formula=\"0.05 - sqrt(x^2 + y^2 + z^2)\"",
+        ..SKIN
+    },
+    Case {
+        id: "skin_strong_rest",
+        capabilities: &["DC-6"],
+        what: "greatest speed of a skin that is drawn thirty times as strongly: it rests as well",
+        scene: "skin_at_rest",
+        settings: &["skins.peanut.terms[0].strength=30"],
+        reading: Reading::last("speed"),
+        reference: 0.0,
+        // a thousandth of the strength, as above
+        tolerance: Tolerance::Absolute(0.03),
+        mutation: "skins.peanut.parts[0].motion=[\"0.2*sin(3*t)\", 0, 0]",
         ..SKIN
     },
     Case {

@@ -172,6 +172,8 @@ pub struct Frame {
     /// Links that do not hold.
     pub torn: usize,
     pub skin_triangles: Vec<u32>,
+    /// Euler characteristic of each skin as it came.
+    pub skin_euler: Vec<i64>,
 }
 
 impl Frame {
@@ -211,8 +213,12 @@ impl Frame {
         }
         for _ in 0..skins {
             let (points, triangles) = (u32_at(at), u32_at(at + 4));
-            at += 8 + 24 * points as usize + 12 * triangles as usize;
+            let first = at + 8 + 24 * points as usize;
+            at = first + 12 * triangles as usize;
+            assert!((first..at).step_by(4).all(|corner| u32_at(corner) < points), "corners are points");
             frame.skin_triangles.push(triangles);
+            // each edge has two triangles
+            frame.skin_euler.push(i64::from(points) - i64::from(triangles / 2));
         }
         assert_eq!(at, bytes.len(), "the frame has its length");
         Some(frame)

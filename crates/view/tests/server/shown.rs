@@ -55,6 +55,32 @@ const WORN: &str = r#"
     terms = [{ term = "attraction", strength = 2.0 }]
 "#;
 
+/// A ball of skin that is drawn to two balls, and after two seconds to a ring.
+const CHANGING: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    [skins.shape]
+    voxel = 0.08
+    terms = [{ term = "attraction", strength = 4.0 }, { term = "tension", strength = 0.01 }]
+    [[skins.shape.start]]
+    part = "point"
+    at = [0, 0, 0]
+    radius = 0.7
+    [[skins.shape.parts]]
+    part = "formula"
+    formula = "0.5*clamp(1 - sqrt((abs(x) - 0.6)^2 + y^2 + z^2)/0.35, -1, 1)"
+    low = [-1, -0.4, -0.4]
+    high = [1, 0.4, 0.4]
+    during = [0, 2]
+    [[skins.shape.parts]]
+    part = "formula"
+    formula = "0.5*clamp(1 - sqrt((sqrt(x^2 + y^2) - 0.65)^2 + z^2)/0.3, -1, 1)"
+    low = [-1, -1, -0.3]
+    high = [1, 1, 0.3]
+    during = [2, 60]
+"#;
+
 /// A soft block on a floor, with nothing but its weight.
 const BLOCK: &str = r#"
     format = 1
@@ -118,6 +144,16 @@ fn skins_are_shown() {
     assert_eq!(scene["bodies"][0]["is_worn"], true);
     assert_eq!(scene["skins"][0]["worn_by"], 0);
     assert!(page.frame().skin_triangles[0] > 100);
+}
+
+/// Triangles come as they are in each frame, also where the skin has become two, and then a ring.
+#[test]
+fn skins_that_part_and_open_are_shown() {
+    let world = World::of(CHANGING);
+    let mut page = Page::open(&world);
+    assert!(page.frame_where(|frame| frame.skin_euler == [2]).time < 2.0);
+    assert!(page.frame_where(|frame| frame.skin_euler == [4]).time < 2.1);
+    assert!(page.frame_where(|frame| frame.skin_euler == [0]).time > 2.0);
 }
 
 /// Who looks inside gets the cells once and all points from then on; who looks away, those of the surface.

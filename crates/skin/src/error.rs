@@ -1,0 +1,54 @@
+//! Why a skin cannot start or go on, in words.
+
+use crate::grid::FARTHEST;
+use crate::polygons::Torn;
+use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, MOST_SUBSTEPS};
+
+/// Why a skin cannot start or go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SkinError {
+    #[error("its target cannot be placed: {0}")]
+    Target(String),
+    #[error("its target is {value} at {place:?}; expected a number")]
+    TargetNotANumber { value: f64, place: [f64; 3] },
+    #[error(
+        "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside, or smaller voxels where it is thinner than one"
+    )]
+    Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
+    #[error(
+        "its density is {most:.3} at most, and {iso} on the skin (a particle by itself comes to 0.318); expected particles nearer to each other than four times their radius, a larger radius, or a lower iso value"
+    )]
+    Sparse { most: f64, iso: f64 },
+    #[error(
+        "its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`"
+    )]
+    BeyondDomain { place: [f64; 3] },
+    #[error("its target does not say where it is; expected a `domain`")]
+    NoDomain,
+    #[error(
+        "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_SAMPLED}: larger voxels"
+    )]
+    TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },
+    #[error(
+        "the box from {low:?} to {high:?} is farther from the origin of its grid than {FARTHEST} blocks of 8 voxels of {voxel} m; expected an `origin` near it, or larger voxels"
+    )]
+    TooFar { low: [f64; 3], high: [f64; 3], voxel: f64 },
+    #[error(
+        "it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth"
+    )]
+    Grown { blocks: usize, time: f64 },
+    #[error("it left its space, {FARTHEST} blocks of 8 voxels, at t = {time} s")]
+    Runaway { time: f64 },
+    #[error("its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
+    Speed { speed: f64, place: [f64; 3], time: f64 },
+    #[error(
+        "terms[{term}] is {speed} m/s at t = {time} s, where the area is {area} m² and the volume {volume} m³; expected a number: formulas of time that have one, and goals above 0"
+    )]
+    Term { term: usize, speed: f64, area: f64, volume: f64, time: f64 },
+    #[error(
+        "a step of {timestep} s would be more than {MOST_SUBSTEPS} sub-steps of {substep:.3e} s: larger voxels, slower terms or shorter steps"
+    )]
+    TooManySubsteps { timestep: f64, substep: f64 },
+    #[error("{torn} at t = {time} s")]
+    Torn { torn: Torn, time: f64 },
+}
