@@ -187,8 +187,9 @@ impl Live {
     }
 
     fn show(&mut self, now: Instant) {
-        // a late picture does not hurry the next
-        self.next_frame = now + FRAME;
+        // a picture that is late by less than one keeps the beat; a later one does not hurry the next
+        let next = self.next_frame + FRAME;
+        self.next_frame = if next > now { next } else { now + FRAME };
         if self.hub.page_count() > 0 {
             let factor = if self.mode == Mode::Playing { self.pace.factor(now) } else { 0.0 };
             self.hub.show(&self.stage.frame(factor).into());
