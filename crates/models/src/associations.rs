@@ -1,6 +1,7 @@
 //! Every association of a law, an element with a rule of quadrature, and a cut: what the derivation can be asked for.
 
 use souple_formal::element::Cut;
+use souple_formal::law::EnergyLaw;
 use souple_mesh::{ElementKind, QuadratureRule};
 
 use crate::derive::{source_law_name, source_name};
@@ -15,14 +16,25 @@ pub struct Association {
     pub cut: Cut,
 }
 
+/// Every element with every rule; edges have no gradient in a plane or in space to derive a law on.
+pub fn variants() -> impl Iterator<Item = (ElementKind, &'static QuadratureRule)> {
+    let kinds = ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() > 1);
+    kinds.flat_map(|kind| kind.rules().iter().map(move |rule| (kind, rule)))
+}
+
+/// The laws that can be written out on an element: principal stretches have no formula.
+pub fn written_out() -> impl Iterator<Item = &'static WrittenLaw> {
+    let has_formula = |law: &&WrittenLaw| {
+        let compiled = law.text().ok().and_then(|text| EnergyLaw::compile(&text).ok());
+        compiled.is_some_and(|law| !law.uses_stretches())
+    };
+    WRITTEN_LAWS.iter().filter(has_formula)
+}
+
 impl Association {
-    /// All of them; edges have no gradient in a plane or in space to derive a law on.
+    /// All of them.
     pub fn all() -> impl Iterator<Item = Self> {
-        let variants = || {
-            let kinds = ElementKind::ALL.iter().copied().filter(|kind| kind.dimension() > 1);
-            kinds.flat_map(|kind| kind.rules().iter().map(move |rule| (kind, rule)))
-        };
-        WRITTEN_LAWS.iter().flat_map(move |law| {
+        written_out().flat_map(move |law| {
             variants()
                 .flat_map(move |(kind, rule)| Cut::every().map(move |cut| Self { law, kind, rule, cut }))
         })

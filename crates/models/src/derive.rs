@@ -4,6 +4,8 @@ use souple_formal::element::{ElementData, RestMap, Sample};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, QuadratureRule};
 
+use crate::solids::four_loop_count;
+
 /// Why an element cannot be derived so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0} has no box map; hex8 and quad4 have one")]
@@ -47,6 +49,21 @@ pub fn element_data(kind: ElementKind, rule: &QuadratureRule, map: MapKind) -> R
         samples: samples.collect(),
         map,
     })
+}
+
+/// The rule that a derivation takes where none is named: the source integrates triangles with constant strain by one sample.
+pub fn usual_rule(kind: ElementKind) -> &'static QuadratureRule {
+    if kind == ElementKind::Tri3 { &kind.rules()[0] } else { kind.default_rule() }
+}
+
+/// Operations of the tensor-mass method as it stands in its equations, four loops over the nodes: forces and differential. For the
+/// source's two laws on tetrahedra.
+pub fn four_loop_operations(kind: ElementKind, law: &str) -> Option<[usize; 2]> {
+    match (kind, law) {
+        (ElementKind::Tet4, "linear") => Some(four_loop_count(false)),
+        (ElementKind::Tet4, "st_venant_kirchhoff") => Some(four_loop_count(true)),
+        _ => None,
+    }
 }
 
 /// What rounding leaves of a zero is a zero: a term that need not be computed.

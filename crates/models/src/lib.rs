@@ -3,6 +3,7 @@
 #![allow(non_snake_case)] // symbols of the mathematics: F, P, K
 
 pub mod associations;
+pub mod battery;
 pub mod contact;
 pub mod derive;
 pub mod frames;

@@ -155,7 +155,12 @@ fn grouped_constants_are_the_law() {
         ("linear", material("linear")),
         ("st_venant_kirchhoff", material("st_venant_kirchhoff")),
         ("neo_hookean", material("neo_hookean")),
+        ("corotational", material("corotational")),
         ("fibres", text("mu/2*(I1 - 3) - mu*ln(J) + k/2*ln(J)^2 + mu/4*(exp(2*max(I4(a) - 1, 0)^2) - 1)")),
+        ("stretches", text("mu/3*(l1^3 + l2^3 + l3^3 - 3) - mu*ln(J) + k/2*(J - 1)^2")),
+        ("isochoric stretches", text("mu*J^(-2/3)*(l1^2 + l2^2 + l3^2) - 3*mu + k/2*(J - 1)^2")),
+        // an energy that is not zero at rest as written
+        ("offset", text("mu/2*I1 - mu*ln(J) + k/2*ln(J)^2")),
     ];
     for (law, material) in &laws {
         for mesh in ["tet4", "prism6", "pyramid5"].map(crooked).iter().chain([&bar("hex8"), &crooked("hex8")])

@@ -36,6 +36,14 @@ pub struct ElementExpressions {
 }
 
 impl ElementExpressions {
+    /// Operands of the expressions and of the constants in them, each written out once.
+    pub fn operands(&self, graph: &Graph) -> f64 {
+        let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = self.grouped.constants.iter().copied().unzip();
+        let named = |expr: Expr| symbols.contains(&expr);
+        graph.operands_written_out(&self.grouped.varying, named)
+            + graph.operands_written_out(&definitions, named)
+    }
+
     /// Operations per evaluation, and once.
     pub fn operations(&self, graph: &Graph) -> (Operations, Operations) {
         let definitions: Vec<Expr> =
@@ -64,7 +72,7 @@ impl Symbols {
         let mut of_nodes = |letter: &str| -> Vec<Vec<Expr>> {
             (0..element.node_count)
                 .map(|node| {
-                    let of_axis = |axis: &&str| graph.symbol(&format!("{letter}{node}{axis}"), Shape::Scalar);
+                    let of_axis = |axis: &&str| graph.own_symbol(&format!("{letter}{node}{axis}"));
                     axes[..element.dimension].iter().map(of_axis).collect()
                 })
                 .collect()
@@ -102,7 +110,7 @@ struct AtSample {
 }
 
 /// Name of the weight `ω` while a law is differentiated.
-pub(super) const WEIGHT: &str = "omega";
+pub(super) const WEIGHT: &str = "weight";
 
 pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
     let mut graph = law.graph.clone();
@@ -177,10 +185,15 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
 /// The terms of the energy times `ω`. The weight is multiplied in before differentiation, so that it meets the
 /// material constants and is grouped with them.
 pub(super) fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
-    let weight = graph.symbol(WEIGHT, Shape::Scalar);
+    let weight = graph.own_symbol(WEIGHT);
     let seeds = HashMap::from([(law.deformation, law.variation)]);
     let mut list = Vec::new();
-    for term in law.terms() {
+    for (index, term) in law.terms().into_iter().enumerate() {
+        // what makes the energy zero at rest belongs to one of them
+        let term = match law.offset() {
+            Some(offset) if index == 0 => graph.sum(&[term, offset]),
+            _ => term,
+        };
         let energy = graph.product(&[weight, term]);
         let stress = graph.gradient(energy, law.deformation);
         let differential = graph.differential(stress, &seeds);
@@ -215,7 +228,7 @@ impl Placing<'_> {
         for diagonal in [0, 4, 8] {
             deformation[diagonal] = self.graph.sum(&[deformation[diagonal], one]);
         }
-        let symbol = self.graph.symbol(WEIGHT, Shape::Scalar);
+        let symbol = self.graph.own_symbol(WEIGHT);
         let mut given = HashMap::from([(symbol, vec![weight]), (self.law.deformation, deformation)]);
         given.extend(self.directions.iter().cloned());
         let mut at = AtSample { energies: Vec::new(), forces: Vec::new(), differentials: Vec::new() };

@@ -6,10 +6,12 @@
 
 mod cut;
 mod derive;
+mod direct;
 mod steps;
 
 pub use cut::{Axis, Cut, Fragment, Sort};
 pub use derive::{Derived, ElementExpressions, Symbols};
+pub use direct::Direct;
 pub use steps::{Step, Steps};
 
 use crate::graph::WithoutFormula;
@@ -51,6 +53,14 @@ impl ElementData {
     /// The law needs principal stretches.
     pub fn derive(&self, law: &crate::law::EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
         derive::derive(self, law, cut)
+    }
+
+    /// The differential derived in physical coordinates; `None` where the element is no box with a node in each corner.
+    ///
+    /// # Errors
+    /// The law needs principal stretches.
+    pub fn derive_directly(&self, law: &crate::law::EnergyLaw) -> Result<Option<Direct>, WithoutFormula> {
+        direct::derive(self, law).transpose()
     }
 
     /// What is computed at each step, in tensors and without writing them out: any law.

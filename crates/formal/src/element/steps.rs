@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use super::derive::{Placing, Symbols, Term, WEIGHT, terms};
 use super::{Cut, ElementData, Fragment};
-use crate::graph::{Expr, Graph, Shape};
+use crate::graph::{Expr, Graph, OWN, Operations, Shape};
 use crate::law::EnergyLaw;
 
 /// Steps of an element under one law.
@@ -29,6 +29,15 @@ pub struct Step {
     /// Symbols of tensors that are computed on the way; later ones may use earlier ones.
     pub definitions: Vec<(Expr, Expr)>,
     pub outputs: Vec<Expr>,
+}
+
+impl Step {
+    /// Operations of every step.
+    pub fn operations(&self, graph: &Graph) -> Operations {
+        let definitions = self.definitions.iter().map(|(_, definition)| *definition);
+        let roots: Vec<Expr> = definitions.chain(self.outputs.iter().copied()).collect();
+        graph.operations(&roots, |_| false)
+    }
 }
 
 /// The symbols of one sample.
@@ -117,7 +126,7 @@ impl Stepping<'_> {
     }
 
     fn tensors(&mut self, sample: usize) -> Tensors {
-        let mut symbol = |letter: &str| self.graph.symbol(&format!("{letter}@{sample}"), Shape::Matrix);
+        let mut symbol = |letter: &str| self.graph.symbol(&format!("{OWN}{letter}{sample}"), Shape::Matrix);
         Tensors {
             inverse: symbol("X"),
             deformation: symbol("F"),
@@ -166,7 +175,7 @@ impl Stepping<'_> {
             .collect();
         let sum = self.graph.sum(&addends);
         let signed = if sort == Sort::Energy { weight } else { self.graph.negate(weight) };
-        let symbol = self.graph.symbol(WEIGHT, Shape::Scalar);
+        let symbol = self.graph.own_symbol(WEIGHT);
         let at_sample = HashMap::from([
             (symbol, signed),
             (self.law.deformation, tensors.deformation),

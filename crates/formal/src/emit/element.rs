@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Rust, Style, Wgsl, write};
+use super::{Rust, Style, Wgsl, symbol, write};
 use crate::element::Derived;
 use crate::graph::{Expr, Grouped};
 
@@ -21,7 +21,7 @@ pub struct Emitted {
     pub constant_count: usize,
 }
 
-/// `P0x` is `p[0][0]`, `D_3` is `d[3]`; other names are as they are.
+/// `P0x` is `p[0][0]`, `D_3` is `d[3]`; other names of the derivation are as they are.
 pub(super) fn indexed(name: &str) -> String {
     if let Some(index) =
         name.strip_prefix("D_").filter(|index| index.bytes().all(|byte| byte.is_ascii_digit()))
@@ -73,24 +73,21 @@ impl Derived {
             definitions.push(definition);
         }
         let dimension = self.displacements[0].len();
+        let style: &dyn Style = match code {
+            ElementCode::Rust => &Rust,
+            ElementCode::Wgsl => &Wgsl,
+        };
         let shape = Signature {
             nodes: self.displacements.len(),
             dimension,
             constants: constants.len(),
-            parameters: self
-                .parameters
-                .iter()
-                .filter_map(|p| Some(self.graph.symbol_of(*p)?.name.clone()))
-                .collect(),
+            parameters: self.parameters.iter().map(|p| symbol(&self.graph, *p, style)).collect(),
         };
-        let bodies = [&definitions[..], &varying[..width], &varying[width..]];
+        let bodies = [&definitions[..], &varying[..width], &varying[width..]]
+            .map(|roots| write(&self.graph, roots, style));
         let text = match code {
-            ElementCode::Rust => {
-                shape.rust(bodies.map(|roots| write(&self.graph, roots, &Rust as &dyn Style)))
-            }
-            ElementCode::Wgsl => {
-                shape.wgsl(bodies.map(|roots| write(&self.graph, roots, &Wgsl as &dyn Style)))
-            }
+            ElementCode::Rust => shape.rust(bodies),
+            ElementCode::Wgsl => shape.wgsl(bodies),
         };
         Emitted { text, constant_count: constants.len() }
     }

@@ -40,6 +40,10 @@ impl Style for Latex {
     }
 
     fn symbol(&self, name: &str) -> String {
+        self.own_symbol(&super::distinct(name, &[]))
+    }
+
+    fn own_symbol(&self, name: &str) -> String {
         let (base, index) = name.split_once('_').unwrap_or((name, ""));
         let digits = base.find(|c: char| c.is_ascii_digit()).filter(|at| *at > 0);
         let (letters, number) = digits.map_or((base, ""), |at| base.split_at(at));

@@ -52,7 +52,14 @@ impl Written {
 /// How operations are written.
 pub trait Style {
     fn number(&self, value: f64) -> String;
-    fn symbol(&self, name: &str) -> String;
+    /// A name of the law, other than those that stand beside it.
+    fn symbol(&self, name: &str) -> String {
+        distinct(name, &[])
+    }
+    /// A name that the derivation made: `P0x`, `D_3`.
+    fn own_symbol(&self, name: &str) -> String {
+        name.to_owned()
+    }
     /// Between the factors of a product.
     fn times(&self) -> &'static str {
         " * "
@@ -79,6 +86,24 @@ pub trait Style {
     }
     /// Whether squares and the like are products of a named part.
     fn powers_are_products(&self) -> bool;
+}
+
+/// How a symbol is written; empty for other expressions.
+pub fn symbol(graph: &Graph, expr: Expr, style: &dyn Style) -> String {
+    graph.symbol_of(expr).map_or_else(String::new, |symbol| match symbol.own_name() {
+        Some(own) => style.own_symbol(own),
+        None => style.symbol(&symbol.name),
+    })
+}
+
+/// A name of the law as it can stand beside names that the derivation makes and `taken` ones: with `_` behind it where it could be
+/// one of them. No two names become the same.
+fn distinct(name: &str, taken: &[&str]) -> String {
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let of_node = |text: &str| text.strip_suffix(['x', 'y', 'z']).is_some_and(digits);
+    let is_own = name.strip_prefix(['P', 'U', 'V']).is_some_and(of_node)
+        || ["t", "D_", "F_", "dF_"].iter().any(|prefix| name.strip_prefix(prefix).is_some_and(digits));
+    if is_own || name.ends_with('_') || taken.contains(&name) { format!("{name}_") } else { name.to_owned() }
 }
 
 /// Characters after which an expression gets a line of its own.
@@ -138,10 +163,7 @@ impl Writer<'_> {
                 let binding = if value < 0.0 { Binding::Sum } else { Binding::Atom };
                 Written::new(self.style.number(value), binding)
             }
-            Node::Symbol(_) => {
-                let name = self.graph.symbol_of(expr).map_or("", |symbol| symbol.name.as_str());
-                Written::atom(self.style.symbol(name))
-            }
+            Node::Symbol(_) => Written::atom(symbol(self.graph, expr, self.style)),
             Node::Sum(terms) => self.sum(terms),
             Node::Product(factors) => self.product(factors),
             Node::Scale(factor, tensor) => self.product(&[*factor, *tensor]),
@@ -178,7 +200,7 @@ impl Writer<'_> {
     }
 
     fn power(&self, base: &Written, exponent: f64) -> Written {
-        let whole = exponent.fract() == 0.0 && (1.0..=8.0).contains(&exponent);
+        let whole = exponent.fract() == 0.0 && (1.0..=64.0).contains(&exponent);
         if exponent == 1.0 {
             return base.clone();
         }

@@ -10,12 +10,25 @@ use crate::graph::Comparison;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rust;
 
+/// Arguments of the functions, and words of the language that could be names of a law.
+const TAKEN: &[&str] = &[
+    "p", "u", "v", "d", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "f64", "false", "final", "fn", "for", "gen", "impl",
+    "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return",
+    "self", "Self", "static", "struct", "super", "trait", "true", "try", "type", "typeof", "unsafe",
+    "unsized", "use", "virtual", "where", "while", "yield",
+];
+
 impl Style for Rust {
     fn number(&self, value: f64) -> String {
         format!("{value:?}")
     }
 
     fn symbol(&self, name: &str) -> String {
+        super::distinct(name, TAKEN)
+    }
+
+    fn own_symbol(&self, name: &str) -> String {
         super::element::indexed(name)
     }
 
@@ -35,6 +48,11 @@ impl Style for Rust {
     }
 
     fn function(&self, function: Function, argument: &Written) -> Written {
+        if function == Function::Sign {
+            let x = &argument.text;
+            // `signum` of zero is one
+            return Written::atom(format!("(if {x} == 0.0 {{ 0.0 }} else {{ f64::signum({x}) }})"));
+        }
         let name = FUNCTIONS.iter().find(|entry| entry.function == function).map_or("?", |entry| entry.name);
         Written::atom(format!("f64::{name}({})", argument.text))
     }

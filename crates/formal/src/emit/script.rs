@@ -6,7 +6,7 @@
 use std::fmt::Write as _;
 
 use super::text::{Text, sign_of};
-use super::{Binding, Style, Written, write};
+use super::{Binding, Style, Written, distinct, write};
 use crate::Function;
 use crate::element::{ElementData, RestMap};
 use crate::graph::{Comparison, Expr, Node};
@@ -16,13 +16,44 @@ use crate::law::{EnergyLaw, LawParameter};
 #[derive(Clone, Copy, Debug, Default)]
 struct Maxima;
 
+/// Words of the language that could be names of a law, and those of the program.
+const TAKEN: &[&str] = &[
+    "block",
+    "do",
+    "else",
+    "elseif",
+    "false",
+    "for",
+    "from",
+    "in",
+    "lambda",
+    "matrix",
+    "next",
+    "step",
+    "subst",
+    "then",
+    "thru",
+    "true",
+    "unless",
+    "while",
+    "diff",
+    "determinant",
+    "invert",
+    "genmatrix",
+    "i",
+    "j",
+    "stringout",
+];
+
 impl Style for Maxima {
     fn number(&self, value: f64) -> String {
         if value.fract() == 0.0 && value.abs() < 1e15 { format!("{value}") } else { format!("{value:e}") }
     }
 
     fn symbol(&self, name: &str) -> String {
-        name.to_owned()
+        // shape functions, axes, displacements and the steps have names of one capital letter and digits, and others in capitals
+        let is_upper = name.starts_with(|letter: char| letter.is_ascii_uppercase()) && name != "F";
+        if is_upper || name.starts_with("law_") { format!("law_{name}") } else { distinct(name, TAKEN) }
     }
 
     fn times(&self) -> &'static str {
@@ -104,11 +135,16 @@ outer_of(a, b) := a . transpose(b)$
 
 /// The program; `association` is the name of law, element and cut, uncut.
 ///
-/// Laws in principal stretches have no formula that it could use: `None`.
+/// Laws in principal stretches have no formula that it could use, and it differentiates no conditions: `None`.
 pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> Option<String> {
     let terms = law.terms();
-    let is_spectral = |expr: &Expr| matches!(law.graph.node(*expr), Node::Decompose(_) | Node::Pack(_));
-    if law.graph.reachable(&terms).iter().any(is_spectral) {
+    let is_beyond = |expr: &Expr| {
+        matches!(
+            law.graph.node(*expr),
+            Node::Decompose(_) | Node::Pack(_) | Node::Select(..) | Node::Compare(..)
+        )
+    };
+    if law.graph.reachable(&terms).iter().any(is_beyond) {
         return None;
     }
     let mut text = format!("/* {association}: batch this file with Maxima */\n{HELPERS}");
@@ -173,6 +209,7 @@ fn put_energy(text: &mut String, law: &EnergyLaw, terms: &[Expr]) {
     let _ = writeln!(text, "\n/* 4. energy density, term by term */");
     for (name, parameter) in &law.parameters {
         if let LawParameter::Direction([x, y, z]) = parameter {
+            let name = Maxima.symbol(name);
             let _ = writeln!(text, "{name}: matrix([{x:e}], [{y:e}], [{z:e}])$");
         }
     }

@@ -26,10 +26,6 @@ impl Style for Text {
         value.to_string()
     }
 
-    fn symbol(&self, name: &str) -> String {
-        name.to_owned()
-    }
-
     fn times(&self) -> &'static str {
         "*"
     }

@@ -42,7 +42,7 @@ impl Graph {
                             Shape::Vector => format!("{}_{index}", symbol.name),
                             _ => format!("{}_{}{}", symbol.name, index % 3, index / 3),
                         };
-                        self.symbol(&name, Shape::Scalar)
+                        self.own_symbol(&name)
                     })
                     .collect()
             }

@@ -17,11 +17,6 @@ pub struct Grouped {
     pub varying: Vec<Expr>,
 }
 
-/// Name of the symbol of a grouped constant.
-pub(crate) fn constant_name(index: usize) -> String {
-    format!("D_{index}")
-}
-
 struct Extraction<'a> {
     graph: &'a mut Graph,
     varies: Vec<bool>,
@@ -78,7 +73,7 @@ impl Extraction<'_> {
         if let Some(symbol) = self.symbols.get(&expr) {
             return *symbol;
         }
-        let symbol = self.graph.symbol(&constant_name(self.constants.len()), Shape::Scalar);
+        let symbol = self.graph.own_symbol(&format!("D_{}", self.constants.len()));
         self.constants.push((symbol, expr));
         self.symbols.insert(expr, symbol);
         symbol

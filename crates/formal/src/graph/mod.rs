@@ -176,6 +176,16 @@ pub struct Symbol {
     pub shape: Shape,
 }
 
+/// Before the names of symbols that the derivation makes: no name that is written in a law has it.
+pub(crate) const OWN: char = '@';
+
+impl Symbol {
+    /// The name of a symbol that the derivation made.
+    pub(crate) fn own_name(&self) -> Option<&str> {
+        self.name.strip_prefix(OWN)
+    }
+}
+
 /// Expressions over symbols, each stored once.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
@@ -183,6 +193,17 @@ pub struct Graph {
     shapes: Vec<Shape>,
     known: HashMap<Node, Expr>,
     symbols: Vec<Symbol>,
+    /// Transposes, determinants and cofactors of products made so far: a factor that stands in a product many times is gone
+    /// into once.
+    of_products: HashMap<(OfProduct, Expr), Expr>,
+}
+
+/// What distributes over the factors of a product of matrices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum OfProduct {
+    Transpose,
+    Determinant,
+    Cofactor,
 }
 
 impl Graph {
@@ -219,6 +240,11 @@ impl Graph {
         });
         assert_eq!(self.symbols[index].shape, shape, "the symbol `{name}` has another shape");
         self.intern(Node::Symbol(index as u32), shape)
+    }
+
+    /// The number of that name that a derivation makes beside those that are written.
+    pub(crate) fn own_symbol(&mut self, name: &str) -> Expr {
+        self.symbol(&format!("{OWN}{name}"), Shape::Scalar)
     }
 
     /// The name and shape of a symbol; `None` for other expressions.

@@ -31,6 +31,9 @@ impl Graph {
                 },
             }
         }
+        if shape == Shape::Matrix {
+            self.collect_multiples_of_identity(&mut collected);
+        }
         let mut sum = Vec::with_capacity(collected.len() + 1);
         if constant != 0.0 {
             sum.push(self.number(constant));
@@ -47,6 +50,35 @@ impl Graph {
                 sum.sort_unstable();
                 self.intern(Node::Sum(sum.into()), shape)
             }
+        }
+    }
+
+    /// `s I + t I` is `(s + t) I`: one term.
+    fn collect_multiples_of_identity(&mut self, collected: &mut BTreeMap<Expr, f64>) {
+        let factor_of = |graph: &Self, rest: Expr| match graph.node(rest) {
+            Node::Identity => Some(None),
+            Node::Scale(factor, tensor) if *graph.node(*tensor) == Node::Identity => Some(Some(*factor)),
+            _ => None,
+        };
+        let multiples: Vec<(Expr, Option<Expr>)> =
+            collected.keys().filter_map(|rest| Some((*rest, factor_of(self, *rest)?))).collect();
+        if multiples.len() < 2 {
+            return;
+        }
+        let mut factors = Vec::with_capacity(multiples.len());
+        for (rest, factor) in multiples {
+            let coefficient = collected.remove(&rest).unwrap_or_default();
+            factors.push(match factor {
+                Some(factor) => self.times_number(coefficient, factor),
+                None => self.number(coefficient),
+            });
+        }
+        let (factor, identity) = (self.sum(&factors), self.identity());
+        let multiple = self.scale(factor, identity);
+        if !self.is_zero(multiple)
+            && let (coefficient, Some(rest)) = self.split_coefficient(multiple)
+        {
+            collected.insert(rest, coefficient);
         }
     }
 

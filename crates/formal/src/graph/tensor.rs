@@ -3,9 +3,30 @@
 //! Factors move out, transposes move in (so a matrix is symmetric where its transpose is the same [`Expr`]), traces and
 //! products of dyads become dot products, determinants and cofactors of products become products.
 
-use super::{Expr, Graph, Node, Shape};
+use super::{Expr, Graph, Node, OfProduct, Shape};
+
+/// Factors of a product that is applied to a vector one after the other; longer ones are computed first.
+const FACTORS_APPLIED: usize = 16;
 
 impl Graph {
+    /// What is made of a product, made once.
+    fn of_product(&mut self, what: OfProduct, product: Expr, make: impl FnOnce(&mut Self) -> Expr) -> Expr {
+        if let Some(made) = self.of_products.get(&(what, product)) {
+            return *made;
+        }
+        let made = make(self);
+        self.of_products.insert((what, product), made);
+        made
+    }
+
+    /// Whether a matrix is a product of at most so many factors; what is left of them.
+    fn factors_left(&self, matrix: Expr, most: usize) -> Option<usize> {
+        match self.node(matrix) {
+            Node::Multiply(a, b) => self.factors_left(*b, self.factors_left(*a, most)?),
+            _ => most.checked_sub(1),
+        }
+    }
+
     pub fn identity(&mut self) -> Expr {
         self.intern(Node::Identity, Shape::Matrix)
     }
@@ -78,7 +99,7 @@ impl Graph {
         self.bilinear(matrix, vector, |graph, matrix, vector| match *graph.node(matrix) {
             Node::Identity => vector,
             // (A B) v = A (B v): two products with a vector instead of one with a matrix
-            Node::Multiply(a, b) => {
+            Node::Multiply(a, b) if graph.factors_left(matrix, FACTORS_APPLIED).is_some() => {
                 let inner = graph.apply(b, vector);
                 graph.apply(a, inner)
             }
@@ -102,10 +123,10 @@ impl Graph {
                 let terms: Vec<Expr> = terms.iter().map(|term| self.transpose(*term)).collect();
                 self.sum(&terms)
             }
-            Node::Multiply(a, b) => {
-                let (a, b) = (self.transpose(a), self.transpose(b));
-                self.multiply(b, a)
-            }
+            Node::Multiply(a, b) => self.of_product(OfProduct::Transpose, matrix, |graph| {
+                let (a, b) = (graph.transpose(a), graph.transpose(b));
+                graph.multiply(b, a)
+            }),
             Node::Outer(u, v) => self.outer(v, u),
             Node::Pack(entries) => {
                 let entries: Vec<Expr> = (0..9).map(|i| entries[(i % 3) * 3 + i / 3]).collect();
@@ -186,10 +207,10 @@ impl Graph {
                 let (cube, inner) = (self.power_number(factor, 3.0), self.determinant(inner));
                 self.product(&[cube, inner])
             }
-            Node::Multiply(a, b) => {
-                let (a, b) = (self.determinant(a), self.determinant(b));
-                self.product(&[a, b])
-            }
+            Node::Multiply(a, b) => self.of_product(OfProduct::Determinant, matrix, |graph| {
+                let (a, b) = (graph.determinant(a), graph.determinant(b));
+                graph.product(&[a, b])
+            }),
             Node::Transpose(inner) => self.determinant(inner),
             _ => self.intern(Node::Determinant(matrix), Shape::Scalar),
         }
@@ -203,10 +224,10 @@ impl Graph {
                 let (square, inner) = (self.power_number(factor, 2.0), self.cofactor(inner));
                 self.scale(square, inner)
             }
-            Node::Multiply(a, b) => {
-                let (a, b) = (self.cofactor(a), self.cofactor(b));
-                self.multiply(a, b)
-            }
+            Node::Multiply(a, b) => self.of_product(OfProduct::Cofactor, matrix, |graph| {
+                let (a, b) = (graph.cofactor(a), graph.cofactor(b));
+                graph.multiply(a, b)
+            }),
             Node::Transpose(inner) => {
                 let inner = self.cofactor(inner);
                 self.transpose(inner)

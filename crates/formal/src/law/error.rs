@@ -45,7 +45,7 @@ pub enum LawProblem {
     #[error("at rest (F = I) this has no finite value: {reason}")]
     NoValueAtRest { reason: String },
     #[error(
-        "at rest (F = I) this has a corner: the stress jumps there; a smooth form such as a square is accepted"
+        "at rest (F = I) this has a corner: the stress jumps there, or rises without bound; a smooth form such as a square is accepted"
     )]
     CornerAtRest,
     #[error(

@@ -13,7 +13,7 @@ pub use error::{LawError, LawProblem};
 pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};
 
 use crate::Dimension;
-use crate::graph::{Expr, Graph, Node, Shape};
+use crate::graph::{Expr, Graph, Grouped, Node, Shape};
 
 /// A law as written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -116,17 +116,44 @@ impl EnergyLaw {
 
     /// The addends of the energy; an offset, which makes no force, is none.
     pub fn terms(&self) -> Vec<Expr> {
-        let terms = match self.graph.node(self.energy) {
-            Node::Sum(terms) => terms.to_vec(),
-            _ => vec![self.energy],
-        };
-        terms.into_iter().filter(|term| self.graph.value(*term).is_none()).collect()
+        self.addends().filter(|term| self.graph.value(*term).is_none()).collect()
+    }
+
+    /// Whether it is written in principal stretches, which have no formula.
+    pub fn uses_stretches(&self) -> bool {
+        let is_spectral = |expr: &Expr| matches!(self.graph.node(*expr), Node::Decompose(_));
+        self.graph.reachable(&[self.energy]).iter().any(is_spectral)
+    }
+
+    /// The number among the addends of the energy.
+    pub fn offset(&self) -> Option<Expr> {
+        self.addends().find(|term| self.graph.value(*term).is_some())
+    }
+
+    fn addends(&self) -> impl Iterator<Item = Expr> {
+        match self.graph.node(self.energy) {
+            Node::Sum(terms) => terms.iter(),
+            _ => std::slice::from_ref(&self.energy).iter(),
+        }
+        .copied()
     }
 
     /// The numbers of a parameter.
     pub fn parameter(&self, name: &str) -> Option<&LawParameter> {
         self.parameters.iter().find(|(known, _)| known == name).map(|(_, parameter)| parameter)
     }
+}
+
+/// A formula whose constants are grouped: every name in it is a number, and those of `variables` vary.
+///
+/// # Errors
+/// As a law's: the place and what would be accepted.
+pub fn group_constants(formula: &str, variables: &[String]) -> Result<(Graph, Grouped), LawError> {
+    let (mut graph, root, symbols) = read::read_formula(formula)?;
+    let variables: Vec<Expr> =
+        symbols.iter().filter(|(name, _)| variables.contains(name)).map(|(_, symbol)| *symbol).collect();
+    let grouped = graph.group_constants(&[root], &variables);
+    Ok((graph, grouped))
 }
 
 #[cfg(test)]

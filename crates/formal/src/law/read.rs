@@ -13,6 +13,9 @@ use crate::{
 /// Parts of a law at most: derivatives of long products grow with the square.
 const LARGEST: usize = 4000;
 
+/// The same of what its parts are made of: products of products grow with every one.
+const LARGEST_GRAPH: usize = 20_000;
+
 /// A law that has been read.
 pub(super) struct Read {
     pub graph: Graph,
@@ -56,16 +59,7 @@ struct Reader<'a> {
 
 pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
     check_names(text)?;
-    let mut reader = Reader {
-        text,
-        graph: Graph::new(),
-        origins: HashMap::new(),
-        defined: HashMap::new(),
-        open: Vec::new(),
-        used: Vec::new(),
-        uses_small_strain: false,
-        nodes: 0,
-    };
+    let mut reader = Reader::new(text);
     // the earliest expression, so that everything that varies with it comes later
     reader.graph.symbol(super::DEFORMATION, Shape::Matrix);
     let (energy, span) = reader.part("energy", &text.energy)?;
@@ -81,6 +75,7 @@ pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
         let wanted = format!("an energy per volume, which is {}", pressure.describe());
         return Err(fail(LawProblem::WrongUnit { found: describe_units(units), wanted }));
     }
+    let uses_small_strain = reader.uses_small_strain;
     // definitions that the energy does not use are read too, so that faults in them are told
     for (name, _) in &text.definitions {
         reader.definition(name, Span::new(0, 0))?;
@@ -91,8 +86,37 @@ pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
         .filter(|(_, name)| !reader.used.contains(name))
         .map(|(kind, name)| format!("the {kind} `{name}` is used nowhere"))
         .collect();
-    let Reader { graph, origins, uses_small_strain, .. } = reader;
+    let Reader { graph, origins, .. } = reader;
     Ok(Read { graph, energy: energy.expr, uses_small_strain, warnings, origins })
+}
+
+/// A formula of numbers, and the symbols of its names.
+pub(super) fn read_formula(formula: &str) -> Result<(Graph, Expr, Vec<(String, Expr)>), LawError> {
+    let expression = Expression::parse(formula)
+        .map_err(|error| LawError::new("formula", Some(error.span()), LawProblem::Syntax(error)))?;
+    let mut names: Vec<String> = Vec::new();
+    for node in expression.nodes() {
+        if let NodeKind::Name(name) = &node.kind
+            && !names.contains(&name.to_string())
+        {
+            names.push(name.to_string());
+        }
+    }
+    let number = |name: &String| (name.clone(), LawParameter::Number { value: 0.0, dimension: None });
+    let text = LawText { parameters: names.iter().map(number).collect(), ..LawText::default() };
+    let mut reader = Reader::new(&text);
+    let (value, span) = reader.part("formula", formula)?;
+    if value.kind != Kind::Tensor(Shape::Scalar) {
+        let problem = LawProblem::WrongShape { found: describe(value.kind), wanted: "a number".to_owned() };
+        return Err(LawError::new("formula", Some(span), problem));
+    }
+    let mut graph = reader.graph;
+    let symbols = names.into_iter().map(|name| {
+        let symbol = graph.symbol(&name, Shape::Scalar);
+        (name, symbol)
+    });
+    let symbols = symbols.collect();
+    Ok((graph, value.expr, symbols))
 }
 
 fn check_names(text: &LawText) -> Result<(), LawError> {
@@ -133,7 +157,20 @@ fn check_names(text: &LawText) -> Result<(), LawError> {
     Ok(())
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    fn new(text: &'a LawText) -> Self {
+        Self {
+            text,
+            graph: Graph::new(),
+            origins: HashMap::new(),
+            defined: HashMap::new(),
+            open: Vec::new(),
+            used: Vec::new(),
+            uses_small_strain: false,
+            nodes: 0,
+        }
+    }
+
     /// Reads one text; the place is that of the whole.
     fn part(&mut self, part: &str, text: &str) -> Result<(Value, Span), LawError> {
         let fail = |span, problem| LawError::new(part, Some(span), problem);
@@ -156,6 +193,10 @@ impl Reader<'_> {
                 Fault::Elsewhere(error) => error,
             })?;
             self.origins.entry(value.expr).or_insert_with(|| (part.to_owned(), node.span));
+            if self.graph.len() > LARGEST_GRAPH {
+                let problem = LawProblem::TooLarge { nodes: self.graph.len(), limit: LARGEST_GRAPH };
+                return Err(fail(node.span, problem));
+            }
             values.push(value);
         }
         let root = expression.root();

@@ -149,6 +149,7 @@ fn bad_laws_are_told_where_and_why() {
         ("mu/(J - 1)", "mu/(J - 1)", "division by zero"),
         ("mu*ln(J - 1)", "ln(J - 1)", "ln of 0"),
         ("mu*(l1 - 1)^2", "l1", "order of the principal stretches"),
+        ("mu*(I1_bar - 3)^2.5 + mu*(J - 1)^2", "(I1_bar - 3)^2.5", "that is not whole"),
         ("mu*3", "", "does not change"),
         ("mu*(C*[1, 0])", "[1, 0]", "three numbers"),
         ("mu*tr(J)", "J", "3x3 tensor"),
@@ -185,6 +186,68 @@ fn bad_parts_are_told() {
     }
     assert!(refused(&text("mu*(J-1)^2", &[("mu", 1.0), ("mu", 2.0)])).to_string().contains("twice"));
     assert!(refused(&text("mu*(J-1)^2", &[("mu", f64::NAN)])).to_string().contains("finite"));
+}
+
+/// Small strain knows small turns only: what they change is refused as large ones are elsewhere, whatever definitions beside
+/// the energy say.
+#[test]
+fn small_strain_is_no_excuse() {
+    let told = |energy: &str| refused(&text(energy, &[("mu", 1.0)])).to_string();
+    assert!(told("mu*dot(eps, eps) + mu*eps11*F23").contains("a rotation changes"));
+    let mut unused = text("mu*(I1 - 3 - 2*ln(J)) + mu*(F11 - 1)^2", &[("mu", 1.0)]);
+    unused.definitions.push(("e".to_owned(), "tr(eps)".to_owned()));
+    assert!(refused(&unused).to_string().contains("a rotation changes"));
+    // the volume sees turns in higher orders only
+    law("mu*dot(eps, eps) + mu*(J - 1)^2", &[("mu", 1.0)]);
+}
+
+/// What changes where the volume is that of rest is not called a matter of rotation.
+#[test]
+fn volumes_are_not_rotations() {
+    law("mu*(I1_bar - 3)*if(J > 1, 1, 2) + mu*(J - 1)^2", &[("mu", 1.0)]);
+}
+
+/// The source's worked example as text: `D_0` is the bracket, wherever and in whatever order it stands, and `D_1` holds it.
+#[test]
+fn constants_of_a_formula() {
+    let variables = ["U0x", "U0y"].map(str::to_owned);
+    let (graph, grouped) = group_constants("(P1x - P1y)*U0x + U0y*p0*(-P1y + P1x)", &variables).unwrap();
+    let written = |roots: &[Expr]| crate::emit::write(&graph, roots, &crate::emit::Text).1;
+    let constants: Vec<Expr> = grouped.constants.iter().map(|(_, definition)| *definition).collect();
+    assert_eq!(written(&constants), ["P1x_ - P1y_", "p0*D_0"]);
+    assert_eq!(written(&grouped.varying), ["D_0*U0x_ + D_1*U0y_"]);
+    let error = group_constants("a +* b", &[]).unwrap_err();
+    assert_eq!(error.span, Some(Span::new(3, 4)));
+}
+
+/// Laws that are flat at rest are laws.
+#[test]
+fn flat_laws_are_objective() {
+    law("mu*(J - 1)^4", &[("mu", 1e6)]);
+    law("mu*min(J - 1, 1 - J, 0)^2", &[("mu", 1e6)]);
+    let error = refused(&text("mu*(J - 1)^4 + mu*F12^4", &[("mu", 1e6)]));
+    assert!(error.to_string().contains("a rotation changes"), "{error}");
+}
+
+/// Products of products are gone into once: eight powers of powers are read as fast as one, or refused as too large.
+#[test]
+fn towers_of_powers_are_answered() {
+    let tower = |levels: usize| (0..levels).fold("C".to_owned(), |inner, _| format!("({inner})^8"));
+    for energy in [
+        format!("mu*tr({})", tower(8)),
+        format!("mu*det({}) - mu", tower(8)),
+        format!("mu*tr(inv({}))", tower(8)),
+        format!("mu*dot([1, 0, 0], {}*[1, 0, 0])", tower(8)),
+    ] {
+        // none of them is at rest without stress
+        refused(&text(&energy, &[("mu", 1.0)]));
+    }
+    let mut chain = text("mu*tr(A30)", &[("mu", 1.0)]);
+    for level in 1..=30 {
+        let below = if level == 1 { "C".to_owned() } else { format!("A{}", level - 1) };
+        chain.definitions.push((format!("A{level}"), format!("{below}*{below}")));
+    }
+    refused(&chain);
 }
 
 /// Ten megabytes, deep nesting and long products are answered at once.

@@ -403,28 +403,46 @@ impl Lowering<'_> {
             let power = self.whole_power(at, value.abs() as u8);
             return if value < 0.0 { self.reciprocal(power) } else { power };
         }
-        // powers of one base that differ by whole exponents cost one transcendental function
+        // powers of one base that differ by whole exponents cost one transcendental function: that of the exponent nearest to
+        // zero, and from there away from it, so that zero to the power of a half is not zero over zero
+        let nearest = self.nearest_to_zero(base, value);
         let known = self.powers.get(&base).and_then(|known| {
-            known
-                .iter()
-                .copied()
-                .find(|(known, _)| (value - known).fract() == 0.0 && (value - known).abs() <= 4.0)
+            known.iter().copied().find(|(known, _)| {
+                (value - known).fract() == 0.0 && (known / value > 0.0 && known.abs() <= value.abs())
+            })
         });
-        let place = match known {
-            Some((known, place)) => {
-                let power = self.whole_power(at, (value - known).abs() as u8);
-                let code = if value < known { Code::Divide } else { Code::Multiply };
-                self.emit(code, 1, 1, &[place, power])
-            }
-            _ if value == 0.5 => self.emit(Code::SquareRoot, 1, 1, &[at]),
-            _ if value == -0.5 => {
-                let root = self.emit(Code::SquareRoot, 1, 1, &[at]);
-                self.reciprocal(root)
-            }
-            _ => {
-                let exponent = self.number(value);
-                self.emit(Code::Power, 1, 1, &[at, exponent])
-            }
+        let (start, place) = match known {
+            Some(known) => known,
+            None => (nearest, self.transcendental_power(base, at, nearest)),
+        };
+        if start == value {
+            return place;
+        }
+        let power = self.whole_power(at, (value - start).abs() as u8);
+        let code = if value < 0.0 { Code::Divide } else { Code::Multiply };
+        self.emit(code, 1, 1, &[place, power])
+    }
+
+    /// Of the exponents of `base` that differ from `value` by a small whole number and have its sign, the least.
+    fn nearest_to_zero(&self, base: Expr, value: f64) -> f64 {
+        let of_base = |expr: &Expr| match *self.graph.node(*expr) {
+            Node::Power(other, exponent) if other == base => self.graph.value(exponent),
+            _ => None,
+        };
+        let near = |exponent: &f64| {
+            (value - exponent).fract() == 0.0 && (value - exponent).abs() <= 4.0 && exponent / value > 0.0
+        };
+        let exponents = self.reachable.iter().filter_map(of_base).filter(near);
+        exponents.fold(value, |least, other| if other.abs() < least.abs() { other } else { least })
+    }
+
+    fn transcendental_power(&mut self, base: Expr, at: Place, value: f64) -> Place {
+        let place = if value.abs() == 0.5 {
+            let root = self.emit(Code::SquareRoot, 1, 1, &[at]);
+            if value < 0.0 { self.reciprocal(root) } else { root }
+        } else {
+            let exponent = self.number(value);
+            self.emit(Code::Power, 1, 1, &[at, exponent])
         };
         // what is computed with a variation cannot serve what is computed before it
         if self.part == 0 {

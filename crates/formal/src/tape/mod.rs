@@ -127,11 +127,11 @@ impl Tape {
                 .iter()
                 .find_map(|(name, parameter)| {
                     // `a`, or its components `a_0`, `a_1`, `a_2`
-                    let rest = symbol.name.strip_prefix(name.as_str())?;
-                    if rest.is_empty() {
-                        return Some(parameter.numbers());
-                    }
-                    let index: usize = rest.strip_prefix('_')?.parse().ok()?;
+                    let Some(component) = symbol.own_name() else {
+                        return (symbol.name == *name).then(|| parameter.numbers());
+                    };
+                    let index = component.strip_prefix(name.as_str())?.strip_prefix('_')?;
+                    let index: usize = index.parse().ok()?;
                     parameter.numbers().get(index..=index)
                 })
                 .unwrap_or_else(|| unreachable!("`{}` is neither an input nor of a direction", symbol.name))

@@ -67,11 +67,11 @@ impl<'a, S: Simd, const N: usize> Group<'a, S, N> {
         Lanes::load(self.simd, &block.0[self.lane..self.lane + S::F64_LANES])
     }
 
-    /// Asks for the samples of the block `ahead` of this one, once for all groups of a block.
+    /// Asks for a sample of the block `ahead` of this one, once for all groups of a block.
     #[inline(always)]
-    pub fn prefetch(&self, ahead: usize) {
+    pub fn prefetch(&self, ahead: usize, sample: usize) {
         if self.lane == 0 {
-            self.chunk.prefetch(self.block + ahead, self.samples);
+            self.chunk.prefetch((self.block + ahead) * self.samples + sample);
         }
     }
 

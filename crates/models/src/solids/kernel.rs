@@ -150,11 +150,11 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Forces<'_, L, G, N> {
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
-            group.prefetch(AHEAD);
             let x = group.gather(self.positions);
             let mut f = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
+                group.prefetch(AHEAD, sample);
                 let reference = &self.reference[sample * N..(sample + 1) * N];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;
@@ -184,11 +184,11 @@ impl<L: Law, G: Geometry, const N: usize> WithSimd for Differential<'_, L, G, N>
     fn with_simd<S: Simd>(self, simd: S) {
         let samples = G::SAMPLES.unwrap_or(self.reference.len() / N);
         for_each_group!(simd, self.chunk, N, samples, 0..self.chunk.block_count(), N, |group| {
-            group.prefetch(AHEAD);
             let (x, dx) = (group.gather(self.positions), group.gather(self.delta));
             let mut df = group.zeros();
             let parameters = group.parameters::<L::Parameters<Lanes<S>>>();
             for sample in 0..samples {
+                group.prefetch(AHEAD, sample);
                 let reference = &self.reference[sample * N..(sample + 1) * N];
                 let (inverse, volume) = group.sample(sample);
                 let F = G::gradient(&x, reference) * inverse;

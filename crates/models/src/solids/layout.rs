@@ -135,12 +135,12 @@ impl Chunk {
         &self.samples
     }
 
-    /// Asks for the numbers of the samples of a block, if there is one, before they are used: they are read once a pass
-    /// from far away, and elements are done faster than the processor's own guesses bring them.
+    /// Asks for the numbers of the samples in row `row`, which counts samples block after block, if there are any, before they
+    /// are used: they are read once a pass from far away, and elements are done faster than the processor's own guesses bring
+    /// them.
     #[inline(always)]
-    pub fn prefetch(&self, block: usize, samples: usize) {
-        let start = block * samples * SAMPLE_LEN;
-        if let Some(lines) = self.samples.get(start..start + samples * SAMPLE_LEN) {
+    pub fn prefetch(&self, row: usize) {
+        if let Some(lines) = self.samples.get(row * SAMPLE_LEN..(row + 1) * SAMPLE_LEN) {
             for line in lines {
                 souple_math::prefetch(line);
             }

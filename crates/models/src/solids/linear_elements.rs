@@ -37,7 +37,7 @@ impl Geometry for Hexahedron {
 
     // sums and differences along ξ, then η, then ζ
     #[inline(always)]
-    fn to_parts<R: Real>(x: &mut [Vec3<R>]) {
+    fn to_parts<R: Real>(x: &mut [Vec3<R>], _: &[Vec3]) {
         let eighth = x[0].x.splat(0.125);
         let ((sum_0, xi_0), (sum_1, xi_1)) = (butterfly(x[0], x[1]), butterfly(x[3], x[2]));
         let ((sum_2, xi_2), (sum_3, xi_3)) = (butterfly(x[4], x[5]), butterfly(x[7], x[6]));
@@ -89,7 +89,7 @@ impl Geometry for Hexahedron {
     }
 
     #[inline(always)]
-    fn to_nodes<R: Real>(f: &mut [Vec3<R>]) {
+    fn to_nodes<R: Real>(f: &mut [Vec3<R>], _: &[Vec3]) {
         let eighth = f[0].x.splat(0.125);
         let (eta, top_eta) = (f[2] - f[4], f[2] + f[4]);
         let ((top_xi, xi), (top_xi_eta, xi_eta)) = (back(f[1], f[5]), back(f[6], f[7]));
@@ -122,7 +122,7 @@ impl Geometry for Prism {
     }
 
     #[inline(always)]
-    fn to_parts<R: Real>(x: &mut [Vec3<R>]) {
+    fn to_parts<R: Real>(x: &mut [Vec3<R>], _: &[Vec3]) {
         let half = x[0].x.splat(0.5);
         let (xi, eta) = (x[1] - x[0], x[2] - x[0]);
         let (top_xi, top_eta) = (x[4] - x[3], x[5] - x[3]);
@@ -161,7 +161,7 @@ impl Geometry for Prism {
     }
 
     #[inline(always)]
-    fn to_nodes<R: Real>(f: &mut [Vec3<R>]) {
+    fn to_nodes<R: Real>(f: &mut [Vec3<R>], _: &[Vec3]) {
         let half = f[0].x.splat(0.5);
         let ((top_xi, xi), (top_eta, eta)) = (back(f[1], f[4]), back(f[2], f[5]));
         let zeta = f[3] * half;
@@ -185,7 +185,7 @@ impl Geometry for Pyramid {
     }
 
     #[inline(always)]
-    fn to_parts<R: Real>(x: &mut [Vec3<R>]) {
+    fn to_parts<R: Real>(x: &mut [Vec3<R>], _: &[Vec3]) {
         let quarter = x[0].x.splat(0.25);
         let ((sum_0, xi_0), (sum_1, xi_1)) = (butterfly(x[0], x[1]), butterfly(x[3], x[2]));
         let ((sum, eta), (xi, r)) = (butterfly(sum_0, sum_1), butterfly(xi_0, xi_1));
@@ -220,7 +220,7 @@ impl Geometry for Pyramid {
     }
 
     #[inline(always)]
-    fn to_nodes<R: Real>(f: &mut [Vec3<R>]) {
+    fn to_nodes<R: Real>(f: &mut [Vec3<R>], _: &[Vec3]) {
         let quarter = f[0].x.splat(0.25);
         let apex = f[3];
         let ((far, near), (far_xi, near_xi)) = (back(-apex, f[2]), back(f[1], f[4]));
@@ -235,40 +235,19 @@ impl Geometry for Pyramid {
 
 #[cfg(test)]
 mod tests {
-    use super::super::geometry::AnyElement;
+    use super::super::geometry::assert_parts_are_nodes;
     use super::*;
-
-    fn wave(i: usize) -> Vec3 {
-        let i = i as f64;
-        Vec3::new((1.3 * i + 0.2).sin(), (2.1 * i - 0.4).cos(), (0.7 * i + 1.1).sin())
-    }
-
-    /// Gradients and forces by parts are those by nodes, at the samples of every rule.
-    fn parts_are_nodes<G: Geometry>(kind: ElementKind) {
-        let count = kind.node_count();
-        let stress = Mat3::from_columns(wave(20), wave(21), wave(22));
-        for point in kind.rules().iter().flat_map(|rule| &rule.points) {
-            let (shape, numbers) = (kind.shape_gradients(point.position), G::numbers(kind, point.position));
-            let nodes: Vec<Vec3> = (0..count).map(wave).collect();
-            let mut parts = nodes.clone();
-            G::to_parts(&mut parts);
-            let off = G::gradient(&parts, &numbers) - AnyElement::gradient(&nodes, &shape);
-            // a dozen roundings of numbers of some units
-            assert!(off.largest_entry() < 1e-13, "{kind} {:?}", point.position);
-            let (mut forces, mut expected) = (vec![Vec3::ZERO; count], vec![Vec3::ZERO; count]);
-            G::spread(&stress, &numbers, &mut forces);
-            G::to_nodes(&mut forces);
-            AnyElement::spread(&stress, &shape, &mut expected);
-            for (force, expected) in forces.iter().zip(&expected) {
-                assert!((*force - *expected).length() < 1e-13, "{kind} {:?}", point.position);
-            }
-        }
-    }
 
     #[test]
     fn fields_by_parts_are_fields_by_nodes() {
-        parts_are_nodes::<Hexahedron>(ElementKind::Hex8);
-        parts_are_nodes::<Prism>(ElementKind::Prism6);
-        parts_are_nodes::<Pyramid>(ElementKind::Pyramid5);
+        for (kind, check) in [
+            (ElementKind::Hex8, assert_parts_are_nodes::<Hexahedron> as fn(ElementKind, &[Vec3])),
+            (ElementKind::Prism6, assert_parts_are_nodes::<Prism>),
+            (ElementKind::Pyramid5, assert_parts_are_nodes::<Pyramid>),
+        ] {
+            for rule in kind.rules() {
+                check(kind, &rule.points.iter().map(|point| point.position).collect::<Vec<_>>());
+            }
+        }
     }
 }

@@ -3,6 +3,7 @@
 mod adaptive;
 mod assembly;
 mod difference;
+mod eight_samples;
 mod elements;
 mod formulation;
 mod geometry;
@@ -35,6 +36,7 @@ use souple_solve::BlockMatrix;
 
 use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters};
 use assembly::{Assembly, Symmetry};
+use eight_samples::EightSamples;
 use elements::{Batch, Elements, Sorting};
 use geometry::{AnyElement, Tetrahedron};
 use kernel::{Kernel, LawKernel};
@@ -47,6 +49,7 @@ use staged::Staged;
 
 pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
 pub use difference::DifferencedForce;
+pub(crate) use formulation::four_loop_count;
 pub use formulation::{BuildFormulation, FORMULATIONS, FormulationError};
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass, uniform_mass};
@@ -260,6 +263,9 @@ fn staged(kind: ElementKind, rule: &QuadratureRule, law: Box<dyn SampleLaw>) -> 
         ElementKind::Tet4 => Box::new(Staged::<Tetrahedron, 4>::new(law, kind, rule)),
         ElementKind::Pyramid5 => Box::new(Staged::<Pyramid, 5>::new(law, kind, rule)),
         ElementKind::Prism6 => Box::new(Staged::<Prism, 6>::new(law, kind, rule)),
+        ElementKind::Hex8 if EightSamples::fit(rule) => {
+            Box::new(Staged::<EightSamples, 12>::new(law, kind, rule))
+        }
         ElementKind::Hex8 => Box::new(Staged::<Hexahedron, 8>::new(law, kind, rule)),
         _ => Box::new(Staged::<AnyElement, MAX_NODES>::new(law, kind, rule)),
     }

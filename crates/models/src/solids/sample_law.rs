@@ -252,6 +252,8 @@ impl SampleLaw for Taped {
 /// Entry `e` of a matrix lies `e · BATCH` behind its first.
 #[inline(always)]
 pub fn load_matrix<S: Simd>(simd: S, memory: &[f64]) -> Mat3<Lanes<S>> {
+    // looked at once: no entry has to be checked
+    let memory = &memory[..8 * BATCH + S::F64_LANES];
     let mut matrix = Mat3::zero(Lanes::constant(simd, 0.0));
     for column in 0..3 {
         matrix.columns[column] = Vec3::new(
@@ -265,6 +267,7 @@ pub fn load_matrix<S: Simd>(simd: S, memory: &[f64]) -> Mat3<Lanes<S>> {
 
 #[inline(always)]
 pub fn store_matrix<S: Simd>(matrix: &Mat3<Lanes<S>>, memory: &mut [f64]) {
+    let memory = &mut memory[..8 * BATCH + S::F64_LANES];
     for column in 0..3 {
         matrix.columns[column].x.store(&mut memory[3 * column * BATCH..]);
         matrix.columns[column].y.store(&mut memory[(3 * column + 1) * BATCH..]);

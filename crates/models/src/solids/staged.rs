@@ -18,7 +18,7 @@ use super::kernel::Kernel;
 use super::layout::{Chunk, LANES, LaneBlock};
 use super::sample_law::{Answer, ROWS, Run, SampleLaw, TANGENT_LEN, load_matrix, store_matrix};
 
-/// [`Kernel`] of a law on elements of geometry `G` with at most `N` nodes.
+/// [`Kernel`] of a law on elements of geometry `G` with at most `N` nodes, and as many parts.
 pub struct Staged<G, const N: usize> {
     law: Box<dyn SampleLaw>,
     /// Nodes of an element.
@@ -209,6 +209,11 @@ impl<'a, G: Geometry, const N: usize> Stage<'a, G, N> {
     }
 
     #[inline(always)]
+    fn parts(&self) -> usize {
+        G::PARTS.unwrap_or(self.nodes)
+    }
+
+    #[inline(always)]
     fn per_block(&self) -> usize {
         G::SAMPLES.unwrap_or(self.run.per_block)
     }
@@ -245,14 +250,14 @@ impl<G: Geometry, const N: usize> WithSimd for Gradients<'_, G, N> {
             for row in run.rows() {
                 let group = stage.group(simd, row, lane);
                 let sample = row % stage.per_block();
+                // one sample at a time: a processor waits for a few lines of its cache, not for those of a whole block
+                group.prefetch(1, sample);
                 if sample == 0 || row == run.first {
-                    // the stages behind this one find the numbers of its samples in the cache
-                    group.prefetch(1);
                     x = group.gather(values);
-                    G::to_parts(&mut x[..stage.nodes()]);
+                    G::to_parts(&mut x[..stage.parts()], stage.numbers);
                 }
                 let (inverse, _) = group.sample(sample);
-                let gradient = G::gradient(&x[..stage.nodes()], stage.numbers_of(sample)) * inverse;
+                let gradient = G::gradient(&x[..stage.parts()], stage.numbers_of(sample)) * inverse;
                 store_matrix(&gradient, &mut out[run.lane_of(row) + lane..]);
             }
             lane += S::F64_LANES;
@@ -284,10 +289,10 @@ impl<G: Geometry, const N: usize> WithSimd for Spread<'_, G, N> {
                 let P = load_matrix(simd, &stresses[run.lane_of(row) + lane..]);
                 // H = V P X_ξ⁻ᵀ
                 let H = P.mul_transpose(&inverse).scaled(volume * scale);
-                G::spread(&H, stage.numbers_of(sample), &mut f[..stage.nodes()]);
+                G::spread(&H, stage.numbers_of(sample), &mut f[..stage.parts()]);
                 // an element of more samples than a run takes is scattered in parts
                 if sample + 1 == stage.per_block() || row + 1 == run.end {
-                    G::to_nodes(&mut f[..stage.nodes()]);
+                    G::to_nodes(&mut f[..stage.parts()], stage.numbers);
                     group.scatter(&f, forces);
                     f = group.zeros();
                 }

@@ -66,6 +66,26 @@ impl FourLoops {
     }
 }
 
+/// Operations of the loops for one tetrahedron: forces, and products with their derivative.
+///
+/// As they stand below, every product and sum counted: `A u` takes 15, `u·v` 5, `u vᵀ` 9, a sum or scaling of vectors 3, of matrices 9.
+pub const fn operations(is_quartic: bool) -> [usize; 2] {
+    const PAIRS: usize = 16;
+    // 2 B U_k; (U_k·U_l) C and (2 U_k·C) U_l; 4 D (U_l·U_m) U_k
+    let of_gradient = 15 + 3 + 3;
+    let cubic = (5 + 3 + 3) + (5 + 1 + 3 + 3);
+    let quartic = 5 + 2 + 3 + 3;
+    // 2 B; two dyads, scaled and added, and a multiple of I; a multiple of I and one dyad
+    let of_block = 9;
+    let cubic_block = 2 * (9 + 9 + 9) + (5 + 1 + 3);
+    let quartic_block = (5 + 2 + 3) + (1 + 1 + 9 + 9 + 9);
+    let rest = if is_quartic { 1 } else { 0 };
+    let gradient = of_gradient + rest * 4 * (cubic + 4 * quartic);
+    let block = of_block + rest * 4 * (cubic_block + 4 * quartic_block);
+    // each block times a vector, scaled and added
+    [PAIRS * gradient, PAIRS * (block + 15 + 3 + 3)]
+}
+
 const NODES: std::ops::Range<usize> = 0..4;
 
 impl Tetrahedron {

@@ -16,6 +16,8 @@ use souple_engine::Force;
 use souple_mesh::ElementKind;
 use souple_table::{Entry, Table, Values};
 
+pub(crate) use four_loops::operations as four_loop_count;
+
 use super::{FlatCell, Section, SolidDescription, SolidForce};
 use crate::materials::{AnyLaw, Lame, Material, MaterialLaw};
 

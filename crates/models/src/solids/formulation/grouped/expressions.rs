@@ -1,6 +1,7 @@
-//! Derived expressions at work: tapes over lanes of elements, each fragment with constants of its own.
+//! Derived expressions at work: tapes over lanes of elements. What several fragments hold as a constant is stored once.
 
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -18,24 +19,25 @@ use crate::solids::group::Group;
 use crate::solids::kernel::Kernel;
 use crate::solids::layout::{Chunk, LANES};
 
-/// [`Kernel`] of one association: what it evaluates, each with constants of its own.
+/// [`Kernel`] of one association: what it evaluates.
 pub struct Expressions {
     nodes: usize,
     parameters: Vec<String>,
     energy: Vec<Fragment>,
     forces: Vec<Fragment>,
     differential: Vec<Fragment>,
-    /// Constants of an element, of all fragments.
+    /// Constants of an element, of all fragments together.
     constant_count: usize,
 }
 
-/// Expressions of displacements, an addend of the whole; their constants, and where these are among the element's.
+/// Expressions of displacements, an addend of the whole, and their constants.
 struct Fragment {
     /// From rest positions and material.
     constants: Tape,
     /// From displacements and constants, and what the differential is multiplied with.
     step: Tape,
-    range: Range<usize>,
+    /// Of its constants, among those of the element.
+    places: Vec<usize>,
     /// Where the lanes of displacements, of variations and of outputs start in the memory of `step`.
     displacements: Vec<usize>,
     variations: Vec<usize>,
@@ -54,18 +56,26 @@ impl Expressions {
         let mut given = flat(&symbols.rest);
         given.extend(&symbols.parameters);
         let (displacements, variations) = (flat(&symbols.displacements), flat(&symbols.variations));
-        let mut constant_count = 0;
+        // energy, forces and differential hold much the same constants: each has one place
+        let mut place_of: HashMap<Expr, usize> = HashMap::new();
+        let mut whole_graph = graph.clone();
         let mut fragment = |of: &Step, varied: &[Expr]| {
             let (constants, values): (Vec<Expr>, Vec<Expr>) = of.constants.iter().copied().unzip();
             let inputs: Vec<Expr> = displacements.iter().chain(&constants).copied().collect();
-            let range = constant_count..constant_count + constants.len();
-            constant_count = range.end;
+            let mut whole: HashMap<Expr, Expr> = HashMap::new();
+            let mut places = Vec::with_capacity(constants.len());
+            for (symbol, definition) in &of.constants {
+                let definition = whole_graph.substitute(*definition, &whole);
+                whole.insert(*symbol, definition);
+                let next = place_of.len();
+                places.push(*place_of.entry(definition).or_insert(next));
+            }
             let directions = &law.parameters;
             let step =
                 Tape::of_expressions(graph, [&inputs, varied], &of.definitions, &of.outputs, directions);
             Fragment {
                 constants: Tape::of_expressions(graph, [&given, &[]], &of.constants, &values, directions),
-                range,
+                places,
                 displacements: (0..displacements.len()).map(|input| step.input(input)).collect(),
                 variations: (0..varied.len()).map(|input| step.varied(input)).collect(),
                 outputs: (0..of.outputs.len()).map(|output| step.output(output, 0)).collect(),
@@ -81,6 +91,7 @@ impl Expressions {
         let parameters =
             law.parameters.iter().filter(|(_, value)| matches!(value, LawParameter::Number { .. }));
         let parameters = parameters.map(|(name, _)| name.clone()).collect();
+        let constant_count = place_of.len();
         Self { nodes, parameters, energy, forces, differential, constant_count }
     }
 
@@ -109,7 +120,7 @@ impl Expressions {
         constants: &mut [Vec<f64>],
     ) {
         cells.iter().for_each(|cell| constants[*cell] = vec![0.0; self.constant_count]);
-        for Fragment { constants: tape, range, .. } in
+        for Fragment { constants: tape, places, .. } in
             self.energy.iter().chain(&self.forces).chain(&self.differential)
         {
             let mut memory = vec![0.0; tape.memory_len()];
@@ -124,8 +135,8 @@ impl Expressions {
                 }
                 tape.run_here(Part::All, cells.len(), &mut memory);
                 for (lane, cell) in cells.iter().enumerate() {
-                    for (output, constant) in constants[*cell][range.clone()].iter_mut().enumerate() {
-                        *constant = memory[tape.output(output, 0) + lane];
+                    for (output, place) in places.iter().enumerate() {
+                        constants[*cell][*place] = memory[tape.output(output, 0) + lane];
                     }
                 }
             }
@@ -154,8 +165,9 @@ impl Expressions {
                 self.put((chunk, batch.clone()), displacements, &fragment.displacements, memory);
                 for block in batch.clone() {
                     let at = (block - first) * LANES;
-                    let constants = &chunk.parameters(block, self.constant_count)[fragment.range.clone()];
-                    for (constant, lanes) in constants.iter().enumerate() {
+                    let constants = chunk.parameters(block, self.constant_count);
+                    for (constant, place) in fragment.places.iter().enumerate() {
+                        let lanes = &constants[*place];
                         let input = tape.input(3 * self.nodes + constant) + at;
                         memory[input..input + LANES].copy_from_slice(&lanes.0);
                     }

@@ -1,0 +1,373 @@
+//! Derived expressions of an element under a law, tried: forces against energies, differentials against forces, symmetry, rigid
+//! motion, sums, and the law at the samples as bodies take it (EXP-6 of the solids' specification).
+//!
+//! The cell is crooked and its displacements have no symmetry; both are the same in every run.
+
+use std::ops::Range;
+
+use souple_engine::{Configuration, Force};
+use souple_formal::element::{Cut, ElementData, Step, Steps};
+use souple_formal::graph::Expr;
+use souple_formal::law::{EnergyLaw, LawParameter, Strain};
+use souple_formal::tape::{BATCH, Part, Tape};
+use souple_math::{Vec3, exponential};
+use souple_mesh::{ElementKind, Mesh, QuadratureRule};
+use souple_table::{Value, Values};
+
+use crate::derive::{MapKind, element_data};
+use crate::materials::{self, Material, WrittenLaw};
+use crate::solids::{Quadrature, Section, SolidDescription, SolidForce};
+
+/// How expressions are tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trying {
+    /// Of differences, of a cell of size one.
+    pub step: f64,
+    /// A fault that must be seen: this share of their size is added to the first force and the first differential.
+    pub fault: f64,
+}
+
+impl Default for Trying {
+    fn default() -> Self {
+        // the cube root of what rounding leaves
+        Self { step: 1e-5, fault: 0.0 }
+    }
+}
+
+/// How far expressions are off, relative to forces, products and energies of their size.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Battery {
+    /// Of `F = -∂W/∂U`, by central differences.
+    pub force: f64,
+    /// Of `δF = ∂F/∂U V`, by central differences.
+    pub differential: f64,
+    /// Of `a·δF(b) = b·δF(a)`.
+    pub symmetry: f64,
+    /// Forces of a cell that is turned and moved, over those of the bent one; zero where the law counts turns as strain.
+    pub rigid: f64,
+    /// Sums of forces, and of moments where the law does not count turns as strain.
+    pub balance: f64,
+    /// Of the law at the samples, by the kernels of bodies.
+    pub samples: f64,
+}
+
+/// Why an association cannot be tried.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{law} on {kind} under {rule}: {problem}")]
+pub struct Untried {
+    pub law: &'static str,
+    pub kind: ElementKind,
+    pub rule: &'static str,
+    pub problem: String,
+}
+
+impl Battery {
+    /// The bounds of the specification.
+    pub const BOUNDS: Self = Self {
+        force: 1e-6,
+        differential: 1e-6,
+        symmetry: 1e-12,
+        rigid: 1e-10,
+        balance: 1e-10,
+        samples: 1e-10,
+    };
+
+    /// Its numbers by name.
+    pub fn named(&self) -> [(&'static str, f64); 6] {
+        [
+            ("force", self.force),
+            ("differential", self.differential),
+            ("symmetry", self.symmetry),
+            ("rigid", self.rigid),
+            ("balance", self.balance),
+            ("samples", self.samples),
+        ]
+    }
+
+    /// The worse of both, number by number; what is not a number is worst.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+        Self {
+            force: worse(self.force, other.force),
+            differential: worse(self.differential, other.differential),
+            symmetry: worse(self.symmetry, other.symmetry),
+            rigid: worse(self.rigid, other.rigid),
+            balance: worse(self.balance, other.balance),
+            samples: worse(self.samples, other.samples),
+        }
+    }
+
+    /// Tries a law on an element under a rule.
+    ///
+    /// # Errors
+    /// The law's text is none, or the crooked cell has no volume under the rule.
+    pub fn of(
+        law: &'static WrittenLaw,
+        kind: ElementKind,
+        rule: &'static QuadratureRule,
+        trying: Trying,
+    ) -> Result<Self, Untried> {
+        let untried = |problem: String| Untried { law: law.name, kind, rule: rule.name, problem };
+        let text = law.text().map_err(|error| untried(error.to_string()))?;
+        let compiled = EnergyLaw::compile(&text).map_err(|error| untried(error.to_string()))?;
+        let element =
+            element_data(kind, rule, MapKind::General).map_err(|error| untried(error.to_string()))?;
+        let cell = Cell::new(kind, &element, &compiled);
+        let material = material(law).map_err(&untried)?;
+        let samples = cell.forces_at_samples(rule, &material).map_err(untried)?;
+        Ok(cell.battery(trying, compiled.strain == Strain::Finite, &samples))
+    }
+}
+
+/// The law as a material of bodies.
+fn material(law: &WrittenLaw) -> Result<Material, String> {
+    let owned = |list: &[(&str, &str)]| -> Vec<(String, String)> {
+        list.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect()
+    };
+    let (parameters, definitions) = (owned(law.parameters), owned(law.definitions));
+    let entry = materials::TABLE.find("hyperelastic").map_err(|unknown| unknown.to_string())?;
+    let values = Values::new()
+        .with("energy", Value::Text(law.energy))
+        .with("parameters", Value::Texts(&parameters))
+        .with("definitions", Value::Texts(&definitions))
+        .with("density", Value::Number(1000.0));
+    let values = entry.values(values).map_err(|error| error.to_string())?;
+    (entry.build)(&values).map_err(|error| error.to_string())
+}
+
+/// Numbers without symmetry between -1 and 1.
+fn wave(number: usize, phase: f64) -> f64 {
+    (12.9898 * number as f64 + phase).sin()
+}
+
+/// An expression of displacements, and what is multiplied with, as it is run.
+struct Running {
+    tape: Tape,
+    constants: Vec<f64>,
+    outputs: usize,
+}
+
+/// One crooked cell and its expressions.
+struct Cell {
+    kind: ElementKind,
+    dimension: usize,
+    rest: Vec<Vec3>,
+    energy: Running,
+    force: Running,
+    differential: Running,
+}
+
+/// A displacement and a variation of every node, flat.
+type Lane = (Vec<f64>, Vec<f64>);
+
+impl Cell {
+    fn new(kind: ElementKind, element: &ElementData, law: &EnergyLaw) -> Self {
+        let dimension = element.dimension;
+        let nodes = kind.element().nodes;
+        // cells of side one; middles of edges stay near the middle
+        let rest: Vec<Vec3> = nodes
+            .iter()
+            .enumerate()
+            .map(|(node, xi)| {
+                let shift = |axis: usize| {
+                    if axis < dimension { 0.02 * wave(3 * node + axis, 0.4) } else { 0.0 }
+                };
+                Vec3::from_array(*xi) + Vec3::new(shift(0), shift(1), shift(2))
+            })
+            .collect();
+        let steps = element.steps(law, Cut::NONE);
+        let running = |step: &Step| Running::new(&steps, step, law, &rest, dimension);
+        let [energy, force, differential] =
+            [&steps.energies[0], &steps.forces[0], &steps.differentials[0]].map(running);
+        Self { kind, dimension, rest, energy, force, differential }
+    }
+
+    fn len(&self) -> usize {
+        self.rest.len() * self.dimension
+    }
+
+    /// A field of this size, by node and axis.
+    fn field(&self, size: f64, phase: f64) -> Vec<f64> {
+        (0..self.len()).map(|number| size * wave(number, phase)).collect()
+    }
+
+    fn bent(&self) -> Vec<f64> {
+        self.field(0.05, 1.1)
+    }
+
+    /// By node and axis, of vectors that lie in the plane of plane cells.
+    fn flat(&self, vectors: &[Vec3]) -> Vec<f64> {
+        vectors.iter().flat_map(|v| v.to_array()[..self.dimension].to_vec()).collect()
+    }
+
+    fn vectors(&self, flat: &[f64]) -> Vec<Vec3> {
+        flat.chunks_exact(self.dimension)
+            .map(|v| Vec3::new(v[0], v[1], v.get(2).copied().unwrap_or(0.0)))
+            .collect()
+    }
+
+    fn battery(&self, Trying { step, fault }: Trying, is_objective: bool, at_samples: &[f64]) -> Battery {
+        let (bent, still) = (self.bent(), vec![0.0; self.len()]);
+        let directions = [0.2, 1.7, 3.3].map(|phase| self.field(1.0, phase));
+        let moved = |direction: &Vec<f64>, by: f64| -> Vec<f64> {
+            bent.iter().zip(direction).map(|(u, d)| u + by * d).collect()
+        };
+        let mut lanes: Vec<Lane> = vec![(bent.clone(), still.clone())];
+        for direction in &directions {
+            lanes.extend([step, -step].map(|by| (moved(direction, by), still.clone())));
+        }
+        lanes.push((self.turned(), still.clone()));
+        let energies = self.energy.run(&lanes);
+        let mut forces = self.force.run(&lanes);
+        let products: Vec<Lane> =
+            directions.iter().map(|direction| (bent.clone(), direction.clone())).collect();
+        let mut products = self.differential.run(&products);
+        let size = norm(&forces[0]);
+        forces.iter_mut().for_each(|force| force[0] += fault * size);
+        products.iter_mut().for_each(|product| product[0] += fault * norm(product));
+        let force = &forces[0];
+        let mut battery = Battery::default();
+        for (index, direction) in directions.iter().enumerate() {
+            let (ahead, behind) = (1 + 2 * index, 2 + 2 * index);
+            let slope = (energies[ahead][0] - energies[behind][0]) / (2.0 * step);
+            let off = (slope + dot(force, direction)).abs() / (norm(force) * norm(direction));
+            battery.force = battery.force.max(off);
+            let difference: Vec<f64> = forces[ahead]
+                .iter()
+                .zip(&forces[behind])
+                .map(|(ahead, behind)| (ahead - behind) / (2.0 * step))
+                .collect();
+            battery.differential = battery.differential.max(distance(&products[index], &difference));
+            let next = (index + 1) % directions.len();
+            let (one, other) = (dot(&directions[next], &products[index]), dot(direction, &products[next]));
+            let size = norm(&directions[next]) * norm(&products[index]);
+            battery.symmetry = battery.symmetry.max((one - other).abs() / size);
+        }
+        let f = self.vectors(force);
+        let x = self.rest.iter().zip(self.vectors(&bent)).map(|(rest, u)| *rest + u);
+        let sum: Vec3 = f.iter().copied().sum();
+        let moment: Vec3 = x.zip(&f).map(|(x, f)| x.cross(*f)).sum();
+        battery.balance = sum.length() / norm(force);
+        if is_objective {
+            battery.balance = battery.balance.max(moment.length() / norm(force));
+            battery.rigid = norm(&forces[forces.len() - 1]) / norm(force);
+        }
+        battery.samples = distance(at_samples, force);
+        battery
+    }
+
+    /// Turned and moved, in the plane of a plane cell.
+    fn turned(&self) -> Vec<f64> {
+        let (turn, shift) = if self.dimension == 2 {
+            (Vec3::new(0.0, 0.0, 0.9), Vec3::new(0.3, -0.2, 0.0))
+        } else {
+            (Vec3::new(0.6, -0.8, 0.5), Vec3::new(0.3, -0.2, 0.4))
+        };
+        let rotation = exponential(turn);
+        let moved: Vec<Vec3> = self.rest.iter().map(|p| rotation * *p + shift - *p).collect();
+        self.flat(&moved)
+    }
+
+    /// The forces of a body of this one cell, bent.
+    fn forces_at_samples(&self, rule: &QuadratureRule, material: &Material) -> Result<Vec<f64>, String> {
+        let nodes: Vec<u32> = (0..self.rest.len() as u32).collect();
+        let mesh = Mesh::new(self.rest.clone(), self.kind, nodes);
+        let section =
+            if self.dimension == 2 { Section::PlaneStrain { thickness: 1.0 } } else { Section::Solid };
+        let force = SolidForce::new(&SolidDescription {
+            name: "cell".to_owned(),
+            mesh: &mesh,
+            first_row: 0,
+            materials: std::slice::from_ref(material),
+            material_of_cell: &[0],
+            quadrature: Quadrature::Default.with(self.kind, rule),
+            section,
+        });
+        let force = force.map_err(|error| error.to_string())?;
+        let bent = self.vectors(&self.bent());
+        let positions: Vec<Vec3> = self.rest.iter().zip(&bent).map(|(rest, u)| *rest + *u).collect();
+        let velocities = vec![Vec3::ZERO; positions.len()];
+        let at = Configuration {
+            positions: &positions,
+            velocities: &velocities,
+            time: 0.0,
+            load: 1.0,
+            memory: &[],
+            pairs: &[],
+            driven: &[],
+            fields: &[],
+        };
+        let mut sum = velocities.clone();
+        force.add_force(&at, &mut force.new_scratch(), &mut sum);
+        Ok(self.flat(&sum))
+    }
+}
+
+impl Running {
+    fn new(steps: &Steps, step: &Step, law: &EnergyLaw, rest: &[Vec3], dimension: usize) -> Self {
+        let Steps { graph, symbols, .. } = steps;
+        let flat = |list: &[Vec<Expr>]| list.iter().flatten().copied().collect::<Vec<Expr>>();
+        let mut given = flat(&symbols.rest);
+        given.extend(&symbols.parameters);
+        let (constants, values): (Vec<Expr>, Vec<Expr>) = step.constants.iter().copied().unzip();
+        let start = Tape::of_expressions(graph, [&given, &[]], &step.constants, &values, &law.parameters);
+        let numbers = law.parameters.iter().filter_map(|(_, parameter)| match parameter {
+            LawParameter::Number { value, .. } => Some(*value),
+            LawParameter::Direction(_) => None,
+        });
+        let rest = rest.iter().flat_map(|p| p.to_array()[..dimension].to_vec());
+        let mut memory = vec![0.0; start.memory_len()];
+        start.prepare(&mut memory);
+        for (input, number) in rest.chain(numbers).enumerate() {
+            memory[start.input(input)] = number;
+        }
+        start.run_here(Part::All, 1, &mut memory);
+        let of_start = |constant: usize| memory[start.output(constant, 0)];
+        let inputs: Vec<Expr> = flat(&symbols.displacements).into_iter().chain(constants.clone()).collect();
+        let varied = flat(&symbols.variations);
+        let tape = Tape::of_expressions(
+            graph,
+            [&inputs, &varied],
+            &step.definitions,
+            &step.outputs,
+            &law.parameters,
+        );
+        Self { tape, constants: (0..constants.len()).map(of_start).collect(), outputs: step.outputs.len() }
+    }
+
+    /// The outputs of each lane.
+    fn run(&self, lanes: &[Lane]) -> Vec<Vec<f64>> {
+        let Self { tape, constants, outputs } = self;
+        debug_assert!(lanes.len() <= BATCH, "one batch");
+        let mut memory = vec![0.0; tape.memory_len()];
+        tape.prepare(&mut memory);
+        let of_lanes: Range<usize> = 0..lanes.len();
+        for (lane, (displacements, variations)) in lanes.iter().enumerate() {
+            for (input, number) in displacements.iter().chain(constants).enumerate() {
+                memory[tape.input(input) + lane] = *number;
+            }
+            for (input, number) in variations.iter().enumerate() {
+                memory[tape.varied(input) + lane] = *number;
+            }
+        }
+        tape.run_here(Part::All, lanes.len(), &mut memory);
+        of_lanes
+            .map(|lane| (0..*outputs).map(|output| memory[tape.output(output, 0) + lane]).collect())
+            .collect()
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Relative to the first.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    norm(&difference) / norm(a)
+}
