@@ -22,6 +22,8 @@ pub struct Conformity {
     /// Parts of volume cells joined by whole faces that share only points or edges with each other: they turn there freely. How
     /// many more these are than parts that share nothing.
     pub hinged_parts: usize,
+    /// Points at which the boundary of volume cells is no manifold: cells there share a point or an edge alone.
+    pub pinched: Vec<u32>,
     /// Cells that are nearly flat, with their aspect ratio: flattest first.
     pub slivers: Vec<(u32, f64)>,
 }
@@ -73,13 +75,18 @@ impl Conformity {
 
     /// What hangs on points and edges alone, in words.
     pub fn hinges(&self) -> Option<String> {
-        (self.hinged_parts > 0).then(|| {
-            format!(
+        if self.hinged_parts > 0 {
+            return Some(format!(
                 "{} parts of the body share no face with the rest: they hang on points or edges and turn there freely; a \
                  smaller size of cells may join them",
                 self.hinged_parts
-            )
-        })
+            ));
+        }
+        let first = self.pinched.first()?;
+        Some(format!(
+            "the boundary meets itself at {} points, the first is points[{first}]: cells there share a point or an edge alone",
+            self.pinched.len()
+        ))
     }
 
     /// What is wrong between cells, in the same way: without what is wrong with single ones.
@@ -127,12 +134,19 @@ impl Mesh {
     /// Looks at all faces, at the points of the boundary, and at the shapes of cells. The mesh must have passed
     /// [`Mesh::validate`].
     pub fn conformity(&self) -> Conformity {
-        let (coincident, hanging) = boundary_faults(&self.boundary_surface());
+        let boundary = self.boundary_surface();
+        let (coincident, hanging) = boundary_faults(&boundary);
         let split: Vec<(u32, [u32; 2])> =
             self.faces().split.iter().map(|split| (split.cell, split.triangle_cells)).collect();
         Conformity {
             overlapping: self.overlapping_cells(),
             hinged_parts: self.hinged_parts(&split),
+            // beside quadrilaterals that meet triangles the boundary has edges of three
+            pinched: if self.dimension() == 3 && split.is_empty() {
+                boundary.pinched_points()
+            } else {
+                Vec::new()
+            },
             split,
             coincident,
             hanging,

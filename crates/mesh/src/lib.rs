@@ -34,7 +34,7 @@ pub use element::{ELEMENTS, Element, ElementKind, Face, MAX_NODES, Monomial, Nod
 pub use error::MeshError;
 pub use generate::{Build, GENERATORS, MAX_CELLS, MeshSize, generate};
 pub use locate::{CellLocator, Location};
-pub use measure::BoundingBox;
+pub use measure::{BoundingBox, USUAL_SIZES};
 pub use mesh::{Cell, CellBlock, CellsByNumber, Group, Mesh};
 pub use ordering::{morton_order, recursive_bisection};
 pub use quadrature::{QuadraturePoint, QuadratureRule};

@@ -11,6 +11,10 @@ pub struct BoundingBox {
     pub high: Vec3,
 }
 
+/// Sizes of soft bodies [m], from insects' organs to large animals: what a file has beyond is more likely in other units. An
+/// organ of half a centimetre and more is, in millimetres.
+pub const USUAL_SIZES: [f64; 2] = [1e-4, 5.0];
+
 impl BoundingBox {
     /// The box of no point: `low = ∞`, `high = -∞`.
     pub const EMPTY: Self = Self {
@@ -41,6 +45,19 @@ impl BoundingBox {
 
     pub fn size(self) -> Vec3 {
         self.high - self.low
+    }
+
+    /// What to say of the lengths of a file, which knows no units, where they are beyond [`USUAL_SIZES`].
+    pub fn doubt(self) -> Option<String> {
+        let Vec3 { x, y, z } = self.size();
+        let largest = x.max(y).max(z);
+        let is_usual = (USUAL_SIZES[0]..=USUAL_SIZES[1]).contains(&largest);
+        // of nothing, or nothing finite, other things are said
+        let is_told = largest > 0.0 && largest.is_finite() && !is_usual;
+        let hint = if largest > USUAL_SIZES[1] { ": in millimetres it takes scale=0.001" } else { "" };
+        is_told.then(|| {
+            format!("it measures {x:.3e} x {y:.3e} x {z:.3e} m, an unusual size for a soft body{hint}")
+        })
     }
 
     pub fn centre(self) -> Vec3 {

@@ -6,15 +6,15 @@
 //! the new triangles must be as close to the given surface as asked, and so must every given point and centre of a
 //! triangle be to the new one. Points on edges that have not two triangles stay where they are.
 //!
-//! What no collapse sees is two parts of the surface that come through each other. They are looked for at the end; where
-//! there are any, all is done again with half the bound for the given points around them, until there are none.
+//! Two parts of the surface that come through each other are looked for at the end; where there are any, all is done again
+//! and no collapse is made around them that lets triangles pass through others, until there are none.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 use souple_math::{Mat3, Vec3};
 
-use crate::repair::crossings;
+use crate::repair::{crossings, triangles_cross};
 use crate::{Aabb, AabbTree, MeshError, TriangleSurface, closest_point_on_triangle};
 
 /// How far to go.
@@ -39,6 +39,12 @@ pub struct Simplified {
 /// Cosine of the largest turn of a triangle in one collapse.
 const LARGEST_TURN: f64 = 0.2;
 
+/// Height over longest side below which a triangle is nearly flat: none is made, but of others as flat.
+const FLATTEST: f64 = 1e-3;
+
+/// Rounds in which triangles that come through others are looked for where there were any; after these, everywhere.
+const MOST_ROUNDS: usize = 4;
+
 /// # Errors
 /// The bound is not a number of at least zero; there are no triangles.
 pub fn simplify(surface: &TriangleSurface, goal: Goal) -> Result<Simplified, MeshError> {
@@ -50,55 +56,35 @@ pub fn simplify(surface: &TriangleSurface, goal: Goal) -> Result<Simplified, Mes
         return Err(MeshError::NoCells);
     }
     // beyond its own size nothing is left of a surface
-    let size = surface.bounds().diagonal();
-    let mut bounds = vec![goal.distance.min(size); surface.points.len()];
-    loop {
-        let mut state = Collapse::new(surface, &bounds);
+    let bound = goal.distance.min(surface.bounds().diagonal());
+    let mut watched: Vec<Aabb> = Vec::new();
+    for round in 0.. {
+        let mut state = Collapse::new(surface, bound, &watched);
         state.run(goal.triangles);
         let mut simplified = state.finish();
         let crossed = crossings(&simplified.surface);
         simplified.crossings = crossed.len();
-        // with no bound left the given surface is left, which may cross itself
-        if crossed.is_empty()
-            || !tighten(surface, &simplified.surface, &crossed, LEAST_BOUND * size, &mut bounds)
-        {
+        let pairs = crossed.into_iter().flatten();
+        let boxes: Vec<Aabb> = pairs.map(|t| Aabb::of(simplified.surface.corners(t))).collect();
+        // what was watched comes from the given surface, which may cross itself
+        let tree = AabbTree::build(&watched);
+        let is_watched = |bounds: &Aabb| {
+            let mut found = false;
+            tree.overlapping(*bounds, |_| found = true);
+            found
+        };
+        if boxes.iter().all(is_watched) {
             return Ok(simplified);
         }
-    }
-}
-
-/// Bounds below this part of the surface's size are none: the point is held.
-const LEAST_BOUND: f64 = 1e-4;
-
-/// Halves the bounds of the given points near pairs of new triangles; whether any was left to halve.
-fn tighten(
-    given: &TriangleSurface,
-    new: &TriangleSurface,
-    pairs: &[[u32; 2]],
-    least: f64,
-    bounds: &mut [f64],
-) -> bool {
-    let around = |triangle: u32| {
-        let bounds = Aabb::of(new.corners(triangle));
-        // a given point may lie beside the triangle that stands for it
-        bounds.grown(0.5 * bounds.diagonal())
-    };
-    let boxes: Vec<Aabb> = pairs.iter().flatten().map(|triangle| around(*triangle)).collect();
-    let tree = AabbTree::build(&boxes);
-    let mut found = false;
-    for (point, bound) in given.points.iter().zip(bounds) {
-        let mut is_near = false;
-        tree.overlapping(Aabb { low: *point, high: *point }, |_| is_near = true);
-        if is_near && *bound >= 0.0 {
-            *bound = if *bound > least { 0.5 * *bound } else { HELD };
-            found = true;
+        if round < MOST_ROUNDS {
+            // the triangles that come out next time lie beside these
+            watched.extend(boxes.iter().map(|bounds| bounds.grown(0.5 * bounds.diagonal())));
+        } else {
+            watched = vec![Aabb::of(surface.points.iter().copied()).grown(bound)];
         }
     }
-    found
+    unreachable!("all is watched after {MOST_ROUNDS} rounds")
 }
-
-/// The bound of points that stay where they are.
-const HELD: f64 = -1.0;
 
 /// `xᵀ A x - 2 b · x + c`: squared distances to planes, weighted.
 #[derive(Clone, Copy)]
@@ -170,13 +156,18 @@ impl Eq for Candidate {}
 struct Collapse<'a> {
     given: &'a TriangleSurface,
     tree: AabbTree,
-    /// How far the surface may leave each point [m].
-    bounds: Vec<f64>,
+    /// How far the surface may leave the given one [m].
+    bound: f64,
+    /// Boxes in which triangles may not come to pass through others.
+    watched: AabbTree,
     /// Quadrics, points and bounds are taken about this point, near which nothing large cancels.
     origin: Vec3,
     points: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     is_gone: Vec<bool>,
+    /// Triangles that are not as given, in the order in which they first changed.
+    changed: Vec<u32>,
+    is_changed: Vec<bool>,
     around: Vec<Vec<u32>>,
     quadrics: Vec<Quadric>,
     ages: Vec<u32>,
@@ -188,21 +179,24 @@ struct Collapse<'a> {
 }
 
 impl<'a> Collapse<'a> {
-    fn new(given: &'a TriangleSurface, bounds: &[f64]) -> Self {
+    fn new(given: &'a TriangleSurface, bound: f64, watched: &[Aabb]) -> Self {
         let boxes: Vec<Aabb> =
             (0..given.triangles.len() as u32).map(|triangle| Aabb::of(given.corners(triangle))).collect();
         let mut state = Self {
             given,
             tree: AabbTree::build(&boxes),
-            bounds: bounds.to_vec(),
+            bound,
+            watched: AabbTree::build(watched),
             origin: given.bounds().centre(),
             points: given.points.clone(),
             triangles: given.triangles.clone(),
             is_gone: vec![false; given.triangles.len()],
+            changed: Vec::new(),
+            is_changed: vec![false; given.triangles.len()],
             around: vec![Vec::new(); given.points.len()],
             quadrics: vec![Quadric::ZERO; given.points.len()],
             ages: vec![0; given.points.len()],
-            is_fixed: bounds.iter().map(|bound| *bound < 0.0).collect(),
+            is_fixed: vec![false; given.points.len()],
             carried: Vec::with_capacity(given.triangles.len()),
             left: given.triangles.len(),
             reached: 0.0,
@@ -311,15 +305,19 @@ impl<'a> Collapse<'a> {
             // a flat triangle, before or after, turns too
             before.dot(after) <= LARGEST_TURN * scale || scale.is_nan()
         };
-        if new.is_empty() || new.iter().any(turns) {
+        if new.is_empty() || new.iter().any(turns) || self.flattens(&touched, &new) {
             return false;
         }
-        let bound = f64::min(self.bounds[a as usize], self.bounds[b as usize]);
-        if bound < 0.0 {
+        let Some((carried, reached)) = self.within_bound(&touched, &new) else { return false };
+        if self.comes_through(candidate, &touched, &kept) {
             return false;
         }
-        let Some((carried, reached)) = self.within_bound(bound, &touched, &new) else { return false };
         self.reached = self.reached.max(reached);
+        for triangle in &kept {
+            if !std::mem::replace(&mut self.is_changed[*triangle as usize], true) {
+                self.changed.push(*triangle);
+            }
+        }
         for (list, (triangle, _)) in carried.into_iter().zip(&new) {
             self.carried[*triangle as usize] = list;
         }
@@ -339,7 +337,6 @@ impl<'a> Collapse<'a> {
         self.points[a as usize] = position;
         self.quadrics[a as usize] = self.quadrics[a as usize].plus(&self.quadrics[b as usize]);
         self.is_fixed[a as usize] |= self.is_fixed[b as usize];
-        self.bounds[a as usize] = bound;
         self.ages[a as usize] += 1;
         self.ages[b as usize] += 1;
         self.left -= 2;
@@ -354,13 +351,61 @@ impl<'a> Collapse<'a> {
         common == 4 && self.left > 4
     }
 
+    /// Whether a triangle becomes nearly flat, and none that it comes from was as flat.
+    fn flattens(&self, touched: &[u32], new: &[(u32, [Vec3; 3])]) -> bool {
+        let flattest =
+            new.iter().map(|(_, corners)| height_over_side(*corners)).fold(f64::INFINITY, f64::min);
+        let before = touched.iter().map(|t| self.triangles[*t as usize].map(|p| self.points[p as usize]));
+        flattest < FLATTEST && flattest < before.map(height_over_side).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a triangle of a collapse, where that is watched, would pass through one that none of those it comes from
+    /// passes through.
+    fn comes_through(&self, candidate: &Candidate, touched: &[u32], kept: &[u32]) -> bool {
+        let ([a, b], position) = (candidate.ends, candidate.position);
+        let joined = |t: &u32| self.triangles[*t as usize].map(|point| if point == b { a } else { point });
+        let new_position = |point: u32| if point == a { position } else { self.points[point as usize] };
+        let old_position = |point: u32| self.points[point as usize];
+        kept.iter().map(joined).enumerate().any(|(index, triangle)| {
+            let bounds = Aabb::of(triangle.map(new_position));
+            let mut is_watched = false;
+            self.watched.overlapping(bounds, |_| is_watched = true);
+            if !is_watched {
+                return false;
+            }
+            let crosses = |other: &[u32; 3]| triangles_cross(triangle, *other, new_position);
+            if kept[index + 1..].iter().map(joined).any(|other| crosses(&other)) {
+                return true;
+            }
+            self.live_near(bounds).into_iter().filter(|other| touched.binary_search(other).is_err()).any(
+                |other| {
+                    let other = self.triangles[other as usize];
+                    let crossed = |t: &u32| triangles_cross(self.triangles[*t as usize], other, old_position);
+                    crosses(&other) && !touched.iter().any(crossed)
+                },
+            )
+        })
+    }
+
+    /// Triangles that are left and whose boxes overlap one.
+    fn live_near(&self, bounds: Aabb) -> Vec<u32> {
+        let mut near = Vec::new();
+        self.tree.overlapping(bounds, |triangle| {
+            if !self.is_gone[triangle as usize] && !self.is_changed[triangle as usize] {
+                near.push(triangle);
+            }
+        });
+        let is_near = |triangle: &&u32| {
+            let corners = self.triangles[**triangle as usize].map(|point| self.points[point as usize]);
+            !self.is_gone[**triangle as usize] && Aabb::of(corners).overlaps(bounds)
+        };
+        near.extend(self.changed.iter().filter(is_near));
+        near
+    }
+
     /// The given points that each new triangle carries, and the largest distance measured; `None` beyond the bound.
-    fn within_bound(
-        &self,
-        bound: f64,
-        touched: &[u32],
-        new: &[(u32, [Vec3; 3])],
-    ) -> Option<(Vec<Vec<Vec3>>, f64)> {
+    fn within_bound(&self, touched: &[u32], new: &[(u32, [Vec3; 3])]) -> Option<(Vec<Vec<Vec3>>, f64)> {
+        let bound = self.bound;
         let mut reached = 0.0_f64;
         let mut carried = vec![Vec::new(); new.len()];
         for point in touched.iter().flat_map(|triangle| &self.carried[*triangle as usize]) {
@@ -390,6 +435,12 @@ impl<'a> Collapse<'a> {
         surface.mesh_points.clear();
         Simplified { surface, distance: self.reached, crossings: 0 }
     }
+}
+
+/// The height of a triangle over its longest side, relative to that; zero where all corners are at one place.
+fn height_over_side([a, b, c]: [Vec3; 3]) -> f64 {
+    let longest_sq = (b - a).length_sq().max((c - b).length_sq()).max((a - c).length_sq());
+    if longest_sq > 0.0 { (b - a).cross(c - a).length() / longest_sq } else { 0.0 }
 }
 
 fn distance_sq(point: Vec3, corners: [Vec3; 3]) -> f64 {
@@ -455,7 +506,7 @@ mod tests {
         shell.points.extend(outer.points.iter().map(|point| *point * 0.97));
         shell.triangles.extend(outer.triangles.iter().map(|[a, b, c]| [c + count, b + count, a + count]));
         let goal = Goal { distance: 0.1, triangles: 0 };
-        let mut free = Collapse::new(&shell, &vec![goal.distance; shell.points.len()]);
+        let mut free = Collapse::new(&shell, goal.distance, &[]);
         free.run(0);
         assert!(!crossings(&free.finish().surface).is_empty(), "the case is no case");
         let simple = simplify(&shell, goal).unwrap();
@@ -478,6 +529,32 @@ mod tests {
         let simple = simplify(&two, Goal { distance: 0.02, triangles: 0 }).unwrap();
         assert!(simple.crossings > 0 && simple.distance <= 0.02, "{} m", simple.distance);
         assert!(simple.surface.triangles.len() < two.triangles.len());
+    }
+
+    /// Limbs that lie side by side: they would come through each other where few triangles are left, and the count is met all the
+    /// same, with no triangle that is flat.
+    #[test]
+    fn the_count_is_met_where_parts_are_near() {
+        let long = ball();
+        let mut limbs = ball();
+        limbs.points.clear();
+        limbs.triangles.clear();
+        for k in 0..4 {
+            let first = limbs.points.len() as u32;
+            let place = |x: Vec3| {
+                Vec3::new(0.1 * x.x + 0.22 * f64::from(k), 0.1 * x.y, x.z + 0.4 * x.x * f64::from(k % 2))
+            };
+            limbs.points.extend(long.points.iter().map(|x| place(*x)));
+            limbs.triangles.extend(long.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        }
+        for triangles in [1000, 200, 80, 40] {
+            let simple = simplify(&limbs, Goal { distance: f64::INFINITY, triangles }).unwrap();
+            let left = simple.surface.triangles.len();
+            assert!((triangles..triangles + 2).contains(&left), "{left} of {triangles}");
+            assert_eq!(simple.crossings, 0, "{triangles}");
+            let flattest = (0..left as u32).map(|t| height_over_side(simple.surface.corners(t)));
+            assert!(flattest.fold(f64::INFINITY, f64::min) >= FLATTEST, "{triangles}");
+        }
     }
 
     #[test]

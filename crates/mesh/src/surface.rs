@@ -126,6 +126,23 @@ impl TriangleSurface {
         directed.chunk_by(|a, b| a.0 == b.0).map(count).collect()
     }
 
+    /// Points of the mesh at which the surface is no manifold, ascending: their triangles are not one fan around them.
+    pub fn pinched_points(&self) -> Vec<u32> {
+        // each triangle leads around its corner from the next one to the one after
+        let mut leads: Vec<[u32; 3]> = Vec::with_capacity(3 * self.triangles.len());
+        for [a, b, c] in &self.triangles {
+            leads.extend([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
+        }
+        leads.sort_unstable();
+        let mut pinched: Vec<u32> = leads
+            .chunk_by(|a, b| a[0] == b[0])
+            .filter(|around| !is_one_fan(around))
+            .map(|around| self.mesh_points[around[0][0] as usize])
+            .collect();
+        pinched.sort_unstable();
+        pinched
+    }
+
     /// # Errors
     /// The first edge that is not shared by two triangles of opposite direction. Bodies that touch along an edge
     /// have several such pairs and pass.
@@ -135,6 +152,26 @@ impl TriangleSurface {
             None => Ok(()),
         }
     }
+}
+
+/// Whether the triangles of a point, each `[point, from, to]` and ascending, follow each other from an end to the other or around.
+fn is_one_fan(around: &[[u32; 3]]) -> bool {
+    let mut ends: Vec<u32> = around.iter().map(|lead| lead[2]).collect();
+    ends.sort_unstable();
+    if around.windows(2).any(|pair| pair[0][1] == pair[1][1])
+        || ends.windows(2).any(|pair| pair[0] == pair[1])
+    {
+        return false;
+    }
+    let start = around.iter().find(|lead| ends.binary_search(&lead[1]).is_err()).unwrap_or(&around[0]);
+    let (mut here, mut steps) = (start[2], 1);
+    while here != start[1]
+        && let Ok(next) = around.binary_search_by_key(&here, |lead| lead[1])
+    {
+        here = around[next][2];
+        steps += 1;
+    }
+    steps == around.len()
 }
 
 /// Unit normals of points: normals of their triangles weighted by the angle at the point, which does not depend

@@ -171,12 +171,19 @@ fn studies_are_swept() {
     folder.write("study.toml", &study);
     let answer = souple_in(folder.path(), ["sweep", "study.toml", "--json", "--jobs", "1"]).ends(0).json();
     assert_eq!((&answer["made"], &answer["held"]), (&2.into(), &0.into()));
-    assert_eq!(folder.files(), ["place.png", "place.svg", "study.csv", "study.sqlite", "study.toml"]);
+    assert_eq!(
+        folder.files(),
+        ["study.csv", "study.place.png", "study.place.svg", "study.sqlite", "study.toml"]
+    );
     let again = souple_in(folder.path(), ["sweep", "study.toml", "--json"]).ends(0).json();
     assert_eq!((&again["made"], &again["held"], &again["table"]), (&0.into(), &2.into(), &answer["table"]));
     folder.write("wrong.toml", study.replace("place.x", "nowhere"));
     let wrong = souple_in(folder.path(), ["sweep", "wrong.toml"]).ends(2);
-    assert!(wrong.stderr.contains("`nowhere`; expected a number that every run has"), "{}", wrong.stderr);
+    assert!(
+        wrong.stderr.contains("graphs.place.y is `nowhere`; expected one of world.period, place"),
+        "{}",
+        wrong.stderr
+    );
 }
 
 /// Without a tolerance a comparison tells; with one it judges.

@@ -32,6 +32,8 @@ pub struct Plan {
 #[derive(Clone, Debug)]
 pub struct Graph {
     pub name: String,
+    /// That of the study where `None`.
+    pub title: Option<String>,
     /// A path that varies, or a result.
     pub x: String,
     /// A result: `PROBE`, `PROBE.x`, `PROBE.max`, `wall_seconds`.
@@ -44,7 +46,7 @@ pub struct Graph {
 const MOST_RUNS: usize = 100_000;
 
 const KEYS: &[&str] = &["title", "scene", "settings", "steps", "vary", "table", "graphs"];
-const GRAPH_KEYS: &[&str] = &["x", "y", "lines", "logarithmic"];
+const GRAPH_KEYS: &[&str] = &["title", "x", "y", "lines", "logarithmic"];
 
 impl Study {
     /// # Errors
@@ -174,6 +176,11 @@ fn products(vary: &Value) -> Result<Vec<Plan>, SweepError> {
                 format!("1 to {MOST_RUNS} runs"),
             ));
         }
+        if let Some(again) = values.iter().enumerate().find(|(place, value)| values[..*place].contains(value))
+        {
+            let found = format!("{} twice", again.1);
+            return Err(SweepError::value(format!("vary.\"{path}\""), found, "different values"));
+        }
         let with = |plan: &Plan, value: &Value| Plan {
             values: plan.values.iter().cloned().chain([(path.clone(), value.clone())]).collect(),
         };
@@ -272,6 +279,7 @@ fn graphs(document: &Table) -> Result<Vec<Graph>, SweepError> {
         }
         Ok(Graph {
             name: name.clone(),
+            title: text_of(table, "title")?.map(str::to_owned),
             x: needed("x", "a path that varies, or a result")?,
             y: needed("y", "a result: a probe, PROBE.x, wall_seconds")?,
             lines: text_of(table, "lines")?.map(str::to_owned),

@@ -10,6 +10,7 @@ use souple_scene::Scene;
 
 use crate::SweepError;
 use crate::database::{Database, is_kept};
+use crate::graphs;
 use crate::study::Study;
 
 /// How many runs at once, with how many threads each: results do not depend on either, times do.
@@ -57,10 +58,13 @@ impl Summary {
 /// are workers: a value that cannot be is said before the first run.
 ///
 /// # Errors
-/// A scene cannot be read, the first in the order of the runs.
+/// A scene cannot be read, the first in the order of the runs; a graph names what the scene does not have.
 pub fn fingerprints(study: &Study, workers: Workers) -> Result<Vec<String>, SweepError> {
     let count = workers.count.clamp(1, study.runs.len().max(1));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build()?;
+    if !study.runs.is_empty() {
+        graphs::check(study, &read(study, 0)?)?;
+    }
     let numbers: Vec<usize> = (0..study.runs.len()).collect();
     let mut fingerprints = Vec::with_capacity(numbers.len());
     // a fault is said before the scenes behind it are read

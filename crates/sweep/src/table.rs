@@ -33,7 +33,7 @@ impl Row {
 }
 
 /// Letters of components.
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The runs of a study as the file has them, by the fingerprints of their scenes.
 ///
@@ -68,11 +68,21 @@ impl Table {
         units.into_iter().map(|((probe, axis), unit)| (name(probe, axis), unit.clone())).collect()
     }
 
-    /// A number of a row with its unit: a path, `wall_seconds`, or a probe with its component, which a vector needs, and `first`,
+    /// The unit in which all values of a path are written; `None` where it is not one.
+    fn unit(&self, path: usize) -> Option<&str> {
+        let mut units = self.rows.iter().map(|row| split_unit(&row.values[path]).map(|(_, unit)| unit));
+        let first = units.next()??;
+        units.all(|unit| unit == Some(first)).then_some(first)
+    }
+
+    /// A number of a row with its unit: a path, in the unit in which it is written in all rows or else in SI's, `wall_seconds`, or a probe with its component, which a vector needs, and `first`,
     /// `min` or `max` behind points.
     pub fn find(&self, row: &Row, name: &str) -> Option<(f64, String)> {
         if let Some(path) = self.paths.iter().position(|path| path == name) {
-            return Some((row.numbers[path]?, String::new()));
+            return match self.unit(path) {
+                Some(unit) => Some((split_unit(&row.values[path])?.0, unit.to_owned())),
+                None => Some((row.numbers[path]?, String::new())),
+            };
         }
         if name == "wall_seconds" {
             return Some((row.stored.wall_seconds, "s".to_owned()));
@@ -132,10 +142,31 @@ impl Table {
     }
 }
 
+/// A number and the unit behind it.
+fn split_unit(text: &str) -> Option<(f64, &str)> {
+    let (number, unit) = text.trim().split_once(' ')?;
+    Some((number.parse().ok()?, unit.trim()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::database::Held;
+
+    /// A path is told in the unit in which all runs have it, and in SI's where they differ.
+    #[test]
+    fn paths_keep_their_unit() {
+        let of = |values: &[&str]| {
+            let row = |text: &&str| {
+                let numbers = vec![number(&toml::Value::String((*text).to_owned()))];
+                Row { values: vec![(*text).to_owned()], numbers, ..row(&[]) }
+            };
+            let table = Table { paths: vec!["size".to_owned()], rows: values.iter().map(row).collect() };
+            table.find(&table.rows[0], "size")
+        };
+        assert_eq!(of(&["30 mm", "5 mm"]), Some((30.0, "mm".to_owned())));
+        assert_eq!(of(&["30 mm", "1 cm"]), Some((0.03, String::new())));
+    }
 
     /// A run with the last values of probes.
     fn row(last: &[(&str, usize, f64)]) -> Row {

@@ -76,14 +76,15 @@ fn runs_are_made_once_and_kept() {
     for row in &table.rows {
         let (fall, unit) = table.find(row, "place.y").unwrap();
         let gravity = if row.values[0].contains("9.81") { 9.81 } else { 1.62 };
-        let period = table.find(row, "world.period").unwrap().0;
+        let period = row.numbers[1].unwrap();
+        assert_eq!(table.find(row, "world.period").unwrap(), (1e3 * period, "ms".to_owned()));
         let expected = -0.5 * gravity * (20.0 * period).powi(2);
         // Verlet is exact for a constant force: rounding of twenty steps
         assert!((fall / expected - 1.0).abs() < 1e-12 && unit == "m", "{fall} {expected}");
         assert!(table.find(row, "place.y.max").unwrap().0 >= fall);
         assert!(table.find(row, "nothing").is_none());
     }
-    let files = graphs::write(&study, &table, &folder.0).unwrap();
+    let files = graphs::write(&study, &table, &folder.0.join("study.sqlite")).unwrap();
     assert!(files.iter().all(|file| file.is_file()) && files.len() == 2);
     table.write_csv(&folder.0.join("study.csv")).unwrap();
     let csv = std::fs::read_to_string(folder.0.join("study.csv")).unwrap();
@@ -117,6 +118,24 @@ fn a_study_goes_on_where_it_stopped() {
     assert!(first.made >= 1 && first.made < RUNS, "{first:?}");
     let rest = made(&study, &mut database, false);
     assert_eq!((rest.held, rest.made + rest.held), (first.made, RUNS));
+}
+
+/// A graph of what the scene does not have is said before the first run, and so is a value that is there twice.
+#[test]
+fn graphs_of_nothing_are_refused() {
+    let vary = "[vary]\n\"bodies.block.material.density\" = [1000, 2000]\n";
+    for (graph, wanted) in [
+        ("x = \"tip.y\"\ny = \"place.y\"", "`tip.y`"),
+        ("x = \"bodies.block.material.density\"\ny = \"palce.y\"", "place"),
+        ("x = \"wall_seconds\"\ny = \"place.y\"\nlines = \"world.period\"", "a path that varies"),
+    ] {
+        let folder = Folder::new("nothing", &format!("{vary}[graphs.sag]\n{graph}\n"));
+        let error = fingerprints(&folder.study(), workers(false)).unwrap_err().to_string();
+        assert!(error.contains("graphs.sag.") && error.contains(wanted), "{error}");
+    }
+    let twice =
+        Study::parse("study.toml".as_ref(), "scene = \"s\"\n[vary]\na = [1, 2, 1]\n", |_| unreachable!());
+    assert!(twice.unwrap_err().to_string().contains("1 twice"));
 }
 
 /// A value that the scene does not take is said before the first run; a file of another scene is not written into.

@@ -159,27 +159,51 @@ impl Span {
                 let labels = labels(&ticks);
                 ticks.into_iter().zip(labels).collect()
             }
-            Scale::Logarithmic => {
-                let powers: Vec<f64> = match ticks(self.low, self.high, about) {
-                    ticks if ticks.len() > 1 && ticks.iter().all(|tick| tick.fract() == 0.0) => ticks,
-                    _ => (self.low.ceil() as i64..=self.high.floor() as i64)
-                        .map(|power| power as f64)
-                        .collect(),
-                };
-                if powers.len() > 1 {
-                    return powers.into_iter().map(|power| (power, format!("1e{power}"))).collect();
-                }
-                // less than two powers of ten: 1, 2, 5
-                let decades = self.low.floor() as i64..=self.high.ceil() as i64;
-                let values =
-                    decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|m| m * libm::pow(10.0, decade as f64)));
-                let within = |value: &f64| (self.low..=self.high).contains(&libm::log10(*value));
-                values
-                    .filter(within)
-                    .map(|value| (libm::log10(value), format!("{value:.3e}").replace(".000", "")))
-                    .collect()
+            Scale::Logarithmic => self.logarithmic_ticks(about),
+        }
+    }
+
+    /// Powers of ten where there are several, else round numbers between, and evenly spaced ones where not even two of these
+    /// are: an axis tells its scale by two numbers.
+    fn logarithmic_ticks(&self, about: usize) -> Vec<(f64, String)> {
+        let powers: Vec<f64> = match ticks(self.low, self.high, about) {
+            ticks if ticks.len() > 1 && ticks.iter().all(|tick| tick.fract() == 0.0) => ticks,
+            _ => (self.low.ceil() as i64..=self.high.floor() as i64).map(|power| power as f64).collect(),
+        };
+        if powers.len() > 1 {
+            let is_short = powers.iter().all(|power| SHORT_POWERS.contains(power));
+            let label =
+                |power: f64| if is_short { plain(libm::pow(10.0, power)) } else { format!("1e{power}") };
+            return powers.into_iter().map(|power| (power, label(power))).collect();
+        }
+        for digits in [&[1.0, 2.0, 5.0][..], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]] {
+            let decades = self.low.floor() as i64..=self.high.ceil() as i64;
+            let found: Vec<(f64, String)> = decades
+                .flat_map(|decade| digits.iter().map(move |digit| digit * libm::pow(10.0, decade as f64)))
+                .map(|value| (libm::log10(value), plain(value)))
+                .filter(|(coordinate, _)| (self.low..=self.high).contains(coordinate))
+                .collect();
+            if found.len() > 1 {
+                return found;
             }
         }
+        let values = ticks(libm::pow(10.0, self.low), libm::pow(10.0, self.high), about);
+        let labels = labels(&values);
+        values.into_iter().map(libm::log10).zip(labels).collect()
+    }
+}
+
+/// Powers of ten that are written out on a logarithmic axis.
+const SHORT_POWERS: std::ops::RangeInclusive<f64> = -3.0..=3.0;
+
+/// A number of few digits, written out where that is short.
+fn plain(value: f64) -> String {
+    let exponent = format!("{value:.3e}").replace(".000", "");
+    if (1e-4..1e5).contains(&value) {
+        // of the digits that the exponent form has
+        exponent.parse::<f64>().map_or(exponent, |rounded| rounded.to_string())
+    } else {
+        exponent
     }
 }
 
@@ -239,7 +263,10 @@ impl Plot {
         let named: Vec<(usize, &Curve)> =
             self.curves.iter().enumerate().filter(|(_, curve)| !curve.name.is_empty()).collect();
         let values = |of: fn(&Curve) -> &Vec<f64>| self.curves.iter().flat_map(of).copied();
-        let mut x = Span::of(values(|curve| &curve.x), self.x.scale, 0.0);
+        // dots at the ends would lie on the frame
+        let has_dots = self.curves.iter().any(|curve| matches!(curve.mark, Mark::Dots | Mark::DottedLine));
+        let beside = if has_dots { HEADROOM } else { 0.0 };
+        let mut x = Span::of(values(|curve| &curve.x), self.x.scale, beside);
         let mut y = Span::of(values(|curve| &curve.y), self.y.scale, HEADROOM);
         let y_ticks = y.ticks((height / 70.0) as usize);
         let x_ticks = x.ticks((width / 110.0) as usize);
@@ -360,9 +387,28 @@ mod tests {
         assert_eq!([1.0, 2.0, 3.0].map(|value| span.place(value)), [50.0, 150.0, 250.0]);
         let decades = Span::of([1e-3, 1e2].into_iter(), Scale::Logarithmic, 0.0);
         let labels: Vec<_> = decades.ticks(6).into_iter().map(|tick| tick.1).collect();
-        assert_eq!(labels, ["1e-3", "1e-2", "1e-1", "1e0", "1e1", "1e2"]);
+        assert_eq!(labels, ["0.001", "0.01", "0.1", "1", "10", "100"]);
+        let wide = Span::of([1e-6, 1e2].into_iter(), Scale::Logarithmic, 0.0);
+        assert!(wide.ticks(6).iter().all(|tick| tick.1.starts_with("1e")));
         let narrow = Span::of([2.0, 30.0].into_iter(), Scale::Logarithmic, 0.0);
         assert_eq!(narrow.ticks(4).len(), 4);
+    }
+
+    /// However short a range is, two numbers at least tell its scale.
+    #[test]
+    fn axes_have_two_numbers() {
+        let ranges = [[0.011, 0.03], [0.021, 0.039], [0.041, 0.0412], [0.9, 1.1], [7e7, 7.3e7], [1.0, 1e9]];
+        for (scale, [low, high]) in
+            [Scale::Linear, Scale::Logarithmic].into_iter().flat_map(|s| ranges.map(|r| (s, r)))
+        {
+            for about in [4, 7] {
+                let span = Span::of([low, high].into_iter(), scale, 0.0);
+                let mut labels: Vec<String> = span.ticks(about).into_iter().map(|tick| tick.1).collect();
+                let count = labels.len();
+                labels.dedup();
+                assert!(count > 1 && labels.len() == count, "{low} to {high}: {labels:?}");
+            }
+        }
     }
 
     /// The same plot as pixels: a curve along the top of the range is drawn in its colour where the axes say.

@@ -5,7 +5,8 @@
 //! pyramid with its apex in that cube's centre, whose sides are those of the lattice's tetrahedra: the mesh is
 //! conforming. A pyramid with its apex outside is cut off like the tetrahedra beside it, and what is left is cut into
 //! cells around its middle. Cubes of which a cell would be too flat, because corners have moved onto the surface, are
-//! filled with tetrahedra after all. Where the hexahedra end in a step, a prism lies in it (`prisms`).
+//! filled with tetrahedra after all, and so are those at points where what comes out would hang together by a point or an edge
+//! alone. Where the hexahedra end in a step, a prism lies in it (`prisms`).
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -78,6 +79,8 @@ pub(super) fn hex_dominant(lattice: &Lattice, shape: &dyn Shape) -> Mesh {
         background.places.iter().enumerate().map(|(number, place)| (*place, number as u32)).collect();
     let mut notches = Notches::new();
     let mut is_first = true;
+    // points at which tetrahedra alone are a manifold, and hexahedra were none
+    let mut without_hexes: HashSet<u32> = HashSet::new();
     // the surface cuts other edges where a centre has moved, and cells around it may be bad after all: such a notch is left out,
     // and the surface is looked at again
     loop {
@@ -90,13 +93,27 @@ pub(super) fn hex_dominant(lattice: &Lattice, shape: &dyn Shape) -> Mesh {
         }
         let warped = warp::warp(&mut background, shape);
         let mut filling = Filling::new(lattice, &background, &warped, &numbers, &notches);
-        filling.choose();
+        filling.choose(&without_hexes);
         let fit = if is_first { filling.find_notches(shape) } else { filling.fit_notches() };
-        if fit.len() == notches.len() {
-            return filling.mesh();
-        }
-        notches = fit;
         is_first = false;
+        if fit.len() < notches.len() || notches.is_empty() && !fit.is_empty() {
+            notches = fit;
+            continue;
+        }
+        let mesh = filling.mesh();
+        let known = without_hexes.len();
+        for point in mesh.boundary_surface().pinched_points() {
+            match (point as usize).checked_sub(background.points.len()) {
+                None => without_hexes.extend([point]),
+                Some(cut) => without_hexes.extend(warped.cuts.get(cut).iter().flat_map(|cut| cut.ends)),
+            }
+        }
+        if without_hexes.len() == known {
+            return mesh;
+        }
+        let is_without =
+            |place: Place| numbers.get(&place).is_some_and(|point| without_hexes.contains(point));
+        notches.retain(|_, notch| !notch.places().any(is_without));
     }
 }
 
@@ -175,11 +192,12 @@ impl<'a> Filling<'a> {
 
     /// Decides which cubes are hexahedra: all that can be, less those with a bad cell on one of their faces, until
     /// there are none. Deciding against a cube may put a pyramid on its neighbours, so it is looked at these again.
-    fn choose(&mut self) {
+    fn choose(&mut self, without_hexes: &HashSet<u32>) {
         for leaf in self.lattice.leaves() {
             let (Some(corners), Some(centre)) = (self.corners(&leaf), self.centre(&leaf)) else { continue };
             let is_inside = corners.iter().all(|node| self.side(*node) != Side::Outside)
-                && self.side(centre) == Side::Inside;
+                && self.side(centre) == Side::Inside
+                && (without_hexes.is_empty() || !self.touches(&leaf, &corners, without_hexes));
             let is_hex = is_inside && self.is_fit(ElementKind::Hex8, &corners) && self.is_plain(&leaf);
             let index = self.index(&leaf);
             self.is_hex[index] = is_hex;
@@ -197,6 +215,13 @@ impl<'a> Filling<'a> {
             }
             bad.into_iter().for_each(|cube| self.is_hex[cube] = false);
         }
+    }
+
+    /// Whether a hexahedron, or the apex of a pyramid on it, is among points.
+    fn touches(&self, leaf: &Leaf, corners: &[u32; 8], points: &HashSet<u32>) -> bool {
+        let across = FACES.iter().filter_map(|(_, step)| self.lattice.across(leaf, *step));
+        let apices = across.filter_map(|across| self.centre(&across));
+        corners.iter().copied().chain(apices).any(|node| points.contains(&node))
     }
 
     fn hexes(&self) -> impl Iterator<Item = (Leaf, [u32; 8])> {

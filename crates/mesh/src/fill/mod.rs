@@ -18,6 +18,7 @@ mod groups;
 mod hexes;
 mod lattice;
 mod options;
+mod pinched;
 mod prisms;
 mod stencil;
 mod surface;

@@ -61,6 +61,11 @@ impl Notch {
         })
     }
 
+    /// Of the prism's corners.
+    pub fn places(&self) -> impl Iterator<Item = Place> {
+        [self.triangle(0), self.triangle(1)].into_iter().flatten()
+    }
+
     /// What lies across a face of the cube.
     fn role(&self, step: [i64; 3]) -> Role {
         if step[self.axis] != 0 {

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use souple_math::Vec3;
 
 use super::lattice::{Background, Place, Side};
+use super::pinched;
 use crate::implicit::Shape;
 
 /// Fractions of the edge within which a cut moves its end.
@@ -68,12 +69,13 @@ fn smallest_cubes(background: &Background) -> Vec<f64> {
     smallest
 }
 
-/// Finds the cuts and moves points onto them, in the order of their numbers.
+/// Finds the cuts and moves points onto them, in the order of their numbers; points that would be pinched go back.
 pub(super) fn warp(background: &mut Background, shape: &dyn Shape) -> Warped {
     let mut sides: Vec<Side> = background.values.iter().map(|value| Side::of(*value)).collect();
     let mut cuts = find_cuts(background, &sides, shape);
     let edges_of = incidence(background.points.len(), &cuts);
     let smallest = smallest_cubes(background);
+    let mut moved: Vec<(u32, Vec3)> = Vec::new();
     for point in 0..background.points.len() {
         let edges = &edges_of.items[edges_of.starts[point] as usize..edges_of.starts[point + 1] as usize];
         let mut nearest: Option<(f64, Vec3)> = None;
@@ -97,12 +99,43 @@ pub(super) fn warp(background: &mut Background, shape: &dyn Shape) -> Warped {
             }
         }
         if let Some((_, position)) = nearest {
+            moved.push((point as u32, background.points[point]));
             background.points[point] = position;
             sides[point] = Side::On;
         }
     }
+    let released = pinched::release(background, &mut sides);
+    for point in &released {
+        if let Ok(index) = moved.binary_search_by_key(point, |(point, _)| *point) {
+            background.points[*point as usize] = moved[index].1;
+        }
+    }
     cuts.retain(|cut| cut.ends.iter().all(|end| sides[*end as usize] != Side::On));
+    if !released.is_empty() {
+        cut_in_middle(&mut cuts, background, &sides, &released);
+    }
     Warped { sides, cuts }
+}
+
+/// Cuts the edges of points that were released in their middle: where they were cut, they would have been moved.
+fn cut_in_middle(cuts: &mut Vec<Cut>, background: &Background, sides: &[Side], released: &[u32]) {
+    let is_released = |point: &u32| released.binary_search(point).is_ok();
+    cuts.retain(|cut| !cut.ends.iter().any(is_released));
+    for tet in background.tets.iter().filter(|tet| tet.iter().any(is_released)) {
+        for (i, a) in tet.iter().enumerate() {
+            for b in &tet[i + 1..] {
+                let both = [sides[*a as usize], sides[*b as usize]];
+                let is_cut = both.contains(&Side::Inside) && both.contains(&Side::Outside);
+                if is_cut && (is_released(a) || is_released(b)) {
+                    let ends = [*a.min(b), *a.max(b)];
+                    let [from, to] = ends.map(|end| background.points[end as usize]);
+                    cuts.push(Cut { ends, position: (from + to) * 0.5, fraction: 0.5 });
+                }
+            }
+        }
+    }
+    cuts.sort_unstable_by_key(|cut| cut.ends);
+    cuts.dedup_by_key(|cut| cut.ends);
 }
 
 fn find_cuts(background: &Background, sides: &[Side], shape: &dyn Shape) -> Vec<Cut> {

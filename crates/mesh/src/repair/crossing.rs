@@ -24,6 +24,11 @@ pub fn crossings(surface: &TriangleSurface) -> Vec<[u32; 2]> {
 
 fn cross(surface: &TriangleSurface, s: u32, t: u32) -> bool {
     let [a, b] = [s, t].map(|triangle| surface.triangles[triangle as usize]);
+    triangles_cross(a, b, |point| surface.points[point as usize])
+}
+
+/// Whether two triangles, by their points, pass through each other as [`crossings`] counts it.
+pub fn triangles_cross(a: [u32; 3], b: [u32; 3], position: impl Fn(u32) -> Vec3) -> bool {
     let shared = a.iter().filter(|point| b.contains(point)).count();
     if shared > 1 {
         return false;
@@ -34,8 +39,8 @@ fn cross(surface: &TriangleSurface, s: u32, t: u32) -> bool {
             .map(|i| [edges[i], edges[(i + 1) % 3]])
             .filter(|edge| !edge.iter().any(|p| through.contains(p)))
             .any(|edge| {
-                let [p, q] = edge.map(|point| surface.points[point as usize]);
-                segment_passes(p, q, through.map(|point| surface.points[point as usize]))
+                let [p, q] = edge.map(&position);
+                segment_passes(p, q, through.map(&position))
             })
     };
     passes(a, b) || passes(b, a)

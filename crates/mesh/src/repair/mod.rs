@@ -15,7 +15,7 @@ use souple_math::Vec3;
 
 use crate::TriangleSurface;
 
-pub(crate) use crossing::crossings;
+pub(crate) use crossing::{crossings, triangles_cross};
 pub use diagnose::{Diagnosis, diagnose};
 
 /// What [`repair`] may do.

@@ -2,14 +2,16 @@
 
 use souple_engine::System;
 use souple_engine::linear::Method;
-use souple_mesh::Order;
+use souple_mesh::repair::diagnose;
+use souple_mesh::{Order, USUAL_SIZES};
 use souple_models::materials::{Build, Material};
 use souple_table::{Value, readable};
 
-use super::Draft;
+use super::{Draft, contact};
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::spec::body::Body;
+use crate::spec::mesh::MeshSpec;
 
 /// Young's moduli of matter [Pa]: the softest gels have tens of pascals, diamond 1.2·10¹².
 const MODULI: [f64; 2] = [20.0, 2e12];
@@ -17,7 +19,7 @@ const MODULI: [f64; 2] = [20.0, 2e12];
 const DENSITIES: [f64; 2] = [1.0, 3e4];
 /// Moduli and densities in SI units that can be computed with, and more than there are.
 const ABSURD: [f64; 2] = [1e-30, 1e30];
-/// Sizes of bodies [m].
+/// Sizes of bodies whose lengths are written in the scene [m].
 const SIZES: [f64; 2] = [1e-5, 500.0];
 /// `λ/μ` beyond which elements with linear shape functions are markedly too stiff: they have fewer freedoms than
 /// their cells have volumes to keep. `ν = 0.475` gives 19 (Hughes 2000, §4.2).
@@ -29,10 +31,15 @@ pub fn warn(draft: &mut Draft) {
     for body in &draft.bodies {
         let size = body.mesh.bounds().diagonal();
         // huge balls serve networks as walls, lone masses have no size
-        if body.spec.network.is_none() && !within(size, SIZES) {
+        let sizes = match body.spec.mesh {
+            // a file knows no units
+            Some(MeshSpec::File { .. } | MeshSpec::Filled { .. }) => USUAL_SIZES,
+            _ => SIZES,
+        };
+        if body.spec.network.is_none() && !within(size, sizes) {
             let site = body.spec.mesh.as_ref().map_or(&body.spec.site, |mesh| mesh.site());
             let hint =
-                if size > SIZES[1] { "did you mean mm (`scale = 0.001`)?" } else { "is the scale right?" };
+                if size > sizes[1] { "did you mean mm (`scale = 0.001`)?" } else { "is the scale right?" };
             let place = draft.place(site);
             warnings.push(format!("{place}: body `{}` is {size:.3e} m across: {hint}", body.spec.name));
         }
@@ -42,7 +49,28 @@ pub fn warn(draft: &mut Draft) {
             warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(&chosen.site))));
         }
     }
+    warnings.extend(of_surfaces(draft));
     draft.warnings.extend(warnings);
+}
+
+/// What is wrong with the surface files of shapes that bodies touch: they are closed, or they would be refused.
+fn of_surfaces(draft: &Draft) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if !draft.log.is_empty() {
+        return warnings;
+    }
+    for shape in &draft.spec.shapes {
+        let Some(chosen) = shape.shape.as_ref().filter(|shape| shape.values.get("surface").is_some()) else {
+            continue;
+        };
+        let Some(outline) = contact::built(draft, chosen).and_then(|built| built.outline()) else { continue };
+        let size = outline.surface.bounds().doubt();
+        let faults = diagnose(&outline.surface).messages();
+        let place = draft.place(&chosen.site);
+        let said = |doubt: String| format!("{place}: shape `{}`: {doubt}", shape.name);
+        warnings.extend(size.into_iter().chain(faults).map(said));
+    }
+    warnings
 }
 
 /// Refuses materials like nothing in the world: their numbers would overflow in what is computed of them.

@@ -68,6 +68,8 @@ enum Action {
     Convert {
         input: PathBuf,
         out: PathBuf,
+        /// scale=NUMBER: metres in one unit of the file; fields keep their values
+        parameters: Vec<String>,
         /// A name that `souple list formats` prints: `gmsh_binary`, `ply_text`, …; by the extension where left out
         #[arg(long)]
         format: Option<String>,
@@ -112,14 +114,17 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             let (mesh, notes) = skin::dressed(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
-        Action::Convert { input, out, format, json } => {
-            let Dataset { mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
+        Action::Convert { input, out, parameters, format, json } => {
+            let scale = scale(&parameters)?;
+            let Dataset { mut mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
+            mesh.points.iter_mut().for_each(|point| *point = *point * scale);
             let output =
                 Output { point_fields: &point_fields, cell_fields: &cell_fields, ..Output::new(&mesh) };
             write(&out, format.as_deref(), &output, notes, json)
         }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
+            notes.extend(mesh.bounds().doubt());
             // cells, or nothing at all, are validated
             if mesh.cell_count() == 0 && mesh.facet_count() > 0 {
                 report(&input, &mesh, &notes, json);
@@ -139,6 +144,16 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             Ok(End::Done)
         }
     }
+}
+
+/// The one parameter of a conversion.
+fn scale(texts: &[String]) -> Result<f64, Refusal> {
+    let values = parameters::values(texts, &[&fill::SCALE])?;
+    parameters::refuse_unknown(&values, &[&fill::SCALE])?;
+    let completed = values.completed(&[fill::SCALE]).map_err(|error| {
+        Refusal::request("scale", texts.join(" "), "scale=NUMBER, such as scale=0.001", error.to_string())
+    })?;
+    Ok(completed.number("scale"))
 }
 
 fn generate(name: &str, texts: &[String]) -> Result<Mesh, Refusal> {

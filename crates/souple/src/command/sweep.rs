@@ -76,7 +76,7 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
     table.write_csv(&csv)?;
     let mut files = vec![out.clone(), csv];
     if !table.rows.is_empty() {
-        files.extend(graphs::write(&study, &table, out.parent().unwrap_or(std::path::Path::new(".")))?);
+        files.extend(graphs::write(&study, &table, &out)?);
     }
     if summary.of_others > 0 {
         print_note(format_args!(

@@ -2,7 +2,7 @@
 
 use souple_math::{Mat3, Vec3};
 use souple_mesh::{MeshError, SignedDistance, TriangleSurface};
-use souple_table::Parameter;
+use souple_table::{Parameter, Range, Value};
 
 use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, ShapeError, boxed};
 
@@ -60,14 +60,21 @@ pub(super) const ENTRY: ShapeEntry = ShapeEntry {
     name: "closed_surface",
     summary: "the inside of a closed triangulated surface: bones, moulds, tools",
     source: "Bærentzen & Aanæs 2005, Signed distance computation using the angle weighted pseudonormal",
-    parameters: &[Parameter::text("surface", "file of a closed triangulated surface"), HOLLOW],
+    parameters: &[
+        Parameter::text("surface", "file of a closed triangulated surface"),
+        Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file")
+            .or(Value::Number(1.0)),
+        HOLLOW,
+    ],
     build: |values, source| {
         let (field, name) = ("surface", values.text("surface"));
-        let surface = source(name).map_err(|message| ShapeError::NoSurface {
+        let mut surface = source(name).map_err(|message| ShapeError::NoSurface {
             field,
             surface: name.to_owned(),
             message,
         })?;
+        let scale = values.number("scale");
+        surface.points.iter_mut().for_each(|point| *point = *point * scale);
         let wrong = |error| ShapeError::Surface { field, surface: name.to_owned(), error: Box::new(error) };
         let closed = ClosedSurface::new(surface).map_err(wrong)?;
         Ok(boxed(closed, values))

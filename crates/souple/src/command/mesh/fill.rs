@@ -12,7 +12,7 @@ use souple_table::{Parameter, Range, Value, Values, nearest};
 use super::{parameters, read};
 use crate::command::Refusal;
 
-const SCALE: Parameter =
+pub const SCALE: Parameter =
     Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0));
 
 /// Fills a file's surface, or a shape known by name.
@@ -62,27 +62,11 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     let scale = others.completed(&[SCALE]).map_err(|error| refuse(error.into()))?.number("scale");
     let (mut mesh, mut notes) = read(Path::new(input))?;
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
-    notes.extend(scale_doubt(&mesh));
+    notes.extend(mesh.bounds().doubt().map(|doubt| format!("the surface: {doubt}")));
     let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
     notes.extend(missed(wanted, &filled.mesh));
     Ok((filled.mesh, notes))
-}
-
-/// Sizes of soft bodies [m]: beyond these a file is more likely in other units.
-const USUAL: [f64; 2] = [1e-4, 20.0];
-
-/// What to say of a surface whose size is that of a house or of a grain of dust.
-fn scale_doubt(mesh: &Mesh) -> Option<String> {
-    let extent = mesh.bounds().size();
-    let largest = extent.largest_component();
-    let hint = if largest > USUAL[1] { ": in millimetres it takes scale=0.001" } else { "" };
-    (largest > 0.0 && !(USUAL[0]..=USUAL[1]).contains(&largest)).then(|| {
-        format!(
-            "the surface measures {:.3e} x {:.3e} x {:.3e} m, an unusual size for a soft body{hint}",
-            extent.x, extent.y, extent.z
-        )
-    })
 }
 
 /// A count is met within this part of it, or else it is said.
