@@ -66,7 +66,8 @@ class Page {
   private hasBegun = false;
   /** The last frame, while it is not drawn. */
   private frame: Frame | null = null;
-  private isAnswerDue = false;
+  /** Frames that came since the last picture. */
+  private unanswered = 0;
   /** What the world was asked to send along. */
   private asked: { field: string | null; arrows: string | null; inside: boolean } = { field: null, arrows: null, inside: false };
   private dark = false;
@@ -164,10 +165,9 @@ class Page {
         this.notes.say("error", message.message);
         break;
       case "frame":
-        // the one before was not drawn yet, and never will be; a page that is hidden draws none
-        this.answer();
         this.frame = message;
-        this.isAnswerDue = true;
+        this.unanswered += 1;
+        // a page that is hidden draws none, and is there all the same
         if (document.hidden) this.answer();
         break;
       case "samples":
@@ -246,22 +246,21 @@ class Page {
     // while it is tried again the words stay
     if (link !== "connecting" || !this.link.textContent) this.link.textContent = link === "connecting" ? "connecting" : why;
     document.body.classList.toggle("lost", link !== "open");
-    // the connection that sent the last frame waits for no answer
-    if (link !== "open") this.isAnswerDue = false;
+    // the connection that sent the last frames waits for no answer
+    if (link !== "open") this.unanswered = 0;
   }
 
-  /** Lets another frame come for the last. */
+  /** Lets another frame come for each that came, also for those that a later one has replaced. */
   private answer(): void {
-    if (this.isAnswerDue) this.send({ do: "seen" });
-    this.isAnswerDue = false;
+    for (; this.unanswered > 0; this.unanswered--) this.send({ do: "seen" });
   }
 
   private draw(): void {
     const { frame } = this;
     this.frame = null;
+    // a frame of the scene before, or of one whose surfaces are still to come, counts as seen as well
+    this.answer();
     if (frame) {
-      // a frame of the scene before, or of one whose surfaces are still to come, counts as seen as well
-      this.answer();
       if (this.hasBegun && frame.scene === this.info?.scene) {
         this.picture.show(frame);
         this.transport.show(frame);
