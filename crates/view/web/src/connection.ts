@@ -7,6 +7,7 @@ export type Message = Document | Binary;
 export type Link = "connecting" | "open" | "lost";
 
 const RETRY_MS = 1000;
+const LOST = "connection lost, trying again";
 /** The history's entry keeps it over a reload: a page that is refused after one would load itself for ever. */
 const RELOADED = "reloaded";
 
@@ -46,8 +47,8 @@ export class Connection {
     };
     socket.onclose = () => {
       this.socket = null;
-      this.changed("lost", "connection lost, trying again");
-      if (!wasOpen) void this.askWhy();
+      if (wasOpen) this.changed("lost", LOST);
+      else void this.askWhy();
       setTimeout(() => this.open(), RETRY_MS);
     };
     this.socket = socket;
@@ -56,8 +57,10 @@ export class Connection {
   /** A browser does not tell why a socket was refused; the server does where it is asked in the plain way. */
   private async askWhy(): Promise<void> {
     const answer = await fetch(`health${location.search}`).catch(() => null);
-    if (!answer || this.socket?.readyState === WebSocket.OPEN) return;
-    if (!answer.ok) {
+    if (this.socket?.readyState === WebSocket.OPEN) return;
+    if (!answer) {
+      this.changed("lost", LOST);
+    } else if (!answer.ok) {
       this.changed("lost", `the server refuses this page: ${(await answer.text()).trim()}`);
     } else if (history.state !== RELOADED) {
       // the server is there and takes no socket of this page: it is of another version

@@ -42,7 +42,7 @@ class Page {
       if (this.grab) this.grab.handling = handling;
     },
     () => this.grab?.putAway(),
-    (value) => this.send({ do: "set", path: GRAVITY, value }),
+    (value) => this.parameters.change(GRAVITY, value),
   );
   private readonly parameters = new Parameters(
     (wish) => this.send(wish),

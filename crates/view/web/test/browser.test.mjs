@@ -62,10 +62,11 @@ describe("the liver", () => {
     // where the machine has other work for a while one of three is undisturbed; where it always takes longer for a picture, by
     // software or beside others, the way there and back is no more than three of them
     const batches = [];
+    let moves = 0;
     for (let batch = 0; batch < 3; batch++) {
       const picture = await trial.pictureTime(page);
       const lags = [];
-      for (let k = 0; k < 15; k++) lags.push(await trial.lag(page, x + (k % 2 ? 30 : 10), y));
+      for (let k = 0; k < 15; k++) lags.push(await trial.lag(page, x + (moves++ % 2 ? 10 : 30), y));
       const [least, median, most] = [0, 7, 14].map((place) => lags.sort((a, b) => a - b)[place]);
       const said = [least, median, most, picture].map((time) => time.toFixed(1));
       t.diagnostic(`${said[1]} ms, ${said[0]} to ${said[2]}, at ${said[3]} ms a picture`);
@@ -342,6 +343,35 @@ describe("small worlds", () => {
     await page.locator("body.lost").waitFor();
     await page.locator("body:not(.lost)").waitFor();
     await passed(page, now + 0.05);
+  });
+
+  test("say why they may not be looked at", async () => {
+    const other = await browser.newPage();
+    await other.addInitScript(() => {
+      const Socket = window.WebSocket;
+      window.WebSocket = class extends Socket {
+        constructor(url) {
+          super(url, "souple.v0");
+        }
+      };
+    });
+    let loads = 0;
+    other.on("domcontentloaded", () => (loads += 1));
+    await other.goto(world.url);
+    await other.waitForFunction(() => /another version/.test(document.querySelector(".link").textContent));
+    assert.equal(loads, 2, "it loads itself once more, and then says what is wrong");
+    await other.route(/health/, (route) => route.fulfill({ status: 401, body: "the token is missing or wrong" }));
+    await other.waitForFunction(() => /refuses.*token is missing/.test(document.querySelector(".link").textContent));
+    await other.close();
+  });
+
+  test("say when the graphics card drops the picture", async () => {
+    const lost = await page.evaluateHandle(() => document.querySelector("#stage canvas").getContext("webgl2").getExtension("WEBGL_lose_context"));
+    await lost.evaluate((card) => card.loseContext());
+    await page.locator(".note", { hasText: "dropped the picture" }).waitFor();
+    await lost.evaluate((card) => card.restoreContext());
+    await page.locator(".note", { hasText: "draws the picture again" }).waitFor();
+    await shows(page, 0.02);
   });
 
   test("are drawn whatever they are made of", async () => {

@@ -14,7 +14,7 @@ export class Parameters {
   private readonly command = element("code", { class: "command" });
   private shape = "";
   private readonly controls = new Map<string, Control>();
-  /** Where a value was set last: what is refused is refused of it. */
+  /** What was set last. */
   private lastSet = "";
   private scene = "";
 
@@ -41,9 +41,16 @@ export class Parameters {
     adjustables.forEach((adjustable) => this.controls.get(adjustable.path)?.show(adjustable));
   }
 
+  /** Wishes for a value. */
+  change(path: string, value: string): void {
+    this.lastSet = path;
+    this.send({ do: "set", path, value });
+  }
+
   /** What was set was refused: says so beside it; the value as it is comes after. */
   refuse(message: string): void {
-    this.controls.get(this.lastSet)?.refuse(message);
+    const named = [...this.controls.keys()].find((path) => message.startsWith(`${path}:`));
+    this.controls.get(named ?? this.lastSet)?.refuse(message);
   }
 
   private build(adjustables: Adjustable[]): void {
@@ -64,22 +71,19 @@ export class Parameters {
     const { name, unit, summary, type } = adjustable;
     const title = `${summary}${unit ? ` [${unit}]` : ""}`;
     const heading = element("span", { title }, label(name), unit ? element("small", {}, ` ${unit}`) : null);
-    const refusal = element("small", { class: "refusal", role: "alert", hidden: true });
+    const refusal = element("small", { class: "refusal", hidden: true });
     const isChosen = type === "choice" || type === "boolean";
     const inputs = isChosen ? this.choice(adjustable, refusal) : this.number(adjustable, refusal);
     return element("label", { class: "row" }, heading, ...inputs, refusal);
   }
 
-  private wish(path: string, value: string, refusal: HTMLElement): void {
-    this.lastSet = path;
-    refusal.hidden = true;
-    this.send({ do: "set", path, value });
-  }
-
   private choice({ path, type, choices }: Adjustable, refusal: HTMLElement): HTMLElement[] {
     const entries = type === "boolean" ? ["true", "false"] : choices;
     const select = element("select", { "data-path": path }, ...entries.map((value) => element("option", { value }, label(value))));
-    select.addEventListener("change", () => this.wish(path, type === "boolean" ? select.value : JSON.stringify(select.value), refusal));
+    select.addEventListener("change", () => {
+      refusal.hidden = true;
+      this.change(path, type === "boolean" ? select.value : JSON.stringify(select.value));
+    });
     this.controls.set(path, {
       show: ({ value }) => (select.value = (value ?? "").replaceAll('"', "")),
       refuse: (message) => say(refusal, message),
@@ -93,16 +97,18 @@ export class Parameters {
     /** As it was shown or set: what is typed since then is left alone. */
     let known = "";
     let scale: Scale | null = null;
-    text.addEventListener("input", () => {
+    const forget = () => {
       text.removeAttribute("aria-invalid");
       refusal.hidden = true;
-    });
+    };
+    text.addEventListener("input", forget);
+    slider.addEventListener("input", forget);
     text.addEventListener("change", () => {
       known = text.value;
-      this.wish(path, written(text.value, type), refusal);
+      this.change(path, written(text.value, type));
     });
     slider.addEventListener("input", () => {
-      if (scale) this.wish(path, String(scale.value(Number(slider.value) / SLIDER_STEPS)), refusal);
+      if (scale) this.change(path, String(scale.value(Number(slider.value) / SLIDER_STEPS)));
     });
     const show = (now: Adjustable) => {
       if (document.activeElement !== text || text.value === known) known = text.value = shown(now);
