@@ -18,7 +18,7 @@ export function quantity(value: number, unit: string): string {
   if (!Number.isFinite(value)) return `${value} ${unit}`.trim();
   if (value === 0 || !PREFIXED.has(unit)) return `${number(value)} ${unit}`.trim();
   const size = Math.abs(value);
-  const [scale, prefix] = PREFIXES.find(([scale]) => size >= 0.9995 * scale) ?? [1e-9, "n"];
+  const [scale, prefix] = PREFIXES.find(([scale]) => size >= 0.9995 * scale) ?? [1, ""];
   return `${number(value / scale)} ${prefix}${unit}`;
 }
 

@@ -2,7 +2,7 @@
 
 import "uplot/dist/uPlot.min.css";
 import "../style.css";
-import { Connection } from "./connection";
+import { Connection, reload } from "./connection";
 import type { Link, Message } from "./connection";
 import type { ColourMap, Frame, NetworkShape, SceneInfo, Status, Surface, Wish } from "./protocol";
 import { Display } from "./ui/display";
@@ -18,6 +18,10 @@ import { Transport } from "./ui/transport";
 import { Grab } from "./view/grab";
 import { Picture } from "./view/picture";
 
+const DARK = "(prefers-color-scheme: dark)";
+/** Where the scene has its gravity. */
+const GRAVITY = "world.gravity";
+
 class Page {
   private readonly notes = new Notes(place("notes"));
   private readonly title = element("h1", {}, "Souple");
@@ -31,13 +35,14 @@ class Page {
   );
   private readonly display = new Display(() => this.applyLook(), {
     fit: () => this.picture.fit(),
-    theme: () => this.setDark(!this.dark),
+    theme: () => this.chooseDark(!this.dark),
   });
   private readonly hand = new HandPanel(
     (handling) => {
       if (this.grab) this.grab.handling = handling;
     },
     () => this.grab?.putAway(),
+    (value) => this.parameters.change(GRAVITY, value),
   );
   private readonly parameters = new Parameters(
     (wish) => this.send(wish),
@@ -59,14 +64,22 @@ class Page {
   private surfaces: Surface[] = [];
   private networks: (NetworkShape | undefined)[] = [];
   private hasBegun = false;
+  /** The last frame, while it is not drawn. */
   private frame: Frame | null = null;
+  /** Frames that came since the last picture. */
+  private unanswered = 0;
   /** What the world was asked to send along. */
   private asked: { field: string | null; arrows: string | null; inside: boolean } = { field: null, arrows: null, inside: false };
-  private dark = remembered("theme") === null ? matchMedia("(prefers-color-scheme: dark)").matches : remembered("theme") === "dark";
+  private dark = false;
+  /** Of the program. */
+  private version: string | null = null;
+  /** Drawn since the page was opened. */
+  private pictures = 0;
 
   constructor() {
-    this.picture = new Picture(place("stage"), (picture) => {
-      this.grab = new Grab(picture, (wish) => this.send(wish));
+    const say = (text: string) => this.notes.say("error", text);
+    this.picture = new Picture(place("stage"), say, (picture) => {
+      this.grab = new Grab(picture, (wish) => this.send(wish), say);
       this.grab.handling = this.hand.handling;
     });
     place("top").append(element("div", { class: "name" }, this.title, this.link), this.transport.root);
@@ -81,12 +94,13 @@ class Page {
       panel("Messages", false, this.notes.list),
     );
     place("bottom").append(this.stages.root);
-    document.body.append(this.failure);
-    this.setDark(this.dark);
+    place("messages").prepend(this.failure);
+    this.setDark(this.isDark());
+    matchMedia(DARK).addEventListener("change", () => this.setDark(this.isDark()));
     window.addEventListener("keydown", (event) => this.key(event));
     this.connection = new Connection(
       (message) => this.receive(message),
-      (link) => this.setLink(link),
+      (link, why) => this.setLink(link, why),
     );
     const draw = () => {
       requestAnimationFrame(draw);
@@ -102,6 +116,9 @@ class Page {
   private receive(message: Message): void {
     switch (message.kind) {
       case "hello":
+        // the program has been built anew, and may have brought another page
+        if (this.version !== null && this.version !== message.version) reload();
+        this.version = message.version;
         this.maps = message.colour_maps;
         this.display.setMaps(this.maps);
         this.scenes.set(message.scenes);
@@ -111,13 +128,13 @@ class Page {
         this.grab?.forget();
         break;
       case "scene":
+        this.describe(message, this.info);
         this.info = message;
         this.surfaces = [];
         this.networks = [];
         this.picture.tools.clear();
         this.grab?.forget();
         this.hasBegun = false;
-        this.describe(message);
         this.begin();
         break;
       case "surface":
@@ -135,6 +152,7 @@ class Page {
         break;
       case "adjustables":
         this.parameters.set(message);
+        this.hand.setGravity(message.adjustables.find(({ path }) => path === GRAVITY));
         break;
       case "pins":
         message.pins.forEach((points, body) => this.picture.bodies[body]?.setPins(points));
@@ -143,10 +161,14 @@ class Page {
         this.setStatus(message);
         break;
       case "refused":
+        if (message.about === "set") this.parameters.refuse(message.message);
         this.notes.say("error", message.message);
         break;
       case "frame":
         this.frame = message;
+        this.unanswered += 1;
+        // a page that is hidden draws none, and is there all the same
+        if (document.hidden) this.answer();
         break;
       case "samples":
         if (message.scene === this.info?.scene) this.plots.push(message);
@@ -154,7 +176,8 @@ class Page {
     }
   }
 
-  private describe(info: SceneInfo): void {
+  /** `before` is the scene that was there: the same one begun anew says nothing again. */
+  private describe(info: SceneInfo, before: SceneInfo | null): void {
     this.title.textContent = info.title || info.name;
     document.title = `${info.title || info.name} – Souple`;
     this.description.textContent = info.description || "The scene has no description.";
@@ -162,7 +185,8 @@ class Page {
     this.scenes.setCurrent(info.name);
     this.plots.begin(info.probes);
     this.stages.begin(info);
-    info.warnings.forEach((warning) => this.notes.say("warning", warning));
+    const said = before?.name === info.name ? before.warnings : [];
+    info.warnings.filter((warning) => !said.includes(warning)).forEach((warning) => this.notes.say("warning", warning));
   }
 
   /** Begins to draw when all surfaces are there. */
@@ -173,9 +197,8 @@ class Page {
     if (this.surfaces.filter(Boolean).length < count) return;
     this.hasBegun = true;
     this.picture.begin(info, this.surfaces, this.networks);
-    this.picture.fit();
     this.display.setArrows(info.arrows, info.counts["rigid_frames"] !== undefined || info.counts["affine_frames"] !== undefined);
-    this.display.setFields(info.fields);
+    this.display.setFields(info);
   }
 
   private applyLook(): void {
@@ -190,11 +213,18 @@ class Page {
     if (inside !== asked.inside) this.send({ do: "inside", is_shown: inside });
     this.asked = { field: look.field, arrows: look.arrows, inside };
     if (map) this.picture.setColours(index, fields[index], map);
-    this.legend.set(fields[index] ?? null, map);
+    this.legend.set(fields[index] ?? null, map, this.info?.arrows.find(({ name }) => name === look.arrows) ?? null);
     this.picture.setStyle(look.style, this.dark);
     this.picture.setCut(look.cut);
     const arrows = (this.info?.arrows ?? []).findIndex(({ name }) => name === look.arrows);
     this.picture.setExtras({ arrows, explode: look.explode, axes: look.axes });
+    // a world that is paused sends no frame that would bring it about
+    this.repaint();
+  }
+
+  private repaint(): void {
+    this.picture.repaint();
+    this.legend.show(this.picture.meanings);
   }
 
   private setStatus(status: Status): void {
@@ -212,23 +242,33 @@ class Page {
     document.body.classList.toggle("busy", status.busy !== null);
   }
 
-  private setLink(link: Link): void {
-    this.link.textContent = link === "open" ? "" : link === "lost" ? "connection lost, trying again" : "connecting";
+  private setLink(link: Link, why: string): void {
+    // while it is tried again the words stay
+    if (link !== "connecting" || !this.link.textContent) this.link.textContent = link === "connecting" ? "connecting" : why;
     document.body.classList.toggle("lost", link !== "open");
+    // the connection that sent the last frames waits for no answer
+    if (link !== "open") this.unanswered = 0;
+  }
+
+  /** Lets another frame come for each that came, also for those that a later one has replaced. */
+  private answer(): void {
+    for (; this.unanswered > 0; this.unanswered--) this.send({ do: "seen" });
   }
 
   private draw(): void {
     const { frame } = this;
     this.frame = null;
+    // a frame of the scene before, or of one whose surfaces are still to come, counts as seen as well
+    this.answer();
     if (frame) {
-      // a frame of the scene before, or of one whose surfaces are still to come, counts as seen as well
-      this.send({ do: "seen" });
       if (this.hasBegun && frame.scene === this.info?.scene) {
         this.picture.show(frame);
         this.transport.show(frame);
         this.stages.show(frame);
-        this.legend.show(this.picture.range, this.picture.classes);
+        this.plots.follow(frame);
+        this.legend.show(this.picture.meanings);
         document.body.dataset.frame = String(frame.number);
+        document.body.dataset.pictures = String(++this.pictures);
         document.body.dataset.time = String(frame.time);
         document.body.dataset.cells = String(this.picture.cellCount);
       }
@@ -236,11 +276,23 @@ class Page {
     this.picture.draw();
   }
 
+  /** As was chosen by hand; as the system has it where nothing was. */
+  private isDark(): boolean {
+    const chosen = remembered("theme");
+    return chosen === null ? matchMedia(DARK).matches : chosen === "dark";
+  }
+
+  private chooseDark(dark: boolean): void {
+    remember("theme", dark ? "dark" : "light");
+    this.setDark(dark);
+  }
+
   private setDark(dark: boolean): void {
     this.dark = dark;
     document.documentElement.dataset.theme = dark ? "dark" : "light";
-    remember("theme", dark ? "dark" : "light");
     this.picture.setStyle(this.display.look.style, dark);
+    this.plots.restyle();
+    this.repaint();
   }
 
   private key(event: KeyboardEvent): void {
@@ -258,14 +310,16 @@ class Page {
       f: () => this.picture.fit(),
     };
     const name = event.key.toLowerCase();
-    if (this.grab?.key(name)) {
+    if (this.grab?.key(name, event.repeat)) {
       event.preventDefault();
       return;
     }
     const action = actions[name];
-    if (!action || (event.key === " " && target.tagName === "BUTTON")) return;
+    // what has the focus may be pressed by the space bar itself
+    if (!action || (event.key === " " && target.closest("button, summary, a"))) return;
     event.preventDefault();
-    action();
+    // a key that is held is pressed once
+    if (!event.repeat) action();
   }
 
   private downloads(): HTMLElement {
@@ -301,6 +355,6 @@ try {
   new Page();
 } catch (error) {
   const text = `This page needs WebGL 2: ${error instanceof Error ? error.message : String(error)}`;
-  document.body.append(element("p", { class: "failure", role: "alert" }, text));
+  place("messages").prepend(element("p", { class: "failure", role: "alert" }, text));
   throw error;
 }

@@ -1,8 +1,10 @@
 // The page in a real browser, before the released program: `cargo xtask test browser`.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { after, before, describe, test } from "node:test";
-import { Program, at, lag, launch, open, PATIENCE, passed, photograph, reads, seen, settled, shows, time, until } from "./world.mjs";
+import * as trial from "./world.mjs";
+import { Program, at, launch, looks, open, passed, photograph, reads, seen, settled, shows, time, until } from "./world.mjs";
 
 /** Coarse: it steps many times a second on any machine. */
 const LIVER = ["scenes/liver", "--set", "parameters.size=30 mm"];
@@ -32,21 +34,21 @@ describe("the liver", () => {
     await page.selectOption("#field", "displacement");
     await until(page, (now) => now > 0, "nothing is coloured");
     const resting = await settled(page);
-    const plot = page.locator('[data-title="left tip"] canvas');
-    const drawn = await plot.evaluate((canvas) => canvas.toDataURL());
+    const tip = await trial.plotted(page, "left tip");
     const [x, y] = await at(page);
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + 90, y - 20, { steps: 3 });
     await page.locator(".force").waitFor();
     await until(page, (now) => now > 1.1 * resting, "it does not follow the hand");
+    // at rest it moves by less than a fiftieth of the least that is looked for
+    await page.waitForFunction((tip) => {
+      const { last } = document.querySelector('[data-title="left tip"]').dataset;
+      return Math.hypot(...JSON.parse(last).map((number, axis) => number - tip[axis])) > 1e-3;
+    }, tip);
     await photograph(page, "liver-pulled");
     assert.match(await page.locator(".force").textContent(), /\d [mµ]?N$/);
     await page.mouse.up();
-    await page.waitForFunction(
-      (drawn) => document.querySelector('[data-title="left tip"] canvas').toDataURL() !== drawn,
-      drawn,
-    );
     await page.locator(".force").waitFor({ state: "detached" });
     assert.deepEqual(page.errors, []);
   });
@@ -57,18 +59,22 @@ describe("the liver", () => {
     await page.mouse.down();
     await page.mouse.move(x + 10, y, { steps: 2 });
     await page.locator(".force").waitFor();
-    // beside other work a machine may be late for a while
-    let median = Infinity;
-    const deadline = Date.now() + PATIENCE;
-    while (median >= 100 && Date.now() < deadline) {
+    // where the machine has other work for a while one of three is undisturbed; where it always takes longer for a picture, by
+    // software or beside others, the way there and back is no more than three of them
+    const batches = [];
+    let moves = 0;
+    for (let batch = 0; batch < 3; batch++) {
+      const picture = await trial.pictureTime(page);
       const lags = [];
-      for (let k = 0; k < 15; k++) lags.push(await lag(page, x + (k % 2 ? 30 : 10), y));
-      median = lags.sort((a, b) => a - b)[7];
-      t.diagnostic(`${median.toFixed(1)} ms, ${lags[0].toFixed(1)} to ${lags[14].toFixed(1)}`);
+      for (let k = 0; k < 15; k++) lags.push(await trial.lag(page, x + (moves++ % 2 ? 10 : 30), y));
+      const [least, median, most] = [0, 7, 14].map((place) => lags.sort((a, b) => a - b)[place]);
+      const said = [least, median, most, picture].map((time) => time.toFixed(1));
+      t.diagnostic(`${said[1]} ms, ${said[0]} to ${said[2]}, at ${said[3]} ms a picture`);
+      batches.push({ median, most: Math.max(100, 3 * picture) });
     }
     await page.mouse.up();
     await page.locator(".force").waitFor({ state: "detached" });
-    assert.ok(median < 100, `${median} ms`);
+    assert.ok(batches.some(({ median, most }) => median < most), JSON.stringify(batches));
   });
 
   test("is pushed by a tool, which is gone when it is let go of", async () => {
@@ -121,6 +127,13 @@ describe("the liver", () => {
     await page.click('[data-do="step"]');
     await passed(page, paused);
     assert.ok(Math.abs((await time(page)) - paused - 0.02) < 1e-9);
+    // a key that is held is pressed once: the step after it is the third
+    for (let repeat = 0; repeat < 5; repeat++) await page.keyboard.down("s");
+    await page.keyboard.up("s");
+    await passed(page, paused + 0.03);
+    await page.keyboard.press("s");
+    await passed(page, paused + 0.05);
+    assert.ok(Math.abs((await time(page)) - paused - 0.06) < 1e-9);
     await page.click('[data-do="reset"]');
     await page.waitForFunction(() => Number(document.body.dataset.time) === 0);
     await page.click(".transport .main");
@@ -140,30 +153,113 @@ describe("the liver", () => {
     const note = page.locator(".note.error").first();
     await note.waitFor();
     assert.match(await note.textContent(), /out of range.*above 0/s);
+    // where it was written it is said as well, and the value is the one that holds
+    const row = page.locator(".row", { has: input });
+    await row.locator(".refusal").waitFor();
+    assert.match(await row.locator(".refusal").textContent(), /out of range/);
+    assert.equal(await input.getAttribute("aria-invalid"), "true");
+    await page.waitForFunction((input) => input.value === "2000", await input.elementHandle());
     await photograph(page, "refused");
+    await input.fill("2.5 kPa");
+    await row.locator(".refusal").waitFor({ state: "hidden" });
+    await input.press("Enter");
+    await page.waitForFunction((input) => input.value === "2500" && !input.ariaInvalid, await input.elementHandle());
   });
 
-  test("is cut open and taken apart", async () => {
-    const whole = await seen(page);
-    await page.selectOption("#cut", "0");
+  test("falls the other way where gravity is turned over", async () => {
+    const mean = (numbers) => numbers[1];
+    const hanging = mean(await trial.plotted(page, "left tip"));
+    await page.locator("#gravity-y").evaluate((slider) => {
+      slider.value = "9.81";
+      slider.dispatchEvent(new Event("input"));
+    });
+    await page.waitForFunction(() => document.querySelector(".command").textContent.includes("world.gravity=[0, 9.81, 0]"));
+    await page.waitForFunction(
+      (hanging) => JSON.parse(document.querySelector('[data-title="left tip"]').dataset.last)[1] > hanging + 0.01,
+      hanging,
+    );
+    await page.click('[data-do="reset"]');
+  });
+
+  test("is seen from where a person went, also when it begins anew", async () => {
+    await pause(page);
+    await page.selectOption("#field", "");
+    const near = await shows(page, 0.02);
+    await page.mouse.move(...(await at(page, 0.05, 0.05)));
+    for (let notch = 0; notch < 8; notch++) await page.mouse.wheel(0, 300);
+    await looks(page, (now) => now.share < 0.4 * near.share, `it does not go away from ${near.share}`);
+    await page.keyboard.press("r");
+    await page.waitForFunction(() => Number(document.body.dataset.time) === 0);
+    const begun = await seen(page);
+    assert.ok(begun.share < 0.6 * near.share, `${begun.share} of ${near.share}`);
+    await page.keyboard.press("f");
+    await looks(page, (now) => now.share > 0.8 * near.share, "F does not show all of it");
+    await page.selectOption("#field", "displacement");
+    await play(page);
+  });
+
+  test("is cut open and taken apart, while it is paused as well", async () => {
+    await pause(page);
+    // in wires only what is inside is filled with colours
+    await page.selectOption("#style", "wireframe");
+    const wires = await settledPicture(page);
+    const others = (now) => now.print !== wires.print;
+    await page.selectOption("#cut", "2");
     await page.waitForFunction(() => Number(document.body.dataset.cells) > 0);
-    const cut = await shows(page, 0.01);
-    assert.notEqual(cut.print, whole.print);
+    const middle = await looks(page, (now) => now.share > wires.share + 0.02, "there is no section");
     await photograph(page, "cut");
+    await slide("[aria-label='Place of the cut']", "0.3");
+    await looks(page, (now) => others(now) && now.print !== middle.print && now.share > wires.share + 0.01, "the section stays");
+    const before = await seen(page);
+    await page.selectOption("#map", "diverging");
+    await looks(page, (now) => now.print !== before.print, "the section keeps its colours");
+    await page.selectOption("#map", "sequential");
     await page.selectOption("#cut", "none");
-    const slide = (value) =>
-      page.locator("#explode").evaluate((slider, value) => {
+    await looks(page, (now) => now.print === wires.print, "it is not whole again");
+    await slide("#explode", "0.6");
+    const apart = await looks(page, (now) => now.share > wires.share + 0.02, "cells are not taken apart");
+    await photograph(page, "apart");
+    await slide("#explode", "0.2");
+    await looks(page, (now) => others(now) && now.print !== apart.print, "cells stay where they are");
+    await slide("#explode", "0");
+    await looks(page, (now) => now.print === wires.print, "it is not whole again");
+    await page.selectOption("#arrows", "displacement");
+    await looks(page, others, "there are no arrows");
+    assert.match(await page.locator("#legend .arrow").textContent(), /displacement: \d.* mm$/);
+    await page.selectOption("#arrows", "");
+    await looks(page, (now) => now.print === wires.print, "arrows stay");
+    await page.selectOption("#style", "smooth");
+    await play(page);
+    assert.deepEqual(page.errors, []);
+
+    function slide(selector, value) {
+      return page.locator(selector).evaluate((slider, value) => {
         slider.value = value;
         slider.dispatchEvent(new Event("input"));
       }, value);
-    await slide("0.6");
-    await shows(page, 0.01);
-    await photograph(page, "apart");
-    await slide("0");
-    await page.selectOption("#arrows", "velocity");
-    await passed(page, (await time(page)) + 0.04);
-    await page.selectOption("#arrows", "");
-    assert.deepEqual(page.errors, []);
+    }
+  });
+
+  test("answers each frame, drawn or not, seen or hidden", async () => {
+    const other = await open(browser, world.url, { before: (page) => page.addInitScript(sleepy) });
+    // no picture is drawn until as many frames came as may come unanswered
+    const fall = (asleep) => other.evaluate((asleep) => window.fall(asleep), asleep);
+    const counts = async (holds) => {
+      while (!holds(other.traffic)) await other.evaluate(() => new Promise((resolve) => setTimeout(resolve)));
+    };
+    await fall("slow");
+    await counts(({ frames, answers }) => frames === answers + 2);
+    await fall("awake");
+    await pause(page);
+    await counts(({ frames, answers }) => frames === answers);
+    // a page that is hidden draws nothing and is there
+    await play(page);
+    await fall("hidden");
+    const { answers } = other.traffic;
+    await counts((now) => now.answers > answers + 20);
+    await fall("awake");
+    await passed(other, await time(other));
+    await other.close();
   });
 
   test("is the same on a second page", async () => {
@@ -184,7 +280,46 @@ describe("the liver", () => {
     await page.waitForFunction(() => document.querySelector(".factor").textContent === "paused");
     return time(page);
   }
+
+  async function pause(page) {
+    await reads(page, ".transport .main", "Pause");
+    await page.click(".transport .main");
+    return paused(page);
+  }
+
+  async function play(page) {
+    await reads(page, ".transport .main", "Play");
+    await page.click(".transport .main");
+    await reads(page, ".transport .main", "Pause");
+  }
 });
+
+/** What is seen when it is the same twice: a picture of a world that is paused. */
+async function settledPicture(page) {
+  let last = await seen(page);
+  return looks(
+    page,
+    (now) => {
+      const isSame = now.print === last.print;
+      last = now;
+      return isSame;
+    },
+    "the picture does not rest",
+  );
+}
+
+/** In a page: lets it draw no pictures, as one that is slow or hidden does, until it wakes. */
+function sleepy() {
+  const request = window.requestAnimationFrame.bind(window);
+  let state = "awake";
+  let waiting = [];
+  window.requestAnimationFrame = (draw) => (state === "awake" ? request(draw) : waiting.push(draw));
+  window.fall = (next) => {
+    state = next;
+    if (state === "awake") waiting.splice(0).forEach((draw) => request(draw));
+  };
+  Object.defineProperty(document, "hidden", { get: () => state === "hidden" });
+}
 
 describe("small worlds", () => {
   let world;
@@ -208,6 +343,35 @@ describe("small worlds", () => {
     await page.locator("body.lost").waitFor();
     await page.locator("body:not(.lost)").waitFor();
     await passed(page, now + 0.05);
+  });
+
+  test("say why they may not be looked at", async () => {
+    const other = await browser.newPage();
+    await other.addInitScript(() => {
+      const Socket = window.WebSocket;
+      window.WebSocket = class extends Socket {
+        constructor(url) {
+          super(url, "souple.v0");
+        }
+      };
+    });
+    let loads = 0;
+    other.on("domcontentloaded", () => (loads += 1));
+    await other.goto(world.url);
+    await other.waitForFunction(() => /another version/.test(document.querySelector(".link").textContent));
+    assert.equal(loads, 2, "it loads itself once more, and then says what is wrong");
+    await other.route(/health/, (route) => route.fulfill({ status: 401, body: "the token is missing or wrong" }));
+    await other.waitForFunction(() => /refuses.*token is missing/.test(document.querySelector(".link").textContent));
+    await other.close();
+  });
+
+  test("say when the graphics card drops the picture", async () => {
+    const lost = await page.evaluateHandle(() => document.querySelector("#stage canvas").getContext("webgl2").getExtension("WEBGL_lose_context"));
+    await lost.evaluate((card) => card.loseContext());
+    await page.locator(".note", { hasText: "dropped the picture" }).waitFor();
+    await lost.evaluate((card) => card.restoreContext());
+    await page.locator(".note", { hasText: "draws the picture again" }).waitFor();
+    await shows(page, 0.02);
   });
 
   test("are drawn whatever they are made of", async () => {
@@ -238,26 +402,32 @@ describe("small worlds", () => {
     await shows(page, 0.02);
   });
 
-  test("are legible in windows of every size", async () => {
-    for (const [width, height] of [[1600, 900], [1024, 700], [420, 860]]) {
-      await page.setViewportSize({ width, height });
-      await page.waitForFunction((width) => innerWidth === width, width);
-      const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-      assert.equal(wide, 0, `${width}: wider than the window by ${wide}`);
-      const overlaps = await page.evaluate(() => {
-        const boxes = [...document.querySelectorAll("#top button, #top select, #top .time, #top .factor, #top h1")]
-          .map((thing) => [thing.textContent, thing.getBoundingClientRect()])
-          .filter(([, box]) => box.width > 0);
-        const meet = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
-        return boxes.flatMap(([text, box], i) => boxes.slice(i + 1).filter(([, other]) => meet(box, other)).map(([other]) => `${text} / ${other}`));
-      });
-      assert.deepEqual(overlaps, []);
-      await photograph(page, `size-${width}`);
-    }
+  test("may come from a file that is chosen; one too large is refused in words", async () => {
+    const toml = await readFile(new URL("../../../../scenes/soft_block/scene.toml", import.meta.url));
+    await page.setInputFiles("#file", { name: "chosen.toml", mimeType: "text/plain", buffer: toml });
+    await page.waitForFunction(() => document.querySelector(".command").textContent.includes("chosen.toml"));
+    await page.evaluate(() => {
+      const dropped = new DataTransfer();
+      dropped.items.add(new File([new Uint8Array(64 * 2 ** 20 + 1)], "large.stl"));
+      window.dispatchEvent(new DragEvent("drop", { dataTransfer: dropped, cancelable: true }));
+    });
+    const note = page.locator(".note.error").last();
+    await note.waitFor();
+    assert.match(await note.textContent(), /large\.stl has 67108865 bytes; a mesh may have 67108864/);
+    await note.locator("button").click();
+    await note.waitFor({ state: "detached" });
+  });
+
+  test("have panels that the space bar opens", async () => {
+    const about = page.locator("details", { hasText: "About" }).first();
+    await about.locator("summary").focus();
+    await page.keyboard.press("Space");
+    await page.waitForFunction((about) => about.open, await about.elementHandle());
+    await reads(page, ".transport .main", "Pause");
   });
 });
 
-test("a world that explodes names its body and can be begun anew", async () => {
+test("a world that explodes names its body in windows of every size, and can be begun anew", async () => {
   const world = await Program.open("scenes/soft_block", "--set", "systems.main.stepper=symplectic_euler");
   try {
     const page = await open(browser, world.url);
@@ -265,6 +435,21 @@ test("a world that explodes names its body and can be begun anew", async () => {
     await failure.waitFor();
     assert.match(await failure.textContent(), /has stopped.*refused.*`block`/s);
     await photograph(page, "failed");
+    await page.selectOption("#field", "displacement");
+    await page.locator("#legend").waitFor();
+    for (const colorScheme of ["light", "dark"]) {
+      // nobody chose: the page follows the system
+      await page.emulateMedia({ colorScheme });
+      await page.waitForFunction((scheme) => document.documentElement.dataset.theme === scheme, colorScheme);
+      for (const [width, height] of [[1600, 900], [1024, 700], [420, 860]]) {
+        await page.setViewportSize({ width, height });
+        await page.waitForFunction((width) => innerWidth === width, width);
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+        assert.equal(wide, 0, `${width}: wider than the window by ${wide}`);
+        assert.deepEqual(await trial.overlaps(page), [], `${width}, ${colorScheme}`);
+        await photograph(page, `size-${width}-${colorScheme}`);
+      }
+    }
     await failure.locator("button").click();
     await failure.waitFor({ state: "hidden" });
   } finally {

@@ -15,6 +15,9 @@ const pictures = process.env.SOUPLE_PICTURES;
 /** Machines that draw by software, several at once, are slow. */
 export const PATIENCE = Number(process.env.SOUPLE_PATIENCE ?? 120_000);
 
+/** The kind of binary messages that are frames. */
+const FRAME = 2;
+
 /** The program showing a scene. */
 export class Program {
   static async open(...scene) {
@@ -48,17 +51,24 @@ export async function launch() {
   return chromium.launch({ executablePath: process.env.SOUPLE_CHROMIUM ?? "/usr/bin/chromium", args });
 }
 
-/** A page that shows frames, drawn simply; errors that it says are kept. */
+/**
+ * A page that shows frames, drawn simply; errors that it says are kept, and frames and the answers to them are counted.
+ */
 export async function open(browser, url, options = {}) {
   const page = await browser.newPage({ viewport: { width: 800, height: 440 }, ...options });
   page.setDefaultTimeout(PATIENCE);
   const errors = [];
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   page.on("pageerror", (error) => errors.push(error.message));
+  const traffic = { frames: 0, answers: 0 };
+  page.on("websocket", (socket) => {
+    socket.on("framereceived", ({ payload }) => (traffic.frames += typeof payload !== "string" && payload[0] === FRAME ? 1 : 0));
+    socket.on("framesent", ({ payload }) => (traffic.answers += payload === '{"do":"seen"}' ? 1 : 0));
+  });
   await options.before?.(page);
   await page.goto(`${url}?quality=3`, { timeout: PATIENCE, waitUntil: "commit" });
   await page.waitForFunction(() => Number(document.body.dataset.frame) > 0);
-  return Object.assign(page, { errors });
+  return Object.assign(page, { errors, traffic });
 }
 
 export const time = (page) => page.evaluate(() => Number(document.body.dataset.time));
@@ -92,14 +102,46 @@ export async function seen(page) {
 }
 
 /** Waits until as much of the stage is in strong colours. */
-export async function shows(page, share) {
+export const shows = (page, share) => looks(page, (now) => now.share > share, `not ${share} of the picture is in strong colours`);
+
+/** What is seen when a condition of it holds. */
+export async function looks(page, holds, what) {
   const deadline = Date.now() + PATIENCE;
   for (;;) {
     const now = await seen(page);
-    if (now.share > share) return now;
-    if (Date.now() > deadline) throw new Error(`${now.share} of the picture is in strong colours, not ${share}`);
+    if (holds(now)) return now;
+    if (Date.now() > deadline) throw new Error(`${what}: ${JSON.stringify(now)}`);
   }
 }
+
+/** The last numbers that a plot shows. */
+export const plotted = (page, title) =>
+  page.evaluate((title) => JSON.parse(document.querySelector(`[data-title="${title}"]`).dataset.last ?? "[]"), title);
+
+/** How long the page takes from picture to picture, in the middle of some [ms]. */
+export const pictureTime = (page) =>
+  page.evaluate(async () => {
+    const times = [];
+    for (let k = 0; k < 12; k++) times.push(await new Promise(requestAnimationFrame));
+    return times.slice(1).map((time, k) => time - times[k]).sort((a, b) => a - b)[5];
+  });
+
+/**
+ * What covers or leaves what: controls of the head, messages, the legend, the panels and the line at the bottom.
+ */
+export const overlaps = (page) =>
+  page.evaluate(() => {
+    const parts = "#top button, #top select, #top .time, #top .factor, #top h1, #messages, #legend, #side, #bottom";
+    const boxes = [...document.querySelectorAll(parts)]
+      .map((thing) => [thing.id || thing.textContent, thing.getBoundingClientRect()])
+      .filter(([, box]) => box.width > 0 && box.height > 0);
+    const meet = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+    const outside = (box) => box.left < -1 || box.top < -1 || box.right > innerWidth + 1 || box.bottom > innerHeight + 1;
+    return [
+      ...boxes.flatMap(([name, box], i) => boxes.slice(i + 1).filter(([, other]) => meet(box, other)).map(([other]) => `${name} / ${other}`)),
+      ...boxes.filter(([, box]) => outside(box)).map(([name]) => `${name} is outside`),
+    ];
+  });
 
 /** The largest value of the legend [mm]. */
 export const largest = (page) =>

@@ -1,6 +1,6 @@
 // How the world is drawn: what colours it, edges, a cut, light or dark.
 
-import type { ArrowInfo, ColourMap, FieldInfo } from "../protocol";
+import type { ArrowInfo, ColourMap, FieldInfo, SceneInfo } from "../protocol";
 import { label } from "../format";
 import type { Cut } from "../view/picture";
 import type { Style } from "../view/body";
@@ -50,6 +50,8 @@ export class Display {
       select.append(...entries.map(([value, text]) => element("option", { value }, text)));
     options(this.style, STYLES);
     options(this.axis, AXES);
+    // chosen by a person: a scene that lacks it does not make it forgotten
+    this.field.addEventListener("change", () => remember("field", this.field.value));
     for (const control of [this.field, this.map, this.style, this.axis, this.arrows, this.axes]) {
       control.addEventListener("change", () => this.read());
     }
@@ -83,11 +85,12 @@ export class Display {
     this.map.value = this.look.map;
   }
 
-  setFields(fields: FieldInfo[]): void {
+  setFields({ fields, bodies }: SceneInfo): void {
     const entry = ({ name, summary, unit, classes }: FieldInfo) =>
       element("option", { value: name, title: classes ? summary : `${summary} [${unit || "1"}]` }, label(name));
+    const hasLinks = bodies.some(({ links }) => links > 0);
     // bodies that are not told apart so have no classes
-    const here = fields.filter(({ classes }) => classes === null || classes.length > 0);
+    const here = fields.filter(({ of, classes }) => (of !== "links" || hasLinks) && (classes === null || classes.length > 0));
     this.field.replaceChildren(element("option", { value: "" }, "Material"), ...here.map(entry));
     const wanted = remembered("field") ?? "";
     this.field.value = here.some((field) => field.name === wanted) ? wanted : "";
@@ -120,7 +123,6 @@ export class Display {
     const axis = this.axis.value;
     this.place.hidden = axis === "none";
     look.cut = axis === "none" ? null : { axis: Number(axis) as 0 | 1 | 2, place: Number(this.place.value) };
-    remember("field", this.field.value);
     this.changed();
   }
 }

@@ -1,7 +1,8 @@
 // How the hand takes hold and what it pushes with.
 
-import { label } from "../format";
-import type { ToolInfo } from "../protocol";
+import { label, number } from "../format";
+import type { Adjustable, ToolInfo } from "../protocol";
+import { Gravity } from "./gravity";
 import { element, panel } from "./dom";
 
 export interface Handling {
@@ -24,24 +25,36 @@ export class HandPanel {
   private readonly tool = element("select", { id: "tool" });
   private readonly size = element("input", { type: "range", id: "tool-size", min: -1.7, max: -0.3, step: 0.02, value: -0.8 });
   private readonly stays = element("input", { type: "checkbox", id: "tool-stays" });
+  private readonly strengthSaid = element("small");
+  private readonly sizeSaid = element("small");
+  private readonly gravity: Gravity;
 
   constructor(
     private readonly changed: (handling: Handling) => void,
     putAway: () => void,
+    setGravity: (value: string) => void,
   ) {
-    const row = (text: string, control: HTMLElement) =>
-      element("label", { class: "row" }, element("span", {}, text), control);
+    const row = (text: string, control: HTMLElement, said: HTMLElement | null = null) =>
+      element("label", { class: "row" }, element("span", {}, text, said), control);
+    this.gravity = new Gravity(setGravity);
     for (const control of [this.strength, this.size]) control.addEventListener("input", () => this.read());
     for (const control of [this.tool, this.stays]) control.addEventListener("change", () => this.read());
     this.root = panel(
       "Hand",
       false,
-      row("Strength", this.strength),
+      row("Strength", this.strength, this.strengthSaid),
       row("Pushes with", this.tool),
-      row("Size of the tool", this.size),
+      row("Size of the tool", this.size, this.sizeSaid),
       row("Stays where it is left", this.stays),
       element("div", { class: "buttons" }, element("button", { id: "put-away", click: putAway }, "Put tools away")),
+      this.gravity.root,
     );
+    this.read();
+  }
+
+  /** Gravity as the scene has it; `undefined` where it has none that may be set. */
+  setGravity(gravity: Adjustable | undefined): void {
+    this.gravity.set(gravity);
   }
 
   setTools(tools: ToolInfo[]): void {
@@ -60,6 +73,8 @@ export class HandPanel {
     handling.size = 10 ** Number(this.size.value);
     handling.tool = this.tool.value;
     handling.stays = this.stays.checked;
+    this.strengthSaid.textContent = ` ${number(handling.strength)} ×`;
+    this.sizeSaid.textContent = ` ${number(100 * handling.size)} % of all bodies`;
     handling.front = this.tools.find(({ name }) => name === handling.tool)?.front ?? 0.5;
     this.changed(handling);
   }

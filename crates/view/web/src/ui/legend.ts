@@ -1,8 +1,9 @@
-// What colours mean.
+// What colours and arrows mean.
 
 import { label, quantity } from "../format";
-import type { Class, ColourMap, FieldInfo } from "../protocol";
-import type { Range } from "../view/palette";
+import type { ArrowInfo, Class, ColourMap, FieldInfo } from "../protocol";
+import { STATE_COLOURS } from "../view/palette";
+import type { Meanings } from "../view/picture";
 import { element } from "./dom";
 
 export class Legend {
@@ -13,49 +14,65 @@ export class Legend {
   private readonly high = element("span");
   private readonly ends = element("div", { class: "ends" }, this.low, this.middle, this.high);
   private readonly list = element("ul", { class: "classes" });
-  private unit = "";
-  private classes: Class[] | null = null;
+  private readonly none = element("div", { class: "none" }, "No body here has it.");
+  private readonly arrow = element("div", { class: "arrow" });
+  private field: FieldInfo | null = null;
+  private arrows: ArrowInfo | null = null;
+  /** What is in the list: it is not made anew in each picture. */
   private listed = "";
 
   constructor(private readonly place: HTMLElement) {
-    place.append(this.title, this.bar, this.ends, this.list);
+    place.append(this.title, this.bar, this.ends, this.list, this.none, this.arrow);
     place.hidden = true;
   }
 
-  set(field: FieldInfo | null, map: ColourMap | undefined): void {
-    this.place.hidden = !field || !map;
-    if (!field || !map) return;
-    this.title.textContent = label(field.name);
-    this.unit = field.unit;
-    this.classes = field.classes;
-    this.list.hidden = field.classes === null;
-    this.bar.hidden = this.ends.hidden = field.classes !== null;
-    this.listed = "";
-    this.list.replaceChildren();
-    const stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map((i) => `#${map.colours.slice(6 * i, 6 * i + 6)}`);
-    this.bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
+  /** What is asked for. */
+  set(field: FieldInfo | null, map: ColourMap | undefined, arrows: ArrowInfo | null): void {
+    this.field = field;
+    this.arrows = arrows;
+    const stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map((i) => `#${map?.colours.slice(6 * i, 6 * i + 6)}`);
+    if (map) this.bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
   }
 
-  /** Ends of the range of quantities, or the classes that are seen. */
-  show({ low, high }: Range, seen: number[]): void {
-    if (this.place.hidden || !(low <= high)) return;
-    if (this.classes) {
-      this.name(this.classes, seen);
-      return;
-    }
+  /** What is seen. */
+  show({ hasValues, range, classes, linkStates, longest }: Meanings): void {
+    const { field, arrows } = this;
+    const isScale = field !== null && field.classes === null && hasValues && range.low <= range.high;
+    const entries = field ? classes.flatMap((number) => field.classes?.[number] ?? []) : linkStates.map(stateOf);
+    const hasArrows = arrows !== null && longest > 0;
+    this.title.textContent = field ? label(field.name) : entries.length > 0 ? "Links" : "";
+    this.title.hidden = !this.title.textContent;
+    this.bar.hidden = this.ends.hidden = !isScale;
+    this.none.hidden = field === null || hasValues;
+    this.arrow.hidden = !hasArrows;
+    this.place.hidden = this.title.hidden && !hasArrows;
+    this.name(entries);
+    if (isScale) this.scale(range.low, range.high, field.unit);
+    if (hasArrows) this.arrow.textContent = `Longest arrow, ${label(arrows.name)}: ${quantity(longest, arrows.unit)}`;
+  }
+
+  private scale(low: number, high: number, unit: string): void {
     // what is nothing beside the range is nothing
     const least = 1e-3 * (high - low);
-    const text = (value: number) => quantity(Math.abs(value) < least ? 0 : value, this.unit);
+    const text = (value: number) => quantity(Math.abs(value) < least ? 0 : value, unit);
     this.low.textContent = text(low);
     this.middle.textContent = text(0.5 * (low + high));
     this.high.textContent = text(high);
   }
 
-  private name(classes: Class[], seen: number[]): void {
-    if (this.listed === seen.join()) return;
-    this.listed = seen.join();
+  private name(entries: Class[]): void {
+    this.list.hidden = entries.length === 0;
+    const listed = JSON.stringify(entries);
+    if (this.listed === listed) return;
+    this.listed = listed;
     const entry = ({ name, colour }: Class) =>
       element("li", {}, element("i", { style: `background: #${colour}` }), label(name));
-    this.list.replaceChildren(...seen.flatMap((number) => classes[number] ?? []).map(entry));
+    this.list.replaceChildren(...entries.map(entry));
   }
+}
+
+/** A state of links, by its number in frames; the first, in which they have the colour of their body, is 1. */
+function stateOf(number: number): Class {
+  const colour = STATE_COLOURS[(number - 2) % STATE_COLOURS.length]!;
+  return { name: `in state ${number} of their law`, colour: colour.toString(16).padStart(6, "0") };
 }

@@ -6,6 +6,8 @@ export type Weight = "note" | "warning" | "error";
 
 const SECONDS: Record<Weight, number> = { note: 4, warning: 8, error: 12 };
 const KEPT = 50;
+/** Notes on the screen at once. */
+const SHOWN = 4;
 
 export class Notes {
   readonly list = element("ol", { class: "log" }, element("li", { class: "quiet" }, "Nothing to tell."));
@@ -17,9 +19,13 @@ export class Notes {
     const time = new Date().toLocaleTimeString();
     this.list.prepend(element("li", { class: weight }, element("time", {}, time), ` ${text}`));
     while (this.list.childElementCount > KEPT) this.list.lastElementChild?.remove();
-    const note = element("p", { class: `note ${weight}`, click: () => note.remove() }, text);
+    const close = element("button", { class: "close", "aria-label": "Close this message", click: () => note.remove() }, "×");
+    const note = element("div", { class: `note ${weight}` }, element("p", {}, text), close);
     this.place.append(note);
-    setTimeout(() => note.remove(), 1000 * SECONDS[weight]);
-    while (this.place.childElementCount > 4) this.place.firstElementChild?.remove();
+    // what a person is about to close stays
+    const fade = () => (note.matches(":hover, :focus-within") ? wait() : note.remove());
+    const wait = () => setTimeout(fade, 1000 * SECONDS[weight]);
+    wait();
+    while (this.place.childElementCount > SHOWN) this.place.firstElementChild?.remove();
   }
 }

@@ -13,7 +13,9 @@ export class Parameters {
   private readonly place = element("div");
   private readonly command = element("code", { class: "command" });
   private shape = "";
-  private readonly controls = new Map<string, (adjustable: Adjustable) => void>();
+  private readonly controls = new Map<string, Control>();
+  /** What was set last. */
+  private lastSet = "";
   private scene = "";
 
   constructor(
@@ -31,12 +33,24 @@ export class Parameters {
   set({ adjustables, settings }: Adjustables): void {
     this.command.textContent = `souple run ${quoted(this.scene)}${settings.map((s) => ` --set ${quoted(s)}`).join("")}`;
     // fields keep the cursor while only their values change
-    const shape = JSON.stringify(adjustables.map(({ path, type, group }) => [path, type, group]));
+    const shape = JSON.stringify([this.scene, adjustables.map((adjustable) => ({ ...adjustable, value: null }))]);
     if (shape !== this.shape) {
       this.shape = shape;
       this.build(adjustables);
     }
-    adjustables.forEach((adjustable) => this.controls.get(adjustable.path)?.(adjustable));
+    adjustables.forEach((adjustable) => this.controls.get(adjustable.path)?.show(adjustable));
+  }
+
+  /** Wishes for a value. */
+  change(path: string, value: string): void {
+    this.lastSet = path;
+    this.send({ do: "set", path, value });
+  }
+
+  /** What was set was refused: says so beside it; the value as it is comes after. */
+  refuse(message: string): void {
+    const named = [...this.controls.keys()].find((path) => message.startsWith(`${path}:`));
+    this.controls.get(named ?? this.lastSet)?.refuse(message);
   }
 
   private build(adjustables: Adjustable[]): void {
@@ -54,35 +68,64 @@ export class Parameters {
   }
 
   private row(adjustable: Adjustable): HTMLElement {
-    const { path, name, unit, summary, type, choices } = adjustable;
+    const { name, unit, summary, type } = adjustable;
     const title = `${summary}${unit ? ` [${unit}]` : ""}`;
-    const set = (value: string) => this.send({ do: "set", path, value });
     const heading = element("span", { title }, label(name), unit ? element("small", {}, ` ${unit}`) : null);
-    if (type === "choice" || type === "boolean") {
-      const entries = type === "boolean" ? ["true", "false"] : choices;
-      const select = element("select", { "data-path": path }, ...entries.map((value) => element("option", { value }, label(value))));
-      select.addEventListener("change", () => set(type === "boolean" ? select.value : JSON.stringify(select.value)));
-      this.controls.set(path, ({ value }) => (select.value = (value ?? "").replaceAll('"', "")));
-      return element("label", { class: "row" }, heading, select);
-    }
-    const text = element("input", { type: "text", spellcheck: "false", autocomplete: "off", "data-path": path });
-    text.addEventListener("change", () => set(written(text.value, type)));
-    const slider = type === "number" ? element("input", { type: "range", min: 0, max: SLIDER_STEPS, "aria-label": label(name) }) : null;
-    let scale: Scale | null = null;
-    slider?.addEventListener("input", () => {
-      if (scale) set(String(scale.value(Number(slider.value) / SLIDER_STEPS)));
+    const refusal = element("small", { class: "refusal", hidden: true });
+    const isChosen = type === "choice" || type === "boolean";
+    const inputs = isChosen ? this.choice(adjustable, refusal) : this.number(adjustable, refusal);
+    return element("label", { class: "row" }, heading, ...inputs, refusal);
+  }
+
+  private choice({ path, type, choices }: Adjustable, refusal: HTMLElement): HTMLElement[] {
+    const entries = type === "boolean" ? ["true", "false"] : choices;
+    const select = element("select", { "data-path": path }, ...entries.map((value) => element("option", { value }, label(value))));
+    select.addEventListener("change", () => {
+      refusal.hidden = true;
+      this.change(path, type === "boolean" ? select.value : JSON.stringify(select.value));
     });
-    this.controls.set(path, (now) => {
-      if (document.activeElement !== text) text.value = shown(now);
+    this.controls.set(path, {
+      show: ({ value }) => (select.value = (value ?? "").replaceAll('"', "")),
+      refuse: (message) => say(refusal, message),
+    });
+    return [select];
+  }
+
+  private number({ path, name, type }: Adjustable, refusal: HTMLElement): HTMLElement[] {
+    const text = element("input", { type: "text", spellcheck: "false", autocomplete: "off", "data-path": path });
+    const slider = element("input", { type: "range", min: 0, max: SLIDER_STEPS, "aria-label": label(name), hidden: true });
+    /** As it was shown or set: what is typed since then is left alone. */
+    let known = "";
+    let scale: Scale | null = null;
+    const forget = () => {
+      text.removeAttribute("aria-invalid");
+      refusal.hidden = true;
+    };
+    text.addEventListener("input", forget);
+    slider.addEventListener("input", forget);
+    text.addEventListener("change", () => {
+      known = text.value;
+      this.change(path, written(text.value, type));
+    });
+    slider.addEventListener("input", () => {
+      if (scale) this.change(path, String(scale.value(Number(slider.value) / SLIDER_STEPS)));
+    });
+    const show = (now: Adjustable) => {
+      if (document.activeElement !== text || text.value === known) known = text.value = shown(now);
       text.placeholder = now.value === null ? "automatic" : "";
       const value = Number(now.value);
-      scale ??= scaleOf(now, value);
-      if (slider) {
-        slider.hidden = scale === null;
-        if (scale && document.activeElement !== slider) slider.value = String(SLIDER_STEPS * scale.place(value));
-      }
-    });
-    return element("label", { class: "row" }, heading, text, slider);
+      const isMoved = document.activeElement === slider;
+      // a value beyond the ends came from elsewhere, and the slider reaches about it from now on
+      if (type === "number" && !isMoved && !(scale && isPart(scale.place(value)))) scale = scaleOf(now, value);
+      slider.hidden = scale === null;
+      if (scale && !isMoved) slider.value = String(SLIDER_STEPS * scale.place(value));
+    };
+    const refuse = (message: string) => {
+      text.setAttribute("aria-invalid", "true");
+      say(refusal, message);
+    };
+    this.controls.set(path, { show, refuse });
+    return [text, slider];
   }
 
   private copy(): void {
@@ -91,6 +134,12 @@ export class Parameters {
       () => this.say("The clipboard is closed to this page; the command is at the end of the panel."),
     );
   }
+}
+
+/** What shows a value. */
+interface Control {
+  show(adjustable: Adjustable): void;
+  refuse(message: string): void;
 }
 
 interface Scale {
@@ -117,6 +166,15 @@ function scaleOf({ low, high, value: text }: Adjustable, value: number): Scale |
     };
   }
   return null;
+}
+
+function isPart(part: number): boolean {
+  return part >= 0 && part <= 1;
+}
+
+function say(refusal: HTMLElement, message: string): void {
+  refusal.textContent = message;
+  refusal.hidden = false;
 }
 
 /** A value as it is read: `12000` as `12000`, `[0, -9.81, 0]` as `0, -9.81, 0`. */

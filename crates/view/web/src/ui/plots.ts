@@ -1,31 +1,44 @@
-// What is measured, over time: probes and energies.
+// What is measured, over time: probes, energies, and what a step costs.
 
 import uPlot from "uplot";
 import { label, number } from "../format";
-import type { ProbeInfo, Samples } from "../protocol";
+import type { Frame, ProbeInfo, Samples } from "../protocol";
 import { element, panel } from "./dom";
+import { STAGES } from "./stages";
 
 /** Rows kept; older ones leave. */
 const ROWS = 4096;
 const REDRAW_MS = 100;
+const HEIGHT = 118;
 const COLOURS = ["#d0604c", "#3f8f5a", "#3d6fd8"];
+const ENERGIES = ["kinetic", "stored", "dissipated"];
+const ITERATIONS = ["Newton", "linear"];
 
 interface Plot {
   plot: uPlot;
+  table: Table;
+  /** Its first column. */
   first: number;
   count: number;
+}
+
+interface Line {
+  name: string;
+  colour: string;
 }
 
 export class Plots {
   readonly root: HTMLElement;
   private readonly place = element("div", { class: "plots" });
-  private readonly empty = element("p", { class: "quiet" }, "The scene measures nothing.");
-  private columns: number[][] = [];
+  /** From the world: time, energies, probes. */
+  private samples = new Table(0);
+  /** Of frames: time, stages, iterations. */
+  private steps = new Table(0);
   private plots: Plot[] = [];
   private isDrawn = true;
 
   constructor() {
-    this.root = panel("Plots", true, this.empty, this.place);
+    this.root = panel("Plots", true, this.place);
     this.root.addEventListener("toggle", () => this.resize());
     new ResizeObserver(() => this.resize()).observe(this.root);
     setInterval(() => this.draw(), REDRAW_MS);
@@ -34,60 +47,69 @@ export class Plots {
   /** Another scene. */
   begin(probes: ProbeInfo[]): void {
     this.plots.forEach(({ plot }) => plot.destroy());
-    this.place.replaceChildren();
-    const width = 4 + probes.reduce((sum, probe) => sum + probe.components, 0);
-    this.columns = Array.from({ length: width }, () => []);
     this.plots = [];
-    let first = 4;
+    this.samples = new Table(1 + ENERGIES.length + probes.reduce((sum, probe) => sum + probe.components, 0));
+    this.steps = new Table(1 + STAGES.length + ITERATIONS.length);
+    const lines = (names: string[]) => names.map((name, index) => ({ name, colour: COLOURS[index]! }));
+    let first = 1 + ENERGIES.length;
     for (const { name, unit, components } of probes) {
-      const names = components === 3 ? ["x", "y", "z"] : [label(name)];
-      this.add(label(name), unit, names, first);
+      this.add(this.samples, first, label(name), unit, lines(components === 3 ? ["x", "y", "z"] : [label(name)]));
       first += components;
     }
-    this.add("energy", "J", ["kinetic", "stored", "dissipated"], 1);
-    this.empty.hidden = this.plots.length > 0;
+    this.add(this.samples, 1, "energy", "J", lines(ENERGIES));
+    this.add(this.steps, 1, "time of a step", "ms", STAGES.map(([name, colour]) => ({ name, colour })));
+    this.add(this.steps, 1 + STAGES.length, "iterations of a step", "", lines(ITERATIONS));
   }
 
   push({ columns, numbers }: Samples): void {
-    if (columns !== this.columns.length) return;
-    for (let row = 0; row < numbers.length; row += columns) {
-      for (let c = 0; c < columns; c++) this.columns[c]!.push(numbers[row + c]!);
-    }
-    const surplus = (this.columns[0]?.length ?? 0) - ROWS;
-    // cut in large pieces: each moves all that is behind it
-    if (surplus > ROWS / 4) this.columns.forEach((column) => column.splice(0, surplus));
+    if (columns !== this.samples.columns.length) return;
+    for (let row = 0; row < numbers.length; row += columns) this.samples.push(numbers.subarray(row, row + columns));
     this.isDrawn = false;
   }
 
-  private add(title: string, unit: string, names: string[], first: number): void {
+  /** What the steps up to a frame have cost. */
+  follow({ time, stages, iterations }: Frame): void {
+    // a world that stands makes no steps
+    if (time === this.steps.columns[0]?.at(-1)) return;
+    this.steps.push([time, ...stages, ...iterations]);
+    this.isDrawn = false;
+  }
+
+  /** Axes take the colours of the page. */
+  restyle(): void {
+    this.plots.forEach(({ plot }) => plot.redraw());
+  }
+
+  private add(table: Table, first: number, title: string, unit: string, lines: Line[]): void {
     const axis = { stroke: () => style("--quiet"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false } };
     const plot = new uPlot(
       {
         width: this.width(),
-        height: 118,
+        height: HEIGHT,
         title: unit ? `${title} [${unit}]` : title,
         scales: { x: { time: false } },
-        legend: { show: names.length > 1, live: false },
+        legend: { show: lines.length > 1, live: false },
         cursor: { drag: { x: false, y: false }, points: { show: false } },
         axes: [
           { ...axis, size: 22, values: (_, values) => values.map((value) => `${number(value)} s`) },
           { ...axis, size: 58, values: (_, values) => values.map(number) },
         ],
-        series: [{}, ...names.map((name, index) => ({ label: name, stroke: COLOURS[index]!, width: 1.5, points: { show: false } }))],
+        series: [{}, ...lines.map(({ name, colour }) => ({ label: name, stroke: colour, width: 1.5, points: { show: false } }))],
       },
-      [[], ...names.map(() => [])],
+      [[], ...lines.map(() => [])],
       this.place,
     );
     plot.root.dataset.title = title;
-    this.plots.push({ plot, first, count: names.length });
+    this.plots.push({ plot, table, first, count: lines.length });
   }
 
   private draw(): void {
     if (this.isDrawn || !(this.root as HTMLDetailsElement).open || document.hidden) return;
     this.isDrawn = true;
-    const [time] = this.columns;
-    for (const { plot, first, count } of this.plots) {
-      plot.setData([time!, ...this.columns.slice(first, first + count)] as uPlot.AlignedData);
+    for (const { plot, table, first, count } of this.plots) {
+      const lines = table.columns.slice(first, first + count);
+      plot.setData([table.columns[0]!, ...lines] as uPlot.AlignedData);
+      plot.root.dataset.last = JSON.stringify(lines.map((line) => line.at(-1) ?? null));
     }
   }
 
@@ -97,7 +119,23 @@ export class Plots {
 
   private resize(): void {
     const width = this.width();
-    for (const { plot } of this.plots) if (plot.width !== width) plot.setSize({ width, height: 118 });
+    for (const { plot } of this.plots) if (plot.width !== width) plot.setSize({ width, height: HEIGHT });
+  }
+}
+
+/** The last rows of numbers, column by column; time is the first. */
+class Table {
+  readonly columns: number[][];
+
+  constructor(width: number) {
+    this.columns = Array.from({ length: width }, () => []);
+  }
+
+  push(row: ArrayLike<number>): void {
+    this.columns.forEach((column, index) => column.push(row[index]!));
+    const surplus = (this.columns[0]?.length ?? 0) - ROWS;
+    // cut in large pieces: each moves all that is behind it
+    if (surplus > ROWS / 4) this.columns.forEach((column) => column.splice(0, surplus));
   }
 }
 

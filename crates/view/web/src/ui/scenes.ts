@@ -5,6 +5,8 @@ import { element, panel } from "./dom";
 
 /** Longest text that the server takes [bytes]. */
 const TEXT_MAX = 1_000_000;
+/** Largest mesh that it takes [bytes]. */
+const MESH_MAX = 64 * 2 ** 20;
 
 export class Scenes {
   readonly root: HTMLElement;
@@ -16,9 +18,24 @@ export class Scenes {
     private readonly send: (wish: Wish) => void,
     private readonly say: (text: string) => void,
   ) {
-    this.root = panel("Scenes", false, this.list, element("p", { class: "quiet" }, "A scene file or a mesh can be dropped on the page."));
+    const file = element("input", { type: "file", id: "file", hidden: true });
+    file.addEventListener("change", () => {
+      void this.open(file.files?.[0]);
+      // the same file may be chosen again
+      file.value = "";
+    });
+    this.root = panel(
+      "Scenes",
+      false,
+      element("div", { class: "buttons" }, element("button", { click: () => file.click() }, "Open a file"), file),
+      element("p", { class: "quiet" }, "A scene file or a mesh; it can be dropped on the page as well."),
+      this.list,
+    );
     window.addEventListener("dragover", (event) => event.preventDefault());
-    window.addEventListener("drop", (event) => void this.drop(event));
+    window.addEventListener("drop", (event) => {
+      event.preventDefault();
+      void this.open(event.dataTransfer?.files[0]);
+    });
   }
 
   set(scenes: CatalogueEntry[]): void {
@@ -44,16 +61,17 @@ export class Scenes {
     });
   }
 
-  private async drop(event: DragEvent): Promise<void> {
-    event.preventDefault();
-    const file = event.dataTransfer?.files[0];
+  private async open(file: File | undefined): Promise<void> {
     if (!file) return;
-    if (!file.name.endsWith(".toml")) {
-      await this.sendMesh(file);
-    } else if (file.size > TEXT_MAX) {
-      this.say(`${file.name} is larger than the ${TEXT_MAX} bytes that a scene may have here`);
-    } else {
+    const isScene = file.name.endsWith(".toml");
+    const most = isScene ? TEXT_MAX : MESH_MAX;
+    if (file.size > most) {
+      // the server would close the connection before it has read as much, and its reason would be lost
+      this.say(`${file.name} has ${file.size} bytes; a ${isScene ? "scene" : "mesh"} may have ${most} here`);
+    } else if (isScene) {
       this.send({ do: "load_text", name: file.name, text: await file.text() });
+    } else {
+      await this.sendMesh(file);
     }
   }
 

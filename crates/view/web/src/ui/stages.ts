@@ -4,7 +4,8 @@ import { number } from "../format";
 import type { Frame, SceneInfo } from "../protocol";
 import { element } from "./dom";
 
-const STAGES: [string, string][] = [
+/** What a step is made of, and the colours of its parts. */
+export const STAGES: readonly [string, string][] = [
   ["contacts", "#8d6bb8"],
   ["forces", "#3d6fd8"],
   ["matrix", "#3f8f8f"],
@@ -28,9 +29,12 @@ export class Stages {
   private since = performance.now();
 
   constructor() {
-    this.parts = STAGES.map(([name, colour]) => element("i", { title: name, style: `background:${colour}` }));
+    const swatch = ([name, colour]: readonly [string, string]) => element("i", { title: name, style: `background:${colour}` });
+    this.parts = STAGES.map(swatch);
     this.bar.append(...this.parts);
-    this.root = element("div", { class: "stages" }, this.counts, this.total, this.bar, this.iterations, this.rate);
+    const names = STAGES.map((stage) => element("span", {}, swatch(stage), stage[0]));
+    const key = element("span", { class: "stagenames" }, ...names);
+    this.root = element("div", { class: "stages" }, this.counts, this.total, this.bar, key, this.iterations, this.rate);
   }
 
   begin(info: SceneInfo): void {

@@ -17,8 +17,8 @@ export class Transport {
   readonly root: HTMLElement;
   private readonly play = element("button", { class: "main", title: "Play or pause (space)" }, "Pause");
   private readonly speed = element("select", { title: "Simulated seconds per second", "aria-label": "Speed" });
-  private readonly time = element("output", { class: "time", title: "Simulated time" }, "0.00 s");
-  private readonly factor = element("output", { class: "factor", title: "Simulated seconds per second, as measured" });
+  private readonly time = element("span", { class: "time", title: "Simulated time" }, "0.00 s");
+  private readonly factor = element("span", { class: "factor", title: "Simulated seconds per second, as measured" });
   private readonly tools = new Map<Tool, HTMLButtonElement>();
   private mode: Status["mode"] = "waiting";
 
@@ -65,7 +65,15 @@ export class Transport {
     this.mode = status.mode;
     this.play.textContent = status.mode === "playing" ? "Pause" : "Play";
     this.play.disabled = status.mode === "failed";
-    if (SPEEDS.includes(status.speed)) this.speed.value = String(status.speed);
+    this.showSpeed(status.speed);
+  }
+
+  /** Another client may have wished for one that is not in the list. */
+  private showSpeed(speed: number): void {
+    if (![...this.speed.options].some(({ value }) => Number(value) === speed)) {
+      this.speed.append(element("option", { value: speed }, `${number(speed)} ×`));
+    }
+    this.speed.value = String(speed);
   }
 
   show(frame: Frame): void {

@@ -19,6 +19,9 @@ export class Arrows {
   private readonly tips = new Instances("tip", MOST);
   /** Metres for each unit. */
   private scale = 0;
+  private kind = -1;
+  /** Of the vectors shown last, in their unit. */
+  longest = 0;
   private readonly neck = new Float32Array(3);
   private readonly end = new Float32Array(3);
 
@@ -29,6 +32,9 @@ export class Arrows {
 
   /** The arrows of all bodies, of a kind; of none for -1. */
   update(bodies: BodyFrame[], kind: number, dark: boolean): void {
+    // lengths of one kind say nothing of another's
+    if (kind !== this.kind) this.scale = 0;
+    this.kind = kind;
     const all = bodies.map((body) => [body.positions, body.arrows.get(kind)] as const);
     const count = all.reduce((sum, [, vectors]) => sum + (vectors?.length ?? 0) / 3, 0);
     const every = Math.max(1, Math.ceil(count / MOST));
@@ -80,6 +86,7 @@ export class Arrows {
         longest = Math.max(longest, Math.hypot(vectors![at]!, vectors![at + 1]!, vectors![at + 2]!));
       }
     }
+    this.longest = longest;
     if (longest === 0) return;
     const fitting = (LONGEST * this.size) / longest;
     this.scale = this.scale === 0 || fitting < this.scale ? fitting : this.scale + 0.03 * (fitting - this.scale);

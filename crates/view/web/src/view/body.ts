@@ -52,7 +52,7 @@ export class Body {
   private readonly colours: BufferAttribute;
   private readonly edges: LineSegments<BufferGeometry, LineBasicMaterial>;
   private readonly triangles: Uint32Array;
-  private pins: InstancedMesh | null = null;
+  private pins: InstancedMesh<SphereGeometry, MeshStandardMaterial> | null = null;
   private pinned: number[] = [];
 
   constructor(
@@ -189,11 +189,7 @@ export class Body {
 
   setPins(points: number[]): void {
     this.pinned = points;
-    if (this.pins && this.pins.count !== points.length) {
-      this.group.remove(this.pins);
-      this.pins.dispose();
-      this.pins = null;
-    }
+    if (this.pins && this.pins.count !== points.length) this.dropPins();
     if (!this.pins && points.length > 0) {
       const sphere = new SphereGeometry(this.size * 0.009, 10, 8);
       this.pins = new InstancedMesh(sphere, new MeshStandardMaterial({ color: PIN_COLOUR, roughness: 0.5 }), points.length);
@@ -236,7 +232,7 @@ export class Body {
     this.mesh.material.dispose();
     this.edges.geometry.dispose();
     this.edges.material.dispose();
-    this.pins?.dispose();
+    this.dropPins();
     this.network?.dispose();
     this.inside?.dispose();
     this.facets?.dispose();
@@ -274,6 +270,15 @@ export class Body {
     this.placePins();
   }
 
+  private dropPins(): void {
+    if (!this.pins) return;
+    this.group.remove(this.pins);
+    this.pins.geometry.dispose();
+    this.pins.material.dispose();
+    this.pins.dispose();
+    this.pins = null;
+  }
+
   private placePins(): void {
     if (!this.pins) return;
     const place = new Matrix4();
@@ -286,14 +291,18 @@ export class Body {
   }
 }
 
-/** Each edge of a closed surface once: seen from one of its two triangles. */
+/** Each edge of triangles once, also those at the border, which have one triangle. */
 function edgesOf(triangles: Uint32Array): Uint32Array {
   const edges: number[] = [];
+  const seen = new Set<number>();
   for (let t = 0; t < triangles.length; t += 3) {
     for (let k = 0; k < 3; k++) {
       const a = triangles[t + k]!;
       const b = triangles[t + ((k + 1) % 3)]!;
-      if (a < b) edges.push(a, b);
+      // two whole numbers in one: points are fewer than 2²⁶
+      const edge = Math.min(a, b) * 2 ** 26 + Math.max(a, b);
+      if (!seen.has(edge)) edges.push(a, b);
+      seen.add(edge);
     }
   }
   return Uint32Array.from(edges);

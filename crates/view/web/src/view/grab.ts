@@ -41,10 +41,12 @@ export class Grab {
   constructor(
     private readonly picture: Picture,
     private readonly send: (wish: Wish) => void,
+    private readonly say: (text: string) => void,
   ) {
     const { canvas } = picture;
     canvas.tabIndex = 0;
-    canvas.setAttribute("aria-label", "The simulated world: drag bodies, or take hold with H and lead with the arrow keys");
+    const what = "The simulated world: drag bodies, or use the tool in the middle with H, lead it with the arrow keys, let go with H";
+    canvas.setAttribute("aria-label", what);
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.up(event));
@@ -65,11 +67,15 @@ export class Grab {
     this.left.splice(0).forEach(({ hand }) => this.send({ do: "release", hand }));
   }
 
-  /** Takes hold in the middle of the picture, leads, lets go; whether the key was one of these. */
-  key(name: string): boolean {
+  /** Uses the tool in the middle of the picture, leads, lets go; whether the key was one of these. */
+  key(name: string, isRepeat: boolean): boolean {
     const held = this.held.get(KEYS);
     if (name === "h" || (name === "escape" && held)) {
-      if (held) this.end(KEYS);
+      // a key that is held is pressed once
+      if (isRepeat) return true;
+      // who escapes does not throw
+      if (held && name === "escape" && held.tool === "throw") this.drop(KEYS);
+      else if (held) this.end(KEYS);
       else this.takeInTheMiddle();
       return true;
     }
@@ -86,14 +92,14 @@ export class Grab {
     const { left, top, width, height } = this.picture.canvas.getBoundingClientRect();
     // what is nearest to the middle, along a spiral
     for (let k = 0; k < 200; k++) {
-      const [angle, reach] = [2.4 * k, (0.03 * Math.sqrt(k) * Math.min(width, height)) / 1];
+      const [angle, reach] = [2.4 * k, 0.03 * Math.sqrt(k) * Math.min(width, height)];
       const place = { clientX: left + width / 2 + reach * Math.cos(angle), clientY: top + height / 2 + reach * Math.sin(angle) };
       const hit = this.picture.hit(place);
-      if (hit) {
-        this.begin(KEYS, hit, this.tool === "push" ? "push" : "pull");
-        return;
-      }
+      if (hit && this.tool === "pin") this.pin(hit);
+      else if (hit) this.begin(KEYS, hit, this.tool);
+      if (hit) return;
     }
+    this.say("No body is about the middle of the picture: F shows all of them.");
   }
 
   private down(event: PointerEvent): void {
@@ -113,7 +119,10 @@ export class Grab {
   private begin(pointer: number, hit: Hit, tool: Tool): void {
     const used = new Set([...this.held.values(), ...this.left].map(({ hand }) => hand));
     const hand = Array.from({ length: HANDS }, (_, n) => n).find((n) => !used.has(n));
-    if (hand === undefined) return;
+    if (hand === undefined) {
+      this.say(`All ${HANDS} hands hold something: put tools away in the panel “Hand” first.`);
+      return;
+    }
     const { body, point } = hit;
     const start = tool === "push" ? this.put(hand, hit) : point.clone();
     this.held.set(pointer, { hand, body: body.index, start, grip: point, tool, last: point.clone() });
@@ -169,6 +178,12 @@ export class Grab {
     const held = this.held.get(pointer);
     this.held.delete(pointer);
     if (held) this.letGo(held);
+    this.rest();
+  }
+
+  /** Lets go as if nothing had been led. */
+  private drop(pointer: number): void {
+    this.held.delete(pointer);
     this.rest();
   }
 

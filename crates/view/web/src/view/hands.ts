@@ -11,7 +11,7 @@ const TOOL_ARROW = 0.12;
 
 interface Shown {
   arrow: ArrowHelper;
-  grip: Mesh;
+  grip: Mesh<SphereGeometry, MeshBasicMaterial>;
   label: HTMLElement;
   place: Vector3;
 }
@@ -78,6 +78,7 @@ export class Hands {
     this.group.remove(last.arrow, last.grip);
     last.arrow.dispose();
     last.grip.geometry.dispose();
+    last.grip.material.dispose();
     last.label.remove();
   }
 }

@@ -48,11 +48,28 @@ export interface Extras {
   axes: boolean;
 }
 
+/** What colours and arrows of the last frame stand for. */
+export interface Meanings {
+  /** Whether any body has values of the field. */
+  hasValues: boolean;
+  /** Of the values seen lately. */
+  range: Range;
+  /** Numbers of the classes that are seen, in order; none where colours stand for quantities. */
+  classes: number[];
+  /** States of links that are seen, as frames number them, beyond the first; none where a field colours them. */
+  linkStates: number[];
+  /** Of the longest arrow. */
+  longest: number;
+}
+
 export interface Cut {
   axis: 0 | 1 | 2;
   /** From 0, nothing is left, to 1, all is. */
   place: number;
 }
+
+/** By how much of what is too much the range of colours shrinks with each frame. */
+const SHRINKING = 0.02;
 
 export class Picture {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
@@ -85,15 +102,17 @@ export class Picture {
   private dark = false;
   private cut: Cut | null = null;
   private readonly cutPlane = new Plane();
-  /** Of the values seen lately. */
-  range: Range = { low: 0, high: 1 };
-  /** Numbers of the classes that are seen, in order; none where colours stand for quantities. */
-  classes: number[] = [];
+  readonly meanings: Meanings = { hasValues: false, range: { low: 0, high: 1 }, classes: [], linkStates: [], longest: 0 };
   private hasClasses = false;
   private hasSkins = false;
+  /** The last frame of the scene. */
+  private last: Frame | null = null;
+  /** What is looked at: the camera stays while it is the same. */
+  private subject = "";
 
   constructor(
     private readonly place: HTMLElement,
+    say: (text: string) => void,
     grab: (picture: Picture) => void,
   ) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: "high-performance" });
@@ -106,6 +125,8 @@ export class Picture {
     renderer.localClippingEnabled = true;
     this.canvas = renderer.domElement;
     place.append(this.canvas);
+    this.canvas.addEventListener("webglcontextlost", () => say("The graphics card has dropped the picture; the world goes on."));
+    this.canvas.addEventListener("webglcontextrestored", () => say("The graphics card draws the picture again."));
     const labels = document.createElement("div");
     labels.className = "labels";
     place.append(labels);
@@ -138,7 +159,9 @@ export class Picture {
     }
     this.scene.remove(this.arrows.group);
     this.arrows.dispose();
-    this.hasSkins = false;
+    this.last = null;
+    // a range that another world, or this one before, has widened tells nothing of this one
+    this.field = -1;
     if (this.obstacles) {
       this.scene.remove(this.obstacles.group);
       this.obstacles.dispose();
@@ -167,6 +190,11 @@ export class Picture {
     this.setCut(this.cut);
     this.setExtras(this.extras);
     this.light();
+    const subject = JSON.stringify([info.name, info.bodies.map(({ name, points }) => [name, points]), info.skins]);
+    // begun anew, or shown again after the connection was lost, it is seen from where a person went
+    this.hasSkins = subject === this.subject;
+    if (subject !== this.subject) this.fit();
+    this.subject = subject;
   }
 
   /** The cells of a body have come. */
@@ -188,31 +216,47 @@ export class Picture {
   }
 
   show(frame: Frame): void {
+    this.last = frame;
     frame.bodies.forEach((body, index) => this.bodies[index]?.update(body));
     frame.skins.forEach((skin, index) => this.skins[index]?.update(skin));
     this.obstacles?.move(frame.poses);
     this.hands.update(frame.hands);
     this.tools.update(frame.hands);
-    this.arrows.update(frame.bodies, this.extras.arrows, this.dark);
     if (!this.hasSkins && frame.skins.length > 0) {
       // a skin that stands alone is known by its first frame
       this.hasSkins = true;
       this.fit();
     }
-    const values = frame.bodies.map((body) => body.fields.get(this.field));
-    this.follow(values);
-    frame.bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.of, this.range, this.colours));
+    this.paint(frame, SHRINKING);
+  }
+
+  /** Makes what is seen of the last frame anew: the look has changed. */
+  repaint(): void {
+    if (this.last) this.paint(this.last, 0);
+  }
+
+  /** Colours, sections, cells and arrows; the range of colours shrinks by a part of what is too much. */
+  private paint({ bodies }: Frame, shrinking: number): void {
+    const { meanings } = this;
+    this.arrows.update(bodies, this.extras.arrows, this.dark);
+    meanings.longest = this.arrows.longest;
+    const values = bodies.map((body) => body.fields.get(this.field));
+    this.follow(values, shrinking);
+    bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.of, meanings.range, this.colours));
+    const states = new Set<number>();
+    if (!meanings.hasValues) for (const { linkStates } of bodies) linkStates.forEach((state) => state > 1 && states.add(state));
+    meanings.linkStates = [...states].sort((a, b) => a - b);
   }
 
   /** Colours by a field with this number; `map` is for quantities, classes have colours of their own. */
   setColours(number: number, field: FieldInfo | undefined, map: ColourMap): void {
-    if (number !== this.field) this.range = { low: Infinity, high: -Infinity };
+    if (number !== this.field) this.meanings.range = { low: Infinity, high: -Infinity };
     this.field = number;
     this.of = field?.of ?? "points";
     const classes = field?.classes ?? null;
     this.hasClasses = classes !== null;
     this.colours = classes ? coloursOf(classes) : linearColours(map);
-    if (classes) this.range = CLASS_RANGE;
+    if (classes) this.meanings.range = CLASS_RANGE;
   }
 
   setStyle(style: Style, dark: boolean): void {
@@ -343,12 +387,14 @@ export class Picture {
   }
 
   /** Widens the range of colours at once, and lets it shrink slowly: a legend that jumps cannot be read. */
-  private follow(values: (Float32Array | undefined)[]): void {
-    this.classes = [];
+  private follow(values: (Float32Array | undefined)[], shrinking: number): void {
+    const { meanings } = this;
+    meanings.hasValues = values.some((list) => list !== undefined && list.length > 0);
+    meanings.classes = [];
     if (this.hasClasses) {
       const seen = new Set<number>();
       for (const list of values) list?.forEach((value) => seen.add(value));
-      this.classes = [...seen].sort((a, b) => a - b);
+      meanings.classes = [...seen].sort((a, b) => a - b);
       return;
     }
     let low = Infinity;
@@ -360,9 +406,9 @@ export class Picture {
       }
     }
     if (low > high) return;
-    const { range } = this;
+    const { range } = meanings;
     const ease = (old: number, now: number, widens: boolean) =>
-      widens || !Number.isFinite(old) ? now : old + 0.02 * (now - old);
+      widens || !Number.isFinite(old) ? now : old + shrinking * (now - old);
     range.low = ease(range.low, low, low < range.low);
     range.high = ease(range.high, high, high > range.high);
   }

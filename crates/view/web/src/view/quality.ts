@@ -10,20 +10,22 @@ export const LEVELS = [
 
 export type Level = (typeof LEVELS)[number];
 
-/** A picture takes too long beyond this [ms], in the mean over some of them. */
+/** A picture takes too long beyond this [ms]; the machine is slow when more than half of some of them do. */
 const SLOW_MS = 70;
 const PICTURES = 8;
 
 export class Quality {
   private level: number;
   private last = 0;
-  private sum = 0;
+  private slow = 0;
   private count = 0;
 
   /** `?quality=3` in the address begins with the simplest. */
   constructor(private readonly changed: (level: Level) => void) {
     const asked = Number(new URLSearchParams(location.search).get("quality") ?? 0);
     this.level = Number.isInteger(asked) && asked in LEVELS ? asked : 0;
+    // time spent hidden is not spent on drawing
+    document.addEventListener("visibilitychange", () => (this.last = performance.now()));
   }
 
   get now(): Level {
@@ -34,15 +36,13 @@ export class Quality {
   drawn(time: number): void {
     const took = time - this.last;
     this.last = time;
-    // a page that was hidden is not slow
-    if (took > 2000 || document.hidden) return;
-    this.sum += took;
+    if (took > SLOW_MS) this.slow += 1;
     this.count += 1;
     if (this.count < PICTURES) return;
-    const mean = this.sum / this.count;
-    this.sum = 0;
+    const isSlow = 2 * this.slow > PICTURES;
+    this.slow = 0;
     this.count = 0;
-    if (mean > SLOW_MS && this.level < LEVELS.length - 1) {
+    if (isSlow && this.level < LEVELS.length - 1) {
       this.level += 1;
       this.changed(this.now);
     }

@@ -5,9 +5,18 @@ import type { HandShown, ToolShape } from "../protocol";
 
 const COLOUR = 0x8fa3b8;
 
+/** Frames that may have left before the shape did: those that no page has answered, and the one that waits. */
+const ON_THE_WAY = 3;
+
+interface Shape {
+  mesh: Mesh<BufferGeometry, MeshStandardMaterial>;
+  /** Frames in which no hand held it. */
+  missed: number;
+}
+
 export class Tools {
   readonly group = new Group();
-  private readonly shapes = new Map<string, Mesh>();
+  private readonly shapes = new Map<string, Shape>();
 
   /** A tool whose shape has come. */
   add({ page, hand, points, triangles }: ToolShape): void {
@@ -20,6 +29,7 @@ export class Tools {
     flat.computeVertexNormals();
     geometry.computeVertexNormals();
     const isRound = triangles.length > 100;
+    (isRound ? flat : geometry).dispose();
     const mesh = new Mesh(
       isRound ? geometry : flat,
       new MeshStandardMaterial({ color: COLOUR, roughness: 0.25, metalness: 0.6, transparent: true, opacity: 0.85 }),
@@ -28,22 +38,24 @@ export class Tools {
     mesh.frustumCulled = false;
     // until a frame tells where it is
     mesh.visible = false;
-    this.shapes.set(key(page, hand), mesh);
+    this.shapes.set(key(page, hand), { mesh, missed: 0 });
     this.group.add(mesh);
   }
 
   update(hands: HandShown[]): void {
     const present = new Set<string>();
     for (const { page, hand, holds, place } of hands) {
-      const mesh = this.shapes.get(key(page, hand));
-      if (!mesh || holds !== "tool") continue;
+      const shape = this.shapes.get(key(page, hand));
+      if (!shape || holds !== "tool") continue;
       present.add(key(page, hand));
-      mesh.position.fromArray(place);
-      mesh.visible = true;
+      shape.mesh.position.fromArray(place);
+      shape.mesh.visible = true;
     }
-    for (const [name, mesh] of this.shapes) {
-      // one that was seen and is no longer held is gone; a new one may still wait for its first frame
-      if (mesh.visible && !present.has(name)) this.remove(name);
+    for (const [name, shape] of this.shapes) {
+      if (present.has(name)) continue;
+      shape.missed += 1;
+      // one that was seen and is no longer held is gone; so is a new one that was let go of before its first frame
+      if (shape.mesh.visible || shape.missed > ON_THE_WAY) this.remove(name);
     }
   }
 
@@ -52,11 +64,11 @@ export class Tools {
   }
 
   private remove(name: string): void {
-    const mesh = this.shapes.get(name);
+    const mesh = this.shapes.get(name)?.mesh;
     if (!mesh) return;
     this.group.remove(mesh);
     mesh.geometry.dispose();
-    (mesh.material as MeshStandardMaterial).dispose();
+    mesh.material.dispose();
     this.shapes.delete(name);
   }
 }
