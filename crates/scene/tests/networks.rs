@@ -77,6 +77,24 @@ fn wrong_networks_are_refused_in_words() {
     );
 }
 
+/// A lattice keeps the masses where its condition holds, in their order; none, and more than can be asked about, are refused.
+#[test]
+fn lattices_keep_what_is_within() {
+    let ball = |within: &str, counts: &str| {
+        format!(
+            "[networks.n.masses.a]\nlattice = {{ origin = [-2, -2, -2], spacing = 1, counts = {counts}, within = \"{within}\" }}\nmass = 1\n"
+        )
+    };
+    let kept = scene(&ball("x^2 + y^2 + z^2 <= 1", "[5, 5, 5]")).unwrap();
+    // the middle and its six neighbours
+    let body = &kept.bodies[0];
+    assert_eq!(body.mesh.points.len(), 7);
+    assert!(body.mesh.points.iter().all(|p| p.length() < 1.5));
+    refused(&ball("x > 10", "[5, 5, 5]"), &["none of the 125 masses"]);
+    refused(&ball("x > 10", "[300, 300, 300]"), &["at most 1e7"]);
+    refused(&ball("x > w", "[5, 5, 5]"), &["w"]);
+}
+
 /// What no memory holds is refused before it is made, in all the ways that a network grows.
 #[test]
 fn networks_that_no_memory_holds_are_refused() {

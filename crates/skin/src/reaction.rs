@@ -204,3 +204,31 @@ impl Force for SkinPush {
         self
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The forces that take out a couple add up to nothing and leave no moment about any place; on a line there is none to take
+    /// out.
+    #[test]
+    fn couples_are_taken_out() {
+        let position = |k: f64| Vec3::new((1.3 * k).sin(), (2.1 * k).cos(), (0.7 * k * k).sin());
+        let force = |k: f64| Vec3::new((3.1 * k).cos(), (1.9 * k + 1.0).sin(), (0.3 * k).cos());
+        let pairs = (0..40).map(|k| (position(f64::from(k)), force(f64::from(k))));
+        let (centre, rate) = counter_couple(pairs.clone());
+        let (mut sum, mut moment) = (Vec3::ZERO, Vec3::ZERO);
+        for (x, force) in pairs {
+            let added = rate.cross(x - centre);
+            sum += added;
+            moment += (x - centre).cross(force + added);
+        }
+        // roundings of forty numbers of order one
+        assert!(
+            rate.length() > 1e-3 && sum.length() < 1e-13 && moment.length() < 1e-13,
+            "{sum:?} {moment:?}"
+        );
+        let on_a_line = (0..5).map(|k| (Vec3::X * f64::from(k), Vec3::X));
+        assert_eq!(counter_couple(on_a_line).1, Vec3::ZERO);
+    }
+}
