@@ -185,7 +185,8 @@ describe("the liver", () => {
     await pause(page);
     await page.selectOption("#field", "");
     const near = await shows(page, 0.02);
-    await page.mouse.move(...(await at(page, 0.05, 0.05)));
+    // where no message may be in the way
+    await page.mouse.move(...(await at(page, 0.95, 0.9)));
     for (let notch = 0; notch < 8; notch++) await page.mouse.wheel(0, 300);
     await looks(page, (now) => now.share < 0.4 * near.share, `it does not go away from ${near.share}`);
     await page.keyboard.press("r");
@@ -282,14 +283,12 @@ describe("the liver", () => {
   }
 
   async function pause(page) {
-    await reads(page, ".transport .main", "Pause");
-    await page.click(".transport .main");
+    if ((await page.textContent(".transport .main")) === "Pause") await page.click(".transport .main");
     return paused(page);
   }
 
   async function play(page) {
-    await reads(page, ".transport .main", "Play");
-    await page.click(".transport .main");
+    if ((await page.textContent(".transport .main")) === "Play") await page.click(".transport .main");
     await reads(page, ".transport .main", "Pause");
   }
 });
