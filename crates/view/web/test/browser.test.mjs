@@ -346,6 +346,7 @@ describe("small worlds", () => {
 
   test("say why they may not be looked at", async () => {
     const other = await browser.newPage();
+    other.setDefaultTimeout(trial.PATIENCE);
     await other.addInitScript(() => {
       const Socket = window.WebSocket;
       window.WebSocket = class extends Socket {
@@ -356,7 +357,7 @@ describe("small worlds", () => {
     });
     let loads = 0;
     other.on("domcontentloaded", () => (loads += 1));
-    await other.goto(world.url);
+    await other.goto(`${world.url}?quality=3`, { waitUntil: "commit" });
     await other.waitForFunction(() => /another version/.test(document.querySelector(".link").textContent));
     assert.equal(loads, 2, "it loads itself once more, and then says what is wrong");
     await other.route(/health/, (route) => route.fulfill({ status: 401, body: "the token is missing or wrong" }));
