@@ -40,6 +40,11 @@ impl Guard {
             let message = format!("the host `{host}` is not this server; ask for http://{}/", self.address);
             return Err(Rejection::new(403, message));
         }
+        // a picture or a script of another site asks without an origin; a link leads to the page alone
+        let site = request.header("sec-fetch-site").unwrap_or("none");
+        if request.path != "/" && !matches!(site, "none" | "same-origin") {
+            return Err(Rejection::new(403, "this is for the page of this server alone"));
+        }
         match request.header("origin") {
             Some(origin) if origin != format!("http://{host}") => {
                 // never the token: who asks may not know it
@@ -113,6 +118,9 @@ mod tests {
         assert_eq!(token.len(), 2 * TOKEN_BYTES);
         let head = b"GET / HTTP/1.1\r\nHost: here:1\r\nOrigin: http://evil.example\r\n\r\n";
         let foreign = Request::parse(head).unwrap().unwrap();
+        let head = b"GET /recording HTTP/1.1\r\nHost: here:1\r\nSec-Fetch-Site: cross-site\r\n\r\n";
+        let embedded = Request::parse(head).unwrap().unwrap();
+        assert_eq!(open.check_site(&embedded).unwrap_err().status, 403);
         let refused = open.check_site(&foreign).unwrap_err();
         assert!(refused.status == 403 && !refused.message.contains(&token), "{}", refused.message);
         let asking = |query: &str| {
