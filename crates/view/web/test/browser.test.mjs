@@ -200,6 +200,8 @@ describe("the liver", () => {
   });
 
   test("is cut open and taken apart, while it is paused as well", async () => {
+    await page.selectOption("#field", "displacement");
+    await until(page, (now) => now > 0, "nothing is coloured");
     await pause(page);
     // in wires only what is inside is filled with colours
     await page.selectOption("#style", "wireframe");
@@ -358,10 +360,10 @@ describe("small worlds", () => {
     let loads = 0;
     other.on("domcontentloaded", () => (loads += 1));
     await other.goto(`${world.url}?quality=3`, { waitUntil: "commit" });
-    await other.waitForFunction(() => /another version/.test(document.querySelector(".link").textContent));
+    await other.locator(".link", { hasText: "another version" }).waitFor();
     assert.equal(loads, 2, "it loads itself once more, and then says what is wrong");
     await other.route(/health/, (route) => route.fulfill({ status: 401, body: "the token is missing or wrong" }));
-    await other.waitForFunction(() => /refuses.*token is missing/.test(document.querySelector(".link").textContent));
+    await other.locator(".link", { hasText: /refuses.*token is missing/ }).waitFor();
     await other.close();
   });
 
@@ -450,6 +452,8 @@ test("a world that explodes names its body in windows of every size, and can be 
         await photograph(page, `size-${width}-${colorScheme}`);
       }
     }
+    // slowly: it explodes again
+    await page.selectOption("[aria-label='Speed']", "0.05");
     await failure.locator("button").click();
     await failure.waitFor({ state: "hidden" });
   } finally {
