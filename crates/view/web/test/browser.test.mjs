@@ -347,7 +347,7 @@ describe("small worlds", () => {
   });
 
   test("say why they may not be looked at", async () => {
-    const other = await browser.newPage();
+    const other = await browser.newPage({ viewport: { width: 320, height: 240 } });
     other.setDefaultTimeout(trial.PATIENCE);
     await other.addInitScript(() => {
       const Socket = window.WebSocket;
