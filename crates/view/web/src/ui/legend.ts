@@ -3,7 +3,7 @@
 import { label, quantity } from "../format";
 import type { ArrowInfo, Class, ColourMap, FieldInfo } from "../protocol";
 import { STATE_COLOURS } from "../view/palette";
-import type { Meanings } from "../view/picture";
+import type { Meanings } from "../view/meanings";
 import { element } from "./dom";
 
 export class Legend {

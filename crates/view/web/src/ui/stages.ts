@@ -59,7 +59,8 @@ export class Stages {
     this.total.textContent = `${number(total)} ms a step`;
     stages.forEach((stage, index) => {
       const part = this.parts[index]!;
-      part.style.flexGrow = String(stage);
+      // less than one in all would leave a part of the bar empty
+      part.style.flexGrow = String(stage / (total || 1));
       part.title = `${STAGES[index]![0]}: ${number(stage)} ms`;
     });
     this.iterations.textContent = linear > 0 ? `${number(newton)} Newton, ${number(linear)} linear iterations` : "";

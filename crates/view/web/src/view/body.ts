@@ -32,6 +32,8 @@ import type { Range } from "./palette";
 export type Style = "smooth" | "edges" | "wireframe";
 
 const PIN_COLOUR = 0x3d6fd8;
+/** Beyond so many sizes of all bodies numbers of four bytes draw nothing that could be seen. */
+const FAR = 1e6;
 
 export class Body {
   readonly group = new Group();
@@ -103,6 +105,8 @@ export class Body {
   /** Goes where a frame says; points of the inside follow those of the outside there, if anybody looks at them. */
   update(frame: BodyFrame): void {
     if (frame.positions.length < this.positions.length) return;
+    // of a world that blew up the last that can be drawn stays
+    if (frame.positions.some((number) => !(Math.abs(number) < FAR * this.size))) return;
     this.last = frame;
     this.positions.set(frame.positions.subarray(0, this.positions.length));
     this.axes.update(frame.frames);

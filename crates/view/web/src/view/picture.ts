@@ -25,8 +25,8 @@ import { Body } from "./body";
 import type { Style } from "./body";
 import { Hands } from "./hands";
 import { Obstacles } from "./obstacles";
-import { CLASS_RANGE, coloursOf, linearColours } from "./palette";
-import type { Range } from "./palette";
+import { Meanings } from "./meanings";
+import { coloursOf, linearColours } from "./palette";
 import { Quality } from "./quality";
 import { Skin } from "./skin";
 import { Tools } from "./tools";
@@ -46,20 +46,6 @@ export interface Extras {
   explode: number;
   /** Whether frames that carry bodies are drawn. */
   axes: boolean;
-}
-
-/** What colours and arrows of the last frame stand for. */
-export interface Meanings {
-  /** Whether any body has values of the field. */
-  hasValues: boolean;
-  /** Of the values seen lately. */
-  range: Range;
-  /** Numbers of the classes that are seen, in order; none where colours stand for quantities. */
-  classes: number[];
-  /** States of links that are seen, as frames number them, beyond the first; none where a field colours them. */
-  linkStates: number[];
-  /** Of the longest arrow. */
-  longest: number;
 }
 
 export interface Cut {
@@ -102,8 +88,7 @@ export class Picture {
   private dark = false;
   private cut: Cut | null = null;
   private readonly cutPlane = new Plane();
-  readonly meanings: Meanings = { hasValues: false, range: { low: 0, high: 1 }, classes: [], linkStates: [], longest: 0 };
-  private hasClasses = false;
+  readonly meanings = new Meanings();
   private hasSkins = false;
   /** The last frame of the scene. */
   private last: Frame | null = null;
@@ -241,22 +226,17 @@ export class Picture {
     this.arrows.update(bodies, this.extras.arrows, this.dark);
     meanings.longest = this.arrows.longest;
     const values = bodies.map((body) => body.fields.get(this.field));
-    this.follow(values, shrinking);
+    meanings.follow(values, bodies, shrinking);
     bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.of, meanings.range, this.colours));
-    const states = new Set<number>();
-    if (!meanings.hasValues) for (const { linkStates } of bodies) linkStates.forEach((state) => state > 1 && states.add(state));
-    meanings.linkStates = [...states].sort((a, b) => a - b);
   }
 
   /** Colours by a field with this number; `map` is for quantities, classes have colours of their own. */
   setColours(number: number, field: FieldInfo | undefined, map: ColourMap): void {
-    if (number !== this.field) this.meanings.range = { low: Infinity, high: -Infinity };
+    const classes = field?.classes ?? null;
+    if (number !== this.field) this.meanings.begin(classes);
     this.field = number;
     this.of = field?.of ?? "points";
-    const classes = field?.classes ?? null;
-    this.hasClasses = classes !== null;
     this.colours = classes ? coloursOf(classes) : linearColours(map);
-    if (classes) this.meanings.range = CLASS_RANGE;
   }
 
   setStyle(style: Style, dark: boolean): void {
@@ -384,33 +364,6 @@ export class Picture {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const at = new Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
     this.ray.setFromCamera(at, this.camera);
-  }
-
-  /** Widens the range of colours at once, and lets it shrink slowly: a legend that jumps cannot be read. */
-  private follow(values: (Float32Array | undefined)[], shrinking: number): void {
-    const { meanings } = this;
-    meanings.hasValues = values.some((list) => list !== undefined && list.length > 0);
-    meanings.classes = [];
-    if (this.hasClasses) {
-      const seen = new Set<number>();
-      for (const list of values) list?.forEach((value) => seen.add(value));
-      meanings.classes = [...seen].sort((a, b) => a - b);
-      return;
-    }
-    let low = Infinity;
-    let high = -Infinity;
-    for (const list of values) {
-      for (const value of list ?? []) {
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-    }
-    if (low > high) return;
-    const { range } = meanings;
-    const ease = (old: number, now: number, widens: boolean) =>
-      widens || !Number.isFinite(old) ? now : old + shrinking * (now - old);
-    range.low = ease(range.low, low, low < range.low);
-    range.high = ease(range.high, high, high > range.high);
   }
 
   /** The key light stands to the left above the camera's usual place, and its shadows cover all bodies. */
