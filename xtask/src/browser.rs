@@ -16,6 +16,16 @@ const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "c
 
 /// Checks the types of the page, then drives it in a headless browser before the released program.
 pub fn check(tree: &Tree) -> Result<(), Failure> {
+    drive(tree, "test")
+}
+
+/// Looks at a world for an hour.
+pub fn soak(tree: &Tree) -> Result<(), Failure> {
+    drive(tree, "soak")
+}
+
+/// Runs a script of the page's package.
+fn drive(tree: &Tree, script: &str) -> Result<(), Failure> {
     let browser = browser()?;
     let npm = |arguments: &[&str]| {
         let mut command = Command::new(if cfg!(windows) { "npm.cmd" } else { "npm" });
@@ -24,7 +34,7 @@ pub fn check(tree: &Tree) -> Result<(), Failure> {
     };
     run(&mut npm(&["ci", "--no-audit", "--no-fund"]), NODE)?;
     run(&mut npm(&["run", "check"]), NODE)?;
-    let mut tests = npm(&["test"]);
+    let mut tests = npm(&["run", script]);
     tests.env("SOUPLE_PROGRAM", program::souple(tree, &[]).get_program()).env("SOUPLE_CHROMIUM", browser);
     run(&mut tests, program::REMEDY)
 }

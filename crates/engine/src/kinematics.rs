@@ -86,13 +86,47 @@ pub struct Kinematics {
     /// Per free row: the velocity block that moves it, and how.
     carriers: Vec<(u32, Carrier)>,
     block_count: usize,
-    derived: Vec<DerivedRow>,
     /// Per free row: itself, with weight 1.
     identity: Vec<(u32, f64)>,
     /// Per derived row: its weights over free rows; what positions follow.
-    forward: Vec<Vec<(u32, f64)>>,
+    forward: Weights,
     /// Per derived row: the free rows that receive its force, and the weights.
-    backward: Vec<Vec<(u32, f64)>>,
+    backward: Weights,
+    /// Whether some derived row keeps the force on it.
+    is_one_way: bool,
+}
+
+/// Weights over free rows, of one derived row after the other.
+#[derive(Clone, Debug, Default)]
+struct Weights {
+    entries: Vec<(u32, f64)>,
+    /// Per derived row: where its entries end, and those of the next begin.
+    ends: Vec<usize>,
+}
+
+impl Weights {
+    fn push(&mut self, entries: &[(u32, f64)]) {
+        self.entries.extend_from_slice(entries);
+        self.ends.push(self.entries.len());
+    }
+
+    fn of(&self, derived: usize) -> &[(u32, f64)] {
+        let start = derived.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.entries[start..self.ends[derived]]
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn bytes(&self) -> usize {
+        size_of::<(u32, f64)>() * self.entries.capacity() + size_of::<usize>() * self.ends.capacity()
+    }
+}
+
+/// `Σ weight · row`.
+fn weighted(weights: &[(u32, f64)], rows: &[Vec3]) -> Vec3 {
+    weights.iter().map(|&(row, weight)| rows[row as usize] * weight).sum()
 }
 
 /// A derived row that cannot be.
@@ -114,7 +148,7 @@ impl Kinematics {
     /// # Panics
     /// After derived rows were added: free rows come first.
     pub fn add_unknowns(&mut self, kind: UnknownKind, count: usize) -> UnknownRange {
-        assert!(self.derived.is_empty(), "free rows come before derived rows");
+        assert!(self.forward.len() == 0, "free rows come before derived rows");
         let (first_row, first_block) = (self.carriers.len(), self.block_count);
         for unknown in 0..count {
             let block = (first_block + unknown * kind.block_count()) as u32;
@@ -157,14 +191,14 @@ impl Kinematics {
             Feedback::Transpose => compose(&derived.parents, |parent| self.backward(parent)),
             Feedback::None => Vec::new(),
         };
-        self.forward.push(forward);
-        self.backward.push(backward);
-        self.derived.push(derived);
+        self.forward.push(&forward);
+        self.backward.push(&backward);
+        self.is_one_way |= derived.feedback == Feedback::None;
         Ok(row as u32)
     }
 
     pub fn row_count(&self) -> usize {
-        self.carriers.len() + self.derived.len()
+        self.carriers.len() + self.forward.len()
     }
 
     pub fn free_row_count(&self) -> usize {
@@ -177,7 +211,7 @@ impl Kinematics {
 
     /// Whether every unknown is a point and every row is an unknown: the maps are the identity.
     pub fn is_trivial(&self) -> bool {
-        self.derived.is_empty() && !self.has_frames()
+        self.forward.len() == 0 && !self.has_frames()
     }
 
     pub fn has_frames(&self) -> bool {
@@ -190,18 +224,15 @@ impl Kinematics {
 
     /// Whether every row returns the forces on it; where one does not, momentum is not conserved.
     pub fn is_conservative(&self) -> bool {
-        self.derived.iter().all(|row| row.feedback == Feedback::Transpose)
+        !self.is_one_way
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let entry = size_of::<(u32, f64)>();
-        let lists = self.derived.iter().map(|row| row.parents.capacity());
-        let lists = lists.chain(self.forward.iter().chain(&self.backward).map(Vec::capacity));
         size_of::<(u32, Carrier)>() * self.carriers.capacity()
-            + entry * (self.identity.capacity() + lists.sum::<usize>())
-            + size_of::<DerivedRow>() * self.derived.capacity()
-            + size_of::<Vec<(u32, f64)>>() * (self.forward.capacity() + self.backward.capacity())
+            + size_of::<(u32, f64)>() * self.identity.capacity()
+            + self.forward.bytes()
+            + self.backward.bytes()
     }
 
     /// Unknowns as (kind, blocks), in order.
@@ -215,16 +246,12 @@ impl Kinematics {
 
     /// Weights of a row over free rows, as positions follow them.
     pub fn forward(&self, row: usize) -> &[(u32, f64)] {
-        self.identity
-            .get(row)
-            .map_or_else(|| self.forward[row - self.identity.len()].as_slice(), slice::from_ref)
+        self.identity.get(row).map_or_else(|| self.forward.of(row - self.identity.len()), slice::from_ref)
     }
 
     /// Free rows that receive the force on a row.
     pub fn backward(&self, row: usize) -> &[(u32, f64)] {
-        self.identity
-            .get(row)
-            .map_or_else(|| self.backward[row - self.identity.len()].as_slice(), slice::from_ref)
+        self.identity.get(row).map_or_else(|| self.backward.of(row - self.identity.len()), slice::from_ref)
     }
 
     /// The velocity block that moves a free row.
@@ -259,15 +286,34 @@ impl Kinematics {
         (!angular).then(|| (run.first_row + unknown * run.kind.row_count() + part) as u32)
     }
 
-    /// Positions of all rows from the configuration `q` (free rows).
-    pub fn positions_into(&self, q: &[Vec3], rows: &mut [Vec3]) {
-        reduce::copy(&mut rows[..q.len()], q);
-        self.derive_rows(rows);
+    /// Positions of all rows from the configuration `q` (free rows), and their velocities `ẋ = T(q) v`.
+    pub fn rows_into(&self, q: &[Vec3], v: &[Vec3], positions: &mut [Vec3], velocities: &mut [Vec3]) {
+        let (free_positions, positions) = positions.split_at_mut(q.len());
+        let (free_velocities, velocities) = velocities.split_at_mut(q.len());
+        reduce::copy(free_positions, q);
+        self.free_velocities_into(q, v, free_velocities);
+        // in one go, for weights take longer to come from memory than rows
+        reduce::for_each_rows_pair(
+            positions,
+            velocities,
+            &|first, positions: &mut [Vec3], velocities: &mut [Vec3]| {
+                for (at, (position, velocity)) in positions.iter_mut().zip(velocities).enumerate() {
+                    let weights = self.forward.of(first + at);
+                    *position = weighted(weights, free_positions);
+                    *velocity = weighted(weights, free_velocities);
+                }
+            },
+        );
     }
 
     /// Velocities of all rows, `ẋ = T(q) v`.
     pub fn velocities_into(&self, q: &[Vec3], v: &[Vec3], rows: &mut [Vec3]) {
-        if self.is_trivial() {
+        self.free_velocities_into(q, v, &mut rows[..q.len()]);
+        self.derive_rows(rows);
+    }
+
+    fn free_velocities_into(&self, q: &[Vec3], v: &[Vec3], rows: &mut [Vec3]) {
+        if !self.has_frames() {
             reduce::copy(rows, v);
             return;
         }
@@ -277,16 +323,16 @@ impl Kinematics {
                 Carrier::Rotation => v[block as usize].cross(q[row]),
             };
         }
-        self.derive_rows(rows);
     }
 
     /// Fills derived rows from the free rows before them.
     pub fn derive_rows(&self, rows: &mut [Vec3]) {
-        let free = self.carriers.len();
-        for (index, derived) in self.derived.iter().enumerate() {
-            rows[free + index] =
-                derived.parents.iter().map(|&(parent, weight)| rows[parent as usize] * weight).sum();
-        }
+        let (free, derived) = rows.split_at_mut(self.carriers.len());
+        reduce::for_each_rows(derived, &|first, chunk: &mut [Vec3]| {
+            for (at, row) in chunk.iter_mut().enumerate() {
+                *row = weighted(self.forward.of(first + at), free);
+            }
+        });
     }
 
     /// Generalised forces `Tᵀ f` on velocity blocks; `rows` is consumed as scratch.
@@ -303,13 +349,12 @@ impl Kinematics {
 
     /// Gives forces on derived rows back to the free rows that carry them, which add them to their own.
     pub fn return_forces(&self, rows: &mut [Vec3]) {
-        let free = self.carriers.len();
-        for (index, derived) in self.derived.iter().enumerate().rev() {
-            let force = rows[free + index];
+        let (free, derived) = rows.split_at_mut(self.carriers.len());
+        for (index, force) in derived.iter().enumerate() {
             // most derived rows are only looked at
-            if derived.feedback == Feedback::Transpose && force != Vec3::ZERO {
-                for &(parent, weight) in &derived.parents {
-                    rows[parent as usize] += force * weight;
+            if *force != Vec3::ZERO {
+                for &(row, weight) in self.backward.of(index) {
+                    free[row as usize] += *force * weight;
                 }
             }
         }

@@ -202,8 +202,7 @@ impl System {
 
     /// Brings rows to `(q, v)` at `time`.
     pub fn place_rows(&self, q: &[Vec3], v: &[Vec3], time: f64, rows: &mut Rows) {
-        self.kinematics.positions_into(q, &mut rows.positions);
-        self.kinematics.velocities_into(q, v, &mut rows.velocities);
+        self.kinematics.rows_into(q, v, &mut rows.positions, &mut rows.velocities);
         rows.time = time;
     }
 

@@ -40,7 +40,7 @@ struct Dues<'a, C: Iterator<Item = &'a Command>> {
 }
 
 impl<'a, C: Iterator<Item = &'a Command>> Dues<'a, C> {
-    /// What is due before the next step.
+    /// What is due now: before the next step, and after the last.
     fn make(&mut self, session: &mut Session) -> Result<(), RunError> {
         let now = session.world.state().period;
         while let Some(change) = self.changes.next_if(|change| change.period <= now) {
@@ -98,6 +98,9 @@ impl Course {
         let mut dues = Dues { commands, changes: options.changes.iter().peekable() };
         session.measure(&mut |probe, time, value| traces[probe].push(time, value));
         frames.write(folder.as_mut(), session, 0)?;
+        if steps == 0 {
+            dues.make(session)?;
+        }
         for step in 1..=steps {
             dues.make(session)?;
             if !session.step() {
@@ -106,6 +109,10 @@ impl Course {
             session.measure(&mut |probe, time, value| traces[probe].push(time, value));
             let last = step == steps;
             let write_clock = Instant::now();
+            if last {
+                // what was done to a live world after its last step
+                dues.make(session)?;
+            }
             if last || options.hash_every.is_some_and(|every| step.is_multiple_of(every)) {
                 session.push_hash();
             }

@@ -45,6 +45,14 @@ pub struct Hashed {
     pub fingerprint: Fingerprint,
 }
 
+/// Adds the hash of a world's state, unless there is one of its period.
+pub(crate) fn add_hash(hashes: &mut Vec<Hashed>, world: &World) {
+    let period = world.state().period;
+    if hashes.last().is_none_or(|last| last.period != period) {
+        hashes.push(Hashed { period, fingerprint: world.state().fingerprint() });
+    }
+}
+
 /// A recording that cannot be played.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
@@ -85,10 +93,7 @@ impl Recording {
     }
 
     pub(crate) fn push_hash(&mut self, world: &World) {
-        let period = world.state().period;
-        if self.hashes.last().is_none_or(|last| last.period != period) {
-            self.hashes.push(Hashed { period, fingerprint: world.state().fingerprint() });
-        }
+        add_hash(&mut self.hashes, world);
     }
 
     pub(crate) fn finish(&mut self, world: &World) {

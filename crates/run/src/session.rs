@@ -13,7 +13,7 @@ use souple_scene::{
 use crate::failure::Failure;
 use crate::frames::solid_of;
 use crate::machine::peak_bytes;
-use crate::recording::Recording;
+use crate::recording::{Recording, add_hash};
 use crate::report::{AroundSteps, Report, Status, counts, skins};
 use crate::show::{MOST_GROWTH, growth};
 use crate::snapshot_file::{snapshot_bytes, write_snapshot};
@@ -62,6 +62,13 @@ pub enum ChangeError {
     Scene(Diagnostics),
     #[error("`{setting}` makes another world, which cannot go on from where this one stands: {error}")]
     OtherWorld { setting: String, error: ResumeError },
+}
+
+/// Adds a setting, `path=value`, in the place of an earlier one of the same path.
+pub fn put_setting(settings: &mut Vec<String>, setting: &str) {
+    let path = |setting: &str| setting.split_once('=').map(|(path, _)| path.trim().to_owned());
+    settings.retain(|earlier| path(earlier) != path(setting));
+    settings.push(setting.to_owned());
 }
 
 impl Session {
@@ -126,7 +133,7 @@ impl Session {
     ///
     /// # Errors
     /// The first that has blown up: its points are no results, though they are finite.
-    pub(crate) fn check_growth(&self) -> Result<(), RunError> {
+    pub fn check_growth(&self) -> Result<(), RunError> {
         for body in self.bodies.iter().filter(|body| solid_of(self.world.model(), body).is_some()) {
             let positions = &self.world.rows(body.system).positions[body.rows.clone()];
             let growth = growth(&body.mesh.points, positions);
@@ -166,10 +173,12 @@ impl Session {
         self.world.edit(edit)
     }
 
-    /// What the scene is read from, with the changes made so far.
+    /// What the scene is read from, with the changes made so far: of those of one path the last.
     pub fn inputs(&self) -> Inputs {
         let mut inputs = self.recording.inputs.clone();
-        inputs.settings.extend(self.recording.changes.iter().map(|change| change.setting.clone()));
+        for change in &self.recording.changes {
+            put_setting(&mut inputs.settings, &change.setting);
+        }
         inputs
     }
 
@@ -184,7 +193,7 @@ impl Session {
     /// The value does not fit, or makes another world; this one stays as it was.
     pub fn change(&mut self, setting: &str) -> Result<(), ChangeError> {
         let mut inputs = self.inputs();
-        inputs.settings.push(setting.to_owned());
+        put_setting(&mut inputs.settings, setting);
         let scene = souple_scene::read_again(&inputs, self.places.clone()).map_err(ChangeError::Scene)?;
         self.take_over(scene, setting)
     }
@@ -240,7 +249,8 @@ impl Session {
     pub fn report(&mut self, status: Status) -> Report {
         let period = self.world.model().period;
         let steps = self.world.state().period - self.first_step;
-        let hashes = self.recording().hashes;
+        let mut hashes = self.recording.hashes.clone();
+        add_hash(&mut hashes, &self.world);
         Report {
             status,
             title: self.title.clone(),

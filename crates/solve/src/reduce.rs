@@ -84,14 +84,24 @@ pub fn sum_mut_pair<S: Send + Add<Output = S>>(
     z: &mut [Vec3],
     leaf: &(impl Fn(usize, &mut [Vec3], &mut [Vec3]) -> S + Sync),
 ) -> S {
+    sum_mut_pair_from(PARALLEL_FROM, first, y, z, leaf)
+}
+
+fn sum_mut_pair_from<S: Send + Add<Output = S>>(
+    parallel_from: usize,
+    first: usize,
+    y: &mut [Vec3],
+    z: &mut [Vec3],
+    leaf: &(impl Fn(usize, &mut [Vec3], &mut [Vec3]) -> S + Sync),
+) -> S {
     let length = y.len();
     let Some(middle) = middle(length) else { return leaf(first, y, z) };
     let (y_head, y_tail) = y.split_at_mut(middle);
     let (z_head, z_tail) = z.split_at_mut(middle);
     let (a, b) = both(
-        length >= PARALLEL_FROM,
-        || sum_mut_pair(first, y_head, z_head, leaf),
-        || sum_mut_pair(first + middle, y_tail, z_tail, leaf),
+        length >= parallel_from,
+        || sum_mut_pair_from(parallel_from, first, y_head, z_head, leaf),
+        || sum_mut_pair_from(parallel_from, first + middle, y_tail, z_tail, leaf),
     );
     a + b
 }
@@ -121,6 +131,18 @@ pub fn for_each_chunk_pair(
     leaf: &(impl Fn(usize, &mut [Vec3], &mut [Vec3]) + Sync),
 ) {
     sum_mut_pair(0, y, z, &|first, y: &mut [Vec3], z: &mut [Vec3]| {
+        leaf(first, y, z);
+        Nothing
+    });
+}
+
+/// [`for_each_chunk_pair`] for products of rows of a matrix, see [`sum_rows`].
+pub fn for_each_rows_pair(
+    y: &mut [Vec3],
+    z: &mut [Vec3],
+    leaf: &(impl Fn(usize, &mut [Vec3], &mut [Vec3]) + Sync),
+) {
+    sum_mut_pair_from(PARALLEL_ROWS_FROM, 0, y, z, &|first, y: &mut [Vec3], z: &mut [Vec3]| {
         leaf(first, y, z);
         Nothing
     });

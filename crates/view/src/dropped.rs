@@ -1,8 +1,11 @@
 //! A mesh that was dropped on the page becomes a scene: a soft body that falls on a floor.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use souple_io::read_mesh;
+use tempfile::TempDir;
 
 /// Largest file that is taken [bytes].
 pub const FILE_MAX: usize = 64 << 20;
@@ -15,33 +18,39 @@ const SAG: f64 = 0.05;
 const DENSITY: f64 = 1000.0;
 const GRAVITY: f64 = 9.81;
 
-/// A folder for files that were dropped, which goes with the program.
-pub struct DropFolder(PathBuf);
+/// Files that are kept: the scene that is shown is of one of the last, for each that comes later is tried at once.
+const FILES_KEPT: usize = 4;
+
+/// Files that were dropped, each in a folder of its own that nobody else may enter; they go with the program.
+#[derive(Default)]
+pub struct DropFolder {
+    kept: Mutex<VecDeque<TempDir>>,
+}
 
 impl DropFolder {
-    /// Beside those of other programs; it is made when the first file comes.
-    pub fn new(port: u16) -> Self {
-        Self(std::env::temp_dir().join(format!("souple_{}_{port}", std::process::id())))
-    }
-
-    /// Keeps a file; where it is.
+    /// Keeps a file, one at a time; where it is.
     ///
     /// # Errors
-    /// The folder takes no file.
+    /// There is no place for it.
     pub fn keep(&self, name: &str, content: &[u8]) -> Result<PathBuf, String> {
+        // what is removed or added under this lock is so at once
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
         let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        let path = self.0.join(plain.trim_start_matches('.'));
-        std::fs::create_dir_all(&self.0)
-            .and_then(|()| std::fs::write(&path, content))
-            .map_err(|error| format!("{} cannot be written: {error}", path.display()))?;
+        let wrong = |error: std::io::Error| format!("the file cannot be kept: {error}");
+        let folder = tempfile::Builder::new().prefix("souple-").tempdir().map_err(wrong)?;
+        let path = folder.path().join(plain.trim_start_matches('.'));
+        std::fs::write(&path, content).map_err(wrong)?;
+        kept.push_back(folder);
+        if kept.len() > FILES_KEPT {
+            kept.pop_front();
+        }
         Ok(path)
     }
 
     /// Removes all files.
     pub fn clear(&self) {
-        // none was dropped, or somebody else has cleared up
-        let _ = std::fs::remove_dir_all(&self.0);
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).clear();
     }
 }
 

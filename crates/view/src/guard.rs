@@ -37,12 +37,18 @@ impl Guard {
     pub fn check_site(&self, request: &Request) -> Result<(), Rejection> {
         let host = request.header("host").unwrap_or_default();
         if self.token.is_none() && !is_own_host(host, self.address.port()) {
-            let message = format!("the host `{host}` is not this server; ask for {}", self.address());
+            let message = format!("the host `{host}` is not this server; ask for http://{}/", self.address);
             return Err(Rejection::new(403, message));
+        }
+        // a picture or a script of another site asks without an origin; a link leads to the page alone
+        let site = request.header("sec-fetch-site").unwrap_or("none");
+        if request.path != "/" && !matches!(site, "none" | "same-origin") {
+            return Err(Rejection::new(403, "this is for the page of this server alone"));
         }
         match request.header("origin") {
             Some(origin) if origin != format!("http://{host}") => {
-                let message = format!("pages of `{origin}` may not come here; open {}", self.address());
+                // never the token: who asks may not know it
+                let message = format!("pages of `{origin}` may not come here; open http://{}/", self.address);
                 Err(Rejection::new(403, message))
             }
             _ => Ok(()),
@@ -110,6 +116,13 @@ mod tests {
         let (_, token) =
             open.address().split_once("token=").map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
         assert_eq!(token.len(), 2 * TOKEN_BYTES);
+        let head = b"GET / HTTP/1.1\r\nHost: here:1\r\nOrigin: http://evil.example\r\n\r\n";
+        let foreign = Request::parse(head).unwrap().unwrap();
+        let head = b"GET /recording HTTP/1.1\r\nHost: here:1\r\nSec-Fetch-Site: cross-site\r\n\r\n";
+        let embedded = Request::parse(head).unwrap().unwrap();
+        assert_eq!(open.check_site(&embedded).unwrap_err().status, 403);
+        let refused = open.check_site(&foreign).unwrap_err();
+        assert!(refused.status == 403 && !refused.message.contains(&token), "{}", refused.message);
         let asking = |query: &str| {
             let mut request = Request::default();
             query.clone_into(&mut request.query);

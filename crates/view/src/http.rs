@@ -67,7 +67,7 @@ impl Request {
     }
 
     /// `None`: the head is not complete.
-    fn parse(bytes: &[u8]) -> Result<Option<Self>, Rejection> {
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Option<Self>, Rejection> {
         let mut headers = [httparse::EMPTY_HEADER; HEADERS_MAX];
         let mut head = httparse::Request::new(&mut headers);
         let wrong = |error: httparse::Error| Rejection::new(400, format!("this is no request: {error}"));

@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
@@ -24,8 +24,8 @@ pub enum Outgoing {
     Raw(Vec<u8>),
 }
 
-/// Documents that may wait for a page; one with more is gone or stuck.
-const DOCUMENTS_MAX: usize = 512;
+/// Documents that may wait for a page; one with more is gone or stuck. A scene of thousands of bodies is as many.
+const DOCUMENTS_MAX: usize = 16 * 1024;
 /// Frames under way to a page that it has not seen.
 const IN_FLIGHT_MAX: u32 = 2;
 
@@ -51,6 +51,8 @@ struct Waiting {
     in_flight: u32,
     /// The first sample that it has not been sent.
     next_sample: u64,
+    /// Whether it was told what is shown: frames before that say nothing to it.
+    is_welcome: bool,
     is_closed: bool,
 }
 
@@ -75,6 +77,13 @@ impl Hub {
         (id, outbox)
     }
 
+    /// From now on a page gets what all pages get.
+    pub fn welcome(&self, page: PageId) {
+        if let Some(outbox) = lock(&self.pages).get(&page) {
+            lock(&outbox.state).is_welcome = true;
+        }
+    }
+
     pub fn leave(&self, page: PageId) {
         if let Some(outbox) = lock(&self.pages).remove(&page) {
             outbox.close();
@@ -94,14 +103,19 @@ impl Hub {
 
     /// To all pages.
     pub fn tell_all(&self, document: &Outgoing) {
-        lock(&self.pages).values().for_each(|outbox| outbox.push(document.clone()));
+        for outbox in lock(&self.pages).values().filter(|outbox| lock(&outbox.state).is_welcome) {
+            outbox.push(document.clone());
+        }
     }
 
     /// The newest picture, to all pages.
     pub fn show(&self, frame: &Arc<[u8]>) {
         for outbox in lock(&self.pages).values() {
-            lock(&outbox.state).frame = Some(Arc::clone(frame));
-            outbox.ready.notify_one();
+            let mut state = lock(&outbox.state);
+            if state.is_welcome {
+                state.frame = Some(Arc::clone(frame));
+                outbox.ready.notify_one();
+            }
         }
     }
 
@@ -139,8 +153,9 @@ impl Outbox {
         self.ready.notify_one();
     }
 
-    /// Waits for something to send.
+    /// Waits for something to send: frames that it may not send yet do not count.
     pub fn next(&self, hub: &Hub, patience: Duration) -> Next {
+        let deadline = Instant::now() + patience;
         let mut state = lock(&self.state);
         loop {
             if let Some(document) = state.documents.pop_front() {
@@ -161,12 +176,11 @@ impl Outbox {
                 state.next_sample = next_sample;
                 return Next::Send(Outgoing::Binary(frame));
             }
-            let (woken, timeout) =
-                self.ready.wait_timeout(state, patience).unwrap_or_else(PoisonError::into_inner);
-            state = woken;
-            if timeout.timed_out() {
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
                 return Next::Ping;
             }
+            (state, _) = self.ready.wait_timeout(state, left).unwrap_or_else(PoisonError::into_inner);
         }
     }
 }
@@ -191,6 +205,9 @@ mod tests {
     fn slow_pages_get_the_newest_frame_and_every_document() {
         let hub = Hub::default();
         let (page, outbox) = hub.join();
+        hub.show(&frame(0));
+        assert_eq!(sent(&outbox, &hub), None, "not yet welcome");
+        hub.welcome(page);
         for number in 1..=2 {
             hub.show(&frame(number));
             assert_eq!(sent(&outbox, &hub), Some(number));
@@ -209,10 +226,33 @@ mod tests {
         assert!(matches!(outbox.next(&hub, Duration::from_millis(1)), Next::Close));
     }
 
+    /// A page that draws nothing, as hidden ones do, is asked whether it is there while frames go on.
+    #[test]
+    fn silent_pages_are_asked() {
+        let hub = Arc::new(Hub::default());
+        let (page, outbox) = hub.join();
+        hub.welcome(page);
+        for number in 0..IN_FLIGHT_MAX {
+            hub.show(&frame(number as u8));
+            assert!(sent(&outbox, &hub).is_some());
+        }
+        let frames = Arc::clone(&hub);
+        let shows = std::thread::spawn(move || {
+            while frames.page_count() > 0 {
+                frames.show(&frame(9));
+                std::thread::yield_now();
+            }
+        });
+        assert!(matches!(outbox.next(&hub, Duration::from_millis(20)), Next::Ping));
+        hub.leave(page);
+        shows.join().unwrap();
+    }
+
     #[test]
     fn a_stuck_page_is_given_up() {
         let hub = Hub::default();
-        let (_, outbox) = hub.join();
+        let (page, outbox) = hub.join();
+        hub.welcome(page);
         let note = Outgoing::Text(Arc::from("note"));
         for _ in 0..=DOCUMENTS_MAX {
             hub.tell_all(&note);

@@ -34,7 +34,8 @@ pub fn frame_cost(scene: Scene, samples: usize) -> Result<FrameCost, String> {
     let hub = Hub::default();
     let mut stage = Stage::new(scene, "measured".to_owned(), 0, &hub)?;
     stage.fulfil(0, Wish::Colour(Some("displacement".to_owned())), &hub)?;
-    let _page = hub.join();
+    let (page, _outbox) = hub.join();
+    hub.welcome(page);
     let mut bytes = 0;
     let mut seconds = Vec::with_capacity(samples);
     for _ in 0..samples {

@@ -14,7 +14,7 @@ use crate::guard::Guard;
 use crate::http::{Rejection, Request, Response};
 use crate::hub::{Hub, PageId};
 use crate::protocol::Wish;
-use crate::session::{Answer, Input, Question, Start};
+use crate::session::{Answer, Input, Live, Question};
 use crate::{page, socket};
 
 /// Connections at a time; more are turned away, so that threads and memory stay bounded.
@@ -23,6 +23,9 @@ const CONNECTIONS_MAX: usize = 96;
 const INPUTS_MAX: usize = 1024;
 /// How long the world may take to answer a download.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(20);
+
+/// Time after a connection that could not be taken until the next is.
+const ACCEPT_AGAIN: Duration = Duration::from_millis(20);
 
 /// What a viewer is asked for.
 pub struct Options {
@@ -44,6 +47,8 @@ pub enum ViewError {
     Token(getrandom::Error),
     #[error("the system gives no thread: {0}")]
     Thread(std::io::Error),
+    #[error("the world cannot start: {0}")]
+    World(String),
 }
 
 /// A world that pages look at.
@@ -71,21 +76,15 @@ impl Viewer {
         let bind = |error| ViewError::Bind { address: wanted, error };
         let listener = TcpListener::bind(wanted).map_err(bind)?;
         let local = listener.local_addr().map_err(bind)?;
-        let port = local.port();
         let guard = Guard::new(local).map_err(ViewError::Token)?;
         let address = guard.address();
         let (hub, (inputs, inbox)) = (Arc::new(Hub::default()), sync_channel(INPUTS_MAX));
-        let start = Start {
-            scene,
-            name: options.scene_name,
-            catalogue: options.catalogue,
-            hub: Arc::clone(&hub),
-            inputs: inputs.clone(),
-            inbox,
-        };
+        let catalogue = options.catalogue;
+        let live = Live::new(scene, options.scene_name, catalogue, Arc::clone(&hub), inputs.clone())
+            .map_err(ViewError::World)?;
         let thread = |name: &str| std::thread::Builder::new().name(name.to_owned());
-        thread("world").spawn(move || start.run()).map_err(ViewError::Thread)?;
-        let dropped = Arc::new(DropFolder::new(port));
+        thread("world").spawn(move || live.run(&inbox)).map_err(ViewError::Thread)?;
+        let dropped = Arc::new(DropFolder::default());
         let server = Server {
             guard,
             hub,
@@ -113,11 +112,13 @@ impl Viewer {
 impl Server {
     fn listen(self: &Arc<Self>, listener: &TcpListener) {
         for stream in listener.incoming() {
-            // a connection that broke before it was taken is none
-            let Ok(mut stream) = stream else { continue };
+            let Ok(mut stream) = stream else {
+                // a connection that broke before it was taken, or no room for one: that may last
+                std::thread::sleep(ACCEPT_AGAIN);
+                continue;
+            };
             if self.connections.fetch_add(1, Ordering::Relaxed) >= CONNECTIONS_MAX {
                 self.connections.fetch_sub(1, Ordering::Relaxed);
-                let _ = stream.set_write_timeout(Some(Duration::from_millis(100)));
                 let _ = Rejection::new(503, "too many connections; close some pages").send(&mut stream);
                 continue;
             }
@@ -221,7 +222,7 @@ impl Server {
         let (answer, answered) = sync_channel(1);
         let gone = || Rejection::new(503, "the world does not answer");
         self.inputs.send(Input::Asked(question, answer)).map_err(|_| gone())?;
-        answered.recv_timeout(ANSWER_PATIENCE).map_err(|_| gone())?
+        Ok(answered.recv_timeout(ANSWER_PATIENCE).map_err(|_| gone())?.write())
     }
 }
 

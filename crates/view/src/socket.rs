@@ -125,6 +125,7 @@ fn read(stream: TcpStream, first_bytes: Vec<u8>, page: PageId, outbox: &Outbox, 
         let text = match socket.read() {
             Ok(Message::Text(text)) => text,
             Ok(Message::Ping(_) | Message::Pong(_)) => continue,
+            Ok(Message::Close(_)) => return,
             Ok(_) => Utf8Bytes::from_static(""),
             // closed, silent, or against the rules: all the same end
             Err(Error::Io(error)) if error.kind() == io::ErrorKind::Interrupted => continue,

@@ -92,6 +92,12 @@ fn read(arguments: &Arguments) -> Result<(Scene, String), Refusal> {
     if let Some(path) = &arguments.scene {
         return Ok((read_scene(path, &arguments.settings)?, scene_path(path).display().to_string()));
     }
+    // where the repository is at hand, under the name that other commands take
+    let file = Path::new(SCENES).join("liver/scene.toml");
+    if file.is_file() {
+        let name = file.display().to_string();
+        return Ok((read_scene(&name, &arguments.settings)?, name));
+    }
     let scene = souple_scene::read_text("liver", DEFAULT_SCENE, Path::new("."), &arguments.settings)?;
     Ok((scene, "liver".to_owned()))
 }
@@ -101,6 +107,8 @@ fn refuse(error: ViewError) -> Refusal {
         ViewError::Bind { address, .. } => {
             Refusal::request("port", address.to_string(), "a free port", error.to_string())
         }
-        ViewError::Token(_) | ViewError::Thread(_) => Refusal::work("view", error.to_string()),
+        ViewError::Token(_) | ViewError::Thread(_) | ViewError::World(_) => {
+            Refusal::work("view", error.to_string())
+        }
     }
 }

@@ -33,9 +33,14 @@ pub fn frame_20k(effort: Effort) -> Result<Vec<Figure>, String> {
     }])
 }
 
-/// Frames that a client on this machine gets, and how soon it sees what it did.
+/// Frames that a client on this machine gets of a ligament whose surface has 20,816 triangles, and how soon it sees what it
+/// did.
 pub fn rate(effort: Effort) -> Result<Vec<Figure>, String> {
-    let scene = scene("soft_block", &[])?;
+    let settings = [
+        "bodies.ligament.mesh.cells=[1300, 2, 2]",
+        "bodies.ligament.frames.points={ name = \"voxels\", size = \"5 mm\" }",
+    ];
+    let scene = scene("ligament", &settings.map(str::to_owned))?;
     let served = served(scene, Duration::from_secs(effort.choose(2, 10)), effort.choose(20, 200))?;
     let samples = served.latencies.len();
     let (latency, spread) = median(served.latencies.iter().map(|seconds| 1e3 * seconds).collect());

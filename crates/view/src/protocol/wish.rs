@@ -79,6 +79,31 @@ pub const HANDS_MAX: u32 = 10;
 const POINTS_MAX: usize = 4096;
 
 impl Wish {
+    /// What it is called on the wire.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Seen => "seen",
+            Self::Play => "play",
+            Self::Pause => "pause",
+            Self::Step => "step",
+            Self::Reset => "reset",
+            Self::Speed(_) => "speed",
+            Self::Load(_) => "load",
+            Self::LoadText { .. } => "load_text",
+            Self::Set { .. } => "set",
+            Self::Colour(_) => "colour",
+            Self::Arrows(_) => "arrows",
+            Self::Inside(_) => "inside",
+            Self::Grab { .. } => "grab",
+            Self::Touch { .. } => "touch",
+            Self::Move { .. } => "move",
+            Self::Release(_) => "release",
+            Self::Pin { .. } => "pin",
+            Self::Unpin { .. } => "unpin",
+            Self::Throw { .. } => "throw",
+        }
+    }
+
     /// # Errors
     /// Says what is wrong and what would be right.
     pub fn parse(text: &str) -> Result<Self, String> {

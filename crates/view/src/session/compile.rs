@@ -1,6 +1,7 @@
 //! Scenes are read beside the world, which steps on meanwhile.
 
 use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::SyncSender;
 
 use souple_run::Session;
@@ -41,6 +42,8 @@ impl Purpose {
             (Self::Set(new), Self::Set(old)) => {
                 new.split_once('=').map(|p| p.0) == old.split_once('=').map(|p| p.0)
             }
+            // a value of this scene is none of the next
+            (Self::Load(_) | Self::LoadText { .. }, _) => true,
             (Self::Set(_), _) | (_, Self::Set(_)) => false,
             _ => true,
         }
@@ -53,6 +56,9 @@ pub struct Compiled {
     pub purpose: Purpose,
     pub scene: Result<Scene, String>,
 }
+
+/// Scenes that may wait to be read.
+const WAITING_MAX: usize = 64;
 
 /// Reads one scene at a time, in order.
 pub struct Compiler {
@@ -71,44 +77,62 @@ impl Compiler {
         self.busy.as_ref().map(Purpose::name)
     }
 
-    pub fn ask(&mut self, page: PageId, purpose: Purpose, session: &Session, catalogue: &Catalogue) {
+    /// # Errors
+    /// Too much waits already, or the system gives no thread.
+    pub fn ask(
+        &mut self,
+        page: PageId,
+        purpose: Purpose,
+        session: &Session,
+        catalogue: &Catalogue,
+    ) -> Result<(), String> {
         self.waiting.retain(|(_, waiting)| !purpose.replaces(waiting));
-        self.waiting.push_back((page, purpose));
-        if self.busy.is_none() {
-            self.next(session, catalogue);
+        if self.waiting.len() >= WAITING_MAX {
+            return Err(format!("{WAITING_MAX} changes wait already; try again when they are made"));
         }
+        self.waiting.push_back((page, purpose));
+        if self.busy.is_some() { Ok(()) } else { self.next(session, catalogue) }
     }
 
     /// The one before is done: begins the next, if any waits.
-    pub fn next(&mut self, session: &Session, catalogue: &Catalogue) {
+    ///
+    /// # Errors
+    /// The system gives no thread; what was to be read is dropped.
+    pub fn next(&mut self, session: &Session, catalogue: &Catalogue) -> Result<(), String> {
         self.busy = None;
-        let Some((page, purpose)) = self.waiting.pop_front() else { return };
+        let Some((page, purpose)) = self.waiting.pop_front() else { return Ok(()) };
         let (inputs, places) = (self.inputs.clone(), session.places().clone());
         let mut texts = session.inputs();
         let path = match &purpose {
             Purpose::Load(name) => catalogue.find(name).map(std::path::Path::to_owned),
             Purpose::Set(setting) => {
-                texts.settings.push(setting.clone());
+                souple_run::put_setting(&mut texts.settings, setting);
                 None
             }
             Purpose::Reset | Purpose::LoadText { .. } => None,
         };
         self.busy = Some(purpose.clone());
         let work = move || {
-            let scene = match (&purpose, path) {
+            // whatever becomes of it, the world must hear of it: it waits
+            let scene = catch_unwind(AssertUnwindSafe(|| match (&purpose, path) {
                 (Purpose::LoadText { name, text }, _) => {
                     souple_scene::read_text(name, text, std::path::Path::new(""), &[])
                 }
                 (_, Some(path)) => souple_scene::read_file(&path, &[]),
                 _ => souple_scene::read_again(&texts, places),
+            }));
+            let scene = match scene {
+                Ok(read) => read.map_err(|diagnostics| in_words(&diagnostics)),
+                Err(_) => Err("the program failed over this scene: please report it".to_owned()),
             };
-            let scene = scene.map_err(|diagnostics| in_words(&diagnostics));
             // the world may have ended
             let _ = inputs.send(Input::Compiled(Box::new(Compiled { page, purpose, scene })));
         };
-        if std::thread::Builder::new().name("reader".to_owned()).spawn(work).is_err() {
+        let spawned = std::thread::Builder::new().name("reader".to_owned()).spawn(work);
+        spawned.map(|_| ()).map_err(|error| {
             self.busy = None;
-        }
+            format!("the system gives no thread to read it: {error}")
+        })
     }
 }
 

@@ -12,7 +12,7 @@ use souple_table::{Entry, Kind};
 use super::shown::has_inside;
 use super::stage::Stage;
 use crate::fields::{ARROWS, ArrowKind, FIELDS, Field};
-use crate::hub::Outgoing;
+use crate::hub::{Hub, Outgoing, PageId};
 use crate::protocol::{self, document};
 use crate::tools::{Making, TOOLS};
 
@@ -45,15 +45,22 @@ impl Stage {
         tell(self.pins());
     }
 
-    /// The cells of all bodies that have any inside.
-    pub fn describe_inside(&self, tell: &mut dyn FnMut(Outgoing)) {
+    /// The cells of all bodies that have any inside, to those who look there and have not been told of them.
+    pub fn describe_inside(&mut self, hub: &Hub) {
+        let pages: Vec<PageId> =
+            self.looks().inside().filter(|page| !self.told_inside.contains(page)).collect();
+        if pages.is_empty() {
+            return;
+        }
         for (index, (body, shown)) in self.session().bodies.iter().zip(self.shown()).enumerate() {
             if let Some(inside) = shown.inside(&body.mesh) {
                 let message =
                     protocol::inside(self.number(), index as u16, &inside.tetrahedra, &inside.triangles);
-                tell(Outgoing::Binary(Arc::from(message)));
+                let message = Outgoing::Binary(Arc::from(message));
+                pages.iter().for_each(|page| hub.tell(*page, message.clone()));
             }
         }
+        self.told_inside.extend(pages);
     }
 
     fn to_json(&self) -> Value {

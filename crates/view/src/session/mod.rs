@@ -16,12 +16,11 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use souple_scene::Scene;
 
-pub use question::{Answer, Question};
+pub use question::{Answer, Answered, Question};
 pub use shown::Shown;
 pub use stage::Stage;
 
 use crate::catalogue::Catalogue;
-use crate::http::Rejection;
 use crate::hub::{Hub, PageId};
 use crate::protocol::{Wish, document, refusal};
 use compile::{Compiled, Compiler, Purpose};
@@ -32,19 +31,9 @@ pub enum Input {
     Joined(PageId),
     Left(PageId),
     Said(PageId, Wish),
-    Asked(Question, SyncSender<Result<Answer, Rejection>>),
+    Asked(Question, SyncSender<Answered>),
     Compiled(Box<Compiled>),
     Stop,
-}
-
-/// What the world starts from.
-pub struct Start {
-    pub scene: Scene,
-    pub name: String,
-    pub catalogue: Catalogue,
-    pub hub: Arc<Hub>,
-    pub inputs: SyncSender<Input>,
-    pub inbox: Receiver<Input>,
 }
 
 /// Pictures a second, at most.
@@ -75,7 +64,7 @@ impl Mode {
 }
 
 /// The world and its surroundings.
-struct Live {
+pub struct Live {
     hub: Arc<Hub>,
     catalogue: Catalogue,
     compiler: Compiler,
@@ -84,6 +73,10 @@ struct Live {
     pace: Pace,
     /// Whether pages have not seen the world as it stands.
     is_changed: bool,
+    /// Whether pages have not been told how it stands.
+    is_status_new: bool,
+    /// Of the program, the same for every page; made when the first one comes.
+    greeting: Option<Value>,
     next_frame: Instant,
     next_note: Instant,
 }
@@ -95,19 +88,21 @@ enum Course {
     Ends,
 }
 
-impl Start {
-    /// The world until it is told to stop.
-    pub fn run(self) {
-        let Self { scene, name, catalogue, hub, inputs, inbox } = self;
-        let stage = match Stage::new(scene, name, 0, &hub) {
-            Ok(stage) => stage,
-            Err(message) => {
-                hub.set_health(json!({"status": "failed", "message": message}));
-                return;
-            }
-        };
+impl Live {
+    /// A world that waits for its first page.
+    ///
+    /// # Errors
+    /// The scene cannot start.
+    pub fn new(
+        scene: Scene,
+        name: String,
+        catalogue: Catalogue,
+        hub: Arc<Hub>,
+        inputs: SyncSender<Input>,
+    ) -> Result<Self, String> {
+        let stage = Stage::new(scene, name, 0, &hub)?;
         let now = Instant::now();
-        let mut live = Live {
+        let live = Self {
             hub,
             catalogue,
             compiler: Compiler::new(inputs),
@@ -115,18 +110,21 @@ impl Start {
             mode: Mode::Waiting,
             pace: Pace::new(now),
             is_changed: true,
+            is_status_new: false,
+            greeting: None,
             next_frame: now,
             next_note: now,
         };
         live.note();
-        live.run(&inbox);
+        Ok(live)
     }
-}
 
-impl Live {
-    fn run(&mut self, inbox: &Receiver<Input>) {
+    /// The world until it is told to stop.
+    pub fn run(mut self, inbox: &Receiver<Input>) {
         loop {
-            loop {
+            // not longer than a picture lasts, however much is wished for
+            let until = Instant::now() + FRAME;
+            while Instant::now() < until {
                 match inbox.try_recv() {
                     Ok(input) => {
                         if self.take(input) == Course::Ends {
@@ -137,6 +135,7 @@ impl Live {
                     Err(TryRecvError::Disconnected) => return,
                 }
             }
+            self.tell_news();
             let mut now = Instant::now();
             let is_due = self.mode == Mode::Playing && self.pace.due(self.stage.next_time()) <= now;
             if is_due {
@@ -187,13 +186,22 @@ impl Live {
     }
 
     fn show(&mut self, now: Instant) {
-        // a late picture does not hurry the next
-        self.next_frame = now + FRAME;
+        // a picture that is late by less than one keeps the beat; a later one does not hurry the next
+        let next = self.next_frame + FRAME;
+        self.next_frame = if next > now { next } else { now + FRAME };
+        self.is_changed = false;
         if self.hub.page_count() > 0 {
             let factor = if self.mode == Mode::Playing { self.pace.factor(now) } else { 0.0 };
             self.hub.show(&self.stage.frame(factor).into());
-            self.is_changed = false;
         }
+    }
+
+    /// Tells all pages what has changed since they were told, once, however often it did.
+    fn tell_news(&mut self) {
+        if std::mem::take(&mut self.is_status_new) {
+            self.hub.tell_all(&document("status", self.status()));
+        }
+        self.stage.tell_news(&self.hub);
     }
 
     fn set_mode(&mut self, mode: Mode) {
@@ -202,7 +210,7 @@ impl Live {
         }
         self.mode = mode;
         self.note();
-        self.hub.tell_all(&document("status", self.status()));
+        self.is_status_new = true;
     }
 
     fn status(&self) -> Value {
@@ -232,7 +240,7 @@ impl Live {
                 self.is_changed = true;
             }
             Input::Said(page, wish) => {
-                let about = about(&wish);
+                let about = wish.name();
                 if let Err(message) = self.fulfil(page, wish) {
                     self.hub.tell(page, refusal(about, &message));
                 }
@@ -248,14 +256,17 @@ impl Live {
     }
 
     fn welcome(&mut self, page: PageId) {
-        let hello = json!({
-            "page": page,
-            "version": env!("CARGO_PKG_VERSION"),
-            "colour_maps": describe::colour_maps(),
-            "tools": describe::tools(),
-            "scenes": self.catalogue.to_json(),
+        self.hub.welcome(page);
+        let greeting = self.greeting.get_or_insert_with(|| {
+            json!({
+                "version": env!("CARGO_PKG_VERSION"),
+                "colour_maps": describe::colour_maps(),
+                "tools": describe::tools(),
+                "scenes": self.catalogue.to_json(),
+            })
         });
-        self.hub.tell(page, document("hello", hello));
+        greeting["page"] = page.into();
+        self.hub.tell(page, document("hello", greeting.clone()));
         self.stage.describe(&mut |message| self.hub.tell(page, message));
         if self.mode == Mode::Waiting {
             self.set_mode(Mode::Playing);
@@ -288,26 +299,34 @@ impl Live {
             }
             Wish::Speed(speed) => {
                 self.pace.set_speed(speed, Instant::now(), self.stage.time());
-                self.hub.tell_all(&document("status", self.status()));
+                self.is_status_new = true;
             }
-            Wish::Reset => self.compile(page, Purpose::Reset),
+            Wish::Reset => self.compile(page, Purpose::Reset)?,
             Wish::Load(name) => {
                 if self.catalogue.find(&name).is_none() {
                     let known: Vec<&str> = self.catalogue.names().collect();
                     return Err(format!("there is no scene `{name}`; there are: {}", known.join(", ")));
                 }
-                self.compile(page, Purpose::Load(name));
+                self.compile(page, Purpose::Load(name))?;
             }
-            Wish::LoadText { name, text } => self.compile(page, Purpose::LoadText { name, text }),
-            Wish::Set { path, value } => self.compile(page, Purpose::Set(format!("{path}={value}"))),
+            Wish::LoadText { name, text } => self.compile(page, Purpose::LoadText { name, text })?,
+            Wish::Set { path, value } => {
+                // others may change what pages were told of the scene
+                if !self.stage.session().adjustables.iter().any(|known| known.path == path) {
+                    return Err(format!(
+                        "`{path}` cannot be set while the scene is shown; what can is under Parameters"
+                    ));
+                }
+                self.compile(page, Purpose::Set(format!("{path}={value}")))?;
+            }
             wish => self.stage.fulfil(page, wish, &self.hub)?,
         }
         Ok(())
     }
 
-    fn compile(&mut self, page: PageId, purpose: Purpose) {
-        self.compiler.ask(page, purpose, self.stage.session(), &self.catalogue);
-        self.hub.tell_all(&document("status", self.status()));
+    fn compile(&mut self, page: PageId, purpose: Purpose) -> Result<(), String> {
+        self.is_status_new = true;
+        self.compiler.ask(page, purpose, self.stage.session(), &self.catalogue)
     }
 
     /// A scene has been read: goes on with it, or says what is wrong with it.
@@ -324,10 +343,12 @@ impl Live {
             // whoever wished sees the old value again
             self.hub.tell_all(&self.stage.adjustables());
         }
-        self.compiler.next(self.stage.session(), &self.catalogue);
+        if let Err(message) = self.compiler.next(self.stage.session(), &self.catalogue) {
+            self.hub.tell(page, refusal(about, &message));
+        }
         self.is_changed = true;
+        self.is_status_new = true;
         self.note();
-        self.hub.tell_all(&document("status", self.status()));
     }
 
     /// Another world, or this one anew.
@@ -345,37 +366,11 @@ impl Live {
         self.stage = stage;
         self.stage.set_looks(looks);
         self.stage.describe(&mut |message| self.hub.tell_all(&message));
-        if self.stage.wanted().inside {
-            self.stage.describe_inside(&mut |message| self.hub.tell_all(&message));
-        }
+        self.stage.describe_inside(&self.hub);
         if matches!(self.mode, Mode::Failed(_)) {
             self.mode = Mode::Playing;
         }
         self.pace.start(Instant::now(), self.stage.time());
         Ok(())
-    }
-}
-
-/// What a wish is about, for refusals.
-fn about(wish: &Wish) -> &'static str {
-    match wish {
-        Wish::Seen => "seen",
-        Wish::Play => "play",
-        Wish::Pause => "pause",
-        Wish::Step => "step",
-        Wish::Reset => "reset",
-        Wish::Speed(_) => "speed",
-        Wish::Load(_) | Wish::LoadText { .. } => "load",
-        Wish::Set { .. } => "set",
-        Wish::Colour(_) => "colour",
-        Wish::Arrows(_) => "arrows",
-        Wish::Inside(_) => "inside",
-        Wish::Grab { .. } => "grab",
-        Wish::Touch { .. } => "touch",
-        Wish::Move { .. } => "move",
-        Wish::Release(_) => "release",
-        Wish::Pin { .. } => "pin",
-        Wish::Unpin { .. } => "unpin",
-        Wish::Throw { .. } => "throw",
     }
 }

@@ -1,10 +1,9 @@
 //! What may be downloaded of the world.
 
 use serde_json::Value;
-use souple_run::Status;
+use souple_run::{Recording, Status};
 
 use super::stage::Stage;
-use crate::http::Rejection;
 
 /// A thing to download.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +13,26 @@ pub enum Question {
     Snapshot,
 }
 
-/// A download.
+/// A download, ready or still to be written: the world does not wait for that.
+pub enum Answered {
+    Ready(Answer),
+    Recording { recording: Box<Recording>, save_as: String },
+}
+
+impl Answered {
+    pub fn write(self) -> Answer {
+        match self {
+            Self::Ready(answer) => answer,
+            Self::Recording { recording, save_as } => {
+                // files are named from where the program runs
+                let document = recording.to_json(std::path::Path::new(""));
+                Answer { save_as: Some(save_as), ..Answer::json(&document) }
+            }
+        }
+    }
+}
+
+/// What a client gets.
 pub struct Answer {
     pub kind: String,
     pub content: Vec<u8>,
@@ -43,26 +61,24 @@ impl Question {
 }
 
 impl Stage {
-    pub fn answer(&mut self, question: Question) -> Result<Answer, Rejection> {
+    pub fn answer(&mut self, question: Question) -> Answered {
         let name = self.short_name();
         let period = self.session().world.state().period;
-        Ok(match question {
+        match question {
             Question::Report => {
                 let failed = self.session().failure.is_some();
                 let status = if failed { Status::Failed } else { Status::Interrupted };
-                Answer::json(&self.session_mut().report(status).to_json())
+                Answered::Ready(Answer::json(&self.session_mut().report(status).to_json()))
             }
             Question::Recording => {
-                // files are named from where the program runs
-                let recording = self.session().recording().to_json(std::path::Path::new(""));
-                let save_as = Some(format!("{name}_{period}.recording"));
-                Answer { save_as, ..Answer::json(&recording) }
+                let recording = Box::new(self.session().recording());
+                Answered::Recording { recording, save_as: format!("{name}_{period}.recording") }
             }
             Question::Snapshot => {
                 let content = self.session().snapshot();
                 let save_as = Some(format!("{name}_{period:08}.souple"));
-                Answer { save_as, ..Answer::new("application/octet-stream", content) }
+                Answered::Ready(Answer { save_as, ..Answer::new("application/octet-stream", content) })
             }
-        })
+        }
     }
 }

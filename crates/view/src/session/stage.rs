@@ -31,6 +31,10 @@ pub struct Stage {
     shown: Vec<Shown>,
     hands: Hands,
     looks: Looks,
+    /// Pages that know the cells.
+    pub(super) told_inside: BTreeSet<PageId>,
+    /// Whether pages have not been told of the latest pins.
+    are_pins_new: bool,
     frames: u32,
     /// Wall times and iterations at the last frame, and the period of it.
     before: (StageTimes, u64),
@@ -51,6 +55,13 @@ pub struct Looks {
     arrows: BTreeMap<PageId, usize>,
     /// Pages that look inside bodies.
     inside: BTreeSet<PageId>,
+}
+
+impl Looks {
+    /// Pages that look inside bodies.
+    pub fn inside(&self) -> impl Iterator<Item = PageId> {
+        self.inside.iter().copied()
+    }
 }
 
 /// Samples closer than this are not told apart in a plot [s].
@@ -84,6 +95,8 @@ impl Stage {
             shown: session.bodies.iter().map(Shown::new).collect(),
             hands: Hands::default(),
             looks: Looks::default(),
+            told_inside: BTreeSet::new(),
+            are_pins_new: false,
             frames: 0,
             before: (StageTimes::default(), 0),
             iterations: [0; 2],
@@ -202,9 +215,17 @@ impl Stage {
         self.iterations[0] += report.newton_iterations;
         self.iterations[1] += report.linear_iterations;
         if self.session.world.state().period.is_multiple_of(self.sample_every) {
+            self.session.check_growth().map_err(|error| error.to_string())?;
             self.sample(hub);
         }
         Ok(())
+    }
+
+    /// Tells all pages what has changed since they were told.
+    pub fn tell_news(&mut self, hub: &Hub) {
+        if std::mem::take(&mut self.are_pins_new) {
+            hub.tell_all(&self.pins());
+        }
     }
 
     fn sample(&mut self, hub: &Hub) {
@@ -246,8 +267,8 @@ impl Stage {
             Wish::Colour(name) => choose(&FIELDS, name.as_deref(), page, &mut self.looks.fields)?,
             Wish::Arrows(name) => choose(&ARROWS, name.as_deref(), page, &mut self.looks.arrows)?,
             Wish::Inside(true) => {
-                self.describe_inside(&mut |message| hub.tell(page, message));
                 self.looks.inside.insert(page);
+                self.describe_inside(hub);
             }
             Wish::Inside(false) => {
                 self.looks.inside.remove(&page);
@@ -273,7 +294,7 @@ impl Stage {
             Wish::Pin { body, points } | Wish::Unpin { body, points } => {
                 self.check_points(*body, points)?;
                 self.edit(self.edits_of(*body, &wish)?)?;
-                hub.tell_all(&self.pins());
+                self.are_pins_new = true;
             }
             Wish::Throw { body, .. } => {
                 self.check_points(*body, &[])?;
@@ -359,9 +380,11 @@ impl Stage {
         self.looks.fields.remove(&page);
         self.looks.arrows.remove(&page);
         self.looks.inside.remove(&page);
-        let edits = self.hands.release_all(page);
-        // what a hand held is there to be let go of
-        let _ = self.edit(edits);
+        self.told_inside.remove(&page);
+        for edit in self.hands.release_all(page) {
+            // what a hand held is there to be let go of
+            let _ = self.session.edit(edit);
+        }
     }
 
     /// Goes on with the scene read anew with a setting.

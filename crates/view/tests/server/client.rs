@@ -295,6 +295,17 @@ impl Page {
         None
     }
 
+    /// The kind of the next message.
+    pub fn first_message(&mut self) -> String {
+        match self.socket.read().unwrap_or_else(|error| panic!("the connection is lost: {error}")) {
+            Message::Text(text) => {
+                let document: Value = serde_json::from_str(&text).unwrap();
+                document["kind"].as_str().unwrap_or_default().to_owned()
+            }
+            other => format!("{other:?}"),
+        }
+    }
+
     pub fn frame(&mut self) -> Frame {
         self.frame_where(|_| true)
     }

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
-import { Program, at, launch, open, passed, photograph, reads, seen, settled, shows, time, until } from "./world.mjs";
+import { Program, at, lag, launch, open, PATIENCE, passed, photograph, reads, seen, settled, shows, time, until } from "./world.mjs";
 
 /** Coarse: it steps many times a second on any machine. */
 const LIVER = ["scenes/liver", "--set", "parameters.size=30 mm"];
@@ -51,6 +51,26 @@ describe("the liver", () => {
     assert.deepEqual(page.errors, []);
   });
 
+  test("follows the mouse within a tenth of a second", async (t) => {
+    const [x, y] = await at(page);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 10, y, { steps: 2 });
+    await page.locator(".force").waitFor();
+    // beside other work a machine may be late for a while
+    let median = Infinity;
+    const deadline = Date.now() + PATIENCE;
+    while (median >= 100 && Date.now() < deadline) {
+      const lags = [];
+      for (let k = 0; k < 15; k++) lags.push(await lag(page, x + (k % 2 ? 30 : 10), y));
+      median = lags.sort((a, b) => a - b)[7];
+      t.diagnostic(`${median.toFixed(1)} ms, ${lags[0].toFixed(1)} to ${lags[14].toFixed(1)}`);
+    }
+    await page.mouse.up();
+    await page.locator(".force").waitFor({ state: "detached" });
+    assert.ok(median < 100, `${median} ms`);
+  });
+
   test("is pushed by a tool, which is gone when it is let go of", async () => {
     await page.click('[data-tool="push"]');
     const [x, y] = await at(page);
@@ -65,6 +85,22 @@ describe("the liver", () => {
     await page.locator(".force").waitFor({ state: "detached" });
     await page.click('[data-tool="pull"]');
     assert.deepEqual(page.errors, []);
+  });
+
+  test("is pulled by two fingers at once", async () => {
+    const other = await open(browser, world.url, { hasTouch: true });
+    const devtools = await other.context().newCDPSession(other);
+    const [x, y] = await at(other);
+    const touch = (type, ...places) =>
+      devtools.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
+    await touch("touchStart", [x, y]);
+    await touch("touchStart", [x, y], [x + 30, y]);
+    await touch("touchMove", [x - 10, y - 20], [x + 40, y - 20]);
+    await other.waitForFunction(() => document.querySelectorAll(".force").length === 2);
+    await touch("touchEnd");
+    await other.locator(".force").first().waitFor({ state: "detached" });
+    assert.deepEqual(other.errors, []);
+    await other.close();
   });
 
   test("is taken by keys", async () => {

@@ -4,7 +4,7 @@
 
 import { spawn } from "node:child_process";
 import { once } from "node:events";
-import { mkdir } from "node:fs/promises";
+import { mkdir, readFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
@@ -13,7 +13,7 @@ const root = resolve(fileURLToPath(import.meta.url), "../../../../..");
 const program = process.env.SOUPLE_PROGRAM ?? "souple";
 const pictures = process.env.SOUPLE_PICTURES;
 /** Machines that draw by software, several at once, are slow. */
-const PATIENCE = Number(process.env.SOUPLE_PATIENCE ?? 120_000);
+export const PATIENCE = Number(process.env.SOUPLE_PATIENCE ?? 120_000);
 
 /** The program showing a scene. */
 export class Program {
@@ -27,6 +27,12 @@ export class Program {
     ]);
     opened.url = String(line).trim().split("\n")[0];
     return opened;
+  }
+
+  /** Memory of the process that is in use [bytes]. */
+  async memory() {
+    const status = await readFile(`/proc/${this.child.pid}/status`, "utf8");
+    return 1024 * Number(/VmRSS:\s+(\d+) kB/.exec(status)[1]);
   }
 
   async close() {
@@ -122,6 +128,26 @@ export async function settled(page) {
     last = now;
     await passed(page, (await time(page)) + 0.1);
   }
+}
+
+/**
+ * Moves the mouse, which holds something, and waits for the picture that shows it: from the event to the moment it was drawn
+ * [ms]. The number beside the hand stands where the hand is led to.
+ */
+export async function lag(page, x, y) {
+  await page.evaluate(() => {
+    window.lag = new Promise((resolve) => {
+      const place = () => document.querySelector(".force").style.transform;
+      const moved = ({ timeStamp }) => {
+        const before = place();
+        const look = () => (place() === before ? requestAnimationFrame(look) : resolve(performance.now() - timeStamp));
+        requestAnimationFrame(look);
+      };
+      document.querySelector("#stage canvas").addEventListener("pointermove", moved, { once: true, capture: true });
+    });
+  });
+  await page.mouse.move(x, y);
+  return page.evaluate(() => window.lag);
 }
 
 export async function photograph(page, name) {
