@@ -251,7 +251,7 @@ fn a_world_that_fails_is_reported() {
     ]);
     let mut page = Page::open(&world);
     let failed = page.document_where("status", |status| status["mode"] == "failed");
-    assert!(failed["message"].as_str().unwrap().contains("is refused"), "{failed}");
+    assert!(failed["message"].as_str().unwrap().contains("`bar`"), "{failed}");
     page.wish(json!({"do": "play"}));
     let refused = page.document_where("refused", |refused| refused["about"] == "play");
     assert!(refused["message"].as_str().unwrap().contains("reset"), "{refused}");
