@@ -96,7 +96,7 @@ fn entries(tree: &Tree) -> Result<Vec<Entry>, Failure> {
 }
 
 fn page(entries: &[Entry]) -> String {
-    let mut page = "# Gallery\n\nEvery scene of `scenes/`, as it stands at its end, coloured by stress. Any of them is run by\n\
+    let mut page = "# Gallery\n\nEvery scene of `scenes/`, as it stands at its end, coloured by stress where it has any. Any of them is run by\n\
                     `souple run scenes/NAME --out out/NAME` and drawn by `souple render scenes/NAME --out NAME.png`. This page is\n\
                     written by `cargo xtask gallery`.\n"
         .to_owned();

@@ -57,6 +57,9 @@ const WITHOUT_GEOMETRY: &[&[u8]] = &[
 /// Most groups that one facet is in.
 const MOST_GROUPS: usize = 16;
 
+/// With which editors of Windows begin a text.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// The group of facets that are in no other.
 const DEFAULT: &str = "default";
 
@@ -77,7 +80,8 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     let mut reader = Reader::default();
     // a backslash joins a line with the next
     let mut joined: Vec<u8> = Vec::new();
-    for (index, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    for (index, line) in text.split(|byte| *byte == b'\n').enumerate() {
         let line = line.strip_suffix(b"\r").unwrap_or(line);
         if let Some(start) = line.strip_suffix(b"\\") {
             joined.extend_from_slice(start);

@@ -179,3 +179,17 @@ fn root(parent: &mut [u32], mut node: u32) -> u32 {
     }
     node
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An organ in metres is usual, in millimetres it is not; of nothing nothing is said.
+    #[test]
+    fn lengths_in_millimetres_are_told() {
+        let of = |size: f64| BoundingBox::of([Vec3::ZERO, Vec3::new(size, 0.5 * size, 0.2 * size)]).doubt();
+        assert!(of(0.2).is_none() && of(4.9).is_none() && of(0.0).is_none() && of(f64::INFINITY).is_none());
+        assert!(of(200.0).is_some_and(|doubt| doubt.contains("scale=0.001")));
+        assert!(of(1e-6).is_some_and(|doubt| !doubt.contains("scale")));
+    }
+}

@@ -93,6 +93,27 @@ fn all_files_are_listed_and_hashed() {
     assert_eq!(hashes.len(), count, "{hashes:?}");
 }
 
+/// A tool in millimetres is told, and scaled is not; one that passes through itself is told.
+#[test]
+fn tools_of_files_are_looked_at() {
+    let folder = Folder::new("tools");
+    folder.write("parts/world.toml", "[world]\nperiod = \"10 ms\"\n");
+    write_bar(&folder.0.join("bar.msh"));
+    let crossed =
+        "v 0.2 0.2 0.2\nv 2 0.2 0.2\nv 0.2 2 0.2\nv 0.2 0.2 2\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n";
+    let said = |rock: &str, scale: &str| {
+        folder.write("scene.toml", &SCENE.replace("\"rock.obj\"", &format!("\"rock.obj\"{scale}")));
+        folder.write("rock.obj", rock);
+        let warnings = folder.scene().warnings;
+        warnings.into_iter().filter(|warning| warning.contains("shape `rock`")).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(said(TETRAHEDRON, ""), "");
+    let millimetres = TETRAHEDRON.replace("v 1 ", "v 100 ");
+    assert!(said(&millimetres, "").contains("scale=0.001"));
+    assert_eq!(said(&millimetres, ", scale = 0.01"), "");
+    assert!(said(&format!("{TETRAHEDRON}{crossed}"), "").contains("pass through each other"));
+}
+
 /// A mesh kept in several files is listed with all of them, and a change in any changes the hash of the scene.
 #[test]
 fn all_parts_of_a_mesh_are_listed() {

@@ -111,11 +111,11 @@ fn evened(path: fn(f64) -> [f64; 3]) -> Vec<Colour> {
 }
 
 impl ColourMap {
-    /// The range of colours for values from `low` to `high`: around zero, where the middle of a diverging map is, if there are
-    /// values on both sides of it; else it would show one half of its colours only.
+    /// The range of colours for values from `low` to `high`: of a diverging map as far on both sides of zero, which has its middle
+    /// colour.
     pub fn spread(self, (low, high): (f64, f64)) -> (f64, f64) {
-        if self == Self::Diverging && low < 0.0 && high > 0.0 {
-            let most = high.max(-low);
+        if self == Self::Diverging {
+            let most = high.abs().max(low.abs());
             return (-most, most);
         }
         (low, high)

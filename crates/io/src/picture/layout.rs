@@ -11,8 +11,8 @@ use super::{Image, Legend, LegendPlace, Palette, Picture, Theme};
 pub(super) struct Layout {
     pub frame: Frame,
     /// Height of capitals of plain text.
-    letter: f64,
-    margin: f64,
+    pub letter: f64,
+    pub margin: f64,
     /// The title in lines that fit, and the height of its capitals.
     title: Vec<String>,
     title_letter: f64,
@@ -28,6 +28,9 @@ struct LegendBox {
     top: f64,
     bottom: f64,
     ticks: Vec<(f64, String)>,
+    /// Parts of the way through the colours, of boxes of one height from below, where values have names; the whole way where
+    /// there are none.
+    boxes: Vec<f64>,
     /// Of the ticks' names.
     widest: f64,
     title: Vec<String>,
@@ -35,6 +38,10 @@ struct LegendBox {
     edge: f64,
     middle: f64,
 }
+
+/// Half the height of the bar, and the height of a box with a name, as parts of the picture's.
+const HALF_BAR: f64 = 0.21;
+const TALLEST_BOX: f64 = 0.06;
 
 /// Lines of a title that does not fit in one.
 const MOST_LINES: usize = 3;
@@ -106,7 +113,7 @@ const VEIL: f32 = 0.8;
 
 /// A veil of the background where letters are to stand on something on which they could not be read: a subject that is
 /// seen from a camera that someone placed, a shape that is larger than the bodies.
-fn veil(canvas: &mut Canvas, palette: &Palette, columns: [f64; 2], rows: [f64; 2]) {
+pub(super) fn veil(canvas: &mut Canvas, palette: &Palette, columns: [f64; 2], rows: [f64; 2]) {
     let range = |[from, to]: [f64; 2], most: usize| {
         let clip = |value: f64| value.clamp(0.0, most as f64) as usize;
         clip(from)..clip(to)
@@ -126,14 +133,21 @@ fn veil(canvas: &mut Canvas, palette: &Palette, columns: [f64; 2], rows: [f64; 2
 impl LegendBox {
     fn of(legend: &Legend, (low, high): (f64, f64), size: [usize; 2], letter: f64, margin: f64) -> Self {
         let [width, height] = size.map(|side| side as f64);
-        let (top, bottom) = (0.29 * height, 0.71 * height);
-        let mut scale = scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top));
-        if !legend.names.is_empty() {
-            scale.ticks.clone_from(&legend.names);
-        }
-        let widest = scale.ticks.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
-        let place = |value: f64| bottom - (value - low) / (high - low) * (bottom - top);
-        let ticks = scale.ticks.into_iter().map(|(value, name)| (place(value), name)).collect();
+        let named = legend.names.len() as f64;
+        // boxes are no higher than they need to be
+        let half = if named > 0.0 { (0.5 * TALLEST_BOX * named).min(HALF_BAR) } else { HALF_BAR };
+        let (top, bottom) = ((0.5 - half) * height, (0.5 + half) * height);
+        let scale = scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top));
+        let share = |value: f64| (value - low) / (high - low);
+        let place = |share: f64| bottom - share * (bottom - top);
+        let ticks: Vec<(f64, String)> = if legend.names.is_empty() {
+            scale.ticks.into_iter().map(|(value, name)| (place(share(value)), name)).collect()
+        } else {
+            let middle = |index: usize| place((index as f64 + 0.5) / named);
+            legend.names.iter().enumerate().map(|(index, (_, name))| (middle(index), name.clone())).collect()
+        };
+        let boxes = legend.names.iter().map(|(value, _)| share(*value)).collect();
+        let widest = ticks.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
         let title = match scale.unit.as_str() {
             "" => legend.title.clone(),
             unit => format!("{} [{unit}]", legend.title),
@@ -146,7 +160,7 @@ impl LegendBox {
         // under the middle of its title
         let left = edge + 0.5 * (body.max(head) - body);
         let middle = edge + 0.5 * body.max(head);
-        Self { left, right: left + bar, top, bottom, ticks, widest, title, edge, middle }
+        Self { left, right: left + bar, top, bottom, ticks, boxes, widest, title, edge, middle }
     }
 
     /// The same so many pixels to the right.
@@ -164,7 +178,10 @@ impl LegendBox {
         veil(canvas, palette, [self.edge - 0.8 * letter, canvas.width as f64], rows);
         canvas.fill(left.saturating_sub(1)..right + 1, top.saturating_sub(1)..bottom + 1, palette.ink, 0.8);
         for row in top..bottom {
-            let share = 1.0 - (row - top) as f64 / ((bottom - top).max(2) as f64 - 1.0);
+            let along = 1.0 - (row - top) as f64 / ((bottom - top).max(2) as f64 - 1.0);
+            let of_box =
+                self.boxes.get(((along * self.boxes.len() as f64) as usize).min(self.boxes.len().max(1) - 1));
+            let share = of_box.copied().unwrap_or(along);
             canvas.fill(left..right, row..row + 1, picture.colours.colour(share), 1.0);
         }
         for (y, label) in &self.ticks {

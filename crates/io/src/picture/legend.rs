@@ -58,7 +58,7 @@ pub(super) fn scale(low: f64, high: f64, unit: &str, about: usize, nearest: f64)
 }
 
 /// What values up to `largest` are divided by to be from 0.1 to a thousand, and what the unit is called then.
-fn scaled_unit(largest: f64, unit: &str) -> (f64, String) {
+pub(super) fn scaled_unit(largest: f64, unit: &str) -> (f64, String) {
     if !(largest > 0.0 && largest.is_finite()) || (0.1..1000.0).contains(&largest) {
         return (1.0, unit.to_owned());
     }

@@ -196,7 +196,7 @@ impl MeshSurface {
         }
     }
 
-    /// A polygon as triangles around its first corner.
+    /// A polygon as triangles around its corner of the lowest number, as the cells on both sides of it have it.
     fn push(&mut self, mesh: &Mesh, nodes: &[u32], cell: u32, numbers: &mut HashMap<u32, u32>) {
         let corners: Vec<u32> = nodes
             .iter()
@@ -208,6 +208,8 @@ impl MeshSurface {
                 })
             })
             .collect();
+        let lowest = (0..nodes.len()).min_by_key(|corner| nodes[*corner]).unwrap_or(0);
+        let corners: Vec<u32> = (0..corners.len()).map(|k| corners[(lowest + k) % corners.len()]).collect();
         for k in 1..corners.len().saturating_sub(1) {
             self.surface.triangles.push([corners[0], corners[k], corners[k + 1]]);
             self.surface.edges.push([k == 1, true, k + 2 == corners.len()]);
@@ -286,16 +288,21 @@ impl Clipper<'_> {
         self.push(&polygon, &drawn, cell);
     }
 
-    /// The section of a cell, as those of the tetrahedra between its first node and the faces opposite to it.
+    /// The section of a cell, as those of the tetrahedra between its corner of the lowest number and the faces opposite to it.
+    /// Every quadrilateral is so cut along the diagonal from its own lowest corner, which is the same from both sides.
     fn section(&mut self, positions: &[Vec3], normal: Vec3, cell: &Cell<'_>, number: u32) {
         if cell.kind.dimension() != 3 {
             return;
         }
-        let apex = cell.nodes[0];
+        let corners = &cell.nodes[..cell.kind.corner_count()];
+        let Some(apex) = corners.iter().copied().min() else { return };
         // curved cells by their corners: the section is as fine as the mesh
         let faces: Vec<Vec<u32>> =
             (0..cell.kind.faces().len()).map(|face| cell.face_corners(face).collect()).collect();
         for nodes in faces.iter().filter(|nodes| !nodes.contains(&apex)) {
+            let mut nodes = nodes.clone();
+            let lowest = (0..nodes.len()).min_by_key(|corner| nodes[*corner]).unwrap_or(0);
+            nodes.rotate_left(lowest);
             for pair in nodes.windows(2).skip(1) {
                 let tetrahedron = [apex, nodes[0], pair[0], pair[1]];
                 self.section_tetrahedron((positions, normal), tetrahedron, &faces, number);
@@ -322,8 +329,9 @@ impl Clipper<'_> {
         let mut polygon: Vec<u32> = around.iter().map(|[from, to]| self.point(*from, *to)).collect();
         let corners: Vec<Vec3> =
             polygon.iter().map(|point| self.left.points[*point as usize].of(positions)).collect();
-        // outward is towards what was cut away
-        if (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(normal) < 0.0 {
+        // outward is towards what was cut away; by both halves, of which one may have no area
+        let turn = |k: usize| (corners[k] - corners[0]).cross(corners[k + 1] - corners[0]).dot(normal);
+        if (1..corners.len() - 1).map(turn).sum::<f64>() < 0.0 {
             polygon.reverse();
             around.reverse();
         }

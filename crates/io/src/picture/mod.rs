@@ -14,6 +14,7 @@ mod layout;
 mod legend;
 mod lettering;
 mod light;
+mod marks;
 mod mesh_surface;
 mod raster;
 mod shadow;
@@ -41,6 +42,7 @@ pub use ground::Ground;
 pub use image::Image;
 pub(crate) use image::{Anchor, Canvas};
 pub(crate) use legend::{labels, ticks};
+pub use marks::Marks;
 pub use mesh_surface::{Between, Cut, MeshSurface};
 pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
 
@@ -68,6 +70,7 @@ pub struct Picture {
     pub legend: Option<Legend>,
     /// From values to colours.
     pub colours: ColourMap,
+    pub marks: Marks,
 }
 
 /// The quantity of a colour map.
@@ -127,6 +130,7 @@ impl Default for Picture {
             subtitle: String::new(),
             legend: None,
             colours: ColourMap::default(),
+            marks: Marks::default(),
         }
     }
 }
@@ -214,6 +218,7 @@ impl Picture {
             scene.develop(&samples, &mut canvas);
         }
         layout.write(self, &scene.palette, &mut canvas);
+        self.marks.write((&scene.camera, bounds), &layout, &scene.palette, &mut canvas);
         Ok(canvas.finish())
     }
 

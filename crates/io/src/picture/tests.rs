@@ -167,3 +167,27 @@ fn faulty_pictures_are_refused_and_strange_ones_drawn() {
         }
     }
 }
+
+/// What a cut leaves of warped cells is closed: neighbours cut the quadrilateral between them along one diagonal, and what is left of
+/// the outside meets the section.
+#[test]
+fn sections_of_warped_cells_close() {
+    for element in ["hex8", "prism6", "pyramid5", "tet4"] {
+        let values = Values::new()
+            .with("size", Value::Vector([1.0; 3]))
+            .with("cells", Value::Vector([4.0; 3]))
+            .with("element", Value::Text(element));
+        let mut mesh = generate("box", values).unwrap();
+        for (number, point) in mesh.points.iter_mut().enumerate() {
+            let k = number as f64;
+            *point += Vec3::new((12.9 * k).sin(), (78.2 * k).sin(), (37.7 * k).sin()) * 0.04;
+        }
+        for normal in [Vec3::new(0.3, 0.2, 1.0), Vec3::Z, Vec3::new(1.0, -1.0, 0.1)] {
+            let cut = Cut { point: Vec3::new(0.51, 0.47, 0.49), normal };
+            let left = MeshSurface::cut(&mesh, &mesh.points, cut).surface;
+            let surface = souple_mesh::TriangleSurface::new(left.points, left.triangles).unwrap();
+            let open = surface.edge_uses().into_iter().filter(|(_, forward, backward)| forward != backward);
+            assert_eq!(open.count(), 0, "{element} {normal:?}");
+        }
+    }
+}

@@ -163,8 +163,8 @@ impl Span {
         }
     }
 
-    /// Powers of ten where there are several, else round numbers between, and evenly spaced ones where not even two of these
-    /// are: an axis tells its scale by two numbers.
+    /// Powers of ten where there are several, else round numbers between, and evenly spaced ones where there are less than three
+    /// of these.
     fn logarithmic_ticks(&self, about: usize) -> Vec<(f64, String)> {
         let powers: Vec<f64> = match ticks(self.low, self.high, about) {
             ticks if ticks.len() > 1 && ticks.iter().all(|tick| tick.fract() == 0.0) => ticks,
@@ -183,7 +183,7 @@ impl Span {
                 .map(|value| (libm::log10(value), plain(value)))
                 .filter(|(coordinate, _)| (self.low..=self.high).contains(coordinate))
                 .collect();
-            if found.len() > 1 {
+            if found.len() > 2 {
                 return found;
             }
         }

@@ -109,6 +109,10 @@ pub enum FillError {
     Thin { count: f64, size: f64, extent: [f64; 3], requested: f64 },
     #[error("the size of cells is {size} m at {position:?}; expected a length above 0")]
     SizeAt { size: f64, position: [f64; 3] },
+    #[error(
+        "no triangle of the surface has an area, of {triangles}; expected lengths and areas that numbers can hold"
+    )]
+    NoArea { triangles: usize },
     #[error("the surface is flat, it measures {}; expected one that encloses something", metres(.extent))]
     Flat { extent: [f64; 3] },
     #[error(

@@ -53,6 +53,9 @@ fn filled(
     options: &Options,
 ) -> Result<(FilledSurface, SurfaceShape), MeshError> {
     let (mended, repairs) = repair(surface, limits);
+    if mended.triangles.is_empty() {
+        return Err(FillError::NoArea { triangles: surface.triangles.len() }.into());
+    }
     let mut notes = repairs.messages();
     let enclosed = mended.enclosed_volume().abs();
     let extent = mended.bounds().size();

@@ -59,7 +59,7 @@ impl SurfaceRepairs {
             (self.facing_triangles, "triangles back to back with another were dropped: parts touch there"),
             (self.turned_triangles, "triangles were turned to agree with their neighbours"),
             (self.turned_parts, "parts were inside out and were turned"),
-            (self.closed_holes, "small holes were closed"),
+            (self.closed_holes, "holes of less than a tenth of the surface were closed"),
         ];
         counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
     }

@@ -119,6 +119,9 @@ impl Common {
         let mut framed = framed.points();
         // exploded bodies are larger about their middles; those of all bodies together are near enough
         if figure.explode > 0.0 {
+            if figure.cut.is_some() && !framed.is_empty() {
+                bounds = BoundingBox::of(framed.iter().copied());
+            }
             bounds = bounds.grown(0.5 * figure.explode * bounds.diagonal() / 3f64.sqrt());
             framed.clear();
         }

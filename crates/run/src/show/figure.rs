@@ -2,8 +2,8 @@
 
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
-    Backdrop, Colour, ColourMap, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace, MeshSurface,
-    Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
+    Backdrop, Colour, ColourMap, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace, Marks,
+    MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
 };
 use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
@@ -21,7 +21,9 @@ pub struct Figure {
     pub theme: Theme,
     pub backdrop: Backdrop,
     pub floor: Floor,
-    pub legend: LegendPlace,
+    /// None is drawn where `None`.
+    pub legend: Option<LegendPlace>,
+    pub marks: Marks,
     /// In place of the scene's title; none if empty.
     pub title: Option<String>,
     /// Whether the time of a moment stands under the title.
@@ -70,7 +72,8 @@ impl Default for Figure {
             theme: Theme::default(),
             backdrop: Backdrop::default(),
             floor: Floor::default(),
-            legend: LegendPlace::default(),
+            legend: Some(LegendPlace::default()),
+            marks: Marks::default(),
             title: None,
             clock: true,
             view: None,
@@ -138,11 +141,11 @@ impl Figure {
         }
         let coloured = surfaces.iter().any(|surface| !matches!(surface.paint, Paint::Plain(_)));
         surfaces.extend(show.stage.surfaces(moment.time, common.bounds));
-        let legend = self.quantity().filter(|_| coloured).map(|quantity| Legend {
+        let legend = self.quantity().filter(|_| coloured).zip(self.legend).map(|(quantity, place)| Legend {
             title: quantity.title(),
             unit: quantity.unit().to_owned(),
             range: common.range,
-            place: self.legend,
+            place,
             names: names_of(self.colours, moment),
         });
         let PictureView { direction, up } = show.stage.view;
@@ -161,6 +164,7 @@ impl Figure {
             subtitle: if self.clock { format!("{:.3} s", moment.time) } else { String::new() },
             legend,
             colours: self.colours,
+            marks: self.marks,
         }
     }
 

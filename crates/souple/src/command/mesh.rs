@@ -36,11 +36,12 @@ enum Action {
         json: bool,
     },
     /// Fills a surface or a shape: `souple mesh fill liver out.msh size=0.005`, `souple mesh fill organ.stl out.msh count=10000`
+    #[command(after_help = fill::parameters_help())]
     Fill {
         /// A surface file, or a name that `souple list bodies` prints
         input: String,
         out: PathBuf,
-        /// NAME=VALUE: size or count; growth, largest, size_inside or size_everywhere (formulas of x, y, z), element (tet4, hex_dominant), scale of a file, and those of the shape
+        /// NAME=VALUE: size or count, and others below; of a shape also those that `souple describe` prints
         parameters: Vec<String>,
         #[arg(long)]
         json: bool,

@@ -102,6 +102,15 @@ pub struct Arguments {
     /// No time under the title
     #[arg(long)]
     no_time: bool,
+    /// The axes x, y, z in the lower left corner
+    #[arg(long)]
+    axes: bool,
+    /// A bar of a round length, as seen in the middle of the bodies
+    #[arg(long)]
+    scale_bar: bool,
+    /// No legend of the colours
+    #[arg(long)]
+    no_legend: bool,
     #[arg(long)]
     dark: bool,
     /// A white background, as that of a page
@@ -234,7 +243,7 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
             // one title for all of them
             let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
             let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
-            let legend = LegendPlace::Apart;
+            let legend = figure.legend.map(|_| LegendPlace::Apart);
             let figure = Figure { title: Some(String::new()), backdrop, legend, ..figure };
             let pictures = figure.pictures(&show)?;
             let Some(images) = images(&pictures, arguments.quiet)? else { return Ok(End::Interrupted) };
@@ -271,7 +280,10 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
 fn kind_of(out: &Path) -> Result<Kind, Refusal> {
     let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     KINDS.iter().find(|(name, _)| *name == extension).map(|(_, kind)| *kind).ok_or_else(|| {
-        let message = format!("{}: nothing is rendered to `.{extension}`", out.display());
+        let message = match extension.as_str() {
+            "" => format!("{}: the file's extension, which says what is drawn, is missing", out.display()),
+            other => format!("{}: nothing is rendered to `.{other}`", out.display()),
+        };
         Refusal::request("extension", extension, ".png, .gif, .apng, .mp4 or .glb", message)
     })
 }

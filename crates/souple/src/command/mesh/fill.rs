@@ -7,13 +7,28 @@ use souple_mesh::implicit::SHAPES;
 use souple_mesh::repair::{RepairLimits, repair};
 use souple_mesh::simplify::{Goal, simplify};
 use souple_mesh::{ElementKind, Mesh, MeshError, TriangleSurface};
-use souple_table::{Parameter, Range, Value, Values, nearest};
+use souple_table::{Parameter, Range, Value, ValueError, Values, nearest};
 
 use super::{parameters, read};
 use crate::command::Refusal;
 
 pub const SCALE: Parameter =
     Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0));
+
+/// What parameters a filling takes, as `--help` prints it.
+pub fn parameters_help() -> String {
+    let mut text = "Parameters:\n".to_owned();
+    for parameter in PARAMETERS.iter().chain([&SCALE]) {
+        let default = parameter.default.map(|value| format!(", default {value}")).unwrap_or_default();
+        text += &format!(
+            "  {}: {}\n      {}{default}\n",
+            parameter.name,
+            parameter.summary,
+            parameter.expected()
+        );
+    }
+    text
+}
 
 /// Fills a file's surface, or a shape known by name.
 pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
@@ -30,10 +45,27 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
             MeshError::Fill(FillError::Thin { .. }) => {
                 "`size=` below the thickness of the shape, or more cells"
             }
-            MeshError::Parameter { .. } => "parameters as `souple mesh fill --help` names them",
+            MeshError::Parameter { .. } | MeshError::Value(_) => {
+                "parameters as `souple mesh fill --help` names them"
+            }
             _ => "a shape that has an inside, and cells that fit in it",
         };
-        Refusal::request("fill", input, expected, format!("`{input}` cannot be filled: {error}"))
+        let message = format!("`{input}` cannot be filled: {error}");
+        let of_parameter = match &error {
+            MeshError::Parameter { name, value, expected } => Some((*name, value, expected)),
+            MeshError::Value(ValueError::Unfit { name, value, expected }) => {
+                Some((name.as_str(), value, expected))
+            }
+            _ => None,
+        };
+        match of_parameter {
+            Some((name, value, expected)) => {
+                let mut refusal = Refusal::request("fill", value, expected, message);
+                refusal.errors[0]["path"] = name.into();
+                refusal
+            }
+            None => Refusal::request("fill", input, expected, message),
+        }
     };
     let shape = SHAPES.entries.iter().copied().find(|entry| entry.name == input);
     if shape.is_none() && !Path::new(input).exists() {

@@ -1,6 +1,6 @@
 //! From what a person asks for to how a picture is drawn and from where it is seen.
 
-use souple_io::picture::{Backdrop, COLOUR_MAPS, Cut, EdgeStyle, Theme, View};
+use souple_io::picture::{Backdrop, COLOUR_MAPS, Cut, EdgeStyle, LegendPlace, Marks, Theme, View};
 use souple_math::Vec3;
 use souple_run::show::{Arrows, Figure, Floor, Stage, map_of};
 use souple_scene::spec::picture::PictureSpec;
@@ -75,6 +75,8 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         backdrop: if arguments.white { Backdrop::White } else { Backdrop::default() },
         title: arguments.title.clone(),
         clock: !arguments.no_time,
+        legend: (!arguments.no_legend).then(LegendPlace::default),
+        marks: Marks { triad: arguments.axes, scale_bar: arguments.scale_bar },
         view: None,
         colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
         colours,

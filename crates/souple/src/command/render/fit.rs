@@ -69,6 +69,9 @@ const OPTIONS: &[Limited] = &[
     limited("field-of-view", DRAWN, |given| given.field_of_view.is_some()),
     limited("title", DRAWN, |given| given.title.is_some()),
     limited("no-time", DRAWN, |given| given.no_time),
+    limited("axes", DRAWN, |given| given.axes),
+    limited("scale-bar", DRAWN, |given| given.scale_bar),
+    limited("no-legend", DRAWN, |given| given.no_legend),
     limited("dark", DRAWN, |given| given.dark),
     limited("white", DRAWN, |given| given.white),
 ];
