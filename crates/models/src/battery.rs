@@ -87,7 +87,6 @@ impl Battery {
     /// The worse of both, number by number; what is not a number is worst.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {
-        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
         Self {
             force: worse(self.force, other.force),
             differential: worse(self.differential, other.differential),
@@ -232,17 +231,17 @@ impl Cell {
             let (ahead, behind) = (1 + 2 * index, 2 + 2 * index);
             let slope = (energies[ahead][0] - energies[behind][0]) / (2.0 * step);
             let off = (slope + dot(force, direction)).abs() / (norm(force) * norm(direction));
-            battery.force = battery.force.max(off);
+            battery.force = worse(battery.force, off);
             let difference: Vec<f64> = forces[ahead]
                 .iter()
                 .zip(&forces[behind])
                 .map(|(ahead, behind)| (ahead - behind) / (2.0 * step))
                 .collect();
-            battery.differential = battery.differential.max(distance(&products[index], &difference));
+            battery.differential = worse(battery.differential, distance(&products[index], &difference));
             let next = (index + 1) % directions.len();
             let (one, other) = (dot(&directions[next], &products[index]), dot(direction, &products[next]));
             let size = norm(&directions[next]) * norm(&products[index]);
-            battery.symmetry = battery.symmetry.max((one - other).abs() / size);
+            battery.symmetry = worse(battery.symmetry, (one - other).abs() / size);
         }
         let f = self.vectors(force);
         let x = self.rest.iter().zip(self.vectors(&bent)).map(|(rest, u)| *rest + u);
@@ -250,7 +249,7 @@ impl Cell {
         let moment: Vec3 = x.zip(&f).map(|(x, f)| x.cross(*f)).sum();
         battery.balance = sum.length() / norm(force);
         if is_objective {
-            battery.balance = battery.balance.max(moment.length() / norm(force));
+            battery.balance = worse(battery.balance, moment.length() / norm(force));
             battery.rigid = norm(&forces[forces.len() - 1]) / norm(force);
         }
         battery.samples = distance(at_samples, force);
@@ -356,6 +355,11 @@ impl Running {
             .map(|lane| (0..*outputs).map(|output| memory[tape.output(output, 0) + lane]).collect())
             .collect()
     }
+}
+
+/// The greater; what is no number is worst.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

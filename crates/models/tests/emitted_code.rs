@@ -248,7 +248,9 @@ fn expected(derived: &Derived, known: &HashMap<String, f64>) -> [Vec<f64>; 2] {
     let numbers: HashMap<String, [f64; 1]> =
         known.iter().map(|(name, value)| (name.clone(), [*value])).collect();
     [&derived.forces, &derived.differentials].map(|fragments| {
-        let values = derived.graph.evaluate(&fragments[0].raw, |symbol| &numbers[&place(&symbol.name)]);
+        let values = derived
+            .graph
+            .evaluate(&fragments[0].raw, |symbol| &numbers[&place(symbol.name.trim_start_matches('@'))]);
         fragments[0].raw.iter().map(|expr| values.scalar(*expr)).collect()
     })
 }

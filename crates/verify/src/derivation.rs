@@ -1,53 +1,229 @@
-//! What is read of the derivation of a law on an element: counts, as `souple derive` prints them.
+//! What is read of derivations: counts and errors, as `souple derive` prints them.
 
-use souple_formal::element::{Cut, ElementExpressions};
-use souple_formal::law::EnergyLaw;
+use std::sync::Mutex;
+
+use souple_formal::element::{Cut, Derived, ElementData, ElementExpressions};
+use souple_formal::emit::ElementCode;
+use souple_formal::law::{EnergyLaw, group_constants};
 use souple_mesh::ElementKind;
-use souple_models::derive::{MapKind, element_data};
-use souple_models::materials::WrittenLaw;
+use souple_models::associations::{Association, variants};
+use souple_models::battery::{Battery, Trying};
+use souple_models::derive::{MapKind, element_data, four_loop_operations, usual_rule};
+use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
 
-/// What is counted.
+/// What is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Count {
     /// Grouped constants of the energy, added up over its fragments.
     Constants,
     /// Fragments of the differential.
     Fragments,
+    /// Operations of the differential at every step, written out in numbers.
+    DifferentialOperations,
+    /// How many times the operations of forces in tensors those of the four loops are.
+    FourLoopForces,
+    /// The same of the differential.
+    FourLoopDifferential,
+    /// How many times the operands of the differential those are that the derivation in physical coordinates gives.
+    DirectOperands,
+    /// Bytes of the code in Rust.
+    CodeBytes,
+    /// Associations of a law, an element with its rule, and a cut.
+    Associations,
+    /// Grouped constants of a formula.
+    ConstantsOfFormula,
+    /// A number of [`Battery`], the worst of all that is tried.
+    Off(Trial),
 }
 
-/// The command line that prints it; settings are its arguments, `law=linear`.
+/// A number of [`Battery`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trial {
+    Force,
+    Differential,
+    Symmetry,
+    Rigid,
+    Balance,
+    Samples,
+}
+
+/// The command line that prints it; settings are its arguments, `law=linear`, and its flags, `list`.
 pub fn command(settings: &[&str]) -> String {
-    let arguments = settings.iter().filter_map(|setting| setting.split_once('='));
-    let arguments: String = arguments.map(|(name, value)| format!(" --{name} {value}")).collect();
-    format!("souple derive{arguments}")
+    let argument = |setting: &&str| match setting.split_once('=') {
+        Some((name, value)) if value.contains(' ') || value.contains('(') => format!(" --{name} '{value}'"),
+        Some((name, value)) => format!(" --{name} {value}"),
+        None => format!(" --{setting}"),
+    };
+    format!("souple derive{}", settings.iter().map(argument).collect::<String>())
 }
 
-/// The count for these arguments; later ones stand for earlier ones.
+/// The arguments of a derivation; of those that stand once the last counts.
+#[derive(Default)]
+struct Settings {
+    law: Option<String>,
+    element: Option<String>,
+    rule: Option<String>,
+    map: Option<String>,
+    cut: Option<String>,
+    group: Option<String>,
+    varying: Vec<String>,
+    trying: Trying,
+}
+
+impl Settings {
+    fn read(settings: &[String]) -> Result<Self, String> {
+        let mut read = Self::default();
+        for setting in settings {
+            let Some((name, value)) = setting.split_once('=') else {
+                if matches!(setting.as_str(), "list" | "check") {
+                    continue;
+                }
+                return Err(format!("`{setting}` is no flag of `souple derive` that rows know"));
+            };
+            let value = value.to_owned();
+            match name {
+                "law" => read.law = Some(value),
+                "element" => read.element = Some(value),
+                "rule" => read.rule = Some(value),
+                "map" => read.map = Some(value),
+                "cut" => read.cut = Some(value),
+                "group" => read.group = Some(value),
+                "varying" => read.varying.push(value),
+                "step" | "fault" => {
+                    let number = value.parse().map_err(|_| format!("`{value}` is no number"))?;
+                    if name == "step" { read.trying.step = number } else { read.trying.fault = number }
+                }
+                _ => return Err(format!("`{name}` is no argument of `souple derive` that rows know")),
+            }
+        }
+        Ok(read)
+    }
+
+    fn law(&self) -> Result<EnergyLaw, String> {
+        let name = self.law.as_deref().unwrap_or_default();
+        let written = WrittenLaw::find(name).ok_or_else(|| format!("there is no law `{name}`"))?;
+        let text = written.text().map_err(|error| error.to_string())?;
+        EnergyLaw::compile(&text).map_err(|error| error.explained(&text.energy))
+    }
+
+    fn kind(&self) -> Result<ElementKind, String> {
+        ElementKind::from_name(self.element.as_deref().unwrap_or_default())
+            .map_err(|unknown| unknown.to_string())
+    }
+
+    fn element(&self) -> Result<ElementData, String> {
+        let kind = self.kind()?;
+        let rule = match &self.rule {
+            Some(name) => kind.rule(name).map_err(|unknown| unknown.to_string())?,
+            None => usual_rule(kind),
+        };
+        let map = match self.map.as_deref() {
+            None | Some("general") => MapKind::General,
+            Some("box") => MapKind::Box,
+            Some(other) => return Err(format!("there is no map `{other}`")),
+        };
+        element_data(kind, rule, map).map_err(|error| error.to_string())
+    }
+
+    fn derived(&self) -> Result<Derived, String> {
+        let cut = self.cut.as_deref().unwrap_or("none");
+        let cut = Cut::from_name(cut).ok_or_else(|| format!("there is no cut `{cut}`"))?;
+        self.element()?.derive(&self.law()?, cut).map_err(|error| error.to_string())
+    }
+}
+
+/// The number for these arguments.
 ///
 /// # Errors
 /// What an argument is not.
 pub fn count(count: Count, settings: &[String]) -> Result<f64, String> {
-    let argument = |name: &str| {
-        settings.iter().rev().filter_map(|setting| setting.split_once('=')).find(|(key, _)| *key == name)
+    let settings = Settings::read(settings)?;
+    let number = match count {
+        Count::Constants => {
+            settings.derived()?.energies.iter().map(|fragment| fragment.grouped.constants.len()).sum()
+        }
+        Count::Fragments => settings.derived()?.differentials.len(),
+        Count::DifferentialOperations => {
+            let derived = settings.derived()?;
+            let of = |fragment: &ElementExpressions| fragment.operations(&derived.graph).0.total();
+            derived.differentials.iter().map(of).sum()
+        }
+        Count::CodeBytes => settings.derived()?.emit(ElementCode::Rust).text.len(),
+        Count::Associations => {
+            let is_wanted = |wanted: &Option<String>, name: &str| wanted.as_deref().is_none_or(|w| w == name);
+            let associations = Association::all();
+            associations
+                .filter(|a| {
+                    is_wanted(&settings.law, a.law.name) && is_wanted(&settings.element, a.kind.name())
+                })
+                .count()
+        }
+        Count::ConstantsOfFormula => {
+            let formula = settings.group.as_deref().unwrap_or_default();
+            let (_, grouped) =
+                group_constants(formula, &settings.varying).map_err(|error| error.explained(formula))?;
+            grouped.constants.len()
+        }
+        Count::DirectOperands => {
+            let (derived, direct) =
+                (settings.derived()?, settings.element()?.derive_directly(&settings.law()?));
+            let direct = direct.map_err(|error| error.to_string())?.ok_or("the element is no box")?;
+            let ours = derived.differentials.iter().map(|fragment| fragment.operands(&derived.graph));
+            return Ok(direct.operands() / ours.sum::<f64>());
+        }
+        Count::FourLoopForces => return settings.over_four_loops(false),
+        Count::FourLoopDifferential => return settings.over_four_loops(true),
+        Count::Off(trial) => return settings.worst().map(|worst| trial.of(&worst)),
     };
-    let value = |name: &str| argument(name).map(|(_, value)| value);
-    let (law, element) = (value("law").unwrap_or_default(), value("element").unwrap_or_default());
-    let written = WrittenLaw::find(law).ok_or_else(|| format!("there is no law `{law}`"))?;
-    let text = written.text().map_err(|error| error.to_string())?;
-    let law = EnergyLaw::compile(&text).map_err(|error| error.explained(&text.energy))?;
-    let kind = ElementKind::from_name(element).map_err(|unknown| unknown.to_string())?;
-    let rule = match value("rule") {
-        Some(name) => kind.rule(name).map_err(|unknown| unknown.to_string())?,
-        None => kind.default_rule(),
-    };
-    let map = if value("map") == Some("box") { MapKind::Box } else { MapKind::General };
-    let cut = value("cut").unwrap_or("none");
-    let cut = Cut::from_name(cut).ok_or_else(|| format!("there is no cut `{cut}`"))?;
-    let element = element_data(kind, rule, map).map_err(|error| error.to_string())?;
-    let derived = element.derive(&law, cut).map_err(|error| error.to_string())?;
-    let of_fragment = |fragment: &ElementExpressions| fragment.grouped.constants.len();
-    Ok(match count {
-        Count::Constants => derived.energies.iter().map(of_fragment).sum::<usize>(),
-        Count::Fragments => derived.differentials.len(),
-    } as f64)
+    Ok(number as f64)
+}
+
+impl Settings {
+    /// How many times the operations of forces, or of the differential, the four loops take.
+    fn over_four_loops(&self, is_differential: bool) -> Result<f64, String> {
+        let (kind, name) = (self.kind()?, self.law.as_deref().unwrap_or_default());
+        let loops = four_loop_operations(kind, name)
+            .ok_or_else(|| format!("the four loops know no {name} on {kind}"))?;
+        let cut = Cut::from_name(self.cut.as_deref().unwrap_or("none")).ok_or("there is no such cut")?;
+        let steps = self.element()?.steps(&self.law()?, cut);
+        let ours = if is_differential { &steps.differentials } else { &steps.forces };
+        let ours: usize = ours.iter().map(|step| step.operations(&steps.graph).total()).sum();
+        Ok(loops[usize::from(is_differential)] as f64 / ours as f64)
+    }
+
+    /// The worst of all associations that are named, or of all; rows of one battery read it together.
+    fn worst(&self) -> Result<Battery, String> {
+        static KNOWN: Mutex<Vec<(String, Battery)>> = Mutex::new(Vec::new());
+        let key = format!("{:?} {:?} {:?} {:?}", self.law, self.element, self.rule, self.trying);
+        let mut known = KNOWN.lock().map_err(|_| "a row before this one broke off")?;
+        if let Some((_, worst)) = known.iter().find(|(other, _)| *other == key) {
+            return Ok(*worst);
+        }
+        let is_wanted = |wanted: &Option<String>, name: &str| wanted.as_deref().is_none_or(|w| w == name);
+        let mut worst = Battery::default();
+        for law in WRITTEN_LAWS.iter().filter(|law| is_wanted(&self.law, law.name)) {
+            for (kind, rule) in variants() {
+                if is_wanted(&self.element, kind.name()) && is_wanted(&self.rule, rule.name) {
+                    let battery =
+                        Battery::of(law, kind, rule, self.trying).map_err(|untried| untried.to_string())?;
+                    worst = worst.worse(battery);
+                }
+            }
+        }
+        known.push((key, worst));
+        Ok(worst)
+    }
+}
+
+impl Trial {
+    fn of(self, battery: &Battery) -> f64 {
+        match self {
+            Self::Force => battery.force,
+            Self::Differential => battery.differential,
+            Self::Symmetry => battery.symmetry,
+            Self::Rigid => battery.rigid,
+            Self::Balance => battery.balance,
+            Self::Samples => battery.samples,
+        }
+    }
 }

@@ -215,7 +215,7 @@ fn constants_of_a_formula() {
     let written = |roots: &[Expr]| crate::emit::write(&graph, roots, &crate::emit::Text).1;
     let constants: Vec<Expr> = grouped.constants.iter().map(|(_, definition)| *definition).collect();
     assert_eq!(written(&constants), ["P1x_ - P1y_", "p0*D_0"]);
-    assert_eq!(written(&grouped.varying), ["D_0*U0x_ + D_1*U0y_"]);
+    assert_eq!(written(&grouped.varying), ["U0x_*D_0 + U0y_*D_1"]);
     let error = group_constants("a +* b", &[]).unwrap_err();
     assert_eq!(error.span, Some(Span::new(3, 4)));
 }

@@ -23,7 +23,7 @@ const LAWS: &[&str] = &[
     "mu/p*(l1^p + l2^p + l3^p - 3) - mu*ln(J) + k/2*(J - 1)^2",
     "mu/2*(I1 - 3) - mu*ln(J) + k*(exp(p*max(I4(a) - 1, 0)^2) - 1) + k*dot(dev(C), B)*0 + mu*dot(inv(C) - I, E)^2",
     "mu/2*(I1 - 3) - mu*ln(J) + k/2*dot(J^(1/3)*I - I, J^(1/3)*I - I)",
-    "mu/2*(I1 - 3 - 2*ln(J)) + k/2*ln(J)^2 + k*((J - 1)^2)^2.25 + k*cosh(((J - 1)^2)^1.75) - k",
+    "mu/2*(I1 - 3 - 2*ln(J)) + k/2*ln(J)^2 + k*((J - 1)^2)^2.25",
     "mu*tr(C^3 - 3*C)^2 + mu*(det(2*C - I) - 1)^4 + k*sinh(E12)^2 + if(J < 0.9, (0.9 - J)^3, 0)*mu + mu*sqrt(I1)*(J-1)^2",
 ];
 

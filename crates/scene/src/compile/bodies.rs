@@ -9,14 +9,14 @@ use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, LoadError, MassDamping};
 use souple_models::materials::Material;
 use souple_models::solids::{
-    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, Section,
-    SolidDescription, SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
+    Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, SolidDescription,
+    SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
 };
 
 use super::frames::PlacedFrames;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, inertial, levels, network, shape, start};
+use super::{Draft, frames, inertial, levels, network, section, shape, start};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -180,7 +180,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         }
         let materials = &body.materials;
         let section = body.spec.section();
-        if !suits(draft, body, &materials.all) {
+        if !section::suits(draft, body, &materials.all) {
             continue;
         }
         let density = |cell: usize| materials.of(cell).density * section.measure();
@@ -224,31 +224,6 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         stepper,
         steps_per_period: spec.steps_per_period,
     })
-}
-
-/// Whether materials and damping can be those of the body's section; what cannot is reported.
-fn suits(draft: &Draft, body: &Placed, materials: &[Material]) -> bool {
-    let section = body.spec.section();
-    let site = body.spec.section.as_ref().map_or(&body.spec.site, |chosen| &chosen.site);
-    let turns = section != Section::Solid && !section.is_plane();
-    let is_membrane = matches!(section, Section::Membrane { .. });
-    if is_membrane && !materials.iter().all(|material| material.law.is_objective()) {
-        let message = "a membrane turns in space, and a law of small strain would resist that";
-        draft.log.add(Code::Conflict, site, message, "an objective law, such as corotational or neo_hookean");
-        return false;
-    }
-    if turns && body.spec.damping.rayleigh_stiffness > 0.0 {
-        let message =
-            "rayleigh_stiffness damps by the stiffness at rest, which bodies that turn leave behind";
-        draft.log.add(
-            Code::Conflict,
-            site,
-            message,
-            "`viscosity` or `rayleigh_mass` for membranes, bars and cables",
-        );
-        return false;
-    }
-    true
 }
 
 /// The elastic force of a body and what damps its strain.

@@ -15,6 +15,7 @@ mod memory;
 mod motion;
 mod network;
 mod pins;
+mod section;
 mod selection;
 mod shape;
 mod skin_shape;

@@ -2,17 +2,19 @@
 
 mod files;
 mod report;
+mod tried;
 
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 use serde_json::json;
 use souple_formal::element::Cut;
-use souple_formal::emit::{ElementCode, maxima};
-use souple_formal::law::{EnergyLaw, LawProblem, LawText};
+use souple_formal::emit::{ElementCode, Text, maxima, symbol, write};
+use souple_formal::graph::Expr;
+use souple_formal::law::{EnergyLaw, LawProblem, LawText, group_constants};
 use souple_mesh::ElementKind;
 use souple_models::associations::Association;
-use souple_models::derive::{MapKind, element_data, source_law_name};
+use souple_models::derive::{MapKind, element_data, source_law_name, usual_rule};
 use souple_models::materials::{WRITTEN_LAWS, WrittenLaw, law_text};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line, print_note};
@@ -21,14 +23,31 @@ use report::Report;
 #[derive(clap::Args)]
 pub struct Arguments {
     /// An energy density such as "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", or the name of a law
-    #[arg(long, required_unless_present = "list")]
+    // an energy may begin with a minus
+    #[arg(long, required_unless_present_any = ["list", "check", "group"], allow_hyphen_values = true)]
     law: Option<String>,
     /// An element of surfaces or volumes, such as tri3, hex8 or tet10
-    #[arg(long, required_unless_present = "list")]
+    #[arg(long, required_unless_present_any = ["list", "check", "group"])]
     element: Option<String>,
     /// Lists what can be derived: every law on every element under every rule, in every cut
     #[arg(long)]
     list: bool,
+    /// Tries the derived expressions, of every law on every element under every rule where none is named: forces against
+    /// energies, differentials against forces, symmetry, rigid motion, sums, and the law at the samples
+    #[arg(long)]
+    check: bool,
+    /// Step of the differences that expressions are tried with, of a cell of size one
+    #[arg(long, requires = "check")]
+    step: Option<f64>,
+    /// A fault that the trial must see: this share of their size is added to the first force and the first differential
+    #[arg(long, requires = "check")]
+    fault: Option<f64>,
+    /// Groups the constants of a formula, such as "(a - b)*x + p*(a - b)*y", in the place of a law on an element
+    #[arg(long, value_name = "FORMULA", allow_hyphen_values = true, conflicts_with_all = ["law", "element"])]
+    group: Option<String>,
+    /// A name that varies in the formula; may be repeated
+    #[arg(long, value_name = "NAME", requires = "group")]
+    varying: Vec<String>,
     /// What is printed
     #[arg(long, value_enum, default_value_t = Emit::Stats)]
     emit: Emit,
@@ -73,6 +92,12 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     if arguments.list {
         return Ok(list(arguments));
     }
+    if arguments.check {
+        return tried::check(arguments);
+    }
+    if let Some(formula) = &arguments.group {
+        return group(formula, arguments);
+    }
     let clock = std::time::Instant::now();
     let (wanted, element_name) = (arguments.law.as_deref(), arguments.element.as_deref());
     let (wanted, element_name) = (wanted.unwrap_or_default(), element_name.unwrap_or_default());
@@ -98,9 +123,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         return Err(Refusal::request("element", element_name, "an element of surfaces or volumes", message));
     }
     let rule = match &arguments.rule {
-        // the source integrates simplices with constant strain by one sample
-        None if matches!(kind, ElementKind::Tri3) => &kind.rules()[0],
-        None => kind.default_rule(),
+        None => usual_rule(kind),
         Some(name) => kind.rule(name).map_err(|unknown| {
             let expected = format!("one of {}", unknown.known.join(", "));
             Refusal::request("unknown_rule", name, expected, unknown.to_string())
@@ -131,7 +154,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         files::write(folder, &derived, &association)
             .map_err(|error| Refusal::work("write", error.to_string()))?;
     }
-    let report = Report { law: &law, name: &name, element: &element, kind, map };
+    let report = Report::new(&law, &name, &element, kind, map);
     match arguments.emit {
         Emit::Stats => {
             let seconds = [compiled_seconds, derived_seconds];
@@ -146,8 +169,8 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Emit::Wgsl => emit_text(&derived.emit(ElementCode::Wgsl).text, "wgsl", arguments.json),
         Emit::Maxima => {
             let script = maxima(&element, &law, &association).ok_or_else(|| {
-                let message = "principal stretches have no formula that Maxima could differentiate";
-                Refusal::request("law", wanted, "a law of invariants", message)
+                let message = "Maxima differentiates neither principal stretches nor conditions (`if`, `max`, `min`, `clamp`)";
+                Refusal::request("law", wanted, "a law of invariants without conditions", message)
             })?;
             emit_text(&script, "maxima", arguments.json);
         }
@@ -165,6 +188,26 @@ fn emit_text(text: &str, language: &str, as_json: bool) {
 
 /// The name of a law that is given as text.
 const TEXT: &str = "text";
+
+/// Prints a formula with its constants taken out.
+fn group(formula: &str, arguments: &Arguments) -> Result<End, Refusal> {
+    let (graph, grouped) = group_constants(formula, &arguments.varying).map_err(|error| {
+        Refusal::request("formula", formula, "a formula of numbers", error.explained(formula))
+    })?;
+    let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = grouped.constants.iter().copied().unzip();
+    let written = |roots: &[Expr]| write(&graph, roots, &Text).1;
+    let names: Vec<String> = symbols.iter().map(|constant| symbol(&graph, *constant, &Text)).collect();
+    let (definitions, varying) = (written(&definitions), written(&grouped.varying).concat());
+    if arguments.json {
+        let constants: serde_json::Map<String, serde_json::Value> =
+            names.into_iter().zip(definitions.into_iter().map(Into::into)).collect();
+        print_json(&json!({ "constants": constants, "varying": varying }));
+    } else {
+        names.iter().zip(&definitions).for_each(|(name, text)| print_line(format_args!("{name} = {text}")));
+        print_line(varying);
+    }
+    Ok(End::Done)
+}
 
 /// Prints the associations of the law and the element, where they are named.
 fn list(arguments: &Arguments) -> End {
@@ -207,6 +250,11 @@ fn law_of(wanted: &str, arguments: &Arguments) -> Result<(String, LawText), Refu
     };
     let (parameters, definitions) = (pairs(&arguments.parameters)?, pairs(&arguments.definitions)?);
     if let Some(law) = WrittenLaw::find(wanted) {
+        if let Some((given, _)) = parameters.iter().chain(&definitions).next() {
+            let message = format!("`{wanted}` has its own numbers; `{given}` would change nothing");
+            let expected = format!("a law as text, such as \"{}\"", law.energy);
+            return Err(Refusal::request("parameter", given, expected, message));
+        }
         let text = law.text().map_err(|error| Refusal::work("law", error.to_string()))?;
         return Ok((law.name.to_owned(), text));
     }

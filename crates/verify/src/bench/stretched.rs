@@ -3,8 +3,12 @@
 use super::timing::{Timing, as_it_is, median, scene, with_threads};
 use super::{Effort, Figure, value_of};
 
-/// Density [kg/m³], Young's modulus [Pa], the longest explicit step that is stable [s], and how often implicit steps must win.
-const CASES: [(f64, f64, f64, f64); 2] = [(1000.0, 1e5, 5e-5, 50.0), (10_000.0, 1e4, 5e-3, 2.0)];
+/// Density [kg/m³], Young's modulus [Pa], the explicit step [s], and how often implicit steps must win.
+///
+/// The source's table has a tenth of the longest stable step for heavy soft matter, at which implicit steps win. At the longest one,
+/// which is what it is because the step grows with the density over the modulus, they need not.
+const CASES: [(f64, f64, f64, Option<f64>); 3] =
+    [(1000.0, 1e5, 5e-5, Some(50.0)), (10_000.0, 1e4, 5e-4, Some(2.0)), (10_000.0, 1e4, 5e-3, None)];
 
 pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
@@ -49,13 +53,13 @@ pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
         let (value, spread) = median(ratios);
         figures.push(Figure {
             by_processor: None,
-            name: format!("{name}_{density}_{modulus:e}_1t"),
+            name: format!("{name}_{density}_{modulus:e}_{step:e}_1t"),
             value,
             unit: "x implicit",
             higher_is_better: true,
             error: error.abs(),
             error_of: "waist at rest".to_owned(),
-            baseline: Some(wanted),
+            baseline: wanted,
             threads: 1,
             samples,
             spread,

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use souple_formal::element::{Derived, ElementExpressions, Sort};
-use souple_formal::emit::{Text, write as written};
+use souple_formal::emit::{Text, symbol, write as written};
 use souple_formal::graph::Expr;
 use souple_io::{IoError, write_file};
 
@@ -32,8 +32,8 @@ fn put(folder: &Path, name: &str, text: &str) -> Result<(), IoError> {
 fn constants(derived: &Derived, fragment: &ElementExpressions) -> String {
     let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = fragment.grouped.constants.iter().copied().unzip();
     let (parts, roots) = written(&derived.graph, &definitions, &Text);
-    let names = symbols.iter().filter_map(|symbol| derived.graph.symbol_of(*symbol));
-    let lines = names.zip(&roots).map(|(symbol, root)| format!("{} = {root}", symbol.name));
+    let names = symbols.iter().map(|constant| symbol(&derived.graph, *constant, &Text));
+    let lines = names.zip(&roots).map(|(name, root)| format!("{name} = {root}"));
     parts.into_iter().chain(lines).map(|line| line + "\n").collect()
 }
 

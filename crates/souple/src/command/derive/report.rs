@@ -8,7 +8,9 @@ use souple_formal::emit::{ElementCode, Latex, write};
 use souple_formal::graph::Operations;
 use souple_formal::law::EnergyLaw;
 use souple_mesh::ElementKind;
-use souple_models::derive::{MapKind, source_constant_count, source_fragment_counts, source_law_name};
+use souple_models::derive::{
+    MapKind, four_loop_operations, source_constant_count, source_fragment_counts, source_law_name,
+};
 use souple_table::counted;
 
 use crate::command::law_steps::Step;
@@ -20,6 +22,10 @@ pub struct Report<'a> {
     pub element: &'a ElementData,
     pub kind: ElementKind,
     pub map: MapKind,
+    /// As bodies run them, in tensors: forces and differential.
+    steps: [Operations; 2],
+    /// Operands of the differential written out that is derived in physical coordinates; of boxes.
+    direct: Option<f64>,
 }
 
 /// Counts of fragments of one sort, summed.
@@ -91,7 +97,47 @@ fn power_of((base, power): (&&str, &u8)) -> String {
     if *power == 1 { (*base).to_owned() } else { format!("{base}^{power}") }
 }
 
-impl Report<'_> {
+impl<'a> Report<'a> {
+    pub fn new(
+        law: &'a EnergyLaw,
+        name: &'a str,
+        element: &'a ElementData,
+        kind: ElementKind,
+        map: MapKind,
+    ) -> Self {
+        let derived = element.steps(law, Cut::NONE);
+        let steps =
+            [&derived.forces[0], &derived.differentials[0]].map(|step| step.operations(&derived.graph));
+        let direct = element.derive_directly(law).ok().flatten().map(|direct| direct.operands());
+        Self { law, name, element, kind, map, steps, direct }
+    }
+
+    /// What is counted beside the source: the same by tensors, by four loops, and without a reference element.
+    fn comparisons(&self, derived: &Derived) -> String {
+        let [forces, differential] = self.steps.map(|operations| operations.total());
+        let mut text = format!(
+            "\n  in tensors, as bodies run them: forces {forces}, differential {differential} operations\n"
+        );
+        if let Some([of_forces, of_differential]) = four_loop_operations(self.kind, self.name) {
+            let _ = writeln!(
+                text,
+                "    by four loops over the nodes:  forces {of_forces}, differential {of_differential}: {:.1} and {:.1} times as many",
+                of_forces as f64 / forces as f64,
+                of_differential as f64 / differential as f64
+            );
+        }
+        if let Some(direct) = self.direct {
+            let ours =
+                derived.differentials.iter().map(|fragment| fragment.operands(&derived.graph)).sum::<f64>();
+            let _ = writeln!(
+                text,
+                "  operands of the differential with its constants: {ours}; derived in physical coordinates {direct}: {:.1} times as many",
+                direct / ours
+            );
+        }
+        text
+    }
+
     /// The source's counts for such a cut.
     fn source_constants(&self, cut: Cut) -> Option<Vec<usize>> {
         let of_table = || source_fragment_counts(self.kind, self.map, self.name).map(<[usize]>::to_vec);
@@ -147,6 +193,7 @@ impl Report<'_> {
         if let Some(source) = self.source_constants(derived.cut) {
             let _ = writeln!(text, "    in Faure 2014, tables 3.4-3.7:            {}", listed(&source));
         }
+        text += &self.comparisons(derived);
         let (rust, wgsl) = (derived.emit(ElementCode::Rust), derived.emit(ElementCode::Wgsl));
         let _ = writeln!(text, "\n  code: Rust {} bytes, WGSL {} bytes", rust.text.len(), wgsl.text.len());
         let _ = writeln!(
@@ -189,6 +236,12 @@ impl Report<'_> {
                 "forces": counted(&derived.forces),
                 "differential": counted(&derived.differentials),
             },
+            "in_tensors": {
+                "forces": self.steps[0].total(),
+                "differential": self.steps[1].total(),
+                "four_loops": four_loop_operations(self.kind, self.name),
+            },
+            "operands_in_physical_coordinates": self.direct,
             "source_constants": source_constant_count(self.kind, self.map),
             "source_constants_by_fragment": self.source_constants(derived.cut),
             "warnings": self.law.warnings,
