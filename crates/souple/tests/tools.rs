@@ -180,7 +180,7 @@ fn studies_are_swept() {
     folder.write("wrong.toml", study.replace("place.x", "nowhere"));
     let wrong = souple_in(folder.path(), ["sweep", "wrong.toml"]).ends(2);
     assert!(
-        wrong.stderr.contains("graphs.place.y is `nowhere`; expected one of world.period, place"),
+        wrong.stderr.contains("`graphs.place.y` is `nowhere`; expected one of world.period, place.x"),
         "{}",
         wrong.stderr
     );

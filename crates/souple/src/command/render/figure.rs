@@ -90,7 +90,6 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
             .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
         edges,
         floor: if arguments.floor { Floor::Below } else { Floor::None },
-        ..Figure::default()
     })
 }
 
