@@ -31,7 +31,10 @@ export class Parameters {
   }
 
   set({ adjustables, settings }: Adjustables): void {
-    this.command.textContent = `souple run ${quoted(this.scene)}${settings.map((s) => ` --set ${quoted(s)}`).join("")}`;
+    // a scene that is no file here, as of what was dropped, is in the recording alone
+    this.command.textContent = this.scene.endsWith(".toml")
+      ? `souple run ${quoted(this.scene)}${settings.map((s) => ` --set ${quoted(s)}`).join("")}`
+      : "souple replay RECORDING";
     // fields keep the cursor while only their values change
     const shape = JSON.stringify([this.scene, adjustables.map((adjustable) => ({ ...adjustable, value: null }))]);
     if (shape !== this.shape) {
