@@ -240,7 +240,7 @@ fn faulty_requests() {
     let before = folder.files();
     for (source, out, more, words) in [
         ("run", "a.bmp", &[][..], ".png, .gif, .apng, .mp4 or .glb"),
-        ("run", "a", &[], "nothing is rendered to"),
+        ("run", "a", &[], "extension, which says what is drawn, is missing"),
         ("nowhere", "a.png", &[], "nowhere"),
         ("empty", "a.png", &[], "there is no series"),
         ("bad", "a.png", &[], "the time of a frame is \"nan\""),

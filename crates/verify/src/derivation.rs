@@ -2,6 +2,7 @@
 
 use std::sync::Mutex;
 
+use rayon::prelude::*;
 use souple_formal::element::{Cut, Derived, ElementData, ElementExpressions};
 use souple_formal::emit::ElementCode;
 use souple_formal::law::{EnergyLaw, group_constants};
@@ -200,16 +201,20 @@ impl Settings {
             return Ok(*worst);
         }
         let is_wanted = |wanted: &Option<String>, name: &str| wanted.as_deref().is_none_or(|w| w == name);
-        let mut worst = Battery::default();
-        for law in WRITTEN_LAWS.iter().filter(|law| is_wanted(&self.law, law.name)) {
-            for (kind, rule) in variants() {
-                if is_wanted(&self.element, kind.name()) && is_wanted(&self.rule, rule.name) {
-                    let battery =
-                        Battery::of(law, kind, rule, self.trying).map_err(|untried| untried.to_string())?;
-                    worst = worst.worse(battery);
-                }
-            }
-        }
+        let laws = WRITTEN_LAWS.iter().filter(|law| is_wanted(&self.law, law.name));
+        let associations: Vec<_> = laws
+            .flat_map(|law| variants().map(move |(kind, rule)| (law, kind, rule)))
+            .filter(|(_, kind, rule)| {
+                is_wanted(&self.element, kind.name()) && is_wanted(&self.rule, rule.name)
+            })
+            .collect();
+        let tried: Result<Vec<Battery>, String> = associations
+            .into_par_iter()
+            .map(|(law, kind, rule)| {
+                Battery::of(law, kind, rule, self.trying).map_err(|untried| untried.to_string())
+            })
+            .collect();
+        let worst = tried?.into_iter().fold(Battery::default(), Battery::worse);
         known.push((key, worst));
         Ok(worst)
     }

@@ -149,7 +149,7 @@ impl EnergyLaw {
 /// # Errors
 /// As a law's: the place and what would be accepted.
 pub fn group_constants(formula: &str, variables: &[String]) -> Result<(Graph, Grouped), LawError> {
-    let (mut graph, root, symbols) = read::read_formula(formula)?;
+    let read::Numbers { mut graph, value: root, symbols } = read::read_formula(formula)?;
     let variables: Vec<Expr> =
         symbols.iter().filter(|(name, _)| variables.contains(name)).map(|(_, symbol)| *symbol).collect();
     let grouped = graph.group_constants(&[root], &variables);

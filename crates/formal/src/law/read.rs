@@ -90,8 +90,15 @@ pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
     Ok(Read { graph, energy: energy.expr, uses_small_strain, warnings, origins })
 }
 
-/// A formula of numbers, and the symbols of its names.
-pub(super) fn read_formula(formula: &str) -> Result<(Graph, Expr, Vec<(String, Expr)>), LawError> {
+/// A formula of numbers.
+pub(super) struct Numbers {
+    pub graph: Graph,
+    pub value: Expr,
+    /// Its names, and what they are in the graph.
+    pub symbols: Vec<(String, Expr)>,
+}
+
+pub(super) fn read_formula(formula: &str) -> Result<Numbers, LawError> {
     let expression = Expression::parse(formula)
         .map_err(|error| LawError::new("formula", Some(error.span()), LawProblem::Syntax(error)))?;
     let mut names: Vec<String> = Vec::new();
@@ -116,7 +123,7 @@ pub(super) fn read_formula(formula: &str) -> Result<(Graph, Expr, Vec<(String, E
         (name, symbol)
     });
     let symbols = symbols.collect();
-    Ok((graph, value.expr, symbols))
+    Ok(Numbers { graph, value: value.expr, symbols })
 }
 
 fn check_names(text: &LawText) -> Result<(), LawError> {

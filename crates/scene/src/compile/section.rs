@@ -57,6 +57,7 @@ fn leans(material: &Material, section: Section, mesh: &Mesh) -> Option<String> {
             let F = Mat3::from_rows(*rows);
             let (before, after) =
                 (material.energy_density(&F), material.energy_density(&(F * symmetry.transpose())));
+            // what has no value there is told by other checks
             (before - after).abs() > ROUNDING * (before.abs() + after.abs())
         })
     };
@@ -83,9 +84,10 @@ fn leans(material: &Material, section: Section, mesh: &Mesh) -> Option<String> {
     }
 }
 
-/// `I - 2 n nᵀ`.
+/// `2 n nᵀ - I`, half a turn about `n`: to `C = FᵀF` the same as the mirror across it, but with a volume that is positive, where
+/// laws have their values.
 fn mirror(n: Vec3) -> Mat3 {
-    Mat3::IDENTITY - n.outer(n) * 2.0
+    n.outer(n) * 2.0 - Mat3::IDENTITY
 }
 
 /// Deformations without symmetry.
