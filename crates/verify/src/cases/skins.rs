@@ -434,7 +434,7 @@ pub(super) const CASES: &[Case] = &[
         reference: 0.0,
         // a thousandth of the strength, as above
         tolerance: Tolerance::Absolute(0.03),
-        mutation: "skins.peanut.parts[0].motion=[\"0.2*sin(3*t)\", 0, 0]",
+        mutation: "skins.peanut.parts[0].motion=[\"0.2*t\", 0, 0]",
         ..SKIN
     },
     Case {
