@@ -270,6 +270,7 @@ class Page {
         document.body.dataset.frame = String(frame.number);
         document.body.dataset.pictures = String(++this.pictures);
         document.body.dataset.time = String(frame.time);
+        document.body.dataset.factor = String(frame.realTimeFactor);
         document.body.dataset.cells = String(this.picture.cellCount);
       }
     }

@@ -122,7 +122,7 @@ describe("the liver", () => {
   test("pauses, steps, begins anew", async () => {
     await page.keyboard.press("Space");
     await reads(page, ".transport .main", "Play");
-    await page.waitForFunction(() => document.querySelector(".factor").textContent === "paused");
+    await stands(page);
     const paused = await time(page);
     await page.click('[data-do="step"]');
     await passed(page, paused);
@@ -282,7 +282,7 @@ describe("the liver", () => {
 
   /** The time of a world that has stopped. */
   async function paused(page) {
-    await page.waitForFunction(() => document.querySelector(".factor").textContent === "paused");
+    await stands(page);
     return time(page);
   }
 
@@ -296,6 +296,13 @@ describe("the liver", () => {
     await reads(page, ".transport .main", "Pause");
   }
 });
+
+/** Waits for a frame of a world that stands still: the one before may come after the word of it. */
+function stands(page) {
+  return page.waitForFunction(
+    () => document.querySelector(".factor").textContent === "paused" && document.body.dataset.factor === "0",
+  );
+}
 
 /** What is seen when it is the same twice: a picture of a world that is paused. */
 async function settledPicture(page) {
