@@ -63,12 +63,12 @@ fn leans(material: &Material, section: Section, mesh: &Mesh) -> Option<String> {
     };
     match section {
         Section::Solid | Section::PlaneStrain { .. } => None,
-        Section::PlaneStress { .. } => is_changed(&mirror(Vec3::AXES[2])).then(|| "its plane".to_owned()),
+        Section::PlaneStress { .. } => is_changed(&half_turn(Vec3::AXES[2])).then(|| "its plane".to_owned()),
         // the law's x is along the bar
         Section::Bar { .. } | Section::Cable { .. } => {
             let turns =
                 [0.5, 1.0].map(|share| exponential(Vec3::AXES[0] * (share * std::f64::consts::FRAC_PI_2)));
-            let is_bent = turns.iter().chain([&mirror(Vec3::AXES[2])]).any(is_changed);
+            let is_bent = turns.iter().chain([&half_turn(Vec3::AXES[2])]).any(is_changed);
             is_bent.then(|| "the bar".to_owned())
         }
         Section::Membrane { .. } => {
@@ -77,7 +77,7 @@ fn leans(material: &Material, section: Section, mesh: &Mesh) -> Option<String> {
             let found = cells.find(|(_, cell)| {
                 let corner = |i: usize| mesh.points[cell.nodes[i] as usize];
                 let normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-                !is_isotropic && is_changed(&mirror(normal * (1.0 / normal.length())))
+                !is_isotropic && is_changed(&half_turn(normal * (1.0 / normal.length())))
             });
             found.map(|(cell, _)| format!("cell {cell}"))
         }
@@ -86,7 +86,7 @@ fn leans(material: &Material, section: Section, mesh: &Mesh) -> Option<String> {
 
 /// `2 n nᵀ - I`, half a turn about `n`: to `C = FᵀF` the same as the mirror across it, but with a volume that is positive, where
 /// laws have their values.
-fn mirror(n: Vec3) -> Mat3 {
+fn half_turn(n: Vec3) -> Mat3 {
     n.outer(n) * 2.0 - Mat3::IDENTITY
 }
 

@@ -79,7 +79,7 @@ pub const HANDS_MAX: u32 = 10;
 const POINTS_MAX: usize = 4096;
 
 impl Wish {
-    /// What it is called on the wire.
+    /// What it is about, for refusals.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Seen => "seen",
@@ -88,8 +88,7 @@ impl Wish {
             Self::Step => "step",
             Self::Reset => "reset",
             Self::Speed(_) => "speed",
-            Self::Load(_) => "load",
-            Self::LoadText { .. } => "load_text",
+            Self::Load(_) | Self::LoadText { .. } => "load",
             Self::Set { .. } => "set",
             Self::Colour(_) => "colour",
             Self::Arrows(_) => "arrows",
