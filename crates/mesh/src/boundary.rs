@@ -106,23 +106,48 @@ impl Mesh {
     pub fn boundary_surface(&self) -> TriangleSurface {
         let mut triangles = Vec::new();
         let mut cells = Vec::new();
-        let mut push = |cell: u32, kind: ElementKind, nodes: &[u32]| {
+        self.visit_boundary(&mut |cell, kind, nodes| {
             for triangle in facet_triangles(kind, nodes) {
                 triangles.push(triangle);
                 cells.push(cell);
             }
-        };
-        if self.dimension() == 2 {
-            self.cells().enumerate().for_each(|(cell, view)| push(cell as u32, view.kind, view.nodes));
-        } else {
-            let by_number = self.cells_by_number();
-            for BoundaryFace { cell, face } in self.faces().boundary {
-                let Some(view) = by_number.get(cell) else { continue };
-                let (kind, nodes) = view.face_nodes(face.into());
-                push(cell, kind, &nodes.collect::<Vec<_>>());
-            }
-        }
+        });
         TriangleSurface::from_mesh(&self.points, &triangles, cells)
+    }
+
+    /// The edges of the elements on the boundary, or of surface cells, each once, as pairs of points: those of
+    /// [`Mesh::boundary_surface`] without what cuts faces into triangles. Curved edges are two pieces.
+    pub fn boundary_edges(&self) -> Vec<[u32; 2]> {
+        let mut edges = Vec::new();
+        self.visit_boundary(&mut |_, kind, nodes| {
+            let (corners, middles) = nodes.split_at(kind.corner_count().min(nodes.len()));
+            let n = corners.len();
+            for k in 0..n {
+                let ends = [corners[k], corners[(k + 1) % n]];
+                match middles.get(k) {
+                    Some(middle) => edges.extend([[ends[0], *middle], [*middle, ends[1]]]),
+                    None => edges.push(ends),
+                }
+            }
+        });
+        edges.iter_mut().for_each(|edge| edge.sort_unstable());
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Visits the faces of the boundary, or the surface cells: the cell, the kind and the nodes.
+    fn visit_boundary(&self, visit: &mut dyn FnMut(u32, ElementKind, &[u32])) {
+        if self.dimension() == 2 {
+            self.cells().enumerate().for_each(|(cell, view)| visit(cell as u32, view.kind, view.nodes));
+            return;
+        }
+        let by_number = self.cells_by_number();
+        for BoundaryFace { cell, face } in self.faces().boundary {
+            let Some(view) = by_number.get(cell) else { continue };
+            let (kind, nodes) = view.face_nodes(face.into());
+            visit(cell, kind, &nodes.collect::<Vec<_>>());
+        }
     }
 
     /// Facets read from a file as triangles, for meshes that are surfaces only. `None` if there are no facets.

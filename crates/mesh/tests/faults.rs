@@ -217,3 +217,16 @@ fn faulty_surfaces_are_refused() {
     assert!(matches!(nan, Err(MeshError::PointNotFinite { .. })));
     assert_eq!(TriangleSurface::new(Vec::new(), Vec::new()), Err(MeshError::NoPoints));
 }
+
+/// Edges of elements are those of the faces, without what cuts faces into triangles: of a cube of 2 x 2 x 2 cells six faces
+/// of 12 edges, of which those on the 12 sides of the cube, two each, belong to two faces. Curved edges are two pieces.
+#[test]
+fn edges_are_those_of_elements() {
+    for (element, count) in [("hex8", 48), ("hex20", 96), ("tet4", 48 + 24)] {
+        let mesh = cube([2.0; 3], element);
+        let edges = mesh.boundary_edges();
+        assert_eq!(edges.len(), count, "{element}");
+        let surface = mesh.boundary_surface();
+        assert!(edges.iter().flatten().all(|point| surface.mesh_points.contains(point)), "{element}");
+    }
+}

@@ -188,6 +188,25 @@ impl Field {
         }
     }
 
+    /// Whether anything in a world has it.
+    pub fn is_in(&self, session: &Session, shown: &[Shown]) -> bool {
+        let bodies = &session.bodies;
+        match self.source {
+            Source::Point(_) => !bodies.is_empty(),
+            Source::Weights(weights) => bodies.iter().any(|body| weights(body).is_some()),
+            Source::Cells(_) => {
+                let has_cells = |body: &BodyInfo| {
+                    let force = session.world.force_named(body.system, &body.force);
+                    force.is_some_and(|(solid, at)| solid.cell_field_at(0, &at).is_some())
+                };
+                bodies.iter().any(has_cells)
+            }
+            Source::Links(_) => shown.iter().any(|body| !body.links.is_empty()),
+            // bodies that are not told apart so have no classes
+            Source::Classes(classes) => !(classes.all)(session).is_empty(),
+        }
+    }
+
     /// What the values belong to, for pages.
     pub fn of(&self) -> &'static str {
         match self.source {

@@ -21,7 +21,7 @@ use crate::hub::Outgoing;
 /// Asked for and given in the handshake: pages of another version are told to load again.
 pub const SUBPROTOCOL: &str = "souple.v2";
 /// Version of the documents and of binary messages.
-pub const VERSION: u8 = 2;
+pub const VERSION: u8 = 3;
 
 /// Kinds of binary messages.
 #[derive(Clone, Copy, Debug)]

@@ -4,11 +4,19 @@ use souple_math::Vec3;
 
 use super::{Kind, header, put_f32, put_u32, put_vector};
 
-/// Surface `index` of a scene: of bodies first, then of obstacles.
-pub fn surface(scene: u32, index: u16, points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
+/// Surface `index` of a scene, of bodies first, then of obstacles, and the edges of its elements.
+pub fn surface(
+    scene: u32,
+    index: u16,
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    edges: &[[u32; 2]],
+) -> Vec<u8> {
     let mut bytes = header(Kind::Surface, index, scene);
-    bytes.reserve(8 + 12 * (points.len() + triangles.len()));
+    bytes.reserve(12 + 12 * (points.len() + triangles.len()) + 8 * edges.len());
     put_surface(&mut bytes, points, triangles);
+    put_u32(&mut bytes, edges.len());
+    bytes.extend_from_slice(bytemuck::cast_slice(edges));
     bytes
 }
 

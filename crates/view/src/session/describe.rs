@@ -32,13 +32,13 @@ impl Stage {
             let points = shown.points[..shown.outer_count].iter();
             points.map(|point| body.mesh.points[*point as usize]).collect::<Vec<_>>()
         };
-        let of_bodies = bodies.map(|pair| (rest(pair), &pair.1.triangles));
+        let of_bodies = bodies.map(|pair| (rest(pair), &pair.1.triangles, &pair.1.edges[..]));
         let of_obstacles = self.obstacles().iter().filter_map(|obstacle| match &obstacle.form {
-            Form::Surface { points, triangles, .. } => Some((points.clone(), triangles)),
+            Form::Surface { points, triangles, .. } => Some((points.clone(), triangles, &[][..])),
             Form::Plane { .. } => None,
         });
-        for (index, (points, triangles)) in of_bodies.chain(of_obstacles).enumerate() {
-            binary(protocol::surface(self.number(), index as u16, &points, triangles));
+        for (index, (points, triangles, edges)) in of_bodies.chain(of_obstacles).enumerate() {
+            binary(protocol::surface(self.number(), index as u16, &points, triangles, edges));
         }
         self.tools().into_iter().for_each(&mut binary);
         tell(self.adjustables());
@@ -103,10 +103,20 @@ impl Stage {
             "skins": skins.iter().map(skin).collect::<Vec<_>>(),
             "obstacles": self.obstacles().iter().map(obstacle_to_json).collect::<Vec<_>>(),
             "probes": probes.iter().map(probe).collect::<Vec<_>>(),
-            "fields": FIELDS.entries.iter().map(|field| field_to_json(field, self.session())).collect::<Vec<_>>(),
+            "fields": FIELDS.entries.iter().map(|field| self.field_to_json(field)).collect::<Vec<_>>(),
             "arrows": ARROWS.entries.iter().map(arrow_to_json).collect::<Vec<_>>(),
             "counts": souple_run::counts(world, bodies),
             "warnings": warnings,
+        })
+    }
+
+    fn field_to_json(&self, field: &Entry<Field>) -> Value {
+        let Entry { name, summary, build, .. } = field;
+        let class = |(name, colour): (String, Colour)| json!({"name": name, "colour": hexadecimal(colour)});
+        let classes = build.classes(self.session()).map(|all| all.into_iter().map(class).collect::<Vec<_>>());
+        json!({
+            "name": name, "summary": summary, "unit": build.unit, "of": build.of(), "classes": classes,
+            "is_here": build.is_in(self.session(), self.shown()),
         })
     }
 
@@ -135,13 +145,6 @@ impl Stage {
         let bodies = self.session().bodies.iter().zip(self.shown());
         document("pins", json!({"pins": bodies.map(of_body).collect::<Vec<_>>()}))
     }
-}
-
-fn field_to_json(field: &Entry<Field>, session: &Session) -> Value {
-    let Entry { name, summary, build, .. } = field;
-    let class = |(name, colour): (String, Colour)| json!({"name": name, "colour": hexadecimal(colour)});
-    let classes = build.classes(session).map(|all| all.into_iter().map(class).collect::<Vec<_>>());
-    json!({"name": name, "summary": summary, "unit": build.unit, "of": build.of(), "classes": classes})
 }
 
 fn hexadecimal(colour: Colour) -> String {
@@ -179,17 +182,18 @@ fn adjustable_to_json(adjustable: &Adjustable) -> Value {
     })
 }
 
-/// Colour maps as 256 colours of six hexadecimal digits, the same as in pictures.
+/// Colour maps for quantities, as 256 colours of six hexadecimal digits, the same as in pictures.
 pub fn colour_maps() -> Value {
     let map = |entry: &&souple_table::Entry<souple_io::picture::ColourMap>| {
         let colour = |step: i32| hexadecimal(entry.build.colour(f64::from(step) / 255.0));
         json!({"name": entry.name, "summary": entry.summary, "colours": (0..256).map(colour).collect::<String>()})
     };
-    COLOUR_MAPS.entries.iter().map(map).collect()
+    // what has a range of its own stands for classes, which fields have themselves
+    COLOUR_MAPS.entries.iter().filter(|entry| entry.build.own_range().is_none()).map(map).collect()
 }
 
 /// What a hand may push with.
 pub fn tools() -> Value {
-    let tool = |tool: &&Entry<Making>| json!({"name": tool.name, "summary": tool.summary, "front": tool.build.front});
+    let tool = |tool: &&Entry<Making>| json!({"name": tool.name, "summary": tool.summary, "front": tool.build.front, "flat": tool.build.flat});
     TOOLS.entries.iter().map(tool).collect()
 }

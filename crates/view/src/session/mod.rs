@@ -361,13 +361,17 @@ impl Live {
             Purpose::LoadText { name, .. } => name.clone(),
             Purpose::Reset | Purpose::Set(_) => self.stage.name().to_owned(),
         };
-        let stage = Stage::new(scene, name, self.stage.number() + 1, &self.hub)?;
+        let mut stage = Stage::new(scene, name, self.stage.number() + 1, &self.hub)?;
+        if matches!(purpose, Purpose::Reset) {
+            stage.keep_view(&self.stage);
+        }
         let looks = self.stage.looks().clone();
         self.stage = stage;
         self.stage.set_looks(looks);
         self.stage.describe(&mut |message| self.hub.tell_all(&message));
         self.stage.describe_inside(&self.hub);
-        if matches!(self.mode, Mode::Failed(_)) {
+        // who asks for another world wants to see it go
+        if matches!(self.mode, Mode::Failed(_)) || !matches!(purpose, Purpose::Reset) {
             self.mode = Mode::Playing;
         }
         self.pace.start(Instant::now(), self.stage.time());

@@ -13,6 +13,8 @@ pub struct Shown {
     pub outer_count: usize,
     /// Corners among `points`.
     pub triangles: Vec<[u32; 3]>,
+    /// Those of its elements on the surface, ends among `points`.
+    pub edges: Vec<[u32; 2]>,
     /// Both sides of its triangles are seen.
     pub is_sheet: bool,
     /// Ends among `points`, in the order of the cells; curved ones in straight pieces.
@@ -43,17 +45,21 @@ impl Shown {
             points,
             outer_count,
             triangles: triangles.clone(),
+            edges: Vec::new(),
             is_sheet: mesh.dimension() == 2,
             links: Vec::new(),
             outer_cells,
             all_cells: OnceLock::new(),
         };
+        let number = shown.numbers();
+        let numbered = |pair: [u32; 2]| pair.map(|point| number[point as usize]);
+        shown.edges = mesh.boundary_edges().into_iter().map(numbered).collect();
         if mesh.dimension() == 1 {
-            let number = shown.numbers();
             // corners stand first, what is between them after
             let along = |nodes: &[u32]| [&nodes[..1], &nodes[2..], &nodes[1..2]].concat();
-            let numbered = |pair: &[u32]| [number[pair[0] as usize], number[pair[1] as usize]];
-            let links = |nodes: &[u32]| along(nodes).windows(2).map(numbered).collect::<Vec<_>>();
+            let links = |nodes: &[u32]| {
+                along(nodes).windows(2).map(|pair| numbered([pair[0], pair[1]])).collect::<Vec<_>>()
+            };
             shown.links = mesh.cells().flat_map(|cell| links(cell.nodes)).collect();
         }
         shown

@@ -135,6 +135,11 @@ impl Stage {
         self.view
     }
 
+    /// Is seen as another was: the same scene begun anew, whatever gravity was set since.
+    pub fn keep_view(&mut self, before: &Stage) {
+        self.view = before.view;
+    }
+
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.obstacles
     }

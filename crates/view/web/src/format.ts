@@ -29,6 +29,11 @@ export function number(value: number): string {
   return String(Number(value.toPrecision(3)));
 }
 
+/** `m/s^2` as `m/s²`. */
+export function inPrint(unit: string): string {
+  return unit.replaceAll("^2", "²").replaceAll("^3", "³");
+}
+
 /** `von_mises` as `von Mises`, `youngs_modulus` as `Young's modulus`. */
 export function label(name: string): string {
   const words: Record<string, string> = {

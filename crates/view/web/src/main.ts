@@ -11,6 +11,7 @@ import { HandPanel } from "./ui/handling";
 import { Legend } from "./ui/legend";
 import { Notes } from "./ui/notes";
 import { Parameters } from "./ui/parameters";
+import { photograph } from "./ui/photograph";
 import { Plots } from "./ui/plots";
 import { Scenes } from "./ui/scenes";
 import { Stages } from "./ui/stages";
@@ -19,6 +20,8 @@ import { Grab } from "./view/grab";
 import { Picture } from "./view/picture";
 
 const DARK = "(prefers-color-scheme: dark)";
+/** After so many pictures it is looked whether anything is in them. */
+const LOOK_EVERY = 20;
 /** Where the scene has its gravity. */
 const GRAVITY = "world.gravity";
 
@@ -73,8 +76,15 @@ class Page {
   private dark = false;
   /** Of the program. */
   private version: string | null = null;
-  /** Drawn since the page was opened. */
+  /** Frames drawn since the page was opened, and pictures, of which some show the same. */
   private pictures = 0;
+  private drawn = 0;
+  private readonly sight = element(
+    "p",
+    { class: "sight", hidden: true },
+    "Everything has moved out of the picture. ",
+    element("button", { click: () => this.picture.fit() }, "Show it"),
+  );
 
   constructor() {
     const say = (text: string) => this.notes.say("error", text);
@@ -95,9 +105,14 @@ class Page {
     );
     place("bottom").append(this.stages.root);
     place("messages").prepend(this.failure);
+    place("stage").append(this.sight);
     this.setDark(this.isDark());
     matchMedia(DARK).addEventListener("change", () => this.setDark(this.isDark()));
     window.addEventListener("keydown", (event) => this.key(event));
+    // a button that was clicked is not what the space bar is for; one that keys have come to is
+    window.addEventListener("click", (event) => {
+      if (event.detail > 0) (event.target as HTMLElement).closest("button")?.blur();
+    });
     this.connection = new Connection(
       (message) => this.receive(message),
       (link, why) => this.setLink(link, why),
@@ -133,6 +148,8 @@ class Page {
         this.surfaces = [];
         this.networks = [];
         this.picture.tools.clear();
+        // what was said of another world
+        this.notes.clear();
         this.grab?.forget();
         this.hasBegun = false;
         this.begin();
@@ -161,8 +178,9 @@ class Page {
         this.setStatus(message);
         break;
       case "refused":
-        if (message.about === "set") this.parameters.refuse(message.message);
-        this.notes.say("error", message.message);
+        // what a panel shows beside the value is said once
+        if (message.about === "set" && this.parameters.refuse(message.message)) this.notes.keep("error", message.message);
+        else this.notes.say("error", message.message);
         break;
       case "frame":
         this.frame = message;
@@ -180,7 +198,9 @@ class Page {
   private describe(info: SceneInfo, before: SceneInfo | null): void {
     this.title.textContent = info.title || info.name;
     document.title = `${info.title || info.name} – Souple`;
-    this.description.textContent = info.description || "The scene has no description.";
+    // lines of a scene file end where its author's screen did; paragraphs are meant
+    const paragraphs = info.description.trim().split(/\n\s*\n/);
+    this.description.textContent = paragraphs.map((text) => text.replace(/\s*\n\s*/g, " ")).join("\n\n") || "The scene has no description.";
     this.parameters.setScene(info.name);
     this.scenes.setCurrent(info.name);
     this.plots.begin(info.probes);
@@ -217,7 +237,8 @@ class Page {
     this.picture.setStyle(look.style, this.dark);
     this.picture.setCut(look.cut);
     const arrows = (this.info?.arrows ?? []).findIndex(({ name }) => name === look.arrows);
-    this.picture.setExtras({ arrows, explode: look.explode, axes: look.axes });
+    const unit = this.info?.arrows[arrows]?.unit ?? "";
+    this.picture.setExtras({ arrows, unit, explode: look.explode, axes: look.axes });
     // a world that is paused sends no frame that would bring it about
     this.repaint();
   }
@@ -234,7 +255,7 @@ class Page {
       this.failure.dataset.message = status.message;
       this.failure.replaceChildren(
         element("b", {}, "The world has stopped. "),
-        status.message,
+        `${status.message}. `,
         element("button", { click: () => this.send({ do: "reset" }) }, "Reset"),
       );
       this.notes.say("error", status.message);
@@ -246,6 +267,8 @@ class Page {
     // while it is tried again the words stay
     if (link !== "connecting" || !this.link.textContent) this.link.textContent = link === "connecting" ? "connecting" : why;
     document.body.classList.toggle("lost", link !== "open");
+    // what is pressed while nobody hears it would be lost
+    for (const { root } of [this.transport, this.hand, this.parameters, this.scenes]) root.inert = link !== "open";
     // the connection that sent the last frames waits for no answer
     if (link !== "open") this.unanswered = 0;
   }
@@ -275,6 +298,8 @@ class Page {
       }
     }
     this.picture.draw();
+    this.drawn += 1;
+    if (this.drawn % LOOK_EVERY === 0) this.sight.hidden = !this.picture.isOutOfSight;
   }
 
   /** As was chosen by hand; as the system has it where nothing was. */
@@ -338,10 +363,18 @@ class Page {
   }
 
   private async savePicture(): Promise<void> {
-    const blob = await this.picture.save();
+    const { info } = this;
+    const time = Number(document.body.dataset.time ?? 0);
+    const caption = {
+      title: info?.title || info?.name || "",
+      time: `${time.toFixed(3)} s`,
+      legend: this.legend.caption,
+    };
+    const blob = await this.picture.atItsBest((drawing) => photograph(drawing, caption));
     if (!blob) return;
     const url = URL.createObjectURL(blob);
-    element("a", { href: url, download: "souple.png" }).click();
+    const name = (info?.name ?? "souple").replace(/(\/scene)?\.toml$/, "").replace(/^.*\//, "");
+    element("a", { href: url, download: `${name || "souple"}_${time.toFixed(3)}s.png` }).click();
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   }
 }

@@ -1,7 +1,7 @@
 // What comes over the wire and how it is read: version 2, see docs/protocol.md.
 
 export const SUBPROTOCOL = "souple.v2";
-const VERSION = 2;
+const VERSION = 3;
 
 export type Vector = [number, number, number];
 
@@ -23,6 +23,8 @@ export interface ToolInfo {
   summary: string;
   /** How far its front is from its origin, in its size. */
   front: number;
+  /** How far about its middle a flat front reaches, in its size; 0: it is not flat. */
+  flat: number;
 }
 
 export interface Hello {
@@ -74,6 +76,8 @@ export interface FieldInfo {
   of: "points" | "links" | "cells";
   /** What the numbers stand for; null: they are quantities. */
   classes: Class[] | null;
+  /** Whether anything in the scene has it. */
+  is_here: boolean;
 }
 
 export interface Class {
@@ -171,6 +175,8 @@ export interface Surface {
   index: number;
   points: Float32Array;
   triangles: Uint32Array;
+  /** Of its elements: pairs of points. */
+  edges: Uint32Array;
 }
 
 /** What joins the points of a body, and how large they are. */
@@ -312,12 +318,14 @@ export function decode(buffer: ArrayBuffer): Binary | null {
 function decodeSurface(buffer: ArrayBuffer, view: DataView, index: number, scene: number): Surface {
   const points = view.getUint32(8, true);
   const triangles = view.getUint32(12, true);
+  const afterTriangles = 16 + 12 * (points + triangles);
   return {
     kind: "surface",
     scene,
     index,
     points: new Float32Array(buffer, 16, 3 * points),
     triangles: new Uint32Array(buffer, 16 + 12 * points, 3 * triangles),
+    edges: new Uint32Array(buffer, afterTriangles + 4, 2 * view.getUint32(afterTriangles, true)),
   };
 }
 

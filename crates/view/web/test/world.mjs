@@ -46,7 +46,8 @@ export class Program {
 }
 
 export async function launch() {
-  const args = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox", "--disable-dev-shm-usage"];
+  // without a graphics card the browser draws the world by software, and puts the page together without going through that
+  const args = ["--no-sandbox", "--disable-dev-shm-usage"];
   if (pictures) await mkdir(pictures, { recursive: true });
   return chromium.launch({ executablePath: process.env.SOUPLE_CHROMIUM ?? "/usr/bin/chromium", args });
 }
@@ -131,7 +132,7 @@ export const pictureTime = (page) =>
  */
 export const overlaps = (page) =>
   page.evaluate(() => {
-    const parts = "#top button, #top select, #top .time, #top .factor, #top h1, #messages, #legend, #side, #bottom";
+    const parts = "#top button, #top select, #top .time, #top .factor, #top h1, #messages, #legend, .furniture, #side, #bottom";
     const boxes = [...document.querySelectorAll(parts)]
       .map((thing) => [thing.id || thing.textContent, thing.getBoundingClientRect()])
       .filter(([, box]) => box.width > 0 && box.height > 0);

@@ -35,7 +35,9 @@ fn all() -> Vec<Box<dyn Shape>> {
             .with("to", Value::Vector([1.0, 0.4, 0.2]));
         shapes.push(build("sphere", sizes.clone().with("radius", Value::Number(0.7))).unwrap());
         shapes.push(build("capsule", segment.with("radius", Value::Number(0.4))).unwrap());
-        shapes.push(build("box", sizes.clone().with("size", Value::Vector([1.0, 0.6, 0.8]))).unwrap());
+        let sides = sizes.clone().with("size", Value::Vector([1.0, 0.6, 0.8]));
+        shapes.push(build("box", sides.clone()).unwrap());
+        shapes.push(build("box", sides.with("turn", Value::Vector([0.3, -0.4, 0.5]))).unwrap());
         shapes.push(build("closed_surface", sizes.with("surface", Value::Text("cube"))).unwrap());
     }
     shapes

@@ -36,6 +36,10 @@ export class Display {
   private readonly map = element("select", { id: "map" });
   private readonly style = element("select", { id: "style" });
   private readonly axis = element("select", { id: "cut" });
+  private readonly otherHalf = element("input", { type: "checkbox", id: "other-half" });
+  private readonly otherHalfRow: HTMLElement;
+  private readonly styleRow: HTMLElement;
+  private readonly explodeRow: HTMLElement;
   private readonly place = element("input", { type: "range", min: 0, max: 1, step: 0.005, value: 0.5, "aria-label": "Place of the cut" });
   private readonly explode = element("input", { type: "range", id: "explode", min: 0, max: 1, step: 0.01, value: 0 });
   private readonly arrows = element("select", { id: "arrows" });
@@ -52,22 +56,26 @@ export class Display {
     options(this.axis, AXES);
     // chosen by a person: a scene that lacks it does not make it forgotten
     this.field.addEventListener("change", () => remember("field", this.field.value));
-    for (const control of [this.field, this.map, this.style, this.axis, this.arrows, this.axes]) {
+    for (const control of [this.field, this.map, this.style, this.axis, this.otherHalf, this.arrows, this.axes]) {
       control.addEventListener("change", () => this.read());
     }
     for (const control of [this.place, this.explode]) control.addEventListener("input", () => this.read());
-    const row = (text: string, control: HTMLElement) =>
+    const row = (text: string, control: HTMLElement): HTMLElement =>
       element("label", { class: "row" }, element("span", {}, text), control);
+    this.styleRow = row("Surface", this.style);
+    this.explodeRow = row("Cells apart", this.explode);
+    this.otherHalfRow = row("Other half", this.otherHalf);
     this.axesRow = row("Frames' axes", this.axes);
     this.root = panel(
       "Display",
       true,
       row("Colour", this.field),
       row("Colour map", this.map),
-      row("Surface", this.style),
+      this.styleRow,
       row("Cut", this.axis),
       element("div", { class: "row" }, this.place),
-      row("Cells apart", this.explode),
+      this.otherHalfRow,
+      this.explodeRow,
       row("Arrows", this.arrows),
       this.axesRow,
       element(
@@ -77,7 +85,7 @@ export class Display {
         element("button", { click: actions.theme, title: "Light or dark" }, "Light / dark"),
       ),
     );
-    this.place.hidden = true;
+    this.place.hidden = this.otherHalfRow.hidden = true;
   }
 
   setMaps(maps: ColourMap[]): void {
@@ -85,12 +93,12 @@ export class Display {
     this.map.value = this.look.map;
   }
 
-  setFields({ fields, bodies }: SceneInfo): void {
+  setFields({ fields, bodies, skins }: SceneInfo): void {
     const entry = ({ name, summary, unit, classes }: FieldInfo) =>
       element("option", { value: name, title: classes ? summary : `${summary} [${unit || "1"}]` }, label(name));
-    const hasLinks = bodies.some(({ links }) => links > 0);
-    // bodies that are not told apart so have no classes
-    const here = fields.filter(({ of, classes }) => (of !== "links" || hasLinks) && (classes === null || classes.length > 0));
+    this.styleRow.hidden = skins.length === 0 && bodies.every(({ surface_triangles }) => surface_triangles === 0);
+    this.explodeRow.hidden = !bodies.some(({ has_inside }) => has_inside);
+    const here = fields.filter(({ is_here }) => is_here);
     this.field.replaceChildren(element("option", { value: "" }, "Material"), ...here.map(entry));
     const wanted = remembered("field") ?? "";
     this.field.value = here.some((field) => field.name === wanted) ? wanted : "";
@@ -121,8 +129,11 @@ export class Display {
     look.arrows = this.arrows.value || null;
     look.axes = this.axes.checked;
     const axis = this.axis.value;
-    this.place.hidden = axis === "none";
-    look.cut = axis === "none" ? null : { axis: Number(axis) as 0 | 1 | 2, place: Number(this.place.value) };
+    this.place.hidden = this.otherHalfRow.hidden = axis === "none";
+    look.cut =
+      axis === "none"
+        ? null
+        : { axis: Number(axis) as 0 | 1 | 2, isFarHalf: !this.otherHalf.checked, place: Number(this.place.value) };
     this.changed();
   }
 }

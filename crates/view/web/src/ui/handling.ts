@@ -13,13 +13,15 @@ export interface Handling {
   size: number;
   /** How far the front of the tool is from its origin, in its size. */
   front: number;
+  /** How far about its middle a flat front reaches, in its size. */
+  flat: number;
   /** Whether a tool stays where the hand leaves it. */
   stays: boolean;
 }
 
 export class HandPanel {
   readonly root: HTMLElement;
-  readonly handling: Handling = { strength: 1, tool: "", size: 0.16, front: 0.5, stays: false };
+  readonly handling: Handling = { strength: 1, tool: "", size: 0.16, front: 0.5, flat: 0, stays: false };
   private tools: ToolInfo[] = [];
   private readonly strength = element("input", { type: "range", id: "strength", min: -1.5, max: 1.5, step: 0.05, value: 0 });
   private readonly tool = element("select", { id: "tool" });
@@ -41,7 +43,7 @@ export class HandPanel {
     for (const control of [this.tool, this.stays]) control.addEventListener("change", () => this.read());
     this.root = panel(
       "Hand",
-      false,
+      true,
       row("Strength", this.strength, this.strengthSaid),
       row("Pushes with", this.tool),
       row("Size of the tool", this.size, this.sizeSaid),
@@ -75,7 +77,8 @@ export class HandPanel {
     handling.stays = this.stays.checked;
     this.strengthSaid.textContent = ` ${number(handling.strength)} ×`;
     this.sizeSaid.textContent = ` ${number(100 * handling.size)} % of all bodies`;
-    handling.front = this.tools.find(({ name }) => name === handling.tool)?.front ?? 0.5;
+    const { front = 0.5, flat = 0 } = this.tools.find(({ name }) => name === handling.tool) ?? {};
+    Object.assign(handling, { front, flat });
     this.changed(handling);
   }
 }

@@ -5,6 +5,7 @@ import type { ArrowInfo, Class, ColourMap, FieldInfo } from "../protocol";
 import { STATE_COLOURS } from "../view/palette";
 import type { Meanings } from "../view/meanings";
 import { element } from "./dom";
+import type { Caption } from "./photograph";
 
 export class Legend {
   private readonly title = element("div", { class: "title" });
@@ -20,6 +21,8 @@ export class Legend {
   private arrows: ArrowInfo | null = null;
   /** What is in the list: it is not made anew in each picture. */
   private listed = "";
+  private entries: Class[] = [];
+  private stops: string[] = [];
 
   constructor(private readonly place: HTMLElement) {
     place.append(this.title, this.bar, this.ends, this.list, this.none, this.arrow);
@@ -30,8 +33,21 @@ export class Legend {
   set(field: FieldInfo | null, map: ColourMap | undefined, arrows: ArrowInfo | null): void {
     this.field = field;
     this.arrows = arrows;
-    const stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map((i) => `#${map?.colours.slice(6 * i, 6 * i + 6)}`);
-    if (map) this.bar.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
+    if (!map) return;
+    this.stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map((i) => `#${map.colours.slice(6 * i, 6 * i + 6)}`);
+    this.bar.style.background = `linear-gradient(to right, ${this.stops.join(", ")})`;
+  }
+
+  /** What it says, for a picture that leaves the page. */
+  get caption(): Caption["legend"] {
+    const said = (thing: HTMLElement) => (this.place.hidden || thing.hidden ? [] : [thing.textContent ?? ""]);
+    const ends = [this.low, this.middle, this.high].map(({ textContent }) => textContent ?? "");
+    return {
+      // what arrows mean stands above, as there is room below for one scale only
+      lines: [...said(this.arrow), ...said(this.none), ...said(this.title)],
+      bar: this.place.hidden || this.bar.hidden ? null : { colours: this.stops, ends },
+      classes: this.place.hidden ? [] : this.entries.map(({ name, colour }) => ({ name: label(name), colour: `#${colour}` })),
+    };
   }
 
   /** What is seen. */
@@ -44,11 +60,12 @@ export class Legend {
     this.title.hidden = !this.title.textContent;
     this.bar.hidden = this.ends.hidden = !isScale;
     this.none.hidden = field === null || hasValues;
-    this.arrow.hidden = !hasArrows;
-    this.place.hidden = this.title.hidden && !hasArrows;
+    this.arrow.hidden = arrows === null;
+    this.place.hidden = this.title.hidden && arrows === null;
     this.name(entries);
     if (isScale) this.scale(range.low, range.high, field.unit);
     if (hasArrows) this.arrow.textContent = `Longest arrow, ${label(arrows.name)}: ${quantity(longest, arrows.unit)}`;
+    else if (arrows) this.arrow.textContent = `No arrows: nothing has any ${label(arrows.name)} now.`;
   }
 
   private scale(low: number, high: number, unit: string): void {
@@ -65,6 +82,7 @@ export class Legend {
     const listed = JSON.stringify(entries);
     if (this.listed === listed) return;
     this.listed = listed;
+    this.entries = entries;
     const entry = ({ name, colour }: Class) =>
       element("li", {}, element("i", { style: `background: #${colour}` }), label(name));
     this.list.replaceChildren(...entries.map(entry));

@@ -14,11 +14,21 @@ export class Notes {
 
   constructor(private readonly place: HTMLElement) {}
 
-  say(weight: Weight, text: string): void {
+  /** Puts a text on the list alone. */
+  keep(weight: Weight, text: string): void {
     this.list.querySelector(".quiet")?.remove();
     const time = new Date().toLocaleTimeString();
     this.list.prepend(element("li", { class: weight }, element("time", {}, time), ` ${text}`));
     while (this.list.childElementCount > KEPT) this.list.lastElementChild?.remove();
+  }
+
+  /** Takes all notes off the screen: they were of another world. */
+  clear(): void {
+    this.place.replaceChildren();
+  }
+
+  say(weight: Weight, text: string): void {
+    this.keep(weight, text);
     const close = element("button", { class: "close", "aria-label": "Close this message", click: () => note.remove() }, "×");
     const note = element("div", { class: `note ${weight}` }, element("p", {}, text), close);
     this.place.append(note);

@@ -1,6 +1,6 @@
 // Values of the scene, from its tables: set while the world runs.
 
-import { label, number } from "../format";
+import { inPrint, label, number } from "../format";
 import type { Adjustable, Adjustables, Wish } from "../protocol";
 import { element, panel } from "./dom";
 
@@ -12,6 +12,7 @@ export class Parameters {
   readonly root: HTMLElement;
   private readonly place = element("div");
   private readonly command = element("code", { class: "command" });
+  private readonly copying: HTMLButtonElement;
   private shape = "";
   private readonly controls = new Map<string, Control>();
   /** What was set last. */
@@ -22,8 +23,8 @@ export class Parameters {
     private readonly send: (wish: Wish) => void,
     private readonly say: (text: string) => void,
   ) {
-    const copy = element("button", { title: "The command that reproduces these values", click: () => this.copy() }, "Copy command");
-    this.root = panel("Parameters", true, this.place, element("div", { class: "buttons" }, copy), this.command);
+    this.copying = element("button", { title: "The command that reproduces these values", click: () => this.copy() }, "Copy command");
+    this.root = panel("Parameters", true, this.place, element("div", { class: "buttons" }, this.copying), this.command);
   }
 
   setScene(name: string): void {
@@ -31,10 +32,11 @@ export class Parameters {
   }
 
   set({ adjustables, settings }: Adjustables): void {
-    // a scene that is no file here, as of what was dropped, is in the recording alone
-    this.command.textContent = this.scene.endsWith(".toml")
+    const isFile = this.scene.endsWith(".toml");
+    this.copying.disabled = !isFile;
+    this.command.textContent = isFile
       ? `souple run ${quoted(this.scene)}${settings.map((s) => ` --set ${quoted(s)}`).join("")}`
-      : "souple replay RECORDING";
+      : "This scene is no file where the program runs: its recording, under Downloads, replays it.";
     // fields keep the cursor while only their values change
     const shape = JSON.stringify([this.scene, adjustables.map((adjustable) => ({ ...adjustable, value: null }))]);
     if (shape !== this.shape) {
@@ -50,10 +52,12 @@ export class Parameters {
     this.send({ do: "set", path, value });
   }
 
-  /** What was set was refused: says so beside it; the value as it is comes after. */
-  refuse(message: string): void {
-    const named = [...this.controls.keys()].find((path) => message.startsWith(`${path}:`));
-    this.controls.get(named ?? this.lastSet)?.refuse(message);
+  /** What was set was refused: says so beside it, the value as it is comes after; whether there is such a place in sight. */
+  refuse(message: string): boolean {
+    const path = [...this.controls.keys()].find((path) => message.startsWith(`${path}:`)) ?? this.lastSet;
+    const control = this.controls.get(path);
+    control?.refuse(message.startsWith(`${path}:`) ? message.slice(path.length + 1).trim() : message);
+    return control !== undefined && (this.root as HTMLDetailsElement).open;
   }
 
   private build(adjustables: Adjustable[]): void {
@@ -62,7 +66,9 @@ export class Parameters {
     for (const adjustable of adjustables) {
       let group = groups.get(adjustable.group);
       if (!group) {
-        group = element("fieldset", {}, element("legend", {}, adjustable.group.replaceAll("_", " ")));
+        // how it is solved comes after what it is
+        const open = !adjustable.path.startsWith("systems.");
+        group = element("details", { class: "group", open }, element("summary", {}, adjustable.group.replaceAll("_", " ")));
         groups.set(adjustable.group, group);
       }
       group.append(this.row(adjustable));
@@ -73,7 +79,7 @@ export class Parameters {
   private row(adjustable: Adjustable): HTMLElement {
     const { name, unit, summary, type } = adjustable;
     const title = `${summary}${unit ? ` [${unit}]` : ""}`;
-    const heading = element("span", { title }, label(name), unit ? element("small", {}, ` ${unit}`) : null);
+    const heading = element("span", { title }, label(name), unit ? element("small", {}, ` ${inPrint(unit)}`) : null);
     const refusal = element("small", { class: "refusal", hidden: true });
     const isChosen = type === "choice" || type === "boolean";
     const inputs = isChosen ? this.choice(adjustable, refusal) : this.number(adjustable, refusal);
@@ -100,6 +106,7 @@ export class Parameters {
     /** As it was shown or set: what is typed since then is left alone. */
     let known = "";
     let scale: Scale | null = null;
+    let isAutomatic = false;
     const forget = () => {
       text.removeAttribute("aria-invalid");
       refusal.hidden = true;
@@ -107,6 +114,11 @@ export class Parameters {
     text.addEventListener("input", forget);
     slider.addEventListener("input", forget);
     text.addEventListener("change", () => {
+      if (isAutomatic && text.value.trim() === "") {
+        refuse("it is automatic again when the scene is loaded anew");
+        text.value = known;
+        return;
+      }
       known = text.value;
       this.change(path, written(text.value, type));
     });
@@ -115,6 +127,7 @@ export class Parameters {
     });
     const show = (now: Adjustable) => {
       if (document.activeElement !== text || text.value === known) known = text.value = shown(now);
+      isAutomatic ||= now.value === null;
       text.placeholder = now.value === null ? "automatic" : "";
       const value = Number(now.value);
       const isMoved = document.activeElement === slider;
@@ -153,7 +166,8 @@ interface Scale {
 /** Logarithmic about a positive value, even between two ends; none where neither makes sense. */
 function scaleOf({ low, high, value: text }: Adjustable, value: number): Scale | null {
   if (text === null || !Number.isFinite(value)) return null;
-  if (low !== null && high !== null) {
+  // small beside its range: a tolerance, of which factors count
+  if (low !== null && high !== null && !(value > 0 && value < 1e-2 * (high - low))) {
     // ends themselves may be excluded
     const inset = 0.002 * (high - low);
     const [from, to] = [low + inset, high - inset];
@@ -164,7 +178,7 @@ function scaleOf({ low, high, value: text }: Adjustable, value: number): Scale |
   }
   if (value > 0) {
     return {
-      value: (part) => Number((value * 10 ** (DECADES * (2 * part - 1))).toPrecision(3)),
+      value: (part) => Number(Math.min(value * 10 ** (DECADES * (2 * part - 1)), high ?? Infinity).toPrecision(3)),
       place: (now) => (Math.log10(now / value) / DECADES + 1) / 2,
     };
   }

@@ -6,6 +6,14 @@ import type { Frame, ProbeInfo, Samples } from "../protocol";
 import { element, panel } from "./dom";
 import { STAGES } from "./stages";
 
+/** How much of the past may be seen [s]. */
+const REACHES: [number, string][] = [
+  [Infinity, "all"],
+  [30, "30 s"],
+  [10, "10 s"],
+  [3, "3 s"],
+  [1, "1 s"],
+];
 /** Rows kept; older ones leave. */
 const ROWS = 4096;
 const REDRAW_MS = 100;
@@ -36,9 +44,19 @@ export class Plots {
   private steps = new Table(0);
   private plots: Plot[] = [];
   private isDrawn = true;
+  /** How much of the past is seen [s]; all of it by default. */
+  private readonly reach = element(
+    "select",
+    { id: "reach", "aria-label": "How much of the past" },
+    ...REACHES.map(([seconds, text]) => element("option", { value: seconds }, text)),
+  );
 
   constructor() {
-    this.root = panel("Plots", true, this.place);
+    this.root = panel("Plots", true, element("label", { class: "row" }, element("span", {}, "Past"), this.reach), this.place);
+    this.reach.addEventListener("change", () => {
+      this.isDrawn = false;
+      this.draw();
+    });
     this.root.addEventListener("toggle", () => this.resize());
     new ResizeObserver(() => this.resize()).observe(this.root);
     setInterval(() => this.draw(), REDRAW_MS);
@@ -88,13 +106,14 @@ export class Plots {
         height: HEIGHT,
         title: unit ? `${title} [${unit}]` : title,
         scales: { x: { time: false } },
-        legend: { show: lines.length > 1, live: false },
-        cursor: { drag: { x: false, y: false }, points: { show: false } },
+        // values under the mouse
+        legend: { live: true, isolate: true },
+        cursor: { drag: { x: false, y: false } },
         axes: [
           { ...axis, size: 22, values: (_, values) => values.map((value) => `${number(value)} s`) },
           { ...axis, size: 58, values: (_, values) => values.map(number) },
         ],
-        series: [{}, ...lines.map(({ name, colour }) => ({ label: name, stroke: colour, width: 1.5, points: { show: false } }))],
+        series: [{ label: "time", value: (_, value) => (value === null ? "" : `${number(value)} s`) }, ...lines.map(({ name, colour }) => ({ label: name, stroke: colour, width: 1.5, points: { show: false }, value: (_: uPlot, value: number | null) => (value === null ? "" : number(value)) }))],
       },
       [[], ...lines.map(() => [])],
       this.place,
@@ -107,8 +126,10 @@ export class Plots {
     if (this.isDrawn || !(this.root as HTMLDetailsElement).open || document.hidden) return;
     this.isDrawn = true;
     for (const { plot, table, first, count } of this.plots) {
-      const lines = table.columns.slice(first, first + count);
-      plot.setData([table.columns[0]!, ...lines] as uPlot.AlignedData);
+      const from = table.since(Number(this.reach.value));
+      const times = table.columns[0]!.slice(from);
+      const lines = table.columns.slice(first, first + count).map((line) => line.slice(from));
+      plot.setData([times, ...lines] as uPlot.AlignedData);
       plot.root.dataset.last = JSON.stringify(lines.map((line) => line.at(-1) ?? null));
     }
   }
@@ -129,6 +150,19 @@ class Table {
 
   constructor(width: number) {
     this.columns = Array.from({ length: width }, () => []);
+  }
+
+  /** The first row of the last seconds. */
+  since(seconds: number): number {
+    const times = this.columns[0]!;
+    const start = (times.at(-1) ?? 0) - seconds;
+    let [low, high] = [0, times.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (times[middle]! < start) low = middle + 1;
+      else high = middle;
+    }
+    return low;
   }
 
   push(row: ArrayLike<number>): void {

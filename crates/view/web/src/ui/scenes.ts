@@ -13,6 +13,13 @@ export class Scenes {
   /** The number that refusals come back to. */
   page = 0;
   private readonly list = element("ul", { class: "scenes" });
+  private readonly wanted = element("input", {
+    type: "text",
+    id: "find-scene",
+    placeholder: "Find a scene",
+    "aria-label": "Find a scene by its name, title or description",
+    spellcheck: "false",
+  });
 
   constructor(
     private readonly send: (wish: Wish) => void,
@@ -29,8 +36,10 @@ export class Scenes {
       false,
       element("div", { class: "buttons" }, element("button", { click: () => file.click() }, "Open a file"), file),
       element("p", { class: "quiet" }, "A scene file or a mesh; it can be dropped on the page as well."),
+      this.wanted,
       this.list,
     );
+    this.wanted.addEventListener("input", () => this.find());
     window.addEventListener("dragover", (event) => event.preventDefault());
     window.addEventListener("drop", (event) => {
       event.preventDefault();
@@ -47,10 +56,21 @@ export class Scenes {
           "button",
           { "data-scene": name, title: description, click: () => this.send({ do: "load", scene: name }) },
           element("b", {}, title),
+          element("code", {}, name),
           element("small", {}, description.replaceAll("\n", " ")),
         ),
       );
     this.list.replaceChildren(...scenes.map(entry));
+    this.find();
+  }
+
+  /** Leaves on the list what has all words that are wanted. */
+  private find(): void {
+    const words = this.wanted.value.toLowerCase().split(/\s+/);
+    for (const entry of this.list.children) {
+      const text = (entry.textContent ?? "").toLowerCase();
+      (entry as HTMLElement).hidden = !words.every((word) => text.includes(word));
+    }
   }
 
   setCurrent(name: string): void {

@@ -1,7 +1,7 @@
 // Where the time of a step goes.
 
 import { number } from "../format";
-import type { Frame, SceneInfo } from "../protocol";
+import type { BodyInfo, Frame, SceneInfo } from "../protocol";
 import { element } from "./dom";
 
 /** What a step is made of, and the colours of its parts. */
@@ -21,7 +21,7 @@ export class Stages {
   private readonly total = element("span", { class: "total" });
   private readonly bar = element("span", { class: "stagebar" });
   private readonly parts: HTMLElement[];
-  private readonly iterations = element("span");
+  private readonly iterations = element("span", { title: "Iterations of a step, in the mean: of Newton's method, and of the linear solver" });
   private readonly rate = element("span", { title: "Pictures drawn each second" });
   private mean: number[] | null = null;
   private lastText = 0;
@@ -39,9 +39,14 @@ export class Stages {
 
   begin(info: SceneInfo): void {
     this.mean = null;
-    const cells = info.bodies.reduce((sum, body) => sum + body.cells, 0);
-    const points = info.bodies.reduce((sum, body) => sum + body.points, 0);
-    this.counts.textContent = `${points.toLocaleString()} points, ${cells.toLocaleString()} cells`;
+    const sum = (count: (body: BodyInfo) => number) => info.bodies.reduce((all, body) => all + count(body), 0);
+    const counts: [number, string][] = [
+      [sum(({ points }) => points), "points"],
+      [sum(({ cells, is_network }) => (is_network ? 0 : cells)), "cells"],
+      [sum(({ links }) => links), "links"],
+    ];
+    const there = counts.filter(([count]) => count > 0).map(([count, name]) => `${count.toLocaleString()} ${name}`);
+    this.counts.textContent = there.join(", ");
   }
 
   show(frame: Frame): void {
@@ -63,9 +68,9 @@ export class Stages {
       part.style.flexGrow = String(stage / (total || 1));
       part.title = `${STAGES[index]![0]}: ${number(stage)} ms`;
     });
-    this.iterations.textContent = linear > 0 ? `${number(newton)} Newton, ${number(linear)} linear iterations` : "";
+    this.iterations.textContent = linear > 0 ? `Newton ${newton.toFixed(1)}, linear ${linear.toFixed(1)}` : "";
     if (clock - this.since > 1000) {
-      this.rate.textContent = `${Math.round((1000 * this.pictures) / (clock - this.since))} pictures/s`;
+      this.rate.textContent = `${Math.round((1000 * this.pictures) / (clock - this.since))} fps`;
       this.since = clock;
       this.pictures = 0;
     }

@@ -30,8 +30,8 @@ export class Arrows {
     for (const { mesh } of [this.sticks, this.tips]) mesh.castShadow = false;
   }
 
-  /** The arrows of all bodies, of a kind; of none for -1. */
-  update(bodies: BodyFrame[], kind: number, dark: boolean): void {
+  /** The arrows of all bodies, of a kind; of none for -1. What is shorter than `rest`, in its unit, is nothing. */
+  update(bodies: BodyFrame[], kind: number, dark: boolean, rest: number): void {
     // lengths of one kind say nothing of another's
     if (kind !== this.kind) this.scale = 0;
     this.kind = kind;
@@ -39,7 +39,10 @@ export class Arrows {
     const count = all.reduce((sum, [, vectors]) => sum + (vectors?.length ?? 0) / 3, 0);
     const every = Math.max(1, Math.ceil(count / MOST));
     const colour = dark ? COLOURS.dark : COLOURS.light;
-    this.fit(all.map(([, vectors]) => vectors));
+    this.fit(
+      all.map(([, vectors]) => vectors),
+      rest,
+    );
     this.sticks.begin();
     this.tips.begin();
     for (const [positions, vectors] of all) {
@@ -79,15 +82,18 @@ export class Arrows {
   }
 
   /** Shrinks at once for longer vectors, and grows slowly: arrows that jump cannot be compared. */
-  private fit(all: (Float32Array | undefined)[]): void {
+  private fit(all: (Float32Array | undefined)[], rest: number): void {
     let longest = 0;
     for (const vectors of all) {
       for (let at = 0; at < (vectors?.length ?? 0); at += 3) {
         longest = Math.max(longest, Math.hypot(vectors![at]!, vectors![at + 1]!, vectors![at + 2]!));
       }
     }
-    this.longest = longest;
-    if (longest === 0) return;
+    this.longest = longest > rest ? longest : 0;
+    if (this.longest === 0) {
+      this.scale = 0;
+      return;
+    }
     const fitting = (LONGEST * this.size) / longest;
     this.scale = this.scale === 0 || fitting < this.scale ? fitting : this.scale + 0.03 * (fitting - this.scale);
   }

@@ -14,17 +14,19 @@ import {
   Mesh,
   MeshPhysicalMaterial,
   MeshStandardMaterial,
+  Plane,
   SphereGeometry,
   Vector3,
 } from "three";
-import type { Object3D, Plane } from "three";
+import type { Object3D } from "three";
 import type { BodyFrame, BodyInfo, FieldInfo, InsideShape, NetworkShape, Surface } from "../protocol";
 import { Axes } from "./axes";
 import { Facets } from "./facets";
 import { Inside } from "./inside";
 import type { Paint } from "./inside";
 import { Network } from "./network";
-import { smoothNormals } from "./normals";
+import { divideAtCreases, smoothNormals } from "./normals";
+import type { Creased } from "./normals";
 import { BODY_COLOURS, paint } from "./palette";
 import type { Range } from "./palette";
 
@@ -32,6 +34,8 @@ import type { Range } from "./palette";
 export type Style = "smooth" | "edges" | "wireframe";
 
 const PIN_COLOUR = 0x3d6fd8;
+/** Of the outside beyond a section, in the size of all bodies. */
+const OVERLAP = 4e-4;
 /** Beyond so many sizes of all bodies numbers of four bytes draw nothing that could be seen. */
 const FAR = 1e6;
 
@@ -49,11 +53,17 @@ export class Body {
   private ofCells = false;
   private last: BodyFrame | null = null;
   private cut: Plane | null = null;
+  /** What cuts the outside off. */
+  private clipping: Plane[] = [];
   private explode = 0;
   private style: Style = "smooth";
-  private readonly colours: BufferAttribute;
+  private dark = false;
+  private hasValues = false;
+  /** Seen itself, whatever skin it wears. */
+  private isBare = false;
+  /** The surface as it is drawn. */
+  private readonly creased: Creased;
   private readonly edges: LineSegments<BufferGeometry, LineBasicMaterial>;
-  private readonly triangles: Uint32Array;
   private pins: InstancedMesh<SphereGeometry, MeshStandardMaterial> | null = null;
   private pinned: number[] = [];
 
@@ -64,16 +74,17 @@ export class Body {
     network: NetworkShape | undefined,
     private readonly size: number,
   ) {
-    this.triangles = surface.triangles;
+    this.creased = divideAtCreases(surface.points, surface.triangles);
     this.positions = Float32Array.from(surface.points);
     this.normals = new Float32Array(this.positions.length);
-    const geometry = new BufferGeometry();
     const moving = (numbers: Float32Array) => new BufferAttribute(numbers, 3).setUsage(DynamicDrawUsage);
-    geometry.setAttribute("position", moving(this.positions));
-    geometry.setAttribute("normal", moving(this.normals));
-    this.colours = moving(new Float32Array(this.positions.length));
-    geometry.setAttribute("color", this.colours);
-    geometry.setIndex(new BufferAttribute(this.triangles, 1));
+    const made = (names: string[], points: number) => {
+      const geometry = new BufferGeometry();
+      for (const name of names) geometry.setAttribute(name, moving(new Float32Array(3 * points)));
+      return geometry;
+    };
+    const geometry = made(["position", "normal", "color"], this.creased.sources.length);
+    geometry.setIndex(new BufferAttribute(this.creased.triangles, 1));
     const material = new MeshPhysicalMaterial({
       color: BODY_COLOURS[index % BODY_COLOURS.length]!,
       roughness: 0.5,
@@ -88,9 +99,9 @@ export class Body {
     this.mesh.receiveShadow = true;
     // it moves out of any box that was drawn about it once
     this.mesh.frustumCulled = false;
-    const lines = new BufferGeometry();
-    lines.setAttribute("position", geometry.getAttribute("position"));
-    lines.setIndex(new BufferAttribute(edgesOf(this.triangles), 1));
+    const lines = made(["color"], surface.points.length / 3);
+    lines.setAttribute("position", moving(this.positions));
+    lines.setIndex(new BufferAttribute(surface.edges, 1));
     this.edges = new LineSegments(lines, new LineBasicMaterial({ transparent: true, opacity: 0.35, color: 0x101418 }));
     this.edges.frustumCulled = false;
     this.edges.visible = false;
@@ -137,6 +148,12 @@ export class Body {
     this.setVisible();
   }
 
+  setBare(isBare: boolean): void {
+    if (isBare === this.isBare) return;
+    this.isBare = isBare;
+    this.setVisible();
+  }
+
   setAxes(shown: boolean): void {
     this.axes.setShown(shown);
   }
@@ -153,13 +170,18 @@ export class Body {
       material.needsUpdate = true;
     }
     this.setOfCells(of === "cells" && values !== undefined);
-    const count = this.triangles.length / 3;
+    const { sources, triangles } = this.creased;
+    const count = triangles.length / 3;
     if (values && this.ofCells) {
-      this.facets?.update(this.positions, this.normals, values, map);
+      this.facets?.update(numbersOf(this.mesh, "position"), numbersOf(this.mesh, "normal"), values, map);
     } else if (values) {
-      paint(values, range, map, this.colours.array as Float32Array);
-      this.colours.needsUpdate = true;
+      const colours = numbersOf(this.edges, "color");
+      paint(values, range, map, colours);
+      spread(colours, sources, numbersOf(this.mesh, "color"));
+      for (const { geometry } of [this.mesh, this.edges]) geometry.getAttribute("color").needsUpdate = true;
     }
+    this.hasValues = values !== undefined;
+    this.setLines();
     if (!this.last) return;
     this.network?.update(this.last, values, of, range, map);
     // a frame that left before the page looked inside has no points there
@@ -171,22 +193,37 @@ export class Body {
 
   setStyle(style: Style, dark: boolean): void {
     this.style = style;
-    this.mesh.material.colorWrite = style !== "wireframe";
-    this.mesh.material.depthWrite = style !== "wireframe";
+    this.dark = dark;
     this.mesh.castShadow = style !== "wireframe";
     this.setVisible();
-    this.edges.material.color.set(style === "wireframe" && dark ? 0xdfe6f0 : 0x101418);
-    this.edges.material.opacity = style === "wireframe" ? 0.6 : 0.3;
+    this.setLines();
+  }
+
+  /** Lines are coloured where nothing else is; classes, which have nothing between them, by their triangles' sides. */
+  private setLines(): void {
+    const isWire = this.style === "wireframe";
+    const { material } = this.mesh;
+    material.wireframe = isWire && this.ofCells;
+    material.colorWrite = material.depthWrite = !isWire || this.ofCells;
+    const lines = this.edges.material;
+    const isColoured = isWire && this.hasValues && !this.ofCells;
+    if (lines.vertexColors !== isColoured) lines.needsUpdate = true;
+    lines.vertexColors = isColoured;
+    lines.color.set(isColoured ? 0xffffff : isWire && this.dark ? 0xdfe6f0 : 0x101418);
+    lines.opacity = isColoured ? 1 : isWire ? 0.6 : 0.3;
   }
 
   setCut(cut: Plane | null): void {
     this.cut = cut;
-    const planes = cut ? [cut] : [];
+    // the outside ends a little beyond the section: nothing is seen between them
+    const planes = cut ? [new Plane(cut.normal, cut.constant + OVERLAP * this.size)] : [];
     this.mesh.material.clippingPlanes = planes;
     // what has no section is looked into
     this.mesh.material.side = this.info.is_sheet || (cut && !this.info.has_inside) ? DoubleSide : FrontSide;
     this.mesh.material.needsUpdate = true;
     this.edges.material.clippingPlanes = planes;
+    this.clipping = planes;
+    if (this.pins) this.pins.material.clippingPlanes = planes;
     this.network?.setCut(planes);
     this.inside?.setCut(planes);
   }
@@ -198,6 +235,7 @@ export class Body {
       const sphere = new SphereGeometry(this.size * 0.009, 10, 8);
       this.pins = new InstancedMesh(sphere, new MeshStandardMaterial({ color: PIN_COLOUR, roughness: 0.5 }), points.length);
       this.pins.frustumCulled = false;
+      this.pins.material.clippingPlanes = this.clipping;
       this.group.add(this.pins);
     }
     this.placePins();
@@ -225,6 +263,14 @@ export class Body {
     return near.slice(0, 400).map(([, point]) => point);
   }
 
+  /** The mean normal at some points; `other` where they have none. */
+  normalAbout(points: number[], other: Vector3): Vector3 {
+    const normal = new Vector3();
+    const one = new Vector3();
+    for (const point of points) normal.add(one.fromArray(this.normals, 3 * point));
+    return normal.length() > 0 && !this.network ? normal.normalize() : other.clone();
+  }
+
   /** Makes the mesh ready to be met by a ray. */
   prepareForRay(): void {
     this.mesh.geometry.computeBoundingSphere();
@@ -246,31 +292,40 @@ export class Body {
   /** What stands for the body: its cells, its surface, or the skin that it wears. */
   private setVisible(): void {
     const isApart = this.explode > 0 && this.inside !== null;
-    const isSurface = !isApart && !this.info.is_worn;
+    const isHidden = this.info.is_worn && !this.isBare;
+    const isSurface = !isApart && !isHidden;
     this.mesh.visible = isSurface && !this.ofCells;
     if (this.facets) {
       this.facets.mesh.visible = isSurface && this.ofCells;
       this.facets.mesh.castShadow = this.mesh.castShadow;
     }
-    this.edges.visible = isSurface && this.style !== "smooth";
-    if (this.inside) this.inside.group.visible = !this.info.is_worn;
+    this.edges.visible = isSurface && (this.style === "edges" || (this.style === "wireframe" && !this.ofCells));
+    if (this.inside) this.inside.group.visible = !isHidden;
   }
 
   private setOfCells(ofCells: boolean): void {
     if (ofCells === this.ofCells) return;
     this.ofCells = ofCells;
     if (ofCells && !this.facets) {
-      this.facets = new Facets(this.triangles, this.mesh.material);
+      this.facets = new Facets(this.creased.triangles, this.mesh.material);
       this.group.add(this.facets.mesh);
     }
     this.setVisible();
   }
 
   private moved(): void {
-    smoothNormals(this.positions, this.triangles, this.normals);
+    const { sources, triangles } = this.creased;
+    const normals = numbersOf(this.mesh, "normal");
+    spread(this.positions, sources, numbersOf(this.mesh, "position"));
+    smoothNormals(numbersOf(this.mesh, "position"), triangles, normals);
+    this.normals.fill(0);
+    sources.forEach((point, own) => {
+      for (let k = 0; k < 3; k++) this.normals[3 * point + k]! += normals[3 * own + k]!;
+    });
     const { geometry } = this.mesh;
-    geometry.getAttribute("position").needsUpdate = true;
-    geometry.getAttribute("normal").needsUpdate = true;
+    for (const attribute of [geometry.getAttribute("position"), geometry.getAttribute("normal"), this.edges.geometry.getAttribute("position")]) {
+      attribute.needsUpdate = true;
+    }
     this.placePins();
   }
 
@@ -295,19 +350,16 @@ export class Body {
   }
 }
 
-/** Each edge of triangles once, also those at the border, which have one triangle. */
-function edgesOf(triangles: Uint32Array): Uint32Array {
-  const edges: number[] = [];
-  const seen = new Set<number>();
-  for (let t = 0; t < triangles.length; t += 3) {
-    for (let k = 0; k < 3; k++) {
-      const a = triangles[t + k]!;
-      const b = triangles[t + ((k + 1) % 3)]!;
-      // two whole numbers in one: points are fewer than 2²⁶
-      const edge = Math.min(a, b) * 2 ** 26 + Math.max(a, b);
-      if (!seen.has(edge)) edges.push(a, b);
-      seen.add(edge);
-    }
+function numbersOf({ geometry }: { geometry: BufferGeometry }, name: string): Float32Array {
+  return geometry.getAttribute(name).array as Float32Array;
+}
+
+/** Three numbers of each source. */
+function spread(numbers: Float32Array, sources: Uint32Array, to: Float32Array): void {
+  for (let own = 0; own < sources.length; own++) {
+    const from = 3 * sources[own]!;
+    to[3 * own] = numbers[from]!;
+    to[3 * own + 1] = numbers[from + 1]!;
+    to[3 * own + 2] = numbers[from + 2]!;
   }
-  return Uint32Array.from(edges);
 }

@@ -26,13 +26,22 @@ const THROW_SECONDS = 0.25;
 const HANDS = 10;
 /** The key's hand among what is held; pointers have numbers from 0. */
 const KEYS = -1;
+/** The way of a key: to the right, up, and towards the eye. */
+const DIRECTIONS: Record<string, [number, number, number]> = {
+  arrowleft: [-1, 0, 0],
+  arrowright: [1, 0, 0],
+  arrowup: [0, 1, 0],
+  arrowdown: [0, -1, 0],
+  pageup: [0, 0, -1],
+  pagedown: [0, 0, 1],
+};
 /** How far a press of an arrow key, and a notch of the wheel, lead a hand: parts of the bodies' diagonal. */
 const KEY_STEP = 0.02;
 const WHEEL_STEP = 0.012;
 
 export class Grab {
   tool: Tool = "pull";
-  handling: Handling = { strength: 1, tool: "ball", size: 0.16, front: 0.5, stays: false };
+  handling: Handling = { strength: 1, tool: "ball", size: 0.16, front: 0.5, flat: 0, stays: false };
   private readonly held = new Map<number, Held>();
   /** Tools that were left where they are. */
   private readonly left: Held[] = [];
@@ -45,7 +54,7 @@ export class Grab {
   ) {
     const { canvas } = picture;
     canvas.tabIndex = 0;
-    const what = "The simulated world: drag bodies, or use the tool in the middle with H, lead it with the arrow keys, let go with H";
+    const what = "The simulated world: drag bodies, or use the tool in the middle with H, lead it with the arrow and page keys, let go with H; with empty hands these keys turn the view";
     canvas.setAttribute("aria-label", what);
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
@@ -79,12 +88,19 @@ export class Grab {
       else this.takeInTheMiddle();
       return true;
     }
-    const direction = { arrowleft: [-1, 0], arrowright: [1, 0], arrowup: [0, 1], arrowdown: [0, -1] }[name];
-    if (!held || !direction) return false;
-    const right = new Vector3().setFromMatrixColumn(this.picture.camera.matrixWorld, 0);
-    const up = new Vector3().setFromMatrixColumn(this.picture.camera.matrixWorld, 1);
+    const direction = DIRECTIONS[name];
+    if (!direction) return false;
+    if (!held) {
+      this.picture.eye.turn(direction);
+      return true;
+    }
     const step = KEY_STEP * this.picture.size;
-    this.lead(held, held.last.clone().addScaledVector(right, direction[0]! * step).addScaledVector(up, direction[1]! * step));
+    const place = held.last.clone();
+    const axis = new Vector3();
+    for (const [k, share] of direction.entries()) {
+      place.addScaledVector(axis.setFromMatrixColumn(this.picture.eye.camera.matrixWorld, k), share * step);
+    }
+    this.lead(held, place);
     return true;
   }
 
@@ -112,7 +128,7 @@ export class Grab {
       this.picture.canvas.setPointerCapture(event.pointerId);
     }
     // the camera is not to turn with it
-    this.picture.controls.enabled = false;
+    this.picture.eye.controls.enabled = false;
     this.picture.canvas.style.cursor = "grabbing";
   }
 
@@ -133,12 +149,16 @@ export class Grab {
 
   /** Puts a tool before the nearest point of a body, which is what meets it; where that is. */
   private put(hand: number, hit: Hit): Vector3 {
-    const { tool, strength, front } = this.handling;
+    const { tool, strength, front, flat } = this.handling;
     const size = this.handling.size * this.picture.size;
-    const nearest = this.patch(hit)[0];
+    const patch = this.patch(hit);
+    const nearest = patch[0];
     const point = nearest === undefined ? hit.point : new Vector3().fromArray(hit.body.positions, 3 * nearest);
-    const place = point.clone().addScaledVector(hit.normal, 1.02 * front * size);
-    const direction = this.picture.towardsEye.toArray() as Vector;
+    // a flat tool lies on the surface, before all that its front would meet there
+    const normal = flat > 0 ? hit.body.normalAbout(patch, hit.normal) : hit.normal;
+    const ahead = flat > 0 ? this.picture.heightAbove(point, normal, flat * size, size) : 0;
+    const place = point.clone().addScaledVector(normal, 1.02 * front * size + ahead);
+    const direction = (flat > 0 ? normal : this.picture.eye.towards).toArray() as Vector;
     this.send({ do: "touch", hand, tool, size, place: place.toArray() as Vector, direction, strength });
     return place;
   }
@@ -149,14 +169,17 @@ export class Grab {
       if (event.buttons === 0) this.hover(event);
       return;
     }
-    const place = this.picture.onPlane(event, held.last);
+    const place = this.picture.eye.onPlane(event, held.last);
     if (place) this.lead(held, place);
   }
 
   /** Leads what is held to where its grip is at a place. */
   private lead(held: Held, place: Vector3): void {
     held.last = place;
-    if (held.tool === "throw") return;
+    if (held.tool === "throw") {
+      this.picture.aim({ from: held.start, to: place, speed: velocityOf(held).length() });
+      return;
+    }
     this.send({ do: "move", hand: held.hand, offset: place.clone().sub(held.grip).toArray() as Vector });
   }
 
@@ -167,7 +190,7 @@ export class Grab {
     event.preventDefault();
     event.stopImmediatePropagation();
     const step = WHEEL_STEP * this.picture.size * Math.sign(event.deltaY);
-    this.lead(held, held.last.clone().addScaledVector(this.picture.towardsEye, step));
+    this.lead(held, held.last.clone().addScaledVector(this.picture.eye.towards, step));
   }
 
   private up(event: PointerEvent): void {
@@ -191,15 +214,16 @@ export class Grab {
     if (held.tool === "push" && this.handling.stays) this.left.push(held);
     else if (held.tool === "pull" || held.tool === "push") this.send({ do: "release", hand: held.hand });
     if (held.tool === "throw") {
-      const velocity = held.last.clone().sub(held.start).divideScalar(THROW_SECONDS);
+      const velocity = velocityOf(held);
       if (velocity.length() > 0) this.send({ do: "throw", body: held.body, velocity: velocity.toArray() as Vector });
     }
   }
 
   /** Without a hand on anything the camera is free. */
   private rest(): void {
+    if ([...this.held.values()].every(({ tool }) => tool !== "throw")) this.picture.aim(null);
     if (this.held.size > 0) return;
-    this.picture.controls.enabled = true;
+    this.picture.eye.controls.enabled = true;
     this.picture.canvas.style.cursor = "";
   }
 
@@ -228,4 +252,9 @@ export class Grab {
     this.lastHover = event.timeStamp;
     this.picture.canvas.style.cursor = this.picture.hit(event) ? "grab" : "";
   }
+}
+
+/** Of what would be thrown now. */
+function velocityOf({ start, last }: Held): Vector3 {
+  return last.clone().sub(start).divideScalar(THROW_SECONDS);
 }

@@ -5,6 +5,13 @@ import type { Camera } from "three";
 import { quantity } from "../format";
 import type { HandShown } from "../protocol";
 
+/** Where something will be thrown, and how fast [m/s]. */
+export interface Aim {
+  from: Vector3;
+  to: Vector3;
+  speed: number;
+}
+
 const COLOUR = 0xf2a33a;
 /** Length of the arrow of a tool, in the size of all bodies. */
 const TOOL_ARROW = 0.12;
@@ -19,34 +26,57 @@ interface Shown {
 export class Hands {
   readonly group = new Group();
   private shown: Shown[] = [];
+  private last: HandShown[] = [];
+  private aimed: Aim | null = null;
 
   constructor(
     private readonly labels: HTMLElement,
     private readonly size: () => number,
   ) {}
 
+  /** Shows where something will be thrown; null: nothing will. */
+  aim(aimed: Aim | null): void {
+    if (aimed === this.aimed) return;
+    this.aimed = aimed;
+    this.update(this.last);
+  }
+
   update(hands: HandShown[]): void {
-    while (this.shown.length > hands.length) this.drop();
-    while (this.shown.length < hands.length) this.add();
+    this.last = hands;
+    const count = hands.length + (this.aimed ? 1 : 0);
+    while (this.shown.length > count) this.drop();
+    while (this.shown.length < count) this.add();
     hands.forEach((hand, index) => {
-      const { arrow, grip, label, place } = this.shown[index]!;
+      const shown = this.shown[index]!;
+      const { grip, label, place } = shown;
       const held = new Vector3().fromArray(hand.held);
       const force = new Vector3().fromArray(hand.force);
       place.fromArray(hand.place);
       // of a tool, which is where it is led to, the arrow tells the way it pushes
       if (hand.holds === "tool" && force.length() > 0) place.addScaledVector(force, (TOOL_ARROW * this.size()) / force.length());
-      const pull = place.clone().sub(held);
-      const length = Math.max(pull.length(), 1e-9);
-      arrow.visible = length > 1e-6 * this.size();
+      this.point(shown, held);
       grip.visible = hand.holds === "body";
-      const head = Math.min(0.035 * this.size(), 0.6 * length);
-      arrow.position.copy(held);
-      arrow.setDirection(pull.divideScalar(length));
-      arrow.setLength(length, head, 0.55 * head);
-      grip.position.copy(held);
-      grip.scale.setScalar(this.size());
       label.textContent = quantity(force.length(), "N");
     });
+    const shown = this.shown[hands.length];
+    if (!this.aimed || !shown) return;
+    shown.place.copy(this.aimed.to);
+    this.point(shown, this.aimed.from);
+    shown.grip.visible = true;
+    shown.label.textContent = quantity(this.aimed.speed, "m/s");
+  }
+
+  /** Leads the arrow from a place to that of its number. */
+  private point({ arrow, grip, place }: Shown, from: Vector3): void {
+    const pull = place.clone().sub(from);
+    const length = Math.max(pull.length(), 1e-9);
+    arrow.visible = length > 1e-6 * this.size();
+    const head = Math.min(0.035 * this.size(), 0.6 * length);
+    arrow.position.copy(from);
+    arrow.setDirection(pull.divideScalar(length));
+    arrow.setLength(length, head, 0.55 * head);
+    grip.position.copy(from);
+    grip.scale.setScalar(this.size());
   }
 
   /** Puts the numbers where the arrows end on the screen. */

@@ -4,6 +4,14 @@ import type { BodyFrame, Class } from "../protocol";
 import { CLASS_RANGE } from "./palette";
 import type { Range } from "./palette";
 
+/**
+ * What moves less than this part of the size of all bodies, or by as much in a second, rests: what is left is rounding, and what
+ * solvers leave over.
+ */
+const REST = 1e-7;
+/** Units in which the size of all bodies tells what is nothing. */
+const OF_MOTION = new Set(["m", "m/s"]);
+
 type Values = (Float32Array | undefined)[];
 
 export class Meanings {
@@ -17,12 +25,21 @@ export class Meanings {
   linkStates: number[] = [];
   /** Length of the longest arrow, in its unit. */
   longest = 0;
+  /** Diagonal of all bodies [m]. */
+  size = 1;
   private hasClasses = false;
+  private unit = "";
 
   /** Another field, or another world: values seen before tell nothing. */
-  begin(classes: Class[] | null): void {
+  begin(classes: Class[] | null, unit: string): void {
     this.hasClasses = classes !== null;
+    this.unit = unit;
     this.range = classes ? CLASS_RANGE : { low: Infinity, high: -Infinity };
+  }
+
+  /** What counts as nothing in a unit. */
+  rest(unit: string): number {
+    return OF_MOTION.has(unit) ? REST * this.size : 0;
   }
 
   /**
@@ -48,6 +65,9 @@ export class Meanings {
       }
     }
     if (low > high) return;
+    const rest = this.rest(this.unit);
+    // colours of what rests would show a motion that is none
+    if (Math.max(high, -low) < rest) [low, high] = [0, rest];
     const { range } = this;
     const ease = (old: number, now: number, widens: boolean) =>
       widens || !Number.isFinite(old) ? now : old + shrinking * (now - old);

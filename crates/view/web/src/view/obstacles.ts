@@ -16,6 +16,7 @@ import {
 } from "three";
 import type { Box3, Material } from "three";
 import type { ObstacleInfo, Surface } from "../protocol";
+import { floor } from "./floor";
 import { OBSTACLE_COLOUR } from "./palette";
 
 /** Cosine of 45 degrees: steeper planes are walls. */
@@ -35,7 +36,7 @@ export class Obstacles {
         const normal = new Vector3(...obstacle.normal);
         const level = normal.dot(up) > LEVEL;
         hasFloor ||= level;
-        this.group.add(plane(new Vector3(...obstacle.point), normal, centre, size * (level ? 8 : 1.2)));
+        this.group.add(plane(new Vector3(...obstacle.point), normal, centre, size, level));
       } else {
         const surface = surfaces[next++];
         if (surface) this.shapes.push(shape(surface, obstacle.is_around));
@@ -69,11 +70,16 @@ function facing(normal: Vector3): Quaternion {
   return new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), normal);
 }
 
-function plane(point: Vector3, normal: Vector3, centre: Vector3, side: number): Mesh {
-  const material = new MeshStandardMaterial({ color: 0xb9bfca, roughness: 0.9, transparent: true, opacity: 0.55 });
-  const mesh = new Mesh(new PlaneGeometry(side, side), material);
+function plane(point: Vector3, normal: Vector3, centre: Vector3, size: number, isLevel: boolean): Mesh {
+  const mesh = isLevel ? floor(8 * size, size) : wall(1.2 * size);
   const foot = centre.clone().addScaledVector(normal, -normal.dot(centre.clone().sub(point)));
   mesh.applyMatrix4(new Matrix4().compose(foot, facing(normal), new Vector3(1, 1, 1)));
+  return mesh;
+}
+
+function wall(side: number): Mesh {
+  const material = new MeshStandardMaterial({ color: 0xb9bfca, roughness: 0.9, transparent: true, opacity: 0.55 });
+  const mesh = new Mesh(new PlaneGeometry(side, side), material);
   mesh.receiveShadow = true;
   return mesh;
 }

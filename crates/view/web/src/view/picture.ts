@@ -6,24 +6,23 @@ import {
   HemisphereLight,
   NeutralToneMapping,
   PCFShadowMap,
-  PerspectiveCamera,
   Plane,
   PMREMGenerator,
-  Raycaster,
   Scene,
   SRGBColorSpace,
-  Vector2,
   Vector3,
   WebGLRenderer,
 } from "three";
 import type { BufferGeometry, Object3D, Texture } from "three";
-import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
 import type { ColourMap, FieldInfo, Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
 import { Arrows } from "./arrows";
 import { Body } from "./body";
 import type { Style } from "./body";
+import { Eye } from "./eye";
+import { Furniture } from "./furniture";
 import { Hands } from "./hands";
+import type { Aim } from "./hands";
 import { Obstacles } from "./obstacles";
 import { Meanings } from "./meanings";
 import { coloursOf, linearColours } from "./palette";
@@ -42,6 +41,8 @@ export interface Hit {
 export interface Extras {
   /** Number of the kind of arrows; -1 for none. */
   arrows: number;
+  /** That they are in. */
+  unit: string;
   /** How far cells are apart, in their distance from the middle. */
   explode: number;
   /** Whether frames that carry bodies are drawn. */
@@ -50,16 +51,19 @@ export interface Extras {
 
 export interface Cut {
   axis: 0 | 1 | 2;
+  /** Whether the half away from the eye is left; the section is seen on it. */
+  isFarHalf: boolean;
   /** From 0, nothing is left, to 1, all is. */
   place: number;
 }
 
+/** Of the light that throws shadows. */
+const KEY = 2.4;
 /** By how much of what is too much the range of colours shrinks with each frame. */
 const SHRINKING = 0.02;
 
 export class Picture {
-  readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
-  readonly controls: OrbitControls;
+  readonly eye: Eye;
   readonly canvas: HTMLCanvasElement;
   bodies: Body[] = [];
   readonly tools = new Tools();
@@ -67,26 +71,26 @@ export class Picture {
   size = 1;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  private readonly key = new DirectionalLight(0xfff4e6, 2.4);
+  private readonly key = new DirectionalLight(0xfff4e6, KEY);
   private readonly sky = new HemisphereLight(0xeef4ff, 0x8a7f78, 0.7);
   private readonly hands: Hands;
+  private readonly furniture: Furniture;
   private readonly quality = new Quality(() => this.simplify());
   /** Made when they are first wanted: it takes a while on a machine that is slow. */
   private reflections: Texture | null = null;
-  private readonly ray = new Raycaster();
   private obstacles: Obstacles | null = null;
   private skins: Skin[] = [];
   private arrows = new Arrows(1);
-  private extras: Extras = { arrows: -1, explode: 0, axes: true };
+  private extras: Extras = { arrows: -1, unit: "", explode: 0, axes: true };
   private bounds = new Box3();
-  private up = new Vector3(0, 1, 0);
-  private direction = new Vector3(-0.5, -0.45, -1);
   private colours: Float32Array = new Float32Array(3 * 256);
   private field = -1;
   private of: FieldInfo["of"] = "points";
   private style: Style = "smooth";
   private dark = false;
   private cut: Cut | null = null;
+  /** On which side of the cut's axis the eye was when it was chosen. */
+  private eyeSide = 1;
   private readonly cutPlane = new Plane();
   readonly meanings = new Meanings();
   private hasSkins = false;
@@ -115,6 +119,7 @@ export class Picture {
     const labels = document.createElement("div");
     labels.className = "labels";
     place.append(labels);
+    this.furniture = new Furniture(place);
     this.hands = new Hands(labels, () => this.size);
     this.scene.environmentIntensity = 0.45;
     this.key.castShadow = true;
@@ -125,9 +130,7 @@ export class Picture {
     this.scene.add(this.key, this.key.target, this.sky, this.hands.group, this.tools.group);
     // the hand comes before the camera: what it takes hold of does not turn the view
     grab(this);
-    this.controls = new OrbitControls(this.camera, this.canvas);
-    this.controls.enableDamping = true;
-    this.controls.dampingFactor = 0.12;
+    this.eye = new Eye(this.canvas);
     new ResizeObserver(() => this.resize()).observe(place);
     this.simplify();
   }
@@ -161,14 +164,14 @@ export class Picture {
     const radius = Math.max(0, ...networks.flatMap((network) => [...(network?.radii.slice(0, 1) ?? [])]));
     if (!this.bounds.isEmpty()) this.bounds.expandByScalar(radius);
     this.size = this.bounds.isEmpty() ? 1 : Math.max(this.bounds.getSize(point).length(), 1e-6);
-    this.up.fromArray(info.up).normalize();
-    this.direction.fromArray(info.direction).normalize();
+    this.eye.up.fromArray(info.up).normalize();
+    this.eye.direction.fromArray(info.direction).normalize();
     this.bodies = ofBodies.map((surface, index) => new Body(index, info.bodies[index]!, surface, networks[index], this.size));
     this.skins = info.skins.map((skin, index) => new Skin(skin, skin.worn_by ?? info.bodies.length + index));
     this.skins.forEach((skin) => this.scene.add(skin.mesh));
     this.arrows = new Arrows(this.size);
     this.scene.add(this.arrows.group);
-    this.obstacles = new Obstacles(info.obstacles, surfaces.slice(info.bodies.length), this.up, this.bounds);
+    this.obstacles = new Obstacles(info.obstacles, surfaces.slice(info.bodies.length), this.eye.up, this.bounds);
     this.scene.add(this.obstacles.group);
     this.bodies.forEach((body) => this.scene.add(body.group));
     this.setStyle(this.style, this.dark);
@@ -223,17 +226,29 @@ export class Picture {
   /** Colours, sections, cells and arrows; the range of colours shrinks by a part of what is too much. */
   private paint({ bodies }: Frame, shrinking: number): void {
     const { meanings } = this;
-    this.arrows.update(bodies, this.extras.arrows, this.dark);
+    meanings.size = this.size;
+    this.arrows.update(bodies, this.extras.arrows, this.dark, meanings.rest(this.extras.unit));
     meanings.longest = this.arrows.longest;
     const values = bodies.map((body) => body.fields.get(this.field));
     meanings.follow(values, bodies, shrinking);
+    // a skin hides what the colours of its body tell, and its inside
+    for (const skin of this.skins) {
+      const { worn_by } = skin.info;
+      const isBare = worn_by !== null && (values[worn_by] !== undefined || this.cut !== null || this.extras.explode > 0);
+      skin.mesh.visible = !isBare;
+      if (worn_by !== null) this.bodies[worn_by]?.setBare(isBare);
+    }
     bodies.forEach((_, index) => this.bodies[index]?.colourBy(values[index], this.of, meanings.range, this.colours));
   }
 
   /** Colours by a field with this number; `map` is for quantities, classes have colours of their own. */
   setColours(number: number, field: FieldInfo | undefined, map: ColourMap): void {
     const classes = field?.classes ?? null;
-    if (number !== this.field) this.meanings.begin(classes);
+    if (number !== this.field) this.meanings.begin(classes, field?.unit ?? "");
+    if ((number < 0) !== (this.field < 0)) {
+      this.field = number;
+      this.simplify();
+    }
     this.field = number;
     this.of = field?.of ?? "points";
     this.colours = classes ? coloursOf(classes) : linearColours(map);
@@ -247,13 +262,17 @@ export class Picture {
   }
 
   setCut(cut: Cut | null): void {
-    this.cut = cut;
     if (cut) {
-      const normal = new Vector3().setComponent(cut.axis, -1);
-      const low = this.bounds.min.getComponent(cut.axis);
-      const high = this.bounds.max.getComponent(cut.axis);
-      this.cutPlane.set(normal, low + (high - low) * cut.place);
+      // the half that is left is chosen once: it does not change sides while the view turns
+      if (cut.axis !== this.cut?.axis) this.eyeSide = this.eye.towards.getComponent(cut.axis) > 0 ? 1 : -1;
+      const side = cut.isFarHalf ? -this.eyeSide : this.eyeSide;
+      // bodies may be elsewhere than they began
+      const { min, max } = this.boundsNow();
+      const [low, high] = [min.getComponent(cut.axis), max.getComponent(cut.axis)];
+      const place = low + (high - low) * cut.place;
+      this.cutPlane.set(new Vector3().setComponent(cut.axis, side), -side * place);
     }
+    this.cut = cut;
     this.bodies.forEach((body) => body.setCut(cut ? this.cutPlane : null));
     this.skins.forEach((skin) => skin.setCut(cut ? [this.cutPlane] : []));
     this.arrows.setCut(cut ? [this.cutPlane] : []);
@@ -261,6 +280,20 @@ export class Picture {
 
   /** Looks at all bodies as they stand, from where the scene wants to be seen. */
   fit(): void {
+    const bounds = this.boundsNow();
+    if (bounds.isEmpty()) bounds.expandByPoint(new Vector3());
+    if (bounds.getSize(new Vector3()).length() === 0) bounds.expandByScalar(0.5 * this.size);
+    this.eye.fit(bounds);
+  }
+
+  /** Whether there is anything, and no part of it is in the picture. */
+  get isOutOfSight(): boolean {
+    const bounds = this.boundsNow();
+    return !bounds.isEmpty() && !this.eye.sees(bounds);
+  }
+
+  /** Of all bodies and skins as they stand. */
+  private boundsNow(): Box3 {
     const bounds = new Box3();
     const point = new Vector3();
     const skins = this.skins.map(({ mesh }) => mesh.geometry);
@@ -268,26 +301,14 @@ export class Picture {
     for (const positions of [...this.bodies.map((body) => body.positions), ...ofSkins]) {
       for (let i = 0; i < positions.length; i += 3) bounds.expandByPoint(point.fromArray(positions, i));
     }
-    if (bounds.isEmpty()) bounds.expandByPoint(point.set(0, 0, 0));
-    if (bounds.getSize(point).length() === 0) bounds.expandByScalar(0.5 * this.size);
-    const centre = bounds.getCenter(new Vector3());
-    const radius = Math.max(0.5 * bounds.getSize(point).length(), 1e-6);
-    const half = 0.5 * this.camera.fov * (Math.PI / 180);
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const distance = (1.12 * radius) / Math.sin(narrow);
-    this.camera.up.copy(this.up);
-    this.camera.position.copy(centre).addScaledVector(this.direction, -distance);
-    this.camera.near = distance / 200;
-    this.camera.far = distance * 40;
-    this.camera.updateProjectionMatrix();
-    this.controls.target.copy(centre);
-    this.controls.update();
+    return bounds;
   }
 
   draw(): void {
-    this.controls.update();
-    this.renderer.render(this.scene, this.camera);
-    this.hands.placeLabels(this.camera, this.place.clientWidth, this.place.clientHeight);
+    this.eye.controls.update();
+    this.renderer.render(this.scene, this.eye.camera);
+    this.furniture.update(this.eye, this.place.clientHeight);
+    this.hands.placeLabels(this.eye.camera, this.place.clientWidth, this.place.clientHeight);
     this.quality.drawn(performance.now());
   }
 
@@ -303,24 +324,51 @@ export class Picture {
     this.scene.environment = reflections ? this.reflections : null;
     // what reflections give of light
     this.sky.intensity = reflections ? 0.7 : 2;
+    this.key.intensity = KEY;
+    if (this.field >= 0) {
+      // colours that are read are lit evenly
+      this.sky.intensity += 0.8;
+      this.key.intensity = 0.5 * KEY;
+    }
+    this.sky.groundColor.set(this.field >= 0 ? 0xdcd8d4 : 0x8a7f78);
     this.resize();
   }
 
   /** The body under a place of the screen. */
   hit(event: { clientX: number; clientY: number }): Hit | null {
-    this.aim(event);
+    const ray = this.eye.aimAt(event);
     this.bodies.forEach((body) => body.prepareForRay());
     this.skins.forEach((skin) => skin.prepareForRay());
     const bodies = new Map<Object3D, Body>();
     for (const body of this.bodies) body.targets.forEach((target) => bodies.set(target, body));
     const skins = this.skins.map((skin) => skin.mesh);
-    const hits = this.ray.intersectObjects([...bodies.keys(), ...skins], false);
+    const hits = ray.intersectObjects([...bodies.keys(), ...skins], false);
     const met = hits.find((hit) => !this.cut || this.cutPlane.distanceToPoint(hit.point) >= 0);
     if (!met) return null;
     const body = bodies.get(met.object) ?? this.wearer(met.object, met.point);
     const isSurface = body?.mesh === met.object;
-    const normal = (isSurface ? met.normal?.clone() : null) ?? this.ray.ray.direction.clone().negate();
+    const normal = (isSurface ? met.normal?.clone() : null) ?? ray.ray.direction.clone().negate();
     return body ? { body, point: met.point, normal } : null;
+  }
+
+  /** How far bodies rise above a plane through a point, within a radius about it; what is higher than `most` is something else. */
+  heightAbove(point: Vector3, normal: Vector3, radius: number, most: number): number {
+    let height = 0;
+    const offset = new Vector3();
+    for (const { positions } of this.bodies) {
+      for (let at = 0; at < positions.length; at += 3) {
+        offset.fromArray(positions, at).sub(point);
+        const above = offset.dot(normal);
+        const isNear = offset.lengthSq() - above * above < radius * radius;
+        if (isNear && above > height && above < most) height = above;
+      }
+    }
+    return height;
+  }
+
+  /** Shows where something will be thrown. */
+  aim(aimed: Aim | null): void {
+    this.hands.aim(aimed);
   }
 
   /** The body that wears a skin; of one over several bodies, the nearest. */
@@ -342,43 +390,29 @@ export class Picture {
     return this.bodies.reduce((sum, body) => sum + body.cellCount, 0);
   }
 
-  /** Towards the eye, unit. */
-  get towardsEye(): Vector3 {
-    return this.camera.getWorldDirection(new Vector3()).negate();
-  }
-
-  /** The place above a plane through a point, across the view, that a place of the screen lies on. */
-  onPlane(event: { clientX: number; clientY: number }, point: Vector3): Vector3 | null {
-    this.aim(event);
-    const plane = new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), point);
-    return this.ray.ray.intersectPlane(plane, new Vector3());
-  }
-
-  /** The picture as a file. */
-  save(): Promise<Blob | null> {
+  /** Draws once as well as can be, whatever the machine does in time, and hands the drawing on. */
+  atItsBest<T>(use: (drawing: HTMLCanvasElement) => T): T {
+    const best = this.quality.best(() => this.simplify());
     this.draw();
-    return new Promise((resolve) => this.canvas.toBlob(resolve, "image/png"));
-  }
-
-  private aim({ clientX, clientY }: { clientX: number; clientY: number }): void {
-    const { left, top, width, height } = this.canvas.getBoundingClientRect();
-    const at = new Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
-    this.ray.setFromCamera(at, this.camera);
+    // the drawing is gone when the browser has shown it
+    const used = use(this.canvas);
+    best.end();
+    return used;
   }
 
   /** The key light stands to the left above the camera's usual place, and its shadows cover all bodies. */
   private light(): void {
     const centre = this.bounds.getCenter(new Vector3());
-    const right = this.direction.clone().cross(this.up).normalize();
-    const towards = this.direction
+    const right = this.eye.direction.clone().cross(this.eye.up).normalize();
+    const towards = this.eye.direction
       .clone()
       .multiplyScalar(-0.55)
       .addScaledVector(right, -0.6)
-      .addScaledVector(this.up, 1.05)
+      .addScaledVector(this.eye.up, 1.05)
       .normalize();
     this.key.position.copy(centre).addScaledVector(towards, 3 * this.size);
     this.key.target.position.copy(centre);
-    this.sky.position.copy(this.up);
+    this.sky.position.copy(this.eye.up);
     const { camera } = this.key.shadow;
     const reach = 1.3 * this.size;
     Object.assign(camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1 * this.size, far: 8 * this.size });
@@ -392,8 +426,7 @@ export class Picture {
     const { pixels } = this.quality.now;
     this.renderer.setPixelRatio(pixels < 1 ? pixels : Math.min(devicePixelRatio, pixels));
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.eye.resize(width, height);
   }
 }
 

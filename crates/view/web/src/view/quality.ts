@@ -32,6 +32,19 @@ export class Quality {
     return LEVELS[this.level]!;
   }
 
+  /** The best there is, until its end. */
+  best(changed: () => void): { end: () => void } {
+    const { level } = this;
+    const to = (next: number) => {
+      this.level = next;
+      changed();
+      // the time of such a picture tells nothing
+      this.last = performance.now();
+    };
+    to(0);
+    return { end: () => to(level) };
+  }
+
   /** A picture has been drawn at a time [ms]. */
   drawn(time: number): void {
     const took = time - this.last;

@@ -1,0 +1,89 @@
+// The eye: where the picture is seen from, and what lies under a place of the screen.
+
+import { Box3, Frustum, Matrix4, PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+
+/** How far a key turns the view [rad], and the share by which it comes nearer. */
+const KEY_TURN = 0.08;
+
+export class Eye {
+  readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
+  readonly controls: OrbitControls;
+  /** What is up in the picture, and the way that it looks. */
+  readonly up = new Vector3(0, 1, 0);
+  readonly direction = new Vector3(-0.5, -0.45, -1);
+  private readonly ray = new Raycaster();
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = true;
+    this.controls.dampingFactor = 0.12;
+  }
+
+  /** Looks at all of a box, from where the scene wants to be seen. */
+  fit(bounds: Box3): void {
+    const centre = bounds.getCenter(new Vector3());
+    const radius = Math.max(0.5 * bounds.getSize(new Vector3()).length(), 1e-6);
+    const half = 0.5 * this.camera.fov * (Math.PI / 180);
+    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
+    const distance = (1.12 * radius) / Math.sin(narrow);
+    this.camera.up.copy(this.up);
+    this.camera.position.copy(centre).addScaledVector(this.direction, -distance);
+    this.camera.near = distance / 200;
+    this.camera.far = distance * 40;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(centre);
+    this.controls.update();
+  }
+
+  /** Turns about what is looked at, to the right and up, or comes nearer. */
+  turn([right, up, away]: [number, number, number]): void {
+    const { target } = this.controls;
+    const offset = this.camera.position.clone().sub(target);
+    const across = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+    offset.applyAxisAngle(this.camera.up, -KEY_TURN * right);
+    const raised = offset.clone().applyAxisAngle(across, KEY_TURN * up);
+    // the eye does not go over the top
+    if (raised.clone().cross(this.camera.up).length() > 0.1 * raised.length()) offset.copy(raised);
+    offset.multiplyScalar(1 + KEY_TURN * away);
+    this.camera.position.copy(target).add(offset);
+    this.controls.update();
+  }
+
+  /** Towards the eye, unit. */
+  get towards(): Vector3 {
+    return this.camera.getWorldDirection(new Vector3()).negate();
+  }
+
+  /** Whether any part of a box may be in the picture. */
+  sees(bounds: Box3): boolean {
+    this.camera.updateMatrixWorld();
+    const seen = new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    return new Frustum().setFromProjectionMatrix(seen).intersectsBox(bounds);
+  }
+
+  /** The ray to a place of the screen. */
+  aimAt({ clientX, clientY }: { clientX: number; clientY: number }): Raycaster {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const at = new Vector2(((clientX - left) / width) * 2 - 1, 1 - ((clientY - top) / height) * 2);
+    this.ray.setFromCamera(at, this.camera);
+    return this.ray;
+  }
+
+  /** The place above a plane through a point, across the view, that a place of the screen lies on. */
+  onPlane(event: { clientX: number; clientY: number }, point: Vector3): Vector3 | null {
+    const plane = new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), point);
+    return this.aimAt(event).ray.intersectPlane(plane, new Vector3());
+  }
+
+  /** Metres that a pixel is wide where the eye looks. */
+  metresPerPixel(height: number): number {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    return (2 * distance * Math.tan(0.5 * this.camera.fov * (Math.PI / 180))) / Math.max(height, 1);
+  }
+
+  resize(width: number, height: number): void {
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+  }
+}
