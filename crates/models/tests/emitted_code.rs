@@ -1,47 +1,32 @@
-//! Emitted code does what the expressions say: Rust in double precision, WGSL in single, read and run by a reader of the few
-//! forms that are emitted. Both are written from the same expressions (FAU-30).
+//! Emitted code does what the expressions say: Rust as its compiler makes it, WGSL as its validator and a reader of the few forms
+//! that are emitted take it, in single precision, and programs for Maxima where `SOUPLE_MAXIMA` names it. All are written from
+//! the same expressions (FAU-16, FAU-30).
 
 use std::collections::HashMap;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::Command;
 
-use souple_formal::element::{Cut, Derived};
-use souple_formal::emit::ElementCode;
+use souple_formal::element::{Cut, Derived, ElementData};
+use souple_formal::emit::{ElementCode, maxima};
 use souple_formal::law::EnergyLaw;
 use souple_mesh::ElementKind;
 use souple_models::derive::{MapKind, element_data};
 use souple_models::materials::WRITTEN_LAWS;
 
-/// Numbers of a precision.
-trait Precision: Copy {
-    /// The nearest number of that precision.
-    fn round(value: f64) -> f64;
+/// The nearest number in single precision.
+fn round(value: f64) -> f64 {
+    f64::from(value as f32)
 }
 
-#[derive(Clone, Copy)]
-struct Double;
-#[derive(Clone, Copy)]
-struct Single;
-
-impl Precision for Double {
-    fn round(value: f64) -> f64 {
-        value
-    }
-}
-
-impl Precision for Single {
-    fn round(value: f64) -> f64 {
-        f64::from(value as f32)
-    }
-}
-
-/// Runs the body of one function: `let` lines, then the results between the last brackets.
-struct Reader<'a, P> {
+/// Runs the body of one function of WGSL: `let` lines, then the results between the last brackets.
+struct Reader<'a> {
     text: &'a [u8],
     at: usize,
     known: HashMap<String, f64>,
-    precision: std::marker::PhantomData<P>,
 }
 
-impl<P: Precision> Reader<'_, P> {
+impl Reader<'_> {
     fn skip_blanks(&mut self) {
         while self.text.get(self.at).is_some_and(u8::is_ascii_whitespace) {
             self.at += 1;
@@ -64,9 +49,9 @@ impl<P: Precision> Reader<'_, P> {
         let mut sum = self.product();
         loop {
             if self.take("+") {
-                sum = P::round(sum + self.product());
+                sum = round(sum + self.product());
             } else if self.take("-") {
-                sum = P::round(sum - self.product());
+                sum = round(sum - self.product());
             } else {
                 return sum;
             }
@@ -77,9 +62,9 @@ impl<P: Precision> Reader<'_, P> {
         let mut product = self.factor();
         loop {
             if self.take("*") {
-                product = P::round(product * self.factor());
+                product = round(product * self.factor());
             } else if self.take("/") {
-                product = P::round(product / self.factor());
+                product = round(product / self.factor());
             } else {
                 return product;
             }
@@ -91,7 +76,7 @@ impl<P: Precision> Reader<'_, P> {
             return -self.factor();
         }
         if self.take("(") {
-            let value = if self.take("if ") { self.branches() } else { self.sum() };
+            let value = self.sum();
             self.expect(")");
             return value;
         }
@@ -107,7 +92,7 @@ impl<P: Precision> Reader<'_, P> {
             match letter {
                 b'[' => open += 1,
                 b']' if open > 0 => open -= 1,
-                b'_' | b'.' | b':' => {}
+                b'_' | b'.' => {}
                 _ if letter.is_ascii_alphanumeric() || is_sign => {}
                 _ => break,
             }
@@ -115,25 +100,12 @@ impl<P: Precision> Reader<'_, P> {
         }
         let word = std::str::from_utf8(&self.text[start..self.at]).unwrap().to_owned();
         if let Ok(number) = word.parse::<f64>() {
-            return P::round(number);
+            return round(number);
         }
         if self.take("(") {
-            return self.call(word.trim_start_matches("f64::"));
+            return self.call(&word);
         }
         *self.known.get(&word).unwrap_or_else(|| panic!("`{word}` is not known"))
-    }
-
-    /// Rust: `a < b { value } else { otherwise }`.
-    fn branches(&mut self) -> f64 {
-        let holds = self.comparison();
-        self.expect("{");
-        let value = self.sum();
-        self.expect("}");
-        self.expect("else");
-        self.expect("{");
-        let otherwise = self.sum();
-        self.expect("}");
-        if holds { value } else { otherwise }
     }
 
     fn comparison(&mut self) -> bool {
@@ -157,31 +129,30 @@ impl<P: Precision> Reader<'_, P> {
                 self.expect(",");
                 if self.comparison() { value } else { first }
             }
-            "pow" | "powf" => {
+            "pow" => {
                 self.expect(",");
                 first.powf(self.sum())
             }
             "sqrt" => first.sqrt(),
-            "log" | "ln" => first.ln(),
+            "log" => first.ln(),
             "exp" => first.exp(),
             "abs" => first.abs(),
             other => panic!("`{other}` is not among the functions of these laws"),
         };
         self.expect(")");
-        P::round(value)
+        round(value)
     }
 }
 
 /// The results of a function of emitted code for known inputs, which its parts join.
-fn run<P: Precision>(code: &str, function: &str, known: &HashMap<String, f64>) -> Vec<f64> {
+fn run(code: &str, function: &str, known: &HashMap<String, f64>) -> Vec<f64> {
     let start = code.find(&format!("fn {function}(")).unwrap();
     let body = &code[start..];
     let body = &body[body.find("{\n").unwrap() + 1..body.find("\n}\n").unwrap()];
-    let mut reader = Reader::<P> {
+    let mut reader = Reader {
         text: body.as_bytes(),
         at: 0,
-        known: known.iter().map(|(name, value)| (name.clone(), P::round(*value))).collect(),
-        precision: std::marker::PhantomData,
+        known: known.iter().map(|(name, value)| (name.clone(), round(*value))).collect(),
     };
     while reader.take("let ") {
         reader.skip_blanks();
@@ -195,7 +166,7 @@ fn run<P: Precision>(code: &str, function: &str, known: &HashMap<String, f64>) -
         reader.expect(";");
         reader.known.insert(name, value);
     }
-    // what the results stand in: arrays of vectors, `[` and `]` in Rust, `array<…>(…)` in WGSL
+    // what the results stand in: `array<…>(…)` of vectors
     let mut results = Vec::new();
     loop {
         reader.skip_blanks();
@@ -208,7 +179,7 @@ fn run<P: Precision>(code: &str, function: &str, known: &HashMap<String, f64>) -
         match (opening, rest.as_bytes()[0]) {
             (Some("return array"), _) => reader.at += rest.find('(').unwrap() + 1,
             (Some(word), _) => reader.at += word.len(),
-            (None, b'[' | b']' | b')' | b',' | b';') => reader.at += 1,
+            (None, b')' | b',' | b';') => reader.at += 1,
             _ => results.push(reader.sum()),
         }
     }
@@ -261,33 +232,183 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     norm(&mut a.iter().zip(b).map(|(a, b)| a - b)) / norm(&mut b.iter().copied())
 }
 
-/// Constants, forces and differential as a program would call them one after the other.
-fn answers<P: Precision>(code: &str, known: &HashMap<String, f64>) -> [Vec<f64>; 2] {
-    let constants = run::<P>(code, "constants", known);
+/// Constants, forces and differential of WGSL as a program would call them one after the other.
+fn answers(code: &str, known: &HashMap<String, f64>) -> [Vec<f64>; 2] {
+    let constants = run(code, "constants", known);
     let mut known = known.clone();
     known.extend(constants.into_iter().enumerate().map(|(index, value)| (format!("d[{index}]"), value)));
-    ["forces", "force_differential"].map(|function| run::<P>(code, function, &known))
+    ["forces", "force_differential"].map(|function| run(code, function, &known))
+}
+
+/// A law on an element.
+struct Case {
+    name: String,
+    law_name: &'static str,
+    element: ElementData,
+    law: EnergyLaw,
+    derived: Derived,
+    known: HashMap<String, f64>,
+    exact: [Vec<f64>; 2],
+}
+
+/// Every law on three kinds of elements.
+fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for law in WRITTEN_LAWS {
+        for kind in [ElementKind::Tri3, ElementKind::Tet4, ElementKind::Pyramid5] {
+            let compiled = EnergyLaw::compile(&law.text().unwrap()).unwrap();
+            let element = element_data(kind, &kind.rules()[0], MapKind::General).unwrap();
+            // laws of principal stretches have no formula of displacements
+            let Ok(derived) = element.derive(&compiled, Cut::NONE) else { continue };
+            let known = inputs(kind, &compiled);
+            let exact = expected(&derived, &known);
+            cases.push(Case {
+                name: format!("{} on {kind}", law.name),
+                law_name: law.name,
+                element,
+                law: compiled,
+                derived,
+                known,
+                exact,
+            });
+        }
+    }
+    assert!(cases.len() >= 20);
+    cases
+}
+
+/// A folder for the files of one test; it goes with the target folder.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Runs a command to its end; what it prints.
+fn output(command: &mut Command) -> String {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {said}{}", String::from_utf8_lossy(&output.stdout));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What is known of the nodes, as an array of Rust.
+fn array(letter: char, case: &Case) -> String {
+    let axes = case.element.dimension;
+    let number = |node: usize, axis: usize| format!("{:?}", case.known[&format!("{letter}[{node}][{axis}]")]);
+    let of_node =
+        |node| format!("[{}]", (0..axes).map(|axis| number(node, axis)).collect::<Vec<_>>().join(", "));
+    format!("[{}]", (0..case.element.node_count).map(of_node).collect::<Vec<_>>().join(", "))
+}
+
+/// Material constants in the order of the function that takes them.
+fn arguments(code: &str, case: &Case) -> String {
+    let signature = &code[code.find("fn constants(").unwrap()..];
+    let list = &signature[..signature.find(") ->").unwrap()];
+    let names = list.split(", ").filter_map(|argument| argument.strip_suffix(": f64"));
+    names.map(|name| format!(", {:?}", case.known[name])).collect()
 }
 
 #[test]
-fn emitted_code_computes_what_was_derived() {
-    for law in WRITTEN_LAWS {
-        let compiled = EnergyLaw::compile(&law.text().unwrap()).unwrap();
-        for kind in [ElementKind::Tri3, ElementKind::Tet4, ElementKind::Pyramid5] {
-            let element = element_data(kind, &kind.rules()[0], MapKind::General).unwrap();
-            // laws of principal stretches have no formula of displacements
-            let Ok(mut derived) = element.derive(&compiled, Cut::NONE) else { continue };
-            let known = inputs(kind, &compiled);
-            let exact = expected(&derived, &known);
-            let rust = answers::<Double>(&derived.emit(ElementCode::Rust).text, &known);
-            let wgsl = answers::<Single>(&derived.emit(ElementCode::Wgsl).text, &known);
-            for ((exact, rust), wgsl) in exact.iter().zip(&rust).zip(&wgsl) {
-                let name = format!("{} on {kind}", law.name);
-                // some hundred operations in another order
-                assert!(distance(rust, exact) <= 1e-12, "{name}: {:e}", distance(rust, exact));
-                // and in single precision, where strains are differences: 6e-8 over a strain of a tenth, a hundred times
-                assert!(distance(wgsl, exact) <= 1e-4, "{name} in WGSL: {:e}", distance(wgsl, exact));
-            }
+fn rust_computes_what_was_derived() {
+    let mut cases = cases();
+    let (mut modules, mut calls) = (String::new(), String::new());
+    for (index, case) in cases.iter_mut().enumerate() {
+        let code = case.derived.emit(ElementCode::Rust).text;
+        let (p, u, v) = (array('p', case), array('u', case), array('v', case));
+        let _ = writeln!(modules, "mod case{index} {{\n{code}}}");
+        let _ = writeln!(calls, "    let d = case{index}::constants(&{p}{});", arguments(&code, case));
+        let _ = writeln!(calls, "    print(case{index}::forces(&d, &{u}).as_flattened());");
+        let _ = writeln!(calls, "    print(case{index}::force_differential(&d, &{u}, &{v}).as_flattened());");
+    }
+    let print = "fn print(numbers: &[f64]) { println!(\"{numbers:?}\"); }";
+    let folder = folder("emitted_rust");
+    let (source, program) = (folder.join("main.rs"), folder.join("main"));
+    std::fs::write(&source, format!("{modules}\nfn main() {{\n{calls}}}\n{print}\n")).unwrap();
+    // whoever pastes it does not want to be told of parentheses and unused arguments either
+    let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let flags = ["--edition", "2024", "-D", "warnings", "-A", "dead_code", "-o"];
+    output(Command::new(compiler).args(flags).arg(&program).arg(&source));
+    let printed = output(&mut Command::new(&program));
+    let mut lines = printed.lines();
+    for case in &cases {
+        for exact in &case.exact {
+            let line = lines.next().unwrap().trim_matches(['[', ']']);
+            let numbers: Vec<f64> = line.split(", ").map(|number| number.parse().unwrap()).collect();
+            // some hundred operations in another order
+            let off = distance(&numbers, exact);
+            assert!(off <= 1e-12, "{}: {off:e}", case.name);
         }
     }
+}
+
+#[test]
+fn wgsl_computes_what_was_derived() {
+    for mut case in cases() {
+        let code = case.derived.emit(ElementCode::Wgsl).text;
+        let module = naga::front::wgsl::parse_str(&code)
+            .unwrap_or_else(|error| panic!("{}: {}", case.name, error.emit_to_string(&code)));
+        let (flags, capabilities) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+        naga::valid::Validator::new(flags, capabilities)
+            .validate(&module)
+            .unwrap_or_else(|error| panic!("{}: {}", case.name, error.emit_to_string(&code)));
+        for (single, exact) in answers(&code, &case.known).iter().zip(&case.exact) {
+            // strains are differences: 6e-8 over a strain of a tenth, a hundred times
+            let off = distance(single, exact);
+            assert!(off <= 1e-4, "{}: {off:e}", case.name);
+        }
+    }
+}
+
+/// Numbers for the names of a program for Maxima: `u[2][1]` is `U2y` there, and words of its language end in `_`.
+fn assignments(case: &Case) -> String {
+    let entries = case.known.iter().map(|(name, value)| {
+        let place = name.strip_suffix(']').and_then(|name| name.split_once('['));
+        let Some((letter, indices)) = place else {
+            return format!("{name} = {value:e}, {name}_ = {value:e}");
+        };
+        let (node, axis) = indices.split_once("][").unwrap();
+        let axis = ["x", "y", "z"][axis.parse::<usize>().unwrap()];
+        format!("{}{node}{axis} = {value:e}", letter.to_uppercase())
+    });
+    entries.collect::<Vec<_>>().join(", ")
+}
+
+/// The derivation of another system, from the same data, ends at the same forces and differentials: of every law that it can
+/// differentiate on triangles, and of two on tetrahedra, which take it seconds each.
+#[test]
+fn maxima_derives_the_same() {
+    let Some(program) = std::env::var_os("SOUPLE_MAXIMA") else { return };
+    let folder = folder("emitted_maxima");
+    let mut tried = 0;
+    for case in cases() {
+        let is_quick = case.element.node_count == 3
+            || case.element.node_count == 4 && ["linear", "st_venant_kirchhoff"].contains(&case.law_name);
+        let script = maxima(&case.element, &case.law, "Case").filter(|_| is_quick);
+        let Some(mut script) = script else { continue };
+        let axes = &["x", "y", "z"][..case.element.dimension];
+        let of_node = |node| axes.iter().map(move |axis| format!("{node}{axis}"));
+        let names: Vec<String> = (0..case.element.node_count).flat_map(of_node).collect();
+        let _ = writeln!(script, "known: [{}]$", assignments(&case));
+        for letters in ["F", "dF"] {
+            for name in &names {
+                let _ = writeln!(script, "print(\"number\", float(ev(subst(known, {letters}{name}))))$");
+            }
+        }
+        std::fs::write(folder.join("case.mac"), script).unwrap();
+        let load = ["--very-quiet", "-r", "load(\"case.mac\")$ quit()$"];
+        let printed = output(Command::new(&program).args(load).current_dir(&folder));
+        let numbers: Vec<f64> = printed
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("number ")?.replace(' ', "").parse().ok())
+            .collect();
+        assert_eq!(numbers.len(), 2 * names.len(), "{}: {printed}", case.name);
+        for (numbers, exact) in numbers.chunks(names.len()).zip(&case.exact) {
+            // sixteen digits are printed of operations in an order of its own
+            let off = distance(numbers, exact);
+            assert!(off <= 1e-12, "{}: {off:e}", case.name);
+        }
+        tried += 1;
+    }
+    assert!(tried >= 9, "{tried} laws on elements");
 }

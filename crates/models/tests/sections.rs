@@ -231,6 +231,10 @@ fn cables_take_no_push() {
         let scaled = |by: f64| -> Vec<Vec3> { mesh.points.iter().map(|p| *p * by).collect() };
         let [pushed, pulled] = [scaled(0.8), scaled(1.3)];
         assert_eq!(energy(&cable, &pushed), 0.0);
+        // what is read off it says the same
+        let field = cable.cell_field(0, &pushed).unwrap();
+        assert_eq!((field.energy_density, field.von_mises, norm(&field.stress.columns)), (0.0, 0.0, 0.0));
+        assert_eq!(field.current_volume, field.volume);
         assert_eq!(norm(&forces(&cable, &mut cable.new_scratch(), &pushed)), 0.0);
         assert!(energy(&bar, &pushed) > 0.0);
         assert_eq!(energy(&cable, &pulled), energy(&bar, &pulled));

@@ -1,8 +1,7 @@
 //! A mesh that was dropped on the page becomes a scene: a soft body that falls on a floor.
 
-use std::collections::VecDeque;
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use souple_io::read_mesh;
 use tempfile::TempDir;
@@ -18,39 +17,72 @@ const SAG: f64 = 0.05;
 const DENSITY: f64 = 1000.0;
 const GRAVITY: f64 = 9.81;
 
-/// Files that are kept: the scene that is shown is of one of the last, for each that comes later is tried at once.
-const FILES_KEPT: usize = 4;
+/// A file that was dropped, in a folder of its own that nobody else may enter; both go with the last that needs them.
+#[derive(Clone, Debug)]
+pub struct DroppedFile {
+    folder: Arc<TempDir>,
+    /// In its folder.
+    name: String,
+    /// As whoever dropped it knows it.
+    title: String,
+}
 
-/// Files that were dropped, each in a folder of its own that nobody else may enter; they go with the program.
+impl DroppedFile {
+    pub fn path(&self) -> PathBuf {
+        self.folder.path().join(&self.name)
+    }
+
+    /// A message about it, by its own name: where it is kept is nothing to whoever dropped it.
+    pub fn told(&self, message: &str) -> String {
+        message.replace(&self.path().display().to_string(), &self.title)
+    }
+}
+
+impl PartialEq for DroppedFile {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.folder, &other.folder)
+    }
+}
+
+impl Eq for DroppedFile {}
+
+/// Files that were dropped and are needed.
 #[derive(Default)]
 pub struct DropFolder {
-    kept: Mutex<VecDeque<TempDir>>,
+    kept: Mutex<Vec<Weak<TempDir>>>,
 }
 
 impl DropFolder {
-    /// Keeps a file, one at a time; where it is.
+    /// Keeps a file.
     ///
     /// # Errors
     /// There is no place for it.
-    pub fn keep(&self, name: &str, content: &[u8]) -> Result<PathBuf, String> {
+    pub fn keep(&self, name: &str, content: &[u8]) -> Result<DroppedFile, String> {
         // what is removed or added under this lock is so at once
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
         let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
         let wrong = |error: std::io::Error| format!("the file cannot be kept: {error}");
         let folder = tempfile::Builder::new().prefix("souple-").tempdir().map_err(wrong)?;
-        let path = folder.path().join(plain.trim_start_matches('.'));
-        std::fs::write(&path, content).map_err(wrong)?;
-        kept.push_back(folder);
-        if kept.len() > FILES_KEPT {
-            kept.pop_front();
-        }
-        Ok(path)
+        let file = DroppedFile {
+            folder: Arc::new(folder),
+            name: plain.trim_start_matches('.').to_owned(),
+            title: name.chars().filter(|c| !c.is_control()).collect(),
+        };
+        std::fs::write(file.path(), content).map_err(wrong)?;
+        kept.retain(|folder| folder.strong_count() > 0);
+        kept.push(Arc::downgrade(&file.folder));
+        Ok(file)
     }
 
-    /// Removes all files.
+    /// Removes all files: the program ends, whatever still holds them.
     pub fn clear(&self) {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        for folder in self.kept.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+            if let Some(folder) = folder.upgrade() {
+                // what cannot be removed is left to the system
+                let _ = std::fs::remove_dir_all(folder.path());
+            }
+        }
     }
 }
 
@@ -58,12 +90,13 @@ impl DropFolder {
 ///
 /// # Errors
 /// The file is no mesh, or has no extent.
-pub fn scene_of(path: &Path) -> Result<String, String> {
-    let (mesh, _) = read_mesh(path).map_err(|error| error.to_string())?;
+pub fn scene_of(dropped: &DroppedFile) -> Result<String, String> {
+    let (path, title) = (dropped.path(), serde_json::Value::from(dropped.title.as_str()));
+    let (mesh, _) = read_mesh(&path).map_err(|error| dropped.told(&error.to_string()))?;
     let bounds = mesh.bounds();
     let written = bounds.diagonal();
     if !(written.is_finite() && written > 0.0) {
-        return Err(format!("{} has no extent", path.display()));
+        return Err(format!("{title} has no extent"));
     }
     let scale = if written > METRES_MAX { 1e-3 } else { 1.0 };
     let length = scale * written;
@@ -72,12 +105,11 @@ pub fn scene_of(path: &Path) -> Result<String, String> {
     let source =
         if is_solid { format!("file = {file:?}") } else { format!("fill = {file:?}, count = {CELLS}") };
     let youngs_modulus = DENSITY * GRAVITY * length / SAG;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
     let floor = scale * bounds.low.y - 0.1 * length;
     let (x, z) = (scale * bounds.centre().x, scale * bounds.centre().z);
     Ok(format!(
         "format = 1\n\
-         title = {name:?}\n\
+         title = {title}\n\
          description = \"A mesh that was dropped on the page: a soft body that falls on a floor.\"\n\
          [world]\n\
          period = \"10 ms\"\n\

@@ -177,7 +177,7 @@ impl Field {
             Source::Links(value) if !links.is_empty() => {
                 Some(links.iter().map(|link| value(link) as f32).collect())
             }
-            Source::Classes(_) if body.surface.triangles.is_empty() => None,
+            Source::Classes(_) if shown.triangles.is_empty() => None,
             Source::Classes(classes) => {
                 let of_cells = (classes.of)(session, body)?;
                 let outer = body.surface.cells.iter().map(|cell| of_cells[*cell as usize]);
@@ -188,7 +188,7 @@ impl Field {
         }
     }
 
-    /// Whether anything in a world has it.
+    /// Whether anything in a world has it, as [`Field::values`] would find.
     pub fn is_in(&self, session: &Session, shown: &[Shown]) -> bool {
         let bodies = &session.bodies;
         match self.source {
@@ -201,9 +201,12 @@ impl Field {
                 };
                 bodies.iter().any(has_cells)
             }
-            Source::Links(_) => shown.iter().any(|body| !body.links.is_empty()),
-            // bodies that are not told apart so have no classes
-            Source::Classes(classes) => !(classes.all)(session).is_empty(),
+            Source::Links(_) => {
+                bodies.iter().any(|body| !souple_run::links_of(&session.world, body).is_empty())
+            }
+            Source::Classes(classes) => bodies.iter().zip(shown).any(|(body, shown)| {
+                !shown.triangles.is_empty() && (classes.of)(session, body).is_some_and(|of| !of.is_empty())
+            }),
         }
     }
 

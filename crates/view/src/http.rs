@@ -97,13 +97,10 @@ impl Request {
             .is_some_and(|value| value.split(',').any(|part| part.trim().eq_ignore_ascii_case(word)))
     }
 
-    /// A value of the query; tokens and names need no decoding.
-    pub fn query_value(&self, name: &str) -> Option<&str> {
-        self.query
-            .split('&')
-            .filter_map(|part| part.split_once('='))
-            .find(|(key, _)| *key == name)
-            .map(|pair| pair.1)
+    /// A value of the query, as forms write it.
+    pub fn query_value(&self, name: &str) -> Option<String> {
+        let mut pairs = form_urlencoded::parse(self.query.as_bytes());
+        pairs.find(|(key, _)| key == name).map(|(_, value)| value.into_owned())
     }
 
     /// Reads what comes after the head, of the length that it says.
@@ -211,7 +208,7 @@ mod tests {
         let text = b"GET /socket?a=b&token=xyz HTTP/1.1\r\nHost: here\r\nConnection: keep-alive, Upgrade\r\n\r\nrest";
         let request = Request::parse(text).unwrap().unwrap();
         assert_eq!((request.method.as_str(), request.path.as_str()), ("GET", "/socket"));
-        assert_eq!(request.query_value("token"), Some("xyz"));
+        assert_eq!(request.query_value("token").as_deref(), Some("xyz"));
         assert_eq!(request.header("host"), Some("here"));
         assert!(request.header_has("connection", "upgrade"));
         assert_eq!(request.rest, b"rest");

@@ -20,6 +20,7 @@ mod socket;
 mod tools;
 
 pub use catalogue::Catalogue;
+pub use protocol::SUBPROTOCOL;
 pub use server::{Options, ViewError, Viewer};
 
 /// Why this program was built without the page, and what would give it one; a server without it answers other clients

@@ -184,12 +184,12 @@ impl Server {
         self.guard.check_site(request)?;
         self.guard.check_token(request)?;
         let wrong = |message: String| Rejection::new(400, message);
-        let name = request.query_value("name").unwrap_or("mesh").to_owned();
+        let name = request.query_value("name").unwrap_or_else(|| "mesh".to_owned());
         let page = request.query_value("page").and_then(|page| page.parse().ok());
         let content = request.body(stream, FILE_MAX)?;
-        let path = self.dropped.keep(&name, &content).map_err(wrong)?;
-        let text = scene_of(&path).map_err(wrong)?;
-        let wish = Wish::LoadText { name, text };
+        let file = self.dropped.keep(&name, &content).map_err(wrong)?;
+        let text = scene_of(&file).map_err(wrong)?;
+        let wish = Wish::LoadText { name, text, mesh: Some(file) };
         let gone = || Rejection::new(503, "the world does not answer");
         // a client that is no page is told nothing of what becomes of it
         let page = page.unwrap_or(PageId::MAX);

@@ -31,19 +31,21 @@ const NONSENSE_MAX: u32 = 32;
 /// # Errors
 /// The request is none for it.
 pub fn accept(request: &Request) -> Result<String, Rejection> {
-    let upgrade = |message| Rejection::new(426, message);
+    let upgrade = |message: String| Rejection::new(426, message);
     if !request.header_has("upgrade", "websocket") || !request.header_has("connection", "upgrade") {
-        return Err(upgrade("this is the address of a WebSocket"));
+        return Err(upgrade("this is the address of a WebSocket".to_owned()));
     }
     if request.header("sec-websocket-version") != Some("13") {
-        return Err(upgrade("the version of the WebSocket must be 13"));
+        return Err(upgrade("the version of the WebSocket must be 13".to_owned()));
     }
     if !request.header_has("sec-websocket-protocol", SUBPROTOCOL) {
-        return Err(upgrade(
-            "the subprotocol must be `souple.v2`: this page is of another version, load it again",
-        ));
+        return Err(upgrade(format!(
+            "the subprotocol must be `{SUBPROTOCOL}`: this page is of another version, load it again"
+        )));
     }
-    let key = request.header("sec-websocket-key").ok_or_else(|| upgrade("there is no Sec-WebSocket-Key"))?;
+    let key = request
+        .header("sec-websocket-key")
+        .ok_or_else(|| upgrade("there is no Sec-WebSocket-Key".to_owned()))?;
     Ok(format!(
         "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
          Sec-WebSocket-Accept: {}\r\nSec-WebSocket-Protocol: {SUBPROTOCOL}\r\n\r\n",

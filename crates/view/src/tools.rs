@@ -15,47 +15,70 @@ pub struct Making {
     pub values: SizedValues,
     /// How far its front is from its origin, in its size.
     pub front: f64,
-    /// How far about its middle a flat front reaches, in its size: it is put flat on a surface. 0: none, it is held from the eye.
-    pub flat: f64,
+    /// How far about its middle a flat front reaches, in its size: it is put flat on a surface. `None`: it is held from the eye.
+    pub flat: Option<f64>,
 }
 
-const fn entry(
-    name: &'static str,
-    summary: &'static str,
-    [front, flat]: [f64; 2],
-    shape: &'static str,
-    values: SizedValues,
-) -> Entry<Making> {
-    Entry { name, summary, source: "", parameters: &[], build: Making { shape, values, front, flat } }
+const fn entry(name: &'static str, summary: &'static str, build: Making) -> Entry<Making> {
+    Entry { name, summary, source: "", parameters: &[], build }
 }
 
-/// All tools; adding one is a line.
+/// All tools; adding one is an entry.
 pub static TOOLS: Table<Making> = Table {
     kind: "tool",
     entries: &[
-        &entry("ball", "round: presses evenly", [0.5, 0.0], "sphere", |size, _| {
-            vec![number("radius", 0.5 * size)]
-        }),
-        &entry("finger", "a rod with a round end: pokes", [0.25, 0.0], "capsule", |size, direction| {
-            let back = direction.try_normalised().unwrap_or(Vec3::Y) * (LENGTH * size);
-            vec![number("radius", 0.25 * size), vector("from", Vec3::ZERO), vector("to", back)]
-        }),
-        &entry("block", "a cube: presses flat, with edges", [0.5, SQRT_2 / 2.0], "box", |size, direction| {
-            facing([size, size, size], direction)
-        }),
+        &entry(
+            "ball",
+            "round: presses evenly",
+            Making {
+                shape: "sphere",
+                values: |size, _| vec![number("radius", 0.5 * size)],
+                front: 0.5,
+                flat: None,
+            },
+        ),
+        &entry(
+            "finger",
+            "a rod with a round end: pokes",
+            Making {
+                shape: "capsule",
+                values: |size, direction| {
+                    let back = direction.try_normalised().unwrap_or(Vec3::Y) * (LENGTH * size);
+                    vec![number("radius", THICK * size), vector("from", Vec3::ZERO), vector("to", back)]
+                },
+                front: THICK,
+                flat: None,
+            },
+        ),
+        &entry(
+            "block",
+            "a cube: presses flat, with edges",
+            Making {
+                shape: "box",
+                values: |size, direction| facing([size, size, size], direction),
+                front: 0.5,
+                flat: Some(0.5 * SQRT_2),
+            },
+        ),
         &entry(
             "plate",
             "flat and wide: pushes much at once",
-            [0.5 * THIN, SQRT_2],
-            "box",
-            |size, direction| facing([2.0 * size, 2.0 * size, THIN * size], direction),
+            Making {
+                shape: "box",
+                values: |size, direction| facing([WIDE * size, WIDE * size, THIN * size], direction),
+                front: 0.5 * THIN,
+                flat: Some(0.5 * WIDE * SQRT_2),
+            },
         ),
     ],
 };
 
-/// Of a finger, in its size.
+/// Of a finger, in its size, and its radius.
 const LENGTH: f64 = 5.0;
-/// Of a plate, in its size: of what is pressed beyond the middle of a plate, its other side would get rid.
+const THICK: f64 = 0.25;
+/// Sides and thickness of a plate, in its size. What gets beyond the middle of a box is pushed out on its other side: a plate
+/// is not as thin as it could be.
+const WIDE: f64 = 2.0;
 const THIN: f64 = 0.5;
 
 /// A box whose own z looks in a direction, turned the shortest way there.

@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use super::text::{Text, sign_of};
+use super::text::Text;
 use super::{Binding, Style, Written, distinct, write};
 use crate::Function;
 use crate::element::{ElementData, RestMap};
@@ -19,6 +19,9 @@ struct Maxima;
 /// Words of the language that could be names of a law, and those of the program.
 const TAKEN: &[&str] = &[
     "block",
+    "choose_at_most",
+    "choose_below",
+    "choose_equal",
     "do",
     "else",
     "elseif",
@@ -81,8 +84,8 @@ impl Style for Maxima {
     }
 
     fn select(&self, (comparison, a, b): (Comparison, &str, &str), value: &str, otherwise: &str) -> Written {
-        let sign = if comparison == Comparison::Equal { "=" } else { sign_of(comparison) };
-        Written::atom(format!("(if {a} {sign} {b} then {value} else {otherwise})"))
+        let choice = CHOICES.iter().find(|(known, ..)| *known == comparison).map_or("", |(_, name, _)| name);
+        Written::atom(format!("{choice}({a} - ({b}), {value}, {otherwise})"))
     }
 
     fn tensor(&self, node: &Node, operands: &[Written]) -> Option<Written> {
@@ -126,6 +129,13 @@ impl Style for Maxima {
     }
 }
 
+/// Choices by the sign of a number, which are functions here: Maxima differentiates no conditions. Their names, and their signs.
+const CHOICES: [(Comparison, &str, &str); 3] = [
+    (Comparison::Less, "choose_below", "<"),
+    (Comparison::LessOrEqual, "choose_at_most", "<="),
+    (Comparison::Equal, "choose_equal", "="),
+];
+
 /// What the energy may call that Maxima does not have by these names.
 const HELPERS: &str = "trace_of(a) := a[1, 1] + a[2, 2] + a[3, 3]$
 dot_of(a, b) := block([s: 0], for i thru 3 do for j thru length(a[1]) do s: s + a[i, j]*b[i, j], s)$
@@ -135,19 +145,17 @@ outer_of(a, b) := a . transpose(b)$
 
 /// The program; `association` is the name of law, element and cut, uncut.
 ///
-/// Laws in principal stretches have no formula that it could use, and it differentiates no conditions: `None`.
+/// Laws in principal stretches have no formula that it could use: `None`.
 pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> Option<String> {
     let terms = law.terms();
-    let is_beyond = |expr: &Expr| {
-        matches!(
-            law.graph.node(*expr),
-            Node::Decompose(_) | Node::Pack(_) | Node::Select(..) | Node::Compare(..)
-        )
-    };
+    let is_beyond = |expr: &Expr| matches!(law.graph.node(*expr), Node::Decompose(_) | Node::Pack(_));
     if law.graph.reachable(&terms).iter().any(is_beyond) {
         return None;
     }
     let mut text = format!("/* {association}: batch this file with Maxima */\n{HELPERS}");
+    for (_, name, _) in CHOICES {
+        let _ = writeln!(text, "gradef({name}(c, v, w), 0, {name}(c, 1, 0), {name}(c, 0, 1))$");
+    }
     put_deformation(&mut text, element);
     put_energy(&mut text, law, &terms);
     put_integral(&mut text, element, terms.len());
@@ -262,6 +270,13 @@ fn put_forces(text: &mut String, element: &ElementData, association: &str) {
         for prefix in ["F", "dF"] {
             let _ = writeln!(text, "stringout(\"{prefix}{association}0_{unknown}.mac\", {prefix}{unknown})$");
         }
+    }
+    let _ = writeln!(
+        text,
+        "\n/* what the choices are, for whoever puts numbers in: ev(subst([mu = 1, ...], F0x)) */"
+    );
+    for (_, name, sign) in CHOICES {
+        let _ = writeln!(text, "{name}(c, v, w) := if c {sign} 0 then v else w$");
     }
 }
 

@@ -5,6 +5,7 @@
 //! Before a law is handed out it has been tried: a value, no stress and a slope at rest, objectivity.
 
 mod check;
+mod domain;
 mod error;
 mod read;
 mod vocabulary;

@@ -274,3 +274,28 @@ fn doubts_are_said() {
     assert!(doubt("mu*dot(eps, eps) + k*tr(eps)^2").contains("eps"));
     assert!(doubt("mu*dot(E, E) + k*tr(E)^2").contains("inside out"));
 }
+
+/// Where the energy has no value the stress that is run has none, though its formula goes on; a branch that is not taken ends
+/// nothing, and laws whose stress ends by itself stay as they are.
+#[test]
+fn stress_ends_where_the_energy_does() {
+    let moduli = [("mu", 3.0)];
+    let inverted = Mat3::from_diagonal(Vec3::new(-0.5, 1.1, 0.9));
+    for (energy, ends) in [
+        ("mu/2*(I1 - 3) - mu*log(J)", true),
+        ("mu/2*(I1 - 3) - mu/2*log(J^2)", false),
+        ("mu/2*(I1 - 3) - mu*if(J < 0.1, J, log(J))", false),
+        ("mu*dot(E, E)", false),
+    ] {
+        let Ok(mut law) = EnergyLaw::compile(&text(energy, &moduli)) else { panic!("{energy} is no law") };
+        let guarded = law.guarded_stress();
+        let at = |F: &Mat3| law.evaluate(&[guarded], F, &Mat3::ZERO).matrix(guarded);
+        for F in samples() {
+            assert_eq!(at(&F), law.stress_at(&F), "{energy}");
+        }
+        assert!(law.stress_at(&inverted).is_finite(), "{energy}");
+        assert_eq!(at(&inverted).is_finite(), !ends, "{energy}");
+    }
+    let mut law = law("mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", &[("mu", 3.0), ("lambda", 5.0)]);
+    assert_eq!(law.guarded_stress(), law.stress);
+}

@@ -60,7 +60,7 @@ fn shape_contacts_agree_with_energies_and_derivatives() {
         ("sphere", || Box::new(Sphere { centre: Vec3::new(0.1, 0.0, 0.2), radius: 1.0 })),
         ("capsule", || Box::new(Capsule { from: Vec3::new(-0.5, 0.0, 0.0), to: Vec3::X, radius: 0.6 })),
         ("box", || {
-            // most of the way round to where it looks as if it were not turned
+            // turned by nearly a quarter, its sides exchanged for that: the same places are inside and outside, at an angle
             let axes = exponential(Vec3::new(0.0, 0.0, 1.5));
             Box::new(Cuboid { centre: Vec3::ZERO, half_size: Vec3::new(0.5, 0.9, 0.7), axes })
         }),

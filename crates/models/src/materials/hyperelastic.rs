@@ -164,9 +164,10 @@ impl TextLaw {
     /// # Errors
     /// As [`EnergyLaw::compile`], with the place marked.
     pub fn compile(text: LawText) -> Result<Self, MaterialError> {
-        let law = EnergyLaw::compile(&text).map_err(|error| told(&text, &error))?;
+        let mut law = EnergyLaw::compile(&text).map_err(|error| told(&text, &error))?;
+        let stress = law.guarded_stress();
         let tape = |output| Tape::compile(&law, &[output]);
-        let (energy, stress, differential) = (tape(law.energy), tape(law.stress), tape(law.differential));
+        let (energy, stress, differential) = (tape(law.energy), tape(stress), tape(law.differential));
         Ok(Self { text, law, energy, stress, differential })
     }
 
@@ -179,7 +180,7 @@ impl TextLaw {
         &self.energy
     }
 
-    /// `F` to `P`.
+    /// `F` to `P`, which is no number where the energy is none.
     pub(crate) fn stress(&self) -> &Tape {
         &self.stress
     }

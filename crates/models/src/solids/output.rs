@@ -30,13 +30,19 @@ impl SolidForce {
         let points = &self.quadrature().rule(kind).points;
         for (sample, point) in points.iter().enumerate() {
             let (inverse, volume) = chunk.sample_of(slot, sample, points.len());
-            let F = self.completed(cell, self.gradient(kind, &now, point.position) * inverse);
-            let P = material.stress(&F);
+            let gradient = self.gradient(kind, &now, point.position) * inverse;
+            let (F, is_slack) = self.completed(cell, gradient);
             sum.deformation += F * volume;
+            sum.volume += volume;
+            if is_slack {
+                // its matter is at rest, wherever its ends are
+                current_volume += volume;
+                continue;
+            }
+            let P = material.stress(&F);
             sum.stress += P * volume;
             sum.cauchy += cauchy_stress(&P, &F).unwrap_or(Mat3::ZERO) * volume;
             sum.energy_density += material.energy_density(&F) * volume;
-            sum.volume += volume;
             current_volume += F.determinant() * volume;
         }
         let mean = 1.0 / sum.volume;
@@ -68,19 +74,20 @@ impl SolidForce {
         Mat3 { columns }
     }
 
-    /// The deformation gradient with what the section says of the directions across; of bars, in their own frame.
-    fn completed(&self, cell: usize, F: Mat3) -> Mat3 {
+    /// The deformation gradient with what the section says of the directions across, of bars in their own frame; and whether
+    /// it is that of a cable that is slack.
+    fn completed(&self, cell: usize, F: Mat3) -> (Mat3, bool) {
         if self.section == Section::Solid {
-            return F;
+            return (F, false);
         }
         let number = usize::from(self.material_of_cell[cell]);
         let parameters: Vec<f64> =
             self.materials[number].parameters.iter().flat_map(|number| [*number; LANES]).collect();
         let entries: [f64; 9] = std::array::from_fn(|e| F.columns[e / 3].to_array()[e % 3]);
         let row = entries.map(|entry| [entry; LANES]);
-        let completed = Completed::new(self.section, self.row_laws[number].as_ref(), &parameters, row).F;
-        let column =
-            |i: usize| Vec3::new(completed[3 * i][0], completed[3 * i + 1][0], completed[3 * i + 2][0]);
-        Mat3::from_columns(column(0), column(1), column(2))
+        let completed = Completed::new(self.section, self.row_laws[number].as_ref(), &parameters, row);
+        let entry = |i: usize| completed.F[i][0];
+        let column = |i: usize| Vec3::new(entry(3 * i), entry(3 * i + 1), entry(3 * i + 2));
+        (Mat3::from_columns(column(0), column(1), column(2)), completed.is_slack(0))
     }
 }

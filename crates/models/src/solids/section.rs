@@ -213,7 +213,7 @@ impl<'a> Completed<'a> {
     }
 
     /// Whether a lane is a slack cable.
-    fn is_slack(&self, lane: usize) -> bool {
+    pub fn is_slack(&self, lane: usize) -> bool {
         matches!(self.section, Section::Cable { .. }) && self.along[lane] < 1.0
     }
 

@@ -169,8 +169,8 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Emit::Wgsl => emit_text(&derived.emit(ElementCode::Wgsl).text, "wgsl", arguments.json),
         Emit::Maxima => {
             let script = maxima(&element, &law, &association).ok_or_else(|| {
-                let message = "Maxima differentiates neither principal stretches nor conditions (`if`, `max`, `min`, `clamp`)";
-                Refusal::request("law", wanted, "a law of invariants without conditions", message)
+                let message = "principal stretches have no formula that Maxima could differentiate";
+                Refusal::request("law", wanted, "a law of invariants", message)
             })?;
             emit_text(&script, "maxima", arguments.json);
         }

@@ -1,4 +1,4 @@
-//! What goes over the wire, version 2: see `docs/protocol.md`.
+//! What goes over the wire: see `docs/protocol.md`.
 //!
 //! Documents and wishes are JSON in text messages; surfaces, frames and samples are little-endian numbers in binary ones.
 
@@ -18,10 +18,16 @@ pub use wish::Wish;
 
 use crate::hub::Outgoing;
 
-/// Asked for and given in the handshake: pages of another version are told to load again.
-pub const SUBPROTOCOL: &str = "souple.v2";
+macro_rules! version {
+    () => {
+        3
+    };
+}
+
 /// Version of the documents and of binary messages.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = version!();
+/// Asked for and given in the handshake: pages of another version are told to load again.
+pub const SUBPROTOCOL: &str = concat!("souple.v", version!());
 
 /// Kinds of binary messages.
 #[derive(Clone, Copy, Debug)]

@@ -3,6 +3,8 @@
 use serde_json::Value;
 use souple_math::Vec3;
 
+use crate::dropped::DroppedFile;
+
 /// A wish, as `{"do": "…", …}`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wish {
@@ -17,10 +19,11 @@ pub enum Wish {
     Speed(f64),
     /// Loads a scene of the catalogue.
     Load(String),
-    /// Loads a scene from its text.
+    /// Loads a scene from its text, and keeps the mesh that was dropped for it.
     LoadText {
         name: String,
         text: String,
+        mesh: Option<DroppedFile>,
     },
     /// Sets a value of the scene.
     Set {
@@ -117,7 +120,7 @@ impl Wish {
             "reset" => Self::Reset,
             "speed" => Self::Speed(read.number("factor", 0.001, 100.0)?),
             "load" => Self::Load(read.text("scene")?),
-            "load_text" => Self::LoadText { name: read.text("name")?, text: read.text("text")? },
+            "load_text" => Self::LoadText { name: read.text("name")?, text: read.text("text")?, mesh: None },
             "set" => Self::Set { path: read.text("path")?, value: read.text("value")? },
             "colour" if wish["field"].is_null() => Self::Colour(None),
             "colour" => Self::Colour(Some(read.text("field")?)),

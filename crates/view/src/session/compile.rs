@@ -9,6 +9,7 @@ use souple_scene::Scene;
 
 use super::Input;
 use crate::catalogue::Catalogue;
+use crate::dropped::DroppedFile;
 use crate::hub::PageId;
 
 /// What a scene is read for.
@@ -21,6 +22,7 @@ pub enum Purpose {
     LoadText {
         name: String,
         text: String,
+        mesh: Option<DroppedFile>,
     },
     /// To go on with one value changed: `path=value`.
     Set(String),
@@ -78,7 +80,7 @@ impl Compiler {
     }
 
     /// # Errors
-    /// Too much waits already, or the system gives no thread.
+    /// Too much waits already, another scene comes before a value could be set, or the system gives no thread.
     pub fn ask(
         &mut self,
         page: PageId,
@@ -86,6 +88,11 @@ impl Compiler {
         session: &Session,
         catalogue: &Catalogue,
     ) -> Result<(), String> {
+        let is_load = |purpose: &Purpose| matches!(purpose, Purpose::Load(_) | Purpose::LoadText { .. });
+        let mut coming = self.busy.iter().chain(self.waiting.iter().map(|(_, waiting)| waiting));
+        if matches!(purpose, Purpose::Set(_)) && coming.any(is_load) {
+            return Err("another scene is being read: set it there".to_owned());
+        }
         self.waiting.retain(|(_, waiting)| !purpose.replaces(waiting));
         if self.waiting.len() >= WAITING_MAX {
             return Err(format!("{WAITING_MAX} changes wait already; try again when they are made"));
@@ -115,7 +122,7 @@ impl Compiler {
         let work = move || {
             // whatever becomes of it, the world must hear of it: it waits
             let scene = catch_unwind(AssertUnwindSafe(|| match (&purpose, path) {
-                (Purpose::LoadText { name, text }, _) => {
+                (Purpose::LoadText { name, text, .. }, _) => {
                     souple_scene::read_text(name, text, std::path::Path::new(""), &[])
                 }
                 (_, Some(path)) => souple_scene::read_file(&path, &[]),

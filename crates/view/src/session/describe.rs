@@ -94,6 +94,8 @@ impl Stage {
         json!({
             "scene": self.number(),
             "name": self.name(),
+            "short_name": self.short_name(),
+            "is_file": self.is_file(),
             "title": title,
             "description": self.description(),
             "period": world.model().period,
@@ -186,7 +188,8 @@ fn adjustable_to_json(adjustable: &Adjustable) -> Value {
 pub fn colour_maps() -> Value {
     let map = |entry: &&souple_table::Entry<souple_io::picture::ColourMap>| {
         let colour = |step: i32| hexadecimal(entry.build.colour(f64::from(step) / 255.0));
-        json!({"name": entry.name, "summary": entry.summary, "colours": (0..256).map(colour).collect::<String>()})
+        let colours: String = (0..256).map(colour).collect();
+        json!({"name": entry.name, "summary": entry.summary, "colours": colours})
     };
     // what has a range of its own stands for classes, which fields have themselves
     COLOUR_MAPS.entries.iter().filter(|entry| entry.build.own_range().is_none()).map(map).collect()
@@ -194,6 +197,9 @@ pub fn colour_maps() -> Value {
 
 /// What a hand may push with.
 pub fn tools() -> Value {
-    let tool = |tool: &&Entry<Making>| json!({"name": tool.name, "summary": tool.summary, "front": tool.build.front, "flat": tool.build.flat});
+    let tool = |tool: &&Entry<Making>| {
+        let Making { front, flat, .. } = tool.build;
+        json!({"name": tool.name, "summary": tool.summary, "front": front, "flat": flat})
+    };
     TOOLS.entries.iter().map(tool).collect()
 }

@@ -18,7 +18,7 @@ use souple_scene::Scene;
 
 pub use question::{Answer, Answered, Question};
 pub use shown::Shown;
-pub use stage::Stage;
+pub use stage::{Origin, Stage};
 
 use crate::catalogue::Catalogue;
 use crate::hub::{Hub, PageId};
@@ -309,7 +309,9 @@ impl Live {
                 }
                 self.compile(page, Purpose::Load(name))?;
             }
-            Wish::LoadText { name, text } => self.compile(page, Purpose::LoadText { name, text })?,
+            Wish::LoadText { name, text, mesh } => {
+                self.compile(page, Purpose::LoadText { name, text, mesh })?;
+            }
             Wish::Set { path, value } => {
                 // others may change what pages were told of the scene
                 if !self.stage.session().adjustables.iter().any(|known| known.path == path) {
@@ -334,6 +336,7 @@ impl Live {
         let (page, purpose) = (compiled.page, compiled.purpose.clone());
         let about = purpose.name();
         let result = match (compiled.scene, &purpose) {
+            (Err(message), Purpose::LoadText { mesh: Some(mesh), .. }) => Err(mesh.told(&message)),
             (Err(message), _) => Err(message),
             (Ok(scene), Purpose::Set(setting)) => self.stage.change(scene, setting, &self.hub),
             (Ok(scene), _) => self.begin(scene, &purpose),
@@ -362,8 +365,10 @@ impl Live {
             Purpose::Reset | Purpose::Set(_) => self.stage.name().to_owned(),
         };
         let mut stage = Stage::new(scene, name, self.stage.number() + 1, &self.hub)?;
-        if matches!(purpose, Purpose::Reset) {
-            stage.keep_view(&self.stage);
+        match purpose {
+            Purpose::LoadText { mesh, .. } => stage.origin = Origin::Text { mesh: mesh.clone() },
+            Purpose::Reset => stage.begin_anew(&self.stage),
+            Purpose::Load(_) | Purpose::Set(_) => {}
         }
         let looks = self.stage.looks().clone();
         self.stage = stage;

@@ -15,6 +15,7 @@ use souple_table::Table;
 use super::Shown;
 use super::hands::{self, Hands};
 use super::picture::Wanted;
+use crate::dropped::DroppedFile;
 use crate::fields::{ARROWS, FIELDS};
 use crate::hub::{Hub, Outgoing, PageId};
 use crate::protocol::{self, Wish};
@@ -26,6 +27,7 @@ pub struct Stage {
     /// Counts the scenes of this program.
     number: u32,
     description: String,
+    pub(super) origin: Origin,
     view: PictureView,
     obstacles: Vec<Obstacle>,
     shown: Vec<Shown>,
@@ -44,6 +46,15 @@ pub struct Stage {
     /// Steps between samples.
     sample_every: u64,
     row: Vec<f64>,
+}
+
+/// Where the text of a scene is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// In a file of its name.
+    File,
+    /// Nowhere else: it came from a page, with the mesh that it is made of.
+    Text { mesh: Option<DroppedFile> },
 }
 
 /// How each page looks at the world.
@@ -90,6 +101,7 @@ impl Stage {
         let mut stage = Self {
             number,
             description,
+            origin: Origin::File,
             view,
             obstacles: scenery_of(session.world.model()),
             shown: session.bodies.iter().map(Shown::new).collect(),
@@ -135,9 +147,15 @@ impl Stage {
         self.view
     }
 
-    /// Is seen as another was: the same scene begun anew, whatever gravity was set since.
-    pub fn keep_view(&mut self, before: &Stage) {
+    /// Whether its text is in a file of its name.
+    pub fn is_file(&self) -> bool {
+        self.origin == Origin::File
+    }
+
+    /// The same scene begun anew: it is seen as it was, whatever gravity was set since.
+    pub fn begin_anew(&mut self, before: &Stage) {
         self.view = before.view;
+        self.origin = before.origin.clone();
     }
 
     pub fn obstacles(&self) -> &[Obstacle] {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use souple_run::Recording;
-use souple_view::{Catalogue, Options, Viewer};
+use souple_view::{Catalogue, Options, SUBPROTOCOL, Viewer};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Error, Message, WebSocket};
 
@@ -142,6 +142,8 @@ pub struct Page {
     documents: Vec<Value>,
     /// Whether it says what it has seen.
     pub answers: bool,
+    /// Points, triangles and edges of each message of a surface.
+    pub surfaces: Vec<[u32; 3]>,
     /// Tetrahedra and triangles of each message of the inside of a body.
     pub insides: Vec<[u32; 2]>,
     /// Messages of tools' shapes.
@@ -227,7 +229,7 @@ impl Frame {
 
 impl Page {
     pub fn open(world: &World) -> Self {
-        Self::try_open(world, None, "souple.v2").unwrap_or_else(|error| panic!("{error}"))
+        Self::try_open(world, None, SUBPROTOCOL).unwrap_or_else(|error| panic!("{error}"))
     }
 
     pub fn try_open(world: &World, origin: Option<&str>, protocol: &str) -> Result<Self, String> {
@@ -244,6 +246,7 @@ impl Page {
             socket,
             documents: Vec::new(),
             answers: true,
+            surfaces: Vec::new(),
             insides: Vec::new(),
             tool_count: 0,
             frame_bytes: 0,
@@ -285,6 +288,11 @@ impl Page {
             Message::Binary(bytes) => {
                 let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
                 match bytes[0] {
+                    1 => {
+                        let [points, triangles] = [number(8), number(12)];
+                        let edges = number(16 + 12 * (points + triangles) as usize);
+                        self.surfaces.push([points, triangles, edges]);
+                    }
                     5 => self.insides.push([number(8), number(12)]),
                     6 => self.tool_count += 1,
                     _ => {}

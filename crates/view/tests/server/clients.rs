@@ -4,8 +4,10 @@ use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
 
-use crate::client::{Page, World};
 use serde_json::json;
+use souple_view::SUBPROTOCOL;
+
+use crate::client::{Page, World};
 
 /// The world goes on: its time passes.
 fn assert_alive(world: &World) {
@@ -40,9 +42,13 @@ fn paths_and_sites() {
 #[test]
 fn foreign_pages_stay_out() {
     let world = World::open();
-    assert!(Page::try_open(&world, Some("http://evil.example"), "souple.v2").is_err());
-    assert!(Page::try_open(&world, None, "souple.v999").is_err());
-    assert!(Page::try_open(&world, Some(&format!("http://{}", world.host())), "souple.v2").is_ok());
+    assert!(Page::try_open(&world, Some("http://evil.example"), SUBPROTOCOL).is_err());
+    // pages of older programs too, whose frames would be another's
+    for other in ["souple.v2", "souple.v999"] {
+        let refused = Page::try_open(&world, None, other).err();
+        assert!(refused.is_some(), "{other}");
+    }
+    assert!(Page::try_open(&world, Some(&format!("http://{}", world.host())), SUBPROTOCOL).is_ok());
 }
 
 /// All pages see the same scene, and what one of them changes.
@@ -154,6 +160,30 @@ fn values_are_set() {
     let set = page.document_where("adjustables", |document| value(document) == "50000");
     assert_eq!(set["settings"], json!([format!("{path}=50 kPa")]));
     assert_alive(&world);
+}
+
+/// A world that was turned over is seen as before when it begins anew; one that is loaded plays, though the one before did not.
+#[test]
+fn worlds_begin_as_they_should() {
+    let world = World::open();
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    page.wish(json!({"do": "set", "path": "world.gravity", "value": "[0, 9.81, 0]"}));
+    page.document_where("adjustables", |document| document["settings"] != json!([]));
+    page.wish(json!({"do": "pause"}));
+    page.document_where("status", |status| status["mode"] == "paused");
+    page.wish(json!({"do": "reset"}));
+    let anew = page.document_where("scene", |anew| anew["scene"] != scene["scene"]);
+    for way in ["up", "direction"] {
+        assert_eq!(anew[way], scene[way], "{way}");
+    }
+    let quiet = page.document_where("status", |status| status["busy"].is_null());
+    assert_eq!(quiet["mode"], "paused");
+    let text = "format = 1\n[skins.ball]\nvoxel = 0.1\n[[skins.ball.start]]\n\
+                part = \"point\"\nat = [0, 0, 0]\nradius = 0.5\n";
+    page.wish(json!({"do": "load_text", "name": "ball.toml", "text": text}));
+    page.document_where("scene", |loaded| loaded["scene"] != anew["scene"]);
+    page.document_where("status", |status| status["mode"] == "playing");
 }
 
 /// What was done by hand, values set among it, is repeated bit for bit from the recording.
@@ -275,15 +305,24 @@ fn meshes_are_taken() {
                 f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     let foreign = format!("Host: {}\r\nOrigin: http://evil.example\r\n", world.host());
     assert_eq!(post(&foreign, "cube.obj", cube).status, 403);
-    let refused = post(&own, "cube.obj", "v 0 0 zero\n");
+    // it is called as whoever sent it calls it, not by where it is kept
+    let refused = post(&own, "W%C3%BCrfel+1.obj", "v 0 0 zero\n");
     assert_eq!(refused.status, 400);
-    assert!(refused.body.contains("cube.obj"), "{}", refused.body);
+    assert!(refused.body.starts_with("Würfel 1.obj"), "{}", refused.body);
     assert_eq!(world.ask(&format!("POST /mesh?name=a.obj HTTP/1.1\r\n{own}\r\n")).status, 411);
     let giant = format!("POST /mesh?name=a.obj HTTP/1.1\r\n{own}Content-Length: 99999999999\r\n\r\n");
     assert_eq!(world.ask(&giant).status, 413);
     assert_eq!(post(&own, "cube.obj", cube).status, 200);
     let scene = page.document_where("scene", |scene| scene["title"] == "cube.obj");
     assert!(scene["bodies"][0]["cells"].as_u64() > Some(100), "{scene}");
+    // it is no file that a command could name; and files that are refused after it do not take its mesh away
+    assert_eq!((&scene["is_file"], &scene["short_name"]), (&json!(false), &json!("cube")));
+    for _ in 0..6 {
+        assert_eq!(post(&own, "none.obj", "v 0 0 zero\n").status, 400);
+    }
+    page.wish(json!({"do": "reset"}));
+    let again = page.document_where("scene", |again| again["scene"] != scene["scene"]);
+    assert_eq!(again["is_file"], false);
     assert_alive(&world);
 }
 

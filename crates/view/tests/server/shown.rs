@@ -94,6 +94,25 @@ const BLOCK: &str = r#"
     region = { box = [[-1, -1e-9, -1], [1, 1e-9, 1]] }
 "#;
 
+/// A cube on a wall, of small cells there and of large ones elsewhere.
+const LEVELS: &str = r#"
+    format = 1
+    [world]
+    period = "10 ms"
+    gravity = [0, 0, -9.81]
+    [systems.main]
+    stepper = { name = "staggered", halvings = 5 }
+    [bodies.cube]
+    mesh = { generate = "bar", size = [0.1, 0.1, 0.1], cells = [4, 4, 4], element = "tet4" }
+    material = { name = "st_venant_kirchhoff", youngs_modulus = "20 kPa", poissons_ratio = 0.3, density = 1000 }
+    damping = { rayleigh_mass = 50 }
+    [bodies.cube.levels]
+    coarser = [{ mesh = { generate = "bar", size = [0.1, 0.1, 0.1], cells = [2, 2, 2], element = "tet4" } }]
+    fixed = "if(x < 0.05, 1, 0)"
+    [[bodies.cube.pins]]
+    region = "x_min"
+"#;
+
 /// All links hold at first, and none when their ends have been led away.
 #[test]
 fn links_tear() {
@@ -165,6 +184,8 @@ fn the_inside_comes_on_demand() {
     let (all, outer) = (scene["bodies"][0]["points"].clone(), scene["bodies"][0]["surface_points"].clone());
     assert_eq!((all.as_u64(), outer.as_u64()), (Some(75), Some(66)));
     assert_eq!(page.frame().point_counts, [66]);
+    // two triangles in each of 64 squares, which four edges go round, two squares to an edge
+    assert_eq!(page.surfaces[0], [66, 128, 128]);
     page.wish(json!({"do": "inside", "is_shown": true}));
     page.frame_where(|frame| frame.point_counts == [75]);
     // six tetrahedra and twelve triangles of each of 32 cells
@@ -193,6 +214,15 @@ fn cells_are_told_apart() {
     };
     assert_eq!(names("law"), ["stable_neo_hookean", "corotational (side)"]);
     assert!(names("level").is_empty());
+    let is_here = |field: &str| {
+        let fields = scene["fields"].as_array().expect("there are fields");
+        fields.iter().find(|entry| entry["name"] == field).map(|entry| entry["is_here"] == true)
+    };
+    for (field, here) in
+        [("law", true), ("element", true), ("von_mises", true), ("level", false), ("link_force", false)]
+    {
+        assert_eq!(is_here(field), Some(here), "{field}");
+    }
     let hex = names("element").iter().position(|name| name == "hex").expect("a kind of its own");
 
     page.wish(json!({"do": "colour", "field": "element"}));
@@ -207,6 +237,37 @@ fn cells_are_told_apart() {
     let of_cells = &frame.values[0][triangles..];
     assert_eq!(of_cells.len(), 32);
     assert_eq!(of_cells.iter().filter(|law| **law == 1.0).count(), 8);
+}
+
+/// DEB-51: colours tell which mesh is at work where, arrows how points are displaced, how they move and what pushes them, and
+/// a hand what it pulls with.
+#[test]
+fn levels_arrows_and_forces_are_shown() {
+    let world = World::of(LEVELS);
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    let fields = scene["fields"].as_array().expect("there are fields");
+    let level = fields.iter().find(|field| field["name"] == "level").expect("the field is there");
+    assert_eq!(level["is_here"], true);
+    let names = |of: &serde_json::Value| {
+        of.as_array().into_iter().flatten().map(|one| one["name"].clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(&level["classes"]), ["0, coarsest", "1, finest"]);
+    page.wish(json!({"do": "colour", "field": "level"}));
+    let frame = page.frame_where(|frame| !frame.values.is_empty());
+    let of_level = |level: f32| frame.values[0].iter().filter(|value| **value == level).count();
+    // the half at the wall is fine, the other coarse
+    assert!(of_level(0.0) > 0 && of_level(1.0) > 0, "{:?}", frame.values[0]);
+    assert_eq!(of_level(0.0) + of_level(1.0), frame.values[0].len());
+    assert_eq!(names(&scene["arrows"]), ["displacement", "velocity", "contact_force"]);
+    for name in names(&scene["arrows"]) {
+        page.wish(json!({"do": "arrows", "of": name}));
+        page.frame_where(|frame| frame.arrow_count == 1);
+        page.wish(json!({"do": "arrows", "of": null}));
+        page.frame_where(|frame| frame.arrow_count == 0);
+    }
+    page.wish(json!({"do": "grab", "hand": 0, "body": 0, "points": [0, 1, 2], "strength": 1}));
+    page.frame_where(|frame| frame.hands == 1);
 }
 
 /// Bodies that frames carry, or meshes of several sizes, fly when they are thrown; points of theirs that could not be held

@@ -22,8 +22,11 @@ export class Connection {
     this.open();
   }
 
-  send(wish: Wish): void {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(wish));
+  /** Whether it could be sent. */
+  send(wish: Wish): boolean {
+    if (this.socket?.readyState !== WebSocket.OPEN) return false;
+    this.socket.send(JSON.stringify(wish));
+    return true;
   }
 
   private open(): void {

@@ -25,7 +25,7 @@ export function quantity(value: number, unit: string): string {
 /** Three digits that count. */
 export function number(value: number): string {
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(1).replace("e+", "e");
+  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(2).replace("e+", "e");
   return String(Number(value.toPrecision(3)));
 }
 

@@ -20,10 +20,12 @@ import { Grab } from "./view/grab";
 import { Picture } from "./view/picture";
 
 const DARK = "(prefers-color-scheme: dark)";
-/** After so many pictures it is looked whether anything is in them. */
-const LOOK_EVERY = 20;
+/** How often it is looked whether anything is in the picture [ms]: that costs a pass over all points. */
+const LOOK_EVERY = 400;
 /** Where the scene has its gravity. */
 const GRAVITY = "world.gravity";
+/** What a page says by itself, or says again when the connection is back. */
+const UNTOLD = new Set<Wish["do"]>(["seen", "move", "release", "colour", "arrows", "inside"]);
 
 class Page {
   private readonly notes = new Notes(place("notes"));
@@ -76,9 +78,9 @@ class Page {
   private dark = false;
   /** Of the program. */
   private version: string | null = null;
-  /** Frames drawn since the page was opened, and pictures, of which some show the same. */
+  /** Frames drawn since the page was opened. */
   private pictures = 0;
-  private drawn = 0;
+  private lastLook = 0;
   private readonly sight = element(
     "p",
     { class: "sight", hidden: true },
@@ -109,10 +111,7 @@ class Page {
     this.setDark(this.isDark());
     matchMedia(DARK).addEventListener("change", () => this.setDark(this.isDark()));
     window.addEventListener("keydown", (event) => this.key(event));
-    // a button that was clicked is not what the space bar is for; one that keys have come to is
-    window.addEventListener("click", (event) => {
-      if (event.detail > 0) (event.target as HTMLElement).closest("button")?.blur();
-    });
+    this.freeKeys();
     this.connection = new Connection(
       (message) => this.receive(message),
       (link, why) => this.setLink(link, why),
@@ -125,7 +124,22 @@ class Page {
   }
 
   private send(wish: Wish): void {
-    this.connection.send(wish);
+    if (this.connection.send(wish) || UNTOLD.has(wish.do)) return;
+    this.notes.say("warning", "The connection is lost: nothing was done.");
+  }
+
+  /** What was pressed or set by a pointer does not keep the keys; what keys have come to does. */
+  private freeKeys(): void {
+    let isPointer = false;
+    window.addEventListener("pointerdown", () => (isPointer = true), { capture: true });
+    window.addEventListener("keydown", () => (isPointer = false), { capture: true });
+    const free = (event: Event) => {
+      const used = (event.target as HTMLElement).closest<HTMLElement>("button, summary, select, input[type=range], input[type=checkbox]");
+      if (isPointer) used?.blur();
+    };
+    // a list is open after a click on it, and a slider led to where it stays when it has changed
+    window.addEventListener("click", (event) => (event.target as HTMLElement).closest("select") ?? free(event));
+    window.addEventListener("change", free);
   }
 
   private receive(message: Message): void {
@@ -143,13 +157,13 @@ class Page {
         this.grab?.forget();
         break;
       case "scene":
+        // what was said of another world
+        this.notes.clear();
         this.describe(message, this.info);
         this.info = message;
         this.surfaces = [];
         this.networks = [];
         this.picture.tools.clear();
-        // what was said of another world
-        this.notes.clear();
         this.grab?.forget();
         this.hasBegun = false;
         this.begin();
@@ -201,7 +215,7 @@ class Page {
     // lines of a scene file end where its author's screen did; paragraphs are meant
     const paragraphs = info.description.trim().split(/\n\s*\n/);
     this.description.textContent = paragraphs.map((text) => text.replace(/\s*\n\s*/g, " ")).join("\n\n") || "The scene has no description.";
-    this.parameters.setScene(info.name);
+    this.parameters.setScene(info.name, info.is_file);
     this.scenes.setCurrent(info.name);
     this.plots.begin(info.probes);
     this.stages.begin(info);
@@ -298,8 +312,9 @@ class Page {
       }
     }
     this.picture.draw();
-    this.drawn += 1;
-    if (this.drawn % LOOK_EVERY === 0) this.sight.hidden = !this.picture.isOutOfSight;
+    if (performance.now() - this.lastLook < LOOK_EVERY) return;
+    this.lastLook = performance.now();
+    this.sight.hidden = !this.picture.isOutOfSight;
   }
 
   /** As was chosen by hand; as the system has it where nothing was. */
@@ -324,6 +339,8 @@ class Page {
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName)) return;
+    // panels are scrolled by the keys that lead a hand
+    const mayLead = target === document.body || target === this.picture.canvas;
     const actions: Record<string, () => void> = {
       " ": () => this.transport.toggle(),
       s: () => this.send({ do: "step" }),
@@ -336,7 +353,7 @@ class Page {
       f: () => this.picture.fit(),
     };
     const name = event.key.toLowerCase();
-    if (this.grab?.key(name, event.repeat)) {
+    if (this.grab?.key(name, event.repeat, mayLead)) {
       event.preventDefault();
       return;
     }
@@ -373,8 +390,7 @@ class Page {
     const blob = await this.picture.atItsBest((drawing) => photograph(drawing, caption));
     if (!blob) return;
     const url = URL.createObjectURL(blob);
-    const name = (info?.name ?? "souple").replace(/(\/scene)?\.toml$/, "").replace(/^.*\//, "");
-    element("a", { href: url, download: `${name || "souple"}_${time.toFixed(3)}s.png` }).click();
+    element("a", { href: url, download: `${info?.short_name ?? "souple"}_${time.toFixed(3)}s.png` }).click();
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   }
 }

@@ -1,7 +1,7 @@
-// What comes over the wire and how it is read: version 2, see docs/protocol.md.
+// What comes over the wire and how it is read: see docs/protocol.md.
 
-export const SUBPROTOCOL = "souple.v2";
 const VERSION = 3;
+export const SUBPROTOCOL = `souple.v${VERSION}`;
 
 export type Vector = [number, number, number];
 
@@ -23,8 +23,8 @@ export interface ToolInfo {
   summary: string;
   /** How far its front is from its origin, in its size. */
   front: number;
-  /** How far about its middle a flat front reaches, in its size; 0: it is not flat. */
-  flat: number;
+  /** How far about its middle a flat front reaches, in its size; null: it is held from the eye. */
+  flat: number | null;
 }
 
 export interface Hello {
@@ -96,6 +96,10 @@ export interface SceneInfo {
   kind: "scene";
   scene: number;
   name: string;
+  /** For files. */
+  short_name: string;
+  /** Whether a file of its name holds it. */
+  is_file: boolean;
   title: string;
   description: string;
   period: number;

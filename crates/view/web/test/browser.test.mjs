@@ -109,6 +109,24 @@ describe("the liver", () => {
     await other.close();
   });
 
+  test("is met by a tool that a second finger leads in", async () => {
+    const other = await open(browser, world.url, { hasTouch: true });
+    await other.click('[data-tool="push"]');
+    const devtools = await other.context().newCDPSession(other);
+    const [x, y] = await at(other);
+    const [aside, low] = await at(other, 0.9, 0.9);
+    const touch = (type, ...places) =>
+      devtools.send("Input.dispatchTouchEvent", { type, touchPoints: places.map(([x, y], id) => ({ x, y, id })) });
+    await touch("touchStart", [x, y]);
+    await touch("touchStart", [x, y], [aside, low]);
+    for (let way = 0; way <= 160; way += 40) await touch("touchMove", [x, y], [aside, low - way]);
+    await other.waitForFunction(() => /[1-9]/.test(document.querySelector(".force")?.textContent ?? ""));
+    assert.equal(await other.locator(".force").count(), 1);
+    await touch("touchEnd");
+    await other.locator(".force").waitFor({ state: "detached" });
+    await other.close();
+  });
+
   test("is taken by keys", async () => {
     await page.locator("#stage canvas").focus();
     await page.keyboard.press("h");
@@ -259,6 +277,9 @@ describe("the liver", () => {
     await passed(page, (await time(page)) + 0.05);
     assert.equal(await page.locator(".force").textContent(), "0 N");
     await photograph(page, "plate");
+    // it stands close before the body, across the way that it is led: a tenth of the bodies' size on, it presses
+    for (let notch = 0; notch < 8; notch++) await page.mouse.wheel(0, -100);
+    await page.waitForFunction(() => /[1-9]/.test(document.querySelector(".force")?.textContent ?? ""));
     await page.mouse.up();
     await page.locator(".force").waitFor({ state: "detached" });
     await page.selectOption("#tool", "ball");
@@ -286,6 +307,10 @@ describe("the liver", () => {
     await downloads.locator("summary").click();
     const [file] = await Promise.all([page.waitForEvent("download"), downloads.locator("button", { hasText: "Picture" }).click()]);
     assert.match(file.suggestedFilename(), /^liver_\d+\.\d{3}s\.png$/);
+    const saved = await trial.seenIn(page, await readFile(await file.path()));
+    assert.ok(saved.share > 0.02, `${saved.share} of it is in strong colours`);
+    // the bar of the legend, from one end of its colours to the other
+    assert.ok(saved.corner > 0.001, `${saved.corner} of its lower left is`);
     await downloads.locator("summary").click();
     await play(page);
   });
@@ -474,7 +499,11 @@ describe("small worlds", () => {
   test("may come from a file that is chosen; one too large is refused in words", async () => {
     const toml = await readFile(new URL("../../../../scenes/soft_block/scene.toml", import.meta.url));
     await page.setInputFiles("#file", { name: "chosen.toml", mimeType: "text/plain", buffer: toml });
-    await page.waitForFunction(() => document.querySelector(".command").textContent.includes("chosen.toml"));
+    await page.waitForFunction(() => document.querySelector(".command").textContent.includes("No file of the program"));
+    // what a scene warns of is said on the screen
+    const steps = toml.toString().replace('name = "backward_euler", newton_tolerance = 1e-7', 'name = "symplectic_euler"');
+    await page.setInputFiles("#file", { name: "long_steps.toml", mimeType: "text/plain", buffer: Buffer.from(steps) });
+    await page.locator(".note.warning", { hasText: "step" }).waitFor();
     await page.evaluate(() => {
       const dropped = new DataTransfer();
       dropped.items.add(new File([new Uint8Array(64 * 2 ** 20 + 1)], "large.stl"));
@@ -510,7 +539,7 @@ test("a world that explodes names its body in windows of every size, and can be 
       // nobody chose: the page follows the system
       await page.emulateMedia({ colorScheme });
       await page.waitForFunction((scheme) => document.documentElement.dataset.theme === scheme, colorScheme);
-      for (const [width, height] of [[1600, 900], [1024, 700], [420, 860]]) {
+      for (const [width, height] of [[1600, 900], [1024, 700], [765, 600], [420, 860], [360, 740]]) {
         await page.setViewportSize({ width, height });
         await page.waitForFunction((width) => innerWidth === width, width);
         const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);

@@ -80,9 +80,16 @@ export const passed = (page, moment) => page.waitForFunction((moment) => Number(
 export const reads = (page, selector, text) =>
   page.waitForFunction(([selector, text]) => document.querySelector(selector)?.textContent === text, [selector, text]);
 
-/** The share of the stage that is in strong colours, how many colours are on it, and a number that tells pictures apart. */
+/** What is seen of the stage. */
 export async function seen(page) {
-  const png = (await page.locator("#stage canvas").screenshot()).toString("base64");
+  return seenIn(page, await page.locator("#stage canvas").screenshot());
+}
+
+/**
+ * The share of a picture that is in strong colours, the same of its lower left quarter, how many colours are on it, and a number
+ * that tells pictures apart.
+ */
+export function seenIn(page, picture) {
   return page.evaluate(async (png) => {
     const bytes = Uint8Array.from(atob(png), (c) => c.charCodeAt(0));
     const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
@@ -91,15 +98,20 @@ export async function seen(page) {
     context.drawImage(image, 0, 0);
     const { data } = context.getImageData(0, 0, image.width, image.height);
     const colours = new Set();
-    let [strong, print] = [0, 0];
+    let [strong, corner, print] = [0, 0, 0];
     for (let i = 0; i < data.length; i += 4) {
       const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
       colours.add(((r >> 4) << 8) | ((g >> 4) << 4) | (b >> 4));
-      if (Math.max(r, g, b) - Math.min(r, g, b) > 40) strong += 1;
+      if (Math.max(r, g, b) - Math.min(r, g, b) > 40) {
+        strong += 1;
+        const [x, y] = [(i / 4) % image.width, Math.floor(i / 4 / image.width)];
+        if (x < image.width / 4 && y > 0.75 * image.height) corner += 1;
+      }
       print = (31 * print + r + 7 * g + 13 * b) % 1_000_000_007;
     }
-    return { share: strong / (data.length / 4), colours: colours.size, print };
-  }, png);
+    const all = data.length / 4;
+    return { share: strong / all, corner: corner / all, colours: colours.size, print };
+  }, picture.toString("base64"));
 }
 
 /** Waits until as much of the stage is in strong colours. */
@@ -132,7 +144,7 @@ export const pictureTime = (page) =>
  */
 export const overlaps = (page) =>
   page.evaluate(() => {
-    const parts = "#top button, #top select, #top .time, #top .factor, #top h1, #messages, #legend, .furniture, #side, #bottom";
+    const parts = "#top button, #top select, #top .time, #top .factor, #top h1, #messages, #legend, .furniture svg, .scale, #side, #bottom";
     const boxes = [...document.querySelectorAll(parts)]
       .map((thing) => [thing.id || thing.textContent, thing.getBoundingClientRect()])
       .filter(([, box]) => box.width > 0 && box.height > 0);

@@ -6,8 +6,8 @@ use souple_table::{Parameter, Value};
 
 use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, ShapeError, boxed, rounded};
 
-/// Outside, edges and corners are round; inside, the nearest face pushes out, of equally near ones the first
-/// its own x, y, z.
+/// Outside, edges and corners are round; inside, the nearest face pushes out, of equally near ones the first along its own
+/// x, y, z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     /// [m]

@@ -125,7 +125,8 @@ export class Display {
     look.field = this.field.value || null;
     look.map = this.map.value || "sequential";
     look.style = this.style.value as Style;
-    look.explode = Number(this.explode.value);
+    // what is chosen for other scenes is kept, and does nothing where it cannot be seen
+    look.explode = this.explodeRow.hidden ? 0 : Number(this.explode.value);
     look.arrows = this.arrows.value || null;
     look.axes = this.axes.checked;
     const axis = this.axis.value;

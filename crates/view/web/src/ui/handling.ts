@@ -13,15 +13,18 @@ export interface Handling {
   size: number;
   /** How far the front of the tool is from its origin, in its size. */
   front: number;
-  /** How far about its middle a flat front reaches, in its size. */
-  flat: number;
+  /** How far about its middle a flat front reaches, in its size; null: it is held from the eye. */
+  flat: number | null;
   /** Whether a tool stays where the hand leaves it. */
   stays: boolean;
 }
 
+/** Until the world has told which tools there are. */
+export const BARE_HAND: Handling = { strength: 1, tool: "", size: 0.16, front: 0, flat: null, stays: false };
+
 export class HandPanel {
   readonly root: HTMLElement;
-  readonly handling: Handling = { strength: 1, tool: "", size: 0.16, front: 0.5, flat: 0, stays: false };
+  readonly handling: Handling = { ...BARE_HAND };
   private tools: ToolInfo[] = [];
   private readonly strength = element("input", { type: "range", id: "strength", min: -1.5, max: 1.5, step: 0.05, value: 0 });
   private readonly tool = element("select", { id: "tool" });
@@ -77,7 +80,7 @@ export class HandPanel {
     handling.stays = this.stays.checked;
     this.strengthSaid.textContent = ` ${number(handling.strength)} ×`;
     this.sizeSaid.textContent = ` ${number(100 * handling.size)} % of all bodies`;
-    const { front = 0.5, flat = 0 } = this.tools.find(({ name }) => name === handling.tool) ?? {};
+    const { front, flat } = this.tools.find(({ name }) => name === handling.tool) ?? BARE_HAND;
     Object.assign(handling, { front, flat });
     this.changed(handling);
   }

@@ -66,6 +66,7 @@ export class Legend {
     if (isScale) this.scale(range.low, range.high, field.unit);
     if (hasArrows) this.arrow.textContent = `Longest arrow, ${label(arrows.name)}: ${quantity(longest, arrows.unit)}`;
     else if (arrows) this.arrow.textContent = `No arrows: nothing has any ${label(arrows.name)} now.`;
+    this.arrow.classList.toggle("none", !hasArrows);
   }
 
   private scale(low: number, high: number, unit: string): void {

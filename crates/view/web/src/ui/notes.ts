@@ -29,6 +29,8 @@ export class Notes {
 
   say(weight: Weight, text: string): void {
     this.keep(weight, text);
+    // what is said again stands once
+    [...this.place.children].filter((note) => note.querySelector("p")?.textContent === text).forEach((note) => note.remove());
     const close = element("button", { class: "close", "aria-label": "Close this message", click: () => note.remove() }, "×");
     const note = element("div", { class: `note ${weight}` }, element("p", {}, text), close);
     this.place.append(note);

@@ -1,6 +1,6 @@
 // Values of the scene, from its tables: set while the world runs.
 
-import { inPrint, label, number } from "../format";
+import { inPrint, label } from "../format";
 import type { Adjustable, Adjustables, Wish } from "../protocol";
 import { element, panel } from "./dom";
 
@@ -18,6 +18,7 @@ export class Parameters {
   /** What was set last. */
   private lastSet = "";
   private scene = "";
+  private isFile = false;
 
   constructor(
     private readonly send: (wish: Wish) => void,
@@ -27,16 +28,16 @@ export class Parameters {
     this.root = panel("Parameters", true, this.place, element("div", { class: "buttons" }, this.copying), this.command);
   }
 
-  setScene(name: string): void {
+  setScene(name: string, isFile: boolean): void {
     this.scene = name;
+    this.isFile = isFile;
   }
 
   set({ adjustables, settings }: Adjustables): void {
-    const isFile = this.scene.endsWith(".toml");
-    this.copying.disabled = !isFile;
-    this.command.textContent = isFile
+    this.copying.disabled = !this.isFile;
+    this.command.textContent = this.isFile
       ? `souple run ${quoted(this.scene)}${settings.map((s) => ` --set ${quoted(s)}`).join("")}`
-      : "This scene is no file where the program runs: its recording, under Downloads, replays it.";
+      : "No file of the program holds this scene. Its recording, under Downloads, repeats it by `souple replay`.";
     // fields keep the cursor while only their values change
     const shape = JSON.stringify([this.scene, adjustables.map((adjustable) => ({ ...adjustable, value: null }))]);
     if (shape !== this.shape) {
@@ -52,12 +53,13 @@ export class Parameters {
     this.send({ do: "set", path, value });
   }
 
-  /** What was set was refused: says so beside it, the value as it is comes after; whether there is such a place in sight. */
+  /** What was set was refused: says so beside it, the value as it is comes after; whether a person who set it there sees it. */
   refuse(message: string): boolean {
     const path = [...this.controls.keys()].find((path) => message.startsWith(`${path}:`)) ?? this.lastSet;
     const control = this.controls.get(path);
-    control?.refuse(message.startsWith(`${path}:`) ? message.slice(path.length + 1).trim() : message);
-    return control !== undefined && (this.root as HTMLDetailsElement).open;
+    if (!control) return false;
+    control.refuse(message.startsWith(`${path}:`) ? message.slice(path.length + 1).trim() : message);
+    return control.holdsFocus();
   }
 
   private build(adjustables: Adjustable[]): void {
@@ -78,7 +80,7 @@ export class Parameters {
 
   private row(adjustable: Adjustable): HTMLElement {
     const { name, unit, summary, type } = adjustable;
-    const title = `${summary}${unit ? ` [${unit}]` : ""}`;
+    const title = `${summary}${unit ? ` [${inPrint(unit)}]` : ""}`;
     const heading = element("span", { title }, label(name), unit ? element("small", {}, ` ${inPrint(unit)}`) : null);
     const refusal = element("small", { class: "refusal", hidden: true });
     const isChosen = type === "choice" || type === "boolean";
@@ -96,6 +98,7 @@ export class Parameters {
     this.controls.set(path, {
       show: ({ value }) => (select.value = (value ?? "").replaceAll('"', "")),
       refuse: (message) => say(refusal, message),
+      holdsFocus: () => document.activeElement === select,
     });
     return [select];
   }
@@ -140,7 +143,7 @@ export class Parameters {
       text.setAttribute("aria-invalid", "true");
       say(refusal, message);
     };
-    this.controls.set(path, { show, refuse });
+    this.controls.set(path, { show, refuse, holdsFocus: () => [text, slider].some((input) => input === document.activeElement) });
     return [text, slider];
   }
 
@@ -156,6 +159,8 @@ export class Parameters {
 interface Control {
   show(adjustable: Adjustable): void;
   refuse(message: string): void;
+  /** Whether it is what a person is at, and so is seen. */
+  holdsFocus(): boolean;
 }
 
 interface Scale {
@@ -198,12 +203,9 @@ function say(refusal: HTMLElement, message: string): void {
 function shown({ value, type }: Adjustable): string {
   if (value === null) return "";
   if (type === "vector") return value.replaceAll(/[[\]]/g, "");
-  const digits = Number(value);
-  return Number.isFinite(digits) && type === "number" && Math.abs(digits) >= 1e-3 && Math.abs(digits) < 1e5
-    ? String(Number(digits.toPrecision(6)))
-    : Number.isFinite(digits) && type === "number"
-      ? number(digits)
-      : value;
+  const number = Number(value);
+  // what it is set from has more digits than anybody reads
+  return type === "number" && Number.isFinite(number) ? String(Number(number.toPrecision(6))) : value;
 }
 
 /** What a person wrote, as a scene file would have it. */

@@ -1,7 +1,7 @@
 // What is measured, over time: probes, energies, and what a step costs.
 
 import uPlot from "uplot";
-import { label, number } from "../format";
+import { inPrint, label, number } from "../format";
 import type { Frame, ProbeInfo, Samples } from "../protocol";
 import { element, panel } from "./dom";
 import { STAGES } from "./stages";
@@ -100,11 +100,14 @@ export class Plots {
 
   private add(table: Table, first: number, title: string, unit: string, lines: Line[]): void {
     const axis = { stroke: () => style("--quiet"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false } };
+    const said = (_: uPlot, value: number | null) => (value === null ? "" : number(value));
+    const line = ({ name, colour }: Line) => ({ label: name, stroke: colour, width: 1.5, points: { show: false }, value: said });
+    const time = { label: "time", value: (_: uPlot, value: number | null) => (value === null ? "" : `${number(value)} s`) };
     const plot = new uPlot(
       {
         width: this.width(),
         height: HEIGHT,
-        title: unit ? `${title} [${unit}]` : title,
+        title: unit ? `${title} [${inPrint(unit)}]` : title,
         scales: { x: { time: false } },
         // values under the mouse
         legend: { live: true, isolate: true },
@@ -113,7 +116,7 @@ export class Plots {
           { ...axis, size: 22, values: (_, values) => values.map((value) => `${number(value)} s`) },
           { ...axis, size: 58, values: (_, values) => values.map(number) },
         ],
-        series: [{ label: "time", value: (_, value) => (value === null ? "" : `${number(value)} s`) }, ...lines.map(({ name, colour }) => ({ label: name, stroke: colour, width: 1.5, points: { show: false }, value: (_: uPlot, value: number | null) => (value === null ? "" : number(value)) }))],
+        series: [time, ...lines.map(line)],
       },
       [[], ...lines.map(() => [])],
       this.place,

@@ -13,6 +13,7 @@ export class Scenes {
   /** The number that refusals come back to. */
   page = 0;
   private readonly list = element("ul", { class: "scenes" });
+  private readonly none = element("p", { class: "quiet", hidden: true }, "No scene has all these words.");
   private readonly wanted = element("input", {
     type: "text",
     id: "find-scene",
@@ -37,6 +38,7 @@ export class Scenes {
       element("div", { class: "buttons" }, element("button", { click: () => file.click() }, "Open a file"), file),
       element("p", { class: "quiet" }, "A scene file or a mesh; it can be dropped on the page as well."),
       this.wanted,
+      this.none,
       this.list,
     );
     this.wanted.addEventListener("input", () => this.find());
@@ -64,13 +66,14 @@ export class Scenes {
     this.find();
   }
 
-  /** Leaves on the list what has all words that are wanted. */
+  /** Leaves on the list what has all words that are wanted; says so where nothing has. */
   private find(): void {
     const words = this.wanted.value.toLowerCase().split(/\s+/);
     for (const entry of this.list.children) {
       const text = (entry.textContent ?? "").toLowerCase();
       (entry as HTMLElement).hidden = !words.every((word) => text.includes(word));
     }
+    this.none.hidden = [...this.list.children].some((entry) => !(entry as HTMLElement).hidden);
   }
 
   setCurrent(name: string): void {
@@ -99,7 +102,7 @@ export class Scenes {
   private async sendMesh(file: File): Promise<void> {
     const url = new URL("mesh", location.href);
     url.search = location.search;
-    url.searchParams.set("name", file.name.replace(/[^\w.-]/g, "_"));
+    url.searchParams.set("name", file.name);
     url.searchParams.set("page", String(this.page));
     try {
       const answer = await fetch(url, { method: "POST", body: file });

@@ -22,7 +22,7 @@ export class Stages {
   private readonly bar = element("span", { class: "stagebar" });
   private readonly parts: HTMLElement[];
   private readonly iterations = element("span", { title: "Iterations of a step, in the mean: of Newton's method, and of the linear solver" });
-  private readonly rate = element("span", { title: "Pictures drawn each second" });
+  private readonly rate = element("span", { title: "Frames of the world that are drawn each second" });
   private mean: number[] | null = null;
   private lastText = 0;
   private pictures = 0;

@@ -34,6 +34,9 @@ import type { Range } from "./palette";
 export type Style = "smooth" | "edges" | "wireframe";
 
 const PIN_COLOUR = 0x3d6fd8;
+/** Edges of elements: dark on surfaces, and bright where there is only the night behind them. */
+const LINES_DARK = 0x101418;
+const LINES_BRIGHT = 0xdfe6f0;
 /** Of the outside beyond a section, in the size of all bodies. */
 const OVERLAP = 4e-4;
 /** Beyond so many sizes of all bodies numbers of four bytes draw nothing that could be seen. */
@@ -102,7 +105,7 @@ export class Body {
     const lines = made(["color"], surface.points.length / 3);
     lines.setAttribute("position", moving(this.positions));
     lines.setIndex(new BufferAttribute(surface.edges, 1));
-    this.edges = new LineSegments(lines, new LineBasicMaterial({ transparent: true, opacity: 0.35, color: 0x101418 }));
+    this.edges = new LineSegments(lines, new LineBasicMaterial({ transparent: true }));
     this.edges.frustumCulled = false;
     this.edges.visible = false;
     this.group.add(this.mesh, this.edges);
@@ -209,7 +212,8 @@ export class Body {
     const isColoured = isWire && this.hasValues && !this.ofCells;
     if (lines.vertexColors !== isColoured) lines.needsUpdate = true;
     lines.vertexColors = isColoured;
-    lines.color.set(isColoured ? 0xffffff : isWire && this.dark ? 0xdfe6f0 : 0x101418);
+    const plain = isWire && this.dark ? LINES_BRIGHT : LINES_DARK;
+    lines.color.set(isColoured ? 0xffffff : plain);
     lines.opacity = isColoured ? 1 : isWire ? 0.6 : 0.3;
   }
 
@@ -263,12 +267,14 @@ export class Body {
     return near.slice(0, 400).map(([, point]) => point);
   }
 
-  /** The mean normal at some points; `other` where they have none. */
+  /** The mean normal at some points, on the side of another, which stands for it where they have none. */
   normalAbout(points: number[], other: Vector3): Vector3 {
     const normal = new Vector3();
     const one = new Vector3();
     for (const point of points) normal.add(one.fromArray(this.normals, 3 * point));
-    return normal.length() > 0 && !this.network ? normal.normalize() : other.clone();
+    if (normal.length() === 0 || this.network) return other.clone();
+    // a sheet is met from behind as well
+    return normal.normalize().multiplyScalar(normal.dot(other) < 0 ? -1 : 1);
   }
 
   /** Makes the mesh ready to be met by a ray. */
@@ -301,6 +307,7 @@ export class Body {
     }
     this.edges.visible = isSurface && (this.style === "edges" || (this.style === "wireframe" && !this.ofCells));
     if (this.inside) this.inside.group.visible = !isHidden;
+    if (this.network) this.network.group.visible = !isHidden;
   }
 
   private setOfCells(ofCells: boolean): void {
@@ -323,9 +330,8 @@ export class Body {
       for (let k = 0; k < 3; k++) this.normals[3 * point + k]! += normals[3 * own + k]!;
     });
     const { geometry } = this.mesh;
-    for (const attribute of [geometry.getAttribute("position"), geometry.getAttribute("normal"), this.edges.geometry.getAttribute("position")]) {
-      attribute.needsUpdate = true;
-    }
+    const moved = [geometry, this.edges.geometry].map((moving) => moving.getAttribute("position"));
+    for (const attribute of [...moved, geometry.getAttribute("normal")]) attribute.needsUpdate = true;
     this.placePins();
   }
 

@@ -3,8 +3,16 @@
 import { Box3, Frustum, Matrix4, PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
-/** How far a key turns the view [rad], and the share by which it comes nearer. */
+/** How far a key turns the view [rad], and the share by which it comes nearer or goes away. */
 const KEY_TURN = 0.08;
+const KEY_SHARE = 0.08;
+/** The eye stays as far from where it would look straight down or up [rad]. */
+const POLE = 0.1;
+/** Of the picture's height and width a box that is looked at leaves as much free, about. */
+const MARGIN = 1.12;
+/** What is nearer than this part of the distance, or farther away than so many of it, is not drawn. */
+const NEAR = 1 / 200;
+const FAR = 40;
 
 export class Eye {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
@@ -26,11 +34,11 @@ export class Eye {
     const radius = Math.max(0.5 * bounds.getSize(new Vector3()).length(), 1e-6);
     const half = 0.5 * this.camera.fov * (Math.PI / 180);
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const distance = (1.12 * radius) / Math.sin(narrow);
+    const distance = (MARGIN * radius) / Math.sin(narrow);
     this.camera.up.copy(this.up);
     this.camera.position.copy(centre).addScaledVector(this.direction, -distance);
-    this.camera.near = distance / 200;
-    this.camera.far = distance * 40;
+    this.camera.near = NEAR * distance;
+    this.camera.far = FAR * distance;
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(centre);
     this.controls.update();
@@ -42,10 +50,11 @@ export class Eye {
     const offset = this.camera.position.clone().sub(target);
     const across = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
     offset.applyAxisAngle(this.camera.up, -KEY_TURN * right);
-    const raised = offset.clone().applyAxisAngle(across, KEY_TURN * up);
-    // the eye does not go over the top
-    if (raised.clone().cross(this.camera.up).length() > 0.1 * raised.length()) offset.copy(raised);
-    offset.multiplyScalar(1 + KEY_TURN * away);
+    // the eye does not go over the top; a view that is already beyond comes back
+    const polar = offset.angleTo(this.camera.up);
+    const wanted = Math.min(Math.max(polar + KEY_TURN * up, POLE), Math.PI - POLE);
+    offset.applyAxisAngle(across.applyAxisAngle(this.camera.up, -KEY_TURN * right), wanted - polar);
+    offset.multiplyScalar(1 + KEY_SHARE * away);
     this.camera.position.copy(target).add(offset);
     this.controls.update();
   }
@@ -70,7 +79,7 @@ export class Eye {
     return this.ray;
   }
 
-  /** The place above a plane through a point, across the view, that a place of the screen lies on. */
+  /** Where the ray to a place of the screen meets the plane through a point, across the view. */
   onPlane(event: { clientX: number; clientY: number }, point: Vector3): Vector3 | null {
     const plane = new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), point);
     return this.aimAt(event).ray.intersectPlane(plane, new Vector3());

@@ -2,6 +2,7 @@
 
 import { Vector3 } from "three";
 import type { Vector, Wish } from "../protocol";
+import { BARE_HAND } from "../ui/handling";
 import type { Handling } from "../ui/handling";
 import type { Hit, Picture } from "./picture";
 
@@ -38,11 +39,17 @@ const DIRECTIONS: Record<string, [number, number, number]> = {
 /** How far a press of an arrow key, and a notch of the wheel, lead a hand: parts of the bodies' diagonal. */
 const KEY_STEP = 0.02;
 const WHEEL_STEP = 0.012;
+/** What a notch of a wheel says [px]; trackpads say less, and more often. */
+const NOTCH = 100;
+/** A tool stands as much farther off than it would touch, of the way to its front. */
+const CLEARANCE = 1.02;
 
 export class Grab {
   tool: Tool = "pull";
-  handling: Handling = { strength: 1, tool: "ball", size: 0.16, front: 0.5, flat: 0, stays: false };
+  handling: Handling = BARE_HAND;
   private readonly held = new Map<number, Held>();
+  /** Fingers beside bodies that lead what another holds, as the wheel does: where they were last on the screen [px]. */
+  private readonly leading = new Map<number, number>();
   /** Tools that were left where they are. */
   private readonly left: Held[] = [];
   private lastHover = 0;
@@ -54,8 +61,11 @@ export class Grab {
   ) {
     const { canvas } = picture;
     canvas.tabIndex = 0;
-    const what = "The simulated world: drag bodies, or use the tool in the middle with H, lead it with the arrow and page keys, let go with H; with empty hands these keys turn the view";
-    canvas.setAttribute("aria-label", what);
+    const what = [
+      "The simulated world: drag bodies, or use the tool in the middle with H,",
+      "lead it with the arrow and page keys, let go with H; with empty hands these keys turn the view",
+    ];
+    canvas.setAttribute("aria-label", what.join(" "));
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     canvas.addEventListener("pointerup", (event) => this.up(event));
@@ -67,6 +77,7 @@ export class Grab {
   /** The connection was lost or the scene is another: nothing is held any more. */
   forget(): void {
     this.held.clear();
+    this.leading.clear();
     this.left.length = 0;
     this.rest();
   }
@@ -76,20 +87,26 @@ export class Grab {
     this.left.splice(0).forEach(({ hand }) => this.send({ do: "release", hand }));
   }
 
-  /** Uses the tool in the middle of the picture, leads, lets go; whether the key was one of these. */
-  key(name: string, isRepeat: boolean): boolean {
+  /** Uses the tool in the middle of the picture, leads where that `mayLead`, lets go; whether the key was one of these. */
+  key(name: string, isRepeat: boolean, mayLead: boolean): boolean {
     const held = this.held.get(KEYS);
-    if (name === "h" || (name === "escape" && held)) {
+    if (name === "escape" && this.held.size > 0) {
+      // who escapes does not throw
+      for (const [pointer, { tool }] of [...this.held]) {
+        if (tool === "throw") this.drop(pointer);
+        else this.end(pointer);
+      }
+      return true;
+    }
+    if (name === "h") {
       // a key that is held is pressed once
       if (isRepeat) return true;
-      // who escapes does not throw
-      if (held && name === "escape" && held.tool === "throw") this.drop(KEYS);
-      else if (held) this.end(KEYS);
+      if (held) this.end(KEYS);
       else this.takeInTheMiddle();
       return true;
     }
     const direction = DIRECTIONS[name];
-    if (!direction) return false;
+    if (!direction || !mayLead) return false;
     if (!held) {
       this.picture.eye.turn(direction);
       return true;
@@ -121,7 +138,10 @@ export class Grab {
   private down(event: PointerEvent): void {
     if (event.button !== 0 || event.shiftKey || event.ctrlKey || event.metaKey) return;
     const hit = this.picture.hit(event);
-    if (!hit) return;
+    if (!hit) {
+      if (event.pointerType === "touch" && this.held.size > 0) this.leading.set(event.pointerId, event.clientY);
+      return;
+    }
     if (this.tool === "pin") this.pin(hit);
     else {
       this.begin(event.pointerId, hit, this.tool);
@@ -155,15 +175,32 @@ export class Grab {
     const nearest = patch[0];
     const point = nearest === undefined ? hit.point : new Vector3().fromArray(hit.body.positions, 3 * nearest);
     // a flat tool lies on the surface, before all that its front would meet there
-    const normal = flat > 0 ? hit.body.normalAbout(patch, hit.normal) : hit.normal;
-    const ahead = flat > 0 ? this.picture.heightAbove(point, normal, flat * size, size) : 0;
-    const place = point.clone().addScaledVector(normal, 1.02 * front * size + ahead);
-    const direction = (flat > 0 ? normal : this.picture.eye.towards).toArray() as Vector;
+    const normal = flat === null ? hit.normal : hit.body.normalAbout(patch, hit.normal);
+    const ahead = flat === null ? 0 : this.freeAbove(point, normal, flat * size, 2 * CLEARANCE * front * size);
+    const place = point.clone().addScaledVector(normal, CLEARANCE * front * size + ahead);
+    const direction = (flat === null ? this.picture.eye.towards : normal).toArray() as Vector;
     this.send({ do: "touch", hand, tool, size, place: place.toArray() as Vector, direction, strength });
     return place;
   }
 
+  /** How far above a plane through a point there is room for what is `thick`, within a radius. */
+  private freeAbove(point: Vector3, normal: Vector3, radius: number, thick: number): number {
+    let free = 0;
+    // what stands in it lifts it, and then something else may
+    for (;;) {
+      const height = this.picture.heightAbove(point, normal, radius, free + thick);
+      if (height <= free) return free;
+      free = height;
+    }
+  }
+
   private move(event: PointerEvent): void {
+    const before = this.leading.get(event.pointerId);
+    if (before !== undefined) {
+      this.leading.set(event.pointerId, event.clientY);
+      this.leadAway((before - event.clientY) / this.picture.canvas.clientHeight);
+      return;
+    }
     const held = this.held.get(event.pointerId);
     if (!held) {
       if (event.buttons === 0) this.hover(event);
@@ -189,11 +226,19 @@ export class Grab {
     if (!held || held.tool === "throw") return;
     event.preventDefault();
     event.stopImmediatePropagation();
-    const step = WHEEL_STEP * this.picture.size * Math.sign(event.deltaY);
-    this.lead(held, held.last.clone().addScaledVector(this.picture.eye.towards, step));
+    const notches = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY / NOTCH : event.deltaY;
+    this.leadAway(-WHEEL_STEP * Math.min(Math.max(notches, -1), 1));
+  }
+
+  /** Leads what was taken first away from the eye, by a part of the bodies' diagonal. */
+  private leadAway(share: number): void {
+    const held = [...this.held.values()][0];
+    if (!held || held.tool === "throw") return;
+    this.lead(held, held.last.clone().addScaledVector(this.picture.eye.towards, -share * this.picture.size));
   }
 
   private up(event: PointerEvent): void {
+    this.leading.delete(event.pointerId);
     this.end(event.pointerId);
   }
 
@@ -223,6 +268,7 @@ export class Grab {
   private rest(): void {
     if ([...this.held.values()].every(({ tool }) => tool !== "throw")) this.picture.aim(null);
     if (this.held.size > 0) return;
+    this.leading.clear();
     this.picture.eye.controls.enabled = true;
     this.picture.canvas.style.cursor = "";
   }

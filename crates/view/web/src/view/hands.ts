@@ -66,7 +66,7 @@ export class Hands {
     shown.label.textContent = quantity(this.aimed.speed, "m/s");
   }
 
-  /** Leads the arrow from a place to that of its number. */
+  /** Points the arrow from a place to where its number stands. */
   private point({ arrow, grip, place }: Shown, from: Vector3): void {
     const pull = place.clone().sub(from);
     const length = Math.max(pull.length(), 1e-9);

@@ -53,12 +53,19 @@ export interface Cut {
   axis: 0 | 1 | 2;
   /** Whether the half away from the eye is left; the section is seen on it. */
   isFarHalf: boolean;
-  /** From 0, nothing is left, to 1, all is. */
+  /** From the low end of all that is there, 0, to the high one, 1. */
   place: number;
 }
 
-/** Of the light that throws shadows. */
+/** Strengths of the light that throws shadows, of that from the sky, and of what that gains where no reflections are. */
 const KEY = 2.4;
+const SKY = 0.7;
+const SKY_ALONE = 1.3;
+/** Colours that are read are lit evenly: less from one side, more from all of them, the ground nearly as bright as the sky. */
+const KEY_EVEN = 0.5 * KEY;
+const SKY_EVEN = 0.8;
+const GROUND = 0x8a7f78;
+const GROUND_EVEN = 0xdcd8d4;
 /** By how much of what is too much the range of colours shrinks with each frame. */
 const SHRINKING = 0.02;
 
@@ -72,7 +79,7 @@ export class Picture {
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly key = new DirectionalLight(0xfff4e6, KEY);
-  private readonly sky = new HemisphereLight(0xeef4ff, 0x8a7f78, 0.7);
+  private readonly sky = new HemisphereLight(0xeef4ff, GROUND, SKY);
   private readonly hands: Hands;
   private readonly furniture: Furniture;
   private readonly quality = new Quality(() => this.simplify());
@@ -91,7 +98,8 @@ export class Picture {
   private cut: Cut | null = null;
   /** On which side of the cut's axis the eye was when it was chosen. */
   private eyeSide = 1;
-  private readonly cutPlane = new Plane();
+  /** Where that is; null without a cut, and while nothing is there to be cut. */
+  private cutPlane: Plane | null = null;
   readonly meanings = new Meanings();
   private hasSkins = false;
   /** The last frame of the scene. */
@@ -115,7 +123,12 @@ export class Picture {
     this.canvas = renderer.domElement;
     place.append(this.canvas);
     this.canvas.addEventListener("webglcontextlost", () => say("The graphics card has dropped the picture; the world goes on."));
-    this.canvas.addEventListener("webglcontextrestored", () => say("The graphics card draws the picture again."));
+    this.canvas.addEventListener("webglcontextrestored", () => {
+      // they were only there
+      this.reflections = null;
+      this.simplify();
+      say("The graphics card draws the picture again.");
+    });
     const labels = document.createElement("div");
     labels.className = "labels";
     place.append(labels);
@@ -150,6 +163,7 @@ export class Picture {
     this.last = null;
     // a range that another world, or this one before, has widened tells nothing of this one
     this.field = -1;
+    this.meanings.begin(null, "");
     if (this.obstacles) {
       this.scene.remove(this.obstacles.group);
       this.obstacles.dispose();
@@ -175,20 +189,23 @@ export class Picture {
     this.scene.add(this.obstacles.group);
     this.bodies.forEach((body) => this.scene.add(body.group));
     this.setStyle(this.style, this.dark);
-    this.setCut(this.cut);
     this.setExtras(this.extras);
-    this.light();
+    this.placeLight();
     const subject = JSON.stringify([info.name, info.bodies.map(({ name, points }) => [name, points]), info.skins]);
     // begun anew, or shown again after the connection was lost, it is seen from where a person went
     this.hasSkins = subject === this.subject;
-    if (subject !== this.subject) this.fit();
+    if (subject === this.subject) this.applyCut();
+    else {
+      this.fit();
+      this.placeCut(true);
+    }
     this.subject = subject;
   }
 
   /** The cells of a body have come. */
   setInside(shape: InsideShape): void {
     this.bodies[shape.index]?.setInside(shape);
-    this.setCut(this.cut);
+    this.bodies[shape.index]?.setCut(this.cutPlane);
   }
 
   addTool(shape: ToolShape): void {
@@ -214,6 +231,7 @@ export class Picture {
       // a skin that stands alone is known by its first frame
       this.hasSkins = true;
       this.fit();
+      this.placeCut(true);
     }
     this.paint(frame, SHRINKING);
   }
@@ -245,11 +263,8 @@ export class Picture {
   setColours(number: number, field: FieldInfo | undefined, map: ColourMap): void {
     const classes = field?.classes ?? null;
     if (number !== this.field) this.meanings.begin(classes, field?.unit ?? "");
-    if ((number < 0) !== (this.field < 0)) {
-      this.field = number;
-      this.simplify();
-    }
     this.field = number;
+    this.light();
     this.of = field?.of ?? "points";
     this.colours = classes ? coloursOf(classes) : linearColours(map);
   }
@@ -261,21 +276,35 @@ export class Picture {
     this.skins.forEach((skin) => skin.setStyle(style));
   }
 
+  /** A cut that is as it was stays where it is, whatever moves. */
   setCut(cut: Cut | null): void {
-    if (cut) {
-      // the half that is left is chosen once: it does not change sides while the view turns
-      if (cut.axis !== this.cut?.axis) this.eyeSide = this.eye.towards.getComponent(cut.axis) > 0 ? 1 : -1;
-      const side = cut.isFarHalf ? -this.eyeSide : this.eyeSide;
-      // bodies may be elsewhere than they began
-      const { min, max } = this.boundsNow();
-      const [low, high] = [min.getComponent(cut.axis), max.getComponent(cut.axis)];
-      const place = low + (high - low) * cut.place;
-      this.cutPlane.set(new Vector3().setComponent(cut.axis, side), -side * place);
-    }
+    const before = this.cut;
+    if (JSON.stringify(cut) === JSON.stringify(before)) return;
     this.cut = cut;
-    this.bodies.forEach((body) => body.setCut(cut ? this.cutPlane : null));
-    this.skins.forEach((skin) => skin.setCut(cut ? [this.cutPlane] : []));
-    this.arrows.setCut(cut ? [this.cutPlane] : []);
+    this.placeCut(cut?.axis !== before?.axis);
+  }
+
+  /** Puts the cut where the bodies are now; `isNew`: the half that is left is the one that shows the section to the eye. */
+  private placeCut(isNew: boolean): void {
+    const { cut } = this;
+    const bounds = this.boundsNow();
+    this.cutPlane = null;
+    if (cut && !bounds.isEmpty()) {
+      // chosen once: it does not change sides while the view turns
+      if (isNew) this.eyeSide = this.eye.towards.getComponent(cut.axis) > 0 ? 1 : -1;
+      const side = cut.isFarHalf ? -this.eyeSide : this.eyeSide;
+      const [low, high] = [bounds.min.getComponent(cut.axis), bounds.max.getComponent(cut.axis)];
+      const place = low + (high - low) * cut.place;
+      this.cutPlane = new Plane(new Vector3().setComponent(cut.axis, side), -side * place);
+    }
+    this.applyCut();
+  }
+
+  private applyCut(): void {
+    const planes = this.cutPlane ? [this.cutPlane] : [];
+    this.bodies.forEach((body) => body.setCut(this.cutPlane));
+    this.skins.forEach((skin) => skin.setCut(planes));
+    this.arrows.setCut(planes);
   }
 
   /** Looks at all bodies as they stand, from where the scene wants to be seen. */
@@ -312,6 +341,15 @@ export class Picture {
     this.quality.drawn(performance.now());
   }
 
+  /** Draws once as well as can be, whatever the machine does in time, and hands the drawing on. */
+  atItsBest<T>(use: (drawing: HTMLCanvasElement) => T): T {
+    return this.quality.atBest(() => {
+      this.renderer.render(this.scene, this.eye.camera);
+      // the drawing is gone when the browser has shown it
+      return use(this.canvas);
+    });
+  }
+
   /** Draws as well as the machine can. */
   private simplify(): void {
     const { shadows, reflections } = this.quality.now;
@@ -322,16 +360,16 @@ export class Picture {
       environment.dispose();
     }
     this.scene.environment = reflections ? this.reflections : null;
-    // what reflections give of light
-    this.sky.intensity = reflections ? 0.7 : 2;
-    this.key.intensity = KEY;
-    if (this.field >= 0) {
-      // colours that are read are lit evenly
-      this.sky.intensity += 0.8;
-      this.key.intensity = 0.5 * KEY;
-    }
-    this.sky.groundColor.set(this.field >= 0 ? 0xdcd8d4 : 0x8a7f78);
+    this.light();
     this.resize();
+  }
+
+  /** Balances the lights for what is drawn. */
+  private light(): void {
+    const isRead = this.field >= 0;
+    this.sky.intensity = SKY + (this.quality.now.reflections ? 0 : SKY_ALONE) + (isRead ? SKY_EVEN : 0);
+    this.sky.groundColor.set(isRead ? GROUND_EVEN : GROUND);
+    this.key.intensity = isRead ? KEY_EVEN : KEY;
   }
 
   /** The body under a place of the screen. */
@@ -341,9 +379,9 @@ export class Picture {
     this.skins.forEach((skin) => skin.prepareForRay());
     const bodies = new Map<Object3D, Body>();
     for (const body of this.bodies) body.targets.forEach((target) => bodies.set(target, body));
-    const skins = this.skins.map((skin) => skin.mesh);
+    const skins = this.skins.map((skin) => skin.mesh).filter(({ visible }) => visible);
     const hits = ray.intersectObjects([...bodies.keys(), ...skins], false);
-    const met = hits.find((hit) => !this.cut || this.cutPlane.distanceToPoint(hit.point) >= 0);
+    const met = hits.find((hit) => !this.cutPlane || this.cutPlane.distanceToPoint(hit.point) >= 0);
     if (!met) return null;
     const body = bodies.get(met.object) ?? this.wearer(met.object, met.point);
     const isSurface = body?.mesh === met.object;
@@ -351,7 +389,7 @@ export class Picture {
     return body ? { body, point: met.point, normal } : null;
   }
 
-  /** How far bodies rise above a plane through a point, within a radius about it; what is higher than `most` is something else. */
+  /** How far bodies rise above a plane through a point, within a radius about it and by less than `most`. */
   heightAbove(point: Vector3, normal: Vector3, radius: number, most: number): number {
     let height = 0;
     const offset = new Vector3();
@@ -390,18 +428,8 @@ export class Picture {
     return this.bodies.reduce((sum, body) => sum + body.cellCount, 0);
   }
 
-  /** Draws once as well as can be, whatever the machine does in time, and hands the drawing on. */
-  atItsBest<T>(use: (drawing: HTMLCanvasElement) => T): T {
-    const best = this.quality.best(() => this.simplify());
-    this.draw();
-    // the drawing is gone when the browser has shown it
-    const used = use(this.canvas);
-    best.end();
-    return used;
-  }
-
   /** The key light stands to the left above the camera's usual place, and its shadows cover all bodies. */
-  private light(): void {
+  private placeLight(): void {
     const centre = this.bounds.getCenter(new Vector3());
     const right = this.eye.direction.clone().cross(this.eye.up).normalize();
     const towards = this.eye.direction

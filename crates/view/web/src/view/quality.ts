@@ -32,17 +32,20 @@ export class Quality {
     return LEVELS[this.level]!;
   }
 
-  /** The best there is, until its end. */
-  best(changed: () => void): { end: () => void } {
+  /** Does something at the best level there is; how long that takes tells nothing of the machine. */
+  atBest<T>(work: () => T): T {
     const { level } = this;
     const to = (next: number) => {
       this.level = next;
-      changed();
-      // the time of such a picture tells nothing
+      this.changed(this.now);
       this.last = performance.now();
     };
     to(0);
-    return { end: () => to(level) };
+    try {
+      return work();
+    } finally {
+      to(level);
+    }
   }
 
   /** A picture has been drawn at a time [ms]. */

@@ -1,0 +1,56 @@
+// Parts of the page that need no browser: numbers, lengths, creases.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+
+/** The modules as one, bundled for this program. */
+const sources = ["format", "view/furniture", "view/normals"].map((name) => fileURLToPath(new URL(`../src/${name}.ts`, import.meta.url)));
+const { outputFiles } = await build({
+  stdin: { contents: sources.map((path) => `export * from ${JSON.stringify(path)};`).join("\n"), resolveDir: fileURLToPath(new URL("..", import.meta.url)) },
+  bundle: true,
+  format: "esm",
+  write: false,
+});
+const { divideAtCreases, number, quantity, roundLength, smoothNormals } = await import(
+  `data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`
+);
+
+test("numbers have three digits that count, and units their prefix", () => {
+  const said = [0, 1, 12345, 123456, 0.00123, 1.2345e-7, -2e9].map(number);
+  assert.deepEqual(said, ["0", "1", "12300", "1.23e5", "0.00123", "1.23e-7", "-2.00e9"]);
+  assert.equal(quantity(12345, "Pa"), "12.3 kPa");
+  assert.equal(quantity(999.96, "N"), "1 kN");
+  assert.equal(quantity(0, "m"), "0 m");
+});
+
+test("lengths are the longest round ones that fit", () => {
+  assert.deepEqual([1, 1.99, 2, 4.9, 5, 9.9, 0.034, 720].map(roundLength), [1, 1, 2, 2, 5, 5, 0.02, 500]);
+});
+
+/** Two squares that meet along z at an angle between their normals [degrees]. */
+function folded(angle) {
+  const [c, s] = [Math.cos((angle * Math.PI) / 180), Math.sin((angle * Math.PI) / 180)];
+  const points = Float32Array.from([-1, 0, 0, -1, 0, 1, 0, 0, 0, 0, 0, 1, c, -s, 0, c, -s, 1]);
+  return { points, triangles: Uint32Array.from([0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4]) };
+}
+
+test("surfaces are smooth over bends and sharp at creases", () => {
+  const bent = folded(39);
+  const smooth = divideAtCreases(bent.points, bent.triangles);
+  assert.equal(smooth.sources.length, 6);
+  const sharp = folded(41);
+  const { sources, triangles } = divideAtCreases(sharp.points, sharp.triangles);
+  // the two points of the crease stand once for each side
+  assert.deepEqual([...sources].sort(), [0, 1, 2, 2, 3, 3, 4, 5]);
+  assert.deepEqual([...triangles].map((own) => sources[own]), [...sharp.triangles]);
+  const positions = Float32Array.from([...sources].flatMap((point) => [...sharp.points.subarray(3 * point, 3 * point + 3)]));
+  const normals = new Float32Array(positions.length);
+  smoothNormals(positions, triangles, normals);
+  // each side has the normal of its own square
+  triangles.forEach((own, corner) => {
+    const wanted = corner < 6 ? [0, 1, 0] : [Math.sin((41 * Math.PI) / 180), Math.cos((41 * Math.PI) / 180), 0];
+    wanted.forEach((value, axis) => assert.ok(Math.abs(normals[3 * own + axis] - value) < 1e-6, `${corner}: ${normals.slice(3 * own, 3 * own + 3)}`));
+  });
+});
