@@ -446,7 +446,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::last("events"),
         reference: 0.0,
         tolerance: Tolerance::Absolute(0.0),
-        mutation: "bodies.block.skin.radius=0.007",
+        mutation: "bodies.block.skin.radius=0.008",
         ..SKIN
     },
     Case {
