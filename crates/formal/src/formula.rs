@@ -84,6 +84,12 @@ impl Formula {
         self.program.run(|position| values[position])
     }
 
+    /// Numbers that the result lies between while each variable lies between two; `None` where nothing is known, or where the
+    /// formula may not be defined. Panics like [`evaluate`](Self::evaluate).
+    pub fn range(&self, variables: &[[f64; 2]]) -> Option<[f64; 2]> {
+        self.program.range(|position| variables[position])
+    }
+
     /// The result and its rate, for variables that change at the rates of `values`; panics like
     /// [`evaluate`](Self::evaluate).
     pub fn evaluate_dual(&self, values: &[Dual]) -> Dual {

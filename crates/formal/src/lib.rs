@@ -13,6 +13,7 @@ mod expression;
 mod formula;
 mod function;
 pub mod graph;
+mod interval;
 pub mod law;
 mod lexer;
 mod parser;

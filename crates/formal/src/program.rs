@@ -5,6 +5,7 @@
 
 use crate::arithmetic::{self, Number};
 use crate::function::{CONSTANTS, FUNCTIONS, FunctionEntry};
+use crate::interval::{self, Interval};
 use crate::parser::DEEPEST;
 use crate::{
     BinaryOperator, Expression, Function, Kind, Node, NodeId, NodeKind, ParseError, Span, UnaryOperator,
@@ -124,6 +125,32 @@ impl Program {
         } else {
             self.run_on(&mut [T::constant(0.0); LARGEST_STACK], variable)
         }
+    }
+
+    /// Numbers that the result lies between, for variables between those given.
+    pub(crate) fn range(&self, variable: impl Fn(usize) -> [f64; 2]) -> Option<[f64; 2]> {
+        let mut stack: Vec<interval::Known> = Vec::with_capacity(self.stack);
+        for instruction in &self.instructions {
+            let bottom = stack.len() - instruction.operand_count();
+            let of = |operand: usize| stack[bottom + operand];
+            let result = match *instruction {
+                Instruction::Constant(value) => Interval::point(value),
+                Instruction::Variable(position) => {
+                    let [low, high] = variable(position);
+                    Interval::of(low, high)
+                }
+                Instruction::Unary(UnaryOperator::Negate) => interval::negate(of(0)),
+                Instruction::Unary(UnaryOperator::Not) => interval::not(of(0)),
+                Instruction::Binary(operator) => interval::binary(operator, of(0), of(1)),
+                Instruction::WholePower(exponent) => interval::power_of_whole(of(0), exponent),
+                Instruction::OfOne(function) => interval::function_of_one(function, of(0)),
+                Instruction::OfTwo(function) => interval::function_of_two(function, of(0), of(1)),
+                Instruction::OfThree(function) => interval::function_of_three(function, of(0), of(1), of(2)),
+            };
+            stack.truncate(bottom);
+            stack.push(result);
+        }
+        stack.pop().flatten().map(|Interval { low, high }| [low, high])
     }
 
     #[inline(always)]

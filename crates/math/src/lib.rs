@@ -3,6 +3,7 @@
 //! A kernel generic over [`Real`] serves as test oracle (`f64`), as the hot loop ([`Lanes`]) and as
 //! its own derivative check ([`Dual`]).
 
+mod couple;
 mod decomposition;
 mod dual;
 mod lanes;
@@ -13,6 +14,7 @@ mod real;
 mod rotation;
 mod vector;
 
+pub use couple::couple;
 pub use decomposition::{Eigen, Polar, Svd, eigen_symmetric, polar, project_psd, svd, turn_of_stretch};
 pub use dual::Dual;
 pub use lanes::Lanes;

@@ -41,7 +41,7 @@ pub use links::links_of;
 pub use machine::{binary, instruction_set, peak_bytes};
 pub use output::{MANIFEST, OutputError};
 pub use recording::{Divergence, Hashed, Recording, RecordingError};
-pub use report::{AroundSteps, Report, Status, counts};
+pub use report::{AroundSteps, Report, SkinChange, Status, counts};
 pub use session::{Change, ChangeError, Session, put_setting};
 pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
 pub use trace::{Trace, write_csv};

@@ -51,6 +51,8 @@ pub struct Report {
     pub counts: BTreeMap<String, u64>,
     /// Of each skin by its name.
     pub skins: serde_json::Map<String, Value>,
+    /// Changes of the topology of skins, in their order; of a run that went on from a snapshot those since.
+    pub skin_changes: Vec<SkinChange>,
     pub stages: StageTimes,
     pub around: AroundSteps,
     /// At the start and at the end.
@@ -223,8 +225,34 @@ pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
     counts
 }
 
-/// Skins as they stand, and how many of their surfaces were checked to be closed, oriented and manifold.
-pub fn skins(world: &World, skins: &[SkinInfo]) -> serde_json::Map<String, Value> {
+/// A change of a skin's topology.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkinChange {
+    pub skin: String,
+    /// When it began [s].
+    pub time: f64,
+    /// Since then.
+    pub euler: i64,
+    pub components: u64,
+}
+
+impl SkinChange {
+    fn to_json(&self) -> Value {
+        json!({"time": self.time, "euler": self.euler, "components": self.components})
+    }
+
+    /// In words.
+    pub fn message(&self) -> String {
+        let Self { skin, time, euler, components } = self;
+        format!(
+            "the topology of skin `{skin}` changed at {time:.6} s: {}, Euler characteristic {euler}",
+            souple_table::counted(*components, "part")
+        )
+    }
+}
+
+/// Skins as they stand, how their topology changed, and how many of their surfaces were checked to be closed, oriented and manifold.
+pub fn skins(world: &World, skins: &[SkinInfo], changes: &[SkinChange]) -> serde_json::Map<String, Value> {
     let skin = |info: &SkinInfo| {
         let view = info.view(world);
         let (measures, [points, triangles]) = (view.measures(), view.counts());
@@ -234,6 +262,7 @@ pub fn skins(world: &World, skins: &[SkinInfo]) -> serde_json::Map<String, Value
             "euler": measures.euler,
             "components": measures.components,
             "events": view.events(),
+            "changes": changes.iter().filter(|change| change.skin == info.name).map(SkinChange::to_json).collect::<Vec<_>>(),
             "points": points,
             "triangles": triangles,
             "blocks": view.grid.keys.len(),

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::frames::solid_of;
 use crate::machine::peak_bytes;
 use crate::recording::{Recording, add_hash};
-use crate::report::{AroundSteps, Report, Status, counts, skins};
+use crate::report::{AroundSteps, Report, SkinChange, Status, counts, skins};
 use crate::show::{MOST_GROWTH, growth};
 use crate::snapshot_file::{snapshot_bytes, write_snapshot};
 use crate::{Options, RunError, forecast_warnings};
@@ -40,6 +40,7 @@ pub struct Session {
     pub(crate) clock: Instant,
     seed: u64,
     recording: Recording,
+    skin_changes: Vec<SkinChange>,
     places: BTreeMap<PathBuf, PathBuf>,
     solver: StepReport,
     energy_at_start: souple_engine::EnergyReport,
@@ -109,6 +110,7 @@ impl Session {
             clock: Instant::now(),
             seed,
             recording,
+            skin_changes: Vec::new(),
             places: options.places.clone(),
             solver: StepReport::default(),
         })
@@ -122,11 +124,34 @@ impl Session {
 
     /// Steps a period; `false` where the step was refused, which [`Session::failure`] tells.
     pub fn step(&mut self) -> bool {
+        let events = |world: &World, skins: &[SkinInfo]| -> Vec<u64> {
+            skins.iter().map(|skin| skin.view(world).events()).collect()
+        };
+        let before = events(&self.world, &self.skins);
         match self.world.step() {
-            Ok(()) => self.solver.merge(self.world.last_report()),
+            Ok(()) => {
+                self.solver.merge(self.world.last_report());
+                self.note_changes(&before);
+            }
             Err(error) => self.failure = Some(Failure::of_step(error, &self.world, &self.bodies)),
         }
         self.failure.is_none()
+    }
+
+    /// Notes the skins that count more changes of their topology than before.
+    fn note_changes(&mut self, before: &[u64]) {
+        for (skin, before) in self.skins.iter().zip(before) {
+            let view = skin.view(&self.world);
+            if view.events() > *before {
+                let (euler, components) = view.counted_topology();
+                self.skin_changes.push(SkinChange {
+                    skin: skin.name.clone(),
+                    time: view.changed(),
+                    euler,
+                    components,
+                });
+            }
+        }
     }
 
     /// Whether all solids are of a size that a solid may have; masses of a network may fly apart as they like.
@@ -264,7 +289,8 @@ impl Session {
             simulated_seconds: steps as f64 * period,
             wall_seconds: self.clock.elapsed().as_secs_f64(),
             counts: counts(&self.world, &self.bodies),
-            skins: skins(&self.world, &self.skins),
+            skins: skins(&self.world, &self.skins, &self.skin_changes),
+            skin_changes: self.skin_changes.clone(),
             stages: self.world.stages(),
             around: self.around,
             energy: (self.energy_at_start.clone(), self.world.energy()),

@@ -150,6 +150,18 @@ impl SkinInfo {
         let rows = world.committed_rows();
         self.skin.distance(&Moment { time: world.time(), rows: &rows }, &world.state().fields[self.field])
     }
+
+    /// What a step from the committed state takes; `None` where it cannot be made.
+    pub fn cost(&self, world: &World) -> Option<souple_skin::Cost> {
+        let (rows, period) = (world.committed_rows(), world.model().period);
+        let end = Moment { time: world.time() + period, rows: &rows };
+        self.skin.cost(&end, period, &world.state().fields[self.field]).ok()
+    }
+
+    /// What its grid will not see of its target in so much time [s], in words.
+    pub fn doubts(&self, world: &World, duration: f64) -> Vec<String> {
+        self.skin.doubts(&world.committed_rows(), duration)
+    }
 }
 
 /// A hand with a tool, and what a loop at its device needs to know.

@@ -12,9 +12,11 @@ use crate::marks::Marks;
 use crate::polygons::{Audit, area_and_volume, polygonise};
 use crate::reaction::{Reaction, ReactionScratch};
 use crate::speeds::Speeds;
+use crate::start::PlacedTarget;
 use crate::strategy::{SurfacePoints, Term, Whole};
 use crate::surface::{farthest_within, surface_of};
 use crate::target::{Followed, Moment, Target, TargetScratch};
+use crate::topology::note;
 use crate::view::View;
 use crate::waking::{Runaway, Waking};
 
@@ -31,23 +33,25 @@ pub struct Skin {
 }
 
 /// Numbers at the beginning of a skin's values in State.
-pub const HEAD: usize = 7;
+pub const HEAD: usize = 8;
 pub(crate) const AREA: usize = 0;
 pub(crate) const VOLUME: usize = 1;
 pub(crate) const REST_AREA: usize = 2;
 pub(crate) const REST_VOLUME: usize = 3;
 /// Greatest speed of a node beside the surface in the last sub-step [m/s].
 pub(crate) const SPEED: usize = 4;
-/// When the topology changed last [s].
+/// When the topology changed last, of the changes that count [s].
 pub(crate) const CHANGED: usize = 5;
 /// Volume of what it dresses at the end of the first step in which it acts on it, at which its pressure is nothing [m³].
 pub(crate) const FLESH: usize = 6;
+/// When the topology that counts was left last [s].
+pub(crate) const LEFT: usize = 7;
 
 /// Integers before the keys of the blocks.
-pub const HEAD_INDICES: usize = 7;
+pub const HEAD_INDICES: usize = 9;
 pub(crate) const EULER: usize = 0;
 pub(crate) const COMPONENTS: usize = 1;
-/// Changes of topology so far.
+/// Changes of topology so far that stood for two steps.
 pub(crate) const EVENTS: usize = 2;
 pub(crate) const POINTS: usize = 3;
 pub(crate) const TRIANGLES: usize = 4;
@@ -55,6 +59,8 @@ pub(crate) const TRIANGLES: usize = 4;
 pub(crate) const CHECKED: usize = 5;
 /// Nodes that the last step worked out, in all its sub-steps.
 pub(crate) const WORK: usize = 6;
+/// Euler characteristic and components after the last change that counts, or at the start.
+pub(crate) const COUNTED: [usize; 2] = [7, 8];
 
 /// Blocks that a skin may have: 1 GB of values.
 pub const MOST_BLOCKS: usize = 1 << 19;
@@ -422,14 +428,9 @@ impl Skin {
         let (euler, components) = topology.map_err(|torn| SkinError::Torn { torn, time })?;
         field.values[AREA] = area;
         field.values[VOLUME] = volume;
+        note(field, [euler as u64, components], time);
         let indices = &mut field.indices;
-        if (indices[EULER], indices[COMPONENTS]) != (euler as u64, components) {
-            indices[EVENTS] += 1;
-            field.values[CHANGED] = time;
-        }
         indices[CHECKED] += 1;
-        indices[EULER] = euler as u64;
-        indices[COMPONENTS] = components;
         indices[POINTS] = points.len() as u64;
         indices[TRIANGLES] = triangles.len() as u64;
         Ok(())
@@ -442,8 +443,8 @@ impl Skin {
         let mut placed = target.new_scratch();
         target.place(at, &mut placed).ok()?;
         let bounds = target.bounds(&placed)?;
-        let excess = |point: Vec3| target.excess(point, &placed);
-        let sampled = self.sampled(bounds.low, bounds.high, &excess).ok()?;
+        let sampled =
+            self.sampled(bounds.low, bounds.high, &PlacedTarget { target, scratch: &placed }).ok()?;
         let [own_grid, aim_grid] = [field, &sampled].map(|field| self.view(field).grid);
         let [own, aim] = [own_grid, aim_grid].map(|grid| surface_of(grid, &self.lattice).0);
         if own.points.is_empty() || aim.points.is_empty() {

@@ -1,19 +1,87 @@
 //! How a skin starts: the blocks around the zero level of a function, their values made distances.
+//!
+//! Blocks are looked for from coarse to fine: cubes of blocks in which the function is known to keep its sign are left out
+//! as wholes, so that the cost follows the surface where ranges of the function are known.
 
 use rayon::prelude::*;
 use souple_engine::FieldState;
 use souple_math::Vec3;
+use souple_mesh::BoundingBox;
 
 use crate::error::SkinError;
 use crate::grid::{BAND, EDGE, FARTHEST, NODES, key_of, wide};
 use crate::level_set::relaxable;
 use crate::skin::{
-    AREA, EVENTS, HEAD_INDICES, MOST_BLOCKS, MOST_SAMPLED, Moves, REST_AREA, REST_VOLUME, Skin, SkinScratch,
-    VOLUME,
+    AREA, COMPONENTS, COUNTED, EULER, HEAD_INDICES, MOST_BLOCKS, MOST_SAMPLED, Moves, REST_AREA, REST_VOLUME,
+    Skin, SkinScratch, VOLUME,
 };
+use crate::target::{Between, Target, TargetScratch, UNKNOWN};
+
+/// A function whose zero level a skin begins as.
+pub trait Beginning: Sync {
+    fn value(&self, point: Vec3) -> f64;
+
+    /// Two numbers that it lies between within a box.
+    fn range(&self, within: BoundingBox) -> Between;
+}
+
+/// A function of which nothing is known but its values.
+struct Unknown<'a>(&'a (dyn Fn(Vec3) -> f64 + Sync));
+
+impl Beginning for Unknown<'_> {
+    fn value(&self, point: Vec3) -> f64 {
+        (self.0)(point)
+    }
+
+    fn range(&self, _: BoundingBox) -> Between {
+        UNKNOWN
+    }
+}
+
+/// A target where it is.
+pub struct PlacedTarget<'a> {
+    pub target: &'a Target,
+    pub scratch: &'a TargetScratch,
+}
+
+impl Beginning for PlacedTarget<'_> {
+    fn value(&self, point: Vec3) -> f64 {
+        self.target.excess(point, self.scratch)
+    }
+
+    fn range(&self, within: BoundingBox) -> Between {
+        self.target.range(within, self.scratch)
+    }
+}
+
+/// The blocks of a box, and one around, so that all ends within.
+#[derive(Clone, Copy)]
+struct Blocks {
+    first: [i64; 3],
+    counts: [i64; 3],
+}
+
+impl Blocks {
+    fn is_border(&self, block: [i64; 3]) -> bool {
+        (0..3).any(|axis| {
+            let place = block[axis] - self.first[axis];
+            place == 0 || place == self.counts[axis] - 1
+        })
+    }
+}
+
+/// A cube of `2^level` blocks along each edge, by its lowest block.
+#[derive(Clone, Copy)]
+struct Cube {
+    low: [i64; 3],
+    level: u32,
+}
+
+/// Blocks whose values are held at once, 64 MB.
+const AT_ONCE: usize = 1 << 14;
 
 impl Skin {
-    /// The state of a skin that begins as the zero level of `value` within a box [m].
+    /// The state of a skin that begins as the zero level of `value` within a box [m], of which all is looked at.
     ///
     /// # Errors
     /// There is no inside, it does not end within the box, or it is too large for its voxels.
@@ -24,17 +92,34 @@ impl Skin {
         value: &(dyn Fn(Vec3) -> f64 + Sync),
         scratch: &mut SkinScratch,
     ) -> Result<FieldState, SkinError> {
-        let mut field = self.sampled(low, high, value)?;
+        self.begin(low, high, &Unknown(value), scratch)
+    }
+
+    /// The same of a function whose ranges are known.
+    ///
+    /// # Errors
+    /// There is no inside, it does not end within the box, or it is too large for its voxels.
+    pub fn begin(
+        &self,
+        low: Vec3,
+        high: Vec3,
+        as_what: &dyn Beginning,
+        scratch: &mut SkinScratch,
+    ) -> Result<FieldState, SkinError> {
+        let mut field = self.sampled(low, high, as_what)?;
         self.make_distance(&mut field, scratch)?;
         self.find_crossings(&field, scratch);
         self.measure(&mut field, scratch, 0.0)?;
         field.values[REST_AREA] = field.values[AREA];
         field.values[REST_VOLUME] = field.values[VOLUME];
-        field.indices[EVENTS] = 0;
+        COUNTED
+            .into_iter()
+            .zip([EULER, COMPONENTS])
+            .for_each(|(to, from)| field.indices[to] = field.indices[from]);
         Ok(field)
     }
 
-    /// The zero level of `value` within a box [m], on the nodes around it; nothing is measured.
+    /// The zero level of a function within a box [m], on the nodes around it; nothing is measured.
     ///
     /// # Errors
     /// There is no inside, it does not end within the box, or it is too large for its voxels.
@@ -42,14 +127,12 @@ impl Skin {
         &self,
         low: Vec3,
         high: Vec3,
-        value: &(dyn Fn(Vec3) -> f64 + Sync),
+        as_what: &dyn Beginning,
     ) -> Result<FieldState, SkinError> {
         let edge = EDGE as f64;
-        // one block around, so that all ends within
         let first = self.lattice.to_voxels(low).to_array().map(|c| (c / edge).floor() - 1.0);
         let last = self.lattice.to_voxels(high).to_array().map(|c| (c / edge).floor() + 1.0);
         let counts = [0, 1, 2].map(|axis| (last[axis] - first[axis] + 1.0).max(1.0));
-        let blocks: f64 = counts.iter().product();
         if first.iter().chain(&last).any(|c| c.is_nan() || c.abs() >= FARTHEST as f64) {
             return Err(SkinError::TooFar {
                 low: low.to_array(),
@@ -57,12 +140,16 @@ impl Skin {
                 voxel: self.voxel(),
             });
         }
-        if blocks > MOST_SAMPLED as f64 {
-            let size = (high - low).to_array();
-            return Err(SkinError::TooManyBlocks { voxel: self.voxel(), size, blocks });
-        }
+        let blocks = Blocks { first: first.map(|c| c as i64), counts: counts.map(|c| c as i64) };
+        let mut found = self.looked_for(blocks, as_what)?.ok_or_else(|| SkinError::TooManyBlocks {
+            voxel: self.voxel(),
+            size: (high - low).to_array(),
+            blocks: counts.iter().product(),
+        })?;
+        // along rows, as keys ascend
+        found.sort_unstable_by_key(|block| key_of(*block));
         let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
-        self.sample(first.map(|c| c as i64), counts.map(|c| c as i64), value, &mut field)?;
+        self.sample(blocks, &found, as_what, &mut field)?;
         if crate::polygons::is_empty(self.grid(&field)) {
             let (low, high) = (low.to_array(), high.to_array());
             return Err(SkinError::Empty { low, high, voxel: self.voxel() });
@@ -70,52 +157,79 @@ impl Skin {
         Ok(field)
     }
 
+    /// Blocks in which a function may change its sign, or come near to that; `None` where these are too many.
+    fn looked_for(
+        &self,
+        blocks: Blocks,
+        as_what: &dyn Beginning,
+    ) -> Result<Option<Vec<[i64; 3]>>, SkinError> {
+        let widest = blocks.counts.into_iter().max().unwrap_or(1);
+        let level = u64::try_from(widest).unwrap_or(1).next_power_of_two().trailing_zeros();
+        let mut cubes = vec![Cube { low: blocks.first, level }];
+        // level by level, each cube into its eight
+        loop {
+            let kept: Vec<Result<Option<Cube>, SkinError>> = cubes
+                .par_iter()
+                .map(|cube| Ok(self.may_change(blocks, *cube, as_what)?.then_some(*cube)))
+                .collect();
+            let mut finer = Vec::new();
+            for cube in kept {
+                let Some(Cube { low, level }) = cube? else { continue };
+                if level == 0 {
+                    finer.push(Cube { low, level });
+                    continue;
+                }
+                let half = 1 << (level - 1);
+                let eighths =
+                    (0..8).map(|corner| [0, 1, 2].map(|axis: usize| low[axis] + half * (corner >> axis & 1)));
+                let is_within =
+                    |low: &[i64; 3]| (0..3).all(|axis| low[axis] < blocks.first[axis] + blocks.counts[axis]);
+                finer.extend(eighths.filter(is_within).map(|low| Cube { low, level: level - 1 }));
+            }
+            if finer.len() > MOST_SAMPLED {
+                return Ok(None);
+            }
+            let is_finest = cubes.first().is_none_or(|cube| cube.level == 0);
+            cubes = finer;
+            if is_finest {
+                return Ok(Some(cubes.into_iter().map(|cube| cube.low).collect()));
+            }
+        }
+    }
+
+    /// Whether a function may change its sign in a cube of blocks, or within the band around it.
+    fn may_change(&self, blocks: Blocks, cube: Cube, as_what: &dyn Beginning) -> Result<bool, SkinError> {
+        let node = |block: [i64; 3], by: f64| {
+            let [x, y, z] = block.map(|c| (c * EDGE as i64) as f64 + by);
+            self.lattice.to_world(Vec3::new(x, y, z))
+        };
+        let beyond = cube.low.map(|c| c + (1 << cube.level));
+        // one node more to both sides for slopes
+        let (low, high) = (node(cube.low, -BAND - 1.0), node(beyond, BAND));
+        let [least, most] = as_what.range(BoundingBox { low, high });
+        let end = |axis: usize| (blocks.first[axis] + blocks.counts[axis]).min(beyond[axis]) - 1;
+        let highest = [0, 1, 2].map(end);
+        if least > 0.0
+            && let Some(block) = [cube.low, highest].into_iter().find(|block| blocks.is_border(*block))
+        {
+            return Err(SkinError::BeyondDomain { place: node(block, 0.0).to_array() });
+        }
+        Ok(!(least > 0.0 || most < 0.0))
+    }
+
     /// Values in voxels, by the slope between neighbours, of the blocks within the band.
     fn sample(
         &self,
-        first: [i64; 3],
-        counts: [i64; 3],
-        value: &(dyn Fn(Vec3) -> f64 + Sync),
+        blocks: Blocks,
+        found: &[[i64; 3]],
+        as_what: &dyn Beginning,
         field: &mut FieldState,
     ) -> Result<(), SkinError> {
-        let lattice = self.lattice;
-        let at =
-            move |node: [i64; 3]| lattice.to_world(Vec3::new(node[0] as f64, node[1] as f64, node[2] as f64));
-        let edge = EDGE as i64;
         let mut words: Vec<u64> = Vec::new();
-        // slab by slab of blocks along z: a wide block's values, or nothing where it is uniform
-        for z in 0..counts[2] {
-            let slab: Vec<Result<Sampled, SkinError>> = (0..counts[0] * counts[1])
-                .into_par_iter()
-                .map(|i| {
-                    let block = [first[0] + i % counts[0], first[1] + i / counts[0], first[2] + z];
-                    let is_border = [i % counts[0], i / counts[0], z]
-                        .iter()
-                        .zip(counts)
-                        .any(|(c, count)| *c == 0 || *c == count - 1);
-                    let mut values = vec![0.0; 1000];
-                    let (mut inside, mut outside) = (false, false);
-                    for (index, out) in values.iter_mut().enumerate() {
-                        let i = index as i64;
-                        let node = [i % 10, i / 10 % 10, i / 100];
-                        let place = at([0, 1, 2].map(|axis| edge * block[axis] + node[axis] - 1));
-                        let f = value(place);
-                        let is_own = node.iter().all(|c| (1..=edge).contains(c));
-                        if !f.is_finite() {
-                            return Err(SkinError::TargetNotANumber { value: f, place: place.to_array() });
-                        }
-                        if is_border && is_own && f > 0.0 {
-                            return Err(SkinError::BeyondDomain { place: place.to_array() });
-                        }
-                        (inside, outside) = (inside | (f > 0.0), outside | (f <= 0.0));
-                        *out = f;
-                    }
-                    let distances = distances(&values);
-                    let is_near = (inside && outside) || distances.iter().any(|f| f.abs() < BAND);
-                    Ok(is_near.then(|| (key_of(block), distances)))
-                })
-                .collect();
-            for block in slab {
+        for some in found.chunks(AT_ONCE) {
+            let sampled: Vec<Result<Sampled, SkinError>> =
+                some.par_iter().map(|block| self.sample_block(blocks, *block, as_what)).collect();
+            for block in sampled {
                 if let Some((key, values)) = block? {
                     field.indices.push(key);
                     let (pairs, _) = values.as_chunks::<2>();
@@ -131,6 +245,37 @@ impl Skin {
         }
         field.indices.extend(words);
         Ok(())
+    }
+
+    fn sample_block(
+        &self,
+        blocks: Blocks,
+        block: [i64; 3],
+        as_what: &dyn Beginning,
+    ) -> Result<Sampled, SkinError> {
+        let edge = EDGE as i64;
+        let is_border = blocks.is_border(block);
+        let mut values = vec![0.0; 1000];
+        let (mut inside, mut outside) = (false, false);
+        for (index, out) in values.iter_mut().enumerate() {
+            let i = index as i64;
+            let node = [i % 10, i / 10 % 10, i / 100];
+            let [x, y, z] = [0, 1, 2].map(|axis| (edge * block[axis] + node[axis] - 1) as f64);
+            let place = self.lattice.to_world(Vec3::new(x, y, z));
+            let f = as_what.value(place);
+            let is_own = node.iter().all(|c| (1..=edge).contains(c));
+            if !f.is_finite() {
+                return Err(SkinError::TargetNotANumber { value: f, place: place.to_array() });
+            }
+            if is_border && is_own && f > 0.0 {
+                return Err(SkinError::BeyondDomain { place: place.to_array() });
+            }
+            (inside, outside) = (inside | (f > 0.0), outside | (f <= 0.0));
+            *out = f;
+        }
+        let distances = distances(&values);
+        let is_near = (inside && outside) || distances.iter().any(|f| f.abs() < BAND);
+        Ok(is_near.then(|| (key_of(block), distances)))
     }
 
     /// Wakes the whole band, and makes values distances.

@@ -5,8 +5,8 @@ use souple_engine::FieldState;
 use crate::grid::Grid;
 use crate::polygons::Measures;
 use crate::skin::{
-    AREA, CHANGED, CHECKED, COMPONENTS, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, TRIANGLES, VOLUME,
-    WORK,
+    AREA, CHANGED, CHECKED, COMPONENTS, COUNTED, EULER, EVENTS, HEAD, HEAD_INDICES, POINTS, SPEED, TRIANGLES,
+    VOLUME, WORK,
 };
 
 /// A skin's part of State, as a reader sees it.
@@ -40,14 +40,20 @@ impl<'a> View<'a> {
         self.head[SPEED]
     }
 
-    /// Times that the number of components or the Euler characteristic changed.
+    /// Times that the number of components or the Euler characteristic changed and stayed so for two steps at least.
     pub fn events(&self) -> u64 {
         self.head_indices[EVENTS]
     }
 
-    /// When that was last [s].
+    /// When the last of them began [s].
     pub fn changed(&self) -> f64 {
         self.head[CHANGED]
+    }
+
+    /// Euler characteristic and components since then.
+    pub fn counted_topology(&self) -> (i64, u64) {
+        let [euler, components] = COUNTED.map(|index| self.head_indices[index]);
+        (euler as i64, components)
     }
 
     /// Surfaces so far that were checked to be closed, oriented and manifold, and were.

@@ -6,7 +6,7 @@
 
 use souple_math::{Mat3, Vec3};
 
-use super::Shape;
+use super::{Shape, around};
 use crate::BoundingBox;
 
 /// A tree of primitives.
@@ -159,6 +159,60 @@ impl Shape for Solid {
         }
     }
 
+    fn range(&self, within: BoundingBox) -> Option<[f64; 2]> {
+        let (centre, reach) = (within.centre(), 0.5 * within.diagonal());
+        Some(match self {
+            // (r − 1) s, where s is between the shortest semi-axis and the longest
+            Self::Ellipsoid { centre: middle, semi_axes, axes } => {
+                let shortest = semi_axes.x.min(semi_axes.y).min(semi_axes.z);
+                let longest = semi_axes.largest_component();
+                let local = axes.transpose() * (centre - *middle);
+                let radius =
+                    Vec3::new(local.x / semi_axes.x, local.y / semi_axes.y, local.z / semi_axes.z).length();
+                let [near, far] = around(radius, reach / shortest).map(|radius| radius.max(0.0) - 1.0);
+                [
+                    near * if near < 0.0 { longest } else { shortest },
+                    far * if far < 0.0 { shortest } else { longest },
+                ]
+            }
+            // a distance less a radius that changes along the way
+            Self::Capsule { ends, radii } => {
+                let length = (ends[1] - ends[0]).length();
+                let taper = if length > 0.0 { (radii[1] - radii[0]).abs() / length } else { 0.0 };
+                around(self.value(centre), reach * (1.0 + taper))
+            }
+            Self::Torus { .. } | Self::HalfSpace { .. } => around(self.value(centre), reach),
+            // rounded minima and maxima grow with each of what they are of
+            Self::Union { parts, radius } => {
+                let mut all = [f64::INFINITY; 2];
+                for part in parts {
+                    let own = part.range(within)?;
+                    all = [0, 1].map(|end| {
+                        if all[end].is_finite() {
+                            smooth_minimum(all[end], own[end], *radius)
+                        } else {
+                            own[end]
+                        }
+                    });
+                }
+                all
+            }
+            Self::Difference { from, cut, radius } => {
+                let (from, [low, high]) = (from.range(within)?, cut.range(within)?);
+                [smooth_maximum(from[0], -high, *radius), smooth_maximum(from[1], -low, *radius)]
+            }
+            Self::Intersection { first, second, radius } => {
+                let (first, second) = (first.range(within)?, second.range(within)?);
+                [0, 1].map(|end| smooth_maximum(first[end], second[end], *radius))
+            }
+            Self::Offset { solid, distance } => solid.range(within)?.map(|value| value - distance),
+            Self::Complement(solid) => {
+                let [low, high] = solid.range(within)?;
+                [-high, -low]
+            }
+        })
+    }
+
     fn bounds(&self) -> BoundingBox {
         let everything = BoundingBox {
             low: Vec3::new(f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY),
@@ -228,6 +282,36 @@ mod tests {
         assert_eq!(smooth_minimum(1.0, 1.5, 0.4), 1.0);
         assert_eq!(smooth_minimum(1.0, 1.0, 0.0), 1.0);
         assert_eq!(smooth_maximum(1.0, 1.0, 0.4), 1.1);
+    }
+
+    /// Within boxes of any size and place values lie in the range that is told.
+    #[test]
+    fn values_are_in_their_range() {
+        let torus = Solid::Torus { centre: Vec3::ZERO, axis: Vec3::Z, ring: 1.0, tube: 0.25 };
+        let tilted = Solid::turned_ellipsoid(Vec3::X, Vec3::new(0.9, 0.4, 0.2), Vec3::new(0.3, 0.5, -0.7));
+        let capsule = Solid::capsule(Vec3::ZERO, Vec3::new(0.4, 0.1, 0.3), [0.4, 0.2]);
+        let parts = vec![torus, capsule, Solid::Offset { solid: Box::new(tilted), distance: 0.05 }];
+        let solid = Solid::Union { parts, radius: 0.2 }.without(Solid::sphere(Vec3::Y * 0.8, 0.5), 0.1);
+        let cut = Solid::Complement(Box::new(Solid::HalfSpace { point: Vec3::Z * -0.1, normal: Vec3::Z }));
+        let solid = solid.and(cut, 0.05);
+        let at = |i: usize, n: usize| Vec3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64);
+        for index in 0..6_usize.pow(3) {
+            for size in [0.01, 0.3, 1.1] {
+                let low = at(index, 6) * 0.6 - Vec3::new(1.8, 1.7, 1.6);
+                let within = BoundingBox { low, high: low + Vec3::new(1.0, 0.7, 1.3) * size };
+                let [least, most] = solid.range(within).unwrap();
+                for place in 0..5_usize.pow(3) {
+                    let share = at(place, 5) * 0.25;
+                    let p = low + Vec3::new(share.x, 0.7 * share.y, 1.3 * share.z) * size;
+                    let value = solid.value(p);
+                    // roundings of numbers of order one
+                    assert!(
+                        least - 1e-14 <= value && value <= most + 1e-14,
+                        "{p:?}: {value} of {least} to {most}"
+                    );
+                }
+            }
+        }
     }
 
     /// Nothing inside is beyond the bounds, and scaling scales values.

@@ -39,6 +39,10 @@ impl Shape for FormulaShape {
         self.formula.evaluate(&point.to_array())
     }
 
+    fn range(&self, within: BoundingBox) -> Option<[f64; 2]> {
+        self.formula.range(&[0, 1, 2].map(|axis: usize| [within.low[axis], within.high[axis]]))
+    }
+
     fn bounds(&self) -> BoundingBox {
         self.bounds
     }

@@ -6,6 +6,7 @@
 mod blend;
 mod figures;
 mod formula;
+mod joined;
 mod liver;
 mod surface;
 
@@ -16,6 +17,7 @@ use crate::{BoundingBox, MeshError};
 
 pub use blend::Solid;
 pub use formula::FormulaShape;
+pub use joined::JoinedSolids;
 pub use surface::{Sign, SurfaceShape};
 
 /// A solid as a function.
@@ -24,8 +26,18 @@ pub trait Shape: Send + Sync {
     /// cuts of edges are found fastest; nothing else depends on that.
     fn value(&self, point: Vec3) -> f64;
 
+    /// Two numbers that values lie between within a box; `None` where nothing is known.
+    fn range(&self, _within: BoundingBox) -> Option<[f64; 2]> {
+        None
+    }
+
     /// A box around everything inside.
     fn bounds(&self) -> BoundingBox;
+}
+
+/// Of a distance, so far from where it is known.
+fn around(distance: f64, reach: f64) -> [f64; 2] {
+    [distance - reach, distance + reach]
 }
 
 /// A shape known by name, and parts of it that become groups.

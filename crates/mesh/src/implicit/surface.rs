@@ -2,7 +2,7 @@
 
 use souple_math::Vec3;
 
-use super::Shape;
+use super::{Shape, around};
 use crate::repair::{Diagnosis, diagnose};
 use crate::winding::WindingNumber;
 use crate::{
@@ -123,6 +123,14 @@ impl Shape for SurfaceShape {
                 let distance = nearest.map_or(f64::NAN, |(_, distance_sq)| distance_sq.sqrt());
                 if winding.at(point) > 0.5 { -distance } else { distance }
             }
+        }
+    }
+
+    fn range(&self, within: BoundingBox) -> Option<[f64; 2]> {
+        match &self.distance {
+            Distance::Exact(_) => Some(around(self.value(within.centre()), 0.5 * within.diagonal())),
+            // what holes leave open may change sides far from all triangles
+            Distance::Wound { .. } => None,
         }
     }
 

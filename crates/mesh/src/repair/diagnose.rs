@@ -118,7 +118,7 @@ impl Diagnosis {
 
 /// The part of each triangle, parts numbered by their first triangle, and how many there are; triangles of a part
 /// are joined by shared points.
-pub(super) fn components(surface: &TriangleSurface) -> (Vec<u32>, usize) {
+pub(crate) fn components(surface: &TriangleSurface) -> (Vec<u32>, usize) {
     let mut parent: Vec<u32> = (0..surface.points.len() as u32).collect();
     fn root(parent: &mut [u32], mut point: u32) -> u32 {
         while parent[point as usize] != point {

@@ -16,6 +16,7 @@ use souple_math::Vec3;
 use crate::TriangleSurface;
 
 pub(crate) use crossing::{crossings, triangles_cross};
+pub(crate) use diagnose::components;
 pub use diagnose::{Diagnosis, diagnose};
 
 /// What [`repair`] may do.

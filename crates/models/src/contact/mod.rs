@@ -3,6 +3,7 @@
 //! [`law`] says what force two things exert that touch; [`shape`] says where shapes are; [`ShapeContact`] and
 //! [`SurfaceContact`] find what touches and hand the forces to rows.
 
+mod burden;
 mod carrier;
 pub mod law;
 #[cfg(test)]

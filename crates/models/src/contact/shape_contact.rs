@@ -5,7 +5,7 @@
 //! per point) whatever comes and goes.
 //!
 //! What pushes on a shape that rows bear, such as the skin of a body, comes to these rows in the next step: so the momentum
-//! returns exactly, one step late, and no point is tied to rows that are others at every moment.
+//! returns exactly, one step late, and no point is tied to rows that are others at every moment, see `burden`.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -21,6 +21,7 @@ use souple_solve::BlockMatrix;
 
 use crate::loads::{LoadError, finite, not_negative};
 
+use super::burden::{self, Push};
 use super::carrier::{Carrier, Pressed};
 use super::law::Approach;
 use super::{ContactForce, ContactLaw, Nearest, Outline, Shape};
@@ -212,24 +213,21 @@ impl ShapeContact {
         velocity
     }
 
-    /// Forces on the bearers: the opposite of those on the points.
+    /// What the points do to the bearers.
     fn burden(&self, pose: &Pose, at: &Configuration, out: &mut [f64]) {
-        out.fill(0.0);
-        for (point, local) in self.touching(pose, at) {
-            let Some(force) = self.law.force(point.share, &local.approach, |number| number) else { continue };
+        let push = |(point, local): (&ContactPoint, Local)| {
+            let force = self.law.force(point.share, &local.approach, |number| number)?;
+            let place = at.positions[point.row as usize];
             let force = pose.direction_to_world(force.total());
-            let place = pose.to_shape(at.positions[point.row as usize]);
-            self.shape.visit_shares(at, place, &mut |bearer, share| {
-                let numbers = &mut out[3 * bearer..][..3];
-                numbers.iter_mut().zip(force.to_array()).for_each(|(sum, part)| *sum -= share * part);
-            });
-        }
+            Some(Push { force, at: place, in_shape: pose.to_shape(place) })
+        };
+        burden::collect(self.shape.as_ref(), at, self.touching(pose, at).filter_map(push), out);
     }
 
-    /// The part of the memory that belongs to the bearers: the force on each [N].
+    /// The part of the memory that belongs to the bearers.
     fn burdens(&self) -> std::ops::Range<usize> {
         let first = HEAT + PER_POINT * self.points.len();
-        first..first + 3 * self.shape.bearers().len()
+        first..first + burden::memory_len(self.shape.as_ref())
     }
 
     /// Change of the force on a touching point for changes of its position and velocity.
@@ -333,10 +331,7 @@ impl Force for ShapeContact {
                 out[point.row as usize] += pose.direction_to_world(force.total());
             }
         }
-        let burdens = at.memory[self.burdens()].chunks_exact(3);
-        for (row, force) in self.shape.bearers().iter().zip(burdens) {
-            out[*row as usize] += Vec3::new(force[0], force[1], force[2]);
-        }
+        burden::add(self.shape.as_ref(), &at.memory[self.burdens()], at.positions, out);
     }
 
     fn add_differential(

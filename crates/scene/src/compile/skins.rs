@@ -3,13 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use souple_engine::{FieldState, System};
+use souple_engine::levels::{Division, Filter};
+use souple_engine::{FieldState, Force, System};
 use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
 use souple_skin::reaction::{Reaction, SkinPush};
 use souple_skin::strategy::Term;
 use souple_skin::target::{Moment, Part, Particle, Particles, Rows, Surroundings, Target};
-use souple_skin::{Lattice, Skin, SkinError, SkinField};
+use souple_skin::{Lattice, PlacedTarget, Skin, SkinError, SkinField};
 
 use super::Draft;
 use super::bodies::{Placed, solid_name};
@@ -114,8 +115,7 @@ fn first_state(
     start: Option<&Target>,
 ) -> Result<FieldState, SkinError> {
     let Some(target) = start.or(skin.target.as_ref()) else { return Err(SkinError::NoDomain) };
-    let systems = draft.systems.iter().enumerate();
-    let rows = Start(systems.map(|(index, system)| start_of(draft, index, system)).collect());
+    let rows = Start::of(draft);
     let mut placed = target.new_scratch();
     let at = Moment { time: 0.0, rows: &rows };
     target.place(&at, &mut placed).map_err(SkinError::Target)?;
@@ -126,21 +126,54 @@ fn first_state(
             [bounds.low, bounds.high]
         }
     };
-    let value = |point: Vec3| target.excess(point, &placed);
-    skin.start(low, high, &value, &mut skin.new_scratch())
+    skin.begin(low, high, &PlacedTarget { target, scratch: &placed }, &mut skin.new_scratch())
 }
 
-/// Positions of the rows of all systems before the first step.
-struct Start(Vec<Vec<Vec3>>);
+/// Rows of all systems before the first step.
+struct Start {
+    positions: Vec<Vec<Vec3>>,
+    /// Of each body with levels, by its system and its force: points that move by themselves in the first step.
+    active: Vec<((usize, usize), Vec<u32>)>,
+}
+
+impl Start {
+    fn of(draft: &Draft) -> Self {
+        let systems = || draft.systems.iter().enumerate();
+        let positions: Vec<Vec<Vec3>> =
+            systems().map(|(index, system)| start_of(draft, index, system)).collect();
+        let forces = systems().flat_map(|(index, system)| {
+            system.forces.iter().enumerate().map(move |(number, force)| ((index, number), force))
+        });
+        let active = forces.filter_map(|((system, number), force)| {
+            Some(((system, number), active_of(force.as_ref(), &positions[system])?))
+        });
+        Self { active: active.collect(), positions }
+    }
+}
 
 impl Rows for Start {
     fn positions(&self, system: usize) -> &[Vec3] {
-        &self.0[system]
+        &self.positions[system]
     }
 
-    fn active(&self, _: usize, _: usize) -> &[u32] {
-        &[]
+    fn active(&self, system: usize, force: usize) -> &[u32] {
+        let of = self.active.iter().find(|(which, _)| *which == (system, force));
+        of.map_or(&[], |(_, active)| active)
     }
+}
+
+/// Which points of a body with levels its first step begins with, as that step chooses them.
+fn active_of(force: &dyn Force, positions: &[Vec3]) -> Option<Vec<u32>> {
+    let levels = force.levels()?;
+    // how the step is divided among points says nothing of which they are, but where a budget of evaluations is short
+    let division = Division { timestep: 1.0, halvings: 0, filter: Filter::None };
+    let velocities = vec![Vec3::ZERO; positions.len()];
+    let mut rows = souple_engine::Rows { positions: positions.to_vec(), velocities, time: 0.0 };
+    let mut memory = vec![0.0; force.memory_len()];
+    force.initial_memory(&mut memory);
+    let mut scratch = force.new_scratch();
+    levels.adapt(&division, &mut rows, &mut memory, &mut scratch);
+    Some(levels.active(&scratch).to_vec())
 }
 
 /// Where the points of all bodies of a system start, by their rows.

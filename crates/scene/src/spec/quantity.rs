@@ -396,7 +396,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     &entry("skin.components", "parts that share no point", SKIN, skin("", SkinQuantity::Components)),
     &entry(
         "skin.events",
-        "times that the Euler characteristic or the number of parts changed",
+        "times that the Euler characteristic or the number of parts changed and stayed so for two steps",
         SKIN,
         skin("", SkinQuantity::Events),
     ),
@@ -409,7 +409,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     ),
     &entry(
         "skin.distance",
-        "the greatest of its surface from that of its target, by the slope of the target's potential",
+        "Hausdorff's, between its surface and that of its target",
         SKIN,
         skin("m", SkinQuantity::Distance),
     ),

@@ -5,7 +5,7 @@ use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_table::{Entry, Parameter};
 
-use super::{ISO, Moment, PartEntry, PartError, PartScratch, Potential};
+use super::{Between, ISO, Moment, PartEntry, PartError, PartScratch, Potential, UNKNOWN};
 
 const VARIABLES: &[&str] = &["x", "y", "z", "t"];
 
@@ -29,6 +29,13 @@ impl Potential for Text {
     fn value(&self, p: Vec3, scratch: &PartScratch) -> f64 {
         let time = scratch.downcast_ref::<f64>().copied().unwrap_or(0.0);
         ISO + self.formula.evaluate(&[p.x, p.y, p.z, time])
+    }
+
+    fn range(&self, within: BoundingBox, scratch: &PartScratch) -> Between {
+        let time = scratch.downcast_ref::<f64>().copied().unwrap_or(0.0);
+        let along = |axis: usize| [within.low[axis], within.high[axis]];
+        let range = self.formula.range(&[along(0), along(1), along(2), [time; 2]]);
+        range.map_or(UNKNOWN, |range| range.map(|value| ISO + value))
     }
 
     fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {

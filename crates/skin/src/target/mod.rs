@@ -63,6 +63,12 @@ impl Moment<'_> {
 /// What a part keeps between evaluations, opaque to all others.
 pub type PartScratch = Box<dyn Any + Send + Sync>;
 
+/// Two numbers that values lie between.
+pub type Between = [f64; 2];
+
+/// Nothing is known of the values.
+pub const UNKNOWN: Between = [f64::NEG_INFINITY, f64::INFINITY];
+
 /// A potential: above [`ISO`] inside.
 pub trait Potential: Send + Sync {
     fn new_scratch(&self) -> PartScratch {
@@ -82,6 +88,11 @@ pub trait Potential: Send + Sync {
     /// Values at points, in place of what stands in `out`.
     fn values(&self, points: &[Vec3], scratch: &PartScratch, out: &mut [f64]) {
         out.iter_mut().zip(points).for_each(|(out, point)| *out = self.value(*point, scratch));
+    }
+
+    /// Values that it has at most and at least within a box.
+    fn range(&self, _within: BoundingBox, _scratch: &PartScratch) -> Between {
+        UNKNOWN
     }
 
     /// A box around all that is inside; `None` where it is not known.
@@ -161,7 +172,7 @@ impl Part {
         Self { potential, combine: Combine::Blend, during, warps: Vec::new(), motion: None }
     }
 
-    fn is_there(&self, time: f64) -> bool {
+    pub(crate) fn is_there(&self, time: f64) -> bool {
         self.during[0] <= time && time < self.during[1]
     }
 
@@ -169,6 +180,14 @@ impl Part {
         self.motion.as_ref().map_or(Vec3::ZERO, |motion| {
             let [x, y, z] = [0, 1, 2].map(|axis: usize| motion[axis].evaluate(&[time]));
             Vec3::new(x, y, z)
+        })
+    }
+
+    /// How fast it is moved [m/s].
+    pub(crate) fn speed(&self, time: f64) -> f64 {
+        self.motion.as_ref().map_or(0.0, |motion| {
+            let rates = motion.each_ref().map(|along| along.differentiate(&[time], 0).derivative);
+            Vec3::from_array(rates).length()
         })
     }
 }
@@ -234,6 +253,23 @@ impl Target {
             sum = part.combine.of(sum, value, self.iso);
         }
         sum.unwrap_or(0.0) - self.iso
+    }
+
+    /// Numbers that [`Target::excess`] lies between within a box.
+    pub fn range(&self, within: BoundingBox, scratch: &TargetScratch) -> Between {
+        let mut sum: Option<Between> = None;
+        for (index, part) in self.parts.iter().enumerate().filter(|(index, _)| scratch.there[*index]) {
+            let offset = scratch.offsets[index];
+            let moved = BoundingBox { low: within.low - offset, high: within.high - offset };
+            let before = part.warps.iter().rev().fold(moved, |moved, warp| warp.before(moved));
+            let own = part.potential.range(before, &scratch.parts[index]);
+            // a part that is cut out does so with what it has most
+            let [low, high] = if part.combine == Combine::Difference { [own[1], own[0]] } else { own };
+            let joined = |end: usize, own: f64| part.combine.of(sum.map(|sum| sum[end]), own, self.iso);
+            sum = joined(0, low).zip(joined(1, high)).map(|(low, high)| [low, high]);
+        }
+        let [low, high] = sum.unwrap_or([0.0; 2]);
+        [low - self.iso, high - self.iso]
     }
 
     /// [`Target::excess`] at points, in place of what stands in `out`.

@@ -7,7 +7,7 @@ use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_table::{Entry, Parameter, Range, Value};
 
-use super::{Followed, Moment, PartEntry, PartError, PartScratch, Potential};
+use super::{Between, Followed, Moment, PartEntry, PartError, PartScratch, Potential, UNKNOWN};
 
 /// A particle that is led.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +73,8 @@ pub struct Cloud {
     high: Vec3,
 }
 
+/// Rows of cells that are gone through for a range, at most: of a box of more nothing is said.
+const MOST_ROWS: u64 = 1 << 10;
 /// Cells along each axis at most: three coordinates in a key.
 const MOST_CELLS: f64 = 1_048_576.0;
 
@@ -146,6 +148,35 @@ impl Cloud {
         sum
     }
 
+    /// Numbers that the density lies between within a box: with each particle as far away as it may be, and as near.
+    pub fn range(&self, within: BoundingBox) -> Between {
+        let (from, to) = (self.cell_of(within.low), self.cell_of(within.high));
+        let along = |axis: usize| from[axis].saturating_sub(1)..=to[axis] + 1;
+        if (to[1] - from[1] + 3) * (to[2] - from[2] + 3) > MOST_ROWS {
+            return [0.0, f64::INFINITY];
+        }
+        let (mut least, mut most) = (0.0, 0.0);
+        for z in along(2) {
+            for y in along(1) {
+                let (first, last) = (key(*along(0).start(), y, z), key(*along(0).end(), y, z));
+                let first = self.sorted.partition_point(|(cell, _)| *cell < first);
+                for (_, index) in self.sorted[first..].iter().take_while(|(cell, _)| *cell <= last) {
+                    let (p, radius) = self.placed[*index as usize];
+                    let (below, above) = (within.low - p, p - within.high);
+                    let near = below.max_components(above).max_components(Vec3::ZERO).length();
+                    // from a corner: the farther end along each axis
+                    let far = (-below).max_components(-above).length();
+                    let at = |distance: f64| {
+                        let is_reached = distance < REACH * radius;
+                        if is_reached { kernel(distance / (2.0 * radius)) } else { 0.0 }
+                    };
+                    (least, most) = (least + at(far), most + at(near));
+                }
+            }
+        }
+        [least, most]
+    }
+
     pub fn bytes(&self) -> usize {
         size_of::<(Vec3, f64)>() * self.placed.capacity() + 16 * self.sorted.capacity()
     }
@@ -199,6 +230,10 @@ impl Potential for Density {
 
     fn value(&self, point: Vec3, scratch: &PartScratch) -> f64 {
         scratch.downcast_ref::<Cloud>().map_or(f64::NAN, |cloud| cloud.density(point))
+    }
+
+    fn range(&self, within: BoundingBox, scratch: &PartScratch) -> Between {
+        scratch.downcast_ref::<Cloud>().map_or(UNKNOWN, |cloud| cloud.range(within))
     }
 
     fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {

@@ -4,11 +4,11 @@
 //! target than to a near one.
 
 use souple_math::Vec3;
-use souple_mesh::implicit::{self, Shape, SurfaceShape};
-use souple_mesh::{BoundingBox, SignedDistance, TriangleSurface};
+use souple_mesh::implicit::{self, JoinedSolids, Shape, Sign, SurfaceShape};
+use souple_mesh::{BoundingBox, MeshError, TriangleSurface};
 use souple_table::{Entry, Parameter, Range, Value, Values};
 
-use super::{Followed, ISO, Moment, PartEntry, PartError, PartScratch, Potential};
+use super::{Between, Followed, ISO, Moment, PartEntry, PartError, PartScratch, Potential, UNKNOWN};
 
 const WIDTH: Parameter = Parameter::number(
     "width",
@@ -20,6 +20,11 @@ const WIDTH: Parameter = Parameter::number(
 
 fn potential(distance: f64, width: f64) -> f64 {
     ISO + (-0.5 * distance / width).clamp(-0.5, 0.5)
+}
+
+/// Of distances between two.
+fn between([near, far]: [f64; 2], width: f64) -> Between {
+    [potential(far, width), potential(near, width)]
 }
 
 /// The width asked for, or a tenth of a diagonal.
@@ -36,6 +41,10 @@ struct Solid {
 impl Potential for Solid {
     fn value(&self, point: Vec3, _: &PartScratch) -> f64 {
         potential(self.shape.value(point), self.width)
+    }
+
+    fn range(&self, within: BoundingBox, _: &PartScratch) -> Between {
+        self.shape.range(within).map_or(UNKNOWN, |distances| between(distances, self.width))
     }
 
     fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {
@@ -75,6 +84,12 @@ impl Shape for Scaled {
         self.shape.value(point * self.scale.recip()) * self.scale
     }
 
+    fn range(&self, within: BoundingBox) -> Option<[f64; 2]> {
+        let factor = self.scale.recip();
+        let range = self.shape.range(BoundingBox { low: within.low * factor, high: within.high * factor });
+        range.map(|range| range.map(|value| value * self.scale))
+    }
+
     fn bounds(&self) -> BoundingBox {
         let bounds = self.shape.bounds();
         BoundingBox { low: bounds.low * self.scale, high: bounds.high * self.scale }
@@ -83,7 +98,7 @@ impl Shape for Scaled {
 
 pub(super) static MESH: PartEntry = Entry {
     name: "mesh",
-    summary: "what the triangles of a file enclose; those with holes by winding numbers",
+    summary: "what the triangles of a file enclose: parts that overlap are joined, those with holes are known by winding numbers",
     source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
     parameters: &[
         Parameter::text("file", "a surface, relative to the scene file that names it"),
@@ -101,11 +116,23 @@ pub(super) static MESH: PartEntry = Entry {
         let mut surface = around.surface(file).map_err(refuse)?;
         let scale = values.number("scale");
         surface.points.iter_mut().for_each(|point| *point = *point * scale);
-        let shape = SurfaceShape::new(surface).map_err(|error| refuse(error.to_string()))?;
+        let shape = solid(surface).map_err(|error| refuse(error.to_string()))?;
         let width = width(values, shape.bounds());
-        Ok(Box::new(Solid { shape: Box::new(shape), width }))
+        Ok(Box::new(Solid { shape, width }))
     },
 };
+
+/// What triangles enclose: closed parts that overlap are joined, others are known by winding numbers.
+fn solid(surface: TriangleSurface) -> Result<Box<dyn Shape>, MeshError> {
+    let shape = SurfaceShape::new(surface.clone())?;
+    if shape.sign() == Sign::WindingNumber
+        && let Ok(joined) = JoinedSolids::new(&surface)
+        && joined.separates(&shape.diagnosis().crossings)
+    {
+        return Ok(Box::new(joined));
+    }
+    Ok(Box::new(shape))
+}
 
 /// The inside of a closed surface whose points follow rows.
 pub struct SurfacePart {
@@ -129,19 +156,19 @@ impl SurfacePart {
         width: f64,
     ) -> Result<Self, String> {
         let width = if width > 0.0 { width } else { 0.1 * surface.bounds().diagonal() };
-        SignedDistance::new(surface.clone()).map_err(|error| error.to_string())?;
+        JoinedSolids::new(&surface).map_err(|error| error.to_string())?;
         Ok(Self { surface, system, rows, offset, width })
     }
 }
 
 struct Moved {
-    distance: Option<SignedDistance>,
+    distance: Option<JoinedSolids>,
     positions: Vec<Vec3>,
 }
 
 impl Potential for SurfacePart {
     fn new_scratch(&self) -> PartScratch {
-        let distance = SignedDistance::new(self.surface.clone()).ok();
+        let distance = JoinedSolids::new(&self.surface).ok();
         Box::new(Moved { distance, positions: self.surface.points.clone() })
     }
 
@@ -162,6 +189,13 @@ impl Potential for SurfacePart {
         distance.map_or(f64::NAN, |distance| potential(distance.distance(point) - self.offset, self.width))
     }
 
+    fn range(&self, within: BoundingBox, scratch: &PartScratch) -> Between {
+        let distance = scratch.downcast_ref::<Moved>().and_then(|moved| moved.distance.as_ref());
+        let Some(distance) = distance else { return UNKNOWN };
+        let (middle, reach) = (distance.distance(within.centre()) - self.offset, 0.5 * within.diagonal());
+        if middle.is_nan() { UNKNOWN } else { between([middle - reach, middle + reach], self.width) }
+    }
+
     fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {
         let moved = scratch.downcast_ref::<Moved>()?;
         Some(BoundingBox::of(moved.positions.iter().copied()).grown(self.offset.max(0.0)))
@@ -178,7 +212,7 @@ impl Potential for SurfacePart {
 
 pub(super) static SURFACE: PartEntry = Entry {
     name: "surface",
-    summary: "the inside of the surface of a body of the scene, as it moves",
+    summary: "the inside of the surface of a body of the scene, as it moves; parts of it that overlap are joined",
     source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
     parameters: &[
         Parameter::text("body", "its name"),

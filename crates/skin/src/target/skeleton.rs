@@ -4,7 +4,7 @@ use souple_math::Vec3;
 use souple_mesh::{BoundingBox, closest_point_on_triangle};
 use souple_table::{Entry, Parameter, Range, Value, Values};
 
-use super::{PartEntry, PartError, PartScratch, Potential};
+use super::{Between, PartEntry, PartError, PartScratch, Potential};
 
 /// How a potential falls with `u`, the distance over the radius: 1 on the skeleton, one half at `u = 1`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +67,13 @@ impl Skeleton {
 impl Potential for Skeleton {
     fn value(&self, point: Vec3, _: &PartScratch) -> f64 {
         self.falloff.at(self.distance_sq(point) / (self.radius * self.radius))
+    }
+
+    // it falls with the distance, which changes by no more than a point moves
+    fn range(&self, within: BoundingBox, _: &PartScratch) -> Between {
+        let (distance, reach) = (self.distance_sq(within.centre()).sqrt(), 0.5 * within.diagonal());
+        let at = |distance: f64| self.falloff.at((distance / self.radius).powi(2));
+        [at(distance + reach), at((distance - reach).max(0.0))]
     }
 
     fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {

@@ -11,6 +11,9 @@ pub trait Warp: Send + Sync {
 
     /// A box around what a box becomes.
     fn bounds(&self, bounds: BoundingBox) -> BoundingBox;
+
+    /// A box around where the points of a box were before.
+    fn before(&self, of: BoundingBox) -> BoundingBox;
 }
 
 /// Constructor of a warp from completed values.
@@ -57,6 +60,21 @@ impl Frame {
         p + self.centre
     }
 
+    /// The ranges of a box along the axis, and its middle and half its diagonal across it.
+    fn split_box(&self, of: BoundingBox) -> ([f64; 2], [f64; 2], f64) {
+        let ((from, low), (to, high)) = (self.split(of.low), self.split(of.high));
+        let middle = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
+        ([from, to], middle, 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]))
+    }
+
+    /// A box around places along the axis and a disc across it.
+    fn join_box(&self, along: [f64; 2], middle: [f64; 2], radius: f64) -> BoundingBox {
+        BoundingBox {
+            low: self.join(along[0], middle.map(|c| c - radius)),
+            high: self.join(along[1], middle.map(|c| c + radius)),
+        }
+    }
+
     /// A box around a ball about the centre that holds a box.
     fn ball(&self, bounds: BoundingBox, factor: f64) -> BoundingBox {
         let centre = self.centre;
@@ -84,6 +102,15 @@ impl Warp for Twist {
 
     fn bounds(&self, bounds: BoundingBox) -> BoundingBox {
         self.frame.ball(bounds, 1.0)
+    }
+
+    // turned by the angle of its middle, and along an arc by what angles differ from that
+    fn before(&self, of: BoundingBox) -> BoundingBox {
+        let (along, middle, radius) = self.frame.split_box(of);
+        let differ = (0.5 * self.rate * (along[1] - along[0])).abs().min(2.0);
+        let arc = middle[0].hypot(middle[1]) * differ;
+        let turned = turned(middle, -0.5 * self.rate * (along[0] + along[1]));
+        self.frame.join_box(along, turned, radius + arc)
     }
 }
 
@@ -117,6 +144,31 @@ impl Warp for Bend {
     fn bounds(&self, bounds: BoundingBox) -> BoundingBox {
         let across = [bounds.low, bounds.high].map(|p| self.frame.split(p).1[0].abs());
         self.frame.ball(bounds, (1.0 + across[0].max(across[1]) * self.rate.abs()).sqrt())
+    }
+
+    // as seen from the centre of the circle: within a ball around its middle distances differ by its radius, and angles by what
+    // a ball there is seen under
+    fn before(&self, of: BoundingBox) -> BoundingBox {
+        if self.rate == 0.0 {
+            return of;
+        }
+        let (sign, turn) = (self.rate.signum(), std::f64::consts::PI);
+        let radius = 1.0 / self.rate;
+        let ((from, low), (to, high)) = (self.frame.split(of.low), self.frame.split(of.high));
+        let seen = [0.5 * (from + to) * sign, (radius - 0.5 * (low[0] + high[0])) * sign];
+        let (distance, reach) = (seen[0].hypot(seen[1]), 0.5 * (to - from).hypot(high[0] - low[0]));
+        let angle = libm::atan2(seen[0], seen[1]);
+        let width = if distance > reach { libm::asin(reach / distance) } else { turn };
+        // beyond half a turn an angle goes on from the other side
+        let is_cut = angle.abs() + width >= turn;
+        let angles = if is_cut { [-turn, turn] } else { [angle - width, angle + width] };
+        let ends = |a: f64, b: f64| [a.min(b), a.max(b)];
+        let along = ends(angles[0] * radius, angles[1] * radius);
+        let across = ends(radius - (distance - reach).max(0.0) * sign, radius - (distance + reach) * sign);
+        BoundingBox {
+            low: self.frame.join(along[0], [across[0], low[1]]),
+            high: self.frame.join(along[1], [across[1], high[1]]),
+        }
     }
 }
 
@@ -157,6 +209,15 @@ impl Warp for Taper {
         let spread = |c: f64| scales.map(|scale| c * scale);
         let least = low.1.map(|c| spread(c)[0].min(spread(c)[1]));
         let most = high.1.map(|c| spread(c)[0].max(spread(c)[1]));
+        BoundingBox { low: self.frame.join(low.0, least), high: self.frame.join(high.0, most) }
+    }
+
+    fn before(&self, of: BoundingBox) -> BoundingBox {
+        let [low, high] = [of.low, of.high].map(|p| self.frame.split(p));
+        let scales = [low.0, high.0].map(|along| (1.0 + self.rate * along).clamp(THINNEST, THICKEST));
+        let ends = |c: f64| scales.map(|scale| c / scale);
+        let least = low.1.map(|c| ends(c)[0].min(ends(c)[1]));
+        let most = high.1.map(|c| ends(c)[0].max(ends(c)[1]));
         BoundingBox { low: self.frame.join(low.0, least), high: self.frame.join(high.0, most) }
     }
 }

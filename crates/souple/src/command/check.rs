@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use serde_json::json;
+use serde_json::{Map, Value, json};
+use souple_scene::SkinInfo;
+use souple_skin::Cost;
 
 use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path};
 
@@ -23,6 +25,7 @@ pub struct Arguments {
 pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
     let (title, bodies, probes) = (scene.title.clone(), scene.bodies.clone(), scene.probes.len());
+    let known_skins = scene.skins.clone();
     let mut warnings = scene.warnings.clone();
     let duration = scene.run.duration;
     let period = scene.model.period;
@@ -49,10 +52,17 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let periods = souple_run::periods_in(duration, period)?;
     warnings.extend(periods.warning);
     let steps = periods.count;
+    let doubts = |skin: &SkinInfo| -> Vec<String> {
+        let doubts = skin.doubts(&world, duration).into_iter();
+        doubts.map(|doubt| format!("skin `{}`: {doubt}", skin.name)).collect()
+    };
+    warnings.extend(known_skins.iter().flat_map(doubts));
     // the cost of one step is measured on this scene, the state being thrown away
     let clock = Instant::now();
     let trial = world.step();
     let seconds_per_step = clock.elapsed().as_secs_f64();
+    let costs = known_skins.iter().filter_map(|skin| Some((skin.name.as_str(), skin.cost(&world)?)));
+    let costs: Vec<(&str, Cost)> = costs.collect();
     let errors: Vec<_> = trial.err().map(|error| first_step_refused(arguments, &error)).into_iter().collect();
     let document = json!({
         "scene": scene_path(&arguments.scene).display().to_string(),
@@ -61,6 +71,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "errors": errors,
         "counts": counts,
         "systems": systems,
+        "skins": costs.iter().map(|(name, cost)| ((*name).to_owned(), skin_to_json(cost))).collect::<Map<_, _>>(),
         "probes": probes,
         "steps": steps,
         "forecast": {
@@ -101,6 +112,15 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
             system["timestep_seconds"].as_f64().unwrap_or_default(),
         ));
     }
+    for (name, cost) in &costs {
+        print_line(format_args!(
+            "  skin {name}: {} nodes worked out in a step, {}, {:.1} MB, about {:.2} ms of it",
+            cost.nodes,
+            souple_table::counted(cost.triangles, "triangle"),
+            cost.bytes as f64 * 1e-6,
+            1e3 * cost.seconds,
+        ));
+    }
     print_line(format_args!(
         "  about {:.2} ms per step, {:.1} s for {}, {:.1} MB of forces and matrices",
         1e3 * seconds_per_step,
@@ -109,6 +129,17 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         world.bytes() as f64 * 1e-6
     ));
     Ok(end_of(&errors))
+}
+
+/// Forecast of a skin.
+fn skin_to_json(cost: &Cost) -> Value {
+    json!({
+        "blocks": cost.blocks,
+        "nodes_per_step": cost.nodes,
+        "triangles": cost.triangles,
+        "bytes": cost.bytes,
+        "seconds_per_step": cost.seconds,
+    })
 }
 
 /// A scene whose first step is refused is read and built, and yet no scene that can be run.

@@ -163,6 +163,9 @@ pub fn conclude(outcome: &Outcome, manner: &Manner) -> End {
     for warning in &report.warnings {
         print_note(format_args!("warning: {warning}"));
     }
+    if !manner.quiet {
+        report.skin_changes.iter().for_each(|change| print_note(format_args!("note: {}", change.message())));
+    }
     if let Some(failure) = &report.failure {
         print_note(format_args!("error: {}", failure.message()));
     }

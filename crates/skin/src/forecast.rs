@@ -1,0 +1,144 @@
+//! What a skin will cost, and what its grid will not see, before it is run.
+
+use std::time::Instant;
+
+use souple_engine::FieldState;
+use souple_math::Vec3;
+
+use crate::error::SkinError;
+use crate::grid::{EDGE, FARTHEST, Lattice};
+use crate::skin::{Skin, SkinScratch};
+use crate::start::PlacedTarget;
+use crate::surface::surface_of;
+use crate::target::{Moment, Rows, Target};
+
+/// What a step of a skin takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Of 8³ nodes.
+    pub blocks: usize,
+    /// Nodes worked out, in all sub-steps.
+    pub nodes: u64,
+    pub triangles: u64,
+    /// Of the state, which a world holds twice, and of scratch.
+    pub bytes: usize,
+    pub seconds: f64,
+}
+
+/// Moments of a run at which a target is looked at.
+const MOMENTS: u32 = 32;
+/// What the grid sees of a surface is nearer to it than this, but for what is thinner than a voxel [voxels].
+const SEEN: f64 = 2.0;
+
+impl Skin {
+    /// What a step from a state to a moment takes; the state stays as it is.
+    ///
+    /// # Errors
+    /// The step cannot be made.
+    pub fn cost(&self, end: &Moment, timestep: f64, field: &FieldState) -> Result<Cost, SkinError> {
+        let mut scratch = self.new_scratch();
+        // once for buffers to be there
+        self.step(end, timestep, &mut field.clone(), &mut scratch)?;
+        let (mut field, clock) = (field.clone(), Instant::now());
+        self.step(end, timestep, &mut field, &mut scratch)?;
+        let seconds = clock.elapsed().as_secs_f64();
+        let view = self.view(&field);
+        Ok(Cost {
+            blocks: view.grid.keys.len(),
+            nodes: view.work(),
+            triangles: view.counts()[1],
+            bytes: 16 * (field.values.len() + field.indices.len()) + SkinScratch::bytes(&scratch),
+            seconds,
+        })
+    }
+
+    /// What the grid will not see of its target in so much time [s], with rows as they are now: what is thinner than a voxel, what
+    /// moves faster than the skin, what leaves the space of the grid.
+    pub fn doubts(&self, rows: &dyn Rows, duration: f64) -> Vec<String> {
+        let Some(target) = &self.target else { return Vec::new() };
+        let mut doubts = Vec::new();
+        let mut scratch = target.new_scratch();
+        let times = (0..=MOMENTS).map(|k| duration * f64::from(k) / f64::from(MOMENTS));
+        for time in times.clone() {
+            if let Err(why) = target.place(&Moment { time, rows }, &mut scratch) {
+                doubts.push(format!("its target cannot be placed at t = {time} s: {why}"));
+                break;
+            }
+            let far = |point: Vec3| {
+                let place = self.lattice.to_voxels(point) * (1.0 / EDGE as f64);
+                place.to_array().iter().any(|c| c.abs() >= FARTHEST as f64)
+            };
+            if target.bounds(&scratch).is_some_and(|bounds| far(bounds.low) || far(bounds.high)) {
+                doubts.push(format!("its target leaves the space of its grid at t = {time} s"));
+                break;
+            }
+        }
+        doubts.extend(self.outrun(target, rows, duration));
+        // parts come and go at their own times
+        let comes = |time: &f64| 0.0 < *time && *time < duration;
+        let mut looks: Vec<f64> =
+            target.parts.iter().flat_map(|part| part.during).filter(comes).chain([0.0]).collect();
+        looks.sort_by(f64::total_cmp);
+        looks.dedup();
+        doubts.extend(looks.into_iter().find_map(|time| self.unseen(target, &Moment { time, rows })));
+        doubts
+    }
+
+    /// A part that moves faster than the skin can follow.
+    fn outrun(&self, target: &Target, rows: &dyn Rows, duration: f64) -> Option<String> {
+        let mut scratch = target.new_scratch();
+        target.place(&Moment { time: 0.0, rows }, &mut scratch).ok()?;
+        let [_, most] = target.range(target.bounds(&scratch)?, &scratch);
+        let whole =
+            crate::strategy::Whole { time: 0.0, area: 1.0, volume: 1.0, rest_area: 1.0, rest_volume: 1.0 };
+        let strength: f64 = self.terms.iter().map(|term| term.stiffness(Vec3::ZERO, most, &whole)).sum();
+        let fastest = strength * most;
+        let moved = |index: usize| {
+            let speed = |k: u32| {
+                let part = &target.parts[index];
+                let time = duration * f64::from(k) / f64::from(MOMENTS);
+                (part.is_there(time)).then(|| (time, part.speed(time)))
+            };
+            let speeds = (0..=MOMENTS).filter_map(speed).filter(|(_, speed)| speed.is_finite());
+            let (time, speed) = speeds.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            (speed > fastest && fastest > 0.0 && fastest.is_finite()).then(|| {
+                format!(
+                    "parts[{index}] of its target moves at {speed:.3} m/s at t = {time} s, and it follows at {fastest:.3} m/s at most: the skin will be left behind; a greater strength of its attraction lets it follow"
+                )
+            })
+        };
+        (0..target.parts.len()).find_map(moved)
+    }
+
+    /// A place of the target that a grid of half the voxels sees, and its own does not.
+    fn unseen(&self, target: &Target, at: &Moment) -> Option<String> {
+        let mut scratch = target.new_scratch();
+        target.place(at, &mut scratch).ok()?;
+        let bounds = target.bounds(&scratch)?;
+        let placed = PlacedTarget { target, scratch: &scratch };
+        let half = Skin {
+            name: String::new(),
+            lattice: Lattice { voxel: 0.5 * self.lattice.voxel, ..self.lattice },
+            target: None,
+            terms: Vec::new(),
+            redistance: self.redistance,
+            reaction: None,
+        };
+        let fine = half.sampled(bounds.low, bounds.high, &placed).ok()?;
+        let (fine, _) = surface_of(half.grid(&fine), &half.lattice);
+        let told = |place: Vec3| {
+            format!(
+                "its target has something thinner than a voxel of {} m near {:?} at t = {} s, which its grid does not see; smaller voxels would",
+                self.lattice.voxel,
+                place.to_array().map(|c| (1e4 * c).round() * 1e-4),
+                at.time
+            )
+        };
+        let Ok(own) = self.sampled(bounds.low, bounds.high, &placed) else {
+            return fine.points.first().map(|place| told(*place));
+        };
+        let grid = self.grid(&own);
+        let is_unseen = |point: &&Vec3| grid.sample(self.lattice.to_voxels(**point)).0.abs() > SEEN;
+        fine.points.iter().find(is_unseen).map(|place| told(*place))
+    }
+}
