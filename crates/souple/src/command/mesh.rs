@@ -104,18 +104,22 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             write(&out, None, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
         }
         Action::Fill { input, out, parameters, json } => {
+            keep_input(Path::new(&input), &out)?;
             let (mesh, notes) = fill::fill(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
+            keep_input(&input, &out)?;
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
+            keep_input(&input, &out)?;
             let (mesh, notes) = skin::dressed(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Convert { input, out, parameters, format, json } => {
+            keep_input(&input, &out)?;
             let scale = scale(&parameters)?;
             let Dataset { mut mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
             mesh.points.iter_mut().for_each(|point| *point = *point * scale);
@@ -145,6 +149,18 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             Ok(End::Done)
         }
     }
+}
+
+/// Refuses to write over the file that is read: what is made of it is less than it, or something else.
+fn keep_input(input: &Path, out: &Path) -> Result<(), Refusal> {
+    // two ways to write one path, and links, are one file
+    let same = input.canonicalize().ok().filter(|input| out.canonicalize().is_ok_and(|out| out == *input));
+    if same.is_none() {
+        return Ok(());
+    }
+    let name = out.display().to_string();
+    let message = format!("`{name}` is the file that is read, and would be lost");
+    Err(Refusal::request("overwrite", name, "another file to write", message))
 }
 
 /// The one parameter of a conversion.
@@ -309,7 +325,8 @@ fn faults(surface: &TriangleSurface) -> Json {
         "open_edges": diagnosis.open_edges.len(),
         "crowded_edges": diagnosis.crowded_edges.len(),
         "misoriented_edges": diagnosis.misoriented_edges.len(),
-        "crossings": diagnosis.crossings.len(),
+        "crossings": diagnosis.crossings.pairs.len(),
+        "more_crossings": diagnosis.crossings.is_cut_off,
         "duplicate_points": diagnosis.duplicate_points,
         "flat_triangles": diagnosis.flat_triangles.len(),
         "doubled_triangles": diagnosis.doubled_triangles.len(),
