@@ -15,7 +15,7 @@ use souple_mesh::repair::diagnose;
 use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
 use souple_table::Parameter;
 
-use super::{End, Refusal, print_json, print_line};
+use super::{End, Refusal, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -316,8 +316,19 @@ fn shapes(mesh: &Mesh, quality: &[CellQuality]) -> Json {
     })
 }
 
+/// From so many triangles on a person is told what is waited for.
+const MANY_TRIANGLES: usize = 200_000;
+
+fn announce(surface: &TriangleSurface) {
+    let count = surface.triangles.len();
+    if count >= MANY_TRIANGLES {
+        print_note(format_args!("looking for triangles that pass through each other, among {count} …"));
+    }
+}
+
 /// What is wrong with a surface.
 fn faults(surface: &TriangleSurface) -> Json {
+    announce(surface);
     let diagnosis = diagnose(surface);
     json!({
         "simple": diagnosis.is_simple(),

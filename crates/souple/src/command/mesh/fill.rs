@@ -9,7 +9,7 @@ use souple_mesh::simplify::{Goal, simplify};
 use souple_mesh::{ElementKind, Mesh, MeshError, TriangleSurface};
 use souple_table::{Parameter, Range, Value, ValueError, Values, in_number, nearest};
 
-use super::{parameters, read};
+use super::{announce, parameters, read};
 use crate::command::Refusal;
 
 pub const SCALE: Parameter =
@@ -90,6 +90,7 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     let (mut mesh, mut notes) = read(Path::new(input))?;
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
     notes.extend(mesh.bounds().doubt().map(|doubt| format!("the surface: {doubt}")));
+    surface_of(&mesh).iter().for_each(announce);
     let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
     Ok((filled.mesh, notes))
