@@ -8,6 +8,7 @@ use souple_table::{Entry, Table};
 
 use crate::beside::write_files;
 use crate::dataset::Output;
+use crate::encoding::unmarked;
 use crate::error::{Fault, Place, quoted};
 use crate::holds::Holds;
 use crate::{Dataset, IoError, gltf, gmsh, obj, off, parts, ply, stl, tetgen, vtk, write_file};
@@ -98,6 +99,7 @@ pub fn read_dataset(path: &Path) -> Result<Dataset, IoError> {
 }
 
 fn read_content(path: &Path, bytes: &[u8]) -> Result<Dataset, IoError> {
+    let bytes = unmarked(bytes).map_err(|fault| IoError::content(path, fault))?;
     let by_content = FORMATS.entries.iter().copied().find(|entry| (entry.build.recognises)(bytes));
     let entry = match (by_extension(path), by_content) {
         // the extension rules while the content agrees or says nothing
@@ -136,7 +138,7 @@ pub fn read_dataset_bytes(format: &str, bytes: &[u8]) -> Result<Dataset, IoError
     let expected = readable();
     let read =
         entry.build.read.ok_or(IoError::Unsupported { format: entry.name, action: "read", expected })?;
-    read(bytes).map_err(|fault| IoError::content(Path::new("<memory>"), fault))
+    unmarked(bytes).and_then(read).map_err(|fault| IoError::content(Path::new("<memory>"), fault))
 }
 
 /// Writes a mesh, the format by the extension.

@@ -7,6 +7,7 @@ mod beside;
 mod csv;
 mod cursor;
 mod dataset;
+mod encoding;
 mod error;
 mod facets;
 mod format;

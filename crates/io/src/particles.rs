@@ -8,6 +8,7 @@ use std::path::Path;
 use souple_math::Vec3;
 
 use crate::IoError;
+use crate::encoding::unmarked;
 
 /// A line of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +44,8 @@ pub fn read_particles(path: &Path) -> Result<Vec<ParticleRow>, IoError> {
 /// # Errors
 /// A column is unknown or missing, a line holds what is no number.
 pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>, IoError> {
-    // spreadsheets begin their tables with a mark of byte order
-    let text = String::from_utf8_lossy(bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes));
+    let bytes = unmarked(bytes).map_err(|fault| IoError::content(Path::new(name), fault))?;
+    let text = String::from_utf8_lossy(bytes);
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let refuse = |what: String, value: &str, expected: String| {
         Err(IoError::request(format!("{what} of {name}"), format!("`{value}`"), expected))
@@ -63,11 +64,14 @@ pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>,
                 return refuse("a column".to_owned(), column, "each column once".to_owned());
             }
             Some(known) => places[known] = Some(place),
+            None if column.contains([';', '\t']) => {
+                return refuse("a column".to_owned(), column, "names with commas between them".to_owned());
+            }
             None => return refuse("a column".to_owned(), column, format!("one of {}", COLUMNS.join(", "))),
         }
     }
     if places[..3].contains(&None) {
-        return refuse("the columns".to_owned(), head, "x, y and z among them".to_owned());
+        return refuse("the list of columns".to_owned(), head, "x, y and z among them".to_owned());
     }
     let columns = places.iter().flatten().count();
     let mut rows = Vec::new();
@@ -114,7 +118,8 @@ mod tests {
         for (text, words) in [
             ("", "the first line of drops.csv is ``; expected names of columns among x, y"),
             ("x,y,w\n", "a column of drops.csv is `w`; expected one of x, y"),
-            ("x,y\n", "the columns of drops.csv is `x,y`; expected x, y and z among them"),
+            ("x;y;z\n0;0;0\n", "a column of drops.csv is `x;y;z`; expected names with commas"),
+            ("x,y\n", "the list of columns of drops.csv is `x,y`; expected x, y and z among them"),
             ("x,y,z,x\n0,0,0,1\n", "a column of drops.csv is `x`; expected each column once"),
             (
                 "x,y,z\n0,0,0,1\n",

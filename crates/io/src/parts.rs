@@ -8,6 +8,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::IoError;
+use crate::encoding::unmarked;
 use crate::error::{Fault, Place, quoted};
 
 const MARK: &[u8] = b"# part ";
@@ -28,11 +29,15 @@ pub(crate) fn read_joined(path: &Path, extensions: &[&str]) -> Result<Vec<u8>, I
         let part = beside(path, extension);
         let read_into = |joined: &mut Vec<u8>| {
             let bytes = std::fs::read(&part)?;
+            let text = match unmarked(&bytes) {
+                Ok(text) => text,
+                Err(fault) => return Ok(Err(fault)),
+            };
             begin(joined, index, extension)?;
-            joined.write_all(&bytes)
+            joined.write_all(text).map(Ok)
         };
         match read_into(&mut joined) {
-            Ok(()) => {}
+            Ok(read) => read.map_err(|fault| IoError::content(&part, fault))?,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound && index > 0 && part != path => {}
             Err(source) => return Err(IoError::Read { path: part, source }),
         }

@@ -7,7 +7,8 @@ use std::process::Command;
 
 use souple_io::{FORMATS, Field, Output, Series, write_dataset_as};
 use souple_math::Vec3;
-use souple_mesh::{ElementKind, Group, Mesh};
+use souple_mesh::{ElementKind, Group, Mesh, generate};
+use souple_table::{Value, Values};
 
 fn tetrahedra() -> Mesh {
     let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
@@ -19,7 +20,20 @@ fn tetrahedra() -> Mesh {
     mesh
 }
 
-/// Reads every file it is given and prints `name points cells`.
+/// Four cubes of cells of several kinds, linear or quadratic.
+fn of_kinds(element: &'static str) -> Mesh {
+    let values = Values::new()
+        .with("size", Value::Vector([2.0, 1.0, 0.5]))
+        .with("cells", Value::Vector([4.0, 1.0, 1.0]))
+        .with("element", Value::Text(element));
+    let mut mesh = generate("box", values).expect("a box");
+    // cells alone: other programs count facets among them
+    mesh.facet_blocks.clear();
+    mesh.groups.clear();
+    mesh
+}
+
+/// Reads every file it is given and prints `name points cells volume`, the volume as VTK has it, who knows the order of nodes.
 const SCRIPT: &str = r#"
 import sys
 import meshio
@@ -29,6 +43,13 @@ VTK_READERS = {
     "vtu": vtk.vtkXMLUnstructuredGridReader, "vtk": vtk.vtkUnstructuredGridReader, "ply": vtk.vtkPLYReader,
     "obj": vtk.vtkOBJReader, "stl": vtk.vtkSTLReader, "glb": vtk.vtkGLTFReader,
 }
+def volume(data):
+    sizes = vtk.vtkCellSizeFilter()
+    sizes.SetInputData(data)
+    sizes.SetComputeSum(True)
+    sizes.Update()
+    return sizes.GetOutput().GetFieldData().GetArray("Volume").GetValue(0)
+
 for path in sys.argv[1:]:
     extension = path.rsplit(".", 1)[1]
     if extension in VTK_READERS:
@@ -39,10 +60,14 @@ for path in sys.argv[1:]:
         if extension == "glb":
             while data.IsA("vtkMultiBlockDataSet"):
                 data = data.GetBlock(0)
-        print(path, data.GetNumberOfPoints(), data.GetNumberOfCells())
+        print(path, data.GetNumberOfPoints(), data.GetNumberOfCells(), volume(data))
     else:
         mesh = meshio.read(path)
-        print(path, len(mesh.points), sum(len(block.data) for block in mesh.cells))
+        meshio.write(path + ".again.vtu", meshio.Mesh(mesh.points, mesh.cells))
+        reader = vtk.vtkXMLUnstructuredGridReader()
+        reader.SetFileName(path + ".again.vtu")
+        reader.Update()
+        print(path, len(mesh.points), sum(len(block.data) for block in mesh.cells), volume(reader.GetOutput()))
 "#;
 
 #[test]
@@ -71,20 +96,38 @@ fn other_programs_read_what_we_write() {
         write_dataset_as(entry.name, &path, &output).expect("the file is written");
         // the boundary of two tetrahedra that share a face: six triangles of five points
         let cells = if entry.build.holds.is_surface() { 6 } else { 2 };
-        files.push((path, cells));
+        files.push((path.clone(), [5, cells]));
+        // what holds several kinds of cells, or middles of edges
+        for element in ["mixed", "tet10", "hex20", "prism15", "pyramid13", "mixed_quadratic"] {
+            let mesh = of_kinds(element);
+            let path = folder.join(format!("{}_{element}.{extension}", entry.name));
+            if entry.build.holds.is_surface()
+                || write_dataset_as(entry.name, &path, &Output::new(&mesh)).is_err()
+            {
+                // a format of tetrahedra alone
+                assert!(entry.build.holds.is_surface() || entry.name == "tetgen", "{} {element}", entry.name);
+                continue;
+            }
+            files.push((path, [mesh.points.len(), mesh.cell_count()]));
+        }
     }
     let mut series = Series::new(&folder, "series");
     series.push(0.0, &Output::new(&mesh)).expect("a frame");
-    files.push((folder.join("series_0000.vtu"), 2));
+    files.push((folder.join("series_0000.vtu"), [5, 2]));
     let output = Command::new(python).arg("-c").arg(SCRIPT).args(files.iter().map(|file| &file.0)).output();
     let output = output.expect("the Python of SOUPLE_PYTHON runs");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{text}\n{}", String::from_utf8_lossy(&output.stderr));
     for (path, cells) in &files {
         let line = text.lines().find(|line| line.starts_with(&path.display().to_string()));
-        let numbers: Vec<usize> =
+        let numbers: Vec<f64> =
             line.unwrap_or_default().split_whitespace().skip(1).filter_map(|n| n.parse().ok()).collect();
-        assert_eq!(numbers, [5, *cells], "{}\n{text}", name(path));
+        let counts = cells.map(|count| count as f64);
+        assert_eq!(numbers.get(..2), Some(&counts[..]), "{}\n{text}", name(path));
+        // the box: an order of nodes that is another turns cells inside out, or bends their straight edges
+        if counts[0] > 5.0 {
+            assert!((numbers[2] - 1.0).abs() < 1e-9, "{}: {numbers:?}", name(path));
+        }
     }
     // what cannot be removed from a folder of temporary files does no harm
     let _ = std::fs::remove_dir_all(&folder);

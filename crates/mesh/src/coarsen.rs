@@ -101,7 +101,7 @@ mod tests {
         let values = entry.values(Values::new().with("semi_axes", Value::Vector([1.0; 3]))).unwrap();
         let size = Values::new().with("size", Value::Number(0.15)).completed(PARAMETERS).unwrap();
         let options = Options::from_values(&size).unwrap();
-        let fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap();
+        let fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap().mesh;
         for size in [0.3, 0.6] {
             let mesh = coarser(&fine, size).unwrap();
             assert!(radius_ratios(&mesh).into_iter().all(|ratio| ratio > 0.1), "{size}");

@@ -5,6 +5,7 @@
 //! (a crack) or lie on a face or edge that does not have them (hanging nodes) let a mesh gape where it looks whole.
 
 use souple_math::Vec3;
+use souple_table::in_number;
 
 use crate::{Aabb, AabbTree, Cell, Feature, Mesh, TriangleSurface, closest_point_on_triangle};
 
@@ -51,8 +52,9 @@ impl Conformity {
         messages.extend(self.hinges());
         if let Some((cell, ratio)) = self.slivers.first() {
             let count = self.slivers.len();
+            let cells = in_number(count, "cell has", "cells have");
             messages.push(format!(
-                "{count} cells have nearly no volume, the flattest is cells[{cell}] with an aspect ratio of {ratio:.1e}"
+                "{cells} nearly no volume, the flattest is cells[{cell}] with an aspect ratio of {ratio:.1e}"
             ));
         }
         messages
@@ -67,9 +69,9 @@ impl Conformity {
             (false, true) => format!("; cells[{b}] is inverted"),
             _ => String::new(),
         };
-        let count = self.overlapping.len();
         Some(format!(
-            "cells[{a}] and cells[{b}] overlap: both lie on the same side of their common face{which} ({count} such pairs)"
+            "cells[{a}] and cells[{b}] overlap: both lie on the same side of their common face{which} ({})",
+            in_number(self.overlapping.len(), "such pair", "such pairs")
         ))
     }
 
@@ -77,15 +79,18 @@ impl Conformity {
     pub fn hinges(&self) -> Option<String> {
         if self.hinged_parts > 0 {
             return Some(format!(
-                "{} parts of the body share no face with the rest: they hang on points or edges and turn there freely; a \
-                 smaller size of cells may join them",
-                self.hinged_parts
+                "{} with the rest, hanging on points or edges and turning there freely; a smaller size of cells may join them",
+                in_number(
+                    self.hinged_parts,
+                    "part of the body shares no face",
+                    "parts of the body share no face"
+                )
             ));
         }
         let first = self.pinched.first()?;
         Some(format!(
-            "the boundary meets itself at {} points, the first is points[{first}]: cells there share a point or an edge alone",
-            self.pinched.len()
+            "the boundary meets itself at {}, the first is points[{first}]: cells there share a point or an edge alone",
+            in_number(self.pinched.len(), "point", "points")
         ))
     }
 
@@ -97,23 +102,37 @@ impl Conformity {
         };
         let mut messages: Vec<String> = self.overlap(&[]).into_iter().collect();
         if let Some((cell, [a, b])) = self.split.first() {
-            let count = self.split.len();
+            let faces = in_number(
+                self.split.len(),
+                "quadrilateral face meets two triangles",
+                "quadrilateral faces meet two triangles each",
+            );
             messages.push(format!(
-                "the mesh is not conforming: {count} quadrilateral faces meet two triangles each, the first is of \
+                "the mesh is not conforming: {faces}, the first is of \
                  cells[{cell}] against cells[{a}] and cells[{b}]"
             ));
         }
         if let Some([a, b]) = self.coincident.first() {
-            let (count, place) = (self.coincident.len(), at(*a));
+            let pairs = in_number(
+                self.coincident.len(),
+                "pair of points coincides and is not joined",
+                "pairs of points coincide and are not joined",
+            );
+            let place = at(*a);
             messages.push(format!(
-                "{count} pairs of points coincide and are not joined, the first is points[{a}] and points[{b}] at \
+                "{pairs}, the first is points[{a}] and points[{b}] at \
                  {place}"
             ));
         }
         if let Some(HangingPoint { point, cell }) = self.hanging.first() {
-            let (count, place) = (self.hanging.len(), at(*point));
+            let points = in_number(
+                self.hanging.len(),
+                "point hangs on a face that has it not as a corner",
+                "points hang on faces that have them not as corners",
+            );
+            let place = at(*point);
             messages.push(format!(
-                "the mesh is not conforming: {count} points hang on faces that have them not as corners, the first is \
+                "the mesh is not conforming: {points}, the first is \
                  points[{point}] at {place} on a face of cells[{cell}]"
             ));
         }

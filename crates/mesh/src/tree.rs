@@ -113,6 +113,14 @@ impl AabbTree {
 
     /// Calls `visit` with each item whose box overlaps `query`, in the order of the tree.
     pub fn overlapping(&self, query: Aabb, mut visit: impl FnMut(u32)) {
+        self.overlapping_while(query, |item| {
+            visit(item);
+            true
+        });
+    }
+
+    /// The same until `visit` says no.
+    pub fn overlapping_while(&self, query: Aabb, mut visit: impl FnMut(u32) -> bool) {
         let mut stack = [0u32; MAX_DEPTH];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
@@ -129,8 +137,8 @@ impl AabbTree {
                 continue;
             }
             for item in &self.order[node.start as usize..(node.start + node.count) as usize] {
-                if self.boxes[*item as usize].overlaps(query) {
-                    visit(*item);
+                if self.boxes[*item as usize].overlaps(query) && !visit(*item) {
+                    return;
                 }
             }
         }

@@ -3,6 +3,7 @@
 //! Wrong winding is repaired and said; loose points and separate parts are said; anything else is refused.
 
 use souple_math::Vec3;
+use souple_table::in_number;
 
 use crate::{Cell, CellBlock, ElementKind, Group, MAX_NODES, Mesh, MeshError};
 
@@ -23,11 +24,13 @@ impl Repairs {
         let mut messages = Vec::new();
         if let Some(first) = self.rewound_cells.first() {
             let count = self.rewound_cells.len();
-            messages.push(format!("{count} inverted cells were rewound, the first is cells[{first}]"));
+            let were = in_number(count, "inverted cell was", "inverted cells were");
+            messages.push(format!("{were} rewound, the first is cells[{first}]"));
         }
         if let Some(first) = self.loose_points.first() {
             let count = self.loose_points.len();
-            messages.push(format!("{count} points belong to no cell, the first is points[{first}]"));
+            let points = in_number(count, "point belongs", "points belong");
+            messages.push(format!("{points} to no cell, the first is points[{first}]"));
         }
         if self.component_count > 1 {
             messages.push(format!("the mesh has {} parts that share no point", self.component_count));

@@ -26,7 +26,7 @@ fn bodies_are_one_part() {
         {
             let values =
                 Values::new().with("count", Value::Integer(count)).with("element", Value::Text(element));
-            let mesh = options(values).fill_body(&body).unwrap();
+            let mesh = options(values).fill_body(&body).unwrap().mesh;
             let name = format!("{} of {count} {element}", entry.name);
             assert_manifold(&mesh, &name);
             assert_eq!(mesh.components().1, 1, "{name}");
@@ -56,7 +56,7 @@ fn walls_thinner_than_cells() {
             for size in [0.2, 0.23, 0.31, 0.4] {
                 let values =
                     Values::new().with("size", Value::Number(size)).with("element", Value::Text(element));
-                let mesh = options(values).fill_body(&body).unwrap();
+                let mesh = options(values).fill_body(&body).unwrap().mesh;
                 assert_manifold(&mesh, &format!("{formula} at {size} {element}"));
                 if element == "tet4" {
                     let least = mesh

@@ -45,7 +45,7 @@ fn balls() -> Vec<Mesh> {
     let values = entry.values(Values::new().with("semi_axes", Value::Vector([0.05; 3]))).unwrap();
     let size = Values::new().with("size", Value::Number(0.01)).completed(PARAMETERS).unwrap();
     let options = Options::from_values(&size).unwrap();
-    let mut fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap();
+    let mut fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap().mesh;
     fine.validate().unwrap();
     vec![coarser(&fine, 0.036).unwrap(), coarser(&fine, 0.018).unwrap(), fine]
 }

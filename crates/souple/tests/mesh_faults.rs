@@ -363,7 +363,7 @@ fn repairs_are_told() {
     folder.write("loose.vtk", vtk(&[&TET[..], &["9 9 9"]].concat(), "4 0 1 2 3", "10"));
     folder.write("parts.vtk", vtk(&[&TET[..], &second].concat(), "4 0 1 2 3\n4 4 5 6 7", "10 10"));
     for (file, words) in
-        [("inverted.vtk", "inverted"), ("loose.vtk", "belong to no cell"), ("parts.vtk", "2 parts")]
+        [("inverted.vtk", "inverted"), ("loose.vtk", "belongs to no cell"), ("parts.vtk", "2 parts")]
     {
         let mesh = quality(&folder, file).unwrap_or_else(|message| panic!("{file}: {message}"));
         assert!(mesh["notes"].to_string().contains(words), "{file}: {mesh:#}");

@@ -58,6 +58,7 @@ fn pictures_of_scenes_and_runs() {
         &["--time", "0"][..],
         &["--colour", "displacement.y", "--map", "diverging"],
         &["--colour", "none"],
+        &["--colour-scale", "log"],
         &["--colour", "velocity", "--map", "grey", "--range", "0,2"],
         &["--cut", "0,0,1,0.4"],
         &["--explode", "0.5"],
@@ -158,6 +159,48 @@ fn blown_up_runs_are_drawn_as_they_were() {
     assert_ne!(read("a.png"), read("b.png"));
 }
 
+/// Frames that are not shown are not read: a run of which most are gone is drawn where it is whole.
+#[test]
+fn frames_that_are_not_shown_are_not_read() {
+    let folder = Folder::new("frames_shown");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet", "--frames", "10"]).ends(0);
+    let frames = folder.path().join("run/frames");
+    let mut files: Vec<_> = std::fs::read_dir(&frames)
+        .expect("frames")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "vtu"))
+        .collect();
+    files.sort();
+    assert!(files.len() > 4, "{files:?}");
+    files[1..files.len() - 1].iter().for_each(|file| std::fs::write(file, "gone").expect("a file"));
+    for (file, more) in [
+        ("first.png", &["--time", "0"][..]),
+        ("last.png", &[]),
+        ("sheet.png", &["--sheet", "2"]),
+        ("film.gif", &["--frames", "2"]),
+    ] {
+        render(&folder, "run", file, more).ends(0);
+    }
+    assert!(render(&folder, "run", "whole.gif", &[]).ends(2).stderr.contains(".vtu"));
+    assert!(!folder.path().join("whole.gif").exists());
+}
+
+/// On a scale of powers of ten what is not above zero is grey, and that is said; where nothing is above zero it is refused.
+#[test]
+fn colours_by_powers_of_ten() {
+    let folder = Folder::new("powers");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    let log = ["--colour-scale", "log"];
+    let answer = render(&folder, "run", "a.png", &[&log[..], &["--colour", "displacement.y"]].concat());
+    let told = answer.stderr.clone() + &answer.stdout;
+    assert!(told.contains("not above 0") || told.contains("no value is above 0"), "{answer:#?}");
+    let first =
+        render(&folder, "run", "b.png", &[&log[..], &["--time", "0", "--colour", "displacement"]].concat());
+    assert!(first.ends(2).stderr.contains("no value is above 0; expected linear"));
+}
+
 /// Bodies of every dimension have values to be coloured by, from the frames of their run as from the run itself.
 #[test]
 fn sheets_and_cables_are_coloured() {
@@ -171,7 +214,7 @@ fn sheets_and_cables_are_coloured() {
         let run = ["run", scene, "--quiet", "--expect", "warn", "--steps", "2", "--out", name];
         souple_in(folder.path(), run).ends(0);
         let show = Show::of_run(&folder.path().join(name), Stage::default()).expect("frames");
-        let pictures = Figure::default().pictures(&show).expect("pictures");
+        let (pictures, _) = Figure::default().pictures(&show).expect("pictures");
         let last = pictures.last().expect("a picture");
         for surface in &last.surfaces {
             let Paint::PointScalar(values) = &surface.paint else { panic!("{name} is not coloured") };
@@ -249,6 +292,9 @@ fn faulty_requests() {
         ("run", "a.png", &["--colour", "velocity.w"], "velocity (.x, .y, .z)"),
         ("run", "a.png", &["--arrows", "von_mises"], "a vector of each point: displacement, velocity"),
         ("run", "a.png", &["--map", "sequental"], "did you mean `sequential`"),
+        ("run", "a.png", &["--colour-scale", "logg"], "did you mean `log`"),
+        ("run", "a.png", &["--colour-scale", "log", "--map", "diverging"], "the map sequential or grey"),
+        ("run", "a.png", &["--colour-scale", "log", "--range", "0,1"], "cannot begin at 0"),
         ("run", "a.png", &["--edges", "dotted"], "drawn, hidden or wireframe"),
         ("run", "a.png", &["--range", "2,1"], "the lower one first"),
         ("run", "a.png", &["--range", "2"], "expected 2 numbers with commas"),

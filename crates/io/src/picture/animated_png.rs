@@ -2,25 +2,24 @@
 
 use std::path::Path;
 
-use super::image::{Image, cause};
+use super::image::cause;
+use super::images::Images;
 use crate::{IoError, write_file};
 
 /// Images of one size, each shown for `seconds`, over and over.
 ///
 /// # Errors
-/// No images, images of different sizes, a time out of range; the file cannot be written.
-pub fn write_animated_png(path: &Path, images: &[Image], seconds: f64) -> Result<(), IoError> {
-    let first = check(images, seconds)?;
+/// No images, a time out of range; the file cannot be written, or an image not be had.
+pub fn write_animated_png(path: &Path, images: &(impl Images + ?Sized), seconds: f64) -> Result<(), IoError> {
+    let [width, height] = check(images, seconds)?;
     write_file(path, |out| {
-        let mut encoder = png::Encoder::new(out, first.width as u32, first.height as u32);
+        let mut encoder = png::Encoder::new(out, width as u32, height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_animated(images.len() as u32, 0)?;
+        encoder.set_animated(images.count() as u32, 0)?;
         encoder.set_frame_delay((seconds * 1000.0).round() as u16, 1000)?;
         let mut writer = encoder.write_header().map_err(cause)?;
-        for image in images {
-            writer.write_image_data(image.pixels.as_flattened()).map_err(cause)?;
-        }
+        images.each(&mut |image| writer.write_image_data(image.pixels.as_flattened()).map_err(cause))?;
         writer.finish().map_err(cause)
     })
 }
@@ -29,29 +28,23 @@ pub fn write_animated_png(path: &Path, images: &[Image], seconds: f64) -> Result
 const LONGEST: f64 = 60.0;
 const MOST_IMAGES: usize = 100_000;
 
-/// The first of images that can be played.
-pub(super) fn check(images: &[Image], seconds: f64) -> Result<&Image, IoError> {
-    let Some(first) = images.first().filter(|_| images.len() <= MOST_IMAGES) else {
+/// The size of images that can be played.
+pub(super) fn check(images: &(impl Images + ?Sized), seconds: f64) -> Result<[usize; 2], IoError> {
+    let Some(size) = images.size().filter(|_| images.count() <= MOST_IMAGES) else {
         let expected = format!("1 to {MOST_IMAGES}");
-        return Err(IoError::request("the number of images", images.len(), expected));
+        return Err(IoError::request("the number of images", images.count(), expected));
     };
-    if let Some(other) =
-        images.iter().find(|image| (image.width, image.height) != (first.width, first.height))
-    {
-        let found = format!("{} x {}", other.width, other.height);
-        let expected = format!("{} x {}, as of the first", first.width, first.height);
-        return Err(IoError::request("the size of an image", found, expected));
-    }
     if !(0.001..=LONGEST).contains(&seconds) {
         let expected = format!("0.001 to {LONGEST} s");
         return Err(IoError::request("the time of an image", seconds, expected));
     }
-    Ok(first)
+    Ok(size)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::Image;
     use crate::testing::TemporaryFolder;
 
     pub(in super::super) fn images() -> Vec<Image> {
@@ -69,7 +62,7 @@ mod tests {
     fn images_come_back() {
         let folder = TemporaryFolder::new("apng");
         let path = folder.path("a.png");
-        write_animated_png(&path, &images(), 0.04).unwrap();
+        write_animated_png(&path, &images()[..], 0.04).unwrap();
         let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
         let mut reader = png::Decoder::new(file).read_info().unwrap();
         for image in images() {
@@ -87,10 +80,7 @@ mod tests {
         let refused = |images: &[Image], seconds: f64| {
             write_animated_png(path, images, seconds).unwrap_err().to_string()
         };
-        let mut uneven = images();
-        uneven[1] = Image { width: 10, height: 20, ..uneven[1].clone() };
         assert!(refused(&[], 0.1).contains("the number of images is 0"));
-        assert!(refused(&uneven, 0.1).contains("the size of an image is 10 x 20; expected 20 x 10"));
         assert!(refused(&images(), f64::NAN).contains("the time of an image is NaN"));
         assert!(refused(&images(), 0.0).contains("expected 0.001 to 60 s"));
     }

@@ -56,7 +56,7 @@ pub(super) struct Camera {
     /// Where the axis of the camera meets the picture [pixels].
     centre: [f64; 2],
     /// Nearest depth that is drawn [m].
-    near: f64,
+    pub near: f64,
 }
 
 /// A point in the picture.
@@ -70,6 +70,9 @@ pub(super) struct Projected {
     /// are not in front of the camera.
     pub inverse_depth: f64,
 }
+
+/// Rounding of depths, in the nearest one of a picture of bodies a thousand times as large.
+const ROUNDED: f64 = 1e-6;
 
 impl Camera {
     /// The closest camera along the direction of `view` that has all `points` within `frame`.
@@ -122,10 +125,16 @@ impl Camera {
         }
     }
 
+    /// How far before the eye a point is [m].
+    pub fn depth(&self, point: Vec3) -> f64 {
+        self.forward.dot(point - self.eye)
+    }
+
     pub fn project(&self, point: Vec3) -> Projected {
         let relative = point - self.eye;
-        let depth = self.forward.dot(relative);
-        if depth.is_nan() || depth < self.near {
+        let depth = self.depth(point);
+        // what is cut off at the nearest depth lies before it by rounding
+        if depth.is_nan() || depth < self.near * (1.0 - ROUNDED) {
             return Projected::default();
         }
         let scale = self.focal / depth;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::animated_png::check;
 use super::image::{Image, cause};
+use super::images::Images;
 use crate::{IoError, write_file};
 
 /// Images of one size, each shown for `seconds` (to a hundredth), over and over.
@@ -13,17 +14,17 @@ use crate::{IoError, write_file};
 /// an image is as before is left out of it. Compressed by LZW (Welch 1984).
 ///
 /// # Errors
-/// No images, images of different sizes or too large, a time out of range; the file cannot be written.
-pub fn write_gif(path: &Path, images: &[Image], seconds: f64) -> Result<(), IoError> {
-    let first = check(images, seconds)?;
-    for (side, name) in [(first.width, "width"), (first.height, "height")] {
+/// No images or too large ones, a time out of range; the file cannot be written, or an image not be had.
+pub fn write_gif(path: &Path, images: &(impl Images + ?Sized), seconds: f64) -> Result<(), IoError> {
+    let [width, height] = check(images, seconds)?;
+    for (side, name) in [(width, "width"), (height, "height")] {
         if side > usize::from(u16::MAX) {
             return Err(IoError::request(format!("the {name} of a GIF"), side, "at most 65535 pixels"));
         }
     }
-    let palette = Palette::of(images);
     write_file(path, |out| {
-        let size = [first.width as u16, first.height as u16];
+        let palette = Palette::of(images)?;
+        let size = [width as u16, height as u16];
         out.write_all(b"GIF89a")?;
         words(out, &size)?;
         // a table of 256 colours for all images; no aspect
@@ -31,7 +32,7 @@ pub fn write_gif(path: &Path, images: &[Image], seconds: f64) -> Result<(), IoEr
         out.write_all(palette.colours.as_flattened())?;
         out.write_all(b"\x21\xff\x0bNETSCAPE2.0\x03\x01\0\0\0")?;
         let mut shown: Vec<u8> = Vec::new();
-        for image in images {
+        images.each(&mut |image| {
             let indices: Vec<u8> = image.pixels.iter().map(|pixel| palette.nearest(*pixel)).collect();
             let changes = |(index, before): (&u8, &u8)| if index == before { CLEAR_PIXEL } else { *index };
             let data: Vec<u8> = if shown.is_empty() {
@@ -49,9 +50,9 @@ pub fn write_gif(path: &Path, images: &[Image], seconds: f64) -> Result<(), IoEr
                 out.write_all(&[block.len() as u8])?;
                 out.write_all(block)?;
             }
-            out.write_all(&[0])?;
             shown = indices;
-        }
+            out.write_all(&[0])
+        })?;
         out.write_all(&[0x3b])
     })
 }
@@ -63,7 +64,8 @@ impl Image {
     /// # Errors
     /// The file cannot be written.
     pub fn write_compact_png(&self, path: &Path) -> Result<(), IoError> {
-        let palette = Palette::of(std::slice::from_ref(self));
+        let palette =
+            Palette::of(std::slice::from_ref(self)).map_err(|source| IoError::write(path, source))?;
         let indices: Vec<u8> = self.pixels.iter().map(|pixel| palette.nearest(*pixel)).collect();
         write_file(path, |out| {
             let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
@@ -109,13 +111,16 @@ fn bin_of(pixel: [u8; 3]) -> usize {
 }
 
 impl Palette {
-    fn of(images: &[Image]) -> Self {
+    fn of(images: &(impl Images + ?Sized)) -> std::io::Result<Self> {
         let mut bins = vec![Bin::default(); 1 << (3 * BITS)];
-        for pixel in images.iter().flat_map(|image| &image.pixels) {
-            let bin = &mut bins[bin_of(*pixel)];
-            bin.count += 1;
-            bin.sums = [0, 1, 2].map(|channel| bin.sums[channel] + u64::from(pixel[channel]));
-        }
+        images.each(&mut |image| {
+            for pixel in &image.pixels {
+                let bin = &mut bins[bin_of(*pixel)];
+                bin.count += 1;
+                bin.sums = [0, 1, 2].map(|channel| bin.sums[channel] + u64::from(pixel[channel]));
+            }
+            Ok(())
+        })?;
         let used: Vec<usize> = (0..bins.len()).filter(|bin| bins[*bin].count > 0).collect();
         let mut palette = Self { colours: [[0; 3]; 256], nearest: vec![0; bins.len()] };
         for (index, members) in boxes(&bins, used).into_iter().enumerate() {
@@ -126,7 +131,7 @@ impl Palette {
             });
             members.into_iter().for_each(|bin| palette.nearest[bin] = index as u8);
         }
-        palette
+        Ok(palette)
     }
 
     fn nearest(&self, pixel: [u8; 3]) -> u8 {
@@ -305,7 +310,7 @@ mod tests {
     fn few_colours_are_kept() {
         let colours: Vec<[u8; 3]> = (0..200u8).map(|k| [k % 32 * 8, k / 32 * 8, 40]).collect();
         let image = Image { width: 20, height: 10, pixels: colours.clone() };
-        let palette = Palette::of(std::slice::from_ref(&image));
+        let palette = Palette::of(std::slice::from_ref(&image)).unwrap();
         for colour in colours {
             assert_eq!(palette.colours[usize::from(palette.nearest(colour))], colour);
         }
@@ -342,12 +347,12 @@ mod tests {
         let folder = TemporaryFolder::new("gif");
         let path = folder.path("a.gif");
         let image = |shade: u8| Image { width: 3, height: 2, pixels: vec![[shade; 3]; 6] };
-        write_gif(&path, &[image(0), image(255)], 0.1).unwrap();
+        write_gif(&path, &[image(0), image(255)][..], 0.1).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         assert_eq!((&bytes[..6], bytes.last()), (&b"GIF89a"[..], Some(&0x3b)));
         assert_eq!(bytes[6..10], [3, 0, 2, 0]);
         let controls = bytes.windows(4).filter(|window| *window == [0x21, 0xf9, 4, 5]).count();
         assert_eq!(controls, 2);
-        assert!(write_gif(&path, &[], 0.1).is_err());
+        assert!(write_gif(&path, &[][..], 0.1).is_err());
     }
 }

@@ -2,8 +2,9 @@
 
 use super::camera::Frame;
 use super::colour::Colour;
+use super::colour_scale::ColourScale;
 use super::image::{Anchor, Canvas};
-use super::legend::scale;
+use super::legend::{log_scale, scale};
 use super::lettering::text_width;
 use super::{Image, Legend, LegendPlace, Palette, Picture, Theme};
 
@@ -43,6 +44,12 @@ struct LegendBox {
 const HALF_BAR: f64 = 0.21;
 const TALLEST_BOX: f64 = 0.06;
 
+/// Part of the width that a legend leaves to the subject at least, whose middle it would cover otherwise: a smaller picture has none.
+const LEAST_LEFT: f64 = 0.35;
+
+/// Most powers of ten that are named beside a bar.
+const MOST_POWERS: usize = 7;
+
 /// Lines of a title that does not fit in one.
 const MOST_LINES: usize = 3;
 
@@ -59,7 +66,9 @@ impl Layout {
         let title = wrapped(&picture.title, title_letter, room, MOST_LINES);
         let subtitle = wrapped(&picture.subtitle, letter, room, MOST_LINES);
         let beside = picture.legend.as_ref().filter(|legend| legend.place == LegendPlace::Beside);
-        let legend = beside.map(|legend| LegendBox::of(legend, range, picture.size, letter, margin));
+        let legend =
+            beside.map(|legend| LegendBox::of((legend, picture.scale), range, picture.size, letter, margin));
+        let legend = legend.filter(|legend| legend.edge >= LEAST_LEFT * width);
         let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
         // room for the shade around the place of contact
         let shade = if picture.ground.is_some() { 0.07 * height } else { 0.0 };
@@ -131,14 +140,23 @@ pub(super) fn veil(canvas: &mut Canvas, palette: &Palette, columns: [f64; 2], ro
 }
 
 impl LegendBox {
-    fn of(legend: &Legend, (low, high): (f64, f64), size: [usize; 2], letter: f64, margin: f64) -> Self {
+    fn of(
+        (legend, colours): (&Legend, ColourScale),
+        (low, high): (f64, f64),
+        size: [usize; 2],
+        letter: f64,
+        margin: f64,
+    ) -> Self {
         let [width, height] = size.map(|side| side as f64);
         let named = legend.names.len() as f64;
         // boxes are no higher than they need to be
         let half = if named > 0.0 { (0.5 * TALLEST_BOX * named).min(HALF_BAR) } else { HALF_BAR };
         let (top, bottom) = ((0.5 - half) * height, (0.5 + half) * height);
-        let scale = scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top));
-        let share = |value: f64| (value - low) / (high - low);
+        let scale = match colours {
+            ColourScale::Linear => scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top)),
+            ColourScale::Logarithmic => log_scale(low, high, &legend.unit, MOST_POWERS),
+        };
+        let share = |value: f64| colours.share(value, (low, high));
         let place = |share: f64| bottom - share * (bottom - top);
         let ticks: Vec<(f64, String)> = if legend.names.is_empty() {
             scale.ticks.into_iter().map(|(value, name)| (place(share(value)), name)).collect()
@@ -209,7 +227,8 @@ impl Picture {
         let margin = 2.0 * letter;
         // laid out in a strip that is wide enough for any title, of which the free part is left out
         let wide = 4 * height.max(64);
-        let of = LegendBox::of(self.legend.as_ref()?, self.range(), [wide, height], letter, margin);
+        let legend = (self.legend.as_ref()?, self.scale);
+        let of = LegendBox::of(legend, self.range(), [wide, height], letter, margin);
         let spare = of.edge - margin;
         let mut canvas = Canvas::new((wide as f64 - spare).ceil() as usize, height);
         let palette = self.palette();
@@ -321,6 +340,8 @@ mod tests {
     /// However wide its numbers and its title: the legend is within the picture and the subject beside it.
     #[test]
     fn the_subject_stands_beside_the_legend() {
+        let tiny = Picture { size: [48, 40], legend: Some(Legend::default()), ..Picture::default() };
+        assert!(Layout::of(&tiny, (0.0, 1234.5)).legend.is_none());
         for (title, high, size) in [
             ("von Mises stress", 3.5e-7, [1280, 800]),
             ("s", 1.0, [300, 900]),

@@ -57,6 +57,40 @@ pub(super) fn scale(low: f64, high: f64, unit: &str, about: usize, nearest: f64)
     Scale { ticks: values.into_iter().map(|value| value * factor).zip(names).collect(), unit }
 }
 
+/// The names of a scale of powers of ten: these, every second or third of them where there are more than `most`; of less than two,
+/// their doubles and halves too.
+pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize) -> Scale {
+    let unit = unit.to_owned();
+    // a power of ten is one, though its logarithm is rounded
+    let [first, last] = [libm::ceil(libm::log10(low) - 1e-9), libm::floor(libm::log10(high) + 1e-9)];
+    if !(first.is_finite() && last.is_finite()) {
+        return Scale { ticks: vec![(low, minus(low.to_string()))], unit };
+    }
+    let powers: Vec<i32> = (first as i32..=last as i32).collect();
+    let value = |power: i32| libm::pow(10.0, f64::from(power));
+    if powers.len() < 2 {
+        let power = libm::floor(libm::log10(low) + 1e-9) as i32;
+        let steps =
+            [1.0, 2.0, 5.0].into_iter().flat_map(|step| [step * value(power), step * value(power + 1)]);
+        let slack = 1.0 + 1e-9;
+        let mut steps: Vec<f64> =
+            steps.filter(|step| *step * slack >= low && *step <= high * slack).collect();
+        steps.sort_by(f64::total_cmp);
+        let named = |step: f64| (step, labels(&[step]).concat());
+        return Scale { ticks: steps.into_iter().map(named).collect(), unit };
+    }
+    let is_plain = powers.iter().all(|power| (-3..=4).contains(power));
+    let name = |power: i32| {
+        let digits = -power.min(0) as usize;
+        if is_plain { format!("{:.digits$}", value(power)) } else { format!("10{}", raised(power)) }
+    };
+    let stride = powers.len().div_ceil(most.max(2));
+    Scale {
+        ticks: powers.into_iter().step_by(stride).map(|power| (value(power), name(power))).collect(),
+        unit,
+    }
+}
+
 /// What values up to `largest` are divided by to be from 0.1 to a thousand, and what the unit is called then.
 pub(super) fn scaled_unit(largest: f64, unit: &str) -> (f64, String) {
     if !(largest > 0.0 && largest.is_finite()) || (0.1..1000.0).contains(&largest) {
@@ -152,6 +186,20 @@ mod tests {
         for (low, high) in [(0.0, f64::INFINITY), (f64::NAN, 1.0), (-1e308, 1e308), (1.0, 1.0 + 1e-15)] {
             assert!(scale(low, high, "m", 5, 0.05).ticks.len() < 50);
         }
+    }
+
+    /// Powers of ten are named as a person writes them; of many every second; within one, its parts.
+    #[test]
+    fn powers_of_ten_are_named() {
+        let names = |low: f64, high: f64| -> Vec<String> {
+            log_scale(low, high, "Pa", 7).ticks.into_iter().map(|(_, name)| name).collect()
+        };
+        assert_eq!(names(1.0, 1e3), ["1", "10", "100", "1000"]);
+        assert_eq!(names(0.01, 10.0), ["0.01", "0.1", "1", "10"]);
+        assert_eq!(names(1e4, 1e7), ["10⁴", "10⁵", "10⁶", "10⁷"]);
+        assert_eq!(names(1e-9, 1.0), ["10⁻⁹", "10⁻⁷", "10⁻⁵", "10⁻³", "10⁻¹"]);
+        assert_eq!(names(150.0, 800.0), ["200", "500"]);
+        assert!(names(f64::NAN, 1.0).len() < 2 && names(1.0, f64::INFINITY).len() < 2);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Surfaces of meshes: the boundary, the cells one by one, what a cut leaves.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use souple_math::Vec3;
@@ -52,6 +53,8 @@ pub struct MeshSurface {
     pub points: Vec<Between>,
     /// Cell (for a mesh without cells: facet) that each triangle bounds.
     pub cells: Vec<u32>,
+    /// Points in the middle of two of the mesh, numbered after those of the mesh: within curved cells that a cut opens.
+    middles: Vec<[u32; 2]>,
 }
 
 impl MeshSurface {
@@ -115,15 +118,21 @@ impl MeshSurface {
         let normal = cut.normal.try_normalised().unwrap_or(Vec3::Z);
         let heights: Vec<f64> = positions.iter().map(|x| (*x - cut.point).dot(normal)).collect();
         let whole = Self::of(mesh);
-        let mut clipper = Clipper { heights: &heights, left: Self::default(), numbers: HashMap::new() };
+        let mut clipper = Clipper {
+            heights,
+            positions: positions.to_vec(),
+            normal,
+            left: Self::default(),
+            numbers: HashMap::new(),
+        };
         for (triangle, corners) in whole.surface.triangles.iter().enumerate() {
             let corners = corners.map(|corner| whole.points[corner as usize].from);
             clipper.clip(corners, whole.surface.edges[triangle], whole.cells[triangle]);
         }
         for (cell, view) in mesh.cells().enumerate() {
-            let above = |node: &u32| heights[*node as usize] > 0.0;
-            if view.nodes.iter().any(above) && !view.nodes.iter().all(above) {
-                clipper.section(positions, normal, &view, cell as u32);
+            let is_left = |node: &u32| clipper.is_left(*node);
+            if view.nodes.iter().any(is_left) && !view.nodes.iter().all(is_left) {
+                clipper.section(&view, cell as u32);
             }
         }
         let mut left = clipper.left;
@@ -219,14 +228,28 @@ impl MeshSurface {
 
     /// Moves the points to positions of all points of the mesh [m].
     pub fn move_to(&mut self, positions: &[Vec3]) {
+        let positions = self.with_middles(positions);
         for (point, source) in self.surface.points.iter_mut().zip(&self.points) {
-            *point = source.of(positions);
+            *point = source.of(&positions);
         }
     }
 
     /// Paints by a value for each point of the mesh.
     pub fn paint_points(&mut self, values: &[f64]) {
-        self.surface.paint = Paint::PointScalar(self.points.iter().map(|point| point.of(values)).collect());
+        let values = self.with_middles(values);
+        self.surface.paint = Paint::PointScalar(self.points.iter().map(|point| point.of(&values)).collect());
+    }
+
+    /// Values of the points of the mesh, those of the middles after them.
+    fn with_middles<'a, T>(&self, values: &'a [T]) -> Cow<'a, [T]>
+    where
+        T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
+    {
+        if self.middles.is_empty() {
+            return Cow::Borrowed(values);
+        }
+        let middle = |[a, b]: &[u32; 2]| Between { from: *a, to: *b, share: 0.5 }.of(values);
+        Cow::Owned(values.iter().copied().chain(self.middles.iter().map(middle)).collect())
     }
 
     /// Paints by a value for each cell of the mesh.
@@ -237,15 +260,19 @@ impl MeshSurface {
 }
 
 /// Makes what lies at or below height zero.
-struct Clipper<'a> {
-    /// Of each point of the mesh over the plane [m].
-    heights: &'a [f64],
+struct Clipper {
+    /// Of each point of the mesh, and each middle, over the plane [m].
+    heights: Vec<f64>,
+    /// [m]
+    positions: Vec<Vec3>,
+    /// Of the plane.
+    normal: Vec3,
     left: MeshSurface,
     /// Points made so far, by the two points of the mesh they lie between.
     numbers: HashMap<[u32; 2], u32>,
 }
 
-impl Clipper<'_> {
+impl Clipper {
     fn is_left(&self, point: u32) -> bool {
         self.heights[point as usize] <= 0.0
     }
@@ -288,36 +315,48 @@ impl Clipper<'_> {
         self.push(&polygon, &drawn, cell);
     }
 
-    /// The section of a cell, as those of the tetrahedra between its corner of the lowest number and the faces opposite to it.
-    /// Every quadrilateral is so cut along the diagonal from its own lowest corner, which is the same from both sides.
-    fn section(&mut self, positions: &[Vec3], normal: Vec3, cell: &Cell<'_>, number: u32) {
+    /// The section of a cell, as those of the tetrahedra between a point of it and the triangles of its faces, which are those of the
+    /// boundary: of a cell with straight edges its corner of the lowest number, of a curved one a point within.
+    fn section(&mut self, cell: &Cell<'_>, number: u32) {
         if cell.kind.dimension() != 3 {
             return;
         }
-        let corners = &cell.nodes[..cell.kind.corner_count()];
-        let Some(apex) = corners.iter().copied().min() else { return };
-        // curved cells by their corners: the section is as fine as the mesh
-        let faces: Vec<Vec<u32>> =
-            (0..cell.kind.faces().len()).map(|face| cell.face_corners(face).collect()).collect();
-        for nodes in faces.iter().filter(|nodes| !nodes.contains(&apex)) {
-            let mut nodes = nodes.clone();
-            let lowest = (0..nodes.len()).min_by_key(|corner| nodes[*corner]).unwrap_or(0);
-            nodes.rotate_left(lowest);
-            for pair in nodes.windows(2).skip(1) {
-                let tetrahedron = [apex, nodes[0], pair[0], pair[1]];
-                self.section_tetrahedron((positions, normal), tetrahedron, &faces, number);
+        let faces: Vec<(ElementKind, Vec<u32>)> = (0..cell.kind.faces().len())
+            .map(|face| cell.face_nodes(face))
+            .map(|(kind, nodes)| (kind, nodes.collect()))
+            .collect();
+        let apex = match cell.kind.order() {
+            Order::Linear => cell.nodes.iter().copied().min(),
+            _ => self.point_within(cell, &faces),
+        };
+        let Some(apex) = apex else { return };
+        for (kind, nodes) in faces.iter().filter(|(_, nodes)| !nodes.contains(&apex)) {
+            for [a, b, c] in facet_triangles(*kind, nodes) {
+                self.section_tetrahedron([apex, a, b, c], &faces, number);
             }
         }
     }
 
+    /// The middle of two nodes that lie on no common face, which is within the cell: of all such the nearest to its own middle.
+    fn point_within(&mut self, cell: &Cell<'_>, faces: &[(ElementKind, Vec<u32>)]) -> Option<u32> {
+        let is_through = |a: u32, b: u32| {
+            a != b && !faces.iter().any(|(_, nodes)| nodes.contains(&a) && nodes.contains(&b))
+        };
+        let at = |node: u32| self.positions[node as usize];
+        let own: Vec3 = cell.nodes.iter().map(|node| at(*node)).sum::<Vec3>() / cell.nodes.len() as f64;
+        let off = |[a, b]: &[u32; 2]| ((at(*a) + at(*b)) * 0.5 - own).length_sq();
+        let pairs = cell.nodes.iter().flat_map(|a| cell.nodes.iter().map(|b| [*a, *b]));
+        let through = pairs.filter(|[a, b]| is_through(*a, *b));
+        let [a, b] = through.min_by(|p, q| off(p).total_cmp(&off(q)))?;
+        let [from, to] = [a as usize, b as usize];
+        self.left.middles.push([a, b]);
+        self.heights.push(0.5 * (self.heights[from] + self.heights[to]));
+        self.positions.push((self.positions[from] + self.positions[to]) * 0.5);
+        Some(self.positions.len() as u32 - 1)
+    }
+
     /// The section of a part of a cell, the edges drawn that lie in `faces` of the cell.
-    fn section_tetrahedron(
-        &mut self,
-        (positions, normal): (&[Vec3], Vec3),
-        nodes: [u32; 4],
-        faces: &[Vec<u32>],
-        cell: u32,
-    ) {
+    fn section_tetrahedron(&mut self, nodes: [u32; 4], faces: &[(ElementKind, Vec<u32>)], cell: u32) {
         let (below, above): (Vec<u32>, Vec<u32>) = nodes.iter().partition(|node| self.is_left(**node));
         // around: from each point below to each above, so that neighbours share a point of the tetrahedron
         let mut around: Vec<[u32; 2]> = match (below.as_slice(), above.as_slice()) {
@@ -328,9 +367,9 @@ impl Clipper<'_> {
         };
         let mut polygon: Vec<u32> = around.iter().map(|[from, to]| self.point(*from, *to)).collect();
         let corners: Vec<Vec3> =
-            polygon.iter().map(|point| self.left.points[*point as usize].of(positions)).collect();
+            polygon.iter().map(|point| self.left.points[*point as usize].of(&self.positions)).collect();
         // outward is towards what was cut away; by both halves, of which one may have no area
-        let turn = |k: usize| (corners[k] - corners[0]).cross(corners[k + 1] - corners[0]).dot(normal);
+        let turn = |k: usize| (corners[k] - corners[0]).cross(corners[k + 1] - corners[0]).dot(self.normal);
         if (1..corners.len() - 1).map(turn).sum::<f64>() < 0.0 {
             polygon.reverse();
             around.reverse();
@@ -338,7 +377,7 @@ impl Clipper<'_> {
         let count = around.len();
         let is_of_cell = |k: usize| {
             let ends = [around[k], around[(k + 1) % count]];
-            faces.iter().any(|face| ends.as_flattened().iter().all(|node| face.contains(node)))
+            faces.iter().any(|(_, face)| ends.as_flattened().iter().all(|node| face.contains(node)))
         };
         let drawn: Vec<bool> = (0..count).map(is_of_cell).collect();
         self.push(&polygon, &drawn, cell);

@@ -6,16 +6,19 @@ mod balls;
 mod camera;
 mod colour;
 mod colour_map;
+mod colour_scale;
 mod gif;
 mod glyphs;
 mod ground;
 mod image;
+mod images;
 mod layout;
 mod legend;
 mod lettering;
 mod light;
 mod marks;
 mod mesh_surface;
+mod near;
 mod raster;
 mod shadow;
 mod stroke;
@@ -30,6 +33,7 @@ use camera::Camera;
 use ground::ShadedGround;
 use layout::Layout;
 use light::Lamps;
+use near::Corner;
 use raster::{PaintAt, Painted, Samples};
 use shadow::Shadow;
 
@@ -37,10 +41,12 @@ pub use animated_png::write_animated_png;
 pub use camera::View;
 pub use colour::Colour;
 pub use colour_map::{COLOUR_MAPS, ColourMap, ELEMENT_KINDS};
+pub use colour_scale::{COLOUR_SCALES, ColourScale};
 pub use gif::write_gif;
 pub use ground::Ground;
 pub use image::Image;
 pub(crate) use image::{Anchor, Canvas};
+pub use images::{ImageFile, Images};
 pub(crate) use legend::{labels, ticks};
 pub use marks::Marks;
 pub use mesh_surface::{Between, Cut, MeshSurface};
@@ -70,6 +76,7 @@ pub struct Picture {
     pub legend: Option<Legend>,
     /// From values to colours.
     pub colours: ColourMap,
+    pub scale: ColourScale,
     pub marks: Marks,
 }
 
@@ -130,6 +137,7 @@ impl Default for Picture {
             subtitle: String::new(),
             legend: None,
             colours: ColourMap::default(),
+            scale: ColourScale::default(),
             marks: Marks::default(),
         }
     }
@@ -278,19 +286,19 @@ impl Picture {
     fn range(&self) -> (f64, f64) {
         let given = self.legend.as_ref().and_then(|legend| legend.range).or(self.colours.own_range());
         let of_surfaces = || {
-            let ranges = self.surfaces.iter().filter_map(Surface::range);
+            let ranges = self.surfaces.iter().filter_map(|surface| surface.range(self.scale));
             ranges.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
         };
         let (low, high) = given.or_else(of_surfaces).unwrap_or((0.0, 1.0));
-        let (low, high) = if given.is_some() { (low, high) } else { self.colours.spread((low, high)) };
+        let spread = |range| self.scale.spread(self.colours.spread(range));
+        let (low, high) = if given.is_some() { (low, high) } else { spread((low, high)) };
         if low < high { (low, high) } else { (low, low + low.abs().max(f64::MIN_POSITIVE)) }
     }
 
-    fn painted(&self, camera: &Camera, (low, high): (f64, f64)) -> Vec<Painted> {
-        let share = |value: f64| PaintAt::Value(((value - low) / (high - low)) as f32);
+    fn painted(&self, camera: &Camera, range: (f64, f64)) -> Vec<Painted> {
+        let share = |value: f64| PaintAt::Value(self.scale.share(value, range) as f32);
         let mut painted = Vec::new();
         for surface in &self.surfaces {
-            let projected: Vec<_> = surface.points.iter().map(|point| camera.project(*point)).collect();
             let normals = surface.corner_normals();
             for (triangle, corners) in surface.triangles.iter().enumerate() {
                 let paint = match &surface.paint {
@@ -300,17 +308,23 @@ impl Picture {
                 };
                 let all = [surface.edge_style != EdgeStyle::Hidden; 3];
                 let marked = surface.edges.get(triangle).copied().unwrap_or([true; 3]);
-                painted.push(Painted {
-                    corners: corners.map(|corner| projected[corner as usize]),
-                    normals: normals[triangle]
-                        .map(|normal| normal.to_array().map(|component| component as f32)),
-                    paint,
-                    edges: [0, 1, 2].map(|edge: usize| all[edge] && marked[edge]),
+                let corner = |k: usize| Corner {
+                    place: surface.points[corners[k] as usize],
+                    normal: normals[triangle][k].to_array().map(|component| component as f32),
+                    paint: paint[k],
+                };
+                let edges = [0, 1, 2].map(|edge: usize| all[edge] && marked[edge]);
+                let before = near::before_eye(camera, [0, 1, 2].map(corner), edges);
+                painted.extend(before.into_iter().map(|(corners, edges)| Painted {
+                    corners: corners.map(|corner| camera.project(corner.place)),
+                    normals: corners.map(|corner| corner.normal),
+                    paint: corners.map(|corner| corner.paint),
+                    edges,
                     wireframe: surface.edge_style == EdgeStyle::Wireframe,
                     map: self.colours,
                     faces: surface.faces,
                     see_through: surface.see_through,
-                });
+                }));
             }
         }
         painted

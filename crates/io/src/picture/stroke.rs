@@ -2,6 +2,7 @@
 
 use super::camera::{Camera, Projected};
 use super::colour::Colour;
+use super::near::line_before_eye;
 use super::raster::{Samples, distance_point_segment};
 use super::surface::{Stroke, StrokeShape};
 
@@ -43,19 +44,22 @@ pub(super) fn prepared(strokes: &[Stroke], camera: &Camera, surfaces: &Samples) 
                 push(place, place, [half; 2]);
             }
             StrokeShape::Line(points) => {
-                for pair in points.windows(2) {
-                    push(camera.project(pair[0]), camera.project(pair[1]), [half; 2]);
+                for [from, to] in
+                    points.windows(2).filter_map(|pair| line_before_eye(camera, pair[0], pair[1]))
+                {
+                    push(camera.project(from), camera.project(to), [half; 2]);
                 }
             }
             StrokeShape::Arrow(from, to) => {
-                let (mut start, mut tip) = (camera.project(*from), camera.project(*to));
+                let Some([from, seen_to]) = line_before_eye(camera, *from, *to) else { continue };
+                let (mut start, mut tip) = (camera.project(from), camera.project(seen_to));
                 if surfaces.shows(start, LIFT) {
                     // nearer than anything
                     (start.inverse_depth, tip.inverse_depth) = (f64::MAX, f64::MAX);
                 }
                 let length = (tip.x - start.x).hypot(tip.y - start.y);
-                // the head is nine half widths long, but leaves a third of the shaft
-                let head = (9.0 * half).min(0.66 * length);
+                // the head is nine half widths long, but leaves a third of the shaft; one behind the eye is not seen
+                let head = if seen_to == *to { (9.0 * half).min(0.66 * length) } else { 0.0 };
                 let share = if length > 0.0 { 1.0 - head / length } else { 0.0 };
                 let neck = Projected {
                     x: start.x + (tip.x - start.x) * share,

@@ -3,6 +3,7 @@
 use souple_math::Vec3;
 
 use super::colour::Colour;
+use super::colour_scale::ColourScale;
 use crate::IoError;
 
 /// Triangles with their paint.
@@ -108,14 +109,14 @@ impl Surface {
         }
     }
 
-    /// Finite values of the paint: least and greatest.
-    pub(super) fn range(&self) -> Option<(f64, f64)> {
+    /// Values of the paint that have a colour: least and greatest.
+    pub(super) fn range(&self, scale: ColourScale) -> Option<(f64, f64)> {
         let values = match &self.paint {
             Paint::Plain(_) => return None,
             Paint::PointScalar(values) | Paint::TriangleScalar(values) => values,
         };
-        let finite = values.iter().copied().filter(|value| value.is_finite());
-        finite.fold(None, |range, value| match range {
+        let coloured = values.iter().copied().filter(|value| scale.has(*value));
+        coloured.fold(None, |range, value| match range {
             None => Some((value, value)),
             Some((low, high)) => Some((f64::min(low, value), f64::max(high, value))),
         })

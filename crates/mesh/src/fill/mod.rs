@@ -17,6 +17,7 @@ mod background;
 mod groups;
 mod hexes;
 mod lattice;
+mod lost;
 mod options;
 mod pinched;
 mod prisms;
@@ -29,7 +30,7 @@ use souple_math::Vec3;
 use crate::implicit::Shape;
 use crate::{ElementKind, Group, MAX_CELLS, Mesh};
 
-pub use options::{Options, PARAMETERS};
+pub use options::{Filled, Options, PARAMETERS};
 pub use surface::{FilledSurface, fill_mesh, fill_surface, surface_of};
 
 use lattice::Lattice;

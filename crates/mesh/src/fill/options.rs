@@ -2,12 +2,12 @@
 
 use souple_formal::Formula;
 use souple_math::Vec3;
-use souple_table::{Parameter, Range, Value, Values};
+use souple_table::{Parameter, Range, Value, Values, in_number, readable};
 
 use super::lattice::points_of;
-use super::{Cells, FillError, Grading, Part, Reach, Size, fill};
+use super::{Cells, FillError, Grading, Part, Reach, Size, fill, lost};
 use crate::implicit::{Body, FormulaShape, Shape};
-use crate::{Mesh, MeshError};
+use crate::{Cell, ElementKind, Mesh, MeshError};
 
 /// Parameters of every filling.
 pub const PARAMETERS: &[Parameter] = &[
@@ -51,6 +51,14 @@ pub struct Options {
     pub cells: Cells,
 }
 
+/// A filled shape.
+#[derive(Clone, Debug)]
+pub struct Filled {
+    pub mesh: Mesh,
+    /// One line for each thing that a user should know.
+    pub notes: Vec<String>,
+}
+
 #[derive(Clone, Copy, Debug)]
 enum Wanted {
     Size(f64),
@@ -63,6 +71,10 @@ const LARGEST: f64 = 8.0;
 /// A count is met to this, relative, or as well as so many fillings do.
 const COUNT_TOLERANCE: f64 = 0.03;
 const MOST_FILLINGS: usize = 6;
+/// A count that is missed by more than this part of it is told.
+const MET: f64 = 0.1;
+/// A formula that is the size itself may differ from it by the rounding of its terms.
+const ROUNDED: f64 = 1e-9;
 /// Below this, a layer of cells more or less is a large part of all.
 const FEW: f64 = 5000.0;
 /// Sizes around the best one that are looked at for few cells, and how far they are apart.
@@ -166,25 +178,81 @@ impl Options {
         }
     }
 
-    /// Fills a shape.
+    /// Fills a shape, and says what of it is lost and which wishes came to nothing.
     ///
     /// # Errors
     /// As [`fill`].
-    pub fn fill(&self, shape: &dyn Shape, parts: &[Part<'_>]) -> Result<Mesh, MeshError> {
+    pub fn fill(&self, shape: &dyn Shape, parts: &[Part<'_>]) -> Result<Filled, MeshError> {
+        let (mesh, size) = self.cells_of(shape, parts)?;
+        let mut notes = lost::of_shape(shape, &size, &mesh);
+        notes.extend(self.unmet(&size, &mesh));
+        Ok(Filled { mesh, notes })
+    }
+
+    /// The cells alone, and their size.
+    pub(super) fn cells_of(&self, shape: &dyn Shape, parts: &[Part<'_>]) -> Result<(Mesh, Size), MeshError> {
         match self.wanted {
             Wanted::Size(size) => {
                 self.check_largest(size)?;
-                Ok(fill(shape, &self.size(size), self.cells, parts)?)
+                let size = self.size(size);
+                Ok((fill(shape, &size, self.cells, parts)?, size))
             }
             Wanted::Count(count) => self.fill_by_count(shape, parts, count),
         }
+    }
+
+    /// Wishes that came to nothing, one line for each.
+    pub(super) fn unmet(&self, size: &Size, mesh: &Mesh) -> Vec<String> {
+        let mut notes = Vec::new();
+        if let Wanted::Count(wanted) = self.wanted {
+            let cells = mesh.cell_count();
+            if (cells as f64 / wanted - 1.0).abs() > MET {
+                let few = if wanted < FEW { ": of few cells, whole layers come and go at once" } else { "" };
+                let cells = in_number(cells, "cell is", "cells are");
+                notes.push(format!("{cells} as near to {wanted} as was found{few}"));
+            }
+        }
+        if self.cells == Cells::HexDominant && mesh.count_of(ElementKind::Hex8) == 0 {
+            notes.push(format!(
+                "`element`: there are no hexahedra, for no cube of {} m fits into the shape; take a smaller size",
+                readable(size.smallest)
+            ));
+        }
+        let is_graded = longest_edge(mesh) > GRADED * size.smallest;
+        let smallest = readable(size.smallest);
+        match (&self.field, is_graded) {
+            (None, false) if self.growth > 0.0 => notes.push(format!(
+                "`growth`: all cells have one size, {smallest} m at the surface: no cube of twice that fits where edges may be as \
+                 long; take a smaller size or more growth, and `largest` not below twice the size"
+            )),
+            (Some((formula, _)), false) => notes.push(format!(
+                "all cells have one size, {smallest} m: nowhere does a cube of twice that fit where \"{}\" and `largest` allow it",
+                formula.text()
+            )),
+            _ => {}
+        }
+        if let Some((formula, _)) = &self.field {
+            let wanted = mesh.cell_centres().into_iter().map(|x| (formula.evaluate(&x.to_array()), x));
+            let least = wanted.min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((least, x)) = least.filter(|(least, _)| *least < size.smallest * (1.0 - ROUNDED)) {
+                notes.push(format!(
+                    "\"{}\" is {} m at ({:.4}, {:.4}, {:.4}), and no cell is smaller than `size`, {smallest} m",
+                    formula.text(),
+                    readable(least),
+                    x.x,
+                    x.y,
+                    x.z
+                ));
+            }
+        }
+        notes
     }
 
     /// Fills a shape known by name, its parts as groups.
     ///
     /// # Errors
     /// As [`fill`].
-    pub fn fill_body(&self, body: &Body) -> Result<Mesh, MeshError> {
+    pub fn fill_body(&self, body: &Body) -> Result<Filled, MeshError> {
         let parts: Vec<Part> =
             body.parts.iter().map(|(name, shape)| Part { name, shape: &**shape }).collect();
         self.fill(&*body.shape, &parts)
@@ -192,7 +260,12 @@ impl Options {
 
     /// Cells go with the cube of the inverse size: a size, what it gave, a better size. Few cells come in jumps, by
     /// whole layers at once: then sizes around the best one are looked at, too.
-    fn fill_by_count(&self, shape: &dyn Shape, parts: &[Part<'_>], count: f64) -> Result<Mesh, MeshError> {
+    fn fill_by_count(
+        &self,
+        shape: &dyn Shape,
+        parts: &[Part<'_>],
+        count: f64,
+    ) -> Result<(Mesh, Size), MeshError> {
         let extent = shape.bounds().size();
         let mut size = Size::for_count(extent.x * extent.y * extent.z, count);
         let mut best: Option<Attempt> = None;
@@ -238,8 +311,20 @@ impl Options {
             return Err(FillError::Nothing { size, extent: extent.to_array(), least }.into());
         };
         self.check_largest(best.size)?;
-        Ok(best.mesh)
+        Ok((best.mesh, self.size(best.size)))
     }
+}
+
+/// Edges of one size, moved at both ends by a quarter, are up to one and a half of it long; a cube of twice the size has some of
+/// `√3` of it, from its centre to its corners.
+const GRADED: f64 = 1.6;
+
+fn longest_edge(mesh: &Mesh) -> f64 {
+    let at = |cell: &Cell<'_>, node: u8| mesh.points[cell.nodes[usize::from(node)] as usize];
+    let edges = mesh.cells().flat_map(|cell| {
+        cell.kind.edges().iter().map(move |[a, b]| (at(&cell, *a) - at(&cell, *b)).length())
+    });
+    edges.fold(0.0, f64::max)
 }
 
 /// A filling, and by how much it misses the wanted count: the logarithm of the ratio.

@@ -1,6 +1,6 @@
 //! Fills what triangles enclose: mended first, everything said.
 
-use super::{FillError, Options, groups};
+use super::{FillError, Options, groups, lost};
 use crate::implicit::{Shape, Sign, SurfaceShape};
 use crate::repair::{RepairLimits, SurfaceRepairs, repair};
 use crate::{Mesh, MeshError, TriangleSurface};
@@ -62,7 +62,7 @@ fn filled(
     if extent.to_array().iter().any(|length| *length <= FLAT * extent.largest_component()) {
         return Err(FillError::Flat { extent: extent.to_array() }.into());
     }
-    let shape = SurfaceShape::new(mended)?;
+    let shape = SurfaceShape::new(mended.clone())?;
     let undefined = shape.undefined_share();
     if undefined > UNDEFINED {
         let causes = shape.diagnosis().messages();
@@ -81,12 +81,13 @@ fn filled(
         let why = if shape.diagnosis().is_simple() { parts } else { "the surface is not simple" };
         notes.push(format!("{why}: its inside is where it winds around more than half"));
     }
-    let mesh = options.fill(&shape, &[])?;
-    let parts = mesh.components().1;
-    if parts > 1 {
-        notes.push(format!("the filling has {parts} parts that share no point"));
+    let (mesh, size) = options.cells_of(&shape, &[])?;
+    let lost = lost::of_surface(&mended, &shape, &size, &mesh);
+    if lost.is_empty() {
+        notes.extend(lost_reach(&shape, &mesh));
     }
-    notes.extend(lost_reach(&shape, &mesh));
+    notes.extend(lost);
+    notes.extend(options.unmet(&size, &mesh));
     let volume = mesh.volume();
     if volume < KEPT * enclosed {
         let percent = 100.0 * volume / enclosed;

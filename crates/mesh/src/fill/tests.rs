@@ -393,7 +393,7 @@ fn fillings_by_count() {
     };
     // of the fewest cells, whole shells come and go at once
     for (count, tolerance) in [(200, 0.5), (300, 0.5), (500, 0.25), (800, 0.2), (1000, 0.2), (5000, 0.1)] {
-        let mesh = options(0.0, count).unwrap().fill(&ball(0.1), &[]).unwrap();
+        let mesh = options(0.0, count).unwrap().fill(&ball(0.1), &[]).unwrap().mesh;
         let ratio = mesh.cell_count() as f64 / count as f64;
         println!("{} of {count}", mesh.cell_count());
         assert!((ratio - 1.0).abs() < tolerance, "{ratio} of {count}");

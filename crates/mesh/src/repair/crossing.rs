@@ -1,25 +1,94 @@
 //! Triangles that pass through each other.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
 use souple_math::Vec3;
 
 use crate::{Aabb, AabbTree, TriangleSurface};
 
-/// Pairs of triangles, lower number first, of which an edge of one passes through the other. Triangles that share
-/// an edge are neighbours and do not count; of those that share a corner only the edges across it are looked at.
-pub fn crossings(surface: &TriangleSurface) -> Vec<[u32; 2]> {
+/// Triangles that are looked at together, by one thread.
+const BATCH: usize = 1024;
+/// Batches between two looks at how many have been found.
+const ROUND: usize = 8;
+/// Most neighbours that are looked at for the triangles of a batch: as of a tip at which four thousand meet.
+const MOST_LOOKS: usize = 4096 * BATCH;
+/// Most neighbours of all triangles: some ten seconds. Surfaces as they are have some fifteen to a triangle, whatever their size.
+const MOST_LOOKS_OF_ALL: usize = 50_000_000;
+const MOST_LOOKS_OF_EACH: usize = 64;
+
+/// Pairs of triangles that pass through each other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Crossings {
+    /// Lower number first, in ascending order.
+    pub pairs: Vec<[u32; 2]>,
+    /// Whether there may be more of them: the search has ended at the wished-for number, or triangles lie within each other so
+    /// densely that not all pairs could be looked at.
+    pub is_cut_off: bool,
+}
+
+/// At least the first `most` pairs of triangles of which an edge of one passes through the other. Triangles that share an edge
+/// are neighbours and do not count; of those that share a corner only the edges across it are looked at.
+///
+/// The result is the same for any number of threads.
+pub fn crossings(surface: &TriangleSurface, most: usize) -> Crossings {
+    let looks = MOST_LOOKS_OF_ALL.max(MOST_LOOKS_OF_EACH * surface.triangles.len());
+    crossings_within(surface, most, looks)
+}
+
+/// The same with about so many looks at neighbours.
+fn crossings_within(surface: &TriangleSurface, most: usize, most_looks: usize) -> Crossings {
     let boxes: Vec<Aabb> =
         (0..surface.triangles.len() as u32).map(|triangle| Aabb::of(surface.corners(triangle))).collect();
     let tree = AabbTree::build(&boxes);
-    let mut found = Vec::new();
-    for (s, bounds) in boxes.iter().enumerate() {
-        tree.overlapping(*bounds, |t| {
-            if (s as u32) < t && cross(surface, s as u32, t) {
-                found.push([s as u32, t]);
-            }
-        });
+    let mut found = Crossings::default();
+    let batches: Vec<usize> = (0..boxes.len()).step_by(BATCH).collect();
+    let mut all_looks = 0;
+    for round in batches.chunks(ROUND) {
+        let of_batch = |first: &usize| {
+            let batch = *first..(*first + BATCH).min(boxes.len());
+            crossings_of(surface, (&tree, &boxes), batch, most)
+        };
+        let parts: Vec<(Crossings, usize)> = round.par_iter().map(of_batch).collect();
+        for (part, looks) in parts {
+            found.pairs.extend(part.pairs);
+            found.is_cut_off |= part.is_cut_off;
+            all_looks += looks;
+        }
+        if found.pairs.len() > most || all_looks > most_looks {
+            found.pairs.truncate(most);
+            found.is_cut_off = true;
+            break;
+        }
     }
-    found.sort_unstable();
     found
+}
+
+/// Those of a batch of triangles with others of higher number, and how many neighbours were looked at.
+fn crossings_of(
+    surface: &TriangleSurface,
+    (tree, boxes): (&AabbTree, &[Aabb]),
+    batch: Range<usize>,
+    most: usize,
+) -> (Crossings, usize) {
+    let mut found = Crossings::default();
+    let mut looks = 0;
+    for s in batch {
+        let first = found.pairs.len();
+        tree.overlapping_while(boxes[s], |t| {
+            looks += 1;
+            if (s as u32) < t && cross(surface, s as u32, t) {
+                found.pairs.push([s as u32, t]);
+            }
+            looks < MOST_LOOKS && found.pairs.len() <= most
+        });
+        found.pairs[first..].sort_unstable();
+        if looks >= MOST_LOOKS || found.pairs.len() > most {
+            found.is_cut_off = true;
+            break;
+        }
+    }
+    (found, looks)
 }
 
 fn cross(surface: &TriangleSurface, s: u32, t: u32) -> bool {
@@ -62,4 +131,25 @@ fn segment_passes(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
     }
     let around = [(a, b), (b, c), (c, a)].map(|(u, v)| volume(p, q, u, v));
     around.iter().all(|v| *v > 0.0) || around.iter().all(|v| *v < 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sheets above each other, tilted so that all their boxes overlap: without a pair that crosses, the search ends by the number
+    /// of looks, and says so.
+    #[test]
+    fn the_search_ends() {
+        let count = 1500;
+        let sheet = |k: u32| {
+            let lift = 1e-6 * f64::from(k);
+            [Vec3::new(0.0, 0.0, lift), Vec3::new(1.0, 0.0, 1.0 + lift), Vec3::new(0.0, 1.0, lift)]
+        };
+        let points: Vec<Vec3> = (0..count).flat_map(sheet).collect();
+        let triangles = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let sheets = TriangleSurface::new(points, triangles).unwrap();
+        let found = crossings_within(&sheets, 10, 1000);
+        assert_eq!(found, Crossings { pairs: Vec::new(), is_cut_off: true });
+    }
 }

@@ -2,9 +2,14 @@
 
 use std::collections::HashMap;
 
-use super::crossing::crossings;
+use souple_table::in_number;
+
+use super::crossing::{Crossings, crossings};
 use super::{is_flat, joined_points};
 use crate::TriangleSurface;
+
+/// Most pairs of triangles that pass through each other of which a diagnosis tells: a surface with as many is not mended by hand.
+pub const MOST_CROSSINGS: usize = 1000;
 
 /// What is wrong with a surface.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,8 +26,8 @@ pub struct Diagnosis {
     pub crowded_edges: Vec<[u32; 2]>,
     /// Edges along which two triangles run the same way.
     pub misoriented_edges: Vec<[u32; 2]>,
-    /// Pairs of triangles that pass through each other.
-    pub crossings: Vec<[u32; 2]>,
+    /// Pairs of triangles that pass through each other, the first [`MOST_CROSSINGS`] of them.
+    pub crossings: Crossings,
     /// Parts that share no point.
     pub component_count: usize,
     /// Whether the enclosed volume is negative.
@@ -38,7 +43,7 @@ pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
             .enumerate()
             .filter(|(point, first)| *point as u32 != **first)
             .count(),
-        crossings: crossings(surface),
+        crossings: crossings(surface, MOST_CROSSINGS),
         component_count: components(surface).1,
         is_inside_out: surface.enclosed_volume() < 0.0,
         ..Diagnosis::default()
@@ -68,7 +73,8 @@ pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
 impl Diagnosis {
     /// Closed, oriented, without crossings: normals alone tell inside from outside.
     pub fn is_simple(&self) -> bool {
-        self.is_closed() && self.flat_triangles.is_empty() && self.crossings.is_empty()
+        let crosses = !self.crossings.pairs.is_empty() || self.crossings.is_cut_off;
+        self.is_closed() && self.flat_triangles.is_empty() && !crosses
     }
 
     /// Whether every edge has two triangles of opposite direction.
@@ -79,9 +85,9 @@ impl Diagnosis {
     /// One line for each kind of fault; empty for a surface in order.
     pub fn messages(&self) -> Vec<String> {
         let mut messages = Vec::new();
-        let mut say = |count: usize, what: &str, first: String| {
+        let mut say = |count: usize, [one, many]: [&str; 2], first: String| {
             if count > 0 {
-                messages.push(format!("{count} {what}{first}"));
+                messages.push(in_number(count, one, many) + &first);
             }
         };
         let edge = |list: &[[u32; 2]]| {
@@ -89,23 +95,57 @@ impl Diagnosis {
         };
         let triangle =
             |list: &[u32]| list.first().map(|t| format!(", the first is triangles[{t}]")).unwrap_or_default();
-        say(self.duplicate_points, "points lie at the place of another", String::new());
-        say(self.flat_triangles.len(), "triangles have no area", triangle(&self.flat_triangles));
-        say(self.doubled_triangles.len(), "triangles repeat another", triangle(&self.doubled_triangles));
+        say(
+            self.duplicate_points,
+            ["point lies at the place of another", "points lie at the place of another"],
+            String::new(),
+        );
+        say(
+            self.flat_triangles.len(),
+            ["triangle has no area", "triangles have no area"],
+            triangle(&self.flat_triangles),
+        );
+        say(
+            self.doubled_triangles.len(),
+            ["triangle repeats another", "triangles repeat another"],
+            triangle(&self.doubled_triangles),
+        );
         say(
             self.open_edges.len(),
-            "edges have one triangle only: the surface has holes",
+            [
+                "edge has one triangle only: the surface has a hole",
+                "edges have one triangle only: the surface has holes",
+            ],
             edge(&self.open_edges),
         );
-        say(self.crowded_edges.len(), "edges have three triangles or more", edge(&self.crowded_edges));
+        say(
+            self.crowded_edges.len(),
+            ["edge has three triangles or more", "edges have three triangles or more"],
+            edge(&self.crowded_edges),
+        );
         say(
             self.misoriented_edges.len(),
-            "edges lie between triangles of opposite orientation",
+            [
+                "edge lies between triangles of opposite orientation",
+                "edges lie between triangles of opposite orientation",
+            ],
             edge(&self.misoriented_edges),
         );
-        let pair =
-            self.crossings.first().map(|[s, t]| format!(", the first are triangles[{s}] and triangles[{t}]"));
-        say(self.crossings.len(), "pairs of triangles pass through each other", pair.unwrap_or_default());
+        let pairs = &self.crossings.pairs;
+        let pair = pairs.first().map(|[s, t]| format!(", the first are triangles[{s}] and triangles[{t}]"));
+        say(
+            pairs.len(),
+            ["pair of triangles passes through each other", "pairs of triangles pass through each other"],
+            pair.unwrap_or_default(),
+        );
+        if self.crossings.is_cut_off {
+            messages.push(if pairs.len() < MOST_CROSSINGS {
+                "triangles lie within each other so densely that not all pairs of them were looked at"
+                    .to_owned()
+            } else {
+                format!("after the first {MOST_CROSSINGS} such pairs it was not looked for more")
+            });
+        }
         if self.component_count > 1 {
             messages.push(format!("the surface has {} parts that share no point", self.component_count));
         }

@@ -12,12 +12,14 @@ mod orient;
 use std::collections::{HashMap, HashSet};
 
 use souple_math::Vec3;
+use souple_table::in_number;
 
 use crate::TriangleSurface;
 
+pub use crossing::Crossings;
 pub(crate) use crossing::{crossings, triangles_cross};
 pub(crate) use diagnose::components;
-pub use diagnose::{Diagnosis, diagnose};
+pub use diagnose::{Diagnosis, MOST_CROSSINGS, diagnose};
 
 /// What [`repair`] may do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,19 +52,22 @@ pub struct SurfaceRepairs {
     pub closed_holes: usize,
 }
 
+const TRIANGLES: [&str; 2] = ["triangle was", "triangles were"];
+
 impl SurfaceRepairs {
     /// One line for each kind of repair; empty for a surface in order.
     pub fn messages(&self) -> Vec<String> {
         let counts = [
-            (self.welded_points, "points were welded to others at the same place"),
-            (self.flat_triangles, "triangles without area were dropped"),
-            (self.doubled_triangles, "triangles that repeat another were dropped"),
-            (self.facing_triangles, "triangles back to back with another were dropped: parts touch there"),
-            (self.turned_triangles, "triangles were turned to agree with their neighbours"),
-            (self.turned_parts, "parts were inside out and were turned"),
-            (self.closed_holes, "holes of less than a tenth of the surface were closed"),
+            (self.welded_points, ["point was", "points were"], "welded to another at the same place"),
+            (self.flat_triangles, TRIANGLES, "dropped: without area"),
+            (self.doubled_triangles, TRIANGLES, "dropped: others have the same corners"),
+            (self.facing_triangles, TRIANGLES, "dropped: back to back with another, where parts touch"),
+            (self.turned_triangles, TRIANGLES, "turned to agree with their neighbours"),
+            (self.turned_parts, ["part was", "parts were"], "inside out, and turned"),
+            (self.closed_holes, ["hole was", "holes were"], "closed, of less than a tenth of the surface"),
         ];
-        counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect()
+        let told = counts.iter().filter(|(count, ..)| *count > 0);
+        told.map(|(count, [one, many], done)| format!("{} {done}", in_number(*count, one, many))).collect()
     }
 }
 

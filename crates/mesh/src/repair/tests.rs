@@ -119,7 +119,27 @@ fn crossings_are_found() {
         surface.points.extend(other.points.iter().map(|p| *p + shift));
         surface.triangles.extend(other.triangles.iter().map(|corners| corners.map(|point| point + count)));
         let diagnosis = diagnose(&surface);
-        assert_eq!(!diagnosis.crossings.is_empty(), expected);
+        assert_eq!(!diagnosis.crossings.pairs.is_empty(), expected);
+        assert!(!diagnosis.crossings.is_cut_off);
         assert_eq!(diagnosis.component_count, 2);
     }
+}
+
+/// Of a surface that crosses itself everywhere the first pairs are told, and that there are more.
+#[test]
+fn the_search_for_crossings_ends() {
+    let noise = |k: f64| (12.9898 * k).sin();
+    let corner = |k: u32| {
+        let s = f64::from(k) + 0.1;
+        Vec3::new(noise(s), noise(2.3 * s), noise(3.7 * s))
+    };
+    let triangles = (0..1000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let wild = diagnose(&TriangleSurface::new((0..3000).map(corner).collect(), triangles).unwrap());
+    assert_eq!(wild.crossings.pairs.len(), MOST_CROSSINGS);
+    assert!(wild.crossings.pairs.is_sorted());
+    assert!(
+        wild.messages().iter().any(|line| line.contains("after the first 1000 such pairs")),
+        "{:?}",
+        wild.messages()
+    );
 }

@@ -2,24 +2,26 @@
 
 use std::sync::Arc;
 
-use souple_io::picture::{Cut, MeshSurface};
+use souple_io::picture::{ColourScale, Cut, MeshSurface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 
 use super::figure::Figure;
-use super::{BodyMoment, Moment, Show, ShowError, vectors};
+use super::{BodyMoment, Moment, Show, ShowError, Stage, vectors};
 use crate::links::{LINK_STATE, RADIUS};
 
 /// Camera, colours and sizes.
 #[derive(Clone, Debug)]
-pub(super) struct Common {
-    pub bounds: BoundingBox,
+pub struct Common {
+    pub(super) bounds: BoundingBox,
     /// What is farthest out in any direction, at any moment; none where the bounds must do.
-    pub framed: Vec<Vec3>,
+    pub(super) framed: Vec<Vec3>,
     /// About as much as a pixel shows [m].
-    pub pixel: f64,
-    pub range: Option<(f64, f64)>,
-    pub arrow_scale: f64,
+    pub(super) pixel: f64,
+    pub(super) range: Option<(f64, f64)>,
+    pub(super) arrow_scale: f64,
+    /// What is to be said of the pictures.
+    pub notes: Vec<String>,
 }
 
 /// Values that differ by less than this part of the largest are one value: solvers stop some digits before rounding.
@@ -99,18 +101,77 @@ impl Outermost {
     }
 }
 
-impl Common {
-    pub fn of(figure: &Figure, show: &Show, moments: &[&Moment]) -> Result<Self, ShowError> {
-        let bodies = || moments.iter().flat_map(|moment| &moment.bodies).filter(|body| body.is_drawable());
-        let mut bounds = BoundingBox::of(bodies().flat_map(|body| body.positions.iter().copied()));
-        let mut framed = Outermost::default();
+/// What all pictures have in common, gathered from one moment after the other.
+pub struct Gathering<'a> {
+    figure: &'a Figure,
+    stage: &'a Stage,
+    times: Vec<f64>,
+    bounds: BoundingBox,
+    framed: Outermost,
+    /// Least and greatest of the values that have a colour.
+    found: Option<(f64, f64)>,
+    noise: f64,
+    /// Values that have no colour, of how many.
+    colourless: [usize; 2],
+    longest_arrow: f64,
+}
+
+impl<'a> Gathering<'a> {
+    pub fn new(figure: &'a Figure, stage: &'a Stage) -> Self {
+        Self {
+            figure,
+            stage,
+            times: Vec::new(),
+            bounds: BoundingBox::EMPTY,
+            framed: Outermost::default(),
+            found: None,
+            noise: 0.0,
+            colourless: [0; 2],
+            longest_arrow: 0.0,
+        }
+    }
+
+    /// # Errors
+    /// A field that no body of the first moment has.
+    pub fn add(&mut self, moment: &Moment) -> Result<(), ShowError> {
+        let figure = self.figure;
+        let is_first = self.times.is_empty();
+        self.times.push(moment.time);
+        let quantity = figure.quantity();
+        if let (Some(quantity), true) = (&quantity, is_first) {
+            quantity.check(moment)?;
+        }
+        if let (Some(arrows), true) = (&figure.arrows, is_first) {
+            refuse_unknown_vectors(moment, &arrows.field)?;
+        }
         // what is cut away is not made room for
         let is_left = |point: &Vec3| figure.cut.is_none_or(|cut| (*point - cut.point).dot(cut.normal) <= 0.0);
-        for body in bodies() {
-            framed.add(body.positions.iter().filter(|point| is_left(point)));
+        for body in moment.bodies.iter().filter(|body| body.is_drawable()) {
+            self.bounds = self.bounds.union(BoundingBox::of(body.positions.iter().copied()));
+            self.framed.add(body.positions.iter().filter(|point| is_left(point)));
+            if let Some(quantity) = &quantity {
+                self.noise = self.noise.max(quantity.noise(body, self.stage.stiffness));
+                let values = quantity.at_points(body).unwrap_or_default();
+                let coloured = values.iter().copied().filter(|value| figure.scale.has(*value));
+                let both = extremes(coloured.clone()).into_iter().chain(self.found);
+                self.found = both.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+                let finite = values.iter().filter(|value| value.is_finite()).count();
+                self.colourless[0] += finite - coloured.count();
+                self.colourless[1] += finite;
+            }
+            let arrows = figure.arrows.as_ref().and_then(|arrows| vectors(body, &arrows.field));
+            let lengths = arrows.iter().flatten().map(|v| v.length()).filter(|length| length.is_finite());
+            self.longest_arrow = lengths.fold(self.longest_arrow, f64::max);
         }
-        for moment in moments {
-            let shapes = show.stage.points_near(moment.time, bounds);
+        Ok(())
+    }
+
+    /// # Errors
+    /// No value has a colour on a scale of powers of ten.
+    pub fn finish(self) -> Result<Common, ShowError> {
+        let Self { figure, stage, mut bounds, mut framed, .. } = self;
+        for time in &self.times {
+            let shapes = stage.points_near(*time, bounds);
             framed.add(&shapes);
             if !shapes.is_empty() {
                 bounds = bounds.union(BoundingBox::of(shapes));
@@ -125,29 +186,48 @@ impl Common {
             bounds = bounds.grown(0.5 * figure.explode * bounds.diagonal() / 3f64.sqrt());
             framed.clear();
         }
+        let [colourless, values] = self.colourless;
+        let is_log = figure.scale == ColourScale::Logarithmic;
+        if is_log && values > 0 && colourless == values {
+            return Err(ShowError::Request {
+                what: "colour scale",
+                value: "log, and no value is above 0".to_owned(),
+                expected: "linear, or a quantity with values above 0".to_owned(),
+            });
+        }
         let mut range = figure.range;
-        if let (Some(quantity), None) = (figure.quantity(), range) {
-            if let Some(first) = moments.first() {
-                quantity.check(first)?;
-            }
-            let noise = bodies().map(|body| quantity.noise(body, show.stage.stiffness)).fold(0.0, f64::max);
-            let found = extremes(bodies().filter_map(|body| quantity.at_points(body)).flatten());
-            range = found.map(|range| figure.colours.spread(spread(range, noise)));
-            range = figure.colours.own_range().or(range);
+        if let (Some(_), None) = (figure.quantity(), range) {
+            let linear = |range| figure.colours.spread(spread(range, self.noise));
+            let of_values = |range| if is_log { figure.scale.spread(range) } else { linear(range) };
+            range = figure.colours.own_range().or(self.found.map(of_values));
         }
         let mut arrow_scale = 1.0;
         if let Some(arrows) = &figure.arrows {
-            if let Some(first) = moments.first() {
-                refuse_unknown_vectors(first, &arrows.field)?;
-            }
-            let lengths =
-                bodies().filter_map(|body| vectors(body, &arrows.field)).flatten().map(|v| v.length());
-            let longest = lengths.filter(|length| length.is_finite()).fold(0.0, f64::max);
-            let fitted = if longest > 0.0 { bounds.diagonal() / (6.0 * longest) } else { 1.0 };
+            let fitted =
+                if self.longest_arrow > 0.0 { bounds.diagonal() / (6.0 * self.longest_arrow) } else { 1.0 };
             arrow_scale = arrows.scale.unwrap_or(fitted);
         }
+        let mut notes = Vec::new();
+        if colourless > 0 {
+            notes.push(format!(
+                "{colourless} of {values} values are not above 0 and have no place on a scale of powers of ten: they are grey"
+            ));
+        }
+        if let (true, Some((least, _)), Some((low, _))) = (is_log, self.found, range)
+            && least < low
+        {
+            notes.push(format!("values go down to {least:.1e}: those below {low:.1e} have the first colour"));
+        }
         let pixels = FILLED * figure.size[0].min(figure.size[1]).max(1) as f64;
-        Ok(Self { framed, bounds, pixel: bounds.diagonal() / pixels, range, arrow_scale })
+        Ok(Common { framed, bounds, pixel: bounds.diagonal() / pixels, range, arrow_scale, notes })
+    }
+}
+
+impl Common {
+    pub(super) fn of(figure: &Figure, show: &Show, moments: &[&Moment]) -> Result<Self, ShowError> {
+        let mut gathering = Gathering::new(figure, &show.stage);
+        moments.iter().try_for_each(|moment| gathering.add(moment))?;
+        gathering.finish()
     }
 }
 

@@ -2,15 +2,15 @@
 
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
-    Backdrop, Colour, ColourMap, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace, Marks,
-    MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
+    Backdrop, Colour, ColourMap, ColourScale, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace,
+    Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
 };
 use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
 
 use super::common::Common;
 use super::quantity::{Quantity, number_of};
-use super::{BodyMoment, Moment, Show, ShowError, vectors};
+use super::{BodyMoment, Moment, Show, ShowError, Stage, vectors};
 
 /// Everything that a person may ask of a picture of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +33,7 @@ pub struct Figure {
     /// A field, its magnitude or component; one colour where `None`.
     pub colour_by: Option<String>,
     pub colours: ColourMap,
+    pub scale: ColourScale,
     /// Values of the first and the last colour.
     pub range: Option<(f64, f64)>,
     pub cut: Option<Cut>,
@@ -79,6 +80,7 @@ impl Default for Figure {
             view: None,
             colour_by: Some("von_mises".to_owned()),
             colours: ColourMap::default(),
+            scale: ColourScale::default(),
             range: None,
             cut: None,
             explode: 0.0,
@@ -107,14 +109,15 @@ const MOST_ARROWS: usize = 400;
 const MOST_DOTS: usize = 100_000;
 
 impl Figure {
-    /// Pictures of all moments of a show, in one frame and one range of colours.
+    /// Pictures of all moments of a show, in one frame and one range of colours, and what is to be said of them.
     ///
     /// # Errors
     /// A field that no body has.
-    pub fn pictures(&self, show: &Show) -> Result<Vec<Picture>, ShowError> {
+    pub fn pictures(&self, show: &Show) -> Result<(Vec<Picture>, Vec<String>), ShowError> {
         let moments: Vec<&Moment> = show.moments.iter().collect();
         let common = Common::of(self, show, &moments)?;
-        Ok(moments.into_iter().map(|moment| self.picture_in(show, moment, &common)).collect())
+        let picture = |moment: &Moment| self.picture_in(&show.stage, moment, &common);
+        Ok((show.moments.iter().map(picture).collect(), common.notes))
     }
 
     /// The picture of one moment, its own frame and range.
@@ -123,24 +126,31 @@ impl Figure {
     /// A field that no body has.
     pub fn picture(&self, show: &Show, moment: &Moment) -> Result<Picture, ShowError> {
         let common = Common::of(self, show, &[moment])?;
-        Ok(self.picture_in(show, moment, &common))
+        Ok(self.picture_in(&show.stage, moment, &common))
     }
 
     pub(super) fn quantity(&self) -> Option<Quantity<'_>> {
         self.colour_by.as_deref().map(Quantity::parse)
     }
 
-    fn picture_in(&self, show: &Show, moment: &Moment, common: &Common) -> Picture {
+    /// The picture of one moment of several, in the frame and the range of all.
+    pub fn picture_in(&self, stage: &Stage, moment: &Moment, common: &Common) -> Picture {
         let mut surfaces = Vec::new();
         let mut strokes = Vec::new();
+        let mut has_dots = false;
         for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_drawable()) {
             surfaces.extend(self.surfaces(body, index, common));
             strokes.extend(self.arrows_of(body, common.arrow_scale));
             strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
-            strokes.extend(self.dots_of(body, index, common.range));
+            let dots = self.dots_of(body, index, common.range);
+            has_dots |= !dots.is_empty();
+            strokes.extend(dots);
         }
-        let coloured = surfaces.iter().any(|surface| !matches!(surface.paint, Paint::Plain(_)));
-        surfaces.extend(show.stage.surfaces(moment.time, common.bounds));
+        // what is cut away whole needs no legend
+        let is_coloured =
+            |of: &Surface| !matches!(of.paint, Paint::Plain(_)) && (has_dots || !of.triangles.is_empty());
+        let coloured = surfaces.iter().any(is_coloured);
+        surfaces.extend(stage.surfaces(moment.time, common.bounds));
         let legend = self.quantity().filter(|_| coloured).zip(self.legend).map(|(quantity, place)| Legend {
             title: quantity.title(),
             unit: quantity.unit().to_owned(),
@@ -148,22 +158,23 @@ impl Figure {
             place,
             names: names_of(self.colours, moment),
         });
-        let PictureView { direction, up } = show.stage.view;
+        let PictureView { direction, up } = stage.view;
         let view = self.view.unwrap_or_else(|| View::along(direction, up));
         Picture {
             surfaces,
             strokes,
-            ground: show.stage.ground(moment.time).or_else(|| self.floor_below(common, up)),
+            ground: stage.ground(moment.time).or_else(|| self.floor_below(common, up)),
             framed: if view.bounds.is_some() { Vec::new() } else { common.framed.clone() },
             view: View { bounds: view.bounds.or(Some(common.bounds)), ..view },
             size: self.size,
             samples_per_pixel: self.samples_per_pixel,
             theme: self.theme,
             backdrop: self.backdrop,
-            title: self.title.clone().unwrap_or_else(|| show.stage.title.clone()),
+            title: self.title.clone().unwrap_or_else(|| stage.title.clone()),
             subtitle: if self.clock { format!("{:.3} s", moment.time) } else { String::new() },
             legend,
             colours: self.colours,
+            scale: self.scale,
             marks: self.marks,
         }
     }
@@ -231,11 +242,9 @@ impl Figure {
             return Vec::new();
         }
         let values = self.quantity().and_then(|quantity| quantity.at_points(body));
-        let (low, high) = range.unwrap_or((0.0, 1.0));
+        let range = range.unwrap_or((0.0, 1.0));
         let colour = |point: u32| match &values {
-            Some(values) => {
-                self.colours.colour((values[point as usize] - low) / (high - low).max(f64::MIN_POSITIVE))
-            }
+            Some(values) => self.colours.colour(self.scale.share(values[point as usize], range)),
             None => colour_of(index, 0),
         };
         let is_ball = |point: usize| body.radii().is_some_and(|radii| radii[point] > 0.0);
@@ -309,8 +318,8 @@ impl Figure {
     /// A body over all moments: a surface for each run of moments in which its triangles stay the same, coloured as at the
     /// last of them. Those of a skin are others at each moment.
     fn moving(&self, bodies: &[&BodyMoment], index: usize, common: &Common) -> Vec<MovingSurface> {
-        let (low, high) = common.range.unwrap_or((0.0, 1.0));
-        let colour = |value: f64| self.colours.colour((value - low) / (high - low).max(f64::MIN_POSITIVE));
+        let range = common.range.unwrap_or((0.0, 1.0));
+        let colour = |value: f64| self.colours.colour(self.scale.share(value, range));
         let mut all: Vec<MovingSurface> = Vec::new();
         let mut of: Option<(&BodyMoment, MeshSurface)> = None;
         for (at, body) in bodies.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use souple_io::picture::Image;
+use souple_io::picture::Images;
 
 /// A film that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -21,15 +21,14 @@ pub enum FilmError {
 ///
 /// # Errors
 /// There is no `ffmpeg`, or it fails; an odd number of pixels.
-pub fn write_film(path: &Path, images: &[Image], per_second: f64) -> Result<(), FilmError> {
-    let Some(first) = images.first() else { return Ok(()) };
-    let (width, height) = (first.width, first.height);
+pub fn write_film(path: &Path, images: &(impl Images + ?Sized), per_second: f64) -> Result<(), FilmError> {
+    let Some([width, height]) = images.size() else { return Ok(()) };
     if width % 2 != 0 || height % 2 != 0 {
         return Err(FilmError::Odd { width, height });
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let beside = path.with_file_name(format!(".{name}.{}.part.mp4", std::process::id()));
-    let result = pipe(&beside, images, per_second).and_then(|()| {
+    let result = pipe(&beside, images, [width, height], per_second).and_then(|()| {
         std::fs::rename(&beside, path)
             .map_err(|error| FilmError::Failed { path: path.to_owned(), message: error.to_string() })
     });
@@ -40,8 +39,13 @@ pub fn write_film(path: &Path, images: &[Image], per_second: f64) -> Result<(), 
     result
 }
 
-fn pipe(path: &Path, images: &[Image], per_second: f64) -> Result<(), FilmError> {
-    let size = format!("{}x{}", images[0].width, images[0].height);
+fn pipe(
+    path: &Path,
+    images: &(impl Images + ?Sized),
+    [width, height]: [usize; 2],
+    per_second: f64,
+) -> Result<(), FilmError> {
+    let size = format!("{width}x{height}");
     let fail = |message: String| FilmError::Failed { path: path.to_owned(), message };
     let mut command = Command::new("ffmpeg");
     command.args(["-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s"]).arg(&size);
@@ -55,7 +59,7 @@ fn pipe(path: &Path, images: &[Image], per_second: f64) -> Result<(), FilmError>
         .map_err(FilmError::Missing)?;
     let mut written = Ok(());
     if let Some(mut pipe) = child.stdin.take() {
-        written = images.iter().try_for_each(|image| pipe.write_all(image.pixels.as_flattened()));
+        written = images.each(&mut |image| pipe.write_all(image.pixels.as_flattened()));
     }
     let output = child.wait_with_output().map_err(|error| fail(error.to_string()))?;
     if !output.status.success() {

@@ -2,7 +2,7 @@
 
 use souple_io::Field;
 
-use super::{BodyMoment, Show, ShowError};
+use super::{BodyMoment, Moment, Show, ShowError};
 
 /// The field of where a body stands, less where that of another run does [m].
 pub const GAP: &str = "gap";
@@ -15,19 +15,26 @@ impl Show {
     /// The other run has no body of a name, or none of its moments.
     pub fn against(&mut self, other: &Self) -> Result<(), ShowError> {
         for moment in &mut self.moments {
-            let there = other.at(Some(moment.time)).map_or(&[][..], |moment| &moment.bodies);
-            for body in &mut moment.bodies {
-                let same = there.iter().find(|there| there.name == body.name);
-                let same = same.ok_or_else(|| ShowError::Request {
-                    what: "other run",
-                    value: format!("without a body `{}`", body.name),
-                    expected: "a run of the same bodies".to_owned(),
-                })?;
-                body.point_fields.push(gap(body, same));
-            }
+            let off = |there: &&Moment| (there.time - moment.time).abs();
+            let there = other.moments.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+            add_gap(moment, there.map_or(&[][..], |there| &there.bodies))?;
         }
         Ok(())
     }
+}
+
+/// Adds the field to bodies of a moment, from those of another run.
+pub(super) fn add_gap(moment: &mut Moment, there: &[BodyMoment]) -> Result<(), ShowError> {
+    for body in &mut moment.bodies {
+        let same = there.iter().find(|there| there.name == body.name);
+        let same = same.ok_or_else(|| ShowError::Request {
+            what: "other run",
+            value: format!("without a body `{}`", body.name),
+            expected: "a run of the same bodies".to_owned(),
+        })?;
+        body.point_fields.push(gap(body, same));
+    }
+    Ok(())
 }
 
 /// Not a number at points that the other does not have.

@@ -7,6 +7,7 @@ mod figure;
 mod film;
 mod gap;
 mod quantity;
+mod reel;
 mod stage;
 
 use std::path::{Path, PathBuf};
@@ -14,17 +15,19 @@ use std::sync::Arc;
 
 use souple_engine::World;
 use souple_io::picture::ColourMap;
-use souple_io::{Dataset, Field, IoError, read_dataset, read_series};
+use souple_io::{Field, IoError};
 use souple_math::Vec3;
 use souple_mesh::{BoundingBox, Mesh};
 use souple_scene::{BodyInfo, SkinInfo};
 
 use crate::Session;
 
+pub use common::{Common, Gathering};
 pub use figure::{Arrows, Figure, Floor};
 pub use film::{FilmError, write_film};
 pub use gap::GAP;
 pub use quantity::number_of;
+pub use reel::Reel;
 pub use stage::{Stage, obstacles_of};
 
 /// The map whose colours mean what a quantity says, `element` or `adaptation`; `None` where any will do.
@@ -79,35 +82,9 @@ impl Show {
     /// # Errors
     /// There are none, their times differ from body to body, or a file cannot be read.
     pub fn of_run(folder: &Path, stage: Stage) -> Result<Self, ShowError> {
-        let no_frames = |found: String| Err(ShowError::NoFrames { folder: folder.to_owned(), found });
-        let frames = folder.join("frames");
-        let Ok(entries) = std::fs::read_dir(&frames) else {
-            return no_frames("there is no folder `frames` that can be read".to_owned());
-        };
-        let mut lists: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-        lists.retain(|path| path.extension().is_some_and(|extension| extension == "pvd"));
-        lists.sort();
-        let mut moments: Vec<Moment> = Vec::new();
-        for list in &lists {
-            let name = list.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let series = read_series(list)?;
-            if moments.is_empty() {
-                moments = series.iter().map(|(time, _)| Moment { time: *time, bodies: Vec::new() }).collect();
-            }
-            if !series.iter().map(|frame| frame.0).eq(moments.iter().map(|moment| moment.time)) {
-                return no_frames(format!("the times of `{name}` are not those of the body before it"));
-            }
-            let mut mesh: Option<Arc<Mesh>> = None;
-            for ((_, path), moment) in series.iter().zip(&mut moments) {
-                let body = BodyMoment::of_file(&name, path, mesh.as_ref())?;
-                mesh = Some(Arc::clone(&body.mesh));
-                moment.bodies.push(body);
-            }
-        }
-        if moments.is_empty() {
-            return no_frames("there is no series (`.pvd`) in `frames`".to_owned());
-        }
-        Ok(Self { stage, moments })
+        let reel = Reel::of_run(folder, stage)?;
+        let all: Vec<usize> = (0..reel.times().len()).collect();
+        reel.show(&all)
     }
 
     /// A mesh by itself, as it stands.
@@ -124,47 +101,6 @@ impl Show {
             frames: Vec::new(),
         };
         Self { stage, moments: vec![Moment { time: 0.0, bodies: vec![body] }] }
-    }
-
-    /// Without the bodies that wear a skin, which hides them.
-    #[must_use]
-    pub fn without_worn(mut self) -> Self {
-        self.moments = self.moments.into_iter().map(Moment::without_worn).collect();
-        self
-    }
-
-    /// At most `count` moments, evenly chosen, the first and the last among them.
-    #[must_use]
-    pub fn thinned(mut self, count: usize) -> Self {
-        let all = self.moments.len();
-        let wanted = count.clamp(1, all.max(1));
-        if wanted < all {
-            let last = |index: usize| if wanted == 1 { all - 1 } else { index * (all - 1) / (wanted - 1) };
-            let kept: Vec<usize> = (0..wanted).map(last).collect();
-            let mut index = 0;
-            self.moments.retain(|_| {
-                index += 1;
-                kept.binary_search(&(index - 1)).is_ok()
-            });
-        }
-        self
-    }
-
-    /// The moment nearest to a time [s]; for none the last that can be drawn, or the last if none can.
-    pub fn at(&self, time: Option<f64>) -> Option<&Moment> {
-        let Some(time) = time else {
-            let drawable = self.moments.iter().rev().find(|moment| moment.is_drawable());
-            return drawable.or(self.moments.last());
-        };
-        self.moments.iter().min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
-    }
-
-    /// Whether a body has a field of this name at some moment, on points or cells.
-    pub fn has_field(&self, name: &str) -> bool {
-        let bodies = self.moments.iter().flat_map(|moment| &moment.bodies);
-        bodies
-            .flat_map(|body| body.point_fields.iter().chain(&body.cell_fields))
-            .any(|field| field.name == name)
     }
 
     /// Of all bodies at all moments.
@@ -193,6 +129,13 @@ fn vectors(body: &BodyMoment, name: &str) -> Option<Vec<Vec3>> {
 }
 
 impl Moment {
+    /// Whether a body has a field of this name, on points or cells.
+    pub fn has_field(&self, name: &str) -> bool {
+        let mut fields =
+            self.bodies.iter().flat_map(|body| body.point_fields.iter().chain(&body.cell_fields));
+        fields.any(|field| field.name == name)
+    }
+
     /// Whether all of it can be drawn.
     pub fn is_drawable(&self) -> bool {
         self.bodies.iter().all(BodyMoment::is_drawable)
@@ -245,21 +188,6 @@ fn frames_of(world: &World, info: &BodyInfo) -> Vec<[Vec3; 4]> {
 }
 
 impl BodyMoment {
-    /// `known`: the mesh of a frame before, taken again where the cells are the same.
-    fn of_file(name: &str, path: &Path, known: Option<&Arc<Mesh>>) -> Result<Self, IoError> {
-        let Dataset { mesh, point_fields, cell_fields, .. } = read_dataset(path)?;
-        // the cells of a sheet are read as facets, fields on them in the same order
-        let mesh = if mesh.cell_count() == 0 { mesh.facets_as_cells() } else { mesh };
-        let positions = mesh.points.clone();
-        let mesh = match known {
-            Some(known) if known.blocks == mesh.blocks && known.points.len() == mesh.points.len() => {
-                Arc::clone(known)
-            }
-            _ => Arc::new(mesh),
-        };
-        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields, frames: Vec::new() })
-    }
-
     /// Whether it can be drawn: it is finite, and has not grown beyond all bounds; of one that has, a point or two
     /// would be seen.
     fn is_drawable(&self) -> bool {

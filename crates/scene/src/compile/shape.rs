@@ -39,7 +39,11 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
     let built = match spec {
         MeshSpec::Generated(chosen) => (chosen.entry.build.mesh)(&chosen.values),
         MeshSpec::Shape { shape, options } => {
-            (shape.entry.build)(&shape.values).and_then(|body| options.fill_body(&body))
+            let filled = (shape.entry.build)(&shape.values).and_then(|body| options.fill_body(&body));
+            filled.map(|filled| {
+                warnings.extend(filled.notes.into_iter().map(|note| format!("body `{}`: {note}", body.name)));
+                filled.mesh
+            })
         }
         MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, &mut warnings)?),
         MeshSpec::Filled { file, scale, options, .. } => {

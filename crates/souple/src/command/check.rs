@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use serde_json::{Map, Value, json};
+use souple_engine::{World, WorldError};
 use souple_scene::SkinInfo;
 use souple_skin::Cost;
 
@@ -57,13 +58,11 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         doubts.map(|doubt| format!("skin `{}`: {doubt}", skin.name)).collect()
     };
     warnings.extend(known_skins.iter().flat_map(doubts));
-    // the cost of one step is measured on this scene, the state being thrown away
-    let clock = Instant::now();
-    let trial = world.step();
-    let seconds_per_step = clock.elapsed().as_secs_f64();
+    let trial = Trial::of(&mut world, steps);
     let costs = known_skins.iter().filter_map(|skin| Some((skin.name.as_str(), skin.cost(&world)?)));
     let costs: Vec<(&str, Cost)> = costs.collect();
-    let errors: Vec<_> = trial.err().map(|error| first_step_refused(arguments, &error)).into_iter().collect();
+    let errors: Vec<_> = trial.refused.iter().map(|error| first_step_refused(arguments, error)).collect();
+    warnings.extend(trial.broke_off.as_ref().map(|(step, error)| format!("step {step} is refused: {error}")));
     let document = json!({
         "scene": scene_path(&arguments.scene).display().to_string(),
         "title": title,
@@ -75,8 +74,9 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "probes": probes,
         "steps": steps,
         "forecast": {
-            "seconds_per_step": seconds_per_step,
-            "wall_seconds": seconds_per_step * steps as f64,
+            "seconds_per_step": trial.seconds_per_step,
+            "wall_seconds": trial.seconds_of(steps),
+            "measured_steps": trial.steps,
             "bytes": world.bytes(),
         },
         "warnings": warnings,
@@ -123,8 +123,8 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     }
     print_line(format_args!(
         "  about {:.2} ms per step, {:.1} s for {}, {:.1} MB of forces and matrices",
-        1e3 * seconds_per_step,
-        seconds_per_step * steps as f64,
+        1e3 * trial.seconds_per_step,
+        trial.seconds_of(steps),
         souple_table::counted(steps, "step"),
         world.bytes() as f64 * 1e-6
     ));
@@ -142,8 +142,57 @@ fn skin_to_json(cost: &Cost) -> Value {
     })
 }
 
+/// Some steps of a scene, the state being thrown away: what they cost is measured, not guessed.
+struct Trial {
+    /// How many were made.
+    steps: u64,
+    first_seconds: f64,
+    /// Of those after the first, which finds its memory and its matrices new; of the first where there is no other.
+    seconds_per_step: f64,
+    /// Why the first step is refused.
+    refused: Option<WorldError>,
+    /// The number of a later one that is, and why.
+    broke_off: Option<(u64, WorldError)>,
+}
+
+/// Steps are measured for so long [s], and until there are a few as far as patience goes [s].
+const MEASURED: f64 = 0.5;
+const FEW: u64 = 4;
+const PATIENCE: f64 = 5.0;
+
+impl Trial {
+    fn of(world: &mut World, most: u64) -> Self {
+        let clock = Instant::now();
+        let refused = world.step().err();
+        let first_seconds = clock.elapsed().as_secs_f64();
+        let mut trial =
+            Self { steps: 1, first_seconds, seconds_per_step: first_seconds, refused, broke_off: None };
+        if trial.refused.is_some() {
+            return trial;
+        }
+        let clock = Instant::now();
+        while trial.steps < most {
+            let elapsed = first_seconds + clock.elapsed().as_secs_f64();
+            if elapsed > PATIENCE || (elapsed > MEASURED && trial.steps > FEW) {
+                break;
+            }
+            if let Err(error) = world.step() {
+                trial.broke_off = Some((trial.steps + 1, error));
+                break;
+            }
+            trial.steps += 1;
+            trial.seconds_per_step = clock.elapsed().as_secs_f64() / (trial.steps - 1) as f64;
+        }
+        trial
+    }
+
+    fn seconds_of(&self, steps: u64) -> f64 {
+        if steps == 0 { 0.0 } else { self.first_seconds + self.seconds_per_step * (steps - 1) as f64 }
+    }
+}
+
 /// A scene whose first step is refused is read and built, and yet no scene that can be run.
-fn first_step_refused(arguments: &Arguments, error: &souple_engine::WorldError) -> serde_json::Value {
+fn first_step_refused(arguments: &Arguments, error: &WorldError) -> Value {
     json!({
         "code": "first_step",
         "file": scene_path(&arguments.scene).display().to_string(),
@@ -156,6 +205,6 @@ fn first_step_refused(arguments: &Arguments, error: &souple_engine::WorldError) 
     })
 }
 
-fn end_of(errors: &[serde_json::Value]) -> End {
+fn end_of(errors: &[Value]) -> End {
     if errors.is_empty() { End::Done } else { End::Failed }
 }

@@ -13,7 +13,7 @@ use super::{End, Refusal, did_you_mean, print_json, print_line};
 #[derive(clap::Args)]
 pub struct ListArguments {
     /// materials, laws, elements, sections, links, placements, weights, points, steppers, solvers, preconditioners,
-    /// generators, bodies, shapes, skin_parts, skin_terms, skin_warps, devices, formats, quantities, functions, units, colour_maps
+    /// generators, bodies, shapes, skin_parts, skin_terms, skin_warps, devices, formats, quantities, functions, units, colour_maps, colour_scales
     ///
     /// The kinds themselves if left out.
     kind: Option<String>,
@@ -127,6 +127,7 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("functions", functions()),
         ("units", units()),
         ("colour_maps", pages_of(&souple_io::picture::COLOUR_MAPS)),
+        ("colour_scales", pages_of(&souple_io::picture::COLOUR_SCALES)),
     ]
 }
 

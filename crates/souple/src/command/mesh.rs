@@ -15,7 +15,7 @@ use souple_mesh::repair::diagnose;
 use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
 use souple_table::Parameter;
 
-use super::{End, Refusal, print_json, print_line};
+use super::{End, Refusal, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -104,18 +104,22 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             write(&out, None, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
         }
         Action::Fill { input, out, parameters, json } => {
+            keep_input(Path::new(&input), &out)?;
             let (mesh, notes) = fill::fill(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
+            keep_input(&input, &out)?;
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
+            keep_input(&input, &out)?;
             let (mesh, notes) = skin::dressed(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Convert { input, out, parameters, format, json } => {
+            keep_input(&input, &out)?;
             let scale = scale(&parameters)?;
             let Dataset { mut mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
             mesh.points.iter_mut().for_each(|point| *point = *point * scale);
@@ -145,6 +149,18 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             Ok(End::Done)
         }
     }
+}
+
+/// Refuses to write over the file that is read: what is made of it is less than it, or something else.
+fn keep_input(input: &Path, out: &Path) -> Result<(), Refusal> {
+    // two ways to write one path, and links, are one file
+    let same = input.canonicalize().ok().filter(|input| out.canonicalize().is_ok_and(|out| out == *input));
+    if same.is_none() {
+        return Ok(());
+    }
+    let name = out.display().to_string();
+    let message = format!("`{name}` is the file that is read, and would be lost");
+    Err(Refusal::request("overwrite", name, "another file to write", message))
 }
 
 /// The one parameter of a conversion.
@@ -300,8 +316,19 @@ fn shapes(mesh: &Mesh, quality: &[CellQuality]) -> Json {
     })
 }
 
+/// From so many triangles on a person is told what is waited for.
+const MANY_TRIANGLES: usize = 200_000;
+
+fn announce(surface: &TriangleSurface) {
+    let count = surface.triangles.len();
+    if count >= MANY_TRIANGLES {
+        print_note(format_args!("looking for triangles that pass through each other, among {count} …"));
+    }
+}
+
 /// What is wrong with a surface.
 fn faults(surface: &TriangleSurface) -> Json {
+    announce(surface);
     let diagnosis = diagnose(surface);
     json!({
         "simple": diagnosis.is_simple(),
@@ -309,7 +336,8 @@ fn faults(surface: &TriangleSurface) -> Json {
         "open_edges": diagnosis.open_edges.len(),
         "crowded_edges": diagnosis.crowded_edges.len(),
         "misoriented_edges": diagnosis.misoriented_edges.len(),
-        "crossings": diagnosis.crossings.len(),
+        "crossings": diagnosis.crossings.pairs.len(),
+        "more_crossings": diagnosis.crossings.is_cut_off,
         "duplicate_points": diagnosis.duplicate_points,
         "flat_triangles": diagnosis.flat_triangles.len(),
         "doubled_triangles": diagnosis.doubled_triangles.len(),

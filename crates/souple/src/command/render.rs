@@ -8,10 +8,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 use serde_json::json;
-use souple_io::picture::{Backdrop, Cut, Image, LegendPlace, Picture, write_animated_png, write_gif};
+use souple_io::picture::{
+    Backdrop, Cut, Image, ImageFile, Images, LegendPlace, Picture, write_animated_png, write_gif,
+};
 use souple_io::read_mesh;
 use souple_run::Options;
-use souple_run::show::{Figure, Moment, Show, ShowError, Stage, write_film};
+use souple_run::show::{Figure, Gathering, Moment, Reel, Show, ShowError, Stage, write_film};
 
 use self::fit::Source;
 use super::progress::Meter;
@@ -51,6 +53,9 @@ pub struct Arguments {
     /// sequential, diverging, grey, adaptation, elements; that of the quantity if left out
     #[arg(long)]
     map: Option<String>,
+    /// linear, or log: by powers of ten
+    #[arg(long, value_name = "SCALE")]
+    colour_scale: Option<String>,
     /// The folder of another run, from which the quantity `gap` is measured
     #[arg(long, value_name = "RUN")]
     against: Option<PathBuf>,
@@ -204,77 +209,142 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     fit::check(arguments, kind, source)?;
     interruption::heed();
     let figure = figure::figure(arguments, kind)?;
-    let (mut show, mut notes) = show(arguments, kind, source)?;
+    let scratch = Scratch::new()?;
+    let (mut reel, mut notes) = reel(arguments, kind, source, &scratch)?;
     if interruption::is_interrupted() {
         return Ok(End::Interrupted);
     }
     if let Some(other) = &arguments.against {
-        let other = Show::of_run(other, show.stage.clone())?;
-        show.against(&other)?;
+        let other = Reel::of_run(other, reel.stage.clone())?;
+        reel = reel.against(other);
     }
     if !arguments.looks_inside() {
-        show = show.without_worn();
+        reel = reel.without_worn();
     }
-    let view = figure::view(arguments, &show.stage)?;
-    let mut figure = Figure { view: Some(view), ..figure };
-    if arguments.colour.is_none() && !show.has_field(figure::STRESS) {
-        figure.colour_by = None;
-    }
-    if let Some(cut) = figure.cut {
-        let is_one = kind == Kind::Picture && arguments.sheet.is_none();
-        let shown = if is_one {
-            show.at(arguments.time).map_or(&[][..], std::slice::from_ref)
-        } else {
-            &show.moments
-        };
-        notes.extend(all_cut_away(cut, shown));
-    }
-    let out = arguments.out.as_path();
-    let mut count = 1;
-    match kind {
-        Kind::Surfaces => {
-            let show = show.thinned(arguments.frames.unwrap_or(FRAMES) as usize);
-            count = show.moments.len();
-            figure.animation(&show)?.write_glb(out)?;
-        }
-        Kind::Picture if arguments.sheet.is_some() => {
-            let show = show.thinned(arguments.sheet.unwrap_or(1) as usize);
-            count = show.moments.len();
-            // one title for all of them
-            let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
-            let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
-            let legend = figure.legend.map(|_| LegendPlace::Apart);
-            let figure = Figure { title: Some(String::new()), backdrop, legend, ..figure };
-            let pictures = figure.pictures(&show)?;
-            let Some(images) = images(&pictures, arguments.quiet)? else { return Ok(End::Interrupted) };
-            let sheet = Image::sheet(&images, columns(count));
-            let legend = pictures.iter().find_map(|picture| picture.legend_strip(sheet.height));
-            let sheet = legend.map_or_else(|| sheet.clone(), |legend| sheet.beside(&legend));
-            let sheet = if title.is_empty() { sheet } else { sheet.titled(&title, figure.theme) };
-            write_picture(arguments, &sheet)?;
-        }
-        Kind::Picture => {
-            let moment =
-                show.at(arguments.time).ok_or_else(|| Refusal::work("render", "the run has no frame"))?;
-            notes.extend(other_moment(arguments.time, moment, &show));
-            write_picture(arguments, &figure.picture(&show, moment)?.render()?)?;
-        }
-        Kind::Gif | Kind::AnimatedPng | Kind::Film => {
-            let show = show.thinned(arguments.frames.unwrap_or(FRAMES) as usize);
-            count = show.moments.len();
-            let Some(images) = images(&figure.pictures(&show)?, arguments.quiet)? else {
-                return Ok(End::Interrupted);
-            };
-            write_moving(kind, out, &images, seconds_per_frame(arguments, &show))?;
-        }
-    }
+    let view = figure::view(arguments, &reel.stage)?;
+    let figure = Figure { view: Some(view), ..figure };
+    let Some(count) = draw(arguments, kind, (&reel, &scratch), figure, &mut notes)? else {
+        return Ok(End::Interrupted);
+    };
     notes.iter().for_each(print_note);
+    let out = arguments.out.as_path();
     if arguments.json {
         print_json(&json!({"out": out.display().to_string(), "moments": count, "notes": notes}));
     } else if !arguments.quiet {
         print_line(out.display());
     }
     Ok(End::Done)
+}
+
+/// Draws what is asked for, and no other moments; how many those were, `None` where Ctrl-C ends it.
+fn draw(
+    arguments: &Arguments,
+    kind: Kind,
+    (reel, scratch): (&Reel, &Scratch),
+    mut figure: Figure,
+    notes: &mut Vec<String>,
+) -> Result<Option<usize>, Refusal> {
+    let out = arguments.out.as_path();
+    let chosen = reel.chosen(match kind {
+        Kind::Picture => arguments.sheet.unwrap_or(1),
+        _ => arguments.frames.unwrap_or(FRAMES),
+    } as usize);
+    // what colours show where nothing is asked for is there in all moments or in none
+    let fit = |mut figure: Figure, first: &Moment| {
+        if arguments.colour.is_none() && !first.has_field(figure::STRESS) {
+            figure.colour_by = None;
+        }
+        figure
+    };
+    match kind {
+        Kind::Surfaces => {
+            let show = reel.show(&chosen)?;
+            figure = show.moments.iter().take(1).fold(figure, fit);
+            figure.animation(&show)?.write_glb(out)?;
+        }
+        Kind::Picture if arguments.sheet.is_some() => {
+            let show = reel.show(&chosen)?;
+            figure = show.moments.iter().take(1).fold(figure, fit);
+            notes.extend(
+                figure.cut.and_then(|cut| all_cut_away(cut, show.moments.iter().map(|m| reach(cut, m)))),
+            );
+            // one title for all of them
+            let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
+            let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
+            let legend = figure.legend.map(|_| LegendPlace::Apart);
+            let figure = Figure { title: Some(String::new()), backdrop, legend, ..figure };
+            let (pictures, of_all) = figure.pictures(&show)?;
+            notes.extend(of_all);
+            let meter = Meter::new("pictures", arguments.quiet);
+            let Some(images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
+            let sheet = Image::sheet(&images, columns(images.len()));
+            let legend = pictures.iter().find_map(|picture| picture.legend_strip(sheet.height));
+            let sheet = legend.map_or_else(|| sheet.clone(), |legend| sheet.beside(&legend));
+            let sheet = if title.is_empty() { sheet } else { sheet.titled(&title, figure.theme) };
+            write_picture(arguments, &sheet)?;
+        }
+        Kind::Picture => {
+            let moment = match arguments.time {
+                Some(time) => reel.moment(reel.nearest(time), None)?,
+                None => reel.last_drawable()?,
+            };
+            figure = fit(figure, &moment);
+            notes.extend(figure.cut.and_then(|cut| all_cut_away(cut, [reach(cut, &moment)].into_iter())));
+            notes.extend(other_moment(arguments.time, &moment, reel));
+            let show = Show { stage: reel.stage.clone(), moments: vec![moment] };
+            let (pictures, of_all) = figure.pictures(&show)?;
+            notes.extend(of_all);
+            for picture in pictures {
+                write_picture(arguments, &picture.render()?)?;
+            }
+        }
+        Kind::Gif | Kind::AnimatedPng | Kind::Film => {
+            figure =
+                chosen.first().map(|first| reel.moment(*first, None)).transpose()?.iter().fold(figure, fit);
+            let Some(film) = film(arguments, (reel, &chosen), &figure, (scratch, notes))? else {
+                return Ok(None);
+            };
+            write_moving(kind, out, &film, seconds_per_frame(arguments, reel, &chosen))?;
+        }
+    }
+    Ok(Some(chosen.len()))
+}
+
+/// The images of a film in a file: twice through the moments, for what all have in common and to draw them, with no more of them
+/// in memory than are drawn at once.
+fn film(
+    arguments: &Arguments,
+    (reel, chosen): (&Reel, &[usize]),
+    figure: &Figure,
+    (scratch, notes): (&Scratch, &mut Vec<String>),
+) -> Result<Option<ImageFile>, Refusal> {
+    let mut gathering = Gathering::new(figure, &reel.stage);
+    let (mut reaches, mut before) = (Vec::new(), None);
+    for index in chosen {
+        let moment = reel.moment(*index, before.as_ref())?;
+        gathering.add(&moment)?;
+        reaches.extend(figure.cut.map(|cut| reach(cut, &moment)));
+        before = Some(moment);
+        if interruption::is_interrupted() {
+            return Ok(None);
+        }
+    }
+    let common = gathering.finish()?;
+    notes.extend(figure.cut.and_then(|cut| all_cut_away(cut, reaches.into_iter())));
+    notes.extend(common.notes.iter().cloned());
+    let mut film = ImageFile::create(&scratch.0.join("film"))?;
+    let meter = Meter::new("pictures", arguments.quiet);
+    for part in chosen.chunks(rayon::current_num_threads()) {
+        let mut pictures = Vec::with_capacity(part.len());
+        for index in part {
+            let moment = reel.moment(*index, before.as_ref())?;
+            pictures.push(figure.picture_in(&reel.stage, &moment, &common));
+            before = Some(moment);
+        }
+        let Some(images) = images(&pictures, (&meter, film.count(), chosen.len()))? else { return Ok(None) };
+        images.iter().try_for_each(|image| film.push(image))?;
+    }
+    Ok(Some(film))
 }
 
 fn kind_of(out: &Path) -> Result<Kind, Refusal> {
@@ -289,30 +359,35 @@ fn kind_of(out: &Path) -> Result<Kind, Refusal> {
 }
 
 /// A run's folder and a mesh as they are; a scene after a run into a folder that is removed again.
-fn show(arguments: &Arguments, kind: Kind, source: Source) -> Result<(Show, Vec<String>), Refusal> {
+fn reel(
+    arguments: &Arguments,
+    kind: Kind,
+    source: Source,
+    scratch: &Scratch,
+) -> Result<(Reel, Vec<String>), Refusal> {
     let from = &arguments.source;
     match source {
         Source::Run => {
             let (stage, note) = Stage::of_report(from);
-            return Ok((Show::of_run(from, stage)?, note.into_iter().collect()));
+            return Ok((Reel::of_run(from, stage)?, note.into_iter().collect()));
         }
         Source::Mesh => {
             let (mesh, notes) = read_mesh(from)?;
             let name = from.file_stem().unwrap_or_default().to_string_lossy();
-            return Ok((Show::of_mesh(&name, mesh), notes));
+            return Ok((Reel::of_mesh(&name, mesh), notes));
         }
         Source::Scene => {}
     }
     let path = from.display().to_string();
     let scene = read_scene(&path, &arguments.settings)?;
     let stage = Stage::of(&scene);
-    let folder = Scratch::new()?;
+    let folder = scratch.0.join("run");
     let wanted = match kind {
         Kind::Picture => arguments.sheet.unwrap_or(if arguments.time.is_some() { 200 } else { 1 }),
         _ => arguments.frames.unwrap_or(FRAMES),
     };
     let options = Options {
-        out: Some(folder.0.clone()),
+        out: Some(folder.clone()),
         frames: Some(wanted),
         scene_name: scene_path(&path).display().to_string(),
         ..Options::default()
@@ -323,7 +398,7 @@ fn show(arguments: &Arguments, kind: Kind, source: Source) -> Result<(Show, Vec<
         notes.push(format!("the run is {}: what it came to is shown", outcome.report.status.as_str()));
         notes.extend(outcome.report.failure.iter().map(|failure| failure.message()));
     }
-    Ok((Show::of_run(&folder.0, stage)?, notes))
+    Ok((Reel::of_run(&folder, stage)?, notes))
 }
 
 /// A folder that is removed when dropped.
@@ -347,8 +422,8 @@ impl Drop for Scratch {
 }
 
 /// What to say of a picture of another moment than one may think.
-fn other_moment(wanted: Option<f64>, shown: &Moment, show: &Show) -> Option<String> {
-    let last = show.moments.last().map_or(shown.time, |moment| moment.time);
+fn other_moment(wanted: Option<f64>, shown: &Moment, reel: &Reel) -> Option<String> {
+    let last = reel.times().last().copied().unwrap_or(shown.time);
     match wanted {
         None if shown.time < last => Some(format!(
             "the bodies have run away: of {:.6} s is the last frame that can be drawn",
@@ -364,14 +439,19 @@ fn other_moment(wanted: Option<f64>, shown: &Moment, show: &Show) -> Option<Stri
     }
 }
 
-/// What to say where a cut leaves nothing of any body at any of the moments.
-fn all_cut_away(cut: Cut, shown: &[Moment]) -> Option<String> {
-    let points = shown.iter().flat_map(|moment| &moment.bodies).flat_map(|body| &body.positions);
+/// How far the bodies of a moment reach along the normal of a cut: least and greatest [m].
+fn reach(cut: Cut, moment: &Moment) -> [f64; 2] {
     let normal = cut.normal * (1.0 / cut.normal.length());
+    let points = moment.bodies.iter().flat_map(|body| &body.positions);
     let along = points.filter(|x| x.is_finite()).map(|x| normal.dot(*x));
-    let [low, high] =
-        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], d| [low.min(d), high.max(d)]);
-    let plane = normal.dot(cut.point);
+    along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], d| [low.min(d), high.max(d)])
+}
+
+/// What to say where a cut leaves nothing of any body at any of the moments.
+fn all_cut_away(cut: Cut, reaches: impl Iterator<Item = [f64; 2]>) -> Option<String> {
+    let of_all = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+    let [low, high] = reaches.reduce(of_all)?;
+    let plane = cut.normal.dot(cut.point) / cut.normal.length();
     (low > plane).then(|| {
         format!(
             "the cut leaves nothing: along its normal, bodies reach from {low:.4} m to {high:.4} m, and what lies beyond {plane:.4} m is cut away"
@@ -379,15 +459,18 @@ fn all_cut_away(cut: Cut, shown: &[Moment]) -> Option<String> {
     })
 }
 
-/// Pictures drawn side by side on all threads; `None` where Ctrl-C ends it.
-fn images(pictures: &[Picture], quiet: bool) -> Result<Option<Vec<Image>>, Refusal> {
-    let (meter, done) = (Meter::new("pictures", quiet), AtomicU64::new(0));
+/// Pictures drawn side by side on all threads, after so many of all; `None` where Ctrl-C ends it.
+fn images(
+    pictures: &[Picture],
+    (meter, before, all): (&Meter, usize, usize),
+) -> Result<Option<Vec<Image>>, Refusal> {
+    let done = AtomicU64::new(before as u64);
     let draw = |picture: &Picture| {
         if interruption::is_interrupted() {
             return Ok(None);
         }
         let image = picture.render()?;
-        meter.show(done.fetch_add(1, Ordering::Relaxed) + 1, pictures.len() as u64, "");
+        meter.show(done.fetch_add(1, Ordering::Relaxed) + 1, all as u64, "");
         Ok(Some(image))
     };
     pictures.par_iter().map(draw).collect()
@@ -405,22 +488,22 @@ fn columns(count: usize) -> usize {
 }
 
 /// [s]
-fn seconds_per_frame(arguments: &Arguments, show: &Show) -> f64 {
+fn seconds_per_frame(arguments: &Arguments, reel: &Reel, chosen: &[usize]) -> f64 {
     if let Some(per_second) = arguments.per_second {
         return 1.0 / per_second;
     }
-    let times: Vec<f64> = show.moments.iter().map(|moment| moment.time).collect();
-    let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+    let at = |index: Option<&usize>| index.map(|index| reel.times()[*index]);
+    let span = at(chosen.last()).zip(at(chosen.first())).map_or(0.0, |(last, first)| last - first);
     // what programs can play
-    (span / (times.len().max(2) - 1) as f64).clamp(0.02, 1.0)
+    (span / (chosen.len().max(2) - 1) as f64).clamp(0.02, 1.0)
 }
 
-fn write_moving(kind: Kind, out: &Path, images: &[Image], seconds: f64) -> Result<(), Refusal> {
+fn write_moving(kind: Kind, out: &Path, film: &ImageFile, seconds: f64) -> Result<(), Refusal> {
     match kind {
-        Kind::Gif => Ok(write_gif(out, images, seconds)?),
+        Kind::Gif => Ok(write_gif(out, film, seconds)?),
         Kind::Film => {
-            write_film(out, images, 1.0 / seconds).map_err(|error| Refusal::work("film", error.to_string()))
+            write_film(out, film, 1.0 / seconds).map_err(|error| Refusal::work("film", error.to_string()))
         }
-        _ => Ok(write_animated_png(out, images, seconds)?),
+        _ => Ok(write_animated_png(out, film, seconds)?),
     }
 }

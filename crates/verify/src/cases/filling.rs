@@ -1,4 +1,9 @@
 //! Bodies that are fillings of shapes: what is known of them without a mesh.
+//!
+//! The faces of a filling are chords of its surface: it falls short of the volume by `h²/8 ∫ H dA` with the mean curvature `H`, by the
+//! square of the length of edges, which is the power -2/3 of the number of cells. Of 30, 100 and 300 thousand tetrahedra the organ has 1.26145,
+//! 1.26513 and 1.26642 dm³, which that power takes to 1.2677 dm³ and to what is missing from it: 0.20 % of a hundred thousand, so 0.93 %
+//! of ten thousand and 4.3 % of a thousand. How the lattice lies to the shape changes that by up to a quarter.
 
 use crate::{Case, Reading, Tolerance};
 
@@ -10,11 +15,11 @@ const WEIGHT: Case = Case {
     settings: &["bodies.liver.mesh.size=0", "bodies.liver.mesh.count=10000"],
     reading: Reading::component("hanging", 1).after(70),
     refinement: None,
-    // 1060 kg/m³ x 9.81 m/s² x 1.2651e-3 m³
-    reference: 13.155,
-    // the volume of a filling of that size is wrong by 2 % at most
-    tolerance: Tolerance::Relative(0.02),
-    source: "density times gravity times the volume of a filling of 100,000 tetrahedra",
+    // 1060 kg/m³ x 9.81 m/s² x 1.2677e-3 m³
+    reference: 13.182,
+    // 0.93 % and a quarter of it
+    tolerance: Tolerance::Relative(0.012),
+    source: "density times gravity times the volume to which fillings tend",
     mutation: "bodies.liver.material.density=1200",
 };
 
@@ -30,8 +35,8 @@ pub(super) const CASES: &[Case] = &[
             "shapes.tool.motion.offsets=[[0, 0, 0], [0, 0, 0]]",
         ],
         reading: Reading::component("hanging", 1).after(100),
-        // a thousand tetrahedra cut off more of the shape's edges
-        tolerance: Tolerance::Relative(0.06),
+        // 4.3 % and a quarter of it
+        tolerance: Tolerance::Relative(0.054),
         mutation: "bodies.liver.material.density=1400",
         ..WEIGHT
     },
@@ -48,8 +53,8 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::last("kinetic").after(100),
         // 1/2 m (g t)², 1.341 kg and 2 ms
         reference: 2.58e-4,
-        // the volume is right to 2 %; waves from the ligaments have come as far as 2 cm into twenty, and brake a tenth of it at most
-        tolerance: Tolerance::Relative(0.14),
+        // the volume is right to 0.3 %; waves from the ligaments have come as far as 2 cm into twenty, and brake a tenth of it at most
+        tolerance: Tolerance::Relative(0.12),
         source: "free fall of what the ligaments do not hold yet",
         mutation: "world.gravity=[0, -20, 0]",
         ..WEIGHT

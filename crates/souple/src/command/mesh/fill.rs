@@ -7,9 +7,9 @@ use souple_mesh::implicit::SHAPES;
 use souple_mesh::repair::{RepairLimits, repair};
 use souple_mesh::simplify::{Goal, simplify};
 use souple_mesh::{ElementKind, Mesh, MeshError, TriangleSurface};
-use souple_table::{Parameter, Range, Value, ValueError, Values, nearest};
+use souple_table::{Parameter, Range, Value, ValueError, Values, in_number, nearest};
 
-use super::{parameters, read};
+use super::{announce, parameters, read};
 use crate::command::Refusal;
 
 pub const SCALE: Parameter =
@@ -79,40 +79,21 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     let given = parameters::values(texts, &known)?;
     parameters::refuse_unknown(&given, &known)?;
     let (filling, others) = parameters::split(given, PARAMETERS);
-    let wanted = match filling.get("count") {
-        Some(Value::Integer(count)) => count,
-        _ => 0,
-    };
     let options = filling.completed(PARAMETERS).map_err(MeshError::from);
     let options = options.and_then(|values| Options::from_values(&values)).map_err(refuse)?;
     if let Some(entry) = shape {
         let body = entry.values(others).map_err(MeshError::from).and_then(|values| (entry.build)(&values));
-        let mesh = body.and_then(|body| options.fill_body(&body)).map_err(refuse)?;
-        let notes = missed(wanted, &mesh).into_iter().collect();
-        return Ok((mesh, notes));
+        let filled = body.and_then(|body| options.fill_body(&body)).map_err(refuse)?;
+        return Ok((filled.mesh, filled.notes));
     }
     let scale = others.completed(&[SCALE]).map_err(|error| refuse(error.into()))?.number("scale");
     let (mut mesh, mut notes) = read(Path::new(input))?;
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
     notes.extend(mesh.bounds().doubt().map(|doubt| format!("the surface: {doubt}")));
+    surface_of(&mesh).iter().for_each(announce);
     let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
-    notes.extend(missed(wanted, &filled.mesh));
     Ok((filled.mesh, notes))
-}
-
-/// A count is met within this part of it, or else it is said.
-const MET: f64 = 0.1;
-/// Fewer cells than this lie in layers of which each is a good part of all.
-const FEW: f64 = 2000.0;
-
-/// What to say of a filling that has not about as many cells as were wanted (0: any number).
-fn missed(wanted: i64, mesh: &Mesh) -> Option<String> {
-    let (wanted, cells) = (wanted as f64, mesh.cell_count());
-    (wanted > 0.0 && (cells as f64 / wanted - 1.0).abs() > MET).then(|| {
-        let few = if wanted < FEW { ": of few cells, whole layers come and go at once" } else { "" };
-        format!("{cells} cells are as near to {wanted} as was found{few}")
-    })
 }
 
 const SIMPLIFY: &[Parameter] = &[
@@ -168,10 +149,8 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
         ));
     }
     if simple.crossings > 0 {
-        notes.push(format!(
-            "{} pairs of triangles pass through each other, as in the given surface",
-            simple.crossings
-        ));
+        let pairs = in_number(simple.crossings, "pair of triangles passes", "pairs of triangles pass");
+        notes.push(format!("{pairs} through each other, as in the given surface"));
     }
     Ok((mesh_of(&simple.surface), notes))
 }

@@ -1,6 +1,7 @@
 //! What is told of a mesh or a surface, in sentences: the same as in the JSON document, without its brackets.
 
 use serde_json::Value as Json;
+use souple_table::{counted, in_number};
 
 /// Lines for people of a document of `souple mesh`; `name` is the file's.
 pub fn sentences(name: &str, document: &Json) -> Vec<String> {
@@ -42,11 +43,11 @@ pub fn sentences(name: &str, document: &Json) -> Vec<String> {
 
 /// `20 points, 24 tet4 in one part`.
 fn contents(document: &Json) -> String {
-    let mut parts = vec![format!("{} points", document["points"])];
+    let mut parts = vec![counted(document["points"].as_u64().unwrap_or(0), "point")];
     let cells = document["cells"].as_object().into_iter().flatten();
     parts.extend(cells.map(|(kind, count)| format!("{count} {kind}")));
     if let Some(facets @ 1..) = document["facets"].as_u64() {
-        parts.push(format!("{facets} facets"));
+        parts.push(counted(facets, "facet"));
     }
     let components = document["components"].as_u64().or(document["faults"]["components"].as_u64());
     let in_parts = match components {
@@ -63,7 +64,9 @@ fn quality(document: &Json) -> String {
         return String::new();
     }
     let inverted = match quality["inverted_cells"].as_u64() {
-        Some(count @ 1..) => format!("{count} cells are inverted; "),
+        Some(count @ 1..) => {
+            format!("{}; ", in_number(count as usize, "cell is inverted", "cells are inverted"))
+        }
         _ => String::new(),
     };
     format!(

@@ -1,6 +1,9 @@
 //! From what a person asks for to how a picture is drawn and from where it is seen.
 
-use souple_io::picture::{Backdrop, COLOUR_MAPS, Cut, EdgeStyle, LegendPlace, Marks, Theme, View};
+use souple_io::picture::{
+    Backdrop, COLOUR_MAPS, COLOUR_SCALES, ColourMap, ColourScale, Cut, EdgeStyle, LegendPlace, Marks, Theme,
+    View,
+};
 use souple_math::Vec3;
 use souple_run::show::{Arrows, Figure, Floor, Stage, map_of};
 use souple_scene::spec::picture::PictureSpec;
@@ -23,6 +26,18 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         }
         None => map_of(colour).unwrap_or_default(),
     };
+    let scale = match &arguments.colour_scale {
+        Some(name) => {
+            COLOUR_SCALES
+                .find(name)
+                .map_err(|error| Refusal::request("colour_scale", name.clone(), "", error.to_string()))?
+                .build
+        }
+        None => ColourScale::default(),
+    };
+    if scale == ColourScale::Logarithmic {
+        check_log(colours, arguments.range)?;
+    }
     let edges = match arguments.edges.as_deref().unwrap_or("drawn") {
         "drawn" => EdgeStyle::Drawn,
         "hidden" => EdgeStyle::Hidden,
@@ -80,6 +95,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         view: None,
         colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
         colours,
+        scale,
         range: arguments.range.map(|[low, high]| (low, high)),
         cut,
         explode: arguments.explode,
@@ -91,6 +107,28 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         edges,
         floor: if arguments.floor { Floor::Below } else { Floor::None },
     })
+}
+
+/// Refuses what a scale of powers of ten cannot have: colours about zero or with a meaning of their own, ends that are not above
+/// zero.
+fn check_log(colours: ColourMap, range: Option<[f64; 2]>) -> Result<(), Refusal> {
+    if colours == ColourMap::Diverging || colours.own_range().is_some() {
+        let message =
+            "a scale of powers of ten has no zero and no kinds, which the colours of this map stand for";
+        return Err(Refusal::request(
+            "colour_scale",
+            "log",
+            "the map sequential or grey",
+            message.to_owned(),
+        ));
+    }
+    match range {
+        Some([low, _]) if low <= 0.0 => {
+            let message = format!("a scale of powers of ten cannot begin at {low}");
+            Err(Refusal::request("range", low.to_string(), "two numbers above 0", message))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// From where they are seen.

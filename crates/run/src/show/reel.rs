@@ -1,0 +1,186 @@
+//! A run as it lies on disk: its moments are read when they are shown, and no others.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use souple_io::read_series;
+use souple_mesh::Mesh;
+
+use super::gap::add_gap;
+use super::{BodyMoment, Moment, Show, ShowError, Stage};
+
+/// The moments of a run, or of a mesh by itself.
+#[derive(Clone, Debug)]
+pub struct Reel {
+    pub stage: Stage,
+    /// Of each moment [s].
+    times: Vec<f64>,
+    takes: Takes,
+    /// The run from whose bodies the field `gap` is measured.
+    against: Option<Box<Reel>>,
+}
+
+#[derive(Clone, Debug)]
+enum Takes {
+    /// Of each body the file of each moment.
+    Files(Vec<Series>),
+    Held(Vec<Moment>),
+}
+
+#[derive(Clone, Debug)]
+struct Series {
+    name: String,
+    files: Vec<PathBuf>,
+}
+
+impl Reel {
+    /// The frames of a run's folder, of which none is read yet.
+    ///
+    /// # Errors
+    /// There are none, their times differ from body to body, or a list of them cannot be read.
+    pub fn of_run(folder: &Path, stage: Stage) -> Result<Self, ShowError> {
+        let no_frames = |found: String| Err(ShowError::NoFrames { folder: folder.to_owned(), found });
+        let frames = folder.join("frames");
+        let Ok(entries) = std::fs::read_dir(&frames) else {
+            return no_frames("there is no folder `frames` that can be read".to_owned());
+        };
+        let mut lists: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        lists.retain(|path| path.extension().is_some_and(|extension| extension == "pvd"));
+        lists.sort();
+        let mut times: Vec<f64> = Vec::new();
+        let mut takes: Vec<Series> = Vec::new();
+        for list in &lists {
+            let name = list.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let (own, files): (Vec<f64>, Vec<PathBuf>) = read_series(list)?.into_iter().unzip();
+            if takes.is_empty() {
+                times.clone_from(&own);
+            }
+            if own != times {
+                return no_frames(format!("the times of `{name}` are not those of the body before it"));
+            }
+            takes.push(Series { name, files });
+        }
+        if times.is_empty() {
+            return no_frames("there is no series (`.pvd`) in `frames`".to_owned());
+        }
+        Ok(Self { stage, times, takes: Takes::Files(takes), against: None })
+    }
+
+    /// A mesh by itself, as it stands.
+    pub fn of_mesh(name: &str, mesh: Mesh) -> Self {
+        let Show { stage, moments } = Show::of_mesh(name, mesh);
+        let times = moments.iter().map(|moment| moment.time).collect();
+        Self { stage, times, takes: Takes::Held(moments), against: None }
+    }
+
+    /// Without the bodies that wear a skin, which hides them.
+    #[must_use]
+    pub fn without_worn(mut self) -> Self {
+        match &mut self.takes {
+            Takes::Files(takes) => {
+                let skins: Vec<String> = takes.iter().map(|series| series.name.clone()).collect();
+                takes.retain(|series| !skins.contains(&crate::frames::worn_by(&series.name)));
+            }
+            Takes::Held(moments) => {
+                *moments = std::mem::take(moments).into_iter().map(Moment::without_worn).collect();
+            }
+        }
+        self
+    }
+
+    /// With the field `gap`, see [`Show::against`].
+    #[must_use]
+    pub fn against(mut self, other: Self) -> Self {
+        self.against = Some(Box::new(other));
+        self
+    }
+
+    /// Of all moments [s].
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The moment nearest to a time [s].
+    pub fn nearest(&self, time: f64) -> usize {
+        let off = |index: &usize| (self.times[*index] - time).abs();
+        (0..self.times.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
+    }
+
+    /// At most `count` moments, evenly chosen, the first and the last among them.
+    pub fn chosen(&self, count: usize) -> Vec<usize> {
+        let all = self.times.len();
+        match count.clamp(1, all.max(1)) {
+            1 => (all.saturating_sub(1)..all).collect(),
+            wanted => (0..wanted).map(|index| index * (all - 1) / (wanted - 1)).collect(),
+        }
+    }
+
+    /// Reads a moment; `before` lends its meshes where cells are the same.
+    ///
+    /// # Errors
+    /// A file cannot be read; the other run of a `gap` has no body of a name.
+    pub fn moment(&self, index: usize, before: Option<&Moment>) -> Result<Moment, ShowError> {
+        let mut moment = match &self.takes {
+            Takes::Held(moments) => moments[index].clone(),
+            Takes::Files(takes) => {
+                let body = |series: &Series| {
+                    let known =
+                        before.and_then(|moment| moment.bodies.iter().find(|b| b.name == series.name));
+                    BodyMoment::of_file(&series.name, &series.files[index], known.map(|body| &body.mesh))
+                };
+                let bodies: Result<_, _> = takes.iter().map(body).collect();
+                Moment { time: self.times[index], bodies: bodies? }
+            }
+        };
+        if let Some(other) = &self.against {
+            let there = other.moment(other.nearest(moment.time), None)?;
+            add_gap(&mut moment, &there.bodies)?;
+        }
+        Ok(moment)
+    }
+
+    /// The last moment that can be drawn, or the last if none can.
+    ///
+    /// # Errors
+    /// As [`Self::moment`].
+    pub fn last_drawable(&self) -> Result<Moment, ShowError> {
+        let last = self.times.len() - 1;
+        for index in (0..=last).rev() {
+            let moment = self.moment(index, None)?;
+            if moment.is_drawable() {
+                return Ok(moment);
+            }
+        }
+        self.moment(last, None)
+    }
+
+    /// Some moments, all in memory.
+    ///
+    /// # Errors
+    /// As [`Self::moment`].
+    pub fn show(&self, indices: &[usize]) -> Result<Show, ShowError> {
+        let mut moments: Vec<Moment> = Vec::with_capacity(indices.len());
+        for index in indices {
+            let moment = self.moment(*index, moments.last())?;
+            moments.push(moment);
+        }
+        Ok(Show { stage: self.stage.clone(), moments })
+    }
+}
+
+impl BodyMoment {
+    /// `known`: the mesh of a frame before, taken again where the cells are the same.
+    fn of_file(name: &str, path: &Path, known: Option<&Arc<Mesh>>) -> Result<Self, souple_io::IoError> {
+        let souple_io::Dataset { mesh, point_fields, cell_fields, .. } = souple_io::read_dataset(path)?;
+        // the cells of a sheet are read as facets, fields on them in the same order
+        let mesh = if mesh.cell_count() == 0 { mesh.facets_as_cells() } else { mesh };
+        let positions = mesh.points.clone();
+        let mesh = match known {
+            Some(known) if known.blocks == mesh.blocks && known.points.len() == mesh.points.len() => {
+                Arc::clone(known)
+            }
+            _ => Arc::new(mesh),
+        };
+        Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields, frames: Vec::new() })
+    }
+}
