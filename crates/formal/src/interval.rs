@@ -33,9 +33,9 @@ impl Interval {
         (low <= high && low.is_finite() && high.is_finite()).then_some(Self { low, high })
     }
 
-    /// Of bounds that were computed.
+    /// Of bounds that were computed. Zero stays zero, so that a sum of squares has a root: what is below the least number is none.
     fn rounded(low: f64, high: f64) -> Known {
-        let spread = |x: f64| ROUNDINGS * x.abs() + f64::MIN_POSITIVE;
+        let spread = |x: f64| ROUNDINGS * x.abs();
         Self::of(low - spread(low), high + spread(high))
     }
 
@@ -316,6 +316,12 @@ mod tests {
             let share = check(text, [[-0.2, 0.6], [0.1, 0.4], [-0.3, 0.3]]).unwrap();
             assert!(share < 1.1, "{text}: {share}");
         }
+    }
+
+    /// A sum of squares has a root also around zero.
+    #[test]
+    fn distances_are_known_around_the_origin() {
+        assert!(check("0.4 - sqrt(a^2 + b^2 + c^2)", [[-1.0, 1.0], [-0.5, 0.7], [-0.2, 0.3]]).is_some());
     }
 
     /// Where a formula may be undefined nothing is said of it.

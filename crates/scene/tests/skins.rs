@@ -283,6 +283,54 @@ fn a_skin_begins_on_the_points_at_work() {
     assert!(moved < 0.05 * 0.008, "{moved}");
 }
 
+/// A thread of the target between nodes is told of, and so is a part that outruns the skin; what is thick and slow is not. What a
+/// step takes is known without making it.
+#[test]
+fn what_a_grid_does_not_see_is_told() {
+    let scene = |thread: f64, speed: f64| {
+        let text = format!(
+            r#"
+            format = 1
+            [world]
+            period = "10 ms"
+            [skins.ball]
+            voxel = 0.1
+            domain = [[-1, -1, -1], [1, 1, 1]]
+            terms = [{{ term = "attraction", strength = 1 }}]
+            [[skins.ball.start]]
+            part = "formula"
+            formula = "0.5 - sqrt(x^2 + y^2 + z^2)"
+            low = [-1, -1, -1]
+            high = [1, 1, 1]
+            [[skins.ball.parts]]
+            part = "formula"
+            formula = "0.5*clamp(max(0.4 - hypot(hypot(x, y), z), min({thread} - hypot(y - 0.05, z - 0.05), 0.9 - abs(x)))/0.2, -1, 1)"
+            low = [-1, -1, -1]
+            high = [1, 1, 1]
+            motion = ["{speed}*t", 0, 0]
+            "#
+        );
+        started(&text)
+    };
+    let doubts = |thread: f64, speed: f64| {
+        let (world, skins) = scene(thread, speed);
+        skins[0].doubts(&world, 1.0).join("; ")
+    };
+    assert_eq!(doubts(0.2, 0.1), "");
+    let thin = doubts(0.045, 0.1);
+    assert!(thin.contains("thinner than a voxel of 0.1 m near"), "{thin}");
+    // half of the strength, where the potential is one half above its iso value
+    let fast = doubts(0.2, 0.6);
+    assert!(fast.contains("parts[0]") && fast.contains("follows at 0.500 m/s at most"), "{fast}");
+    let (world, skins) = scene(0.2, 0.1);
+    let cost = skins[0].cost(&world).expect("a step is made");
+    let blocks = skins[0].view(&world).grid.keys.len();
+    assert!(cost.nodes > 0 && cost.triangles > 100 && cost.seconds > 0.0);
+    // two states of 512 values in 32 bits and a key for each block at least
+    assert!(cost.bytes > 2 * blocks * (4 * 512 + 8), "{cost:?}");
+    assert_eq!(world.time(), 0.0);
+}
+
 /// The pages name every part, term, warp, way to combine and quantity of skins that the program has, and no other.
 #[test]
 fn pages_name_what_skins_have() {

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use souple_engine::FieldState;
 use souple_math::Vec3;
+use souple_mesh::SignedDistance;
 
 use crate::error::SkinError;
 use crate::grid::{EDGE, FARTHEST, Lattice};
@@ -126,19 +127,21 @@ impl Skin {
         };
         let fine = half.sampled(bounds.low, bounds.high, &placed).ok()?;
         let (fine, _) = surface_of(half.grid(&fine), &half.lattice);
-        let told = |place: Vec3| {
+        // values between nodes come near zero at what is thin, triangles do not
+        let own = self.sampled(bounds.low, bounds.high, &placed).ok();
+        let own = own.map(|own| surface_of(self.grid(&own), &self.lattice).0);
+        let seen = own.and_then(|own| SignedDistance::new(own.into_surface()).ok());
+        let is_unseen = |point: &&Vec3| {
+            let distance = |seen: &SignedDistance| seen.distance(**point).abs();
+            seen.as_ref().map_or(f64::INFINITY, distance) > SEEN * self.lattice.voxel
+        };
+        fine.points.iter().find(is_unseen).map(|place| {
             format!(
                 "its target has something thinner than a voxel of {} m near {:?} at t = {} s, which its grid does not see; smaller voxels would",
                 self.lattice.voxel,
                 place.to_array().map(|c| (1e4 * c).round() * 1e-4),
                 at.time
             )
-        };
-        let Ok(own) = self.sampled(bounds.low, bounds.high, &placed) else {
-            return fine.points.first().map(|place| told(*place));
-        };
-        let grid = self.grid(&own);
-        let is_unseen = |point: &&Vec3| grid.sample(self.lattice.to_voxels(**point)).0.abs() > SEEN;
-        fine.points.iter().find(is_unseen).map(|place| told(*place))
+        })
     }
 }

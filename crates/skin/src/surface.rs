@@ -33,11 +33,14 @@ pub(crate) fn farthest_within(points: &[Vec3], grid: Grid, lattice: &Lattice) ->
 }
 
 impl Polygons {
+    pub(crate) fn into_surface(self) -> TriangleSurface {
+        let Self { points, triangles } = self;
+        TriangleSurface { points, triangles, ..TriangleSurface::default() }
+    }
+
     /// The greatest distance of its points from another surface [m]; `None` where one of them has no points.
     pub fn farthest_from(&self, other: &Self) -> Option<f64> {
-        let (points, triangles) = (other.points.clone(), other.triangles.clone());
-        let other = TriangleSurface { points, triangles, ..TriangleSurface::default() };
-        let other = SignedDistance::new(other).ok()?;
+        let other = SignedDistance::new(other.clone().into_surface()).ok()?;
         self.points.par_iter().map(|point| other.distance(*point).abs()).reduce_with(f64::max)
     }
 }
