@@ -43,12 +43,12 @@ VTK_READERS = {
     "vtu": vtk.vtkXMLUnstructuredGridReader, "vtk": vtk.vtkUnstructuredGridReader, "ply": vtk.vtkPLYReader,
     "obj": vtk.vtkOBJReader, "stl": vtk.vtkSTLReader, "glb": vtk.vtkGLTFReader,
 }
-def volume(data):
+def volume(data, of_cell=lambda volume: volume):
     sizes = vtk.vtkCellSizeFilter()
     sizes.SetInputData(data)
-    sizes.SetComputeSum(True)
     sizes.Update()
-    return sizes.GetOutput().GetFieldData().GetArray("Volume").GetValue(0)
+    volumes = sizes.GetOutput().GetCellData().GetArray("Volume")
+    return sum(of_cell(volumes.GetValue(cell)) for cell in range(volumes.GetNumberOfTuples()))
 
 for path in sys.argv[1:]:
     extension = path.rsplit(".", 1)[1]
@@ -67,7 +67,9 @@ for path in sys.argv[1:]:
         reader = vtk.vtkXMLUnstructuredGridReader()
         reader.SetFileName(path + ".again.vtu")
         reader.Update()
-        print(path, len(mesh.points), sum(len(block.data) for block in mesh.cells), volume(reader.GetOutput()))
+        # wedges of Gmsh are those of VTK in a mirror, and meshio writes them as they are
+        cells = sum(len(block.data) for block in mesh.cells)
+        print(path, len(mesh.points), cells, volume(reader.GetOutput(), abs))
 "#;
 
 #[test]
@@ -99,6 +101,10 @@ fn other_programs_read_what_we_write() {
         files.push((path.clone(), [5, cells]));
         // what holds several kinds of cells, or middles of edges
         for element in ["mixed", "tet10", "hex20", "prism15", "pyramid13", "mixed_quadratic"] {
+            // meshio 5.3 has the order of nodes of quadratic wedges and pyramids and not their dimension: no file with one can be read
+            if extension == "msh" && ["prism15", "pyramid13", "mixed_quadratic"].contains(&element) {
+                continue;
+            }
             let mesh = of_kinds(element);
             let path = folder.join(format!("{}_{element}.{extension}", entry.name));
             if entry.build.holds.is_surface()

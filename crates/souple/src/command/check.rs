@@ -122,7 +122,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         ));
     }
     print_line(format_args!(
-        "  about {:.2} ms per step, {:.1} s for {}, {:.1} MB of forces and matrices",
+        "  about {:.2} ms per step, {:.1} s for {} without what is written, {:.1} MB of forces and matrices",
         1e3 * trial.seconds_per_step,
         trial.seconds_of(steps),
         souple_table::counted(steps, "step"),
