@@ -6,7 +6,7 @@
 use souple_math::Vec3;
 
 use super::{Shape, around};
-use crate::repair::components;
+use crate::repair::{components, crossings};
 use crate::{BoundingBox, MeshError, SignedDistance, TriangleSurface};
 
 /// The least of the signed distances to closed surfaces that may overlap; hollows belong to the part around them.
@@ -59,9 +59,12 @@ impl JoinedSolids {
         Ok(Self { parts, part_of })
     }
 
-    /// Whether pairs of triangles are of different solids: of one that crosses itself normals do not tell the inside.
-    pub fn separates(&self, crossings: &[[u32; 2]]) -> bool {
-        crossings.iter().all(|[a, b]| self.part_of[*a as usize] != self.part_of[*b as usize])
+    /// Whether triangles of the surface that pass through each other are of different solids, as far as that could be looked at: of
+    /// one that crosses itself normals do not tell the inside.
+    pub fn separates(&self, surface: &TriangleSurface) -> bool {
+        let found = crossings(surface, usize::MAX);
+        let is_between = |[a, b]: &[u32; 2]| self.part_of[*a as usize] != self.part_of[*b as usize];
+        !found.is_cut_off && found.pairs.iter().all(is_between)
     }
 
     /// How many solids are joined.

@@ -127,7 +127,7 @@ fn solid(surface: TriangleSurface) -> Result<Box<dyn Shape>, MeshError> {
     let shape = SurfaceShape::new(surface.clone())?;
     if shape.sign() == Sign::WindingNumber
         && let Ok(joined) = JoinedSolids::new(&surface)
-        && joined.separates(&shape.diagnosis().crossings)
+        && joined.separates(&surface)
     {
         return Ok(Box::new(joined));
     }
