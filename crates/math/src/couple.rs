@@ -25,7 +25,8 @@ pub fn couple(points: impl Iterator<Item = Vec3> + Clone, moment: Vec3) -> (Vec3
     }
     // below the least that is borne 1/J goes back to zero, so that points that come to a line feel no blow
     let least = LEAST_ARM * LEAST_ARM * extent;
-    let inverse = |inertia: f64| if inertia > least { 1.0 / inertia } else { inertia.max(0.0) / (least * least) };
+    let inverse =
+        |inertia: f64| if inertia > least { 1.0 / inertia } else { inertia.max(0.0) / (least * least) };
     // ω = J⁺ M
     let axes = eigen_symmetric(&spread);
     let parts = axes.vectors.columns.iter().zip(axes.values.to_array());
@@ -81,7 +82,8 @@ mod tests {
     /// However near to a line points are, the forces stay below those of arms of the least length, and what is across stays.
     #[test]
     fn points_near_a_line_bear_no_more_than_they_can() {
-        let (axis, side) = (Vec3::new(1.0, 1.0, 1.0) / 3.0_f64.sqrt(), Vec3::new(1.0, -1.0, 0.0) / 2.0_f64.sqrt());
+        let (axis, side) =
+            (Vec3::new(1.0, 1.0, 1.0) / 3.0_f64.sqrt(), Vec3::new(1.0, -1.0, 0.0) / 2.0_f64.sqrt());
         for off in [1e-16, 1e-12, 1e-6, 1e-3, 0.03, 0.1, 0.3] {
             let place = |k: i32| axis * f64::from(k) + side * if k % 2 == 0 { off } else { -off };
             let points: Vec<Vec3> = (-3..=3).map(place).collect();

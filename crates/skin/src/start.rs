@@ -141,11 +141,13 @@ impl Skin {
             });
         }
         let blocks = Blocks { first: first.map(|c| c as i64), counts: counts.map(|c| c as i64) };
-        let mut found = self.looked_for(blocks, as_what)?.ok_or_else(|| SkinError::TooManyBlocks {
+        let too_many = |cubes: usize, level: u32| SkinError::TooManyCubes {
             voxel: self.voxel(),
             size: (high - low).to_array(),
-            blocks: counts.iter().product(),
-        })?;
+            cubes,
+            edge: edge * f64::from(level).exp2() * self.voxel(),
+        };
+        let mut found = self.looked_for(blocks, as_what)?.map_err(|(cubes, level)| too_many(cubes, level))?;
         // along rows, as keys ascend
         found.sort_unstable_by_key(|block| key_of(*block));
         let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
@@ -157,12 +159,13 @@ impl Skin {
         Ok(field)
     }
 
-    /// Blocks in which a function may change its sign, or come near to that; `None` where these are too many.
+    /// Blocks in which a function may change its sign, or come near to that; how many cubes of which level, where these are
+    /// too many.
     fn looked_for(
         &self,
         blocks: Blocks,
         as_what: &dyn Beginning,
-    ) -> Result<Option<Vec<[i64; 3]>>, SkinError> {
+    ) -> Result<Result<Vec<[i64; 3]>, (usize, u32)>, SkinError> {
         let widest = blocks.counts.into_iter().max().unwrap_or(1);
         let level = u64::try_from(widest).unwrap_or(1).next_power_of_two().trailing_zeros();
         let mut cubes = vec![Cube { low: blocks.first, level }];
@@ -187,12 +190,12 @@ impl Skin {
                 finer.extend(eighths.filter(is_within).map(|low| Cube { low, level: level - 1 }));
             }
             if finer.len() > MOST_SAMPLED {
-                return Ok(None);
+                return Ok(Err((finer.len(), finer[0].level)));
             }
             let is_finest = cubes.first().is_none_or(|cube| cube.level == 0);
             cubes = finer;
             if is_finest {
-                return Ok(Some(cubes.into_iter().map(|cube| cube.low).collect()));
+                return Ok(Ok(cubes.into_iter().map(|cube| cube.low).collect()));
             }
         }
     }
