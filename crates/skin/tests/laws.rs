@@ -46,7 +46,8 @@ fn a_sphere_under_tension_shrinks_by_its_formula() {
     }
 }
 
-/// The error of that falls by the second order in space, as long as the sphere has lost little.
+/// The error of that falls by the second order in space, as long as the sphere has lost little: a part of it is that of the
+/// volume's chords, which a sphere at rest has too.
 #[test]
 fn shrinking_is_of_second_order() {
     let [coarse, fine] = [16.0, 32.0].map(|cells| shrunk(cells, 0.125));

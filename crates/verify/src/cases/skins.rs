@@ -58,7 +58,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "skin_shrinking_order",
         capabilities: &["DC-5"],
-        what: "order in space of the volume of a sphere under tension that lost an eighth of R^2",
+        what: "order in space of the volume of a sphere under tension that lost an eighth of R^2, with what chords take of it",
         reading: Reading::last("volume").after(12),
         refinement: Some(Refinement {
             size_of: "voxel [m]",
