@@ -31,6 +31,8 @@ pub struct Cost {
 const MOMENTS: u32 = 32;
 /// What the grid sees of a surface is nearer to it than this, but for what is thinner than a voxel [voxels].
 const SEEN: f64 = 2.0;
+/// Blocks that are looked at for what is thin: some seconds of a target whose ranges are not known.
+const MOST_LOOKED: usize = 1 << 16;
 /// Places along each edge of a box, and potentials, at which speeds are asked for.
 const PLACES: u32 = 5;
 const EXCESSES: u32 = 16;
@@ -154,10 +156,19 @@ impl Skin {
             redistance: self.redistance,
             reaction: None,
         };
-        let fine = half.sampled(bounds.low, bounds.high, &placed).ok()?;
+        let fine = match half.sampled(bounds.low, bounds.high, &placed, MOST_LOOKED) {
+            Ok(fine) => fine,
+            Err(why @ (SkinError::TooManyCubes { .. } | SkinError::Grown { .. })) => {
+                return Some(format!(
+                    "it was not looked at whether its target has something thinner than a voxel, by half of its voxels: {why}"
+                ));
+            }
+            // it is not there, or does not end in its box: the skin says so itself where it matters
+            Err(_) => return None,
+        };
         let (fine, _) = surface_of(half.grid(&fine), &half.lattice);
         // values between nodes come near zero at what is thin, triangles do not
-        let own = self.sampled(bounds.low, bounds.high, &placed).ok();
+        let own = self.sampled(bounds.low, bounds.high, &placed, MOST_LOOKED).ok();
         let own = own.map(|own| surface_of(self.grid(&own), &self.lattice).0);
         let seen = own.and_then(|own| SignedDistance::new(own.into_surface()).ok());
         let is_unseen = |point: &&Vec3| {

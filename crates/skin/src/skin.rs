@@ -445,8 +445,9 @@ impl Skin {
         let mut placed = target.new_scratch();
         target.place(at, &mut placed).ok()?;
         let bounds = target.bounds(&placed)?;
-        let sampled =
-            self.sampled(bounds.low, bounds.high, &PlacedTarget { target, scratch: &placed }).ok()?;
+        let sampled = self
+            .sampled(bounds.low, bounds.high, &PlacedTarget { target, scratch: &placed }, MOST_SAMPLED)
+            .ok()?;
         let [own_grid, aim_grid] = [field, &sampled].map(|field| self.view(field).grid);
         let [own, aim] = [own_grid, aim_grid].map(|grid| surface_of(grid, &self.lattice).0);
         if own.points.is_empty() || aim.points.is_empty() {

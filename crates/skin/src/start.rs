@@ -106,7 +106,7 @@ impl Skin {
         as_what: &dyn Beginning,
         scratch: &mut SkinScratch,
     ) -> Result<FieldState, SkinError> {
-        let mut field = self.sampled(low, high, as_what)?;
+        let mut field = self.sampled(low, high, as_what, MOST_SAMPLED)?;
         self.make_distance(&mut field, scratch)?;
         self.find_crossings(&field, scratch);
         self.measure(&mut field, scratch, 0.0)?;
@@ -119,7 +119,8 @@ impl Skin {
         Ok(field)
     }
 
-    /// The zero level of a function within a box [m], on the nodes around it; nothing is measured.
+    /// The zero level of a function within a box [m], on the nodes around it; nothing is measured. At most so many blocks are
+    /// looked at.
     ///
     /// # Errors
     /// There is no inside, it does not end within the box, or it is too large for its voxels.
@@ -128,6 +129,7 @@ impl Skin {
         low: Vec3,
         high: Vec3,
         as_what: &dyn Beginning,
+        most: usize,
     ) -> Result<FieldState, SkinError> {
         let edge = EDGE as f64;
         let first = self.lattice.to_voxels(low).to_array().map(|c| (c / edge).floor() - 1.0);
@@ -144,10 +146,12 @@ impl Skin {
         let too_many = |cubes: usize, level: u32| SkinError::TooManyCubes {
             voxel: self.voxel(),
             size: (high - low).to_array(),
+            most,
             cubes,
             edge: edge * f64::from(level).exp2() * self.voxel(),
         };
-        let mut found = self.looked_for(blocks, as_what)?.map_err(|(cubes, level)| too_many(cubes, level))?;
+        let mut found =
+            self.looked_for(blocks, as_what, most)?.map_err(|(cubes, level)| too_many(cubes, level))?;
         // along rows, as keys ascend
         found.sort_unstable_by_key(|block| key_of(*block));
         let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
@@ -165,6 +169,7 @@ impl Skin {
         &self,
         blocks: Blocks,
         as_what: &dyn Beginning,
+        most: usize,
     ) -> Result<Result<Vec<[i64; 3]>, (usize, u32)>, SkinError> {
         let widest = blocks.counts.into_iter().max().unwrap_or(1);
         let level = u64::try_from(widest).unwrap_or(1).next_power_of_two().trailing_zeros();
@@ -189,7 +194,7 @@ impl Skin {
                     |low: &[i64; 3]| (0..3).all(|axis| low[axis] < blocks.first[axis] + blocks.counts[axis]);
                 finer.extend(eighths.filter(is_within).map(|low| Cube { low, level: level - 1 }));
             }
-            if finer.len() > MOST_SAMPLED {
+            if finer.len() > most {
                 return Ok(Err((finer.len(), finer[0].level)));
             }
             let is_finest = cubes.first().is_none_or(|cube| cube.level == 0);

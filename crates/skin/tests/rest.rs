@@ -7,8 +7,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{number, part, skin, term};
 use souple_math::Vec3;
-use souple_mesh::BoundingBox;
-use souple_skin::target::{Combine, ISO, Moment, Part, Target, TargetScratch, WARPS, Warp};
+use souple_mesh::{BoundingBox, TriangleSurface};
+use souple_skin::target::{
+    Combine, ISO, Moment, PARTS, Part, Particle, Particles, Rows, Surroundings, Target, TargetScratch, WARPS,
+    Warp,
+};
 use souple_skin::{Beginning, PlacedTarget, Polygons, Skin};
 use souple_table::{Value, Values};
 
@@ -26,7 +29,7 @@ fn placed(target: &Target) -> TargetScratch {
     placed
 }
 
-/// One of each kind of part, each warped and combined in another manner.
+/// Parts of several kinds, each warped and combined in another manner.
 fn medley() -> Target {
     let segment = |radius: f64, falloff: &'static str| {
         let ends = [("from", Value::Vector([-0.5, 0.2, 0.0])), ("to", Value::Vector([0.6, -0.1, 0.1]))];
@@ -55,33 +58,106 @@ fn medley() -> Target {
     Target { parts, iso: ISO }
 }
 
-/// What a target is within a box lies in the range that it tells, for boxes of any size and place.
-#[test]
-fn targets_are_within_their_range() {
-    let target = medley();
-    let placed = placed(&target);
+/// Holds what a target is within boxes of any size and place against the range that it tells; of how many of 1029 it tells a sign.
+fn check_ranges(target: &Target, placed: &TargetScratch, what: &str) -> u32 {
     let steps = |i: i32, n: i32| Vec3::new((i % n).into(), (i / n % n).into(), (i / n / n).into());
     let mut told = 0;
     for index in 0..343 {
         for size in [0.02, 0.2, 0.9] {
             let low = steps(index, 7) * 0.31 - Vec3::new(1.05, 1.0, 0.95);
             let extent = Vec3::new(1.0, 0.6, 0.8) * size;
-            let [least, most] = target.range(BoundingBox { low, high: low + extent }, &placed);
+            let [least, most] = target.range(BoundingBox { low, high: low + extent }, placed);
             told += u32::from(least > 0.0 || most < 0.0);
             for place in 0..64 {
                 let share = steps(place, 4) * (1.0 / 3.0);
                 let p = low + Vec3::new(share.x * extent.x, share.y * extent.y, share.z * extent.z);
-                let excess = target.excess(p, &placed);
+                let excess = target.excess(p, placed);
                 // roundings of numbers of order one
                 assert!(
                     least - 1e-12 <= excess && excess <= most + 1e-12,
-                    "{p:?}: {excess} of {least} to {most}"
+                    "{what} at {p:?}: {excess} of {least} to {most}"
                 );
             }
         }
     }
+    told
+}
+
+/// What a target is within a box lies in the range that it tells, for boxes of any size and place.
+#[test]
+fn targets_are_within_their_range() {
+    let target = medley();
     // most boxes are far from the surface, and small ones are known to be
+    let told = check_ranges(&target, &placed(&target), "medley");
     assert!(told > 500, "{told}");
+}
+
+/// A ball of triangles as a file, as a body and as particles.
+struct OneBall(TriangleSurface);
+
+impl Surroundings for OneBall {
+    fn surface(&self, _: &str) -> Result<TriangleSurface, String> {
+        Ok(self.0.clone())
+    }
+
+    fn particles(&self, _: &str, _: &str, radius: f64) -> Result<Particles, String> {
+        let during = [f64::NEG_INFINITY, f64::INFINITY];
+        let led = |position: &Vec3| Particle { position: *position, velocity: Vec3::ZERO, radius, during };
+        Ok(Particles::Led(self.0.points.iter().map(led).collect()))
+    }
+
+    fn body_surface(&self, _: &str) -> Result<(TriangleSurface, usize, Vec<u32>), String> {
+        Ok((self.0.clone(), 0, (0..self.0.points.len() as u32).collect()))
+    }
+}
+
+impl Rows for OneBall {
+    fn positions(&self, _: usize) -> &[Vec3] {
+        &self.0.points
+    }
+
+    fn active(&self, _: usize, _: usize) -> &[u32] {
+        &[]
+    }
+}
+
+/// The same of every kind of part by itself.
+#[test]
+fn each_part_is_within_its_range() {
+    let (points, triangles) = directions(2);
+    let points = points.into_iter().map(|p| p * 0.6 + Vec3::new(0.1, 0.0, -0.1)).collect();
+    let ball = OneBall(TriangleSurface { points, triangles, ..TriangleSurface::default() });
+    let at = |x: f64, y: f64, z: f64| Value::Vector([x, y, z]);
+    let (ends, radius) = ([at(-0.5, 0.2, 0.0), at(0.6, -0.1, 0.1)], ("radius", number(0.2)));
+    for entry in PARTS.entries {
+        let given = match entry.name {
+            "particles" => vec![("from", Value::Text("ball")), radius],
+            "point" => vec![("at", ends[0]), radius],
+            "segment" => vec![("from", ends[0]), ("to", ends[1]), radius],
+            "polyline" => {
+                vec![("points", Value::Numbers(&[-0.5, 0.2, 0.0, 0.1, 0.3, 0.2, 0.4, -0.2, 0.1])), radius]
+            }
+            "triangle" => vec![("a", ends[0]), ("b", ends[1]), ("c", at(0.1, 0.5, -0.3)), radius],
+            "shape" => vec![("shape", Value::Text("torus")), ("scale", number(5.0)), ("width", number(0.2))],
+            "mesh" => vec![("file", Value::Text("ball")), ("width", number(0.2))],
+            "surface" => {
+                vec![("body", Value::Text("ball")), ("offset", number(0.05)), ("width", number(0.2))]
+            }
+            "formula" => {
+                let text = Value::Text("0.5*tanh((0.5 - sqrt(x^2 + y*y + 2*z^2))/0.3)");
+                vec![("formula", text), ("low", at(-1.0, -1.0, -1.0)), ("high", at(1.0, 1.0, 1.0))]
+            }
+            other => panic!("say here how a part `{other}` is made"),
+        };
+        let values = given.into_iter().fold(Values::new(), |values, (name, value)| values.with(name, value));
+        let potential = (entry.build)(&entry.values(values).unwrap(), &ball).unwrap();
+        let target = Target { parts: vec![Part::new(potential)], iso: ISO };
+        let mut placed = target.new_scratch();
+        target.place(&Moment { time: 0.0, rows: &ball }, &mut placed).unwrap();
+        let told = check_ranges(&target, &placed, entry.name);
+        // of small boxes, which are a third, nearly all
+        assert!(told > 343, "{}: {told}", entry.name);
+    }
 }
 
 /// A target that counts what it is asked.
