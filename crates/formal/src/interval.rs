@@ -321,7 +321,9 @@ mod tests {
     /// A sum of squares has a root also around zero.
     #[test]
     fn distances_are_known_around_the_origin() {
-        assert!(check("0.4 - sqrt(a^2 + b^2 + c^2)", [[-1.0, 1.0], [-0.5, 0.7], [-0.2, 0.3]]).is_some());
+        for text in ["0.4 - sqrt(a^2 + b^2 + c^2)", "0.4 - sqrt(a*a + b*b + c*c)"] {
+            assert!(check(text, [[-1.0, 1.0], [-0.5, 0.7], [-0.2, 0.3]]).is_some(), "{text}");
+        }
     }
 
     /// Where a formula may be undefined nothing is said of it.

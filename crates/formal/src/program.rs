@@ -101,6 +101,17 @@ impl Program {
             self.instructions.push(Instruction::WholePower(exponent as i32));
             return;
         }
+        // a variable times itself: the same product, of which it is known that it is not below zero
+        if let (
+            Instruction::Binary(BinaryOperator::Multiply),
+            [Instruction::Variable(a), Instruction::Variable(b)],
+        ) = (instruction, operands)
+            && a == b
+        {
+            self.instructions.pop();
+            self.instructions.push(Instruction::WholePower(2));
+            return;
+        }
         self.instructions.push(instruction);
         if known && instruction.operand_count() > 0 {
             let instructions = self.instructions.split_off(start);

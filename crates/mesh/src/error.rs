@@ -46,6 +46,11 @@ pub enum MeshError {
     OpenSurface { a: u32, b: u32, forward: u32, backward: u32 },
     #[error("triangles[{triangle}] has no area; expected three points that are not on one line")]
     FlatTriangle { triangle: u32 },
+    #[error(
+        "triangles[{}] and triangles[{}] pass through each other, and one is of a part that faces inward, of which it is \
+         not known what it is a hollow of; expected hollows that cross nothing", .crossing[0], .crossing[1]
+    )]
+    CrossedHollow { crossing: [u32; 2] },
     #[error("`{name}` is {value}; expected {expected}")]
     Parameter { name: &'static str, value: String, expected: String },
     #[error("{requested} cells were asked for; expected at most {limit}")]

@@ -287,7 +287,7 @@ fn a_skin_begins_on_the_points_at_work() {
 /// step takes is known without making it.
 #[test]
 fn what_a_grid_does_not_see_is_told() {
-    let scene = |thread: f64, speed: f64| {
+    let scene = |term: &str, thread: f64, speed: f64| {
         let text = format!(
             r#"
             format = 1
@@ -296,7 +296,7 @@ fn what_a_grid_does_not_see_is_told() {
             [skins.ball]
             voxel = 0.1
             domain = [[-1, -1, -1], [1, 1, 1]]
-            terms = [{{ term = "attraction", strength = 1 }}]
+            terms = [{{ {term} }}]
             [[skins.ball.start]]
             part = "formula"
             formula = "0.5 - sqrt(x^2 + y^2 + z^2)"
@@ -312,17 +312,23 @@ fn what_a_grid_does_not_see_is_told() {
         );
         started(&text)
     };
-    let doubts = |thread: f64, speed: f64| {
-        let (world, skins) = scene(thread, speed);
+    let attraction = "term = \"attraction\", strength = 1";
+    let led = |term: &str, thread: f64, speed: f64| {
+        let (world, skins) = scene(term, thread, speed);
         skins[0].doubts(&world, 1.0).join("; ")
     };
+    let doubts = |thread: f64, speed: f64| led(attraction, thread, speed);
     assert_eq!(doubts(0.2, 0.1), "");
     let thin = doubts(0.045, 0.1);
     assert!(thin.contains("thinner than a voxel of 0.1 m near"), "{thin}");
     // half of the strength, where the potential is one half above its iso value
     let fast = doubts(0.2, 0.6);
     assert!(fast.contains("parts[0]") && fast.contains("follows at 0.500 m/s at most"), "{fast}");
-    let (world, skins) = scene(0.2, 0.1);
+    // a speed that levels off is what it is there, not by its slope, which is all but nothing
+    let levels = "term = \"speed\", formula = \"0.5*tanh(g/0.05)\"";
+    assert_eq!(led(levels, 0.2, 0.4), "");
+    assert!(led(levels, 0.2, 0.6).contains("follows at 0.500 m/s at most"));
+    let (world, skins) = scene(attraction, 0.2, 0.1);
     let cost = skins[0].cost(&world).expect("a step is made");
     let blocks = skins[0].view(&world).grid.keys.len();
     assert!(cost.nodes > 0 && cost.triangles > 100 && cost.seconds > 0.0);

@@ -26,6 +26,10 @@ pub enum SkinError {
     #[error("its target does not say where it is; expected a `domain`")]
     NoDomain,
     #[error(
+        "at voxels of {voxel} m {cubes} cubes of {edge} m may hold its surface, in a box of {size:?} m; expected at most {most}: larger voxels"
+    )]
+    TooManyCubes { voxel: f64, size: [f64; 3], cubes: usize, most: usize, edge: f64 },
+    #[error(
         "voxels of {voxel} m in a box of {size:?} m make {blocks:.3e} blocks of 8³ nodes; expected at most {MOST_SAMPLED}: larger voxels"
     )]
     TooManyBlocks { voxel: f64, size: [f64; 3], blocks: f64 },

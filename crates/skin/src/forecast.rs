@@ -4,12 +4,13 @@ use std::time::Instant;
 
 use souple_engine::FieldState;
 use souple_math::Vec3;
-use souple_mesh::SignedDistance;
+use souple_mesh::{BoundingBox, SignedDistance};
 
 use crate::error::SkinError;
 use crate::grid::{EDGE, FARTHEST, Lattice};
 use crate::skin::{Skin, SkinScratch};
 use crate::start::PlacedTarget;
+use crate::strategy::{SurfacePoints, Whole};
 use crate::surface::surface_of;
 use crate::target::{Moment, Rows, Target};
 
@@ -30,6 +31,11 @@ pub struct Cost {
 const MOMENTS: u32 = 32;
 /// What the grid sees of a surface is nearer to it than this, but for what is thinner than a voxel [voxels].
 const SEEN: f64 = 2.0;
+/// Blocks that are looked at for what is thin: some seconds of a target whose ranges are not known.
+const MOST_LOOKED: usize = 1 << 16;
+/// Places along each edge of a box, and potentials, at which speeds are asked for.
+const PLACES: u32 = 5;
+const EXCESSES: u32 = 16;
 
 impl Skin {
     /// What a step from a state to a moment takes; the state stays as it is.
@@ -89,11 +95,8 @@ impl Skin {
     fn outrun(&self, target: &Target, rows: &dyn Rows, duration: f64) -> Option<String> {
         let mut scratch = target.new_scratch();
         target.place(&Moment { time: 0.0, rows }, &mut scratch).ok()?;
-        let [_, most] = target.range(target.bounds(&scratch)?, &scratch);
-        let whole =
-            crate::strategy::Whole { time: 0.0, area: 1.0, volume: 1.0, rest_area: 1.0, rest_volume: 1.0 };
-        let strength: f64 = self.terms.iter().map(|term| term.stiffness(Vec3::ZERO, most, &whole)).sum();
-        let fastest = strength * most;
+        let bounds = target.bounds(&scratch)?;
+        let fastest = self.fastest(bounds, target.range(bounds, &scratch)[1]);
         let moved = |index: usize| {
             let speed = |k: u32| {
                 let part = &target.parts[index];
@@ -111,6 +114,34 @@ impl Skin {
         (0..target.parts.len()).find_map(moved)
     }
 
+    /// The greatest speed at which its terms draw it out to a potential of at most so much above its iso value, of places all over a
+    /// box and of potentials up to that [m/s].
+    fn fastest(&self, bounds: BoundingBox, most: f64) -> f64 {
+        let size = bounds.size();
+        let place = |k: u32| {
+            let share = |index: u32| f64::from(index % PLACES) / f64::from(PLACES - 1);
+            let along = Vec3::new(share(k), share(k / PLACES), share(k / PLACES / PLACES));
+            bounds.low + Vec3::new(along.x * size.x, along.y * size.y, along.z * size.z)
+        };
+        let points: Vec<Vec3> = (0..PLACES.pow(3)).map(place).collect();
+        let whole = Whole { time: 0.0, area: 1.0, volume: 1.0, rest_area: 1.0, rest_volume: 1.0 };
+        let speeds = |excess: f64| {
+            let mut speeds = vec![0.0; points.len()];
+            let at = SurfacePoints { points: &points, excess: &vec![excess; points.len()] };
+            self.terms
+                .iter()
+                .filter(|term| term.needs_target())
+                .for_each(|term| term.add_at(at, &whole, &mut speeds));
+            speeds
+        };
+        let at_rest = speeds(0.0);
+        let fastest = (1..=EXCESSES).flat_map(|k| {
+            let driven = speeds(most * f64::from(k) / f64::from(EXCESSES));
+            driven.into_iter().zip(&at_rest).map(|(driven, at_rest)| driven - at_rest).collect::<Vec<_>>()
+        });
+        fastest.fold(0.0, f64::max)
+    }
+
     /// A place of the target that a grid of half the voxels sees, and its own does not.
     fn unseen(&self, target: &Target, at: &Moment) -> Option<String> {
         let mut scratch = target.new_scratch();
@@ -125,21 +156,32 @@ impl Skin {
             redistance: self.redistance,
             reaction: None,
         };
-        let fine = half.sampled(bounds.low, bounds.high, &placed).ok()?;
+        let fine = match half.sampled(bounds.low, bounds.high, &placed, MOST_LOOKED) {
+            Ok(fine) => fine,
+            Err(why @ (SkinError::TooManyCubes { .. } | SkinError::Grown { .. })) => {
+                return Some(format!(
+                    "it was not looked at whether its target has something thinner than a voxel, by half of its voxels: {why}"
+                ));
+            }
+            // it is not there, or does not end in its box: the skin says so itself where it matters
+            Err(_) => return None,
+        };
         let (fine, _) = surface_of(half.grid(&fine), &half.lattice);
         // values between nodes come near zero at what is thin, triangles do not
-        let own = self.sampled(bounds.low, bounds.high, &placed).ok();
+        let own = self.sampled(bounds.low, bounds.high, &placed, MOST_LOOKED).ok();
         let own = own.map(|own| surface_of(self.grid(&own), &self.lattice).0);
         let seen = own.and_then(|own| SignedDistance::new(own.into_surface()).ok());
         let is_unseen = |point: &&Vec3| {
             let distance = |seen: &SignedDistance| seen.distance(**point).abs();
             seen.as_ref().map_or(f64::INFINITY, distance) > SEEN * self.lattice.voxel
         };
+        // to a tenth of a voxel at least
+        let decimals = (1.0 - self.lattice.voxel.log10()).ceil().clamp(0.0, 12.0) as usize;
         fine.points.iter().find(is_unseen).map(|place| {
             format!(
-                "its target has something thinner than a voxel of {} m near {:?} at t = {} s, which its grid does not see; smaller voxels would",
+                "its target has something thinner than a voxel of {} m near [{}] at t = {} s, which its grid does not see; smaller voxels would",
                 self.lattice.voxel,
-                place.to_array().map(|c| (1e4 * c).round() * 1e-4),
+                place.to_array().map(|c| format!("{c:.decimals$}")).join(", "),
                 at.time
             )
         })

@@ -168,7 +168,7 @@ impl Force for SkinPush {
         }
     }
 
-    // what a skin does in a step is what it was at its start
+    // what a skin does in a step is what it was at its start; that the couple depends on where the rows are by now is left out
     fn add_differential(
         &self,
         _: &Configuration,

@@ -48,10 +48,10 @@ pub(crate) const FLESH: usize = 6;
 pub(crate) const LEFT: usize = 7;
 
 /// Integers before the keys of the blocks.
-pub const HEAD_INDICES: usize = 9;
+pub const HEAD_INDICES: usize = 10;
 pub(crate) const EULER: usize = 0;
 pub(crate) const COMPONENTS: usize = 1;
-/// Changes of topology so far that stood for two steps.
+/// Changes of topology so far that count, see `topology`.
 pub(crate) const EVENTS: usize = 2;
 pub(crate) const POINTS: usize = 3;
 pub(crate) const TRIANGLES: usize = 4;
@@ -61,6 +61,8 @@ pub(crate) const CHECKED: usize = 5;
 pub(crate) const WORK: usize = 6;
 /// Euler characteristic and components after the last change that counts, or at the start.
 pub(crate) const COUNTED: [usize; 2] = [7, 8];
+/// Surfaces in a row, up to the last, that were other than what counts.
+pub(crate) const WANDERED: usize = 9;
 
 /// Blocks that a skin may have: 1 GB of values.
 pub const MOST_BLOCKS: usize = 1 << 19;
@@ -437,14 +439,15 @@ impl Skin {
     }
 
     /// Hausdorff's distance between its surface and that of its target at a moment, both as triangles of its lattice [m]; `None`
-    /// where one of them is not there.
+    /// where one of them is not there. Within the band the target's is its potential over its slope: to first order.
     pub fn distance(&self, at: &Moment, field: &FieldState) -> Option<f64> {
         let target = self.target.as_ref()?;
         let mut placed = target.new_scratch();
         target.place(at, &mut placed).ok()?;
         let bounds = target.bounds(&placed)?;
-        let sampled =
-            self.sampled(bounds.low, bounds.high, &PlacedTarget { target, scratch: &placed }).ok()?;
+        let sampled = self
+            .sampled(bounds.low, bounds.high, &PlacedTarget { target, scratch: &placed }, MOST_SAMPLED)
+            .ok()?;
         let [own_grid, aim_grid] = [field, &sampled].map(|field| self.view(field).grid);
         let [own, aim] = [own_grid, aim_grid].map(|grid| surface_of(grid, &self.lattice).0);
         if own.points.is_empty() || aim.points.is_empty() {

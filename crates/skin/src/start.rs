@@ -106,7 +106,7 @@ impl Skin {
         as_what: &dyn Beginning,
         scratch: &mut SkinScratch,
     ) -> Result<FieldState, SkinError> {
-        let mut field = self.sampled(low, high, as_what)?;
+        let mut field = self.sampled(low, high, as_what, MOST_SAMPLED)?;
         self.make_distance(&mut field, scratch)?;
         self.find_crossings(&field, scratch);
         self.measure(&mut field, scratch, 0.0)?;
@@ -119,7 +119,8 @@ impl Skin {
         Ok(field)
     }
 
-    /// The zero level of a function within a box [m], on the nodes around it; nothing is measured.
+    /// The zero level of a function within a box [m], on the nodes around it; nothing is measured. At most so many blocks are
+    /// looked at.
     ///
     /// # Errors
     /// There is no inside, it does not end within the box, or it is too large for its voxels.
@@ -128,6 +129,7 @@ impl Skin {
         low: Vec3,
         high: Vec3,
         as_what: &dyn Beginning,
+        most: usize,
     ) -> Result<FieldState, SkinError> {
         let edge = EDGE as f64;
         let first = self.lattice.to_voxels(low).to_array().map(|c| (c / edge).floor() - 1.0);
@@ -141,11 +143,15 @@ impl Skin {
             });
         }
         let blocks = Blocks { first: first.map(|c| c as i64), counts: counts.map(|c| c as i64) };
-        let mut found = self.looked_for(blocks, as_what)?.ok_or_else(|| SkinError::TooManyBlocks {
+        let too_many = |cubes: usize, level: u32| SkinError::TooManyCubes {
             voxel: self.voxel(),
             size: (high - low).to_array(),
-            blocks: counts.iter().product(),
-        })?;
+            most,
+            cubes,
+            edge: edge * f64::from(level).exp2() * self.voxel(),
+        };
+        let mut found =
+            self.looked_for(blocks, as_what, most)?.map_err(|(cubes, level)| too_many(cubes, level))?;
         // along rows, as keys ascend
         found.sort_unstable_by_key(|block| key_of(*block));
         let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
@@ -157,12 +163,14 @@ impl Skin {
         Ok(field)
     }
 
-    /// Blocks in which a function may change its sign, or come near to that; `None` where these are too many.
+    /// Blocks in which a function may change its sign, or come near to that; how many cubes of which level, where these are
+    /// too many.
     fn looked_for(
         &self,
         blocks: Blocks,
         as_what: &dyn Beginning,
-    ) -> Result<Option<Vec<[i64; 3]>>, SkinError> {
+        most: usize,
+    ) -> Result<Result<Vec<[i64; 3]>, (usize, u32)>, SkinError> {
         let widest = blocks.counts.into_iter().max().unwrap_or(1);
         let level = u64::try_from(widest).unwrap_or(1).next_power_of_two().trailing_zeros();
         let mut cubes = vec![Cube { low: blocks.first, level }];
@@ -186,13 +194,13 @@ impl Skin {
                     |low: &[i64; 3]| (0..3).all(|axis| low[axis] < blocks.first[axis] + blocks.counts[axis]);
                 finer.extend(eighths.filter(is_within).map(|low| Cube { low, level: level - 1 }));
             }
-            if finer.len() > MOST_SAMPLED {
-                return Ok(None);
+            if finer.len() > most {
+                return Ok(Err((finer.len(), finer[0].level)));
             }
             let is_finest = cubes.first().is_none_or(|cube| cube.level == 0);
             cubes = finer;
             if is_finest {
-                return Ok(Some(cubes.into_iter().map(|cube| cube.low).collect()));
+                return Ok(Ok(cubes.into_iter().map(|cube| cube.low).collect()));
             }
         }
     }

@@ -40,7 +40,7 @@ impl<'a> View<'a> {
         self.head[SPEED]
     }
 
-    /// Times that the number of components or the Euler characteristic changed and stayed so for two steps at least.
+    /// Times that the number of components or the Euler characteristic changed, as `topology` counts it: for two steps at least, or never as before for eight.
     pub fn events(&self) -> u64 {
         self.head_indices[EVENTS]
     }

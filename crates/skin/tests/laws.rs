@@ -46,7 +46,8 @@ fn a_sphere_under_tension_shrinks_by_its_formula() {
     }
 }
 
-/// The error of that falls by the second order in space, as long as the sphere has lost little.
+/// The error of that falls by the second order in space, as long as the sphere has lost little: a part of it is that of the
+/// volume's chords, which a sphere at rest has too.
 #[test]
 fn shrinking_is_of_second_order() {
     let [coarse, fine] = [16.0, 32.0].map(|cells| shrunk(cells, 0.125));
@@ -181,7 +182,7 @@ fn a_split_is_an_event() {
     run(&skin, &mut field, &mut scratch, 40, 0.05);
     let view = skin.view(&field);
     assert_eq!((view.measures().euler, view.measures().components), (4, 2));
-    assert!(view.events() >= 1 && view.changed() > 0.5, "{} at {}", view.events(), view.changed());
+    assert!(view.events() == 1 && view.changed() > 0.5, "{} at {}", view.events(), view.changed());
 }
 
 /// The same bits by one thread and by several.

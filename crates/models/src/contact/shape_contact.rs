@@ -334,6 +334,8 @@ impl Force for ShapeContact {
         burden::add(self.shape.as_ref(), &at.memory[self.burdens()], at.positions, out);
     }
 
+    // what is borne is known from the step before; that its moment depends on where the bearers are by now is left out: it is
+    // the moment of what they moved in a step
     fn add_differential(
         &self,
         at: &Configuration,

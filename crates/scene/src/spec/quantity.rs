@@ -396,7 +396,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     &entry("skin.components", "parts that share no point", SKIN, skin("", SkinQuantity::Components)),
     &entry(
         "skin.events",
-        "times that the Euler characteristic or the number of parts changed and stayed so for two steps",
+        "times that the Euler characteristic or the number of parts changed, and stayed so for two steps or was never as before for eight",
         SKIN,
         skin("", SkinQuantity::Events),
     ),
@@ -409,7 +409,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     ),
     &entry(
         "skin.distance",
-        "Hausdorff's, between its surface and that of its target",
+        "Hausdorff's, between its surface and that of its target, to first order in the potential",
         SKIN,
         skin("m", SkinQuantity::Distance),
     ),

@@ -90,7 +90,7 @@ pub trait Potential: Send + Sync {
         out.iter_mut().zip(points).for_each(|(out, point)| *out = self.value(*point, scratch));
     }
 
-    /// Values that it has at most and at least within a box.
+    /// The least and the greatest of the values that it may have within a box.
     fn range(&self, _within: BoundingBox, _scratch: &PartScratch) -> Between {
         UNKNOWN
     }

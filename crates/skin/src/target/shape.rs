@@ -98,7 +98,7 @@ impl Shape for Scaled {
 
 pub(super) static MESH: PartEntry = Entry {
     name: "mesh",
-    summary: "what the triangles of a file enclose: parts that overlap are joined, those with holes are known by winding numbers",
+    summary: "what the triangles of a file enclose: parts that overlap by more than a voxel are joined, those with holes are known by winding numbers",
     source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
     parameters: &[
         Parameter::text("file", "a surface, relative to the scene file that names it"),
@@ -147,7 +147,7 @@ pub struct SurfacePart {
 
 impl SurfacePart {
     /// # Errors
-    /// The surface is not closed; says why.
+    /// The surface is not closed, or a part of it that faces inward crosses another; says why.
     pub fn new(
         surface: TriangleSurface,
         system: usize,
@@ -212,7 +212,7 @@ impl Potential for SurfacePart {
 
 pub(super) static SURFACE: PartEntry = Entry {
     name: "surface",
-    summary: "the inside of the surface of a body of the scene, as it moves; parts of it that overlap are joined",
+    summary: "the inside of the surface of a body of the scene, as it moves; parts of it that overlap by more than a voxel are joined",
     source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
     parameters: &[
         Parameter::text("body", "its name"),
