@@ -171,7 +171,7 @@ pub(crate) fn volume_rule(kind: ElementKind) -> &'static QuadratureRule {
 }
 
 /// Root of a union-find forest, halving the path on the way.
-fn root(parent: &mut [u32], mut node: u32) -> u32 {
+pub(crate) fn root(parent: &mut [u32], mut node: u32) -> u32 {
     while parent[node as usize] != node {
         let grandparent = parent[parent[node as usize] as usize];
         parent[node as usize] = grandparent;

@@ -15,11 +15,16 @@ fn with_size(size: f64) -> Options {
 
 /// A formula within ±2.
 fn filled(formula: &str, options: &Options) -> Filled {
+    filled_within(2.0, formula, options)
+}
+
+/// A formula within so much of the origin along each axis.
+fn filled_within(reach: f64, formula: &str, options: &Options) -> Filled {
     let corner = |c: f64| Value::Vector([c; 3]);
     let values = Values::new()
         .with("formula", Value::Text(formula))
-        .with("low", corner(-2.0))
-        .with("high", corner(2.0));
+        .with("low", corner(-reach))
+        .with("high", corner(reach));
     options.fill_body(&implicit::body("formula", values).unwrap()).unwrap()
 }
 
@@ -103,6 +108,47 @@ fn parts_are_compared() {
                   max(sqrt((y-0.03)^2+(z-0.04)^2) - 0.08, abs(x) - 1))";
     let told = filled(bridge, &with_size(0.25)).notes.concat();
     assert!(told.contains("what joins them is thinner than a cell"), "{told}");
+}
+
+/// Bounds that a body touches or passes by less than a cell cut nothing off its parts.
+#[test]
+fn parts_at_the_bounds_are_whole() {
+    for reach in [0.9, 1.0, 1.05] {
+        let notes = filled_within(reach, "sqrt(x^2 + y^2 + z^2) - 1", &with_size(0.2)).notes;
+        assert_eq!(notes, Vec::<String>::new(), "{reach}");
+    }
+}
+
+/// Two balls with a rod of 0.3 cells radius between them, along the diagonal of cubes: the shape is one part however the rod lies
+/// to the grid; so thin a gap between two balls is one all the same.
+#[test]
+fn parts_hold_together_along_diagonals() {
+    let size = 0.2;
+    for shift in [0.0, 0.013, 0.05, 0.071] {
+        let (x, y) = (format!("(x - {shift})"), format!("(y + 0.7*{shift})"));
+        let along = format!("({x} + {y} + z)/sqrt(3)");
+        let ball = |side: &str| format!("sqrt(({x} {side} 1)^2 + ({y} {side} 1)^2 + (z {side} 1)^2) - 0.7");
+        let rod = format!(
+            "max(sqrt(max({x}^2 + {y}^2 + z^2 - ({along})^2, 0)) - {}, abs({along}) - 1.5)",
+            0.3 * size
+        );
+        let balls = format!("min({}, {})", ball("-"), ball("+"));
+        let joined = filled_within(2.4, &format!("min({balls}, {rod})"), &with_size(size)).notes.concat();
+        assert!(!joined.contains("as has the shape") && !joined.contains("gaps"), "{shift}: {joined}");
+        let apart = filled_within(2.4, &balls, &with_size(size)).notes.concat();
+        assert!(apart.contains("2 parts that share no point, as has the shape"), "{shift}: {apart}");
+    }
+}
+
+/// Cells as large as they like, of a size far above all lengths: what is far from them is looked for as fast as ever.
+#[test]
+fn sizes_without_a_bound_are_looked_at() {
+    let values = Values::new()
+        .with("size", Value::Number(0.1))
+        .with("size_everywhere", Value::Text("0.1 + 1e30*max(0.9 - sqrt(x^2 + y^2 + z^2), 0)"))
+        .with("largest", Value::Number(1e30));
+    let notes = filled("sqrt(x^2 + y^2 + z^2) - 1", &options(values)).notes.concat();
+    assert!(!notes.contains("away from the filling") && !notes.contains("has a part at"), "{notes}");
 }
 
 /// Growth without room, formulas that allow nothing larger or ask for what is smaller, hexahedra that do not fit, counts that are

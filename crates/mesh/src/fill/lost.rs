@@ -1,8 +1,9 @@
 //! What a filling has lost of its shape, and what it has joined or torn: parts, sheets and gaps thinner than its cells.
 //!
 //! A filling knows its shape on the points of a lattice alone, and what lies between these is lost without a trace. Here it is
-//! looked at more closely: at every triangle of a surface, and at twice as many places along each axis of any other shape, with
-//! the dips of its value between them.
+//! looked at more closely: at every triangle of a surface, and of any other shape at two places for the length of a cell along
+//! each axis, with the dips of its value between them. Of so large a lattice that these would be too many, fewer are looked at:
+//! what is lost is told as far as they see it, and parts, which they could tear or join themselves, are not counted.
 
 use rayon::prelude::*;
 use souple_math::Vec3;
@@ -10,6 +11,7 @@ use souple_table::in_number;
 
 use super::{Grading, Reach, Size};
 use crate::implicit::{Shape, Sign, SurfaceShape};
+use crate::measure::root;
 use crate::repair::components;
 use crate::{BoundingBox, Mesh, TriangleSurface};
 
@@ -18,71 +20,96 @@ const BEVELLED: f64 = 1e-3;
 
 const REMEDY: &str = "what is thinner than a cell is lost; take a smaller size";
 
-/// Cubes as long as the smallest cells: which of them a filling reaches into.
+/// Cubes as long as the smallest cells, all over the bounds and one beyond: which of them a filling reaches into.
 struct Reached<'a> {
     size: &'a Size,
     low: Vec3,
     counts: [usize; 3],
-    is_reached: Vec<bool>,
+    /// How many are reached below each corner of the cubes in all three coordinates: of any box of them by eight looks.
+    sums: Vec<u32>,
 }
 
 impl<'a> Reached<'a> {
-    fn new(bounds: BoundingBox, size: &'a Size) -> Self {
+    /// By boxes around what the filling is made of.
+    fn new(bounds: BoundingBox, size: &'a Size, reached: impl Iterator<Item = BoundingBox>) -> Self {
+        let bounds = bounds.grown(size.smallest);
         let counts = bounds.size().to_array().map(|length| (length / size.smallest) as usize + 1);
-        Self { size, low: bounds.low, counts, is_reached: vec![false; counts.iter().product()] }
+        let mut new = Self { size, low: bounds.low, counts, sums: Vec::new() };
+        let [nx, ny, nz] = counts;
+        let mut is_reached = vec![false; nx * ny * nz];
+        for reached in reached {
+            let [x, y, z] = new.range(new.place(reached.low), new.place(reached.high));
+            for (k, j) in z.flat_map(|k| y.clone().map(move |j| (k, j))) {
+                let row = nx * (j + ny * k);
+                is_reached[row + x.start..row + x.end].fill(true);
+            }
+        }
+        new.sums = vec![0; (nx + 1) * (ny + 1) * (nz + 1)];
+        for k in 0..nz {
+            for j in 0..ny {
+                let mut of_row = 0;
+                for i in 0..nx {
+                    of_row += u32::from(is_reached[i + nx * (j + ny * k)]);
+                    let [before, below, both] =
+                        [[j, k + 1], [j + 1, k], [j, k]].map(|[j, k]| new.sums[new.corner([i + 1, j, k])]);
+                    let corner = new.corner([i + 1, j + 1, k + 1]);
+                    new.sums[corner] = of_row + before + below - both;
+                }
+            }
+        }
+        new
     }
 
     /// By the cells of a mesh.
     fn by_cells(mesh: &Mesh, bounds: BoundingBox, size: &'a Size) -> Self {
-        let mut reached = Self::new(bounds, size);
-        for cell in mesh.cells() {
-            reached.mark(BoundingBox::of(cell.nodes.iter().map(|node| mesh.points[*node as usize])));
-        }
-        reached
+        let position = |node: &u32| mesh.points[*node as usize];
+        Self::new(bounds, size, mesh.cells().map(|cell| BoundingBox::of(cell.nodes.iter().map(position))))
     }
 
     /// By the faces of a mesh's boundary.
     fn by_boundary(mesh: &Mesh, bounds: BoundingBox, size: &'a Size) -> Self {
-        let mut reached = Self::new(bounds, size);
         let boundary = mesh.boundary_surface();
-        for triangle in 0..boundary.triangles.len() as u32 {
-            reached.mark(BoundingBox::of(boundary.corners(triangle)));
-        }
-        reached
+        let triangles = 0..boundary.triangles.len() as u32;
+        Self::new(bounds, size, triangles.map(|triangle| BoundingBox::of(boundary.corners(triangle))))
     }
 
-    fn mark(&mut self, bounds: BoundingBox) {
-        for cube in cubes(self.counts, self.place(bounds.low), self.place(bounds.high)) {
-            self.is_reached[cube] = true;
-        }
+    fn corner(&self, [i, j, k]: [usize; 3]) -> usize {
+        i + (self.counts[0] + 1) * (j + (self.counts[1] + 1) * k)
+    }
+
+    /// Along each axis, cubes from one place to another, both included, as far as there are such.
+    fn range(&self, from: [i64; 3], to: [i64; 3]) -> [std::ops::Range<usize>; 3] {
+        [0, 1, 2].map(|axis: usize| {
+            let within = |index: i64| index.clamp(0, self.counts[axis] as i64) as usize;
+            within(from[axis])..within(to[axis].saturating_add(1)).max(within(from[axis]))
+        })
     }
 
     fn place(&self, point: Vec3) -> [i64; 3] {
         ((point - self.low) * (1.0 / self.size.smallest)).to_array().map(|c| c.floor() as i64)
     }
 
+    fn count(&self, [x, y, z]: [std::ops::Range<usize>; 3]) -> i64 {
+        let sum = |i: usize, j: usize, k: usize| i64::from(self.sums[self.corner([i, j, k])]);
+        let below = |k: usize| {
+            sum(x.end, y.end, k) - sum(x.start, y.end, k) - sum(x.end, y.start, k) + sum(x.start, y.start, k)
+        };
+        below(z.end) - below(z.start)
+    }
+
     /// Whether a point is more than a cell away from all that is reached.
     fn is_far(&self, point: Vec3) -> bool {
         let layers = match &self.size.grading {
+            // as large as an integer can be where nothing limits cells: the bounds do
             Grading::Field { size, largest, reach: Reach::Everywhere } => {
                 (size(point).min(*largest) / self.size.smallest).max(1.0).ceil() as i64
             }
             _ => 1,
         };
         let at = self.place(point);
-        cubes(self.counts, at.map(|c| c - layers), at.map(|c| c + layers)).all(|cube| !self.is_reached[cube])
+        let [from, to] = [at.map(|c| c.saturating_sub(layers)), at.map(|c| c.saturating_add(layers))];
+        self.count(self.range(from, to)) == 0
     }
-}
-
-/// Cubes from one to another, both included, as far as there are such.
-fn cubes(counts: [usize; 3], from: [i64; 3], to: [i64; 3]) -> impl Iterator<Item = usize> {
-    let range = |axis: usize| from[axis].max(0)..(to[axis] + 1).min(counts[axis] as i64);
-    let (x, y, z) = (range(0), range(1), range(2));
-    let [nx, ny, _] = counts.map(|n| n as i64);
-    z.flat_map(move |k| {
-        let x = x.clone();
-        y.clone().flat_map(move |j| x.clone().map(move |i| (i + nx * (j + ny * k)) as usize))
-    })
 }
 
 /// A part of a surface that shares no point with others.
@@ -126,7 +153,7 @@ pub(super) fn of_surface(
     let hollows = lost.len() - lost_solids;
     if let Some(place) = lost.iter().find(|shell| !is_solid(shell)).and_then(|shell| shell.first_lost) {
         notes.push(format!(
-            "{} filled up, the first at {}: what is thinner than a cell is lost; take a smaller size",
+            "{} filled up, the first at {}: {REMEDY}",
             in_number(hollows, "hollow of the surface is", "hollows of the surface are"),
             written(place)
         ));
@@ -224,7 +251,7 @@ fn spread([a, b, c]: [Vec3; 3], size: f64) -> Vec<Vec3> {
 /// Most places at which a shape is looked at again: as many as the lattice of a million cells has.
 const MOST_PLACES: f64 = 8e6;
 
-/// Values of a shape on a grid.
+/// Values of a shape on a grid that reaches one place beyond its bounds.
 struct Closer<'a> {
     shape: &'a dyn Shape,
     low: Vec3,
@@ -239,7 +266,8 @@ pub(super) fn of_shape(shape: &dyn Shape, size: &Size, mesh: &Mesh) -> Vec<Strin
     let reached = Reached::by_cells(mesh, bounds, size);
     let closer = Closer::new(shape, size.smallest);
     let inside = closer.values.iter().filter(|value| **value < 0.0).count();
-    let lost: Vec<usize> = (0..closer.values.len()).filter(|p| reached.is_far(closer.position(*p))).collect();
+    let places = (0..closer.values.len()).into_par_iter();
+    let lost: Vec<usize> = places.filter(|place| reached.is_far(closer.position(*place))).collect();
     let lost_inside = lost.iter().filter(|place| closer.values[**place] < 0.0);
     let share = lost_inside.clone().count() as f64 / inside.max(1) as f64;
     let deepest = lost_inside.min_by(|a, b| closer.values[**a].total_cmp(&closer.values[**b]));
@@ -257,6 +285,10 @@ pub(super) fn of_shape(shape: &dyn Shape, size: &Size, mesh: &Mesh) -> Vec<Strin
             written(place)
         )];
     }
+    // of places that are farther apart, what is as thin as a cell falls apart by itself
+    if closer.spacing > 0.5 * size.smallest {
+        return Vec::new();
+    }
     parts(closer.parts(), mesh.components().1, "the shape").into_iter().collect()
 }
 
@@ -266,7 +298,7 @@ impl<'a> Closer<'a> {
         let bounds = shape.bounds();
         let extent = bounds.size();
         let spacing = (0.5 * cell).max((extent.x * extent.y * extent.z / MOST_PLACES).cbrt());
-        let counts = extent.to_array().map(|length| (length / spacing).ceil() as usize + 1);
+        let counts = extent.to_array().map(|length| (length / spacing).ceil() as usize + 3);
         let whole = Vec3::from_array(counts.map(|count| (count - 1) as f64 * spacing));
         let low = bounds.centre() - whole * 0.5;
         let mut closer = Self { shape, low, spacing, counts, values: Vec::new() };
@@ -275,18 +307,25 @@ impl<'a> Closer<'a> {
         closer
     }
 
-    fn position(&self, place: usize) -> Vec3 {
+    fn index(&self, place: usize) -> [usize; 3] {
         let [nx, ny, _] = self.counts;
-        let index = [place % nx, place / nx % ny, place / (nx * ny)];
-        self.low + Vec3::from_array(index.map(|i| i as f64 * self.spacing))
+        [place % nx, place / nx % ny, place / (nx * ny)]
     }
 
-    /// The places before and after one along an axis.
-    fn beside(&self, place: usize, axis: usize) -> Option<[usize; 2]> {
-        let [nx, ny, _] = self.counts;
-        let stride = [1, nx, nx * ny][axis];
-        let index = place / stride % self.counts[axis];
-        (index > 0 && index + 1 < self.counts[axis]).then(|| [place - stride, place + stride])
+    fn position(&self, place: usize) -> Vec3 {
+        self.low + Vec3::from_array(self.index(place).map(|i| i as f64 * self.spacing))
+    }
+
+    /// The place so many steps away along each axis, where there is one.
+    fn beside(&self, place: usize, steps: [isize; 3]) -> Option<usize> {
+        let index = self.index(place);
+        let mut moved = [0; 3];
+        for axis in 0..3 {
+            moved[axis] =
+                index[axis].checked_add_signed(steps[axis]).filter(|index| *index < self.counts[axis])?;
+        }
+        let ([i, j, k], [nx, ny, _]) = (moved, self.counts);
+        Some(i + nx * (j + ny * k))
     }
 
     /// A place inside within the spacing of one outside, where the value has a dip that may reach below zero: by the steeper of
@@ -294,8 +333,13 @@ impl<'a> Closer<'a> {
     fn dip(&self, place: usize) -> Option<Vec3> {
         let value = self.values[place];
         let may_hide = |axis: usize| {
-            let Some(beside) = self.beside(place, axis) else { return false };
-            let rises = beside.map(|other| self.values[other] - value);
+            let mut step = [0; 3];
+            step[axis] = 1;
+            let after = self.beside(place, step);
+            let Some((before, after)) = self.beside(place, step.map(|s: isize| -s)).zip(after) else {
+                return false;
+            };
+            let rises = [before, after].map(|other| self.values[other] - value);
             rises.iter().all(|rise| *rise >= 0.0) && value <= rises[0].max(rises[1])
         };
         if value < 0.0 || !(0..3).any(may_hide) {
@@ -330,30 +374,69 @@ impl<'a> Closer<'a> {
         at(0.5 * (low + high))
     }
 
-    /// Parts of the inside that are as large as a cube of the lattice.
+    /// Parts of the inside that are as large as a cube of the lattice: places beside each other are joined, and places across a
+    /// square or a cube where the middle between them is inside too.
     fn parts(&self) -> usize {
-        let mut is_seen = vec![false; self.values.len()];
-        let mut count = 0;
+        let is_inside = |place: &usize| self.values[*place] < 0.0;
+        // joined along the axes first: what is left to be looked at between others is little
+        let mut part = vec![NO_PART; self.values.len()];
+        let mut places: Vec<usize> = Vec::new();
         let mut stack = Vec::new();
         for start in 0..self.values.len() {
-            if self.values[start] >= 0.0 || std::mem::replace(&mut is_seen[start], true) {
+            if !is_inside(&start) || part[start] != NO_PART {
                 continue;
             }
+            let own = places.len() as u32;
+            places.push(0);
+            part[start] = own;
             stack.push(start);
-            let mut places = 0;
             while let Some(place) = stack.pop() {
-                places += 1;
-                for other in (0..3).filter_map(|axis| self.beside(place, axis)).flatten() {
-                    if self.values[other] < 0.0 && !std::mem::replace(&mut is_seen[other], true) {
+                places[own as usize] += 1;
+                for other in BESIDE_ALONG_AXES.iter().filter_map(|steps| self.beside(place, *steps)) {
+                    if is_inside(&other) && part[other] == NO_PART {
+                        part[other] = own;
                         stack.push(other);
                     }
                 }
             }
-            count += usize::from(places >= PLACES_OF_A_CUBE);
         }
-        count
+        let mut parent: Vec<u32> = (0..places.len() as u32).collect();
+        for place in (0..self.values.len()).filter(is_inside) {
+            for other in ACROSS.iter().filter_map(|steps| self.beside(place, *steps)).filter(is_inside) {
+                if part[place] == part[other] {
+                    continue;
+                }
+                let [a, b] = [place, other].map(|place| root(&mut parent, part[place]));
+                let middle = (self.position(place) + self.position(other)) * 0.5;
+                if a != b && self.shape.value(middle) < 0.0 {
+                    parent[a.max(b) as usize] = a.min(b);
+                }
+            }
+        }
+        let mut joined = vec![0; places.len()];
+        for (part, places) in places.iter().enumerate() {
+            joined[root(&mut parent, part as u32) as usize] += places;
+        }
+        joined.iter().filter(|places| **places >= PLACES_OF_A_CUBE).count()
     }
 }
+
+const NO_PART: u32 = u32::MAX;
+const BESIDE_ALONG_AXES: [[isize; 3]; 6] =
+    [[-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0], [0, 0, -1], [0, 0, 1]];
+/// Across squares and cubes, each pair from one of its ends.
+const ACROSS: [[isize; 3]; 10] = [
+    [1, 1, 0],
+    [1, -1, 0],
+    [1, 0, 1],
+    [1, 0, -1],
+    [0, 1, 1],
+    [0, 1, -1],
+    [1, 1, 1],
+    [1, 1, -1],
+    [1, -1, 1],
+    [1, -1, -1],
+];
 
 /// The interval left of the first is then a ten thousandth of it.
 const THIRDS: usize = 23;

@@ -55,7 +55,9 @@ fn crossings_within(surface: &TriangleSurface, most: usize, most_looks: usize) -
             found.is_cut_off |= part.is_cut_off;
             all_looks += looks;
         }
-        if found.pairs.len() > most || all_looks > most_looks {
+        // what the last round has found is all there is, however long that took
+        let is_last = round.last() == batches.last();
+        if found.pairs.len() > most || (all_looks > most_looks && !is_last) {
             found.pairs.truncate(most);
             found.is_cut_off = true;
             break;
@@ -137,19 +139,25 @@ fn segment_passes(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
 mod tests {
     use super::*;
 
-    /// Sheets above each other, tilted so that all their boxes overlap: without a pair that crosses, the search ends by the number
-    /// of looks, and says so.
-    #[test]
-    fn the_search_ends() {
-        let count = 1500;
+    /// Triangles above each other, so far apart that each is looked at beside itself alone.
+    fn sheets(count: u32) -> TriangleSurface {
         let sheet = |k: u32| {
-            let lift = 1e-6 * f64::from(k);
+            let lift = 2.0 * f64::from(k);
             [Vec3::new(0.0, 0.0, lift), Vec3::new(1.0, 0.0, 1.0 + lift), Vec3::new(0.0, 1.0, lift)]
         };
         let points: Vec<Vec3> = (0..count).flat_map(sheet).collect();
         let triangles = (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-        let sheets = TriangleSurface::new(points, triangles).unwrap();
-        let found = crossings_within(&sheets, 10, 1000);
+        TriangleSurface::new(points, triangles).unwrap()
+    }
+
+    /// Without a pair that crosses, the search ends by the number of looks, and says so; where nothing was left to be looked at
+    /// it has found that there is none.
+    #[test]
+    fn the_search_ends() {
+        let more_than_a_round = (ROUND * BATCH) as u32 + 1;
+        let found = crossings_within(&sheets(more_than_a_round), 10, 1000);
         assert_eq!(found, Crossings { pairs: Vec::new(), is_cut_off: true });
+        let found = crossings_within(&sheets(1500), 10, 1000);
+        assert_eq!(found, Crossings::default());
     }
 }

@@ -152,6 +152,12 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
         let pairs = in_number(simple.crossings, "pair of triangles passes", "pairs of triangles pass");
         notes.push(format!("{pairs} through each other, as in the given surface"));
     }
+    if simple.may_have_more_crossings {
+        notes.push(
+            "triangles lie within each other so densely that not all pairs of them were looked at: more may pass through each other"
+                .to_owned(),
+        );
+    }
     Ok((mesh_of(&simple.surface), notes))
 }
 
