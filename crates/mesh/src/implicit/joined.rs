@@ -47,7 +47,7 @@ impl JoinedSolids {
             |pair: &[u32; 2]| pair.iter().any(|triangle| !outward(shell_of[*triangle as usize] as usize));
         // of a hollow that crosses something some points are in it and some are not
         if !(0..count).all(outward)
-            && let Some(crossing) = crossings(surface).into_iter().find(crosses_hollow)
+            && let Some(crossing) = crossings(surface, usize::MAX).pairs.into_iter().find(crosses_hollow)
         {
             return Err(MeshError::CrossedHollow { crossing });
         }
