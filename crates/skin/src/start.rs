@@ -150,8 +150,7 @@ impl Skin {
             cubes,
             edge: edge * f64::from(level).exp2() * self.voxel(),
         };
-        let mut found =
-            self.looked_for(blocks, as_what, most)?.map_err(|(cubes, level)| too_many(cubes, level))?;
+        let mut found = self.looked_for(blocks, as_what, most, &too_many)?;
         // along rows, as keys ascend
         found.sort_unstable_by_key(|block| key_of(*block));
         let mut field = FieldState { values: vec![0.0; self.head()], indices: vec![0; HEAD_INDICES] };
@@ -163,14 +162,15 @@ impl Skin {
         Ok(field)
     }
 
-    /// Blocks in which a function may change its sign, or come near to that; how many cubes of which level, where these are
-    /// too many.
+    /// Blocks in which a function may change its sign, or come near to that; `too_many` says of how many cubes of a level that
+    /// they are more than `most`.
     fn looked_for(
         &self,
         blocks: Blocks,
         as_what: &dyn Beginning,
         most: usize,
-    ) -> Result<Result<Vec<[i64; 3]>, (usize, u32)>, SkinError> {
+        too_many: &dyn Fn(usize, u32) -> SkinError,
+    ) -> Result<Vec<[i64; 3]>, SkinError> {
         let widest = blocks.counts.into_iter().max().unwrap_or(1);
         let level = u64::try_from(widest).unwrap_or(1).next_power_of_two().trailing_zeros();
         let mut cubes = vec![Cube { low: blocks.first, level }];
@@ -195,12 +195,12 @@ impl Skin {
                 finer.extend(eighths.filter(is_within).map(|low| Cube { low, level: level - 1 }));
             }
             if finer.len() > most {
-                return Ok(Err((finer.len(), finer[0].level)));
+                return Err(too_many(finer.len(), finer[0].level));
             }
             let is_finest = cubes.first().is_none_or(|cube| cube.level == 0);
             cubes = finer;
             if is_finest {
-                return Ok(Ok(cubes.into_iter().map(|cube| cube.low).collect()));
+                return Ok(cubes.into_iter().map(|cube| cube.low).collect());
             }
         }
     }
