@@ -152,9 +152,10 @@ impl LegendBox {
         // boxes are no higher than they need to be
         let half = if named > 0.0 { (0.5 * TALLEST_BOX * named).min(HALF_BAR) } else { HALF_BAR };
         let (top, bottom) = ((0.5 - half) * height, (0.5 + half) * height);
+        let nearest = 1.8 * letter / (bottom - top);
         let scale = match colours {
-            ColourScale::Linear => scale(low, high, &legend.unit, 5, 1.8 * letter / (bottom - top)),
-            ColourScale::Logarithmic => log_scale(low, high, &legend.unit, MOST_POWERS),
+            ColourScale::Linear => scale(low, high, &legend.unit, 5, nearest),
+            ColourScale::Logarithmic => log_scale(low, high, &legend.unit, MOST_POWERS, nearest),
         };
         let share = |value: f64| colours.share(value, (low, high));
         let place = |share: f64| bottom - share * (bottom - top);

@@ -58,8 +58,8 @@ pub(super) fn scale(low: f64, high: f64, unit: &str, about: usize, nearest: f64)
 }
 
 /// The names of a scale of powers of ten: these, every second or third of them where there are more than `most`; of less than two,
-/// their doubles and halves too.
-pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize) -> Scale {
+/// both ends, and doubles and halves of powers that are no closer to an end than `nearest`, a share of the whole.
+pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize, nearest: f64) -> Scale {
     let unit = unit.to_owned();
     // a power of ten is one, though its logarithm is rounded
     let [first, last] = [libm::ceil(libm::log10(low) - 1e-9), libm::floor(libm::log10(high) + 1e-9)];
@@ -72,12 +72,15 @@ pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize) -> Scale {
         let power = libm::floor(libm::log10(low) + 1e-9) as i32;
         let steps =
             [1.0, 2.0, 5.0].into_iter().flat_map(|step| [step * value(power), step * value(power + 1)]);
-        let slack = 1.0 + 1e-9;
+        let share = |value: f64| libm::log(value / low) / libm::log(high / low);
         let mut steps: Vec<f64> =
-            steps.filter(|step| *step * slack >= low && *step <= high * slack).collect();
+            steps.filter(|step| share(*step) > nearest && 1.0 - share(*step) > nearest).collect();
         steps.sort_by(f64::total_cmp);
+        // ends are told to two digits, which tell them apart unless the range is narrower than that
+        let end = |value: f64| (value, labelled(&[value], value, end_step(low, high)).concat());
         let named = |step: f64| (step, labels(&[step]).concat());
-        return Scale { ticks: steps.into_iter().map(named).collect(), unit };
+        let inner = steps.into_iter().map(named);
+        return Scale { ticks: [end(low)].into_iter().chain(inner).chain([end(high)]).collect(), unit };
     }
     let is_plain = powers.iter().all(|power| (-3..=4).contains(power));
     let name = |power: i32| {
@@ -89,6 +92,12 @@ pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize) -> Scale {
         ticks: powers.into_iter().step_by(stride).map(|power| (value(power), name(power))).collect(),
         unit,
     }
+}
+
+/// The digit to which both ends of a range are told: a tenth of the first digit of the lower one, or of what is between them.
+fn end_step(low: f64, high: f64) -> f64 {
+    let between = (high - low).max(f64::EPSILON * high);
+    0.1 * libm::pow(10.0, libm::floor(libm::log10(low.min(between)) + 1e-9))
 }
 
 /// What values up to `largest` are divided by to be from 0.1 to a thousand, and what the unit is called then.
@@ -192,13 +201,16 @@ mod tests {
     #[test]
     fn powers_of_ten_are_named() {
         let names = |low: f64, high: f64| -> Vec<String> {
-            log_scale(low, high, "Pa", 7).ticks.into_iter().map(|(_, name)| name).collect()
+            log_scale(low, high, "Pa", 7, 0.06).ticks.into_iter().map(|(_, name)| name).collect()
         };
         assert_eq!(names(1.0, 1e3), ["1", "10", "100", "1000"]);
         assert_eq!(names(0.01, 10.0), ["0.01", "0.1", "1", "10"]);
         assert_eq!(names(1e4, 1e7), ["10⁴", "10⁵", "10⁶", "10⁷"]);
         assert_eq!(names(1e-9, 1.0), ["10⁻⁹", "10⁻⁷", "10⁻⁵", "10⁻³", "10⁻¹"]);
-        assert_eq!(names(150.0, 800.0), ["200", "500"]);
+        assert_eq!(names(150.0, 800.0), ["150", "200", "500", "800"]);
+        // no power of ten in it, nor a double of one; one power alone
+        assert_eq!(names(2.1, 4.9), ["2.1", "4.9"]);
+        assert_eq!(names(0.6, 1.9), ["0.60", "1", "1.90"]);
         assert!(names(f64::NAN, 1.0).len() < 2 && names(1.0, f64::INFINITY).len() < 2);
     }
 

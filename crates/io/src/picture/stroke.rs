@@ -50,10 +50,12 @@ pub(super) fn prepared(strokes: &[Stroke], camera: &Camera, surfaces: &Samples) 
                     push(camera.project(from), camera.project(to), [half; 2]);
                 }
             }
-            StrokeShape::Arrow(from, to) => {
-                let Some([from, seen_to]) = line_before_eye(camera, *from, *to) else { continue };
+            StrokeShape::Arrow(given, to) => {
+                let given = *given;
+                let Some([from, seen_to]) = line_before_eye(camera, given, *to) else { continue };
                 let (mut start, mut tip) = (camera.project(from), camera.project(seen_to));
-                if surfaces.shows(start, LIFT) {
+                // where it starts behind the eye, what is seen of it begins before everything and says nothing
+                if from == given && surfaces.shows(start, LIFT) {
                     // nearer than anything
                     (start.inverse_depth, tip.inverse_depth) = (f64::MAX, f64::MAX);
                 }
