@@ -58,11 +58,17 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         doubts.map(|doubt| format!("skin `{}`: {doubt}", skin.name)).collect()
     };
     warnings.extend(known_skins.iter().flat_map(doubts));
-    let trial = Trial::of(&mut world, steps);
+    let mut trial = Trial::first(&mut world);
+    // before the steps of which the machine decides how many there are
     let costs = known_skins.iter().filter_map(|skin| Some((skin.name.as_str(), skin.cost(&world)?)));
     let costs: Vec<(&str, Cost)> = costs.collect();
+    trial.go_on(&mut world, steps);
     let errors: Vec<_> = trial.refused.iter().map(|error| first_step_refused(arguments, error)).collect();
-    warnings.extend(trial.broke_off.as_ref().map(|(step, error)| format!("step {step} is refused: {error}")));
+    let broke_off = trial.broke_off.as_ref();
+    warnings.extend(
+        broke_off
+            .map(|(step, error)| format!("the last of {step} steps that were tried is refused: {error}")),
+    );
     let document = json!({
         "scene": scene_path(&arguments.scene).display().to_string(),
         "title": title,
@@ -161,29 +167,28 @@ const FEW: u64 = 4;
 const PATIENCE: f64 = 5.0;
 
 impl Trial {
-    fn of(world: &mut World, most: u64) -> Self {
+    fn first(world: &mut World) -> Self {
         let clock = Instant::now();
         let refused = world.step().err();
         let first_seconds = clock.elapsed().as_secs_f64();
-        let mut trial =
-            Self { steps: 1, first_seconds, seconds_per_step: first_seconds, refused, broke_off: None };
-        if trial.refused.is_some() {
-            return trial;
-        }
+        Self { steps: 1, first_seconds, seconds_per_step: first_seconds, refused, broke_off: None }
+    }
+
+    /// Makes more steps, unless the first is refused.
+    fn go_on(&mut self, world: &mut World, most: u64) {
         let clock = Instant::now();
-        while trial.steps < most {
-            let elapsed = first_seconds + clock.elapsed().as_secs_f64();
-            if elapsed > PATIENCE || (elapsed > MEASURED && trial.steps > FEW) {
+        while self.refused.is_none() && self.steps < most {
+            let elapsed = self.first_seconds + clock.elapsed().as_secs_f64();
+            if elapsed > PATIENCE || (elapsed > MEASURED && self.steps > FEW) {
                 break;
             }
             if let Err(error) = world.step() {
-                trial.broke_off = Some((trial.steps + 1, error));
+                self.broke_off = Some((self.steps + 1, error));
                 break;
             }
-            trial.steps += 1;
-            trial.seconds_per_step = clock.elapsed().as_secs_f64() / (trial.steps - 1) as f64;
+            self.steps += 1;
+            self.seconds_per_step = clock.elapsed().as_secs_f64() / (self.steps - 1) as f64;
         }
-        trial
     }
 
     fn seconds_of(&self, steps: u64) -> f64 {

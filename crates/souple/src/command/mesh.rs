@@ -153,12 +153,15 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
 
 /// Refuses to write over the file that is read: what is made of it is less than it, or something else.
 fn keep_input(input: &Path, out: &Path) -> Result<(), Refusal> {
-    // two ways to write one path, and links, are one file
-    let same = input.canonicalize().ok().filter(|input| out.canonicalize().is_ok_and(|out| out == *input));
-    if same.is_none() {
-        return Ok(());
-    }
-    let name = out.display().to_string();
+    // two ways to write one path, and links, are one file; of formats of several files each counts
+    let files = |path: &Path| -> Vec<PathBuf> {
+        let files = souple_io::files_of_mesh(path).into_iter();
+        files.filter_map(|file| file.canonicalize().ok()).collect()
+    };
+    let read = files(input);
+    let Some(same) = files(out).into_iter().find(|file| read.contains(file)) else { return Ok(()) };
+    let name = if out.canonicalize().is_ok_and(|out| out == same) { out.to_owned() } else { same };
+    let name = name.display().to_string();
     let message = format!("`{name}` is the file that is read, and would be lost");
     Err(Refusal::request("overwrite", name, "another file to write", message))
 }
