@@ -116,7 +116,7 @@ fn conversions_take_a_format() {
     }
     let refused = convert("bar.obj", "vtu").ends(2);
     assert!(refused.stderr.contains("`obj`; expected vtu for the format `vtu`"), "{}", refused.stderr);
-    assert!(convert("bar.msh", "gmsh_7").ends(2).stderr.contains("gmsh_2"));
+    assert!(convert("other.msh", "gmsh_7").ends(2).stderr.contains("gmsh_2"));
 }
 
 /// What cannot be filled is refused by its cause, and a size that is none is named.
