@@ -117,13 +117,16 @@ impl Signature {
             format!("    [\n{}    ]\n", results.chunks(*dimension).map(of_node).collect::<String>())
         };
         let lines = |body: &Body| -> String { body.0.iter().map(|line| format!("    {line}\n")).collect() };
+        // the differential of a linear force is the same at every displacement
+        let is_linear = !differentials.0.iter().chain(&differentials.1).any(|line| line.contains("u["));
+        let u = if is_linear { "_u" } else { "u" };
         format!(
             "/// What does not change while the element moves, from its rest positions and material.\n\
              pub fn constants(p: &{vectors}{material}) -> [f64; {count}] {{\n{}{}}}\n\n\
              /// Forces on the nodes [N] from their displacements.\n\
              pub fn forces(d: &[f64; {count}], u: &{vectors}) -> {vectors} {{\n{}{}}}\n\n\
              /// The differential of the forces along `v`.\n\
-             pub fn force_differential(d: &[f64; {count}], u: &{vectors}, v: &{vectors}) -> {vectors} {{\n{}{}}}\n",
+             pub fn force_differential(d: &[f64; {count}], {u}: &{vectors}, v: &{vectors}) -> {vectors} {{\n{}{}}}\n",
             lines(&constants),
             flat(&constants.1),
             lines(&forces),

@@ -62,12 +62,30 @@ impl Style for Rust {
     }
 
     fn definition(&self, name: &str, value: &str) -> String {
-        format!("let {name} = {value};")
+        format!("let {name} = {};", bare(value))
     }
 
     fn powers_are_products(&self) -> bool {
         true
     }
+}
+
+/// Without parentheses around the whole.
+fn bare(text: &str) -> &str {
+    let Some(inner) = text.strip_prefix('(').and_then(|text| text.strip_suffix(')')) else { return text };
+    let mut open = 0;
+    for letter in inner.chars() {
+        open += match letter {
+            '(' => 1,
+            ')' => -1,
+            _ => 0,
+        };
+        // the first one is closed before the end
+        if open < 0 {
+            return text;
+        }
+    }
+    inner
 }
 
 /// `a / b`, with what binds less in parentheses.

@@ -174,13 +174,14 @@ export async function until(page, holds, what) {
   }
 }
 
-/** The largest value of the legend when it changes no more over a tenth of a simulated second [mm]. */
+/** The largest value of the legend when it has not changed for a simulated second [mm]: what swings stands still for less. */
 export async function settled(page) {
-  let last = NaN;
+  const values = [];
   for (;;) {
-    const now = await largest(page);
-    if (Math.abs(now - last) < 0.02 * now) return now;
-    last = now;
+    values.push(await largest(page));
+    const lately = values.slice(-10);
+    const [least, most] = [Math.min(...lately), Math.max(...lately)];
+    if (lately.length === 10 && most - least < 0.02 * most) return values.at(-1);
     await passed(page, (await time(page)) + 0.1);
   }
 }
