@@ -179,8 +179,9 @@ fn worlds_begin_as_they_should() {
     }
     let quiet = page.document_where("status", |status| status["busy"].is_null());
     assert_eq!(quiet["mode"], "paused");
-    let text = "format = 1\n[skins.ball]\nvoxel = 0.1\n[[skins.ball.start]]\n\
-                part = \"point\"\nat = [0, 0, 0]\nradius = 0.5\n";
+    let text = "format = 1\n[world]\nperiod = \"10 ms\"\n[skins.ball]\nvoxel = 0.1\n\
+                terms = [{ term = \"tension\", strength = 0.01 }]\n\
+                [[skins.ball.start]]\npart = \"point\"\nat = [0, 0, 0]\nradius = 0.5\n";
     page.wish(json!({"do": "load_text", "name": "ball.toml", "text": text}));
     page.document_where("scene", |loaded| loaded["scene"] != anew["scene"]);
     page.document_where("status", |status| status["mode"] == "playing");
