@@ -10,7 +10,43 @@ const MARKS_OF_16: [(&[u8], &str); 2] = [(b"\xff\xfe", "little endian"), (b"\xfe
 /// Letters by which UTF-16 without a mark is known: each beside a zero.
 const LETTERS: usize = 8;
 
-/// The content without a mark of byte order.
+/// What readers are given of a file: all of it, or what follows a mark of byte order.
+#[derive(Clone, Copy)]
+pub(crate) struct Content<'a> {
+    pub bytes: &'a [u8],
+    /// Length of the mark that was left out [bytes].
+    mark: usize,
+}
+
+impl<'a> Content<'a> {
+    /// A file's content; `is_known` says whether a format knows bytes for its own. Those of a binary format may happen to begin as a
+    /// mark does, and then are known with it and not without it.
+    ///
+    /// # Errors
+    /// It is UTF-16.
+    pub fn of(bytes: &'a [u8], is_known: impl Fn(&[u8]) -> bool) -> Result<Self, Fault> {
+        let raw = Self { bytes, mark: 0 };
+        match unmarked(bytes) {
+            Ok(text) if text.len() == bytes.len() || is_known(bytes) && !is_known(text) => Ok(raw),
+            Ok(text) => Ok(Self { bytes: text, mark: bytes.len() - text.len() }),
+            Err(_) if is_known(bytes) => Ok(raw),
+            Err(fault) => Err(fault),
+        }
+    }
+
+    /// What a reader makes of it; the places of its faults are those in the file.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub fn read<T>(self, read: impl FnOnce(&'a [u8]) -> Result<T, Fault>) -> Result<T, Fault> {
+        read(self.bytes).map_err(|fault| match fault.place {
+            Place::Byte(byte) => Fault { place: Place::Byte(byte + self.mark), ..fault },
+            Place::Line(_) | Place::PartLine { .. } => fault,
+        })
+    }
+}
+
+/// A text without a mark of byte order.
 ///
 /// # Errors
 /// It is UTF-16, of which no reader can tell more than that its first word is strange.
@@ -57,5 +93,22 @@ mod tests {
         }
         // a binary header of zeros, or of nothing
         assert!(unmarked(&[0; 84]).is_ok() && unmarked(b"").is_ok() && unmarked(b"\xff\xfe").is_ok());
+    }
+
+    /// A binary file that begins as a mark does keeps it; places are counted in the file, the mark with it.
+    #[test]
+    fn binary_content_keeps_what_looks_like_a_mark() {
+        let is_binary = |bytes: &[u8]| bytes.len() == 7;
+        let fails = |_: &[u8]| Err::<(), _>(Fault::new(Place::Byte(2), "a number", "none", "one"));
+        for (bytes, len, place) in
+            [(b"\xef\xbb\xbfabcd".as_slice(), 7, 2), (b"\xef\xbb\xbfabcde", 5, 5), (b"abcde", 5, 2)]
+        {
+            let content = Content::of(bytes, is_binary).unwrap();
+            assert_eq!(content.bytes.len(), len);
+            assert_eq!(content.read(fails).unwrap_err().place, Place::Byte(place));
+        }
+        let of_16: Vec<u8> = "a text of sixteen".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert!(Content::of(&of_16, |_| false).is_err());
+        assert_eq!(Content::of(&of_16, |bytes| bytes.len() == of_16.len()).unwrap().bytes, of_16);
     }
 }

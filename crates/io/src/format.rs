@@ -8,7 +8,7 @@ use souple_table::{Entry, Table};
 
 use crate::beside::write_files;
 use crate::dataset::Output;
-use crate::encoding::unmarked;
+use crate::encoding::Content;
 use crate::error::{Fault, Place, quoted};
 use crate::holds::Holds;
 use crate::{Dataset, IoError, gltf, gmsh, obj, off, parts, ply, stl, tetgen, vtk, write_file};
@@ -99,9 +99,10 @@ pub fn read_dataset(path: &Path) -> Result<Dataset, IoError> {
 }
 
 fn read_content(path: &Path, bytes: &[u8]) -> Result<Dataset, IoError> {
-    let bytes = unmarked(bytes).map_err(|fault| IoError::content(path, fault))?;
-    let by_content = FORMATS.entries.iter().copied().find(|entry| (entry.build.recognises)(bytes));
-    let entry = match (by_extension(path), by_content) {
+    let refuse = |fault| IoError::content(path, fault);
+    let content = Content::of(bytes, |bytes| by_content(bytes).is_some()).map_err(refuse)?;
+    let bytes = content.bytes;
+    let entry = match (by_extension(path), by_content(bytes)) {
         // the extension rules while the content agrees or says nothing
         (Ok(named), found) if (named.build.recognises)(bytes) || found.is_none() => named,
         (_, Some(found)) => found,
@@ -113,11 +114,16 @@ fn read_content(path: &Path, bytes: &[u8]) -> Result<Dataset, IoError> {
         action: "read",
         expected: readable(),
     })?;
-    let mut dataset = read(bytes).map_err(|fault| IoError::content(path, fault))?;
+    let mut dataset = content.read(read).map_err(refuse)?;
     if by_extension(path).map_or(true, |named| !std::ptr::eq(named, entry)) {
         dataset.notes.insert(0, format!("the content was recognised as the format `{}`", entry.name));
     }
     Ok(dataset)
+}
+
+/// The format that knows content for its own.
+fn by_content(bytes: &[u8]) -> Option<&'static Entry<Format>> {
+    FORMATS.entries.iter().copied().find(|entry| (entry.build.recognises)(bytes))
 }
 
 /// The content of a file, already in memory, in the format of that name.
@@ -138,7 +144,9 @@ pub fn read_dataset_bytes(format: &str, bytes: &[u8]) -> Result<Dataset, IoError
     let expected = readable();
     let read =
         entry.build.read.ok_or(IoError::Unsupported { format: entry.name, action: "read", expected })?;
-    unmarked(bytes).and_then(read).map_err(|fault| IoError::content(Path::new("<memory>"), fault))
+    Content::of(bytes, entry.build.recognises)
+        .and_then(|content| content.read(read))
+        .map_err(|fault| IoError::content(Path::new("<memory>"), fault))
 }
 
 /// Writes a mesh, the format by the extension.

@@ -27,7 +27,7 @@ pub(crate) static STL: Entry<Format> = Entry {
         extensions: &["stl"],
         family: &[],
         parts: &[],
-        recognises: |_| false,
+        recognises: is_binary,
         read: Some(read),
         write: Some(write_binary),
         holds: Holds { digits: Digits::Single, ..Holds::BARE },
@@ -105,19 +105,22 @@ impl Joiner {
     }
 }
 
-pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
-    // binary files may begin with "solid" too: their length tells them
+/// Whether the length is that of the triangles counted: comments begin with anything, with "solid" as well.
+fn is_binary(bytes: &[u8]) -> bool {
     let count = bytes
         .get(80..HEAD)
         .map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
-    let is_binary = count.is_some_and(|count| bytes.len() == HEAD + count * TRIANGLE);
+    count.is_some_and(|count| bytes.len() == HEAD + count * TRIANGLE)
+}
+
+pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     let starts = |word: &[u8]| {
         let start = bytes.trim_ascii_start().get(..word.len());
         start.is_some_and(|start| start.eq_ignore_ascii_case(word))
     };
     // the count of a binary file with bytes behind it has a zero, which no text has
     let is_text = starts(b"solid") && !bytes[..bytes.len().min(HEAD)].contains(&0);
-    if is_binary || !is_text { read_binary(bytes) } else { read_text(bytes) }
+    if is_binary(bytes) || !is_text { read_binary(bytes) } else { read_text(bytes) }
 }
 
 fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {

@@ -246,6 +246,61 @@ fn conversions_tell_what_they_lose() {
     }
 }
 
+/// No command writes over what it reads, however the file is named, and be it one of several of its mesh.
+#[test]
+fn inputs_are_kept() {
+    let folder = Folder::new("kept");
+    generate(&folder, "mixed.vtu");
+    let call = ["mesh", "generate", "box", "tets.node", "size=1,1,1", "cells=2,2,2", "element=tet4"];
+    souple_in(folder.path(), call).ends(0);
+    std::os::unix::fs::symlink("mixed.vtu", folder.path().join("link.vtu")).expect("a link");
+    let read = |file: &str| std::fs::read(folder.path().join(file)).expect("a file");
+    let (mixed, ele) = (read("mixed.vtu"), read("tets.ele"));
+    for (command, from, to, named) in [
+        ("convert", "mixed.vtu", "./mixed.vtu", "mixed.vtu"),
+        ("convert", "link.vtu", "mixed.vtu", "mixed.vtu"),
+        ("convert", "tets.node", "tets.ele", "tets.ele"),
+        ("convert", "tets.ele", "tets.node", "tets.node"),
+        ("fill", "mixed.vtu", "link.vtu", "vtu"),
+        ("simplify", "mixed.vtu", "mixed.vtu", "mixed.vtu"),
+    ] {
+        let answer = souple_in(folder.path(), ["mesh", command, from, to]).ends(2);
+        assert!(
+            answer.stderr.contains("is the file that is read") && answer.stderr.contains(named),
+            "{answer:#?}"
+        );
+    }
+    assert!(read("mixed.vtu") == mixed && read("tets.ele") == ele);
+}
+
+/// A surface with a hole needs seven points and so 14 triangles, however few are asked for: what is left is told, and so is why.
+#[test]
+fn simplification_tells_what_it_cannot_do() {
+    let folder = Folder::new("simplified");
+    souple_in(folder.path(), ["mesh", "fill", "torus", "torus.vtu", "size=0.05"]).ends(0);
+    let answer =
+        souple_in(folder.path(), ["mesh", "simplify", "torus.vtu", "few.ply", "triangles=4", "--json"])
+            .ends(0);
+    let answer = answer.json();
+    let told = answer["notes"].to_string();
+    let left: usize = told
+        .split_once(" are more than the 4 asked for: the rest cannot be joined")
+        .expect(&told)
+        .0
+        .rsplit(['"', ' '])
+        .next()
+        .expect("a number")
+        .parse()
+        .expect("a number");
+    assert!((14..100).contains(&left), "{told}");
+    let whole = quality(&folder, "few.ply").expect("a closed surface");
+    assert_eq!(whole["facets"], left, "{whole:#}");
+    let many =
+        souple_in(folder.path(), ["mesh", "simplify", "torus.vtu", "many.ply", "triangles=200", "--json"])
+            .ends(0);
+    assert!(!many.json()["notes"].to_string().contains("asked for"));
+}
+
 /// A legacy VTK text of these points and cells.
 fn vtk(points: &[&str], cells: &str, types: &str) -> String {
     let count = types.split_whitespace().count();

@@ -186,19 +186,40 @@ fn frames_that_are_not_shown_are_not_read() {
     assert!(!folder.path().join("whole.gif").exists());
 }
 
-/// On a scale of powers of ten what is not above zero is grey, and that is said; where nothing is above zero it is refused.
+/// On a scale of powers of ten what is below zero is grey, and that is said of every kind of file; where nothing is above zero the
+/// scale is refused.
 #[test]
 fn colours_by_powers_of_ten() {
     let folder = Folder::new("powers");
-    folder.write("scene.toml", CUBE);
+    // the upper half turns up, the lower one down
+    let stretched = CUBE.replace("gravity = [0, -9.81, 0]", "gravity = [0, 0, 0]").replace(
+        "[probes.place]",
+        "[[bodies.cube.loads]]\nregion = \"y_max\"\nforce = [0, \"1 N\", 0]\n\
+         [[bodies.cube.loads]]\nregion = \"y_min\"\nforce = [0, \"-1 N\", 0]\n[probes.place]",
+    );
+    folder.write("scene.toml", stretched);
     souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
-    let log = ["--colour-scale", "log"];
-    let answer = render(&folder, "run", "a.png", &[&log[..], &["--colour", "displacement.y"]].concat());
-    let told = answer.stderr.clone() + &answer.stdout;
-    assert!(told.contains("not above 0") || told.contains("no value is above 0"), "{answer:#?}");
-    let first =
-        render(&folder, "run", "b.png", &[&log[..], &["--time", "0", "--colour", "displacement"]].concat());
-    assert!(first.ends(2).stderr.contains("no value is above 0; expected linear"));
+    let notes = |file: &str, field: &str| {
+        let options = ["--colour-scale", "log", "--colour", field];
+        render(&folder, "run", file, &options).ends(0).json()["notes"].to_string()
+    };
+    // of three rows of nine points the lowest goes down, and that in the middle by what rounding leaves; at the first of six moments
+    // nothing has moved
+    for (file, moments) in [("a.png", 1), ("a.glb", 5), ("a.gif", 5)] {
+        let told = notes(file, "displacement.y");
+        let (count, _) = told.split_once(" values are below 0").unwrap_or_else(|| panic!("{file}: {told}"));
+        let count =
+            count.trim_start_matches(['[', '"']).split(' ').next().and_then(|count| count.parse().ok());
+        assert!(
+            count.is_some_and(|count: usize| (9 * moments..=18 * moments).contains(&count)),
+            "{file}: {told}"
+        );
+    }
+    assert!(!notes("a.png", "displacement").contains("below 0"));
+    let at_rest = ["--colour-scale", "log", "--time", "0", "--colour", "displacement"];
+    let refused = render(&folder, "run", "b.png", &at_rest).ends(2).stderr;
+    assert!(refused.contains("no value is above 0; expected linear"), "{refused}");
+    assert!(!folder.path().join("b.png").exists());
 }
 
 /// Bodies of every dimension have values to be coloured by, from the frames of their run as from the run itself.

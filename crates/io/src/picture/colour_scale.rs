@@ -7,7 +7,7 @@ use souple_table::{Entry, Table};
 pub enum ColourScale {
     #[default]
     Linear,
-    /// Each power of ten has as much of the map; values that are not above zero have no colour.
+    /// Each power of ten has as much of the map; zero, infinitely many of them down, has the first colour, and what is below it none.
     Logarithmic,
 }
 
@@ -24,7 +24,7 @@ pub static COLOUR_SCALES: Table<ColourScale> = Table {
         },
         &Entry {
             name: "log",
-            summary: "equal ratios of values are equal steps of colour; values that are not above zero are grey",
+            summary: "equal ratios of values are equal steps of colour; zero has the first one, and values below it are grey",
             source: "analytic",
             parameters: &[],
             build: ColourScale::Logarithmic,
@@ -41,13 +41,19 @@ impl ColourScale {
         match self {
             Self::Linear => (value - low) / (high - low).max(f64::MIN_POSITIVE),
             Self::Logarithmic if value > 0.0 => libm::log(value / low) / libm::log(high / low),
+            Self::Logarithmic if value == 0.0 => 0.0,
             Self::Logarithmic => f64::NAN,
         }
     }
 
     /// Whether a value has a colour.
     pub fn has(self, value: f64) -> bool {
-        value.is_finite() && (self == Self::Linear || value > 0.0)
+        value.is_finite() && (self == Self::Linear || value >= 0.0)
+    }
+
+    /// Whether a value has a place between others, by which a range is found.
+    pub fn spans(self, value: f64) -> bool {
+        self.has(value) && (self == Self::Linear || value > 0.0)
     }
 
     /// The range for values from `low` to `high`: of powers of ten, whole ones.
@@ -74,7 +80,8 @@ mod tests {
         for (value, share) in [(1e2, 0.0), (1e3, 1.0 / 3.0), (1e5, 1.0)] {
             assert!((log.share(value, range) - share).abs() < 1e-12, "{value}");
         }
-        assert!(log.share(0.0, range).is_nan() && log.share(-1.0, range).is_nan() && !log.has(0.0));
+        assert!(log.share(-1.0, range).is_nan() && !log.has(-1.0));
+        assert!(log.share(0.0, range) == 0.0 && log.has(0.0) && !log.spans(0.0) && log.spans(1e-300));
         // one value, a power of ten, and more decades than are told apart
         for (values, expected) in
             [((50.0, 50.0), [10.0, 100.0]), ((1e3, 1e3), [1e2, 1e3]), ((1e-30, 1.0), [1e-6, 1.0])]

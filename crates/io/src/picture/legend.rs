@@ -57,8 +57,9 @@ pub(super) fn scale(low: f64, high: f64, unit: &str, about: usize, nearest: f64)
     Scale { ticks: values.into_iter().map(|value| value * factor).zip(names).collect(), unit }
 }
 
-/// The names of a scale of powers of ten: these, every second or third of them where there are more than `most`; of less than two,
-/// both ends, and doubles and halves of powers that are no closer to an end than `nearest`, a share of the whole.
+/// The names of a scale of powers of ten: both ends, and between them powers, every second or third of them where there are more
+/// than `most`; of less than two, doubles and halves of powers. None of these is closer to an end than `nearest`, a share of the
+/// whole.
 pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize, nearest: f64) -> Scale {
     let unit = unit.to_owned();
     // a power of ten is one, though its logarithm is rounded
@@ -68,29 +69,43 @@ pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize, nearest: f
     }
     let powers: Vec<i32> = (first as i32..=last as i32).collect();
     let value = |power: i32| libm::pow(10.0, f64::from(power));
-    if powers.len() < 2 {
-        let power = libm::floor(libm::log10(low) + 1e-9) as i32;
-        let steps =
-            [1.0, 2.0, 5.0].into_iter().flat_map(|step| [step * value(power), step * value(power + 1)]);
-        let share = |value: f64| libm::log(value / low) / libm::log(high / low);
-        let mut steps: Vec<f64> =
-            steps.filter(|step| share(*step) > nearest && 1.0 - share(*step) > nearest).collect();
-        steps.sort_by(f64::total_cmp);
-        // ends are told to two digits, which tell them apart unless the range is narrower than that
-        let end = |value: f64| (value, labelled(&[value], value, end_step(low, high)).concat());
-        let named = |step: f64| (step, labels(&[step]).concat());
-        let inner = steps.into_iter().map(named);
-        return Scale { ticks: [end(low)].into_iter().chain(inner).chain([end(high)]).collect(), unit };
-    }
-    let is_plain = powers.iter().all(|power| (-3..=4).contains(power));
-    let name = |power: i32| {
-        let digits = -power.min(0) as usize;
-        if is_plain { format!("{:.digits$}", value(power)) } else { format!("10{}", raised(power)) }
+    let is_plain = [low, high].iter().all(|end| (1e-3..1e5).contains(end));
+    let share = |value: f64| libm::log(value / low) / libm::log(high / low);
+    let is_inner = |value: f64| share(value) > nearest && 1.0 - share(value) > nearest;
+    let is_power = |end: f64, power: i32| (end / value(power) - 1.0).abs() < 1e-9;
+    // ends are told to two digits, which tell them apart unless the range is narrower than that
+    let end = |end: f64| {
+        let power = libm::floor(libm::log10(end) + 1e-9) as i32;
+        let name = match (is_power(end, power), is_plain) {
+            (true, _) => power_name(power, is_plain),
+            (false, true) => labelled(&[end], end, end_step(low, high)).concat(),
+            (false, false) => format!("{:.1}·{}", end / value(power), power_name(power, false)),
+        };
+        (end, name)
     };
-    let stride = powers.len().div_ceil(most.max(2));
-    Scale {
-        ticks: powers.into_iter().step_by(stride).map(|power| (value(power), name(power))).collect(),
-        unit,
+    let inner: Vec<(f64, String)> = if powers.len() < 2 {
+        let power = libm::floor(libm::log10(low) + 1e-9) as i32;
+        let mut steps: Vec<f64> = [1.0, 2.0, 5.0]
+            .into_iter()
+            .flat_map(|step| [step * value(power), step * value(power + 1)])
+            .collect();
+        steps.sort_by(f64::total_cmp);
+        steps.into_iter().map(|step| (step, labels(&[step]).concat())).collect()
+    } else {
+        let stride = powers.len().div_ceil(most.max(2));
+        powers.into_iter().step_by(stride).map(|power| (value(power), power_name(power, is_plain))).collect()
+    };
+    let inner = inner.into_iter().filter(|(value, _)| is_inner(*value));
+    Scale { ticks: [end(low)].into_iter().chain(inner).chain([end(high)]).collect(), unit }
+}
+
+/// A power of ten as a person writes it.
+fn power_name(power: i32, is_plain: bool) -> String {
+    let digits = -power.min(0) as usize;
+    if is_plain {
+        format!("{:.digits$}", libm::pow(10.0, f64::from(power)))
+    } else {
+        format!("10{}", raised(power))
     }
 }
 
@@ -206,7 +221,11 @@ mod tests {
         assert_eq!(names(1.0, 1e3), ["1", "10", "100", "1000"]);
         assert_eq!(names(0.01, 10.0), ["0.01", "0.1", "1", "10"]);
         assert_eq!(names(1e4, 1e7), ["10⁴", "10⁵", "10⁶", "10⁷"]);
-        assert_eq!(names(1e-9, 1.0), ["10⁻⁹", "10⁻⁷", "10⁻⁵", "10⁻³", "10⁻¹"]);
+        assert_eq!(names(1e-9, 1.0), ["10⁻⁹", "10⁻⁷", "10⁻⁵", "10⁻³", "10⁻¹", "10⁰"]);
+        // ends that are no powers, from which powers keep away
+        assert_eq!(names(300.0, 4e4), ["300", "1000", "10000", "40000"]);
+        assert_eq!(names(3e5, 9.5e7), ["3.0·10⁵", "10⁶", "10⁷", "9.5·10⁷"]);
+        assert_eq!(names(0.002, 1.1), ["0.0020", "0.01", "0.1", "1.1000"]);
         assert_eq!(names(150.0, 800.0), ["150", "200", "500", "800"]);
         // no power of ten in it, nor a double of one; one power alone
         assert_eq!(names(2.1, 4.9), ["2.1", "4.9"]);

@@ -84,7 +84,7 @@ pub(super) fn line_before_eye(camera: &Camera, from: Vec3, to: Vec3) -> Option<[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::{Colour, Paint, Picture, Surface, View};
+    use crate::picture::{Colour, ColourMap, Paint, Picture, Stroke, StrokeShape, Surface, View};
 
     /// An endless floor, as one triangle that reaches far behind the eye, fills the picture up to the horizon and nothing above
     /// it; its paint goes on evenly where it is cut.
@@ -114,9 +114,51 @@ mod tests {
         let rows: Vec<usize> = (0..120).map(|y| (20..140).filter(|x| is_red(*x, y)).count()).collect();
         assert!(rows[119] == 120 && rows[100] == 120 && rows[80] == 120, "{rows:?}");
         assert!(rows[..50].iter().all(|count| *count == 0), "{rows:?}");
-        // values fall with depth: rows are alike from left to right, and change from below upward
+        // where a row of pixels meets the floor, 2 m below the eye: a value of 0 is 100 m behind it, one of 1 at 900 m
         let values = picture(floor(Paint::PointScalar(vec![0.0, 0.0, 1.0]))).render().unwrap();
-        assert_ne!(values.pixels[119 * 160 + 80], values.pixels[66 * 160 + 80]);
+        let upper = libm::tan(0.5 * View::default().field_of_view);
+        for row in [119_usize, 100, 80, 70] {
+            let depth = 2.0 / (upper * (row as f64 + 0.5 - 60.0) / 60.0);
+            let colour = ColourMap::default().colour((100.0 + depth) / 1000.0);
+            let expected = picture(floor(Paint::Plain(colour))).render().unwrap();
+            for x in [20, 80, 139] {
+                let [found, expected] = [&values, &expected].map(|image| image.pixels[row * 160 + x]);
+                // half a row, by which values change at most by a hundredth up to the last of these, is two steps of a colour
+                let off = (0..3).map(|part| found[part].abs_diff(expected[part])).max();
+                assert!(off <= Some(2), "row {row}, column {x}: {found:?}, {expected:?}");
+            }
+        }
+    }
+
+    /// An arrow that begins behind the eye is drawn from where it comes before it: as one that begins there.
+    #[test]
+    fn an_arrow_comes_from_behind_the_eye() {
+        let eye = Vec3::new(0.3, 0.2, 0.0);
+        let drawn = |from: Vec3| {
+            let arrow = Stroke {
+                shape: StrokeShape::Arrow(from, Vec3::new(0.0, 0.0, -9.0)),
+                colour: Colour([1.0, 0.0, 0.0]),
+                width: 3.0,
+            };
+            let picture = Picture {
+                strokes: vec![arrow],
+                view: View { eye: Some(eye), ..View::along(-Vec3::Z, Vec3::Y) },
+                size: [160, 120],
+                samples_per_pixel: 1,
+                ..Picture::default()
+            };
+            picture.render().unwrap().pixels
+        };
+        let behind = drawn(Vec3::new(0.0, 0.0, 5.0));
+        let reds = behind.iter().filter(|[r, g, _]| r.saturating_sub(*g) > 100).count();
+        assert!(reds > 100, "{reds}");
+        // from one metre before the eye on both are the same line
+        let before = drawn(Vec3::new(0.0, 0.0, -1.0));
+        let missing = before
+            .iter()
+            .zip(&behind)
+            .filter(|(a, b)| a[0].saturating_sub(a[1]) > 100 && b[0].saturating_sub(b[1]) <= 100);
+        assert_eq!(missing.count(), 0);
     }
 
     #[test]

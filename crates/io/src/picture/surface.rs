@@ -109,14 +109,14 @@ impl Surface {
         }
     }
 
-    /// Values of the paint that have a colour: least and greatest.
+    /// Values of the paint that have a place on a scale: least and greatest.
     pub(super) fn range(&self, scale: ColourScale) -> Option<(f64, f64)> {
         let values = match &self.paint {
             Paint::Plain(_) => return None,
             Paint::PointScalar(values) | Paint::TriangleScalar(values) => values,
         };
-        let coloured = values.iter().copied().filter(|value| scale.has(*value));
-        coloured.fold(None, |range, value| match range {
+        let spanning = values.iter().copied().filter(|value| scale.spans(*value));
+        spanning.fold(None, |range, value| match range {
             None => Some((value, value)),
             Some((low, high)) => Some((f64::min(low, value), f64::max(high, value))),
         })

@@ -139,6 +139,47 @@ fn strokes_are_hidden_by_what_is_before_them() {
     assert!(pixel_of(0.5)[1] > 60);
 }
 
+/// Values on a scale of powers of ten have the colours that their logarithms have on a linear one, zero that of the first power, and
+/// what is below zero none.
+#[test]
+fn powers_of_ten_have_the_colours_of_their_logarithms() {
+    let strip = |values: Vec<f64>| {
+        let points = (0..8).map(|k| Vec3::new(f64::from(k / 2), f64::from(k % 2), 0.0)).collect();
+        let triangles =
+            (0..3).flat_map(|k| [[2 * k, 2 * k + 2, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 1]]).collect();
+        Surface { points, triangles, paint: Paint::PointScalar(values), ..Surface::default() }
+    };
+    let picture = |values: [f64; 4], scale: ColourScale, range: (f64, f64)| {
+        let legend = Legend { range: Some(range), place: LegendPlace::Apart, ..Legend::default() };
+        Picture {
+            surfaces: vec![strip(values.iter().flat_map(|value| [*value; 2]).collect())],
+            view: View { direction: -Vec3::Z, ..View::default() },
+            size: [120, 60],
+            legend: Some(legend),
+            scale,
+            ..Picture::default()
+        }
+        .render()
+        .unwrap()
+        .pixels
+    };
+    let by_powers = |values| picture(values, ColourScale::Logarithmic, (1.0, 1e3));
+    let by_logarithms = |values| picture(values, ColourScale::Linear, (0.0, 3.0));
+    // rounding may turn a part of a colour by one
+    let is_same = |a: &[[u8; 3]], b: &[[u8; 3]]| {
+        a.iter().zip(b).all(|(a, b)| a.iter().zip(b).all(|(a, b)| a.abs_diff(*b) <= 1))
+    };
+    let powers = by_powers([1.0, 1e3, 10.0, 100.0]);
+    assert!(is_same(&powers, &by_logarithms([0.0, 3.0, 1.0, 2.0])));
+    assert!(!is_same(&powers, &by_logarithms([0.0, 3.0, 1.0, 1.0])));
+    assert_eq!(by_powers([0.0, 1e3, 10.0, 100.0]), powers);
+    // of three cells the first has a corner without a colour
+    let grey = by_powers([-1.0, 1e3, 10.0, 100.0]);
+    let differs: Vec<usize> =
+        (0..120).filter(|x| (0..60).any(|y| grey[y * 120 + x] != powers[y * 120 + x])).collect();
+    assert!(!differs.is_empty() && differs.iter().all(|x| *x < 48), "{differs:?}");
+}
+
 #[test]
 fn faulty_pictures_are_refused_and_strange_ones_drawn() {
     let surface = MeshSurface::of(&cube()).surface;

@@ -18,7 +18,8 @@ use crate::{BoundingBox, Mesh, TriangleSurface};
 /// A loss of less than this part of a surface or of a volume is not told: tips and edges, which every filling bevels.
 const BEVELLED: f64 = 1e-3;
 
-const REMEDY: &str = "what is thinner than a cell is lost; take a smaller size";
+/// What a person may do about it.
+pub(super) const REMEDY: &str = "what is thinner than a cell is lost; take a smaller size";
 
 /// Cubes as long as the smallest cells, all over the bounds and one beyond: which of them a filling reaches into.
 struct Reached<'a> {

@@ -97,7 +97,7 @@ fn filled(
             if shape.sign() == Sign::WindingNumber {
                 "parts that overlap count once, and what is thinner than its cells is lost"
             } else {
-                "what is thinner than its cells is lost; take a smaller size"
+                lost::REMEDY
             }
         ));
     }

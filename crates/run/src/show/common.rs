@@ -108,7 +108,7 @@ pub struct Gathering<'a> {
     times: Vec<f64>,
     bounds: BoundingBox,
     framed: Outermost,
-    /// Least and greatest of the values that have a colour.
+    /// Least and greatest of the values that have a place on the scale.
     found: Option<(f64, f64)>,
     noise: f64,
     /// Values that have no colour, of how many.
@@ -152,12 +152,12 @@ impl<'a> Gathering<'a> {
             if let Some(quantity) = &quantity {
                 self.noise = self.noise.max(quantity.noise(body, self.stage.stiffness));
                 let values = quantity.at_points(body).unwrap_or_default();
-                let coloured = values.iter().copied().filter(|value| figure.scale.has(*value));
-                let both = extremes(coloured.clone()).into_iter().chain(self.found);
+                let spanning = values.iter().copied().filter(|value| figure.scale.spans(*value));
+                let both = extremes(spanning).into_iter().chain(self.found);
                 self.found = both.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-                let finite = values.iter().filter(|value| value.is_finite()).count();
-                self.colourless[0] += finite - coloured.count();
-                self.colourless[1] += finite;
+                let finite = values.iter().filter(|value| value.is_finite());
+                self.colourless[0] += finite.clone().filter(|value| !figure.scale.has(**value)).count();
+                self.colourless[1] += finite.count();
             }
             let arrows = figure.arrows.as_ref().and_then(|arrows| vectors(body, &arrows.field));
             let lengths = arrows.iter().flatten().map(|v| v.length()).filter(|length| length.is_finite());
@@ -188,7 +188,7 @@ impl<'a> Gathering<'a> {
         }
         let [colourless, values] = self.colourless;
         let is_log = figure.scale == ColourScale::Logarithmic;
-        if is_log && values > 0 && colourless == values {
+        if is_log && values > 0 && self.found.is_none() {
             return Err(ShowError::Request {
                 what: "colour scale",
                 value: "log, and no value is above 0".to_owned(),
@@ -198,7 +198,10 @@ impl<'a> Gathering<'a> {
         let mut range = figure.range;
         if let (Some(_), None) = (figure.quantity(), range) {
             let linear = |range| figure.colours.spread(spread(range, self.noise));
-            let of_values = |range| if is_log { figure.scale.spread(range) } else { linear(range) };
+            // what rounding makes of zero is no power of ten worth a colour of its own
+            let by_powers =
+                |(low, high): (f64, f64)| figure.scale.spread((low.max(self.noise).min(high), high));
+            let of_values = |range| if is_log { by_powers(range) } else { linear(range) };
             range = figure.colours.own_range().or(self.found.map(of_values));
         }
         let mut arrow_scale = 1.0;
@@ -210,7 +213,7 @@ impl<'a> Gathering<'a> {
         let mut notes = Vec::new();
         if colourless > 0 {
             notes.push(format!(
-                "{colourless} of {values} values are not above 0 and have no place on a scale of powers of ten: they are grey"
+                "{colourless} of {values} values are below 0 and have no place on a scale of powers of ten: they are grey"
             ));
         }
         if let (true, Some((least, _)), Some((low, _))) = (is_log, self.found, range)

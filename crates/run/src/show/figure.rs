@@ -279,8 +279,8 @@ impl Figure {
         points.iter().step_by(every).filter_map(stroke).collect()
     }
 
-    /// The boundaries of all bodies and shapes over all moments, coloured as at the last.
-    pub fn animation(&self, show: &Show) -> Result<Animation, ShowError> {
+    /// The boundaries of all bodies and shapes over all moments, coloured as at the last, and what is to be said of them.
+    pub fn animation(&self, show: &Show) -> Result<(Animation, Vec<String>), ShowError> {
         let moments: Vec<&Moment> = show.moments.iter().filter(|moment| moment.is_drawable()).collect();
         let common = Common::of(self, show, &moments)?;
         let count = moments.last().map_or(0, |moment| moment.bodies.len());
@@ -306,11 +306,8 @@ impl Figure {
                 point_colours: Vec::new(),
             });
         }
-        Ok(Animation {
-            surfaces,
-            times: moments.iter().map(|moment| moment.time).collect(),
-            up: show.stage.view.up,
-        })
+        let times = moments.iter().map(|moment| moment.time).collect();
+        Ok((Animation { surfaces, times, up: show.stage.view.up }, common.notes))
     }
 }
 

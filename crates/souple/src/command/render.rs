@@ -3,6 +3,7 @@
 mod figure;
 mod fit;
 
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,6 +15,7 @@ use souple_io::picture::{
 use souple_io::read_mesh;
 use souple_run::Options;
 use souple_run::show::{Figure, Gathering, Moment, Reel, Show, ShowError, Stage, write_film};
+use tempfile::TempDir;
 
 use self::fit::Source;
 use super::progress::Meter;
@@ -209,7 +211,7 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     fit::check(arguments, kind, source)?;
     interruption::heed();
     let figure = figure::figure(arguments, kind)?;
-    let scratch = Scratch::new()?;
+    let scratch = Scratch::default();
     let (mut reel, mut notes) = reel(arguments, kind, source, &scratch)?;
     if interruption::is_interrupted() {
         return Ok(End::Interrupted);
@@ -260,7 +262,9 @@ fn draw(
         Kind::Surfaces => {
             let show = reel.show(&chosen)?;
             figure = show.moments.iter().take(1).fold(figure, fit);
-            figure.animation(&show)?.write_glb(out)?;
+            let (animation, of_all) = figure.animation(&show)?;
+            notes.extend(of_all);
+            animation.write_glb(out)?;
         }
         Kind::Picture if arguments.sheet.is_some() => {
             let show = reel.show(&chosen)?;
@@ -332,7 +336,7 @@ fn film(
     let common = gathering.finish()?;
     notes.extend(figure.cut.and_then(|cut| all_cut_away(cut, reaches.into_iter())));
     notes.extend(common.notes.iter().cloned());
-    let mut film = ImageFile::create(&scratch.0.join("film"))?;
+    let mut film = ImageFile::create(&scratch.path()?.join("film"))?;
     let meter = Meter::new("pictures", arguments.quiet);
     for part in chosen.chunks(rayon::current_num_threads()) {
         let mut pictures = Vec::with_capacity(part.len());
@@ -381,7 +385,7 @@ fn reel(
     let path = from.display().to_string();
     let scene = read_scene(&path, &arguments.settings)?;
     let stage = Stage::of(&scene);
-    let folder = scratch.0.join("run");
+    let folder = scratch.path()?.join("run");
     let wanted = match kind {
         Kind::Picture => arguments.sheet.unwrap_or(if arguments.time.is_some() { 200 } else { 1 }),
         _ => arguments.frames.unwrap_or(FRAMES),
@@ -401,23 +405,20 @@ fn reel(
     Ok((Reel::of_run(&folder, stage)?, notes))
 }
 
-/// A folder that is removed when dropped.
-struct Scratch(PathBuf);
+/// A folder for what is written on the way, made when it is first asked for and removed when dropped.
+#[derive(Default)]
+struct Scratch(OnceCell<TempDir>);
 
 impl Scratch {
-    fn new() -> Result<Self, Refusal> {
-        let path = std::env::temp_dir().join(format!("souple_render_{}", std::process::id()));
-        std::fs::create_dir_all(&path).map_err(|error| {
-            Refusal::work("io", format!("the folder {} cannot be made: {error}", path.display()))
+    fn path(&self) -> Result<&Path, Refusal> {
+        if let Some(folder) = self.0.get() {
+            return Ok(folder.path());
+        }
+        let made = tempfile::Builder::new().prefix("souple_render_").tempdir().map_err(|error| {
+            let place = std::env::temp_dir();
+            Refusal::work("io", format!("no folder can be made in {}: {error}", place.display()))
         })?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // what cannot be removed from the folder of temporary files does no harm
-        let _ = std::fs::remove_dir_all(&self.0);
+        Ok(self.0.get_or_init(|| made).path())
     }
 }
 

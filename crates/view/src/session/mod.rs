@@ -276,7 +276,8 @@ impl Live {
     }
 
     fn fulfil(&mut self, page: PageId, wish: Wish) -> Result<(), String> {
-        self.is_changed = true;
+        // a hand is led by the next step: a picture before that would show nothing new, and keep the one after waiting
+        self.is_changed |= !matches!(wish, Wish::Move { .. });
         match wish {
             Wish::Seen => {}
             Wish::Play => match &self.mode {

@@ -163,7 +163,7 @@ class Page {
         this.info = message;
         this.surfaces = [];
         this.networks = [];
-        this.picture.tools.clear();
+        this.picture.clearTools();
         this.grab?.forget();
         this.hasBegun = false;
         this.begin();
@@ -186,7 +186,7 @@ class Page {
         this.hand.setGravity(message.adjustables.find(({ path }) => path === GRAVITY));
         break;
       case "pins":
-        message.pins.forEach((points, body) => this.picture.bodies[body]?.setPins(points));
+        message.pins.forEach((points, body) => this.picture.setPins(body, points));
         break;
       case "status":
         this.setStatus(message);

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
-import { after, before, describe, test } from "node:test";
+import { after, afterEach, before, beforeEach, describe, test } from "node:test";
 import * as trial from "./world.mjs";
 import { Program, at, launch, looks, open, passed, photograph, reads, seen, settled, shows, time, until } from "./world.mjs";
 
@@ -59,9 +59,8 @@ describe("the liver", () => {
     await page.mouse.down();
     await page.mouse.move(x + 10, y, { steps: 2 });
     await page.locator(".force").waitFor();
-    // where the machine has other work for a while one of three is undisturbed; where it always takes longer for a picture, by
-    // software or beside others, the way there and back is no more than three of them
-    const batches = [];
+    // where the machine has other work for a while one of three is undisturbed
+    const medians = [];
     let moves = 0;
     for (let batch = 0; batch < 3; batch++) {
       const picture = await trial.pictureTime(page);
@@ -70,11 +69,11 @@ describe("the liver", () => {
       const [least, median, most] = [0, 7, 14].map((place) => lags.sort((a, b) => a - b)[place]);
       const said = [least, median, most, picture].map((time) => time.toFixed(1));
       t.diagnostic(`${said[1]} ms, ${said[0]} to ${said[2]}, at ${said[3]} ms a picture`);
-      batches.push({ median, most: Math.max(100, 3 * picture) });
+      medians.push(median);
     }
     await page.mouse.up();
     await page.locator(".force").waitFor({ state: "detached" });
-    assert.ok(batches.some(({ median, most }) => median < most), JSON.stringify(batches));
+    assert.ok(Math.min(...medians) < 100, `${medians} ms`);
   });
 
   test("is pushed by a tool, which is gone when it is let go of", async () => {
@@ -268,39 +267,6 @@ describe("the liver", () => {
     }
   });
 
-  test("is met flat by a plate, which does not press before it is led", async () => {
-    await page.selectOption("#tool", "plate");
-    await page.click('[data-tool="push"]');
-    // by keys: they find the body, wherever it hangs by now
-    await page.locator("#stage canvas").focus();
-    await page.keyboard.press("h");
-    await page.locator(".force").waitFor();
-    await passed(page, (await time(page)) + 0.05);
-    assert.equal(await page.locator(".force").textContent(), "0 N");
-    await photograph(page, "plate");
-    // it stands before all that its front would meet; led on, it presses before it has gone through half of the body
-    const presses = async () => /[1-9]/.test(await page.locator(".force").textContent());
-    for (let step = 0; step < 20 && !(await presses()); step++) {
-      await page.keyboard.press("PageUp");
-      await passed(page, (await time(page)) + 0.03);
-    }
-    assert.ok(await presses(), "it is led through the body without a force");
-    await page.keyboard.press("Escape");
-    await page.locator(".force").waitFor({ state: "detached" });
-    await page.selectOption("#tool", "ball");
-  });
-
-  test("shows how fast it will be thrown", async () => {
-    await page.click('[data-tool="throw"]');
-    await page.locator("#stage canvas").focus();
-    await page.keyboard.press("h");
-    await page.keyboard.press("ArrowRight");
-    await page.locator(".force", { hasText: /[1-9].* m?m\/s$/ }).waitFor();
-    await page.keyboard.press("Escape");
-    await page.locator(".force").waitFor({ state: "detached" });
-    await page.click('[data-tool="pull"]');
-  });
-
   test("is turned by keys, and saved as it is seen, with what its colours mean", async () => {
     await pause(page);
     await page.locator("#stage canvas").focus();
@@ -370,6 +336,49 @@ describe("the liver", () => {
     if ((await page.textContent(".transport .main")) === "Play") await page.click(".transport .main");
     await reads(page, ".transport .main", "Pause");
   }
+});
+
+describe("a liver at rest, for each trial a new one", () => {
+  let world;
+  let page;
+  beforeEach(async () => {
+    world = await Program.open(...LIVER);
+    page = await open(browser, world.url);
+    await page.selectOption("#field", "displacement");
+    await settled(page);
+  });
+  afterEach(() => world?.close());
+
+  test("is met flat by a plate, which does not press before it is led", async () => {
+    await page.selectOption("#tool", "plate");
+    await page.click('[data-tool="push"]');
+    // by keys: they find the body, wherever it hangs by now
+    await page.locator("#stage canvas").focus();
+    await page.keyboard.press("h");
+    await page.locator(".force").waitFor();
+    await passed(page, (await time(page)) + 0.05);
+    assert.equal(await page.locator(".force").textContent(), "0 N");
+    await photograph(page, "plate");
+    // it stands before all that its front would meet; led on, it presses before it has gone through half of the body
+    const presses = async () => /[1-9]/.test(await page.locator(".force").textContent());
+    for (let step = 0; step < 20 && !(await presses()); step++) {
+      await page.keyboard.press("PageUp");
+      await passed(page, (await time(page)) + 0.03);
+    }
+    assert.ok(await presses(), "it is led through the body without a force");
+    await page.keyboard.press("Escape");
+    await page.locator(".force").waitFor({ state: "detached" });
+  });
+
+  test("shows how fast it will be thrown", async () => {
+    await page.click('[data-tool="throw"]');
+    await page.locator("#stage canvas").focus();
+    await page.keyboard.press("h");
+    await page.keyboard.press("ArrowRight");
+    await page.locator(".force", { hasText: /[1-9].* m?m\/s$/ }).waitFor();
+    await page.keyboard.press("Escape");
+    await page.locator(".force").waitFor({ state: "detached" });
+  });
 });
 
 /** Waits for a frame of a world that stands still: the one before may come after the word of it. */

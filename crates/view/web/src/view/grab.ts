@@ -17,6 +17,10 @@ interface Held {
   grip: Vector3;
   tool: Tool;
   last: Vector3;
+  /** Where on the screen its pointer was when it was last led [px]; nowhere before. */
+  pointer: [number, number];
+  /** When it was last led before its picture [ms]. */
+  moved: number;
 }
 
 /** What a hand takes hold of: a part of the bodies' diagonal. */
@@ -41,6 +45,8 @@ const KEY_STEP = 0.02;
 const WHEEL_STEP = 0.012;
 /** What a notch of a wheel says [px]; trackpads say less, and more often. */
 const NOTCH = 100;
+/** Movements between pictures are told this long after each other [ms]: a mouse says up to eight in a millisecond. */
+const MOVES_MS = 4;
 /** A tool stands as much farther off than it would touch, of the way to its front. */
 const CLEARANCE = 1.02;
 
@@ -68,6 +74,8 @@ export class Grab {
     canvas.setAttribute("aria-label", what.join(" "));
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
+    // browsers keep movements back until they draw the next picture, and tell of them at once here, where they know it
+    canvas.addEventListener("pointerrawupdate", (event) => this.moveAtOnce(event as PointerEvent));
     canvas.addEventListener("pointerup", (event) => this.up(event));
     canvas.addEventListener("pointercancel", (event) => this.up(event));
     // before the camera's own wheel
@@ -161,7 +169,7 @@ export class Grab {
     }
     const { body, point } = hit;
     const start = tool === "push" ? this.put(hand, hit) : point.clone();
-    this.held.set(pointer, { hand, body: body.index, start, grip: point, tool, last: point.clone() });
+    this.held.set(pointer, { hand, body: body.index, start, grip: point, tool, last: point.clone(), pointer: [NaN, NaN], moved: 0 });
     if (tool === "pull") {
       this.send({ do: "grab", hand, body: body.index, points: this.patch(hit), strength: this.handling.strength });
     }
@@ -202,11 +210,23 @@ export class Grab {
       return;
     }
     const held = this.held.get(event.pointerId);
-    if (!held) {
-      if (event.buttons === 0) this.hover(event);
-      return;
-    }
-    const place = this.picture.eye.onPlane(event, held.last);
+    if (held) this.follow(held, event);
+    else if (event.buttons === 0) this.hover(event);
+  }
+
+  /** What is held follows, as often as makes a difference. */
+  private moveAtOnce(event: PointerEvent): void {
+    const held = this.held.get(event.pointerId);
+    if (!held || event.timeStamp - held.moved < MOVES_MS) return;
+    held.moved = event.timeStamp;
+    this.follow(held, event);
+  }
+
+  private follow(held: Held, { clientX, clientY }: PointerEvent): void {
+    const [x, y] = held.pointer;
+    if (clientX === x && clientY === y) return;
+    held.pointer = [clientX, clientY];
+    const place = this.picture.eye.onPlane({ clientX, clientY }, held.last);
     if (place) this.lead(held, place);
   }
 

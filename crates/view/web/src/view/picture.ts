@@ -4,6 +4,7 @@ import {
   Box3,
   DirectionalLight,
   HemisphereLight,
+  Matrix4,
   NeutralToneMapping,
   PCFShadowMap,
   Plane,
@@ -73,7 +74,7 @@ export class Picture {
   readonly eye: Eye;
   readonly canvas: HTMLCanvasElement;
   bodies: Body[] = [];
-  readonly tools = new Tools();
+  private readonly tools = new Tools();
   /** Diagonal of all bodies at rest [m]. */
   size = 1;
   private readonly renderer: WebGLRenderer;
@@ -106,6 +107,10 @@ export class Picture {
   private last: Frame | null = null;
   /** What is looked at: the camera stays while it is the same. */
   private subject = "";
+  /** Whether what is in the picture is no longer as it was drawn. */
+  private isStale = true;
+  /** From where it was drawn. */
+  private readonly drawnFrom = { view: new Matrix4(), projection: new Matrix4() };
 
   constructor(
     private readonly place: HTMLElement,
@@ -150,6 +155,7 @@ export class Picture {
 
   /** Another scene: bodies first among the surfaces, then obstacles. */
   begin(info: SceneInfo, surfaces: Surface[], networks: (NetworkShape | undefined)[]): void {
+    this.isStale = true;
     for (const body of this.bodies) {
       this.scene.remove(body.group);
       body.dispose();
@@ -204,15 +210,30 @@ export class Picture {
 
   /** The cells of a body have come. */
   setInside(shape: InsideShape): void {
+    this.isStale = true;
     this.bodies[shape.index]?.setInside(shape);
     this.bodies[shape.index]?.setCut(this.cutPlane);
   }
 
   addTool(shape: ToolShape): void {
+    this.isStale = true;
     this.tools.add(shape);
   }
 
+  /** Tools of a world that is gone. */
+  clearTools(): void {
+    this.isStale = true;
+    this.tools.clear();
+  }
+
+  /** Points of a body that are pinned. */
+  setPins(body: number, points: number[]): void {
+    this.isStale = true;
+    this.bodies[body]?.setPins(points);
+  }
+
   setExtras(extras: Extras): void {
+    this.isStale = true;
     this.extras = extras;
     for (const body of this.bodies) {
       body.setExplode(extras.explode);
@@ -243,6 +264,7 @@ export class Picture {
 
   /** Colours, sections, cells and arrows; the range of colours shrinks by a part of what is too much. */
   private paint({ bodies }: Frame, shrinking: number): void {
+    this.isStale = true;
     const { meanings } = this;
     meanings.size = this.size;
     this.arrows.update(bodies, this.extras.arrows, this.dark, meanings.rest(this.extras.unit));
@@ -265,11 +287,13 @@ export class Picture {
     if (number !== this.field) this.meanings.begin(classes, field?.unit ?? "");
     this.field = number;
     this.light();
+    this.isStale = true;
     this.of = field?.of ?? "points";
     this.colours = classes ? coloursOf(classes) : linearColours(map);
   }
 
   setStyle(style: Style, dark: boolean): void {
+    this.isStale = true;
     this.style = style;
     this.dark = dark;
     this.bodies.forEach((body) => body.setStyle(style, dark));
@@ -301,6 +325,7 @@ export class Picture {
   }
 
   private applyCut(): void {
+    this.isStale = true;
     const planes = this.cutPlane ? [this.cutPlane] : [];
     this.bodies.forEach((body) => body.setCut(this.cutPlane));
     this.skins.forEach((skin) => skin.setCut(planes));
@@ -333,9 +358,20 @@ export class Picture {
     return bounds;
   }
 
+  /** Draws what is not as it was drawn last: a machine that draws by software has the rest of its time for what comes. */
   draw(): void {
     this.eye.controls.update();
-    this.renderer.render(this.scene, this.eye.camera);
+    const { camera } = this.eye;
+    camera.updateMatrixWorld();
+    const { view, projection } = this.drawnFrom;
+    if (!this.isStale && view.equals(camera.matrixWorld) && projection.equals(camera.projectionMatrix)) {
+      this.quality.rested(performance.now());
+      return;
+    }
+    this.isStale = false;
+    view.copy(camera.matrixWorld);
+    projection.copy(camera.projectionMatrix);
+    this.renderer.render(this.scene, camera);
     this.furniture.update(this.eye, this.place.clientHeight);
     this.hands.placeLabels(this.eye.camera, this.place.clientWidth, this.place.clientHeight);
     this.quality.drawn(performance.now());
@@ -343,6 +379,7 @@ export class Picture {
 
   /** Draws once as well as can be, whatever the machine does in time, and hands the drawing on. */
   atItsBest<T>(use: (drawing: HTMLCanvasElement) => T): T {
+    this.isStale = true;
     return this.quality.atBest(() => {
       this.renderer.render(this.scene, this.eye.camera);
       // the drawing is gone when the browser has shown it
@@ -352,6 +389,7 @@ export class Picture {
 
   /** Draws as well as the machine can. */
   private simplify(): void {
+    this.isStale = true;
     const { shadows, reflections } = this.quality.now;
     this.key.castShadow = shadows;
     if (reflections && !this.reflections) {
@@ -406,6 +444,7 @@ export class Picture {
 
   /** Shows where something will be thrown. */
   aim(aimed: Aim | null): void {
+    this.isStale = true;
     this.hands.aim(aimed);
   }
 
@@ -449,6 +488,7 @@ export class Picture {
   }
 
   private resize(): void {
+    this.isStale = true;
     const width = Math.max(this.place.clientWidth, 1);
     const height = Math.max(this.place.clientHeight, 1);
     const { pixels } = this.quality.now;

@@ -48,6 +48,11 @@ export class Quality {
     }
   }
 
+  /** There was nothing to draw at a time [ms]. */
+  rested(time: number): void {
+    this.last = time;
+  }
+
   /** A picture has been drawn at a time [ms]. */
   drawn(time: number): void {
     const took = time - this.last;
