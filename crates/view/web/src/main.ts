@@ -269,10 +269,10 @@ class Page {
       this.failure.dataset.message = status.message;
       this.failure.replaceChildren(
         element("b", {}, "The world has stopped. "),
-        `${status.message}. `,
+        `${status.message.charAt(0).toUpperCase()}${status.message.slice(1)}. `,
         element("button", { click: () => this.send({ do: "reset" }) }, "Reset"),
       );
-      this.notes.say("error", status.message);
+      this.notes.keep("error", status.message);
     }
     document.body.classList.toggle("busy", status.busy !== null);
   }
