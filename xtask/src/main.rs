@@ -56,18 +56,18 @@ const STEPS: &[Step] = &[
     },
     Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
     Step { name: "reference", summary: "docs/reference is what the tables say", run: reference::check },
-    Step { name: "snippets", summary: "every command and scene in README and docs/", run: snippets::check },
-    Step { name: "verify", summary: "the validation cases of the released program", run: program::verify },
-    Step { name: "mutations", summary: "every validation case fails where it must", run: program::mutations },
-];
-
-/// Checks that are made only by name: on machines that draw by software, beside other work, they may take an hour.
-const BY_NAME: &[Step] = &[
     Step {
         name: "browser",
         summary: "the page of the released program in a headless Chromium",
         run: browser::check,
     },
+    Step { name: "snippets", summary: "every command and scene in README and docs/", run: snippets::check },
+    Step { name: "verify", summary: "the validation cases of the released program", run: program::verify },
+    Step { name: "mutations", summary: "every validation case fails where it must", run: program::mutations },
+];
+
+/// Checks that are made only by name: they last an hour.
+const BY_NAME: &[Step] = &[
     Step {
         name: "soak",
         summary: "neither program nor page grows while it is looked at (SOUPLE_SOAK_MINUTES)",
