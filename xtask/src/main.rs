@@ -67,13 +67,11 @@ const STEPS: &[Step] = &[
 ];
 
 /// Checks that are made only by name: they last an hour.
-const BY_NAME: &[Step] = &[
-    Step {
-        name: "soak",
-        summary: "neither program nor page grows while it is looked at (SOUPLE_SOAK_MINUTES)",
-        run: browser::soak,
-    },
-];
+const BY_NAME: &[Step] = &[Step {
+    name: "soak",
+    summary: "neither program nor page grows while it is looked at (SOUPLE_SOAK_MINUTES)",
+    run: browser::soak,
+}];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

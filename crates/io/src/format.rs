@@ -269,6 +269,29 @@ pub fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
     Err(IoError::request(format!("the extension of {}", path.display()), format!("`{found}`"), expected))
 }
 
+/// The name of the format that a mesh would be written in, the one named or that of the extension: before the work of which it is the
+/// result.
+///
+/// # Errors
+/// No mesh can be written there: the format is unknown, is not written, or the folder is missing.
+pub fn can_write(format: Option<&str>, path: &Path) -> Result<&'static str, IoError> {
+    let name = match format {
+        Some(name) => format_for(name, path)?,
+        None => format_of(path)?,
+    };
+    let entry = FORMATS.find(name)?;
+    if entry.build.write.is_none() {
+        let expected = format!("one of {}", names_where(|format| format.write.is_some()));
+        return Err(IoError::Unsupported { format: entry.name, action: "written", expected });
+    }
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Err(IoError::write(path, std::io::ErrorKind::NotFound.into()))
+        }
+        _ => Ok(entry.name),
+    }
+}
+
 /// In lower case, without the dot; empty where there is none.
 fn extension_of(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()

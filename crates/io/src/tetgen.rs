@@ -300,11 +300,19 @@ fn name_of(kind: &str, number: i64) -> String {
 
 /// A line for each group whose name is lost: what it is called when the file is read.
 pub(crate) fn renamed(output: &Output<'_>) -> Vec<String> {
-    let of = |kind: &'static str, members: fn(&Group) -> &[u32]| (kind, numbers(output, kind, members));
+    // of several groups of a member the first is written: another may have none left
+    let of = |kind: &'static str, count: usize, members: fn(&Group) -> &[u32]| {
+        // a group with members that are not there has been refused
+        let left = marks(output, kind, count, members).unwrap_or_default();
+        let mut numbers = numbers(output, kind, members);
+        numbers.retain(|_, number| left.contains(number));
+        (kind, numbers)
+    };
+    let mesh = output.mesh;
     let kinds = [
-        of("point", |group| &group.points),
-        of("volume", |group| &group.cells),
-        of("surface", |group| &group.facets),
+        of("point", mesh.points.len(), |group| &group.points),
+        of("volume", mesh.cell_count(), |group| &group.cells),
+        of("surface", mesh.facet_count(), |group| &group.facets),
     ];
     let mut lines = Vec::new();
     for name in output.mesh.groups.keys() {

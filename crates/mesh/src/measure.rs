@@ -56,7 +56,11 @@ impl BoundingBox {
         let is_told = largest > 0.0 && largest.is_finite() && !is_usual;
         let hint = if largest > USUAL_SIZES[1] { ": in millimetres it takes scale=0.001" } else { "" };
         is_told.then(|| {
-            format!("it measures {x:.3e} x {y:.3e} x {z:.3e} m, an unusual size for a soft body{hint}")
+            let [x, y, z] = [x, y, z].map(|length| {
+                // four digits are as many as tell a size
+                souple_table::readable(format!("{length:.3e}").parse().unwrap_or(length))
+            });
+            format!("it measures {x} x {y} x {z} m, an unusual size for a soft body{hint}")
         })
     }
 
@@ -87,6 +91,12 @@ impl Mesh {
     /// Box around all points.
     pub fn bounds(&self) -> BoundingBox {
         BoundingBox::of(self.points.iter().copied())
+    }
+
+    /// Box around the points that cells and facets have: a file may hold others.
+    pub fn bounds_of_cells(&self) -> BoundingBox {
+        let nodes = self.cells().chain(self.facets()).flat_map(|cell| cell.nodes.iter());
+        BoundingBox::of(nodes.map(|node| self.points[*node as usize]))
     }
 
     /// Volume of a cell [m³], area of a surface cell [m²], length of an edge [m]; exact for linear volumes, the

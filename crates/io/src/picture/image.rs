@@ -144,22 +144,26 @@ impl Canvas {
 
     /// A line of text; `height` is that of capitals, `y` the baseline.
     pub fn text(&mut self, text: &str, place: [f64; 2], height: f64, anchor: Anchor, colour: Colour) {
-        self.letters(text, place, height, anchor, colour, |[x, y]| [x, y]);
+        self.letters(text, (place, height), anchor, (colour, 0.0), |[x, y]| [x, y]);
+    }
+
+    /// What lies around the strokes of a line of text, as far as half of `width` [pixels].
+    pub fn text_halo(&mut self, text: &str, place: [f64; 2], height: f64, width: f64, colour: Colour) {
+        self.letters(text, (place, height), Anchor::Middle, (colour, width), |[x, y]| [x, y]);
     }
 
     /// The same, written from below upward: `x` is the baseline.
     pub fn text_upward(&mut self, text: &str, [x, y]: [f64; 2], height: f64, anchor: Anchor, colour: Colour) {
         let turned = |[along, below]: [f64; 2]| [x + below - y, y - (along - x)];
-        self.letters(text, [x, y], height, anchor, colour, turned);
+        self.letters(text, ([x, y], height), anchor, (colour, 0.0), turned);
     }
 
     fn letters(
         &mut self,
         text: &str,
-        [x, y]: [f64; 2],
-        height: f64,
+        ([x, y], height): ([f64; 2], f64),
         anchor: Anchor,
-        colour: Colour,
+        (colour, wider): (Colour, f64),
         turned: impl Fn([f64; 2]) -> [f64; 2],
     ) {
         let width = text_width(text, height);
@@ -170,7 +174,7 @@ impl Canvas {
         };
         for stroke in text_strokes(text, left, y, height) {
             let stroke: Vec<[f64; 2]> = stroke.into_iter().map(&turned).collect();
-            self.line(&stroke, (0.115 * height).max(1.15), colour);
+            self.line(&stroke, (0.115 * height).max(1.15) + wider, colour);
         }
     }
 }

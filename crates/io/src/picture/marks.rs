@@ -6,7 +6,7 @@ use super::Palette;
 use super::camera::Camera;
 use super::colour::Colour;
 use super::image::{Anchor, Canvas};
-use super::layout::{Layout, veil};
+use super::layout::Layout;
 use super::legend::scaled_unit;
 
 /// Which marks a picture has.
@@ -42,27 +42,57 @@ impl Marks {
     }
 }
 
+/// Width of what lies around lines and letters that stand on bodies, in letters.
+const HALO: f64 = 0.5;
+
+/// Lines and letters over a picture, in a halo of its background: they are read on whatever is behind them.
+#[derive(Default)]
+struct Drawing {
+    lines: Vec<(Vec<[f64; 2]>, f64, Colour)>,
+    /// Text, the middle of its baseline, colour.
+    texts: Vec<(String, [f64; 2], Colour)>,
+}
+
+impl Drawing {
+    fn write(&self, letter: f64, palette: &Palette, canvas: &mut Canvas) {
+        let wider = HALO * letter;
+        for (points, width, _) in &self.lines {
+            let halo = palette.background(points[0][1], canvas.height);
+            canvas.line(points, width + wider, halo);
+        }
+        for (text, place, _) in &self.texts {
+            let halo = palette.background(place[1], canvas.height);
+            canvas.text_halo(text, *place, letter, wider, halo);
+        }
+        for (points, width, colour) in &self.lines {
+            canvas.line(points, *width, *colour);
+        }
+        for (text, place, colour) in &self.texts {
+            canvas.text(text, *place, letter, Anchor::Middle, *colour);
+        }
+    }
+}
+
 fn write_triad(camera: &Camera, layout: &Layout, palette: &Palette, canvas: &mut Canvas) {
     let letter = layout.letter;
     let length = AXIS * letter;
     // letters stand a little beyond the ends
     let room = 1.5 * length;
     let [x, y] = [layout.margin + room, canvas.height as f64 - layout.margin - room];
-    let pad = |middle: f64| [middle - room, middle + room];
-    veil(canvas, palette, pad(x), pad(y));
     // in the camera's directions: to the right, up, away
     let seen = |axis: usize| [camera.right[axis], camera.up[axis], camera.forward[axis]];
     let mut axes = [0, 1, 2];
     axes.sort_by(|a, b| seen(*b)[2].total_cmp(&seen(*a)[2]));
+    let mut drawing = Drawing::default();
     for axis in axes {
         let [across, up, _] = seen(axis);
         let (colour, name) = AXES[axis];
-        let colour = Colour::from_screen(colour);
         let at = |part: f64| [x + part * length * across, y - part * length * up];
-        canvas.line(&[at(0.0), at(1.0)], 0.16 * letter, colour);
+        drawing.lines.push((vec![at(0.0), at(1.0)], 0.16 * letter, Colour::from_screen(colour)));
         let [left, base] = at(1.3);
-        canvas.text(name, [left, base + 0.5 * letter], letter, Anchor::Middle, palette.ink);
+        drawing.texts.push((name.to_owned(), [left, base + 0.5 * letter], palette.ink));
     }
+    drawing.write(letter, palette, canvas);
 }
 
 fn write_bar(
@@ -80,12 +110,13 @@ fn write_bar(
     let letter = layout.letter;
     let right = canvas.width as f64 - layout.margin;
     let (left, y) = (right - length * per_metre, canvas.height as f64 - layout.margin);
-    veil(canvas, palette, [left - letter, right + letter], [y - 2.4 * letter, y + letter]);
-    canvas.line(&[[left, y], [right, y]], 0.2 * letter, palette.ink);
-    for end in [left, right] {
-        canvas.line(&[[end, y - 0.4 * letter], [end, y + 0.4 * letter]], 0.2 * letter, palette.ink);
-    }
-    canvas.text(&text, [0.5 * (left + right), y - 0.8 * letter], letter, Anchor::Middle, palette.ink);
+    let line = |points: [[f64; 2]; 2]| (points.to_vec(), 0.2 * letter, palette.ink);
+    let end = |x: f64| line([[x, y - 0.4 * letter], [x, y + 0.4 * letter]]);
+    let drawing = Drawing {
+        lines: vec![line([[left, y], [right, y]]), end(left), end(right)],
+        texts: vec![(text, [0.5 * (left + right), y - 0.8 * letter], palette.ink)],
+    };
+    drawing.write(letter, palette, canvas);
 }
 
 /// The largest of 1, 2, 5 times a power of ten that is not above a length; `None` where there is no such length.

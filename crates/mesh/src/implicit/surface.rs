@@ -27,7 +27,13 @@ pub struct SurfaceShape {
 
 enum Distance {
     Exact(SignedDistance),
-    Wound { surface: TriangleSurface, tree: AabbTree, winding: WindingNumber },
+    Wound {
+        surface: TriangleSurface,
+        tree: AabbTree,
+        winding: WindingNumber,
+        /// Whether it winds around everything a whole number of times, which changes at its triangles alone.
+        is_closed: bool,
+    },
 }
 
 impl SurfaceShape {
@@ -42,7 +48,7 @@ impl SurfaceShape {
         let bounds = bounds.grown(1e-9 * bounds.diagonal());
         let is_simple = diagnosis.is_simple() && winds_once(&surface);
         let exact = if is_simple { SignedDistance::new(surface.clone()).ok() } else { None };
-        let distance = exact.map_or_else(|| wound(surface), Distance::Exact);
+        let distance = exact.map_or_else(|| wound(surface, diagnosis.is_closed()), Distance::Exact);
         Ok(Self { distance, bounds, diagnosis })
     }
 
@@ -103,17 +109,18 @@ fn winds_once(surface: &TriangleSurface) -> bool {
         && (0..count).step_by(count.div_ceil(SAMPLES)).all(|triangle| outside(triangle) == first)
 }
 
-fn wound(surface: TriangleSurface) -> Distance {
+fn wound(surface: TriangleSurface, is_closed: bool) -> Distance {
     let boxes: Vec<Aabb> =
         (0..surface.triangles.len() as u32).map(|triangle| Aabb::of(surface.corners(triangle))).collect();
-    Distance::Wound { tree: AabbTree::build(&boxes), winding: WindingNumber::new(&surface), surface }
+    let (tree, winding) = (AabbTree::build(&boxes), WindingNumber::new(&surface));
+    Distance::Wound { surface, tree, winding, is_closed }
 }
 
 impl Shape for SurfaceShape {
     fn value(&self, point: Vec3) -> f64 {
         match &self.distance {
             Distance::Exact(distance) => distance.distance(point),
-            Distance::Wound { surface, tree, winding } => {
+            Distance::Wound { surface, tree, winding, .. } => {
                 let distance_sq = |triangle: u32| {
                     let corners = surface.corners(triangle);
                     let ([a, b, c], _) = closest_point_on_triangle(point, corners);
@@ -128,9 +135,11 @@ impl Shape for SurfaceShape {
 
     fn range(&self, within: BoundingBox) -> Option<[f64; 2]> {
         match &self.distance {
-            Distance::Exact(_) => Some(around(self.value(within.centre()), 0.5 * within.diagonal())),
+            Distance::Exact(_) | Distance::Wound { is_closed: true, .. } => {
+                Some(around(self.value(within.centre()), 0.5 * within.diagonal()))
+            }
             // what holes leave open may change sides far from all triangles
-            Distance::Wound { .. } => None,
+            Distance::Wound { is_closed: false, .. } => None,
         }
     }
 
@@ -171,6 +180,34 @@ mod tests {
         let hollow = SurfaceShape::new(hollow).unwrap();
         assert_eq!(hollow.sign(), Sign::Normals);
         assert!(hollow.value(Vec3::ZERO) > 0.0 && hollow.value(Vec3::new(0.75, 0.0, 0.0)) < 0.0);
+    }
+
+    /// Of balls that cross, boxes away from all triangles are known to be inside or outside without a look at each point; of one with
+    /// a hole nothing is known of a box.
+    #[test]
+    fn ranges_hold_between_crossings() {
+        let shape = SurfaceShape::new(two_balls(1.0, Vec3::new(1.0, 0.1, 0.2))).unwrap();
+        assert_eq!(shape.sign(), Sign::WindingNumber);
+        let mut decided = 0;
+        for index in 0..9_usize.pow(3) {
+            let place = |axis: u32| -1.5 + 0.5 * (index / 9_usize.pow(axis) % 9) as f64;
+            let low = Vec3::new(place(0), place(1), place(2));
+            let within = BoundingBox { low, high: low + Vec3::new(0.3, 0.3, 0.3) };
+            let [least, most] = shape.range(within).unwrap();
+            for corner in 0..8 {
+                let part =
+                    |axis: usize| if corner >> axis & 1 == 1 { within.high[axis] } else { within.low[axis] };
+                let value = shape.value(Vec3::new(part(0), part(1), part(2)));
+                assert!((least..=most).contains(&value), "{value} in {within:?}");
+            }
+            decided += usize::from(least > 0.0 || most < 0.0);
+        }
+        assert!(decided > 300, "{decided}");
+        let mut open = two_balls(1.0, Vec3::new(1.0, 0.1, 0.2));
+        open.triangles.pop();
+        assert!(
+            SurfaceShape::new(open).unwrap().range(BoundingBox { low: Vec3::ZERO, high: Vec3::X }).is_none()
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What stands around the bodies of a scene: shapes that they touch, and which way is up.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use souple_engine::obstacle::{Form, Obstacle, Side};
 use souple_engine::{Force, Model};
@@ -43,6 +43,17 @@ pub fn obstacles_of<'a>(forces: impl Iterator<Item = &'a Box<dyn Force>>) -> Vec
     obstacles
 }
 
+/// Where the scene of a run is: as its report names it, seen from here, or from a folder that the run's is in; runs lie below the place
+/// that they were started in.
+fn scene_of(folder: &Path, name: &str) -> PathBuf {
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let places = folder.ancestors().map(|above| above.join(name));
+    std::iter::once(PathBuf::from(name))
+        .chain(places)
+        .find(|path| path.exists())
+        .unwrap_or_else(|| name.into())
+}
+
 impl Stage {
     pub fn of(scene: &Scene) -> Self {
         Self { title: scene.title.clone(), ..Self::of_model(&scene.model, &scene.bodies, scene.picture) }
@@ -69,7 +80,7 @@ impl Stage {
         let settings = report["settings"].as_array().map_or(&[][..], Vec::as_slice);
         let settings: Vec<String> =
             settings.iter().filter_map(|setting| Some(setting.as_str()?.to_owned())).collect();
-        match souple_scene::read_file(Path::new(name), &settings) {
+        match souple_scene::read_file(&scene_of(folder, name), &settings) {
             Ok(scene) if report["scene_sha256"] == scene.scene_sha256.as_str() => (Self::of(&scene), None),
             Ok(_) => (bare, Some(format!("the scene `{name}` is not as it was run: shapes are not drawn"))),
             Err(_) => (bare, Some(format!("the scene `{name}` cannot be read: shapes are not drawn"))),

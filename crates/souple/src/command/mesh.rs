@@ -15,6 +15,7 @@ use souple_mesh::repair::diagnose;
 use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
 use souple_table::Parameter;
 
+use super::progress::Pulse;
 use super::{End, Refusal, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
@@ -101,25 +102,32 @@ impl Arguments {
 pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
     match arguments.action {
         Action::Generate { generator, out, parameters, json } => {
+            souple_io::can_write(None, &out)?;
             write(&out, None, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
         }
         Action::Fill { input, out, parameters, json } => {
             keep_input(Path::new(&input), &out)?;
+            souple_io::can_write(None, &out)?;
+            let _work = Pulse::new("filling", json);
             let (mesh, notes) = fill::fill(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
             keep_input(&input, &out)?;
+            souple_io::can_write(None, &out)?;
+            let _work = Pulse::new("simplifying", json);
             let (mesh, notes) = fill::simplified(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
             keep_input(&input, &out)?;
+            souple_io::can_write(None, &out)?;
             let (mesh, notes) = skin::dressed(&input, &parameters)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Convert { input, out, parameters, format, json } => {
             keep_input(&input, &out)?;
+            souple_io::can_write(format.as_deref(), &out)?;
             let scale = scale(&parameters)?;
             let Dataset { mut mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
             mesh.points.iter_mut().for_each(|point| *point = *point * scale);
@@ -129,7 +137,7 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
         }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
-            notes.extend(mesh.bounds().doubt());
+            notes.extend(mesh.bounds_of_cells().doubt());
             // cells, or nothing at all, are validated
             if mesh.cell_count() == 0 && mesh.facet_count() > 0 {
                 report(&input, &mesh, &notes, json);
@@ -141,7 +149,7 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
                     "mesh",
                     input.display().to_string(),
                     "a mesh that can be computed with",
-                    error.to_string(),
+                    format!("{}: {error}", input.display()),
                 )
             };
             notes.extend(repairs.map_err(refuse)?.messages());
@@ -200,10 +208,7 @@ fn write(
     mut notes: Vec<String>,
     as_json: bool,
 ) -> Result<End, Refusal> {
-    let format = match format {
-        Some(name) => souple_io::format_for(name, path)?,
-        None => souple_io::format_of(path)?,
-    };
+    let format = souple_io::can_write(format, path)?;
     let written = match souple_io::write_and_read_back(format, path, output)? {
         Some(dataset) => dataset.mesh,
         // a format that is only written, and for surfaces
@@ -240,8 +245,12 @@ fn of_cells(mesh: &Mesh, notes: &[String]) -> Json {
     let quality = mesh.quality();
     let bounds = mesh.bounds();
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut volumes: BTreeMap<&str, f64> = BTreeMap::new();
     for block in &mesh.blocks {
         *counts.entry(block.kind.name()).or_default() += block.len();
+    }
+    for cell in mesh.cells() {
+        *volumes.entry(cell.kind.name()).or_default() += mesh.cell_volume(cell);
     }
     let smallest = quality.iter().map(|cell| cell.scaled_jacobian).fold(f64::INFINITY, f64::min);
     let mut document = json!({
@@ -251,6 +260,7 @@ fn of_cells(mesh: &Mesh, notes: &[String]) -> Json {
         "groups": mesh.groups.keys().collect::<Vec<_>>(),
         "components": mesh.components().1,
         "volume": mesh.volume(),
+        "volume_of_kinds": volumes,
         "bounds": [bounds.low.to_array(), bounds.high.to_array()],
         "smallest_scaled_jacobian": (!quality.is_empty()).then_some(smallest),
         "conforming": problems.is_empty(),

@@ -8,8 +8,32 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{on_terminal, print_note};
 
+const TICK: Duration = Duration::from_millis(120);
 /// Time between lines.
 const LINES: Duration = Duration::from_secs(5);
+
+/// Tells on a terminal that work goes on of which nobody knows how long it takes.
+pub struct Pulse(ProgressBar);
+
+impl Pulse {
+    pub fn new(work: &'static str, quiet: bool) -> Self {
+        let is_drawn = !quiet && on_terminal();
+        let target = if is_drawn { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(None, target);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}  {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.set_message(work);
+        bar.enable_steady_tick(TICK);
+        Self(bar)
+    }
+}
+
+impl Drop for Pulse {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
 
 /// Tells how far some work is.
 pub struct Meter {

@@ -33,7 +33,7 @@ pub struct Arguments {
     /// .png: one picture or a sheet; .gif, .apng, .mp4: a film; .glb: the moving surfaces
     #[arg(long)]
     out: PathBuf,
-    /// Width and height in pixels
+    /// Width and height in pixels, of a sheet those of each of its pictures
     #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = list::<2>, allow_hyphen_values = true)]
     size: Option<[f64; 2]>,
     /// Moment to show, as `0.5` or `500 ms`, to the nearest frame; the last by default

@@ -89,7 +89,7 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     let scale = others.completed(&[SCALE]).map_err(|error| refuse(error.into()))?.number("scale");
     let (mut mesh, mut notes) = read(Path::new(input))?;
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
-    notes.extend(mesh.bounds().doubt().map(|doubt| format!("the surface: {doubt}")));
+    notes.extend(mesh.bounds_of_cells().doubt().map(|doubt| format!("the surface: {doubt}")));
     surface_of(&mesh).iter().for_each(announce);
     let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);

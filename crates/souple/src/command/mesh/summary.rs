@@ -19,7 +19,7 @@ pub fn sentences(name: &str, document: &Json) -> Vec<String> {
         let closed = if enclosed.is_number() {
             format!("encloses {} m³", number(enclosed))
         } else {
-            "is open".to_owned()
+            "is not closed".to_owned()
         };
         say("surface", closed);
         say(
@@ -31,7 +31,7 @@ pub fn sentences(name: &str, document: &Json) -> Vec<String> {
             ),
         );
     } else {
-        say("volume", format!("{} m³", number(&document["volume"])));
+        say("volume", volume(document));
         say("quality", quality(document));
     }
     lines.extend(document["problem"].as_str().map(|problem| format!("  problem  {problem}")));
@@ -56,6 +56,19 @@ fn contents(document: &Json) -> String {
         _ => String::new(),
     };
     parts.join(", ") + &in_parts
+}
+
+/// Of several kinds of cells the share of each.
+fn volume(document: &Json) -> String {
+    let whole = document["volume"].as_f64().unwrap_or_default();
+    let kinds: Vec<String> = document["volume_of_kinds"]
+        .as_object()
+        .into_iter()
+        .flatten()
+        .map(|(kind, volume)| format!("{:.1} % {kind}", 100.0 * volume.as_f64().unwrap_or_default() / whole))
+        .collect();
+    let shares = if kinds.len() > 1 { format!(": {}", kinds.join(", ")) } else { String::new() };
+    format!("{} m³{shares}", number(&document["volume"]))
 }
 
 fn quality(document: &Json) -> String {
