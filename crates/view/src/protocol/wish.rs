@@ -131,8 +131,8 @@ impl Wish {
                 hand: read.hand()?,
                 tool: read.text("tool")?,
                 size: read.number("size", 1e-9, 1e9)?,
-                place: read.vector("place")?,
-                direction: read.vector("direction")?,
+                place: read.vector("place", FARTHEST)?,
+                direction: read.vector("direction", FARTHEST)?,
                 strength: read.number("strength", 0.0, 1e4)?,
             },
             "grab" => Self::Grab {
@@ -141,17 +141,22 @@ impl Wish {
                 points: read.points()?,
                 strength: read.number("strength", 0.0, 1e4)?,
             },
-            "move" => Self::Move { hand: read.hand()?, offset: read.vector("offset")? },
+            "move" => Self::Move { hand: read.hand()?, offset: read.vector("offset", FARTHEST)? },
             "release" => Self::Release(read.hand()?),
             "pin" => Self::Pin { body: read.index("body")?, points: read.points()? },
             "unpin" => Self::Unpin { body: read.index("body")?, points: read.points()? },
-            "throw" => Self::Throw { body: read.index("body")?, velocity: read.vector("velocity")? },
+            "throw" => Self::Throw { body: read.index("body")?, velocity: read.vector("velocity", FASTEST)? },
             other => {
                 return Err(format!("there is no wish `{}`", other.chars().take(40).collect::<String>()));
             }
         })
     }
 }
+
+/// How far off a hand may be led [m], and how fast a body may be thrown [m/s], in any direction: a client may say more by mistake, and
+/// would end the world of all others.
+const FARTHEST: f64 = 1e9;
+const FASTEST: f64 = 1e6;
 
 /// The fields of a wish.
 struct Fields<'a>(&'a Value);
@@ -176,10 +181,10 @@ impl Fields<'_> {
         hand.map(|hand| hand as u32).ok_or_else(|| format!("`hand` must be a whole number below {HANDS_MAX}"))
     }
 
-    fn vector(&self, key: &str) -> Result<Vec3, String> {
-        let wrong = || format!("`{key}` must be a list of three numbers");
+    fn vector(&self, key: &str, most: f64) -> Result<Vec3, String> {
+        let wrong = || format!("`{key}` must be a list of three numbers from -{most:e} to {most:e}");
         let list = self.0[key].as_array().filter(|list| list.len() == 3).ok_or_else(wrong)?;
-        let number = |i: usize| list[i].as_f64().filter(|number| number.is_finite()).ok_or_else(wrong);
+        let number = |i: usize| list[i].as_f64().filter(|number| number.abs() <= most).ok_or_else(wrong);
         Ok(Vec3::new(number(0)?, number(1)?, number(2)?))
     }
 

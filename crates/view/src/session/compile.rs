@@ -128,8 +128,10 @@ impl Compiler {
                 (_, Some(path)) => souple_scene::read_file(&path, &[]),
                 _ => souple_scene::read_again(&texts, places),
             }));
+            // whoever set a value wrote no line, and whoever dropped a mesh no scene
+            let is_text = matches!(purpose, Purpose::Load(_) | Purpose::LoadText { mesh: None, .. });
             let scene = match scene {
-                Ok(read) => read.map_err(|diagnostics| in_words(&diagnostics)),
+                Ok(read) => read.map_err(|diagnostics| in_words(&diagnostics, is_text)),
                 Err(_) => Err("the program failed over this scene: please report it".to_owned()),
             };
             // the world may have ended
@@ -143,10 +145,11 @@ impl Compiler {
     }
 }
 
-/// The first fault, and what would be accepted in its place.
-fn in_words(diagnostics: &souple_scene::Diagnostics) -> String {
+/// The first fault, and what would be accepted in its place; in a text that somebody wrote with its line.
+fn in_words(diagnostics: &souple_scene::Diagnostics, is_text: bool) -> String {
     let Some(first) = diagnostics.0.first() else { return diagnostics.to_string() };
-    let place = if first.path.is_empty() { String::new() } else { format!("{}: ", first.path) };
+    let line = if is_text { format!("{}:{}: ", first.file, first.line) } else { String::new() };
+    let place = if first.path.is_empty() { line } else { format!("{line}{}: ", first.path) };
     let expected =
         if first.expected.is_empty() { String::new() } else { format!("; expected {}", first.expected) };
     let more = match diagnostics.0.len() {

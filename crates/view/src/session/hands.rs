@@ -187,8 +187,10 @@ impl Hands {
     /// What there is to see of them.
     pub fn shown(&self, world: &World) -> Vec<HandShown> {
         let shown = |held: &Holding| {
-            let Holding { page, hand, holds, place, .. } = *held;
-            let seen = HandShown { page, hand, holds, held: place, place, force: Vec3::ZERO };
+            let Holding { page, hand, holds, place, goal, .. } = *held;
+            // what gives way goes at once, as soon as there is a step
+            let shown = if holds == Holds::Body { goal } else { place };
+            let seen = HandShown { page, hand, holds, held: place, place: shown, force: Vec3::ZERO };
             match holds {
                 Holds::Tool => Some(HandShown { force: pressed(held, world), ..seen }),
                 Holds::Body => {

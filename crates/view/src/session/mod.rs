@@ -276,8 +276,8 @@ impl Live {
     }
 
     fn fulfil(&mut self, page: PageId, wish: Wish) -> Result<(), String> {
-        // a hand is led by the next step: a picture before that would show nothing new, and keep the one after waiting
-        self.is_changed |= !matches!(wish, Wish::Move { .. });
+        // a hand is led by the next step: a picture before that would keep the one after it waiting
+        self.is_changed |= self.mode != Mode::Playing || !matches!(wish, Wish::Move { .. });
         match wish {
             Wish::Seen => {}
             Wish::Play => match &self.mode {

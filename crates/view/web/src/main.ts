@@ -81,6 +81,8 @@ class Page {
   /** Frames drawn since the page was opened. */
   private pictures = 0;
   private lastLook = 0;
+  /** When the last frame was drawn [ms]. */
+  private lastFrame = 0;
   private readonly sight = element(
     "p",
     { class: "sight", hidden: true },
@@ -309,7 +311,10 @@ class Page {
         document.body.dataset.time = String(frame.time);
         document.body.dataset.factor = String(frame.realTimeFactor);
         document.body.dataset.cells = String(this.picture.cellCount);
+        this.lastFrame = performance.now();
       }
+    } else if (this.hasBegun && !document.body.classList.contains("lost")) {
+      this.transport.wait(performance.now() - this.lastFrame);
     }
     this.picture.draw();
     if (performance.now() - this.lastLook < LOOK_EVERY) return;

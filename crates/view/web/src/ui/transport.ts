@@ -13,6 +13,9 @@ const TOOLS: [Tool, string, string][] = [
   ["throw", "Throw", "Drag and let go: the body flies that way (T)"],
 ];
 
+/** A step that takes longer is told [ms]. */
+const LONG_MS = 1500;
+
 export class Transport {
   readonly root: HTMLElement;
   private readonly play = element("button", { class: "main", title: "Play or pause (space)" }, "Pause");
@@ -21,6 +24,9 @@ export class Transport {
   private readonly factor = element("span", { class: "factor", title: "Simulated seconds per second, as measured" });
   private readonly tools = new Map<Tool, HTMLButtonElement>();
   private mode: Status["mode"] = "waiting";
+  /** Between the last two frames, in real time [ms]. */
+  private between = 0;
+  private last = 0;
 
   constructor(
     private readonly send: (wish: Wish) => void,
@@ -76,7 +82,16 @@ export class Transport {
     this.speed.value = String(speed);
   }
 
+  /** A step goes on that began so long ago [ms]. */
+  wait(since: number): void {
+    if (this.mode !== "playing" || since < Math.max(LONG_MS, 3 * this.between)) return;
+    this.factor.textContent = `${number(since / 1000)} s in one step`;
+    this.factor.classList.add("slow");
+  }
+
   show(frame: Frame): void {
+    this.between = (1000 * Math.max(frame.time - this.last, 0)) / Number(this.speed.value);
+    this.last = frame.time;
     this.time.textContent = `${frame.time.toFixed(2)} s`;
     const text = this.mode === "playing" ? `${number(frame.realTimeFactor)} × real time` : this.mode;
     this.factor.textContent = text;

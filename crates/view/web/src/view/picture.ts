@@ -342,20 +342,24 @@ export class Picture {
 
   /** Whether there is anything, and no part of it is in the picture. */
   get isOutOfSight(): boolean {
-    const bounds = this.boundsNow();
-    return !bounds.isEmpty() && !this.eye.sees(bounds);
+    const all = this.boundsOfEach().filter((bounds) => !bounds.isEmpty());
+    return all.length > 0 && !all.some((bounds) => this.eye.sees(bounds));
   }
 
   /** Of all bodies and skins as they stand. */
   private boundsNow(): Box3 {
-    const bounds = new Box3();
+    return this.boundsOfEach().reduce((all, bounds) => all.union(bounds), new Box3());
+  }
+
+  private boundsOfEach(): Box3[] {
     const point = new Vector3();
     const skins = this.skins.map(({ mesh }) => mesh.geometry);
     const ofSkins = skins.map((geometry) => geometry.getAttribute("position")?.array.slice(0, drawnNumbers(geometry)) ?? []);
-    for (const positions of [...this.bodies.map((body) => body.positions), ...ofSkins]) {
+    return [...this.bodies.map((body) => body.positions), ...ofSkins].map((positions) => {
+      const bounds = new Box3();
       for (let i = 0; i < positions.length; i += 3) bounds.expandByPoint(point.fromArray(positions, i));
-    }
-    return bounds;
+      return bounds;
+    });
   }
 
   /** Draws what is not as it was drawn last: a machine that draws by software has the rest of its time for what comes. */
