@@ -316,7 +316,8 @@ fn put_forces(text: &mut String, element: &ElementData, association: &str) {
     }
     let _ = writeln!(
         text,
-        "\n/* for whoever puts numbers in, `mu: 1$ P0x: 0$ ... numbers()$ F0x: ev(F0x);` */\nnumbers() := for entry in constants do lhs(entry) :: ev(rhs(entry))$"
+        "\n/* for whoever puts numbers in, `mu: 1$ P0x: 0$ ... numbers()$ F0x: ev(F0x);` */\n\
+         numbers() := for entry in constants do lhs(entry) :: ev(rhs(entry))$"
     );
     for (_, name, sign) in CHOICES {
         let _ = writeln!(text, "{name}(c, v, w) := if c {sign} 0 then v else w$");

@@ -23,7 +23,8 @@ pub enum LawProblem {
     #[error("a law of {nodes} parts is too large; at most {limit} are accepted")]
     TooLarge { nodes: usize, limit: usize },
     #[error(
-        "the derivatives of a law with this part, which is made of {parts}, are too long: more than {limit} operands; a shorter sum or product is accepted"
+        "the derivatives of a law with this part, which is made of {parts}, are too long: \
+         more than {limit} operands; a shorter sum or product is accepted"
     )]
     LongDerivatives { parts: usize, limit: usize },
     #[error("there is no `{name}`{}; there are the parameters and definitions of this law{}, and {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .own, Word::list())]

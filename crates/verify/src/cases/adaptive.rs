@@ -49,7 +49,7 @@ const FALLS: Case =
 const SAME_THRESHOLD: &str = "bodies.bar.adapt={ material = { name = \"st_venant_kirchhoff\", youngs_modulus = 5e6, poissons_ratio = 0.3, density = 1000 }, back = 0, volume = 0.03 }";
 
 /// Force on the press under Ogden's law alone at equilibrium: `equilibria.py` beside this file.
-const PRESS_OF_SECOND: f64 = -5747.143_842_9;
+const PRESS_OF_SECOND: f64 = -5_747.143_842_9;
 
 const PAD: Case = Case {
     id: "",
