@@ -1,5 +1,7 @@
 //! What the fuzz targets do.
 
+pub mod law;
+
 use std::path::Path;
 
 use souple_formal::{Condition, Formula, parse_quantity, parse_unit};
@@ -126,4 +128,11 @@ pub fn read_formula(content: &[u8]) {
         let _ = condition.holds(&values);
     }
     let _ = (parse_quantity(text), parse_unit(text));
+}
+
+/// Reads a content as a law and derives, tries and compiles it.
+pub fn read_law(content: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(content) {
+        law::try_law(text);
+    }
 }

@@ -1,8 +1,10 @@
 //! Writes what the fuzzer starts from: `seeds FOLDER` fills `FOLDER/<target>` with small good files of every format, with
-//! the shipped scenes and the faulty ones, and writes the keys of scenes to `dictionaries/scene`.
+//! the shipped scenes and the faulty ones, and writes the keys of scenes to `dictionaries/scene`, the words of laws to `dictionaries/law`.
 
 use std::path::Path;
 
+use souple_formal::FUNCTIONS;
+use souple_formal::law::{LAW_FUNCTIONS, QUANTITIES};
 use souple_io::{FORMATS, Field, Output, write_file};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Group, Mesh};
@@ -44,12 +46,20 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let table = "scene = \"x.toml\"\ntable = \"runs.csv\"\n--- table\na.b,c\n1,\"[1, 2]\"\n5 kPa,tet4\n";
     std::fs::write(studies.join("table"), table)?;
     write_formulas(&Path::new(&folder).join("formula"))?;
+    let laws = Path::new(&folder).join("law");
+    std::fs::create_dir_all(&laws)?;
+    for (index, law) in souple_fuzz::law::LAW_SEEDS.iter().enumerate() {
+        std::fs::write(laws.join(index.to_string()), law)?;
+    }
     let mut words = Vec::new();
     collect_words(&souple_scene::schema(), &mut words);
     words.sort();
     words.dedup();
     let lines: String = words.iter().map(|word| format!("{word:?}\n")).collect();
     std::fs::write(Path::new("dictionaries").join("scene"), lines)?;
+    let words = QUANTITIES.iter().chain(LAW_FUNCTIONS).map(|word| word.name).chain(FUNCTIONS.iter().map(|entry| entry.name));
+    let lines: String = words.map(|word| format!("{word:?}\n")).collect();
+    std::fs::write(Path::new("dictionaries").join("law"), lines)?;
     Ok(())
 }
 

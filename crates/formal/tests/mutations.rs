@@ -1,11 +1,14 @@
-//! Formulas, conditions, quantities and units with faults put in by machine: an answer or an error, never a panic.
+//! Formulas, conditions, quantities, units and laws with faults put in by machine: an answer or an error, never a panic.
 //!
 //! `SOUPLE_MUTATION_SECONDS=600 cargo test -p souple-formal --test mutations` goes on for ten minutes.
 
+#[path = "../../../fuzz/src/law.rs"]
+mod law;
 #[path = "../../../fuzz/src/mutator.rs"]
 mod mutator;
 
 use mutator::{Mutator, guard, repeat};
+use souple_formal::law::{LAW_FUNCTIONS, QUANTITIES};
 use souple_formal::{CONSTANTS, Condition, FUNCTIONS, Formula, parse_quantity, parse_unit, quantity_in};
 
 const SEEDS: [&str; 12] = [
@@ -52,4 +55,23 @@ fn mutated_formulas_are_read_or_refused() {
     });
     println!("{read} of {cases} mutated texts are formulas");
     assert!(read > cases / 20, "{read} of {cases}");
+}
+
+/// Laws are derived, tried and compiled, whatever is left of them; where they are refused, at a place that is theirs.
+#[test]
+fn mutated_laws_are_derived_or_refused() {
+    let seeds: Vec<Vec<u8>> = law::LAW_SEEDS.iter().map(|seed| seed.as_bytes().to_vec()).collect();
+    let words = QUANTITIES.iter().chain(LAW_FUNCTIONS).map(|word| word.name);
+    let names =
+        words.chain(FUNCTIONS.iter().map(|function| function.name)).chain(["energy", "mu", "a1", "k"]);
+    let words: Vec<Vec<u8>> = names.map(|name| name.as_bytes().to_vec()).collect();
+    let mut read = 0;
+    let cases = repeat(4000, |seed| {
+        let content = Mutator::new(seed, words.clone()).mutated(&seeds);
+        let Ok(text) = std::str::from_utf8(&content) else { return };
+        // a law that is derived on one core that others use too takes some hundredths of a second
+        guard(seed, &content, 5.0, || read += usize::from(law::try_law(text)));
+    });
+    println!("{read} of {cases} mutated texts are laws");
+    assert!(read > cases as usize / 50, "{read} of {cases}");
 }

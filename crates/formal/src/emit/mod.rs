@@ -15,7 +15,7 @@ use std::collections::HashMap;
 pub use element::{ElementCode, Emitted};
 pub use latex::Latex;
 pub use rust::Rust;
-pub use script::maxima;
+pub use script::{maxima, maxima_name};
 pub use text::Text;
 pub use wgsl::Wgsl;
 
@@ -160,8 +160,13 @@ impl Writer<'_> {
         match self.graph.node(expr) {
             Node::Number(bits) => {
                 let value = bits.value();
-                let binding = if value < 0.0 { Binding::Sum } else { Binding::Atom };
-                Written::new(self.style.number(value), binding)
+                let text = self.style.number(value);
+                let binding = match text.contains('/') {
+                    _ if value < 0.0 => Binding::Sum,
+                    true => Binding::Product,
+                    false => Binding::Atom,
+                };
+                Written::new(text, binding)
             }
             Node::Symbol(_) => Written::atom(symbol(self.graph, expr, self.style)),
             Node::Sum(terms) => self.sum(terms),

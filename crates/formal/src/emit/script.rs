@@ -6,7 +6,7 @@
 use std::fmt::Write as _;
 
 use super::text::Text;
-use super::{Binding, Style, Written, distinct, write};
+use super::{Binding, Style, Written, write};
 use crate::Function;
 use crate::element::{ElementData, RestMap};
 use crate::graph::{Comparison, Expr, Node};
@@ -16,37 +16,66 @@ use crate::law::{EnergyLaw, LawParameter};
 #[derive(Clone, Copy, Debug, Default)]
 struct Maxima;
 
-/// Words of the language that could be names of a law, and those of the program.
+/// Words of the language that could be names of a law, its settings among them, and those of the program.
 const TAKEN: &[&str] = &[
+    "and",
     "block",
-    "choose_at_most",
-    "choose_below",
-    "choose_equal",
+    "constants",
+    "cofactor_of",
+    "deformation",
+    "diff",
+    "determinant",
     "do",
+    "domain",
+    "dot_of",
     "else",
     "elseif",
     "false",
+    "float",
     "for",
     "from",
+    "functions",
+    "genmatrix",
+    "grouped",
+    "i",
+    "if",
     "in",
+    "invert",
+    "j",
+    "labels",
     "lambda",
+    "linel",
     "matrix",
     "next",
+    "not",
+    "numer",
+    "or",
+    "outer_of",
+    "props",
+    "rules",
+    "simp",
     "step",
+    "stringout",
     "subst",
     "then",
     "thru",
+    "trace_of",
     "true",
     "unless",
+    "values",
     "while",
-    "diff",
-    "determinant",
-    "invert",
-    "genmatrix",
-    "i",
-    "j",
-    "stringout",
 ];
+
+/// How names begin that the program gives to its steps.
+const OWN: &[&str] = &["law_", "choose_", "part", "int", "dF", "dV"];
+
+/// A name of a law in the program: where it could be another's there, with `law_` in front. No two names become the same.
+pub fn maxima_name(name: &str) -> String {
+    // shape functions, axes, displacements, constants and the steps begin with capital letters
+    let is_upper = name.starts_with(|letter: char| letter.is_ascii_uppercase()) && name != "F";
+    let is_own = OWN.iter().any(|own| name.starts_with(own));
+    if is_upper || is_own || TAKEN.contains(&name) { format!("law_{name}") } else { name.to_owned() }
+}
 
 impl Style for Maxima {
     fn number(&self, value: f64) -> String {
@@ -54,9 +83,7 @@ impl Style for Maxima {
     }
 
     fn symbol(&self, name: &str) -> String {
-        // shape functions, axes, displacements and the steps have names of one capital letter and digits, and others in capitals
-        let is_upper = name.starts_with(|letter: char| letter.is_ascii_uppercase()) && name != "F";
-        if is_upper || name.starts_with("law_") { format!("law_{name}") } else { distinct(name, TAKEN) }
+        maxima_name(name)
     }
 
     fn times(&self) -> &'static str {
@@ -136,8 +163,13 @@ const CHOICES: [(Comparison, &str, &str); 3] = [
     (Comparison::Equal, "choose_equal", "="),
 ];
 
-/// What the energy may call that Maxima does not have by these names.
-const HELPERS: &str = "trace_of(a) := a[1, 1] + a[2, 2] + a[3, 3]$
+/// What the energy may call that Maxima does not have by these names, and the list of what is constant: equal constants are one.
+const HELPERS: &str = "constants: []$
+grouped(c) := block([known: sublist(constants, lambda([entry], is(rhs(entry) = c)))],
+  if numberp(c) then return(c),
+  if known = [] then constants: endcons(concat(D, length(constants)) = c, constants),
+  if known = [] then lhs(last(constants)) else lhs(first(known)))$
+trace_of(a) := a[1, 1] + a[2, 2] + a[3, 3]$
 dot_of(a, b) := block([s: 0], for i thru 3 do for j thru length(a[1]) do s: s + a[i, j]*b[i, j], s)$
 cofactor_of(a) := transpose(adjoint(a))$
 outer_of(a, b) := a . transpose(b)$
@@ -145,7 +177,8 @@ outer_of(a, b) := a . transpose(b)$
 
 /// The program; `association` is the name of law, element and cut, uncut.
 ///
-/// Laws in principal stretches have no formula that it could use: `None`.
+/// Laws in principal stretches: `None`. Roots of the characteristic polynomial could be written; of Ogden's law on a triangle the
+/// second derivatives of what comes of them took Maxima half a minute and more than 5 MB, which nobody reads.
 pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> Option<String> {
     let terms = law.terms();
     let is_beyond = |expr: &Expr| matches!(law.graph.node(*expr), Node::Decompose(_) | Node::Pack(_));
@@ -168,7 +201,7 @@ fn axes_of(element: &ElementData) -> &'static [&'static str] {
     &["x", "y", "z"][..element.dimension]
 }
 
-/// Steps 1 to 3: from shape functions to the deformation gradient at `R0`, `R1`, `R2`.
+/// Steps 1 to 3: from shape functions to the gradient of displacements along `R0`, `R1`, `R2`, and what `F` is of it in space.
 fn put_deformation(text: &mut String, element: &ElementData) {
     let axes = axes_of(element);
     let _ = writeln!(text, "\n/* 1. interpolation */");
@@ -204,10 +237,10 @@ fn put_deformation(text: &mut String, element: &ElementData) {
     };
     let _ = writeln!(text, "JT: matrix({})$", rows_of("T"));
     let _ = writeln!(text, "\n/* 3. deformation gradient; in the plane nothing stretches across */");
-    let _ = writeln!(text, "GradU: invert(JT) . matrix({})$", rows_of("U"));
+    let _ = writeln!(text, "DU: matrix({})$", rows_of("U"));
     let _ = writeln!(
         text,
-        "FX: genmatrix(lambda([i, j], (if i = j then 1 else 0) + (if i <= {0} and j <= {0} then GradU[j, i] else 0)), 3, 3)$",
+        "deformation(GradU) := genmatrix(lambda([i, j], (if i = j then 1 else 0) + (if i <= {0} and j <= {0} then GradU[j, i] else 0)), 3, 3)$",
         axes.len()
     );
 }
@@ -230,23 +263,32 @@ fn put_energy(text: &mut String, law: &EnergyLaw, terms: &[Expr]) {
     }
 }
 
-/// Step 5: the energy of the element, sample by sample.
+/// Steps 5 and 6: the energy of the element, sample by sample, with names for what the rest shape alone decides.
+///
+/// Entries of the inverse map and weights are named before anything is differentiated: the derivatives, which know them by name,
+/// are ten times shorter than with the quotients spelled out, and Maxima has them in seconds instead of minutes.
 fn put_integral(text: &mut String, element: &ElementData, terms: usize) {
-    let _ = writeln!(text, "\n/* 5. energy of the element, by samples */");
-    let mut addends = Vec::new();
+    let _ = writeln!(
+        text,
+        "\n/* 6. what holds no U or V is named D0, D1, ...; before 5, so that the energy knows it by name */"
+    );
     for (q, sample) in element.samples.iter().enumerate() {
         let at: Vec<String> =
             (0..element.dimension).map(|k| format!("R{k} = {:e}", sample.position[k])).collect();
         let at = at.join(", ");
-        let _ = writeln!(text, "F_{q}: subst([{at}], FX)$");
-        let _ = writeln!(text, "dV_{q}: {:e}*subst([{at}], determinant(JT))$", sample.weight);
+        let _ = writeln!(text, "JT_{q}: subst([{at}], JT)$");
+        let _ = writeln!(text, "F_{q}: deformation(matrixmap(grouped, invert(JT_{q})) . subst([{at}], DU))$");
+        let _ = writeln!(text, "dV_{q}: grouped({:e}*determinant(JT_{q}))$", sample.weight);
+    }
+    let _ = writeln!(text, "\n/* 5. energy of the element, by samples */");
+    let mut addends = Vec::new();
+    for q in 0..element.samples.len() {
         for term in 0..terms {
             let _ = writeln!(text, "intW{term}_{q}: W{term}(F_{q})*dV_{q}$");
             addends.push(format!("intW{term}_{q}"));
         }
     }
     let _ = writeln!(text, "WE: {}$", addends.join(" + "));
-    let _ = writeln!(text, "\n/* 6. what holds no U or V is constant from here on */");
 }
 
 /// Steps 7 to 9: forces, their differential, and both as files.
@@ -265,7 +307,8 @@ fn put_forces(text: &mut String, element: &ElementData, association: &str) {
             unknowns.iter().map(|other| format!("diff(F{unknown}, U{other})*V{other}")).collect();
         let _ = writeln!(text, "dF{unknown}: {}$", terms.join(" + "));
     }
-    let _ = writeln!(text, "\n/* 9. one file for each expression */");
+    let _ = writeln!(text, "\n/* 9. one file for each expression, and one for the constants */");
+    let _ = writeln!(text, "stringout(\"ECR_{association}0.mac\", constants)$");
     for unknown in &unknowns {
         for prefix in ["F", "dF"] {
             let _ = writeln!(text, "stringout(\"{prefix}{association}0_{unknown}.mac\", {prefix}{unknown})$");
@@ -273,7 +316,8 @@ fn put_forces(text: &mut String, element: &ElementData, association: &str) {
     }
     let _ = writeln!(
         text,
-        "\n/* what the choices are, for whoever puts numbers in: ev(subst([mu = 1, ...], F0x)) */"
+        "\n/* for whoever puts numbers in, `mu: 1$ P0x: 0$ ... numbers()$ F0x: ev(F0x);` */\n\
+         numbers() := for entry in constants do lhs(entry) :: ev(rhs(entry))$"
     );
     for (_, name, sign) in CHOICES {
         let _ = writeln!(text, "{name}(c, v, w) := if c {sign} 0 then v else w$");

@@ -17,13 +17,27 @@ pub(super) fn sign_of(comparison: Comparison) -> &'static str {
     }
 }
 
+/// A number as one writes it: `2/3` where that has its bits and its decimals would not end.
+fn plain(value: f64) -> String {
+    let decimal = value.to_string();
+    if decimal.len() > 12 {
+        for below in [3.0, 6.0, 7.0, 9.0, 11.0, 12.0, 15.0, 27.0] {
+            let above = (value * below).round();
+            if above / below == value && above.abs() < 1e3 {
+                return format!("{above}/{below}");
+            }
+        }
+    }
+    decimal
+}
+
 fn within(written: &Written, weakest: Binding) -> String {
     if written.binding < weakest { format!("({})", written.text) } else { written.text.clone() }
 }
 
 impl Style for Text {
     fn number(&self, value: f64) -> String {
-        value.to_string()
+        plain(value)
     }
 
     fn times(&self) -> &'static str {
@@ -36,7 +50,9 @@ impl Style for Text {
     }
 
     fn power(&self, base: &Written, exponent: f64) -> Written {
-        self.power_of(base, &Written::atom(exponent.to_string()))
+        let text = plain(exponent);
+        let binding = if text.contains('/') { Binding::Product } else { Binding::Atom };
+        self.power_of(base, &Written { text, binding })
     }
 
     fn power_of(&self, base: &Written, exponent: &Written) -> Written {

@@ -33,6 +33,9 @@ impl Graph {
 
     /// The differential of one node from those of its operands; operands without one do not vary.
     fn differential_of(&mut self, expr: Expr, made: &HashMap<Expr, Expr>) -> Expr {
+        if self.is_exhausted() {
+            return self.zero(self.shape(expr));
+        }
         let d = |operand: Expr| made.get(&operand).copied();
         let mut terms = Vec::new();
         match self.node(expr).clone() {
@@ -40,7 +43,7 @@ impl Graph {
             Node::Sum(list) => terms.extend(list.iter().filter_map(|term| d(*term))),
             Node::Product(factors) => {
                 for (position, factor) in factors.iter().enumerate() {
-                    if let Some(differential) = d(*factor) {
+                    if let Some(differential) = d(*factor).filter(|_| !self.is_exhausted()) {
                         let mut product = factors.to_vec();
                         product[position] = differential;
                         terms.push(self.product(&product));
@@ -196,6 +199,9 @@ impl Graph {
         let one = self.number(1.0);
         adjoints.add(psi, one);
         while let Some((expr, adjoint)) = adjoints.pop(self) {
+            if self.is_exhausted() {
+                break;
+            }
             if expr == by {
                 return adjoint;
             }
@@ -316,6 +322,9 @@ impl Graph {
         let zero = self.number(0.0);
         let constant: HashMap<Expr, Expr> = invariants.iter().map(|invariant| (*invariant, zero)).collect();
         for invariant in &invariants {
+            if self.is_exhausted() {
+                return;
+            }
             let mut seeds = constant.clone();
             seeds.insert(*invariant, self.number(1.0));
             let partial = self.differential(expr, &seeds);

@@ -196,6 +196,8 @@ pub struct Graph {
     /// Transposes, determinants and cofactors of products made so far: a factor that stands in a product many times is gone
     /// into once.
     of_products: HashMap<(OfProduct, Expr), Expr>,
+    /// Operands that new expressions may still have; `None` is without bound.
+    allowance: Option<usize>,
 }
 
 /// What distributes over the factors of a product of matrices.
@@ -267,9 +269,23 @@ impl Graph {
         }
     }
 
+    /// Bounds the operands of all expressions made from here on: past it derivatives are left out, and [`Self::is_exhausted`]
+    /// says so. Products of many factors have derivatives that grow with the square of their number, and again with the next.
+    pub(crate) fn allow(&mut self, operands: Option<usize>) {
+        self.allowance = operands;
+    }
+
+    /// Whether more was made than was allowed: derivatives made since then are worth nothing.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.allowance == Some(0)
+    }
+
     fn intern(&mut self, node: Node, shape: Shape) -> Expr {
         if let Some(expr) = self.known.get(&node) {
             return *expr;
+        }
+        if let Some(left) = &mut self.allowance {
+            *left = left.saturating_sub(1 + node.operands().count());
         }
         let expr = Expr(self.nodes.len() as u32);
         self.known.insert(node.clone(), expr);

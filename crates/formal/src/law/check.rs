@@ -53,6 +53,16 @@ fn at(read: &Read, expr: Expr, problem: LawProblem) -> LawError {
     }
 }
 
+/// Derivatives that became too long, told where most parts stand in one sum or product.
+pub(super) fn too_long(read: &Read) -> LawError {
+    let parts = |expr: &Expr| read.graph.node(*expr).operands().count();
+    let written =
+        read.graph.reachable(&[read.energy]).into_iter().filter(|expr| read.origins.contains_key(expr));
+    let longest = written.max_by_key(parts).unwrap_or(read.energy);
+    let problem = LawProblem::LongDerivatives { parts: parts(&longest), limit: super::LARGEST_DERIVATIVES };
+    at(read, longest, problem)
+}
+
 impl EnergyLaw {
     /// Evaluates expressions of the law at a deformation and a variation of it.
     pub fn evaluate(&self, roots: &[Expr], F: &Mat3, dF: &Mat3) -> Evaluation {

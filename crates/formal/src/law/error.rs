@@ -22,6 +22,11 @@ pub enum LawProblem {
     Syntax(#[from] ParseError),
     #[error("a law of {nodes} parts is too large; at most {limit} are accepted")]
     TooLarge { nodes: usize, limit: usize },
+    #[error(
+        "the derivatives of a law with this part, which is made of {parts}, are too long: \
+         more than {limit} operands; a shorter sum or product is accepted"
+    )]
+    LongDerivatives { parts: usize, limit: usize },
     #[error("there is no `{name}`{}; there are the parameters and definitions of this law{}, and {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .own, Word::list())]
     UnknownName { name: String, nearest: Option<String>, own: String },
     #[error("there is no function `{name}`{}; there are {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .known.join(", "))]

@@ -4,10 +4,13 @@
 //! directions, …, see `vocabulary.rs`), with units checked on the way; then `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF` are derived.
 //! Before a law is handed out it has been tried: a value, no stress and a slope at rest, objectivity.
 
+mod calls;
 mod check;
 mod domain;
 mod error;
+mod operators;
 mod read;
+mod value;
 mod vocabulary;
 
 pub use error::{LawError, LawProblem};
@@ -86,19 +89,28 @@ pub struct EnergyLaw {
 pub(crate) const DEFORMATION: &str = "F";
 pub(crate) const VARIATION: &str = "dF";
 
+/// Operands in the derivatives of a law at most; those of the laws that ship have a few hundred.
+const LARGEST_DERIVATIVES: usize = 200_000;
+
 impl EnergyLaw {
     /// Reads, derives and tries a law.
     ///
     /// # Errors
     /// The part, the place and what would be accepted: syntax, unknown names, wrong units, an energy that is no number,
-    /// definitions that need each other, no value or slope at rest, stress at rest, an energy that rotations change.
+    /// definitions that need each other, derivatives without end, no value or slope at rest, stress at rest, an energy that
+    /// rotations change.
     pub fn compile(text: &LawText) -> Result<Self, LawError> {
         let mut read = read::read(text)?;
+        read.graph.allow(Some(LARGEST_DERIVATIVES));
         let deformation = read.graph.symbol(DEFORMATION, Shape::Matrix);
         let variation = read.graph.symbol(VARIATION, Shape::Matrix);
         let stress = read.graph.gradient(read.energy, deformation);
         let differential =
             read.graph.differential(stress, &std::collections::HashMap::from([(deformation, variation)]));
+        if read.graph.is_exhausted() {
+            return Err(check::too_long(&read));
+        }
+        read.graph.allow(None);
         let mut law = Self {
             deformation,
             variation,

