@@ -138,10 +138,6 @@ impl SolverSettings {
 const LU_BELOW: usize = 800;
 /// Multiples of the diagonal tried where a matrix is not positive definite.
 const SHIFTS: [f64; 7] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
-/// The same where one linearisation is all there is: what is less does not hold back what runs away.
-const RESISTANCES: [f64; 4] = [0.01, 0.1, 1.0, 10.0];
-/// Iterations after which a solve that may resist does: steps in real time take some tens.
-const FEW_ITERATIONS: usize = 200;
 /// Residual at which a solve that rounding ended still counts where Newton's method judges what it is worth.
 const STAGNATED_BUT_JUDGED: f64 = 0.1;
 /// Multiples of the wanted residual at which it still counts where nothing comes after it.
@@ -163,8 +159,6 @@ pub enum Indefinite {
     Descend,
     /// The solution all the same.
     Solve,
-    /// The solution where it is had in a few iterations, and else that of the matrix with a raised diagonal: of a step that resists.
-    Resist,
 }
 
 /// A linear system and what is known of it.
@@ -256,12 +250,7 @@ impl LinearSolver {
         let mut system = system;
         let (method, symmetric) = (self.settings.method, system.symmetric);
         if !symmetric || matches!(method, Method::Gmres | Method::Bicgstab) {
-            return Ok(match system.indefinite {
-                Indefinite::Resist => self.resist(&mut system, b, x)?,
-                Indefinite::Descend | Indefinite::Solve => {
-                    self.solve_general(&mut system, b, x, self.settings.max_iterations)?
-                }
-            });
+            return Ok(self.solve_general(&mut system, b, x)?);
         }
         let failed = match self.solve_symmetric(&mut system, b, x) {
             Err(error @ (SolveError::NotPositiveDefinite { .. } | SolveError::NotConverged { .. })) => error,
@@ -275,8 +264,7 @@ impl LinearSolver {
         };
         match system.indefinite {
             _ if !found_indefinite => Err(failed.into()),
-            Indefinite::Solve => Ok(self.solve_general(&mut system, b, x, self.settings.max_iterations)?),
-            Indefinite::Resist => Ok(self.resist(&mut system, b, x)?),
+            Indefinite::Solve => Ok(self.solve_general(&mut system, b, x)?),
             Indefinite::Descend => Ok(self.descend(&mut system, failed, b, x)?),
         }
     }
@@ -330,7 +318,6 @@ impl LinearSolver {
         system: &mut LinearSystem,
         b: &[Vec3],
         x: &mut [Vec3],
-        limit: usize,
     ) -> Result<Solved, SolveError> {
         let is_stored = system.operator.is_none();
         let automatic = match system.nearby {
@@ -357,7 +344,6 @@ impl LinearSolver {
             )?;
             x.fill(Vec3::ZERO);
             made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
-            made.solver.set_iterations(limit);
             judged(
                 made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x),
                 system.stagnated_at_most(self.settings.tolerance),
@@ -373,61 +359,6 @@ impl LinearSolver {
             Err(SolveError::NotPositiveDefinite { .. }) => attempt(name, "none"),
             _ => attempted,
         }
-    }
-
-    /// The solution, of any matrix, where it is had in a few iterations and goes with the forces. Elements that are turned inside out make
-    /// a matrix on which iterations hardly get on, and whose solution, of one linearisation, runs away against them: then the least
-    /// multiple of its diagonal is added with which neither is so (Nocedal & Wright 2006, §3.4), as more mass that is moved would. The
-    /// residual is that of the matrix as it was.
-    fn resist(
-        &mut self,
-        system: &mut LinearSystem,
-        b: &[Vec3],
-        x: &mut [Vec3],
-    ) -> Result<Solved, SolveError> {
-        let limit = self.settings.max_iterations.min(FEW_ITERATIONS);
-        let mut spent = match self.solve_general(system, b, x, limit) {
-            Ok(solved) if reduce::dot(x, b) >= 0.0 => return Ok(solved),
-            Ok(solved) => solved.iterations,
-            Err(SolveError::NotConverged { iterations, .. }) => iterations as u32,
-            Err(SolveError::NotPositiveDefinite { .. }) => 0,
-            Err(error) => return Err(error),
-        };
-        if system.operator.is_some() {
-            // products cannot be raised here: whatever it takes
-            return self.solve_general(system, b, x, self.settings.max_iterations);
-        }
-        self.measure_diagonal(system.matrix);
-        // the symmetric one beside it is not raised
-        system.nearby = None;
-        let mut before = 0.0;
-        for shift in RESISTANCES {
-            raise(system.matrix, &self.diagonal, shift - before);
-            before = shift;
-            match self.solve_general(system, b, x, limit) {
-                Ok(solved) if reduce::dot(x, b) >= 0.0 => {
-                    let added = x
-                        .iter()
-                        .zip(&self.diagonal)
-                        .map(|(x, diagonal)| (*x * (shift * diagonal)).length_sq());
-                    let residual = (added.sum::<f64>() / reduce::dot(b, b)).sqrt().max(solved.residual);
-                    return Ok(Solved { iterations: spent + solved.iterations, residual });
-                }
-                Ok(solved) => spent += solved.iterations,
-                Err(SolveError::NotConverged { iterations, .. }) => spent += iterations as u32,
-                Err(SolveError::NotPositiveDefinite { .. }) => {}
-                Err(error) => return Err(error),
-            }
-        }
-        self.solve_general(system, b, x, self.settings.max_iterations)
-    }
-
-    /// What of each row's block is raised: its mean, of rows that have less that of the whole matrix.
-    fn measure_diagonal(&mut self, matrix: &BlockMatrix) {
-        let mean = matrix.mean_diagonal().abs();
-        let rows = 0..matrix.pattern().block_count();
-        self.diagonal.clear();
-        self.diagonal.extend(rows.map(|row| (matrix.diagonal_block(row).trace() / 3.0).max(mean)));
     }
 
     /// A direction of descent where the matrix is not positive definite: where conjugate gradients were stopped
@@ -453,11 +384,19 @@ impl LinearSolver {
             x.iter_mut().zip(b).for_each(|(x, b)| *x = *b * (1.0 / mean));
             return Ok(Solved { iterations: 0, residual: 1.0 });
         }
-        self.measure_diagonal(system.matrix);
+        let pattern = Arc::clone(system.matrix.pattern());
+        self.diagonal.clear();
+        self.diagonal.extend(
+            (0..pattern.block_count()).map(|row| (system.matrix.diagonal_block(row).trace() / 3.0).max(mean)),
+        );
         let mut last = failed;
         let mut before = 0.0;
         for shift in SHIFTS {
-            raise(system.matrix, &self.diagonal, shift - before);
+            // A + σ diag(A)
+            for (row, diagonal) in self.diagonal.iter().enumerate() {
+                let block = &mut system.matrix.values_mut()[pattern.diagonal_slot(row)];
+                *block = block.plus_diagonal((shift - before) * diagonal);
+            }
             before = shift;
             match self.solve_symmetric(system, b, x) {
                 Err(SolveError::NotConverged {
@@ -473,15 +412,6 @@ impl LinearSolver {
             }
         }
         Err(last)
-    }
-}
-
-/// `A + σ diag(A)`
-fn raise(matrix: &mut BlockMatrix, diagonal: &[f64], shift: f64) {
-    let pattern = Arc::clone(matrix.pattern());
-    for (row, diagonal) in diagonal.iter().enumerate() {
-        let block = &mut matrix.values_mut()[pattern.diagonal_slot(row)];
-        *block = block.plus_diagonal(shift * diagonal);
     }
 }
 

@@ -53,9 +53,6 @@ pub trait LinearSolver: Send + Sync {
     /// Changes the wanted true relative residual of the next solves.
     fn set_tolerance(&mut self, tolerance: f64);
 
-    /// Changes how many iterations the next solves may take, where the method has any.
-    fn set_iterations(&mut self, limit: usize);
-
     /// Solves `A x = b` from the `x` given; `operator` is the matrix of the last update, stored or not.
     ///
     /// # Errors
@@ -343,12 +340,6 @@ impl LinearSolver for Auto {
         }
     }
 
-    fn set_iterations(&mut self, limit: usize) {
-        for solver in [&mut self.direct, &mut self.iterative].into_iter().flatten() {
-            solver.set_iterations(limit);
-        }
-    }
-
     fn solve(
         &mut self,
         operator: &dyn LinearOperator,
@@ -402,10 +393,6 @@ impl LinearSolver for Iterative {
 
     fn set_tolerance(&mut self, tolerance: f64) {
         self.settings.tolerance = tolerance;
-    }
-
-    fn set_iterations(&mut self, limit: usize) {
-        self.settings.max_iterations = limit;
     }
 
     fn solve(
@@ -486,9 +473,6 @@ impl LinearSolver for Direct {
     fn set_tolerance(&mut self, tolerance: f64) {
         self.tolerance = tolerance;
     }
-
-    // a factor has none
-    fn set_iterations(&mut self, _: usize) {}
 
     fn solve(
         &mut self,

@@ -396,7 +396,7 @@ impl ImplicitStep<'_> {
         let is_led = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
         let constrained = if is_led { Constrained::Led } else { Constrained::Still };
         let wanted =
-            Wanted { constrained, indefinite: Indefinite::Resist, used_as: Use::Answer, tolerance: 0.0 };
+            Wanted { constrained, indefinite: Indefinite::Solve, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
         q.copy_from_slice(&buffers.q_trial);
         self.system.kinematics.retract(q, &buffers.direction);

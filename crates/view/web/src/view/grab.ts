@@ -23,8 +23,8 @@ interface Held {
   moved: number;
 }
 
-/** What a hand takes hold of: a part of the bodies' diagonal. */
-const PATCH = 0.045;
+/** What a hand takes hold of: a part of the bodies' diagonal, about a palm of an organ. On less of it a pull tears at few cells. */
+const PATCH = 0.09;
 /** A throw is as fast as if the way pulled were gone in this time [s]. */
 const THROW_SECONDS = 0.25;
 /** Hands that a page has. */
