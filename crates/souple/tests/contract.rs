@@ -122,6 +122,7 @@ fn one_document_each() {
     let measured = json(&["mesh", "quality", &folder.at("ball.msh")]);
     for document in [&generated, &converted, &measured] {
         assert_keys(document, &["points", "cells", "volume", "bounds", "smallest_scaled_jacobian", "notes"]);
+        assert_keys(document, &["volume_of_kinds"]);
         assert_eq!(document["points"], generated["points"]);
     }
 

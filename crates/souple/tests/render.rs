@@ -285,6 +285,25 @@ fn a_run_without_its_scene() {
     assert!(answer["notes"].to_string().contains("cannot be read"), "{answer:#}");
 }
 
+/// A run is drawn with its shapes from anywhere, also from beside another scene of the same name.
+#[test]
+fn a_run_is_drawn_from_elsewhere() {
+    let folder = Folder::new("elsewhere");
+    ["a", "b"].map(|name| std::fs::create_dir(folder.path().join(name)).expect("a folder"));
+    folder.write("a/scene.toml", with_shapes());
+    folder.write("b/scene.toml", CUBE);
+    let [here, there] = ["a", "b"].map(|name| folder.path().join(name));
+    souple_in(&here, ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    let small = ["--size", "96,64", "--samples", "1", "--json"];
+    let from = |place: &Path, run: &str| {
+        let call = ["render", run, "--out", "picture.png"];
+        let answer = souple_in(place, call.iter().chain(&small)).ends(0).json();
+        assert_eq!(answer["notes"], serde_json::json!([]), "{answer:#}");
+        std::fs::read(place.join("picture.png")).expect("a picture")
+    };
+    assert!(from(&here, "run") == from(&there, "../a/run"));
+}
+
 #[test]
 fn faulty_requests() {
     let folder = Folder::new("render_faults");

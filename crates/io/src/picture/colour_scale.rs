@@ -40,7 +40,8 @@ impl ColourScale {
     pub fn share(self, value: f64, (low, high): (f64, f64)) -> f64 {
         match self {
             Self::Linear => (value - low) / (high - low).max(f64::MIN_POSITIVE),
-            Self::Logarithmic if value > 0.0 => libm::log(value / low) / libm::log(high / low),
+            // what is next to zero is as near to it as zero: a cell between it and another value does not lose all its colours
+            Self::Logarithmic if value > 0.0 => (libm::log(value / low) / libm::log(high / low)).max(0.0),
             Self::Logarithmic if value == 0.0 => 0.0,
             Self::Logarithmic => f64::NAN,
         }

@@ -78,8 +78,14 @@ pub(super) fn log_scale(low: f64, high: f64, unit: &str, most: usize, nearest: f
         let power = libm::floor(libm::log10(end) + 1e-9) as i32;
         let name = match (is_power(end, power), is_plain) {
             (true, _) => power_name(power, is_plain),
-            (false, true) => labelled(&[end], end, end_step(low, high)).concat(),
-            (false, false) => format!("{:.1}·{}", end / value(power), power_name(power, false)),
+            (false, true) => labelled(&[end], end, end_step(end, end + high - low)).concat(),
+            (false, false) => {
+                let step = end_step(end, end + high - low);
+                let digits = (f64::from(power) - libm::log10(step)).round().clamp(1.0, 17.0) as usize;
+                let text = format!("{end:.digits$e}");
+                let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+                format!("{mantissa}·10{}", raised(power.parse().unwrap_or(0)))
+            }
         };
         (end, name)
     };
@@ -225,7 +231,9 @@ mod tests {
         // ends that are no powers, from which powers keep away
         assert_eq!(names(300.0, 4e4), ["300", "1000", "10000", "40000"]);
         assert_eq!(names(3e5, 9.5e7), ["3.0·10⁵", "10⁶", "10⁷", "9.5·10⁷"]);
-        assert_eq!(names(0.002, 1.1), ["0.0020", "0.01", "0.1", "1.1000"]);
+        assert_eq!(names(2.10e7, 2.14e7), ["2.100·10⁷", "2.140·10⁷"]);
+        assert_eq!(names(1e6, 9.97e7), ["10⁶", "10⁷", "1.0·10⁸"]);
+        assert_eq!(names(0.002, 1.1), ["0.0020", "0.01", "0.1", "1.1"]);
         assert_eq!(names(150.0, 800.0), ["150", "200", "500", "800"]);
         // no power of ten in it, nor a double of one; one power alone
         assert_eq!(names(2.1, 4.9), ["2.1", "4.9"]);

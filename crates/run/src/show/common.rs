@@ -188,7 +188,7 @@ impl<'a> Gathering<'a> {
         }
         let [colourless, values] = self.colourless;
         let is_log = figure.scale == ColourScale::Logarithmic;
-        if is_log && values > 0 && self.found.is_none() {
+        if is_log && values > 0 && self.found.is_none() && figure.range.is_none() {
             return Err(ShowError::Request {
                 what: "colour scale",
                 value: "log, and no value is above 0".to_owned(),

@@ -43,15 +43,12 @@ pub fn obstacles_of<'a>(forces: impl Iterator<Item = &'a Box<dyn Force>>) -> Vec
     obstacles
 }
 
-/// Where the scene of a run is: as its report names it, seen from here, or from a folder that the run's is in; runs lie below the place
-/// that they were started in.
-fn scene_of(folder: &Path, name: &str) -> PathBuf {
+/// Where the scene of a run may be: as its report names it, seen from here, or from a folder that the run's is in; runs lie below the
+/// place that they were started in.
+fn scenes_of(folder: &Path, name: &str) -> Vec<PathBuf> {
     let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let places = folder.ancestors().map(|above| above.join(name));
-    std::iter::once(PathBuf::from(name))
-        .chain(places)
-        .find(|path| path.exists())
-        .unwrap_or_else(|| name.into())
+    let above: Vec<PathBuf> = folder.ancestors().map(|above| above.join(name)).collect();
+    std::iter::once(PathBuf::from(name)).chain(above).filter(|path| path.exists()).collect()
 }
 
 impl Stage {
@@ -80,11 +77,17 @@ impl Stage {
         let settings = report["settings"].as_array().map_or(&[][..], Vec::as_slice);
         let settings: Vec<String> =
             settings.iter().filter_map(|setting| Some(setting.as_str()?.to_owned())).collect();
-        match souple_scene::read_file(&scene_of(folder, name), &settings) {
-            Ok(scene) if report["scene_sha256"] == scene.scene_sha256.as_str() => (Self::of(&scene), None),
-            Ok(_) => (bare, Some(format!("the scene `{name}` is not as it was run: shapes are not drawn"))),
-            Err(_) => (bare, Some(format!("the scene `{name}` cannot be read: shapes are not drawn"))),
+        let mut why = "cannot be read";
+        for path in scenes_of(folder, name) {
+            match souple_scene::read_file(&path, &settings) {
+                Ok(scene) if report["scene_sha256"] == scene.scene_sha256.as_str() => {
+                    return (Self::of(&scene), None);
+                }
+                Ok(_) => why = "is not as it was run",
+                Err(_) => {}
+            }
         }
+        (bare, Some(format!("the scene `{name}` {why}: shapes are not drawn")))
     }
 
     /// The plane that is most level, if any is.

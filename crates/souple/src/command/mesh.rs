@@ -15,7 +15,6 @@ use souple_mesh::repair::diagnose;
 use souple_mesh::{CellQuality, Histogram, Mesh, TriangleQuality, TriangleSurface};
 use souple_table::Parameter;
 
-use super::progress::Pulse;
 use super::{End, Refusal, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
@@ -108,15 +107,13 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
         Action::Fill { input, out, parameters, json } => {
             keep_input(Path::new(&input), &out)?;
             souple_io::can_write(None, &out)?;
-            let _work = Pulse::new("filling", json);
-            let (mesh, notes) = fill::fill(&input, &parameters)?;
+            let (mesh, notes) = fill::fill(&input, &parameters, json)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
             keep_input(&input, &out)?;
             souple_io::can_write(None, &out)?;
-            let _work = Pulse::new("simplifying", json);
-            let (mesh, notes) = fill::simplified(&input, &parameters)?;
+            let (mesh, notes) = fill::simplified(&input, &parameters, json)?;
             write(&out, None, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {

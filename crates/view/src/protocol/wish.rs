@@ -153,9 +153,9 @@ impl Wish {
     }
 }
 
-/// How far off a hand may be led [m], and how fast a body may be thrown [m/s], in any direction: a client may say more by mistake, and
-/// would end the world of all others.
+/// How far off a hand may be led, in any direction [m]: a client may say more by mistake, and would end the world of all others.
 const FARTHEST: f64 = 1e9;
+/// How fast a body may be thrown, in any direction [m/s].
 const FASTEST: f64 = 1e6;
 
 /// The fields of a wish.
@@ -224,6 +224,8 @@ mod tests {
             (r#"{"do": "speed", "factor": 1e9}"#, "from 0.001 to 100"),
             (r#"{"do": "move", "hand": 10, "offset": [0, 0, 0]}"#, "`hand` must be"),
             (r#"{"do": "move", "hand": 1, "offset": [0, 0]}"#, "three numbers"),
+            (r#"{"do": "move", "hand": 1, "offset": [0, 2e9, 0]}"#, "from -1e9 to 1e9"),
+            (r#"{"do": "throw", "body": 0, "velocity": [2e6, 0, 0]}"#, "to 1e6"),
             (r#"{"do": "pin", "body": -1, "points": [1]}"#, "`body` must be"),
             (r#"{"do": "pin", "body": 0, "points": []}"#, "`points` must be"),
         ] {

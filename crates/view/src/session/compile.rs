@@ -129,7 +129,7 @@ impl Compiler {
                 _ => souple_scene::read_again(&texts, places),
             }));
             // whoever set a value wrote no line, and whoever dropped a mesh no scene
-            let is_text = matches!(purpose, Purpose::Load(_) | Purpose::LoadText { mesh: None, .. });
+            let is_text = !matches!(purpose, Purpose::Set(_) | Purpose::LoadText { mesh: Some(_), .. });
             let scene = match scene {
                 Ok(read) => read.map_err(|diagnostics| in_words(&diagnostics, is_text)),
                 Err(_) => Err("the program failed over this scene: please report it".to_owned()),

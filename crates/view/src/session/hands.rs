@@ -189,8 +189,8 @@ impl Hands {
         let shown = |held: &Holding| {
             let Holding { page, hand, holds, place, goal, .. } = *held;
             // what gives way goes at once, as soon as there is a step
-            let shown = if holds == Holds::Body { goal } else { place };
-            let seen = HandShown { page, hand, holds, held: place, place: shown, force: Vec3::ZERO };
+            let leads_to = if holds == Holds::Body { goal } else { place };
+            let seen = HandShown { page, hand, holds, held: place, place: leads_to, force: Vec3::ZERO };
             match holds {
                 Holds::Tool => Some(HandShown { force: pressed(held, world), ..seen }),
                 Holds::Body => {

@@ -65,7 +65,7 @@ describe("the liver", () => {
     assert.deepEqual(page.errors, []);
   });
 
-  test("follows the mouse within a tenth of a second", async (t) => {
+  test("shows what the mouse leads within a tenth of a second", async (t) => {
     const [x, y] = await at(page);
     await page.mouse.move(x, y);
     await page.mouse.down();
@@ -359,7 +359,11 @@ describe("a liver at rest, for each trial a new one", () => {
     await page.selectOption("#field", "displacement");
     await settled(page);
   });
-  afterEach(() => world?.close());
+  afterEach(async () => {
+    assert.deepEqual(page?.errors, []);
+    await page?.close();
+    await world?.close();
+  });
 
   test("is met flat by a plate, which does not press before it is led", async () => {
     await page.selectOption("#tool", "plate");

@@ -11,6 +11,7 @@ use souple_table::{Parameter, Range, Value, ValueError, Values, in_number, neare
 
 use super::{announce, parameters, read};
 use crate::command::Refusal;
+use crate::command::progress::Pulse;
 
 pub const SCALE: Parameter =
     Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0));
@@ -31,7 +32,7 @@ pub fn parameters_help() -> String {
 }
 
 /// Fills a file's surface, or a shape known by name.
-pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
+pub fn fill(input: &str, texts: &[String], quiet: bool) -> Result<(Mesh, Vec<String>), Refusal> {
     let refuse = |error: MeshError| {
         let expected = match &error {
             MeshError::Fill(FillError::TooManyPoints { .. } | FillError::Nothing { .. })
@@ -81,7 +82,9 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     let (filling, others) = parameters::split(given, PARAMETERS);
     let options = filling.completed(PARAMETERS).map_err(MeshError::from);
     let options = options.and_then(|values| Options::from_values(&values)).map_err(refuse)?;
+    let work = || Pulse::new("filling", quiet);
     if let Some(entry) = shape {
+        let _work = work();
         let body = entry.values(others).map_err(MeshError::from).and_then(|values| (entry.build)(&values));
         let filled = body.and_then(|body| options.fill_body(&body)).map_err(refuse)?;
         return Ok((filled.mesh, filled.notes));
@@ -91,6 +94,7 @@ pub fn fill(input: &str, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusa
     mesh.points.iter_mut().for_each(|point| *point = *point * scale);
     notes.extend(mesh.bounds_of_cells().doubt().map(|doubt| format!("the surface: {doubt}")));
     surface_of(&mesh).iter().for_each(announce);
+    let _work = work();
     let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
     Ok((filled.mesh, notes))
@@ -111,7 +115,7 @@ const SIMPLIFY: &[Parameter] = &[
 const MET_TRIANGLES: f64 = 1.05;
 
 /// A surface of fewer triangles, and what was done.
-pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
+pub fn simplified(input: &Path, texts: &[String], quiet: bool) -> Result<(Mesh, Vec<String>), Refusal> {
     let name = input.display().to_string();
     let refuse = |error: MeshError| {
         let message = format!("`{name}` cannot be simplified: {error}");
@@ -135,7 +139,9 @@ pub fn simplified(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>),
     let surface = surface_of(&mesh).ok_or(MeshError::NoCells).map_err(refuse)?;
     let (mended, repairs) = repair(&surface, RepairLimits { hole: 0.0, ..RepairLimits::default() });
     notes.extend(repairs.messages());
+    let work = Pulse::new("simplifying", quiet);
     let simple = simplify(&mended, goal).map_err(refuse)?;
+    drop(work);
     notes.push(format!(
         "{} of {} triangles are left, within {:.3e} m of the given surface",
         simple.surface.triangles.len(),

@@ -67,7 +67,8 @@ fn volume(document: &Json) -> String {
         .flatten()
         .map(|(kind, volume)| format!("{:.1} % {kind}", 100.0 * volume.as_f64().unwrap_or_default() / whole))
         .collect();
-    let shares = if kinds.len() > 1 { format!(": {}", kinds.join(", ")) } else { String::new() };
+    let shares =
+        if kinds.len() > 1 && whole > 0.0 { format!(": {}", kinds.join(", ")) } else { String::new() };
     format!("{} m³{shares}", number(&document["volume"]))
 }
 

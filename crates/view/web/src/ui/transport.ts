@@ -24,9 +24,8 @@ export class Transport {
   private readonly factor = element("span", { class: "factor", title: "Simulated seconds per second, as measured" });
   private readonly tools = new Map<Tool, HTMLButtonElement>();
   private mode: Status["mode"] = "waiting";
-  /** Between the last two frames, in real time [ms]. */
+  /** Between the last two frames [ms]. */
   private between = 0;
-  private last = 0;
 
   constructor(
     private readonly send: (wish: Wish) => void,
@@ -89,9 +88,9 @@ export class Transport {
     this.factor.classList.add("slow");
   }
 
-  show(frame: Frame): void {
-    this.between = (1000 * Math.max(frame.time - this.last, 0)) / Number(this.speed.value);
-    this.last = frame.time;
+  /** A frame came so long after the one before [ms]. */
+  show(frame: Frame, since: number): void {
+    this.between = since;
     this.time.textContent = `${frame.time.toFixed(2)} s`;
     const text = this.mode === "playing" ? `${number(frame.realTimeFactor)} × real time` : this.mode;
     this.factor.textContent = text;

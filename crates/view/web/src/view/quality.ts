@@ -19,6 +19,8 @@ export class Quality {
   private last = 0;
   private slow = 0;
   private count = 0;
+  /** Whether what was drawn last may not be on the screen yet. */
+  private isDrawing = false;
 
   /** `?quality=3` in the address begins with the simplest. */
   constructor(private readonly changed: (level: Level) => void) {
@@ -48,16 +50,23 @@ export class Quality {
     }
   }
 
-  /** There was nothing to draw at a time [ms]. */
+  /** There was nothing to draw at a time [ms]: the picture before is there, and took until now at most. */
   rested(time: number): void {
+    if (this.isDrawing) this.took(time - this.last);
+    this.isDrawing = false;
     this.last = time;
   }
 
   /** A picture has been drawn at a time [ms]. */
   drawn(time: number): void {
-    const took = time - this.last;
+    if (this.isDrawing) this.took(time - this.last);
+    this.isDrawing = true;
     this.last = time;
-    if (took > SLOW_MS) this.slow += 1;
+  }
+
+  /** A picture took so long [ms]. */
+  private took(time: number): void {
+    if (time > SLOW_MS) this.slow += 1;
     this.count += 1;
     if (this.count < PICTURES) return;
     const isSlow = 2 * this.slow > PICTURES;
