@@ -289,7 +289,9 @@ fn a_run_without_its_scene() {
 #[test]
 fn a_run_is_drawn_from_elsewhere() {
     let folder = Folder::new("elsewhere");
-    ["a", "b"].map(|name| std::fs::create_dir(folder.path().join(name)).expect("a folder"));
+    for name in ["a", "b"] {
+        std::fs::create_dir(folder.path().join(name)).expect("a folder");
+    }
     folder.write("a/scene.toml", with_shapes());
     folder.write("b/scene.toml", CUBE);
     let [here, there] = ["a", "b"].map(|name| folder.path().join(name));
