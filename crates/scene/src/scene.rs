@@ -12,7 +12,7 @@ use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::Carried;
 use souple_skin::target::Moment;
-use souple_skin::{Polygons, Skin};
+use souple_skin::{Polygons, Skin, SkinError};
 
 use crate::adjust::Adjustable;
 use crate::compile::{Placed, compile};
@@ -151,11 +151,14 @@ impl SkinInfo {
         self.skin.distance(&Moment { time: world.time(), rows: &rows }, &world.state().fields[self.field])
     }
 
-    /// What a step from the committed state takes; `None` where it cannot be made.
-    pub fn cost(&self, world: &World) -> Option<souple_skin::Cost> {
+    /// What a step from the committed state takes.
+    ///
+    /// # Errors
+    /// The step cannot be made.
+    pub fn cost(&self, world: &World) -> Result<souple_skin::Cost, SkinError> {
         let (rows, period) = (world.committed_rows(), world.model().period);
         let end = Moment { time: world.time() + period, rows: &rows };
-        self.skin.cost(&end, period, &world.state().fields[self.field]).ok()
+        self.skin.cost(&end, period, &world.state().fields[self.field])
     }
 
     /// What its grid will not see of its target in so much time [s], in words.

@@ -337,6 +337,44 @@ fn what_a_grid_does_not_see_is_told() {
     assert_eq!(world.time(), 0.0);
 }
 
+/// What cannot be looked at is told as well: a target without a number, without an inside, or that does not end in its box.
+#[test]
+fn what_cannot_be_forecast_is_told() {
+    let doubts = |formula: &str| {
+        let text = format!(
+            r#"
+            format = 1
+            [world]
+            period = "10 ms"
+            [skins.ball]
+            voxel = 0.1
+            terms = [{{ term = "attraction", strength = 1 }}]
+            [[skins.ball.start]]
+            part = "formula"
+            formula = "0.5 - sqrt(x^2 + y^2 + z^2)"
+            low = [-0.6, -0.6, -0.6]
+            high = [0.6, 0.6, 0.6]
+            [[skins.ball.parts]]
+            part = "formula"
+            formula = "{formula}"
+            low = [-0.6, -0.6, -0.6]
+            high = [0.6, 0.6, 0.6]
+            "#
+        );
+        let (world, skins) = started(&text);
+        skins[0].doubts(&world, 1.0)
+    };
+    assert_eq!(doubts("0.5 - sqrt(x^2 + y^2 + z^2)"), [""; 0]);
+    // no number from half of the run on
+    let lost = doubts("0.5 - sqrt(x^2 + y^2 + z^2) + 0*sqrt(0.5 - t)");
+    assert!(lost.len() == 1 && lost[0].contains("expected a number at t = 0.53125 s"), "{lost:?}");
+    let empty = doubts("-1 - x^2");
+    assert!(empty.len() == 1 && empty[0].contains("at t = 0 s its target is inside nowhere"), "{empty:?}");
+    let open = doubts("0.5 - sqrt(x^2 + y^2)");
+    assert!(open.len() == 1 && open[0].contains("it was not looked at"), "{open:?}");
+    assert!(open[0].contains("on the border"), "{open:?}");
+}
+
 /// The pages name every part, term, warp, way to combine and quantity of skins that the program has, and no other.
 #[test]
 fn pages_name_what_skins_have() {

@@ -12,7 +12,7 @@ use crate::skin::{Skin, SkinScratch};
 use crate::start::PlacedTarget;
 use crate::strategy::{SurfacePoints, Whole};
 use crate::surface::surface_of;
-use crate::target::{Moment, Rows, Target};
+use crate::target::{Moment, Rows, Target, TargetScratch};
 
 /// What a step of a skin takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ const MOMENTS: u32 = 32;
 const SEEN: f64 = 2.0;
 /// Blocks that are looked at for what is thin: some seconds of a target whose ranges are not known.
 const MOST_LOOKED: usize = 1 << 16;
-/// Places along each edge of a box, and potentials, at which speeds are asked for.
+/// Places along each edge of a box at which potentials and speeds are asked for, and potentials at which speeds are.
 const PLACES: u32 = 5;
 const EXCESSES: u32 = 16;
 
@@ -60,35 +60,54 @@ impl Skin {
     }
 
     /// What the grid will not see of its target in so much time [s], with rows as they are now: what is thinner than a voxel, what
-    /// moves faster than the skin, what leaves the space of the grid.
+    /// moves faster than the skin, what leaves the space of the grid, what has no value; and what could not be looked at.
     pub fn doubts(&self, rows: &dyn Rows, duration: f64) -> Vec<String> {
         let Some(target) = &self.target else { return Vec::new() };
-        let mut doubts = Vec::new();
         let mut scratch = target.new_scratch();
-        let times = (0..=MOMENTS).map(|k| duration * f64::from(k) / f64::from(MOMENTS));
-        for time in times.clone() {
-            if let Err(why) = target.place(&Moment { time, rows }, &mut scratch) {
-                doubts.push(format!("its target cannot be placed at t = {time} s: {why}"));
-                break;
-            }
-            let far = |point: Vec3| {
-                let place = self.lattice.to_voxels(point) * (1.0 / EDGE as f64);
-                place.to_array().iter().any(|c| c.abs() >= FARTHEST as f64)
-            };
-            if target.bounds(&scratch).is_some_and(|bounds| far(bounds.low) || far(bounds.high)) {
-                doubts.push(format!("its target leaves the space of its grid at t = {time} s"));
-                break;
-            }
+        let mut times = (0..=MOMENTS).map(|k| duration * f64::from(k) / f64::from(MOMENTS));
+        let lost = times.find_map(|time| {
+            let why = self.lost(target, &Moment { time, rows }, &mut scratch)?;
+            Some((time, why))
+        });
+        // nothing more is to be seen from there on
+        let end = lost.as_ref().map_or(f64::INFINITY, |(time, _)| *time);
+        let mut doubts: Vec<String> = lost.into_iter().map(|(_, why)| why).collect();
+        if end > 0.0 {
+            doubts.extend(self.outrun(target, rows, duration));
         }
-        doubts.extend(self.outrun(target, rows, duration));
         // parts come and go at their own times
         let comes = |time: &f64| 0.0 < *time && *time < duration;
         let mut looks: Vec<f64> =
             target.parts.iter().flat_map(|part| part.during).filter(comes).chain([0.0]).collect();
         looks.sort_by(f64::total_cmp);
         looks.dedup();
+        let looks = looks.into_iter().filter(|time| *time < end);
         doubts.extend(looks.into_iter().find_map(|time| self.unseen(target, &Moment { time, rows })));
         doubts
+    }
+
+    /// Why a moment has no target that its grid could know.
+    fn lost(&self, target: &Target, at: &Moment, scratch: &mut TargetScratch) -> Option<String> {
+        let time = at.time;
+        if let Err(why) = target.place(at, scratch) {
+            return Some(format!("its target cannot be placed at t = {time} s: {why}"));
+        }
+        let Some(bounds) = target.bounds(scratch) else {
+            return Some(format!(
+                "its target does not say where it is at t = {time} s: what its grid does not see of it was not looked for"
+            ));
+        };
+        let far = |point: Vec3| {
+            let place = self.lattice.to_voxels(point) * (1.0 / EDGE as f64);
+            place.to_array().iter().any(|c| c.is_nan() || c.abs() >= FARTHEST as f64)
+        };
+        if far(bounds.low) || far(bounds.high) {
+            return Some(format!("its target leaves the space of its grid at t = {time} s"));
+        }
+        let mut values = places(bounds).into_iter().map(|place| (place, target.excess(place, scratch)));
+        let (place, value) = values.find(|(_, value)| !value.is_finite())?;
+        let place = place.to_array();
+        Some(format!("{} at t = {time} s", SkinError::TargetNotANumber { value, place }))
     }
 
     /// A part that moves faster than the skin can follow.
@@ -117,13 +136,7 @@ impl Skin {
     /// The greatest speed at which its terms draw it out to a potential of at most so much above its iso value, of places all over a
     /// box and of potentials up to that [m/s].
     fn fastest(&self, bounds: BoundingBox, most: f64) -> f64 {
-        let size = bounds.size();
-        let place = |k: u32| {
-            let share = |index: u32| f64::from(index % PLACES) / f64::from(PLACES - 1);
-            let along = Vec3::new(share(k), share(k / PLACES), share(k / PLACES / PLACES));
-            bounds.low + Vec3::new(along.x * size.x, along.y * size.y, along.z * size.z)
-        };
-        let points: Vec<Vec3> = (0..PLACES.pow(3)).map(place).collect();
+        let points = places(bounds);
         let whole = Whole { time: 0.0, area: 1.0, volume: 1.0, rest_area: 1.0, rest_volume: 1.0 };
         let speeds = |excess: f64| {
             let mut speeds = vec![0.0; points.len()];
@@ -142,11 +155,19 @@ impl Skin {
         fastest.fold(0.0, f64::max)
     }
 
-    /// A place of the target that a grid of half the voxels sees, and its own does not.
+    /// A place of the target that a grid of half the voxels sees, and its own does not; or why that is not known.
     fn unseen(&self, target: &Target, at: &Moment) -> Option<String> {
+        let time = at.time;
+        let unknown = |why: &dyn std::fmt::Display| {
+            Some(format!(
+                "it was not looked at whether its target has something thinner than a voxel at t = {time} s, by half of its voxels: {why}"
+            ))
+        };
         let mut scratch = target.new_scratch();
-        target.place(at, &mut scratch).ok()?;
-        let bounds = target.bounds(&scratch)?;
+        if let Err(why) = target.place(at, &mut scratch) {
+            return Some(format!("its target cannot be placed at t = {time} s: {why}"));
+        }
+        let Some(bounds) = target.bounds(&scratch) else { return unknown(&SkinError::NoDomain) };
         let placed = PlacedTarget { target, scratch: &scratch };
         let half = Skin {
             name: String::new(),
@@ -156,21 +177,21 @@ impl Skin {
             redistance: self.redistance,
             reaction: None,
         };
-        let fine = match half.sampled(bounds.low, bounds.high, &placed, MOST_LOOKED) {
-            Ok(fine) => fine,
-            Err(why @ (SkinError::TooManyCubes { .. } | SkinError::Grown { .. })) => {
-                return Some(format!(
-                    "it was not looked at whether its target has something thinner than a voxel, by half of its voxels: {why}"
-                ));
-            }
-            // it is not there, or does not end in its box: the skin says so itself where it matters
-            Err(_) => return None,
+        let surface = |skin: &Skin| {
+            let field = skin.sampled(bounds.low, bounds.high, &placed, MOST_LOOKED)?;
+            Ok(surface_of(skin.grid(&field), &skin.lattice).0)
         };
-        let (fine, _) = surface_of(half.grid(&fine), &half.lattice);
+        let fine = match surface(&half) {
+            Ok(fine) => fine,
+            Err(why @ SkinError::Empty { .. }) => return Some(format!("at t = {time} s {why}")),
+            Err(why) => return unknown(&why),
+        };
         // values between nodes come near zero at what is thin, triangles do not
-        let own = self.sampled(bounds.low, bounds.high, &placed, MOST_LOOKED).ok();
-        let own = own.map(|own| surface_of(self.grid(&own), &self.lattice).0);
-        let seen = own.and_then(|own| SignedDistance::new(own.into_surface()).ok());
+        let seen = match surface(self) {
+            Ok(own) => SignedDistance::new(own.into_surface()).ok(),
+            Err(SkinError::Empty { .. }) => None,
+            Err(why) => return unknown(&why),
+        };
         let is_unseen = |point: &&Vec3| {
             let distance = |seen: &SignedDistance| seen.distance(**point).abs();
             seen.as_ref().map_or(f64::INFINITY, distance) > SEEN * self.lattice.voxel
@@ -179,11 +200,21 @@ impl Skin {
         let decimals = (1.0 - self.lattice.voxel.log10()).ceil().clamp(0.0, 12.0) as usize;
         fine.points.iter().find(is_unseen).map(|place| {
             format!(
-                "its target has something thinner than a voxel of {} m near [{}] at t = {} s, which its grid does not see; smaller voxels would",
+                "its target has something thinner than a voxel of {} m near [{}] at t = {time} s, which its grid does not see; smaller voxels would",
                 self.lattice.voxel,
                 place.to_array().map(|c| format!("{c:.decimals$}")).join(", "),
-                at.time
             )
         })
     }
+}
+
+/// Places all over a box, some along each of its edges.
+fn places(bounds: BoundingBox) -> Vec<Vec3> {
+    let size = bounds.size();
+    let place = |k: u32| {
+        let share = |index: u32| f64::from(index % PLACES) / f64::from(PLACES - 1);
+        let along = Vec3::new(share(k), share(k / PLACES), share(k / PLACES / PLACES));
+        bounds.low + Vec3::new(along.x * size.x, along.y * size.y, along.z * size.z)
+    };
+    (0..PLACES.pow(3)).map(place).collect()
 }

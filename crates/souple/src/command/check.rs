@@ -60,8 +60,14 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     warnings.extend(known_skins.iter().flat_map(doubts));
     let mut trial = Trial::first(&mut world);
     // before the steps of which the machine decides how many there are
-    let costs = known_skins.iter().filter_map(|skin| Some((skin.name.as_str(), skin.cost(&world)?)));
-    let costs: Vec<(&str, Cost)> = costs.collect();
+    let mut costs: Vec<(&str, Cost)> = Vec::new();
+    for skin in &known_skins {
+        match skin.cost(&world) {
+            Ok(cost) => costs.push((&skin.name, cost)),
+            Err(why) => warnings
+                .push(format!("skin `{}`: what a step of it takes could not be measured: {why}", skin.name)),
+        }
+    }
     trial.go_on(&mut world, steps);
     let errors: Vec<_> = trial.refused.iter().map(|error| first_step_refused(arguments, error)).collect();
     let broke_off = trial.broke_off.as_ref();
