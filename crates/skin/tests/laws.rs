@@ -282,9 +282,9 @@ fn splitting_particles_do_not_show() {
                 assert!(mean < radius / 3.0, "{mean}");
             }
             20 => {
-                // α ΔG Δt, beside what it still did before; slopes at corners as round as a particle, of two voxels, are known to
-                // ½ (h/r)²
-                let known = 0.5 * (skin.lattice.voxel / radius).powi(2);
+                // α ΔG Δt, beside what it still did before; over corners as round as a particle that is right to (h/r)², as
+                // `corners_of_particles_move_to_second_order` measures
+                let known = (skin.lattice.voxel / radius).powi(2);
                 let driven = (0.5 * change + speed) * timestep * (1.0 + known);
                 assert!(moved < driven, "{moved} of {driven}");
                 // which is a part of a voxel, and a small one of the way of the level itself

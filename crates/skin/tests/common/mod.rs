@@ -1,6 +1,11 @@
 //! Skins, their terms and the parts of their targets, as tests write them.
 
+// each test binary uses its own part of this
+#![allow(dead_code)]
+
+use souple_engine::FieldState;
 use souple_math::Vec3;
+use souple_skin::grid::{EDGE, NODES, block_of};
 use souple_skin::strategy::{TERMS, Term};
 use souple_skin::target::{PARTS, Part, Surroundings};
 use souple_skin::{Lattice, Skin};
@@ -51,4 +56,18 @@ pub fn part(name: &str, values: &[(&'static str, Value<'static>)]) -> Part {
         given.set((*name).to_owned(), *value);
     }
     Part::new((entry.build)(&entry.values(given).unwrap(), &Nothing).unwrap())
+}
+
+/// Where the nodes of a skin are, and their values as distances, positive inside [m].
+pub fn nodes(skin: &Skin, field: &FieldState) -> impl Iterator<Item = (Vec3, f64)> {
+    let (grid, lattice) = (skin.view(field).grid, skin.lattice);
+    grid.keys.iter().enumerate().flat_map(move |(block, key)| {
+        let corner = block_of(*key).map(|c| (c * EDGE as i64) as f64);
+        (0..NODES).map(move |node| {
+            let place = [node % EDGE, node / EDGE % EDGE, node / EDGE / EDGE];
+            let [x, y, z] = [0, 1, 2].map(|axis| corner[axis] + place[axis] as f64);
+            let value = f64::from(grid.values[NODES * block + node]);
+            (lattice.to_world(Vec3::new(x, y, z)), value * lattice.voxel)
+        })
+    })
 }
