@@ -237,7 +237,7 @@ mod tests {
         assert_eq!(names(150.0, 800.0), ["150", "200", "500", "800"]);
         // no power of ten in it, nor a double of one; one power alone
         assert_eq!(names(2.1, 4.9), ["2.1", "4.9"]);
-        assert_eq!(names(0.6, 1.9), ["0.60", "1", "1.90"]);
+        assert_eq!(names(0.6, 1.9), ["0.60", "1", "1.9"]);
         assert!(names(f64::NAN, 1.0).len() < 2 && names(1.0, f64::INFINITY).len() < 2);
     }
 
