@@ -227,14 +227,18 @@ fn content_of(entry: &'static Entry<Format>, path: &Path, output: &Output<'_>) -
 
 /// The writer of a format, for a mesh that it can be asked to write.
 fn checked_writer(entry: &'static Entry<Format>, output: &Output<'_>) -> Result<WriteInto, IoError> {
-    let write = entry.build.write.ok_or_else(|| IoError::Unsupported {
-        format: entry.name,
-        action: "written",
-        expected: format!("one of {}", names_where(|format| format.write.is_some())),
-    })?;
+    let write = writer_of(entry)?;
     output.check()?;
     entry.build.holds.check(entry.name, output)?;
     Ok(write)
+}
+
+fn writer_of(entry: &'static Entry<Format>) -> Result<WriteInto, IoError> {
+    entry.build.write.ok_or_else(|| IoError::Unsupported {
+        format: entry.name,
+        action: "written",
+        expected: format!("one of {}", names_where(|format| format.write.is_some())),
+    })
 }
 
 /// What a file of the format will not hold of a mesh, in words; nothing where all of it is kept.
@@ -250,7 +254,7 @@ pub fn losses(format: &str, output: &Output<'_>) -> Result<Vec<String>, IoError>
 ///
 /// # Errors
 /// The extension is unknown.
-pub fn format_of(path: &Path) -> Result<&'static str, IoError> {
+fn format_of(path: &Path) -> Result<&'static str, IoError> {
     Ok(by_extension(path)?.name)
 }
 
@@ -258,7 +262,7 @@ pub fn format_of(path: &Path) -> Result<&'static str, IoError> {
 ///
 /// # Errors
 /// The format is unknown, or has other extensions.
-pub fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
+fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
     let entry = FORMATS.find(format)?;
     let known = [entry.build.extensions, entry.build.family].concat();
     let found = extension_of(path);
@@ -274,16 +278,13 @@ pub fn format_for(format: &str, path: &Path) -> Result<&'static str, IoError> {
 ///
 /// # Errors
 /// No mesh can be written there: the format is unknown, is not written, or the folder is missing.
-pub fn can_write(format: Option<&str>, path: &Path) -> Result<&'static str, IoError> {
+pub fn writable_format(format: Option<&str>, path: &Path) -> Result<&'static str, IoError> {
     let name = match format {
         Some(name) => format_for(name, path)?,
         None => format_of(path)?,
     };
     let entry = FORMATS.find(name)?;
-    if entry.build.write.is_none() {
-        let expected = format!("one of {}", names_where(|format| format.write.is_some()));
-        return Err(IoError::Unsupported { format: entry.name, action: "written", expected });
-    }
+    writer_of(entry)?;
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
             Err(IoError::write(path, std::io::ErrorKind::NotFound.into()))

@@ -101,36 +101,36 @@ impl Arguments {
 pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
     match arguments.action {
         Action::Generate { generator, out, parameters, json } => {
-            souple_io::can_write(None, &out)?;
-            write(&out, None, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
+            let format = souple_io::writable_format(None, &out)?;
+            write(&out, format, &Output::new(&generate(&generator, &parameters)?), Vec::new(), json)
         }
         Action::Fill { input, out, parameters, json } => {
             keep_input(Path::new(&input), &out)?;
-            souple_io::can_write(None, &out)?;
+            let format = souple_io::writable_format(None, &out)?;
             let (mesh, notes) = fill::fill(&input, &parameters, json)?;
-            write(&out, None, &Output::new(&mesh), notes, json)
+            write(&out, format, &Output::new(&mesh), notes, json)
         }
         Action::Simplify { input, out, parameters, json } => {
             keep_input(&input, &out)?;
-            souple_io::can_write(None, &out)?;
+            let format = souple_io::writable_format(None, &out)?;
             let (mesh, notes) = fill::simplified(&input, &parameters, json)?;
-            write(&out, None, &Output::new(&mesh), notes, json)
+            write(&out, format, &Output::new(&mesh), notes, json)
         }
         Action::Skin { input, out, parameters, json } => {
             keep_input(&input, &out)?;
-            souple_io::can_write(None, &out)?;
+            let format = souple_io::writable_format(None, &out)?;
             let (mesh, notes) = skin::dressed(&input, &parameters)?;
-            write(&out, None, &Output::new(&mesh), notes, json)
+            write(&out, format, &Output::new(&mesh), notes, json)
         }
         Action::Convert { input, out, parameters, format, json } => {
             keep_input(&input, &out)?;
-            souple_io::can_write(format.as_deref(), &out)?;
+            let format = souple_io::writable_format(format.as_deref(), &out)?;
             let scale = scale(&parameters)?;
             let Dataset { mut mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
             mesh.points.iter_mut().for_each(|point| *point = *point * scale);
             let output =
                 Output { point_fields: &point_fields, cell_fields: &cell_fields, ..Output::new(&mesh) };
-            write(&out, format.as_deref(), &output, notes, json)
+            write(&out, format, &output, notes, json)
         }
         Action::Quality { input, json } => {
             let (mut mesh, mut notes) = read(&input)?;
@@ -196,16 +196,15 @@ fn read(path: &Path) -> Result<(Mesh, Vec<String>), Refusal> {
     Ok(souple_io::read_mesh(path)?)
 }
 
-/// Writes a mesh, in the format of that name where there is one, and tells what the file holds, which may be less: a format
+/// Writes a mesh in the format of that name, and tells what the file holds, which may be less: a format
 /// may know surfaces alone, or no groups.
 fn write(
     path: &Path,
-    format: Option<&str>,
+    format: &str,
     output: &Output,
     mut notes: Vec<String>,
     as_json: bool,
 ) -> Result<End, Refusal> {
-    let format = souple_io::can_write(format, path)?;
     let written = match souple_io::write_and_read_back(format, path, output)? {
         Some(dataset) => dataset.mesh,
         // a format that is only written, and for surfaces

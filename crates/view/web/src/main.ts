@@ -81,9 +81,6 @@ class Page {
   /** Frames drawn since the page was opened. */
   private pictures = 0;
   private lastLook = 0;
-  /** When the last frame was drawn [ms]. */
-  private lastFrame = 0;
-  private mode: Status["mode"] = "waiting";
   private readonly sight = element(
     "p",
     { class: "sight", hidden: true },
@@ -233,7 +230,7 @@ class Page {
     const count = info.bodies.length + info.obstacles.filter(({ form }) => form === "surface").length;
     if (this.surfaces.filter(Boolean).length < count) return;
     this.hasBegun = true;
-    this.lastFrame = performance.now();
+    this.transport.restart();
     this.picture.begin(info, this.surfaces, this.networks);
     this.display.setArrows(info.arrows, info.counts["rigid_frames"] !== undefined || info.counts["affine_frames"] !== undefined);
     this.display.setFields(info);
@@ -267,9 +264,6 @@ class Page {
   }
 
   private setStatus(status: Status): void {
-    // what has passed while nothing was to be drawn is no step
-    if (status.mode !== this.mode) this.lastFrame = performance.now();
-    this.mode = status.mode;
     this.transport.setStatus(status);
     this.failure.hidden = status.mode !== "failed";
     if (status.message && status.message !== this.failure.dataset.message) {
@@ -288,7 +282,7 @@ class Page {
     // while it is tried again the words stay
     if (link !== "connecting" || !this.link.textContent) this.link.textContent = link === "connecting" ? "connecting" : why;
     document.body.classList.toggle("lost", link !== "open");
-    this.lastFrame = performance.now();
+    this.transport.restart();
     // what is pressed while nobody hears it would be lost
     for (const { root } of [this.transport, this.hand, this.parameters, this.scenes]) root.inert = link !== "open";
     // the connection that sent the last frames waits for no answer
@@ -308,7 +302,7 @@ class Page {
     if (frame) {
       if (this.hasBegun && frame.scene === this.info?.scene) {
         this.picture.show(frame);
-        this.transport.show(frame, performance.now() - this.lastFrame);
+        this.transport.show(frame);
         this.stages.show(frame);
         this.plots.follow(frame);
         this.legend.show(this.picture.meanings);
@@ -317,10 +311,9 @@ class Page {
         document.body.dataset.time = String(frame.time);
         document.body.dataset.factor = String(frame.realTimeFactor);
         document.body.dataset.cells = String(this.picture.cellCount);
-        this.lastFrame = performance.now();
       }
     } else if (this.hasBegun && !document.body.classList.contains("lost")) {
-      this.transport.wait(performance.now() - this.lastFrame);
+      this.transport.wait();
     }
     this.picture.draw();
     if (performance.now() - this.lastLook < LOOK_EVERY) return;

@@ -24,7 +24,8 @@ export class Transport {
   private readonly factor = element("span", { class: "factor", title: "Simulated seconds per second, as measured" });
   private readonly tools = new Map<Tool, HTMLButtonElement>();
   private mode: Status["mode"] = "waiting";
-  /** Between the last two frames [ms]. */
+  /** When the last frame was shown, and how long after the one before [ms]. */
+  private shown = 0;
   private between = 0;
 
   constructor(
@@ -67,6 +68,8 @@ export class Transport {
   }
 
   setStatus(status: Status): void {
+    // what has passed while nothing was to be shown is no step
+    if (status.mode !== this.mode) this.restart();
     this.mode = status.mode;
     this.play.textContent = status.mode === "playing" ? "Pause" : "Play";
     this.play.disabled = status.mode === "failed";
@@ -81,16 +84,23 @@ export class Transport {
     this.speed.value = String(speed);
   }
 
-  /** A step goes on that began so long ago [ms]. */
-  wait(since: number): void {
+  /** From now on a frame is waited for. */
+  restart(): void {
+    this.shown = performance.now();
+  }
+
+  /** No frame has come: a step that goes on for long is told. */
+  wait(): void {
+    const since = performance.now() - this.shown;
     if (this.mode !== "playing" || since < Math.max(LONG_MS, 3 * this.between)) return;
     this.factor.textContent = `${number(since / 1000)} s in one step`;
     this.factor.classList.add("slow");
   }
 
-  /** A frame came so long after the one before [ms]. */
-  show(frame: Frame, since: number): void {
-    this.between = since;
+  show(frame: Frame): void {
+    const now = performance.now();
+    this.between = now - this.shown;
+    this.shown = now;
     this.time.textContent = `${frame.time.toFixed(2)} s`;
     const text = this.mode === "playing" ? `${number(frame.realTimeFactor)} × real time` : this.mode;
     this.factor.textContent = text;
