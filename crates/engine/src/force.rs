@@ -218,6 +218,19 @@ pub trait Force: Send + Sync {
         self.add_blocks(at, weights, scratch, matrix);
     }
 
+    /// `matrix += a ∂f/∂x + b ∂f/∂v` for weights that are not positive, without negative curvature: where the matrix of
+    /// a part (an element, a link) has negative eigenvalues, their absolute values take their place. Asked of forces whose
+    /// tangent is symmetric; those that keep their blocks as they are may leave the sum indefinite.
+    fn add_definite_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.add_blocks(at, weights, scratch, matrix);
+    }
+
     /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.
     fn advance_memory(&self, _at: &Configuration, _timestep: f64, _memory: &mut [f64], _pairs: &mut [Pair]) {}
 

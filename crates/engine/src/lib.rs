@@ -42,5 +42,6 @@ pub use snapshot::SnapshotError;
 pub use state::{FieldName, FieldRef, FieldState, Pair, Place, State, SystemState};
 pub use steppers::{Step, StepError, StepReport, Stepper};
 pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
+pub use tangent::Curvature;
 pub use tool::{Tool, Toolbox};
 pub use world::{CommittedRows, EnergyReport, Field, Model, ResumeError, Workspace, World, WorldError};

@@ -17,12 +17,40 @@ use crate::steppers::StepError;
 
 /// A linear system that could not be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(transparent)]
-pub struct LinearError(#[from] pub SolveError);
+#[error("{error}")]
+pub struct LinearError {
+    pub error: SolveError,
+    /// The velocity block where it failed, or where most was left to solve.
+    pub block: Option<usize>,
+}
+
+impl LinearError {
+    /// Whether it may come of a matrix that is not positive definite.
+    pub fn may_be_indefinite(&self) -> bool {
+        matches!(
+            self.error,
+            SolveError::NotPositiveDefinite { .. }
+                | SolveError::Singular { .. }
+                | SolveError::NotConverged { .. }
+        )
+    }
+}
+
+impl From<SolveError> for LinearError {
+    fn from(error: SolveError) -> Self {
+        let block = match error {
+            SolveError::NotPositiveDefinite { block, .. }
+            | SolveError::Singular { block, .. }
+            | SolveError::NotFinite { block, .. } => Some(block),
+            _ => None,
+        };
+        Self { error, block }
+    }
+}
 
 impl From<LinearError> for StepError {
-    fn from(error: LinearError) -> Self {
-        Self::Linear(error.to_string())
+    fn from(LinearError { error, block }: LinearError) -> Self {
+        Self::Linear { error: error.to_string(), block }
     }
 }
 
@@ -142,6 +170,9 @@ const SHIFTS: [f64; 7] = [1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0];
 const STAGNATED_BUT_JUDGED: f64 = 0.1;
 /// Multiples of the wanted residual at which it still counts where nothing comes after it.
 const STAGNATED_AT_MOST: f64 = 100.0;
+/// Iterations on a matrix that is not symmetric, where another can be taken: GMRES until it starts over. Of a definite
+/// matrix with friction the preconditioned iteration takes some tens, and one that takes more loses these few.
+const PATIENCE: usize = 60;
 
 /// What comes of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,6 +190,8 @@ pub enum Indefinite {
     Descend,
     /// The solution all the same.
     Solve,
+    /// An error, and soon, also where the matrix is not symmetric: whoever asks has another matrix to take.
+    Refuse,
 }
 
 /// A linear system and what is known of it.
@@ -198,6 +231,8 @@ impl LinearSystem<'_> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solved {
     pub iterations: u32,
+    /// Whether it is of a matrix made definite in place of the exact one.
+    pub made_definite: bool,
     /// True relative residual; of the direction's own equation where that had to be shifted.
     pub residual: f64,
 }
@@ -263,6 +298,7 @@ impl LinearSolver {
             _ => true,
         };
         match system.indefinite {
+            Indefinite::Refuse => Err(failed.into()),
             _ if !found_indefinite => Err(failed.into()),
             Indefinite::Solve => Ok(self.solve_general(&mut system, b, x)?),
             Indefinite::Descend => Ok(self.descend(&mut system, failed, b, x)?),
@@ -327,6 +363,10 @@ impl LinearSolver {
         let is_free = self.settings.preconditioner == AUTOMATIC || !is_stored;
         let preconditioner = if is_free { automatic } else { self.settings.preconditioner };
         let is_small = system.matrix.pattern().block_count() < LU_BELOW;
+        let patience = match system.indefinite {
+            Indefinite::Refuse => PATIENCE.min(self.settings.max_iterations),
+            _ => self.settings.max_iterations,
+        };
         let name = match self.settings.method {
             Method::Bicgstab => "bicgstab",
             Method::Direct if is_stored => "lu",
@@ -344,6 +384,7 @@ impl LinearSolver {
             )?;
             x.fill(Vec3::ZERO);
             made.solver.set_tolerance(system.tolerance.max(self.settings.tolerance));
+            made.solver.limit_iterations(patience);
             judged(
                 made.solver.solve(system.operator.unwrap_or(&*system.matrix), b, x),
                 system.stagnated_at_most(self.settings.tolerance),
@@ -351,6 +392,7 @@ impl LinearSolver {
         };
         let attempted = attempt(name, preconditioner);
         match &attempted {
+            _ if system.indefinite == Indefinite::Refuse => attempted,
             Err(SolveError::NotPositiveDefinite { .. } | SolveError::NotConverged { .. })
                 if is_stored && is_small && name == "gmres" && self.settings.method == Method::Auto =>
             {
@@ -376,13 +418,17 @@ impl LinearSolver {
         } = failed
             && reduce::dot(x, b) > 0.0
         {
-            return Ok(Solved { iterations: iterations as u32, residual: relative_residual });
+            return Ok(Solved {
+                iterations: iterations as u32,
+                residual: relative_residual,
+                ..Solved::default()
+            });
         }
         let mean = system.matrix.mean_diagonal().abs();
         if system.operator.is_some() {
             // products cannot be shifted here: the steepest direction, in the scale of the diagonal
             x.iter_mut().zip(b).for_each(|(x, b)| *x = *b * (1.0 / mean));
-            return Ok(Solved { iterations: 0, residual: 1.0 });
+            return Ok(Solved { residual: 1.0, ..Solved::default() });
         }
         let pattern = Arc::clone(system.matrix.pattern());
         self.diagonal.clear();
@@ -405,7 +451,11 @@ impl LinearSolver {
                     stop: Stop::Indefinite { .. },
                     ..
                 }) if reduce::dot(x, b) > 0.0 => {
-                    return Ok(Solved { iterations: iterations as u32, residual: relative_residual });
+                    return Ok(Solved {
+                        iterations: iterations as u32,
+                        residual: relative_residual,
+                        ..Solved::default()
+                    });
                 }
                 Err(error) => last = error,
                 solved => return solved,
@@ -496,11 +546,15 @@ fn judged(
     at_most: f64,
 ) -> Result<Solved, SolveError> {
     match solved {
-        Ok(report) => Ok(Solved { iterations: report.iterations as u32, residual: report.relative_residual }),
+        Ok(report) => Ok(Solved {
+            iterations: report.iterations as u32,
+            residual: report.relative_residual,
+            ..Solved::default()
+        }),
         Err(SolveError::NotConverged { iterations, relative_residual, stop: Stop::Stagnated, .. })
             if relative_residual <= at_most =>
         {
-            Ok(Solved { iterations: iterations as u32, residual: relative_residual })
+            Ok(Solved { iterations: iterations as u32, residual: relative_residual, ..Solved::default() })
         }
         Err(error) => Err(error),
     }

@@ -13,7 +13,7 @@ use std::time::Instant;
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
 
-use crate::force::{Force, Scratch, TangentWeights};
+use crate::force::{Configuration, Force, Scratch, TangentWeights};
 use crate::implicit::Rates;
 use crate::kinematics::Kinematics;
 use crate::state::{Pair, SystemState};
@@ -36,6 +36,15 @@ pub struct Tangent {
     unbalanced: Vec<Vec3>,
     /// The matrix with symmetric stand-ins of what is not symmetric, for points alone.
     symmetric: Option<BlockMatrix>,
+}
+
+/// Which tangent is assembled of forces whose tangent is symmetric.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Curvature {
+    /// As it is.
+    Exact,
+    /// With what is negative of it turned round, part by part ([`Force::add_definite_blocks`]).
+    Definite,
 }
 
 /// A system matrix and what is known to precondition it with.
@@ -71,6 +80,15 @@ impl Linearisation<'_> {
 impl Tangent {
     /// The matrix at a linearisation, constrained directions replaced by the identity scaled like the rest.
     pub fn assemble(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &mut BlockMatrix {
+        self.assemble_with(Curvature::Exact, at, scratches)
+    }
+
+    fn assemble_with(
+        &mut self,
+        curvature: Curvature,
+        at: &Linearisation,
+        scratches: &mut [Scratch],
+    ) -> &mut BlockMatrix {
         let system = at.system;
         self.update_patterns(system, &at.state.pairs);
         let trivial = system.kinematics.is_trivial();
@@ -78,7 +96,7 @@ impl Tangent {
         rows.set_zero();
         let weights =
             TangentWeights { position: -1.0, velocity: if trivial { -at.rates.velocity } else { 0.0 } };
-        add_row_blocks(at, weights, scratches, &mut rows);
+        add_row_blocks(curvature, at, weights, scratches, &mut rows);
         if trivial {
             // A = a b M - ∂f/∂x - a ∂f/∂v
             add_mass(system, at.rates.inertia(), &mut rows);
@@ -97,7 +115,8 @@ impl Tangent {
             let mut damping =
                 self.row_velocities.take().unwrap_or_else(|| BlockMatrix::zeros(rows.pattern().clone()));
             damping.set_zero();
-            add_row_blocks(at, TangentWeights { position: 0.0, velocity: -1.0 }, scratches, &mut damping);
+            let weights = TangentWeights { position: 0.0, velocity: -1.0 };
+            add_row_blocks(curvature, at, weights, scratches, &mut damping);
             transform_rows(kinematics, &damping, &mut blocks, &position_map, &velocity_map);
             self.row_velocities = Some(damping);
         }
@@ -134,6 +153,7 @@ impl Tangent {
     /// [`Tangent::assemble`], and where forces are not symmetric the same with [`Force::add_symmetric_blocks`].
     pub fn assemble_with_symmetric(
         &mut self,
+        curvature: Curvature,
         at: &Linearisation,
         scratches: &mut [Scratch],
     ) -> Assembled<'_> {
@@ -141,7 +161,7 @@ impl Tangent {
         let has_symmetry = |force: &dyn Force| force.declaration().symmetric_tangent;
         let all_symmetric = system.forces.iter().all(|force| has_symmetry(force.as_ref()));
         if all_symmetric || !system.kinematics.is_trivial() {
-            return Assembled { matrix: self.assemble(at, scratches), symmetric: None };
+            return Assembled { matrix: self.assemble_with(curvature, at, scratches), symmetric: None };
         }
         self.update_patterns(system, &at.state.pairs);
         let weights = TangentWeights { position: -1.0, velocity: -at.rates.velocity };
@@ -150,7 +170,7 @@ impl Tangent {
         for (index, force) in system.forces.iter().enumerate() {
             if has_symmetry(force.as_ref()) {
                 let view = system.view(index, at.rows, at.state, &at.around);
-                force.add_blocks(&view, weights, &mut scratches[index], &mut matrix);
+                add_blocks_of(force.as_ref(), curvature, &view, weights, &mut scratches[index], &mut matrix);
             }
         }
         add_mass(system, at.rates.inertia(), &mut matrix);
@@ -182,6 +202,7 @@ impl Tangent {
         });
         diagonal.set_zero();
         add_row_blocks(
+            Curvature::Exact,
             at,
             TangentWeights { position: -1.0, velocity: -at.rates.velocity },
             scratches,
@@ -290,6 +311,7 @@ fn rows_with_blocks(system: &System) -> impl Iterator<Item = usize> {
 }
 
 fn add_row_blocks(
+    curvature: Curvature,
     at: &Linearisation,
     weights: TangentWeights,
     scratches: &mut [Scratch],
@@ -297,7 +319,23 @@ fn add_row_blocks(
 ) {
     for (index, force) in at.system.forces.iter().enumerate() {
         let view = at.system.view(index, at.rows, at.state, &at.around);
-        force.add_blocks(&view, weights, &mut scratches[index], matrix);
+        add_blocks_of(force.as_ref(), curvature, &view, weights, &mut scratches[index], matrix);
+    }
+}
+
+fn add_blocks_of(
+    force: &dyn Force,
+    curvature: Curvature,
+    at: &Configuration,
+    weights: TangentWeights,
+    scratch: &mut Scratch,
+    matrix: &mut BlockMatrix,
+) {
+    match curvature {
+        Curvature::Definite if force.declaration().symmetric_tangent => {
+            force.add_definite_blocks(at, weights, scratch, matrix);
+        }
+        _ => force.add_blocks(at, weights, scratch, matrix),
     }
 }
 

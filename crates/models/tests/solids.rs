@@ -19,6 +19,7 @@ use souple_models::solids::{
     Quadrature, RayleighDamping, Section, SolidDescription, SolidForce, Viscosity, consistent_mass,
     lumped_mass, uniform_mass,
 };
+use souple_solve::dense::{self, take_absolute};
 use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
 
@@ -235,6 +236,62 @@ fn check_law(name: &str, mesh: &Mesh, material: &Material, quadrature: Quadratur
         let torque: Vec3 = x.iter().zip(&f).map(|(x, f)| x.cross(*f)).sum();
         assert!(net.length() <= 1e-11 * norm(&f) && torque.length() <= 1e-11 * norm(&f), "{name}");
     }
+}
+
+/// Tangents made definite: those of cells at rest to the last bit, and no negative eigenvalue where all cells are turned
+/// inside out, which the exact tangents of most laws have there.
+#[test]
+fn definite_tangents_have_no_negative_eigenvalue() {
+    let weights = TangentWeights { position: -1.0, velocity: 0.0 };
+    for element in ["tet4", "hex8", "mixed", "tet10"] {
+        let mesh = bar([1.0, 0.25, 0.25], [4.0, 1.0, 1.0], element);
+        let count = mesh.points.len();
+        let inside_out: Vec<Vec3> = mesh.points.iter().map(|p| Vec3::new(p.x, p.y, -0.7 * p.z)).collect();
+        let mut indefinite = Vec::new();
+        for (law, material) in all_materials() {
+            let force = SolidForce::new(&describe(&mesh, &[material], &vec![0; mesh.cell_count()])).unwrap();
+            let mut scratch = force.new_scratch();
+            let mut pattern = PatternBuilder::new(count);
+            force.visit_cliques(&[], &mut |rows| pattern.add_clique(rows).unwrap());
+            let pattern = Arc::new(pattern.build().unwrap());
+            let mut matrix = |x: &[Vec3], is_definite: bool| {
+                let mut matrix = BlockMatrix::zeros(pattern.clone());
+                let (v, scratch) = (vec![Vec3::ZERO; count], &mut scratch);
+                if is_definite {
+                    force.add_definite_blocks(&at(x, &v), weights, scratch, &mut matrix);
+                } else {
+                    force.add_blocks(&at(x, &v), weights, scratch, &mut matrix);
+                }
+                matrix
+            };
+            let [exact, definite] = [false, true].map(|is_definite| matrix(&mesh.points, is_definite));
+            assert_eq!(exact.values(), definite.values(), "{law} on {element} at rest");
+            let [exact, definite] = [false, true].map(|is_definite| matrix(&inside_out, is_definite));
+            let is_indefinite = |matrix: &BlockMatrix| {
+                take_absolute(3 * count, &mut dense(matrix), &mut dense::Workspace::default())
+            };
+            assert!(!is_indefinite(&definite), "{law} on {element}");
+            indefinite.push(is_indefinite(&exact));
+        }
+        assert!(indefinite.contains(&true), "{element}");
+    }
+}
+
+/// By rows.
+fn dense(matrix: &BlockMatrix) -> Vec<f64> {
+    let n = 3 * matrix.pattern().block_count();
+    let mut out = vec![0.0; n * n];
+    for row in 0..matrix.pattern().block_count() {
+        for slot in matrix.pattern().slots(row) {
+            let column = matrix.pattern().columns()[slot] as usize;
+            for (j, entries) in matrix.values()[slot].columns.iter().enumerate() {
+                for (i, entry) in entries.to_array().into_iter().enumerate() {
+                    out[n * (3 * row + i) + 3 * column + j] = entry;
+                }
+            }
+        }
+    }
+    out
 }
 
 /// Laws as text give the forces, energies and tangents of the same laws compiled ahead, whatever the rule of quadrature.

@@ -132,6 +132,7 @@ impl Report {
             "solver": {
                 "newton_iterations": self.solver.newton_iterations,
                 "linear_iterations": self.solver.linear_iterations,
+                "made_definite": self.solver.made_definite,
                 "largest_linear_residual": self.solver.linear_residual,
                 "largest_newton_residual": self.solver.newton_residual,
             },

@@ -41,8 +41,8 @@ pub enum SolveError {
     NotFinite { what: &'static str, block: usize },
     /// An iteration ended without reaching its tolerance.
     #[error(
-        "{method} stopped after {iterations} iterations at a relative residual of {relative_residual:e}, \
-         wanted {tolerance:e}: {stop}"
+        "{method} stopped after {iterations} iterations at a relative residual of {relative_residual:.2e}, \
+         wanted {tolerance:.2e}: {stop}"
     )]
     NotConverged {
         method: &'static str,

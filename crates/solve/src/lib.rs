@@ -5,7 +5,7 @@
 //! any number of threads.
 #![allow(non_snake_case)] // symbols of the mathematics: A, L, S
 
-mod dense;
+pub mod dense;
 pub mod direct;
 mod error;
 mod kernel;

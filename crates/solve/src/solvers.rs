@@ -53,6 +53,9 @@ pub trait LinearSolver: Send + Sync {
     /// Changes the wanted true relative residual of the next solves.
     fn set_tolerance(&mut self, tolerance: f64);
 
+    /// Changes how many iterations the next solves may take; nothing of it where there are none.
+    fn limit_iterations(&mut self, _at_most: usize) {}
+
     /// Solves `A x = b` from the `x` given; `operator` is the matrix of the last update, stored or not.
     ///
     /// # Errors
@@ -340,6 +343,12 @@ impl LinearSolver for Auto {
         }
     }
 
+    fn limit_iterations(&mut self, at_most: usize) {
+        for solver in [&mut self.direct, &mut self.iterative].into_iter().flatten() {
+            solver.limit_iterations(at_most);
+        }
+    }
+
     fn solve(
         &mut self,
         operator: &dyn LinearOperator,
@@ -393,6 +402,10 @@ impl LinearSolver for Iterative {
 
     fn set_tolerance(&mut self, tolerance: f64) {
         self.settings.tolerance = tolerance;
+    }
+
+    fn limit_iterations(&mut self, at_most: usize) {
+        self.settings.max_iterations = at_most;
     }
 
     fn solve(

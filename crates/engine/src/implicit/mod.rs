@@ -23,7 +23,7 @@ use crate::linear::{Indefinite, LinearError, LinearSystem, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Surroundings, System, SystemWorkspace};
-use crate::tangent::{Assembled, Linearisation, OperatorBuffers, TangentOperator};
+use crate::tangent::{Assembled, Curvature, Linearisation, OperatorBuffers, TangentOperator};
 
 pub use history::Lent;
 pub(crate) use history::{accepts, carried, carry};
@@ -296,8 +296,8 @@ impl ImplicitStep<'_> {
             unbalanced,
         };
         rhs.copy_from_slice(residual);
-        let clock = Instant::now();
         if wanted.constrained == Constrained::Led {
+            let clock = Instant::now();
             // A (δ_free + δ_prescribed) = -r
             TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
             // it counts as assembly
@@ -306,6 +306,7 @@ impl ImplicitStep<'_> {
                 *rhs -= *lift;
             }
             system.project_free(rhs);
+            stages.assembly += clock.elapsed().as_secs_f64();
         }
         let is_matrix_free = linear.is_matrix_free();
         let is_symmetrised = !is_matrix_free
@@ -318,42 +319,63 @@ impl ImplicitStep<'_> {
             system.block_positions_into(&rows.positions, block_positions);
             &*block_positions
         };
-        let Assembled { matrix, symmetric: nearby } = if is_matrix_free {
-            Assembled { matrix: tangent.assemble_diagonal(&at, scratches), symmetric: None }
-        } else {
-            tangent.assemble_with_symmetric(&at, scratches)
+        let mut curvature = Curvature::Exact;
+        let (solved, rounding) = loop {
+            let clock = Instant::now();
+            let Assembled { matrix, symmetric: nearby } = if is_matrix_free {
+                Assembled { matrix: tangent.assemble_diagonal(&at, scratches), symmetric: None }
+            } else {
+                tangent.assemble_with_symmetric(curvature, &at, scratches)
+            };
+            if is_symmetrised {
+                matrix.symmetrise();
+            }
+            stages.assembly += clock.elapsed().as_secs_f64();
+            let weighted = (0..positions.len()).map(|block| {
+                (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2)
+            });
+            let rounding = f64::EPSILON * weighted.sum::<f64>().sqrt();
+            let clock = Instant::now();
+            let products = is_matrix_free.then(|| TangentOperator::new(&at, scratches, operator));
+            let linear_system = LinearSystem {
+                matrix,
+                operator: products.as_ref().map(|operator| operator as _),
+                nearby,
+                symmetric,
+                kinematics: &system.kinematics,
+                reference: history::reference(&system.kinematics, &state.history),
+                positions,
+                indefinite: match curvature {
+                    Curvature::Exact => wanted.indefinite,
+                    Curvature::Definite => Indefinite::Solve,
+                },
+                used_as: wanted.used_as,
+                tolerance: wanted.tolerance,
+            };
+            let solved = linear.solve(linear_system, rhs, direction);
+            stages.solve += clock.elapsed().as_secs_f64();
+            stages.products += operator.take_seconds();
+            match solved {
+                // what is sought is where the step's potential is least, and this leads there
+                Err(error)
+                    if error.may_be_indefinite() && curvature == Curvature::Exact && !is_matrix_free =>
+                {
+                    curvature = Curvature::Definite;
+                }
+                solved => break (solved, rounding),
+            }
         };
-        if is_symmetrised {
-            matrix.symmetrise();
-        }
-        stages.assembly += clock.elapsed().as_secs_f64();
-        let weighted = (0..positions.len())
-            .map(|block| (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2));
-        let rounding = f64::EPSILON * weighted.sum::<f64>().sqrt();
-        let clock = Instant::now();
-        let products = is_matrix_free.then(|| TangentOperator::new(&at, scratches, operator));
-        let linear_system = LinearSystem {
-            matrix,
-            operator: products.as_ref().map(|operator| operator as _),
-            nearby,
-            symmetric,
-            kinematics: &system.kinematics,
-            reference: history::reference(&system.kinematics, &state.history),
-            positions,
-            indefinite: wanted.indefinite,
-            used_as: wanted.used_as,
-            tolerance: wanted.tolerance,
-        };
-        let solved = linear.solve(linear_system, rhs, direction);
-        stages.solve += clock.elapsed().as_secs_f64();
-        stages.products += operator.take_seconds();
         system.project_free(direction);
         if wanted.constrained == Constrained::Led {
             for (direction, prescribed) in direction.iter_mut().zip(prescribed.iter()) {
                 *direction += *prescribed;
             }
         }
-        Ok((solved?, rounding))
+        let solved = solved.map_err(|error| {
+            let most_left = || largest(residual).filter(|_| error.may_be_indefinite());
+            LinearError { block: error.block.or_else(most_left), ..error }
+        })?;
+        Ok((Solved { made_definite: curvature == Curvature::Definite, ..solved }, rounding))
     }
 
     /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
@@ -395,14 +417,16 @@ impl ImplicitStep<'_> {
         }
         let is_led = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
         let constrained = if is_led { Constrained::Led } else { Constrained::Still };
-        let wanted =
-            Wanted { constrained, indefinite: Indefinite::Solve, used_as: Use::Answer, tolerance: 0.0 };
+        let is_matrix_free = ws.linear.is_matrix_free();
+        let indefinite = if is_matrix_free { Indefinite::Solve } else { Indefinite::Refuse };
+        let wanted = Wanted { constrained, indefinite, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
         q.copy_from_slice(&buffers.q_trial);
         self.system.kinematics.retract(q, &buffers.direction);
         Ok(StepReport {
             newton_iterations: 1,
             linear_iterations: u64::from(solved.iterations),
+            made_definite: u64::from(solved.made_definite),
             linear_residual: solved.residual,
             newton_residual: 0.0,
         })
@@ -456,4 +480,10 @@ impl ImplicitStep<'_> {
         buffers.damping = damping;
         self.contract(ws, buffers);
     }
+}
+
+/// The block with the largest entry.
+fn largest(blocks: &[Vec3]) -> Option<usize> {
+    let size = |block: &usize| blocks[*block].length_sq();
+    (0..blocks.len()).max_by(|a, b| size(a).total_cmp(&size(b)))
 }

@@ -6,7 +6,7 @@ use souple_solve::newton::{self, NewtonProblem, Trial, newton};
 use souple_solve::reduce::norm;
 
 use super::history::Lent;
-use super::{Constrained, ImplicitBuffers, ImplicitStep, NewtonSettings, Wanted};
+use super::{Constrained, ImplicitBuffers, ImplicitStep, NewtonSettings, Wanted, largest};
 use crate::linear::{Indefinite, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
@@ -66,11 +66,8 @@ impl ImplicitStep<'_> {
             if let Some(error) = self.system.first_force_not_finite(rows, &lent.0, &self.around, scratches) {
                 return Err(error);
             }
-            let size = |block: &usize| buffers.residual[*block].length_sq();
             return Err(StepError::NewtonStalled {
-                block: (0..buffers.residual.len())
-                    .max_by(|a, b| size(a).total_cmp(&size(b)))
-                    .unwrap_or_default(),
+                block: largest(&buffers.residual).unwrap_or_default(),
                 iterations: report.newton_iterations,
                 residual: report.newton_residual,
                 wanted: settings.tolerance,
@@ -126,6 +123,7 @@ impl ImplicitProblem<'_, '_> {
         self.rounding = rounding.max(64.0 * f64::EPSILON * norm(&self.ws.row_force));
         self.report.newton_iterations += 1;
         self.report.linear_iterations += u64::from(solved.iterations);
+        self.report.made_definite += u64::from(solved.made_definite);
         self.report.linear_residual = self.report.linear_residual.max(solved.residual);
         Ok(solved)
     }

@@ -36,6 +36,8 @@ pub use t_simulation::{Start, TSimulation};
 pub struct StepReport {
     pub newton_iterations: u64,
     pub linear_iterations: u64,
+    /// Linear solves whose matrix was not definite and was made so ([`crate::Force::add_definite_blocks`]).
+    pub made_definite: u64,
     /// Largest relative residual among the linear solves.
     pub linear_residual: f64,
     /// Norm of the remaining unbalanced force over that at the start; 0 for explicit steppers.
@@ -47,6 +49,7 @@ impl StepReport {
     pub fn merge(&mut self, other: &Self) {
         self.newton_iterations += other.newton_iterations;
         self.linear_iterations += other.linear_iterations;
+        self.made_definite += other.made_definite;
         self.linear_residual = self.linear_residual.max(other.linear_residual);
         self.newton_residual = self.newton_residual.max(other.newton_residual);
     }
@@ -55,8 +58,12 @@ impl StepReport {
 /// A step that could not finish; State is as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
-    #[error("the linear solve of a step failed: {0}")]
-    Linear(String),
+    #[error("the linear solve of a step failed: {error}")]
+    Linear {
+        error: String,
+        /// The velocity block where it failed, if it did at one.
+        block: Option<usize>,
+    },
     #[error(
         "Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take a smaller step, more load steps or `newton = \"one\"`"
     )]

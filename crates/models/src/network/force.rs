@@ -2,7 +2,9 @@
 
 use std::any::Any;
 
-use souple_engine::{Configuration, Declaration, Energy, Force, LinkShown, Pair, Scratch, TangentWeights};
+use souple_engine::{
+    Configuration, Curvature, Declaration, Energy, Force, LinkShown, Pair, Scratch, TangentWeights,
+};
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
@@ -152,6 +154,7 @@ impl Links {
     fn visit_tangents(
         &self,
         at: &Configuration,
+        curvature: Curvature,
         weights: TangentWeights,
         mut visit: impl FnMut([u32; 2], Mat3),
     ) {
@@ -162,9 +165,12 @@ impl Links {
                 let Some([n, m]) = directions else { continue };
                 let numbers = self.remembered(part, slot, memory);
                 let push = self.law.respond(&reach, at.time, &numbers).push;
-                let [now, before] = self.law.slopes(&reach, at.time, &numbers);
+                let [mut now, before] = self.law.slopes(&reach, at.time, &numbers);
                 // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
-                let across = if reach.length > 0.0 { push / reach.length } else { 0.0 };
+                let mut across = if reach.length > 0.0 { push / reach.length } else { 0.0 };
+                if curvature == Curvature::Definite {
+                    (now, across) = (-now.abs(), -across.abs());
+                }
                 let position = n.outer(n) * (now - across) + Mat3::IDENTITY * across + n.outer(m) * before;
                 let velocity = n.outer(m) * (-self.timestep * before);
                 visit(rows, position * weights.position + velocity * weights.velocity);
@@ -259,7 +265,9 @@ impl Force for Links {
         _scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        self.visit_tangents(at, weights, |ends, block| add_change(ends, &block, delta, out));
+        self.visit_tangents(at, Curvature::Exact, weights, |ends, block| {
+            add_change(ends, &block, delta, out);
+        });
     }
 
     fn visit_cliques(&self, _pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
@@ -277,7 +285,21 @@ impl Force for Links {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        self.visit_tangents(at, weights, |ends, block| add_pair_blocks(ends, &block, matrix));
+        self.visit_tangents(at, Curvature::Exact, weights, |ends, block| {
+            add_pair_blocks(ends, &block, matrix);
+        });
+    }
+
+    fn add_definite_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        _: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.visit_tangents(at, Curvature::Definite, weights, |ends, block| {
+            add_pair_blocks(ends, &block, matrix);
+        });
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {

@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use souple_math::{Mat3, Padded, Vec3};
+use souple_solve::dense::{self, take_absolute};
 use souple_solve::{BlockMatrix, Pattern};
 
 use super::elements::{Batch, Elements};
@@ -87,6 +88,8 @@ struct Start {
 thread_local! {
     /// The element blocks of some blocks of lanes.
     static BLOCKS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+    /// The matrix of one element.
+    static ELEMENT: RefCell<(Vec<f64>, dense::Workspace)> = RefCell::default();
 }
 
 impl Assembly {
@@ -133,6 +136,29 @@ impl Assembly {
         });
         self.sums = sums;
         self.gather(matrix);
+    }
+
+    /// [`Self::add_blocks`] of symmetric blocks, the negative eigenvalues of every element's matrix turned round: the sum
+    /// then has none. Cut off instead (Teran et al. 2005) they would leave directions in which an element pressed flat or
+    /// turned inside out is held by its mass alone, and a step goes far beyond it; their size keeps it near (Chen et al.
+    /// 2024, Stabler neo-Hookean simulation: absolute eigenvalue filtering for projected Newton).
+    pub fn add_definite_blocks<K: Send + Sync, const I: usize>(
+        &mut self,
+        elements: &Elements<K>,
+        inputs: [&[Vec3]; I],
+        partials: &mut Vec<Vec3>,
+        matrix: &mut BlockMatrix,
+        blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Padded]; I], &mut [f64]) + Sync,
+    ) {
+        debug_assert_eq!(self.symmetry, Symmetry::Symmetric);
+        self.add_blocks(elements, inputs, partials, matrix, |batch, chunk, blocks, inputs, out| {
+            blocks_of(batch, chunk, blocks.clone(), inputs, out);
+            let nodes = batch.kind.node_count();
+            let block_len = 9 * Symmetry::Symmetric.pair_count(nodes) * LANES;
+            for (block, numbers) in blocks.zip(out.chunks_exact_mut(block_len)) {
+                (0..chunk.lanes_in(block)).for_each(|lane| make_definite(nodes, lane, numbers));
+            }
+        });
     }
 
     /// [`Self::add_blocks`] to a matrix of diagonal blocks, column by column: element blocks are computed three times, but
@@ -297,6 +323,29 @@ impl Assembly {
         self.source_starts.rotate_right(1);
         self.source_starts[0] = 0;
     }
+}
+
+/// Turns round the negative eigenvalues of the matrix of the element in a lane of a block of lanes.
+fn make_definite(nodes: usize, lane: usize, numbers: &mut [f64]) {
+    let n = 3 * nodes;
+    ELEMENT.with_borrow_mut(|(a, workspace)| {
+        a.resize(n * n, 0.0);
+        let entries = |(pair, (p, q)): (usize, (usize, usize))| {
+            (0..9).map(move |entry| {
+                let (row, column) = (3 * p + entry % 3, 3 * q + entry / 3);
+                ((pair * 9 + entry) * LANES + lane, n * row + column, n * column + row)
+            })
+        };
+        let pairs = || Symmetry::Symmetric.pairs(nodes).enumerate();
+        for (place, upper, lower) in pairs().flat_map(entries) {
+            (a[upper], a[lower]) = (numbers[place], numbers[place]);
+        }
+        if take_absolute(n, a, workspace) {
+            for (place, upper, _) in pairs().flat_map(entries) {
+                numbers[place] = a[upper];
+            }
+        }
+    });
 }
 
 /// Adds the element blocks of some blocks of lanes to the sums of its chunk.

@@ -123,6 +123,16 @@ impl Force for DifferencedForce {
         self.inner.add_blocks(at, weights, &mut of(scratch).inner, matrix);
     }
 
+    fn add_definite_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.inner.add_definite_blocks(at, weights, &mut of(scratch).inner, matrix);
+    }
+
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], pairs: &mut [Pair]) {
         self.inner.advance_memory(at, timestep, memory, pairs);
     }

@@ -348,6 +348,28 @@ impl Force for SolidForce {
         );
     }
 
+    fn add_definite_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        if weights.position == 0.0 {
+            return;
+        }
+        let SolidScratch { partials, assembly, displacements } = SolidScratch::of(scratch);
+        assembly.add_definite_blocks(
+            &self.elements,
+            [self.seen(at.positions, displacements)],
+            partials,
+            matrix,
+            |batch, chunk, blocks, [x], out| {
+                batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
+            },
+        );
+    }
+
     fn bytes(&self) -> usize {
         self.elements.bytes()
             + 4 * self.chunk_of_cell.capacity()

@@ -328,6 +328,21 @@ impl Force for AdaptiveForce {
         });
     }
 
+    fn add_definite_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) {
+        let (laws, elements) = (self.laws(at.memory), &self.solids[0].elements);
+        let AdaptiveScratch { partials, assembly, .. } = of(scratch);
+        let inputs = [at.positions];
+        assembly.add_definite_blocks(elements, inputs, partials, matrix, |batch, chunk, blocks, [x], out| {
+            self.blocks(laws, (batch, chunk), blocks, x, weights.position, out);
+        });
+    }
+
     fn advance_memory(&self, at: &Configuration, _: f64, memory: &mut [f64], _: &mut [Pair]) {
         let count = self.mesh.cell_count();
         // taken out: where threads share the work, this one may be given a part of another's
