@@ -1,11 +1,12 @@
 //! Who may talk to the server: pages it served itself, and beyond this machine only who knows the token.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr, UdpSocket};
 
 use crate::http::{Rejection, Request};
 
 /// What is asked of clients.
 pub struct Guard {
+    /// Where others find the server.
     address: SocketAddr,
     /// Asked for beyond loopback.
     token: Option<String>,
@@ -19,7 +20,8 @@ impl Guard {
     /// The system gives no random numbers for a token.
     pub fn new(address: SocketAddr) -> Result<Self, getrandom::Error> {
         let token = if address.ip().is_loopback() { None } else { Some(new_token()?) };
-        Ok(Self { address, token })
+        let ip = if address.ip().is_unspecified() { outward(address.ip()) } else { address.ip() };
+        Ok(Self { address: SocketAddr::new(ip, address.port()), token })
     }
 
     /// Where a person finds the page.
@@ -71,6 +73,20 @@ impl Guard {
     }
 }
 
+/// The address of this machine that others see of those it listens on, or its own for itself where it has none. Nothing is
+/// sent: the system chooses the address from which it would send to a place kept for documentation (RFC 5737, RFC 3849).
+fn outward(any: IpAddr) -> IpAddr {
+    let (place, own) = match any {
+        IpAddr::V4(_) => ("192.0.2.1:9", IpAddr::from([127, 0, 0, 1])),
+        IpAddr::V6(_) => ("[2001:db8::1]:9", IpAddr::from([0, 0, 0, 0, 0, 0, 0, 1])),
+    };
+    let chosen = UdpSocket::bind((any, 0)).and_then(|socket| {
+        socket.connect(place)?;
+        socket.local_addr()
+    });
+    chosen.map(|chosen| chosen.ip()).ok().filter(|ip| !ip.is_unspecified()).unwrap_or(own)
+}
+
 /// Whether a host is a name of this machine for itself, with the server's port.
 fn is_own_host(host: &str, port: u16) -> bool {
     let name = match host.rsplit_once(':') {
@@ -116,6 +132,8 @@ mod tests {
         let (_, token) =
             open.address().split_once("token=").map(|(a, b)| (a.to_owned(), b.to_owned())).unwrap();
         assert_eq!(token.len(), 2 * TOKEN_BYTES);
+        // a browser cannot ask for all addresses
+        assert!(!open.address().contains("//0.0.0.0"), "{}", open.address());
         let head = b"GET / HTTP/1.1\r\nHost: here:1\r\nOrigin: http://evil.example\r\n\r\n";
         let foreign = Request::parse(head).unwrap().unwrap();
         let head = b"GET /recording HTTP/1.1\r\nHost: here:1\r\nSec-Fetch-Site: cross-site\r\n\r\n";

@@ -1,6 +1,7 @@
 // Numbers as people read them.
 
 const PREFIXES: [number, string][] = [
+  [1e12, "T"],
   [1e9, "G"],
   [1e6, "M"],
   [1e3, "k"],
@@ -8,6 +9,7 @@ const PREFIXES: [number, string][] = [
   [1e-3, "m"],
   [1e-6, "µ"],
   [1e-9, "n"],
+  [1e-12, "p"],
 ];
 
 /** Units that take prefixes; kilograms and squares of units do not. */

@@ -10,6 +10,7 @@ import { element, panel, remember, remembered } from "./ui/dom";
 import { HandPanel } from "./ui/handling";
 import { Legend } from "./ui/legend";
 import { Notes } from "./ui/notes";
+import type { Weight } from "./ui/notes";
 import { Parameters } from "./ui/parameters";
 import { photograph } from "./ui/photograph";
 import { Plots } from "./ui/plots";
@@ -89,7 +90,7 @@ class Page {
   );
 
   constructor() {
-    const say = (text: string) => this.notes.say("error", text);
+    const say = (text: string, weight: Weight = "error") => this.notes.say(weight, text);
     this.picture = new Picture(place("stage"), say, (picture) => {
       this.grab = new Grab(picture, (wish) => this.send(wish), say);
       this.grab.handling = this.hand.handling;

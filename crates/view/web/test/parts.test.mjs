@@ -22,6 +22,8 @@ test("numbers have three digits that count, and units their prefix", () => {
   assert.deepEqual(said, ["0", "1", "12300", "1.23e5", "0.00123", "1.23e-7", "-2.00e9"]);
   assert.equal(quantity(12345, "Pa"), "12.3 kPa");
   assert.equal(quantity(999.96, "N"), "1 kN");
+  assert.equal(quantity(3.2e12, "Pa"), "3.2 TPa");
+  assert.equal(quantity(-4.5e-12, "N"), "-4.5 pN");
   assert.equal(quantity(0, "m"), "0 m");
 });
 

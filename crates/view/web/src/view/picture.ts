@@ -17,6 +17,7 @@ import {
 import type { BufferGeometry, Object3D, Texture } from "three";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
 import type { ColourMap, FieldInfo, Frame, InsideShape, NetworkShape, SceneInfo, Surface, ToolShape } from "../protocol";
+import type { Weight } from "../ui/notes";
 import { Arrows } from "./arrows";
 import { Body } from "./body";
 import type { Style } from "./body";
@@ -114,7 +115,7 @@ export class Picture {
 
   constructor(
     private readonly place: HTMLElement,
-    say: (text: string) => void,
+    say: (text: string, weight?: Weight) => void,
     grab: (picture: Picture) => void,
   ) {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: "high-performance" });
@@ -132,7 +133,7 @@ export class Picture {
       // they were only there
       this.reflections = null;
       this.simplify();
-      say("The graphics card draws the picture again.");
+      say("The graphics card draws the picture again.", "note");
     });
     const labels = document.createElement("div");
     labels.className = "labels";
