@@ -27,7 +27,7 @@ pub fn periods_in(duration: f64, period: f64) -> Result<Periods, RunError> {
     if exact.is_nan() || exact > MOST_STEPS {
         return Err(RunError::TooManySteps { duration, period, steps: exact, limit: MOST_STEPS });
     }
-    if whole == 0.0 && exact > WHOLE {
+    if whole == 0.0 && duration > 0.0 {
         return Err(RunError::NoStep { duration, period, share: exact });
     }
     let is_whole = (exact - whole).abs() <= WHOLE * whole.max(1.0);
@@ -81,7 +81,9 @@ mod tests {
         assert!(rounded.count == 10 || rounded.count == 11);
         let warning = rounded.warning.unwrap();
         assert!(warning.contains("10.500000 periods of 0.01 s"), "{warning}");
-        assert!(matches!(periods_in(0.004, 0.01), Err(RunError::NoStep { .. })));
+        for (duration, period) in [(0.004, 0.01), (1.0, 1e12)] {
+            assert!(matches!(periods_in(duration, period), Err(RunError::NoStep { .. })));
+        }
         assert!(matches!(periods_in(1e9, 1e-6), Err(RunError::TooManySteps { .. })));
     }
 }

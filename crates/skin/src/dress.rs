@@ -61,18 +61,20 @@ pub fn dress(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> Result<Dressed,
     let lattice = Lattice { origin, voxel };
     let reach = REACH * particles.iter().map(|(_, radius)| *radius).fold(0.0, f64::max) / voxel;
     let sorted = sort(particles, &lattice)?;
+    let cloud = souple_mesh::BoundingBox::of(particles.iter().map(|(x, _)| *x)).grown(reach * voxel);
+    let size = cloud.size().to_array();
     // blocks that a particle of a neighbouring block may reach
     let steps = (reach / EDGE as f64).ceil();
     let blocks = (2.0 * steps + 1.0).powi(3) * sorted.blocks.len() as f64;
     // most are named by several of their neighbours
     if blocks.is_nan() || blocks > 64.0 * MOST_BLOCKS as f64 {
-        return Err(SkinError::TooManyBlocks { voxel, size: [2.0 * reach * voxel; 3], blocks });
+        return Err(SkinError::TooManyBlocks { voxel, size, blocks });
     }
     let steps = steps as i64;
     let keys = reached(&sorted, steps);
     if keys.len() > MOST_SAMPLED {
         let blocks = keys.len() as f64;
-        return Err(SkinError::TooManyBlocks { voxel, size: [2.0 * reach * voxel; 3], blocks });
+        return Err(SkinError::TooManyBlocks { voxel, size, blocks });
     }
     let gather = |key: u64| gather(&sorted, block_of(key), steps, iso);
     let densities: Vec<Density> =
@@ -110,7 +112,7 @@ fn nothing_inside(particles: &[(Vec3, f64)], voxel: f64, iso: f64) -> SkinError 
     SkinError::Empty { low: bounds.low.to_array(), high: bounds.high.to_array(), voxel }
 }
 
-/// Blocks of which all values are kept, 256 MB; of more only those that the surface runs through, and those around these
+/// Blocks of which all values are kept, 134 MB; of more only those that the surface runs through, and those around these
 /// are made again.
 const ROOM: usize = 1 << 16;
 
@@ -173,7 +175,12 @@ fn sort(particles: &[(Vec3, f64)], lattice: &Lattice) -> Result<Sorted, SkinErro
     for (index, (position, _)) in particles.iter().enumerate() {
         let block = (lattice.to_voxels(*position) * (1.0 / EDGE as f64)).to_array().map(f64::floor);
         if block.iter().any(|c| c.abs() > FARTHEST as f64 / 2.0) {
-            return Err(SkinError::Runaway { time: 0.0 });
+            return Err(SkinError::FarParticle {
+                particle: index,
+                place: position.to_array(),
+                most: FARTHEST as f64 / 2.0 * EDGE as f64 * lattice.voxel,
+                origin: lattice.origin.to_array(),
+            });
         }
         order.push((key_of(block.map(|c| c as i64)), index as u32));
     }

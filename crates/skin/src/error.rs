@@ -16,7 +16,9 @@ pub enum SkinError {
     )]
     Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
     #[error(
-        "its density is {most:.3} at most, and {iso} on the skin (a particle by itself comes to 0.318); expected particles nearer to each other than four times their radius, a larger radius, or a lower iso value"
+        "its density is {most:.3} at most, and {iso} on the skin: where particles fill a space at twice their radius from each \
+         other it is 1, in a line of such 0.477, of one alone 0.318; expected an `iso` below {most:.3}, a larger radius, or \
+         more particles"
     )]
     Sparse { most: f64, iso: f64 },
     #[error(
@@ -41,8 +43,16 @@ pub enum SkinError {
         "it grew to {blocks} blocks of 8³ nodes at t = {time} s; at most {MOST_BLOCKS} are kept: larger voxels, or less growth"
     )]
     Grown { blocks: usize, time: f64 },
-    #[error("it left its space, {FARTHEST} blocks of 8 voxels, at t = {time} s")]
+    #[error(
+        "it left its space, {FARTHEST} blocks of 8 voxels to each side, at t = {time} s; expected less growth, larger voxels, or \
+         an `origin` near it"
+    )]
     Runaway { time: f64 },
+    #[error(
+        "particle {particle}, at {place:?}, is farther than {most:.3e} m from {origin:?}; expected particles nearer to each \
+         other, or larger voxels"
+    )]
+    FarParticle { particle: usize, place: [f64; 3], most: f64, origin: [f64; 3] },
     #[error("its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
     Speed { speed: f64, place: [f64; 3], time: f64 },
     #[error(

@@ -32,7 +32,7 @@ pub use dress::{Dressed, dress};
 pub use error::SkinError;
 pub use field::SkinField;
 pub use forecast::Cost;
-pub use grid::{Grid, Lattice};
+pub use grid::{BAND, Grid, Lattice};
 pub use look_up::{Seen, look_up};
 pub use polygons::{Measures, Polygons};
 pub use skin::{Skin, SkinScratch};

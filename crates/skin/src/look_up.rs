@@ -34,7 +34,7 @@ pub fn look_up(grid: Grid, lattice: &Lattice, point: Vec3) -> Option<Seen> {
     Some(Seen { distance: -value * lattice.voxel, normal, curvature })
 }
 
-/// Steps of a way along an axis, at most: those of a skin that goes through all of its space.
+/// Steps of a way along an axis, at most: through 131,072 voxels. Longer ways are left to the other five.
 const FARTHEST_STEPS: i32 = 1 << 16;
 
 /// Depth [voxels] and outward normal where the nearest of the six ways along the axes comes to the band.

@@ -375,7 +375,7 @@ fn join(parents: &mut [u32], a: u32, b: u32) {
     parents[high as usize] = low;
 }
 
-/// Whether a grid has a node that is inside.
+/// Whether no node of a grid is inside.
 pub fn is_empty(grid: Grid) -> bool {
     grid.values.len() < NODES || grid.values.iter().all(|value| *value <= 0.0)
 }

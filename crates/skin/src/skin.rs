@@ -75,7 +75,8 @@ const SOME_POINTS: usize = 256;
 /// Points of the surface at which the slope of a target is measured in a sub-step, about so many.
 const SLOPES: usize = 128;
 
-/// What tells one state of a skin from all others: its area and volume are sums over all of its surface, bit by bit.
+/// What differs between two states of a run: its count of checked surfaces alone grows with each step. Area and volume, sums
+/// over all of its surface, tell those of other runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Fingerprint {
     values: [u64; HEAD],
@@ -217,7 +218,7 @@ impl Skin {
         field: &mut FieldState,
         scratch: &mut SkinScratch,
     ) -> Result<(), SkinError> {
-        let (mut done, mut substeps) = (0.0, 0_u32);
+        let (mut done, mut substeps) = (0.0, 0);
         let start = end.time - timestep;
         if let (Some(target), Some(placed)) = (&self.target, &mut scratch.target) {
             target.place(end, placed).map_err(SkinError::Target)?;
@@ -225,47 +226,68 @@ impl Skin {
         self.find_surface(field, scratch);
         field.indices[WORK] = 0;
         while done < timestep {
-            let left = timestep - done;
-            let now = start + done;
             if substeps > 0 {
                 self.find_crossings(field, scratch);
                 self.measure_size(field, scratch);
             }
-            let Asked { uniform, fastest, answer } = self.add_speeds(field, scratch, now)?;
-            // what is told as a formula of time may be faster at the end
-            let later = self.uniform(&self.whole(field, end.time))?;
-            let fastest = fastest + (later - uniform).abs();
-            let substep = self.longest_substep(fastest, answer + self.answer_of_target(field, scratch, now));
-            let count = (left / substep).ceil().max(1.0);
-            if count.is_nan() || count + f64::from(substeps) > f64::from(MOST_SUBSTEPS) {
-                return Err(SkinError::TooManySubsteps { timestep, substep });
-            }
-            let substep = left / count;
-            let h = self.voxel();
-            let middle = self.uniform(&self.whole(field, now + 0.5 * substep))?;
-            let change = middle - uniform;
-            scratch.speeds.iter_mut().for_each(|speed| *speed = (*speed + change) * (substep / h));
-            let tension = self.tension() * substep / (h * h);
-            let moves = Moves {
-                uniform: middle * substep / h,
-                tension,
-                redistance: self.redistance.min(relaxable(taken(fastest * substep / h, tension))),
-            };
+            let now = start + done;
+            let left = Left { timestep, seconds: timestep - done, substeps: MOST_SUBSTEPS - substeps };
+            let (moves, parts) = self.next_moves(field, scratch, now, left)?;
+            let substep = left.seconds / f64::from(parts);
             let moved = self.move_by(field, scratch, moves, now + substep)?;
-            field.values[SPEED] = moved * h / substep;
-            done = if count == 1.0 { timestep } else { done + substep };
+            field.values[SPEED] = moved * self.voxel() / substep;
+            done = if parts == 1 { timestep } else { done + substep };
             substeps += 1;
         }
         self.find_crossings(field, scratch);
         self.measure(field, scratch, end.time)?;
+        self.react(field, scratch, end)?;
         scratch.known = Some(Fingerprint::of(field));
-        self.react(field, scratch, end)
+        Ok(())
+    }
+
+    /// How far the surface goes in the next sub-step, its speeds in `scratch` in voxels, and in how many such parts what is
+    /// left of the step is taken: as many as the speeds ask that are then applied, those in the middle of the sub-step.
+    fn next_moves(
+        &self,
+        field: &FieldState,
+        scratch: &mut SkinScratch,
+        now: f64,
+        left: Left,
+    ) -> Result<(Moves, u32), SkinError> {
+        let h = self.voxel();
+        scratch.excess.clear();
+        scratch.excess.resize(scratch.crossings.points.len(), 0.0);
+        if self.terms.iter().any(|term| term.needs_target()) {
+            self.find_excess(scratch);
+        }
+        let answer = self.answer(field, scratch, now);
+        let mut asked = self.add_speeds(field, scratch, now)?;
+        let is_timed = self.terms.iter().any(|term| term.is_timed());
+        let mut parts = 1;
+        loop {
+            let longest = self.longest_substep(asked.fastest, answer);
+            let wanted = (left.seconds / longest).ceil().max(1.0);
+            if wanted.is_nan() || wanted > f64::from(left.substeps) {
+                return Err(SkinError::TooManySubsteps { timestep: left.timestep, substep: longest });
+            }
+            let is_enough = wanted <= f64::from(parts);
+            parts = parts.max(wanted as u32);
+            let substep = left.seconds / f64::from(parts);
+            if is_timed && !(is_enough && asked.time == now + 0.5 * substep) {
+                asked = self.add_speeds(field, scratch, now + 0.5 * substep)?;
+                continue;
+            }
+            scratch.speeds.iter_mut().for_each(|speed| *speed *= substep / h);
+            let tension = self.tension() * substep / (h * h);
+            let redistance = self.redistance.min(relaxable(taken(asked.fastest * substep / h, tension)));
+            return Ok((Moves { uniform: asked.uniform * substep / h, tension, redistance }, parts));
+        }
     }
 
     /// Area and volume as they stand within a step, where a term asks.
     fn measure_size(&self, field: &mut FieldState, scratch: &mut SkinScratch) {
-        let whole = self.whole(field, 0.0);
-        if self.terms.iter().all(|term| term.answer(&whole) == 0.0) {
+        if !self.terms.iter().any(|term| term.looks_at_size()) {
             return;
         }
         polygonise(&scratch.neighbours, &scratch.marks, &scratch.crossings, &mut scratch.triangles);
@@ -311,15 +333,9 @@ impl Skin {
         scratch: &mut SkinScratch,
         time: f64,
     ) -> Result<Asked, SkinError> {
-        scratch.excess.clear();
-        scratch.excess.resize(scratch.crossings.points.len(), 0.0);
-        if self.terms.iter().any(|term| term.needs_target()) {
-            self.find_excess(scratch);
-        }
         let points = &scratch.crossings.points;
         let whole = self.whole(field, time);
         let uniform = self.uniform(&whole)?;
-        let answer: f64 = self.terms.iter().map(|term| term.answer(&whole)).sum();
         scratch.speeds.clear();
         scratch.speeds.resize(points.len(), uniform);
         for term in &self.terms {
@@ -332,7 +348,7 @@ impl Skin {
             }
             fastest = fastest.max(speed.abs());
         }
-        Ok(Asked { uniform, fastest, answer })
+        Ok(Asked { time, uniform, fastest })
     }
 
     /// The target's potential less its iso value at the crossings.
@@ -346,18 +362,22 @@ impl Skin {
         }
     }
 
-    /// How fast terms that follow the target answer a move of the surface [1/s], the most of some points spread over it: beyond
-    /// that they would overshoot, and the skin never rest.
-    fn answer_of_target(&self, field: &FieldState, scratch: &SkinScratch, time: f64) -> f64 {
-        let (Some(target), Some(placed)) = (&self.target, &scratch.target) else { return 0.0 };
+    /// How fast terms answer a move of the surface that they made themselves [1/s], the most of some points spread over it:
+    /// beyond that they would overshoot, and the skin never rest.
+    fn answer(&self, field: &FieldState, scratch: &SkinScratch, time: f64) -> f64 {
         let whole = self.whole(field, time);
+        let target = self.target.as_ref().zip(scratch.target.as_ref());
         let (points, excess) = (&scratch.crossings.points, &scratch.excess);
         let stride = points.len().div_ceil(SLOPES).max(1);
         let answer = |(point, excess): (&Vec3, &f64)| {
-            let stiffness: f64 = self.terms.iter().map(|term| term.stiffness(*point, *excess, &whole)).sum();
-            let is_followed = stiffness > 0.0;
-            // over a voxel: a jump of the potential is as steep as the grid can tell
-            if is_followed { stiffness * target.slope(*point, 0.5 * self.voxel(), placed) } else { 0.0 }
+            let terms = || self.terms.iter();
+            let to_size: f64 = terms().map(|term| term.answer(*point, *excess, &whole)).sum();
+            let stiffness: f64 = terms().map(|term| term.stiffness(*point, *excess, &whole)).sum();
+            let slope = target.filter(|_| stiffness > 0.0).map_or(0.0, |(target, placed)| {
+                // over a voxel: a jump of the potential is as steep as the grid can tell
+                target.slope(*point, 0.5 * self.voxel(), placed)
+            });
+            to_size + stiffness * slope
         };
         points.iter().zip(excess).step_by(stride).map(answer).fold(0.0, f64::max)
     }
@@ -469,12 +489,22 @@ impl Skin {
 
 /// What terms ask for at a moment.
 struct Asked {
+    /// [s]
+    time: f64,
     /// Speed that is the same everywhere [m/s].
     uniform: f64,
     /// The greatest at a crossing [m/s].
     fastest: f64,
-    /// How fast terms answer what they do [1/s].
-    answer: f64,
+}
+
+/// What is left of a step.
+#[derive(Clone, Copy)]
+struct Left {
+    /// Of the whole step [s].
+    timestep: f64,
+    seconds: f64,
+    /// Sub-steps that may be taken.
+    substeps: u32,
 }
 
 /// A sub-step in voxels.

@@ -305,6 +305,10 @@ impl Skin {
 /// The key and the values of a block; nothing of one beyond the band.
 type Sampled = Option<(u64, Vec<f64>)>;
 
+/// Square of the share of the slope that turns round at a ridge along an axis, at least; where a surface is bent over some
+/// voxels it is the inverse of these.
+const RIDGE: f64 = 0.25;
+
 /// Values over the greatest slope to a neighbour, of a block with the nodes around it: near distances in voxels.
 fn distances(values: &[f64]) -> Vec<f64> {
     let mut out = Vec::with_capacity(NODES);
@@ -313,14 +317,16 @@ fn distances(values: &[f64]) -> Vec<f64> {
             for x in 0..EDGE {
                 let at = wide(x + 1, y + 1, z + 1);
                 let f = values[at];
-                let slope_sq: f64 = [1, wide(0, 1, 0), wide(0, 0, 1)]
+                let slopes =
+                    [1, wide(0, 1, 0), wide(0, 0, 1)].map(|d| (f - values[at - d], values[at + d] - f));
+                let middle_sq: f64 = slopes.iter().map(|(low, high)| 0.25 * (low + high).powi(2)).sum();
+                let slope_sq: f64 = slopes
                     .iter()
-                    .map(|d| {
-                        let (low, high) = (f - values[at - d], values[at + d] - f);
-                        // at a ridge the greater slope, where it is smooth the middle one
-                        let is_ridge = low * high < 0.0;
-                        let slope = if is_ridge { low.abs().max(high.abs()) } else { 0.5 * (low + high) };
-                        slope * slope
+                    .map(|(low, high)| {
+                        let greater_sq = low.abs().max(high.abs()).powi(2);
+                        // at a ridge the greater slope; where it is smooth, as at the top of a ball, the middle one
+                        let is_ridge = low * high < 0.0 && greater_sq > RIDGE * middle_sq;
+                        if is_ridge { greater_sq } else { 0.25 * (low + high).powi(2) }
                     })
                     .sum();
                 let distance = if slope_sq > 0.0 { f / slope_sq.sqrt() } else { f.signum() * BAND };

@@ -20,6 +20,22 @@ pub struct Whole {
     pub rest_volume: f64,
 }
 
+/// What a skin's size gains for each metre that all of it moves outward.
+struct Growth {
+    /// [m²/m]
+    area: f64,
+    /// [m³/m]
+    volume: f64,
+}
+
+impl Whole {
+    /// `dV/ds = A`, and the area's as of a ball: `dA/ds = 2 A/R` with `R = 3 V/A`.
+    fn growth(&self) -> Growth {
+        let of_ball = 2.0 / 3.0 * self.area * self.area / self.volume;
+        Growth { area: if self.volume > 0.0 { of_ball } else { 0.0 }, volume: self.area }
+    }
+}
+
 /// The surface points of a skin, with the target's potential less its iso value there.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoints<'a> {
@@ -35,10 +51,20 @@ pub trait Term: Send + Sync {
         0.0
     }
 
-    /// How fast the term answers a change of the skin that it made itself [1/m]: a speed for each metre that the whole
-    /// skin moves. It limits sub-steps.
-    fn answer(&self, _whole: &Whole) -> f64 {
+    /// How fast the term at a point answers a change of the whole skin's size that it made itself [1/s]: by what speed for each
+    /// metre that the whole skin moves. It limits sub-steps.
+    fn answer(&self, _point: Vec3, _excess: f64, _whole: &Whole) -> f64 {
         0.0
+    }
+
+    /// Whether it looks at the skin's area or volume.
+    fn looks_at_size(&self) -> bool {
+        false
+    }
+
+    /// Whether it depends on time.
+    fn is_timed(&self) -> bool {
+        false
     }
 
     /// How much the speed at a point changes with the potential there [m/s]. With the slope of the target it limits sub-steps.
@@ -187,17 +213,25 @@ impl Term for Constant {
         if goal > 0.0 && goal.is_finite() { self.rate * (goal - now) / goal } else { f64::NAN }
     }
 
-    // dV = A ds; of a ball dA = 2 A/R ds with R = 3 V/A
-    fn answer(&self, whole: &Whole) -> f64 {
+    fn answer(&self, _: Vec3, _: f64, whole: &Whole) -> f64 {
         let goal = self.goal(whole);
-        if goal <= 0.0 || whole.volume <= 0.0 {
+        if goal <= 0.0 {
             return 0.0;
         }
+        let Growth { area, volume } = whole.growth();
         let change = match self.held {
-            Held::Area => 2.0 / 3.0 * whole.area * whole.area / whole.volume,
-            Held::Volume => whole.area,
+            Held::Area => area,
+            Held::Volume => volume,
         };
         self.rate * change / goal
+    }
+
+    fn looks_at_size(&self) -> bool {
+        self.rate != 0.0
+    }
+
+    fn is_timed(&self) -> bool {
+        self.goal.is_some()
     }
 }
 
@@ -235,6 +269,10 @@ impl Term for Pressure {
     fn uniform(&self, whole: &Whole) -> f64 {
         self.0.evaluate(&[whole.time])
     }
+
+    fn is_timed(&self) -> bool {
+        true
+    }
 }
 
 static PRESSURE: TermEntry = Entry {
@@ -253,8 +291,11 @@ static PRESSURE: TermEntry = Entry {
 struct Speed(Formula);
 
 const SPEED_VARIABLES: &[&str] = &["x", "y", "z", "t", "g", "area", "volume"];
-/// Where `g` stands among them.
+/// Where `t`, `g`, `area` and `volume` stand among them.
+const AT_TIME: usize = 3;
 const POTENTIAL: usize = 4;
+const AREA: usize = 5;
+const VOLUME: usize = 6;
 
 fn speed_values(p: Vec3, excess: f64, whole: &Whole) -> [f64; SPEED_VARIABLES.len()] {
     [p.x, p.y, p.z, whole.time, excess, whole.area, whole.volume]
@@ -279,6 +320,26 @@ impl Term for Speed {
         let change = self.0.differentiate(&speed_values(point, excess, whole), POTENTIAL).derivative;
         // a formula without a slope here has none that could be followed
         if change.is_finite() { change.abs() } else { 0.0 }
+    }
+
+    // -(∂v/∂A dA/ds + ∂v/∂V dV/ds): what grows by its own growth runs away, and is not overshot
+    fn answer(&self, point: Vec3, excess: f64, whole: &Whole) -> f64 {
+        if !self.looks_at_size() {
+            return 0.0;
+        }
+        let values = speed_values(point, excess, whole);
+        let slope = |of: usize| self.0.differentiate(&values, of).derivative;
+        let Growth { area, volume } = whole.growth();
+        let change = -(slope(AREA) * area + slope(VOLUME) * volume);
+        if change.is_finite() { change.max(0.0) } else { 0.0 }
+    }
+
+    fn looks_at_size(&self) -> bool {
+        self.0.depends_on(AREA) || self.0.depends_on(VOLUME)
+    }
+
+    fn is_timed(&self) -> bool {
+        self.0.depends_on(AT_TIME)
     }
 }
 

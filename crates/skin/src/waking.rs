@@ -8,7 +8,8 @@ use crate::marks::{ALL, FIRST_X, FIRST_Y, LAST_X, Layers, Marks, NONE};
 pub struct Waking {
     /// Whether each block is asked for, by itself or by a neighbour.
     wanted: Vec<bool>,
-    woken: Vec<u64>,
+    /// Keys of blocks that come, and on which side of the skin they were.
+    woken: Vec<(u64, Found)>,
     /// Where each block to be comes from.
     sources: Vec<Found>,
     field: Vec<u64>,
@@ -20,8 +21,9 @@ pub struct Waking {
 pub struct Runaway;
 
 impl Waking {
-    /// Of a field of State, its grid after so many integers: wakes the blocks that the band has come to, and drops those that it has left; `marks` are those of the values, and
-    /// stay so. `true`: the blocks changed.
+    /// Of a field of State, its grid after so many integers: wakes the blocks that the band has come to, and drops those that
+    /// it has left; `neighbours` are those of before the move, `marks` those of the values, and stay so. `true`: the blocks
+    /// changed.
     ///
     /// # Errors
     /// A block would lie beyond the farthest.
@@ -43,8 +45,8 @@ impl Waking {
         if self.woken.is_empty() && self.wanted.iter().all(|wanted| *wanted) {
             return Ok(false);
         }
-        self.woken.sort_unstable();
-        self.woken.dedup();
+        self.woken.sort_unstable_by_key(|(key, _)| *key);
+        self.woken.dedup_by_key(|(key, _)| *key);
         self.rebuild(field, head, marks);
         Ok(true)
     }
@@ -93,7 +95,7 @@ impl Waking {
                     if place.iter().any(|c| c.abs() >= FARTHEST) {
                         return Err(Runaway);
                     }
-                    self.woken.push(key_of(place));
+                    self.woken.push((key_of(place), other));
                     self.wanted[block] = true;
                 }
             }
@@ -109,18 +111,18 @@ impl Waking {
         self.sources.clear();
         let mut woken = self.woken.iter().copied().peekable();
         for (index, key) in grid.keys.iter().enumerate() {
-            while let Some(new) = woken.next_if(|new| new < key) {
+            while let Some((new, source)) = woken.next_if(|(new, _)| new < key) {
                 self.field.push(new);
-                self.sources.push(grid.find(new));
+                self.sources.push(source);
             }
             if self.wanted[index] {
                 self.field.push(*key);
                 self.sources.push(Found::Kept(index as u32));
             }
         }
-        for new in woken {
+        for (new, source) in woken {
             self.field.push(new);
-            self.sources.push(grid.find(new));
+            self.sources.push(source);
         }
         self.marks.clear();
         for source in &self.sources {
@@ -137,7 +139,8 @@ impl Waking {
     pub fn bytes(&self) -> usize {
         size_of::<Marks>() * self.marks.capacity()
             + self.wanted.capacity()
-            + 8 * (self.woken.capacity() + self.sources.capacity() + self.field.capacity())
+            + size_of::<(u64, Found)>() * self.woken.capacity()
+            + 8 * (self.sources.capacity() + self.field.capacity())
     }
 }
 

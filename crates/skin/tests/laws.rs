@@ -55,9 +55,9 @@ fn shrinking_is_of_second_order() {
     assert!(order > 1.7, "order {order} of {coarse} and {fine}");
 }
 
-/// Mean of `κ` over a surface given by its distance, less what it must be, at two voxels.
-fn curvature_errors(distance: impl Fn(Vec3) -> f64 + Sync, extent: f64, exact: f64) -> [f64; 2] {
-    [1.0 / 12.0, 1.0 / 24.0].map(|voxel| {
+/// Mean of `κ` over a surface given by its distance, less what it must be, at three voxels.
+fn curvature_errors(distance: impl Fn(Vec3) -> f64 + Sync, extent: f64, exact: f64) -> [f64; 3] {
+    [1.0 / 8.0, 1.0 / 16.0, 1.0 / 32.0].map(|voxel| {
         let skin = Skin { redistance: 0.0, ..skin(voxel, Vec::new()) };
         let mut scratch = skin.new_scratch();
         let corner = Vec3::new(extent, extent, extent);
@@ -66,7 +66,7 @@ fn curvature_errors(distance: impl Fn(Vec3) -> f64 + Sync, extent: f64, exact: f
     })
 }
 
-/// The mean curvature of a sphere and of a torus to second order.
+/// The mean curvature of a sphere and of a torus to second order; point by point, and of a cylinder, in `surface.rs`.
 #[test]
 fn curvature_is_of_second_order() {
     let sphere = curvature_errors(|p| p.length() - 1.0, 1.2, 2.0);
@@ -76,30 +76,9 @@ fn curvature_is_of_second_order() {
     let torus = curvature_errors(torus_distance, 1.5, 1.0 / tube);
     for errors in [sphere, torus] {
         println!("{errors:?}");
-        let order = (errors[0] / errors[1]).abs().log2();
+        // over a factor of four: how nodes lie to the surface makes each halving uneven
+        let order = 0.5 * (errors[0] / errors[2]).abs().log2();
         assert!(order > 1.7, "order {order} of {errors:?}");
-    }
-}
-
-/// `∫κ` over a cylinder with round ends, and its area.
-fn capsule(voxel: f64, half: f64) -> [f64; 2] {
-    let skin = Skin { redistance: 0.0, ..skin(voxel, Vec::new()) };
-    let mut scratch = skin.new_scratch();
-    let corner = Vec3::new(half + 0.5, 0.5, 0.5);
-    let value = |p: Vec3| 0.4 - Vec3::new((p.x.abs() - half).max(0.0), p.y, p.z).length();
-    let field = skin.start(-corner, corner, &value, &mut scratch).unwrap();
-    let area = skin.view(&field).measures().area;
-    [souple_skin::mean_curvature(skin.view(&field).grid, &skin.lattice) * area, area]
-}
-
-/// `κ = 1/r` of a cylinder, to a twentieth of `(h/r)²`: of two that differ in length by whole voxels at both ends, which are
-/// alike, the difference is of the cylinder alone.
-#[test]
-fn curvature_of_a_cylinder() {
-    for voxel in [1.0 / 8.0, 1.0 / 16.0] {
-        let ([short, less], [long, more]) = (capsule(voxel, 0.5), capsule(voxel, 1.0));
-        let error = 0.4 * (long - short) / (more - less) - 1.0;
-        assert!(error.abs() < 0.05 * (voxel / 0.4).powi(2), "{error} at {voxel}");
     }
 }
 
@@ -191,7 +170,15 @@ fn threads_do_not_change_bits() {
     let result = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let skin = skin(0.1, vec![term("tension", &[("strength", number(0.02))])]);
+            let terms = vec![
+                term("tension", &[("strength", number(0.02))]),
+                term("attraction", &[("strength", number(1.0))]),
+                term("constant_volume", &[("rate", number(0.5))]),
+            ];
+            let mut skin = skin(0.1, terms);
+            let at = Value::Vector([0.3, 0.0, 0.0]);
+            let parts = vec![part("point", &[("at", at), ("radius", number(0.9))])];
+            skin.target = Some(Target { parts, iso: ISO });
             let mut scratch = skin.new_scratch();
             let mut field = ball(&skin, 1.0, &mut scratch);
             run(&skin, &mut field, &mut scratch, 3, 0.1);

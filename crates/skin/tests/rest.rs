@@ -109,6 +109,7 @@ impl Surroundings for OneBall {
     fn body_surface(&self, _: &str) -> Result<(TriangleSurface, usize, Vec<u32>), String> {
         Ok((self.0.clone(), 0, (0..self.0.points.len() as u32).collect()))
     }
+    fn warn(&self, _: String) {}
 }
 
 impl Rows for OneBall {

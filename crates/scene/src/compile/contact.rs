@@ -10,6 +10,7 @@ use souple_models::contact::{
     ContactLaw, ContactPoint, ContactSurface, Shape, ShapeContact, SurfaceContact, penalty_stiffness,
 };
 use souple_models::loads::RigidMotion;
+use souple_skin::BAND;
 
 use super::Draft;
 use super::bodies::Placed;
@@ -237,6 +238,16 @@ fn against_skin(
     if touches_itself {
         let message = format!("skin `{}` follows body `{}`, which touches it", skin.name, contact.body);
         draft.log.add(Code::Conflict, &contact.site, message, "the skin of another body");
+        return None;
+    }
+    let band = BAND * skin.skin.lattice.voxel;
+    if contact.thickness > band {
+        let message = format!(
+            "`thickness` of the contact `{}` is {} m, and skin `{}` is felt up to {BAND} of its voxels",
+            contact.name, contact.thickness, skin.name
+        );
+        let expected = format!("at most {band} m, or a skin of larger voxels");
+        draft.log.add(Code::OutOfRange, &contact.site, message, expected);
         return None;
     }
     let law = law(contact, modulus_of(draft, contact, body, &touching)?, touching.mean_area);

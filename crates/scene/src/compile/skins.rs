@@ -1,5 +1,6 @@
 //! Skins become fields of the world.
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -24,7 +25,10 @@ const FEW_POINTS: u64 = 100;
 /// All skins, each with its first state.
 pub fn add(draft: &mut Draft) {
     for spec in &draft.spec.skins {
-        let Some((skin, state)) = build(draft, spec) else { continue };
+        let told = RefCell::default();
+        let built = build(draft, spec, &told);
+        draft.warnings.extend(told.into_inner());
+        let Some((skin, state)) = built else { continue };
         let (skin, field) = (Arc::new(skin), draft.model.fields.len());
         if let Some(reaction) = &skin.reaction {
             let rows = reaction.rows.iter().map(|(row, _)| *row).collect();
@@ -44,9 +48,9 @@ pub fn add(draft: &mut Draft) {
     }
 }
 
-fn build(draft: &Draft, spec: &SkinSpec) -> Option<(Skin, FieldState)> {
-    let target = target(draft, &spec.parts, spec.iso)?;
-    let start = target_of_start(draft, spec)?;
+fn build(draft: &Draft, spec: &SkinSpec, told: &Told) -> Option<(Skin, FieldState)> {
+    let target = target(draft, &spec.parts, spec.iso, told)?;
+    let start = target_of_start(draft, spec, told)?;
     let terms: Option<Vec<Box<dyn Term>>> = spec
         .terms
         .iter()
@@ -74,12 +78,7 @@ fn build(draft: &Draft, spec: &SkinSpec) -> Option<(Skin, FieldState)> {
     let started = first_state(draft, spec, &skin, start.as_ref());
     let refuse = |error: SkinError| {
         let message = format!("skin `{}` cannot start: {error}", spec.name);
-        draft.log.add(
-            Code::OutOfRange,
-            &spec.site,
-            message,
-            "a start with an inside that ends within its domain",
-        );
+        draft.log.add(Code::OutOfRange, &spec.site, message, "a skin that can start, as it says");
     };
     let field = started.map_err(refuse).ok()?;
     Some((skin, field))
@@ -104,8 +103,8 @@ fn reaction(draft: &Draft, spec: &SkinSpec) -> Option<Option<Reaction>> {
 }
 
 /// What a skin begins as, where that is not its target.
-fn target_of_start(draft: &Draft, spec: &SkinSpec) -> Option<Option<Target>> {
-    if spec.start.is_empty() { Some(None) } else { target(draft, &spec.start, spec.iso).map(Some) }
+fn target_of_start(draft: &Draft, spec: &SkinSpec, told: &Told) -> Option<Option<Target>> {
+    if spec.start.is_empty() { Some(None) } else { target(draft, &spec.start, spec.iso, told).map(Some) }
 }
 
 fn first_state(
@@ -126,7 +125,13 @@ fn first_state(
             [bounds.low, bounds.high]
         }
     };
-    skin.begin(low, high, &PlacedTarget { target, scratch: &placed }, &mut skin.new_scratch())
+    let begun = skin.begin(low, high, &PlacedTarget { target, scratch: &placed }, &mut skin.new_scratch());
+    begun.map_err(|error| match (error, target.most(&placed)) {
+        (SkinError::Empty { .. }, Some(most)) if most <= target.iso => {
+            SkinError::Sparse { most, iso: target.iso }
+        }
+        (error, _) => error,
+    })
 }
 
 /// Rows of all systems before the first step.
@@ -216,19 +221,19 @@ fn levels_of(draft: &Draft, body: &Placed, radius: f64) -> Option<Particles> {
 }
 
 /// `None` where a part was refused.
-fn target(draft: &Draft, parts: &[PartSpec], iso: f64) -> Option<Target> {
-    let parts: Option<Vec<Part>> = parts.iter().map(|spec| part(draft, spec)).collect();
+fn target(draft: &Draft, parts: &[PartSpec], iso: f64, told: &Told) -> Option<Target> {
+    let parts: Option<Vec<Part>> = parts.iter().map(|spec| part(draft, spec, told)).collect();
     Some(Target { parts: parts?, iso })
 }
 
-fn part(draft: &Draft, spec: &PartSpec) -> Option<Part> {
+fn part(draft: &Draft, spec: &PartSpec, told: &Told) -> Option<Part> {
     let chosen = spec.part.as_ref()?;
-    let around = Around { draft, site: &chosen.site };
+    let around = Around { draft, site: &chosen.site, told };
     let potential = match (chosen.entry.build)(&chosen.values, &around) {
         Ok(potential) => potential,
         Err(error) => {
-            let site =
-                Site { path: format!("{}.{}", spec.site.path, error.parameter), ..chosen.site.clone() };
+            let path = format!("{}.{}", spec.site.path, error.parameter);
+            let site = Site { path, ..chosen.site_of(error.parameter).clone() };
             let message = format!("this is {}", error.value);
             draft.log.add(Code::OutOfRange, &site, message, error.expected);
             return None;
@@ -242,7 +247,11 @@ fn part(draft: &Draft, spec: &PartSpec) -> Option<Part> {
 struct Around<'a> {
     draft: &'a Draft<'a>,
     site: &'a Site,
+    told: &'a Told,
 }
+
+/// Warnings that parts gave.
+type Told = RefCell<Vec<String>>;
 
 impl Around<'_> {
     fn open(&self, file: &str) -> Result<std::path::PathBuf, String> {
@@ -280,6 +289,10 @@ impl Surroundings for Around<'_> {
         let first = body.rows.start as u32;
         let rows = surface.mesh_points.iter().map(|point| first + point).collect();
         Ok((surface, body.system, rows))
+    }
+
+    fn warn(&self, warning: String) {
+        self.told.borrow_mut().push(format!("{}: {warning}", self.draft.place(self.site)));
     }
 }
 

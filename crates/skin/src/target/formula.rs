@@ -38,7 +38,8 @@ impl Potential for Text {
         range.map_or(UNKNOWN, |range| range.map(|value| ISO + value))
     }
 
-    fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {
+    // it is looked for nowhere else
+    fn bounds(&self, _: f64, _: &PartScratch) -> Option<BoundingBox> {
         Some(self.bounds)
     }
 }

@@ -95,8 +95,14 @@ pub trait Potential: Send + Sync {
         UNKNOWN
     }
 
-    /// A box around all that is inside; `None` where it is not known.
-    fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox>;
+    /// A box around all places where it is above `level`; `None` where it is not known, or where there is none, as it falls to
+    /// nothing and no further.
+    fn bounds(&self, level: f64, scratch: &PartScratch) -> Option<BoundingBox>;
+
+    /// Where it is highest or near to that; `None` where it is not known.
+    fn peaks(&self, _scratch: &PartScratch) -> Option<Vec<Vec3>> {
+        None
+    }
 
     /// The rows that lead it.
     fn followed(&self) -> Vec<Followed> {
@@ -255,6 +261,14 @@ impl Target {
         sum.unwrap_or(0.0) - self.iso
     }
 
+    /// The greatest potential of a target of one part as it is, where that knows its peaks.
+    pub fn most(&self, scratch: &TargetScratch) -> Option<f64> {
+        let [part] = &self.parts[..] else { return None };
+        let peaks = part.potential.peaks(scratch.parts.first()?).filter(|_| part.warps.is_empty())?;
+        let offset = *scratch.offsets.first()?;
+        Some(peaks.into_iter().map(|peak| self.excess(peak + offset, scratch) + self.iso).fold(0.0, f64::max))
+    }
+
     /// Numbers that [`Target::excess`] lies between within a box.
     pub fn range(&self, within: BoundingBox, scratch: &TargetScratch) -> Between {
         let mut sum: Option<Between> = None;
@@ -296,12 +310,15 @@ impl Target {
 
     /// A box around all that is inside; `None` where it is not known.
     pub fn bounds(&self, scratch: &TargetScratch) -> Option<BoundingBox> {
+        let adding = || {
+            let there = self.parts.iter().enumerate().filter(|(index, _)| scratch.there[*index]);
+            there.filter(|(_, part)| part.combine.adds())
+        };
+        // where a sum is above iso, one of its parts is above its share
+        let level = self.iso / adding().count() as f64;
         let mut all: Option<BoundingBox> = None;
-        for (index, part) in self.parts.iter().enumerate() {
-            if !scratch.there[index] || !part.combine.adds() {
-                continue;
-            }
-            let bounds = part.potential.bounds(&scratch.parts[index])?;
+        for (index, part) in adding() {
+            let bounds = part.potential.bounds(level, &scratch.parts[index])?;
             let bounds = part.warps.iter().fold(bounds, |bounds, warp| warp.bounds(bounds));
             let offset = scratch.offsets[index];
             let moved = BoundingBox { low: bounds.low + offset, high: bounds.high + offset };
@@ -330,6 +347,9 @@ pub trait Surroundings {
     /// # Errors
     /// Why there is none.
     fn body_surface(&self, body: &str) -> Result<(TriangleSurface, usize, Vec<u32>), String>;
+
+    /// Takes a warning: what was made is not all that was told.
+    fn warn(&self, warning: String);
 }
 
 /// Why a part cannot be made.

@@ -236,8 +236,15 @@ impl Potential for Density {
         scratch.downcast_ref::<Cloud>().map_or(UNKNOWN, |cloud| cloud.range(within))
     }
 
-    fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {
-        scratch.downcast_ref::<Cloud>().map(Cloud::bounds)
+    // a kernel is highest at its particle, and so is a sum of kernels near one of them
+    fn peaks(&self, scratch: &PartScratch) -> Option<Vec<Vec3>> {
+        let cloud = scratch.downcast_ref::<Cloud>()?;
+        Some(cloud.placed.iter().map(|(position, _)| *position).collect())
+    }
+
+    // kernels end
+    fn bounds(&self, level: f64, scratch: &PartScratch) -> Option<BoundingBox> {
+        scratch.downcast_ref::<Cloud>().filter(|_| level > 0.0).map(Cloud::bounds)
     }
 
     fn followed(&self) -> Vec<Followed> {

@@ -5,8 +5,9 @@
 
 use souple_math::Vec3;
 use souple_mesh::implicit::{self, JoinedSolids, Shape, Sign, SurfaceShape};
+use souple_mesh::repair::{RepairLimits, repair};
 use souple_mesh::{BoundingBox, MeshError, TriangleSurface};
-use souple_table::{Entry, Parameter, Range, Value, Values};
+use souple_table::{Entry, Parameter, Range, Value, Values, in_number};
 
 use super::{Between, Followed, ISO, Moment, PartEntry, PartError, PartScratch, Potential, UNKNOWN};
 
@@ -20,6 +21,11 @@ const WIDTH: Parameter = Parameter::number(
 
 fn potential(distance: f64, width: f64) -> f64 {
     ISO + (-0.5 * distance / width).clamp(-0.5, 0.5)
+}
+
+/// Distance to a solid beyond which its potential is nowhere above `level`.
+fn reach(level: f64, width: f64) -> f64 {
+    width * (1.0 - level / ISO).max(0.0)
 }
 
 /// Of distances between two.
@@ -47,8 +53,8 @@ impl Potential for Solid {
         self.shape.range(within).map_or(UNKNOWN, |distances| between(distances, self.width))
     }
 
-    fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {
-        Some(self.shape.bounds())
+    fn bounds(&self, level: f64, _: &PartScratch) -> Option<BoundingBox> {
+        (level > 0.0).then(|| self.shape.bounds().grown(reach(level, self.width)))
     }
 }
 
@@ -98,7 +104,7 @@ impl Shape for Scaled {
 
 pub(super) static MESH: PartEntry = Entry {
     name: "mesh",
-    summary: "what the triangles of a file enclose: parts that overlap by more than a voxel are joined, those with holes are known by winding numbers",
+    summary: "what the triangles of a file enclose: parts that overlap by more than a voxel are joined, holes are closed, with a warning; what crosses itself is known by winding numbers",
     source: "Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal",
     parameters: &[
         Parameter::text("file", "a surface, relative to the scene file that names it"),
@@ -116,11 +122,37 @@ pub(super) static MESH: PartEntry = Entry {
         let mut surface = around.surface(file).map_err(refuse)?;
         let scale = values.number("scale");
         surface.points.iter_mut().for_each(|point| *point = *point * scale);
+        let (surface, warning) = closed(surface);
+        if let Some(warning) = warning {
+            around.warn(format!("`{file}` {warning}"));
+        }
         let shape = solid(surface).map_err(|error| refuse(error.to_string()))?;
         let width = width(values, shape.bounds());
         Ok(Box::new(Solid { shape, width }))
     },
 };
+
+/// A surface with its holes closed, however large they are, and what there is to say of that. Across an open hole the sign of a
+/// distance changes where the distance does not vanish: a skin would find no rest there.
+fn closed(surface: TriangleSurface) -> (TriangleSurface, Option<String>) {
+    let open_edges =
+        |surface: &TriangleSurface| surface.edge_uses().iter().filter(|(_, up, down)| up + down == 1).count();
+    if open_edges(&surface) == 0 {
+        return (surface, None);
+    }
+    let (mended, repairs) = repair(&surface, RepairLimits { hole: f64::INFINITY, ..RepairLimits::default() });
+    let closed = in_number(repairs.closed_holes, "hole was closed", "holes were closed");
+    let warning = match (open_edges(&mended), repairs.closed_holes) {
+        // points at one place were several
+        (0, 0) => None,
+        (0, _) => Some(format!("is open: {closed} by triangles around its middle")),
+        (open, _) => {
+            let edges = in_number(open, "edge has", "edges have");
+            Some(format!("is open: {closed}, {edges} one triangle still, and a skin finds no rest there"))
+        }
+    };
+    (mended, warning)
+}
 
 /// What triangles enclose: closed parts that overlap are joined, others are known by winding numbers.
 fn solid(surface: TriangleSurface) -> Result<Box<dyn Shape>, MeshError> {
@@ -196,9 +228,10 @@ impl Potential for SurfacePart {
         if middle.is_nan() { UNKNOWN } else { between([middle - reach, middle + reach], self.width) }
     }
 
-    fn bounds(&self, scratch: &PartScratch) -> Option<BoundingBox> {
-        let moved = scratch.downcast_ref::<Moved>()?;
-        Some(BoundingBox::of(moved.positions.iter().copied()).grown(self.offset.max(0.0)))
+    fn bounds(&self, level: f64, scratch: &PartScratch) -> Option<BoundingBox> {
+        let moved = scratch.downcast_ref::<Moved>().filter(|_| level > 0.0)?;
+        let around = (self.offset + reach(level, self.width)).max(0.0);
+        Some(BoundingBox::of(moved.positions.iter().copied()).grown(around))
     }
 
     fn followed(&self) -> Vec<Followed> {

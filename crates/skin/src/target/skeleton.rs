@@ -29,14 +29,27 @@ impl Falloff {
 
     fn at(self, u_sq: f64) -> f64 {
         match self {
-            // (1 − c u²)³ with c = 1 − 2^(−1/3), zero from u = 2.2 on
-            Self::Compact => (1.0 - 0.206_299_474_015_900_26 * u_sq).max(0.0).powi(3),
+            Self::Compact => (1.0 - COMPACT * u_sq).max(0.0).powi(3),
             Self::Gaussian => libm::exp2(-u_sq),
             Self::Inverse => 1.0 / (1.0 + u_sq),
             Self::Linear => (1.0 - 0.5 * u_sq.sqrt()).max(0.0),
         }
     }
+
+    /// `u` beyond which it is nowhere above `level`.
+    fn reach(self, level: f64) -> f64 {
+        match self {
+            _ if level >= 1.0 => 0.0,
+            Self::Compact => ((1.0 - level.cbrt()) / COMPACT).sqrt(),
+            Self::Gaussian => (-level.log2()).sqrt(),
+            Self::Inverse => (1.0 / level - 1.0).sqrt(),
+            Self::Linear => 2.0 * (1.0 - level),
+        }
+    }
 }
+
+/// `c = 1 − 2^(−1/3)` of `(1 − c u²)³`, which is zero from u = 2.2 on.
+const COMPACT: f64 = 0.206_299_474_015_900_26;
 
 enum Piece {
     Point(Vec3),
@@ -76,13 +89,12 @@ impl Potential for Skeleton {
         [at(distance + reach), at((distance - reach).max(0.0))]
     }
 
-    fn bounds(&self, _: &PartScratch) -> Option<BoundingBox> {
-        // blends reach further than each part alone
+    fn bounds(&self, level: f64, _: &PartScratch) -> Option<BoundingBox> {
         let corners = self.pieces.iter().flat_map(|piece| match piece {
             Piece::Point(at) => [*at; 3],
             Piece::Triangle(corners) => *corners,
         });
-        Some(BoundingBox::of(corners).grown(2.5 * self.radius))
+        (level > 0.0).then(|| BoundingBox::of(corners).grown(self.falloff.reach(level) * self.radius))
     }
 }
 

@@ -49,6 +49,7 @@ pub fn part(name: &str, values: &[(&'static str, Value<'static>)]) -> Part {
         fn body_surface(&self, _: &str) -> Result<(souple_mesh::TriangleSurface, usize, Vec<u32>), String> {
             Err("there is none".to_owned())
         }
+        fn warn(&self, _: String) {}
     }
     let entry = PARTS.find(name).unwrap();
     let mut given = Values::new();

@@ -25,7 +25,7 @@ pub struct Arguments {
 
 pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
-    let (title, bodies, probes) = (scene.title.clone(), scene.bodies.clone(), scene.probes.len());
+    let (title, bodies, probes) = (scene.title.clone(), scene.bodies.clone(), scene.probes);
     let known_skins = scene.skins.clone();
     let mut warnings = scene.warnings.clone();
     let duration = scene.run.duration;
@@ -69,6 +69,11 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         }
     }
     trial.go_on(&mut world, steps);
+    let clock = Instant::now();
+    for probe in &probes {
+        let _ = probe.measure(&mut world);
+    }
+    let measuring = clock.elapsed().as_secs_f64();
     let errors: Vec<_> = trial.refused.iter().map(|error| first_step_refused(arguments, error)).collect();
     let broke_off = trial.broke_off.as_ref();
     warnings.extend(
@@ -83,11 +88,12 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "counts": counts,
         "systems": systems,
         "skins": costs.iter().map(|(name, cost)| ((*name).to_owned(), skin_to_json(cost))).collect::<Map<_, _>>(),
-        "probes": probes,
+        "probes": probes.len(),
         "steps": steps,
         "forecast": {
             "seconds_per_step": trial.seconds_per_step,
-            "wall_seconds": trial.seconds_of(steps),
+            "probes_seconds_per_period": measuring,
+            "wall_seconds": trial.seconds_of(steps) + measuring * (steps + 1) as f64,
             "measured_steps": trial.steps,
             "bytes": world.bytes(),
         },
@@ -134,9 +140,11 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         ));
     }
     print_line(format_args!(
-        "  about {:.2} ms per step, {:.1} s for {} without what is written, {:.1} MB of forces and matrices",
+        "  about {:.2} ms per step and {:.2} ms for its probes, {:.1} s for {} without what is written, {:.1} MB of forces and \
+         matrices",
         1e3 * trial.seconds_per_step,
-        trial.seconds_of(steps),
+        1e3 * measuring,
+        trial.seconds_of(steps) + measuring * (steps + 1) as f64,
         souple_table::counted(steps, "step"),
         world.bytes() as f64 * 1e-6
     ));

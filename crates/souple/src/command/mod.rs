@@ -323,9 +323,18 @@ pub fn print_line(line: impl std::fmt::Display) {
     }
 }
 
-/// One line on standard error; where even that is closed, there is nobody left to tell.
+/// One line on standard error; where even that is closed, there is nobody left to tell. Characters that would steer a terminal
+/// come from files that are quoted, and are shown as escapes.
 pub fn print_note(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr().lock(), "{line}");
+    let mut text = String::new();
+    for character in line.to_string().chars() {
+        match character {
+            '\n' | '\t' => text.push(character),
+            steering if steering.is_control() => text.extend(steering.escape_default()),
+            plain => text.push(plain),
+        }
+    }
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// ` (did you mean …?)` where a known name is near.
