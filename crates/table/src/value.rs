@@ -25,6 +25,13 @@ pub fn readable(number: f64) -> String {
     if is_plain { number.to_string() } else { format!("{number:e}") }
 }
 
+/// A number to four digits, as many as a person compares.
+pub fn four_digits(number: f64) -> String {
+    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
+    // no minus before zero
+    readable(rounded + 0.0)
+}
+
 /// A count with its noun: `1 step`, `2 steps`.
 pub fn counted(count: u64, noun: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };

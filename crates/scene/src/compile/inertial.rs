@@ -17,7 +17,10 @@ pub fn add(
 ) {
     let world = &draft.spec.world;
     let timestep = world.period / f64::from(draft.spec.systems[index].steps_per_period);
-    let frame = world.frame.as_ref().and_then(|frame| motion::frame(draft.log, frame, timestep));
+    let frame = world
+        .frame
+        .as_ref()
+        .and_then(|frame| motion::frame(draft.log, frame, timestep, draft.spec.run.duration));
     if let Some(gravity) = gravity(draft, mass, kinematics) {
         forces.push(Box::new(match &frame {
             Some(frame) => gravity.seen_from(frame.clone()),

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use souple_engine::Motion;
-use souple_math::Vec3;
-use souple_models::loads::{FormulaVector, Interpolation, KeyFrames, MovingFrame, RigidMotion};
+use souple_math::{Mat3, Vec3};
+use souple_models::loads::{FormulaVector, Interpolation, KeyFrames, MovingFrame, Pose, RigidMotion};
+use souple_table::four_digits;
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::spec::boundary::{MotionSpec, Pin};
@@ -36,8 +37,8 @@ pub fn motion_of_pin(log: &Log, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
     Some(Some(Arc::new(RigidMotion { translation, rotation: Some(rotation), pivot: pin.pivot })))
 }
 
-/// The frame that a system with this `timestep` [s] is seen from; `None` where it was refused.
-pub fn frame(log: &Log, spec: &FrameSpec, timestep: f64) -> Option<MovingFrame> {
+/// The frame that a system with this `timestep` [s] is seen from for a run's `duration` [s]; `None` where it was refused.
+pub fn frame(log: &Log, spec: &FrameSpec, timestep: f64, duration: f64) -> Option<MovingFrame> {
     let translation = motion(log, spec.motion.as_ref(), &spec.site)?;
     let rotation = motion(log, spec.rotation.as_ref(), &spec.site)?;
     let frame = RigidMotion { translation, rotation, pivot: spec.pivot };
@@ -51,7 +52,90 @@ pub fn frame(log: &Log, spec: &FrameSpec, timestep: f64) -> Option<MovingFrame> 
         log.add(Code::NotFinite, &spec.site, message, "formulas that are finite at the start");
         return None;
     }
+    if let Some((site, jump)) = jump_of_frame(spec, &frame, timestep, duration) {
+        let message = format!("{jump}, and a frame that does is no place to be: its acceleration has no end");
+        let expected = "a formula without jumps of place or velocity over the run, such as `0.1 * smoothstep(0.4, 0.6, t)`";
+        log.add(Code::Conflict, site, message, expected);
+        return None;
+    }
     Some(MovingFrame::new(frame, timestep))
+}
+
+/// What jumps where a frame does, in words, and where it is written.
+fn jump_of_frame<'a>(
+    spec: &'a FrameSpec,
+    frame: &RigidMotion,
+    timestep: f64,
+    duration: f64,
+) -> Option<(&'a Site, String)> {
+    let vector = |of: fn(Pose) -> Vec3| {
+        first_jump(|time| of(frame.pose(time)), |a, b| (*a - *b).length(), timestep, duration)
+    };
+    // |R - R'| = 2 √2 sin(θ/2) in the norm of Frobenius
+    let angle = |a: &Mat3, b: &Mat3| {
+        let between = *a - *b;
+        2.0 * (between.dot(&between) / 8.0).sqrt().min(1.0).asin()
+    };
+    let turn = || first_jump(|time| frame.pose(time).turn, angle, timestep, duration);
+    let told = |site, what: &str, unit: &str, jump: Option<(f64, f64)>| {
+        jump.map(|(time, size)| {
+            let [time, size] = [time, size].map(four_digits);
+            (site, format!("at t = {time} s {what} jumps by {size} {unit}"))
+        })
+    };
+    let (motion, rotation) = (&spec.motion_site, &spec.rotation_site);
+    told(motion, "the place of the frame", "m", vector(|pose| pose.origin))
+        .or_else(|| told(motion, "the velocity of the frame", "m/s", vector(|pose| pose.velocity)))
+        .or_else(|| told(rotation, "the turn of the frame", "rad", turn()))
+        .or_else(|| {
+            told(rotation, "the angular velocity of the frame", "rad/s", vector(|pose| pose.angular_velocity))
+        })
+}
+
+/// Most intervals of a run that are looked at for jumps.
+const MOST_INTERVALS: f64 = 10_000.0;
+/// How often an interval is halved towards what may be a jump.
+const HALVINGS: u32 = 14;
+/// Of the change over an interval what is left where it does not shrink: roots, which grow infinitely fast, halve theirs in two
+/// halvings and keep a 128th.
+const JUMP: f64 = 0.01;
+
+/// When a function of time first jumps in a run of some `duration`, and by how much; what changes within a ten-thousandth of an
+/// `interval` jumps.
+fn first_jump<T>(
+    of: impl Fn(f64) -> T,
+    distance: impl Fn(&T, &T) -> f64,
+    interval: f64,
+    duration: f64,
+) -> Option<(f64, f64)> {
+    let count = (duration / interval).ceil().clamp(1.0, MOST_INTERVALS) as usize;
+    let time = |index: usize| duration * index as f64 / count as f64;
+    let changes: Vec<f64> =
+        (0..count).map(|index| distance(&of(time(index)), &of(time(index + 1)))).collect();
+    let largest = changes.iter().copied().fold(0.0, f64::max);
+    (0..count).find_map(|index| {
+        // below there may be rounding alone
+        if changes[index] <= 1e-6 * largest {
+            return None;
+        }
+        let (mut from, mut to) = (time(index), time(index + 1));
+        let mut left = changes[index];
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (from + to);
+            let at_middle = of(middle);
+            let (before, after) = (distance(&of(from), &at_middle), distance(&at_middle, &of(to)));
+            if before > after {
+                to = middle
+            } else {
+                from = middle
+            }
+            left = before.max(after);
+            if left <= JUMP * changes[index] {
+                return None;
+            }
+        }
+        (left > JUMP * changes[index]).then_some((to, left))
+    })
 }
 
 /// `None`: the axis stays where it started.

@@ -90,8 +90,10 @@ pub struct WorldSpec {
 #[derive(Clone, Debug)]
 pub struct FrameSpec {
     pub motion: Option<MotionSpec>,
+    pub motion_site: Site,
     /// Rotation vector about the pivot [rad].
     pub rotation: Option<MotionSpec>,
+    pub rotation_site: Site,
     /// [m]
     pub pivot: Vec3,
     pub site: Site,
@@ -137,20 +139,16 @@ impl FrameSpec {
         let motion = |key| reader.table(key).and_then(|table| MotionSpec::read(&table));
         let frame = Self {
             motion: motion("motion"),
+            motion_site: reader.site_of("motion"),
             rotation: motion("rotation"),
+            rotation_site: reader.site_of("rotation"),
             pivot: reader.vector("pivot"),
             site: reader.site(),
         };
-        for key in ["motion", "rotation"] {
-            let spec = if key == "motion" { &frame.motion } else { &frame.rotation };
+        for (spec, site) in [(&frame.motion, &frame.motion_site), (&frame.rotation, &frame.rotation_site)] {
             if let Some(MotionSpec::KeyFrames { is_smooth: false, .. }) = spec {
                 let message = "straight lines between key frames jump in velocity, and a frame that does is no place to be";
-                reader.log().add(
-                    Code::Conflict,
-                    &reader.site_of(key),
-                    message,
-                    "`interpolation = \"smooth\"`, or a formula",
-                );
+                reader.log().add(Code::Conflict, site, message, "`interpolation = \"smooth\"`, or a formula");
             }
         }
         frame

@@ -1,7 +1,7 @@
 //! What is told of a mesh or a surface, in sentences: the same as in the JSON document, without its brackets.
 
 use serde_json::Value as Json;
-use souple_table::{counted, in_number};
+use souple_table::{counted, four_digits, in_number};
 
 /// Lines for people of a document of `souple mesh`; `name` is the file's.
 pub fn sentences(name: &str, document: &Json) -> Vec<String> {
@@ -101,12 +101,8 @@ fn bounds(corners: &Json) -> String {
     format!("({}) to ({}) m", corner(0), corner(1))
 }
 
-/// Four digits are as many as a person compares.
 fn number(value: &Json) -> String {
-    let Some(number) = value.as_f64() else { return "—".to_owned() };
-    let rounded: f64 = format!("{number:.3e}").parse().unwrap_or(number);
-    // no minus before zero
-    souple_table::readable(rounded + 0.0)
+    value.as_f64().map_or_else(|| "—".to_owned(), four_digits)
 }
 
 fn names(list: &Json) -> String {
