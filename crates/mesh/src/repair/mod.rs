@@ -6,6 +6,7 @@
 
 mod crossing;
 mod diagnose;
+mod facing;
 mod holes;
 mod orient;
 
@@ -91,53 +92,19 @@ fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) 
     let (flat, mut triangles): (Vec<_>, Vec<_>) =
         welded.partition(|corners| is_flat(*corners, &surface.points));
     repairs.flat_triangles = flat.len();
-    drop_facing(&mut triangles, repairs);
+    facing::drop_pairs(&surface.points, &mut triangles, repairs);
     let mut seen: HashSet<[u32; 3]> = HashSet::new();
     let before = triangles.len();
     triangles.retain(|corners| seen.insert(sorted(*corners)));
-    repairs.doubled_triangles = before - triangles.len();
+    repairs.doubled_triangles += before - triangles.len();
     let mut mended = TriangleSurface::from_mesh(&surface.points, &triangles, Vec::new());
     mended.mesh_points.clear();
     mended
 }
 
-/// Drops pairs of triangles that lie back to back on edges of an even number of triangles, as where two closed parts touch: what
-/// is left is closed again. A triangle that repeats another of a simple surface has edges of three.
-fn drop_facing(triangles: &mut Vec<[u32; 3]>, repairs: &mut SurfaceRepairs) {
-    let edges = |corners: &[u32; 3]| {
-        let [a, b, c] = *corners;
-        [[a, b], [b, c], [c, a]].map(|[from, to]| [from.min(to), from.max(to)])
-    };
-    let mut uses: HashMap<[u32; 2], usize> = HashMap::new();
-    triangles.iter().flat_map(edges).for_each(|edge| *uses.entry(edge).or_default() += 1);
-    let mut open: HashMap<[u32; 3], usize> = HashMap::new();
-    let mut is_dropped = vec![false; triangles.len()];
-    for (index, corners) in triangles.iter().enumerate() {
-        if !edges(corners).iter().all(|edge| uses[edge] > 2 && uses[edge].is_multiple_of(2)) {
-            continue;
-        }
-        match open.remove(&sorted(*corners)) {
-            Some(other) if is_turned_over(*corners, triangles[other]) => {
-                (is_dropped[index], is_dropped[other]) = (true, true);
-                repairs.facing_triangles += 2;
-            }
-            _ => {
-                open.insert(sorted(*corners), index);
-            }
-        }
-    }
-    let mut dropped = is_dropped.into_iter();
-    triangles.retain(|_| dropped.next() != Some(true));
-}
-
 fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
     corners.sort_unstable();
     corners
-}
-
-/// Whether two triangles of the same corners run around them in opposite directions.
-fn is_turned_over([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
-    [[a, c, b], [c, b, a], [b, a, c]].contains(&other)
 }
 
 /// Whether corners repeat or lie on one line, to rounding.

@@ -89,6 +89,68 @@ fn parts_that_touch_are_joined() {
     assert_volume(&mended, 2.0);
 }
 
+/// The same surface with copies of some of its triangles, turned over, before and after them.
+fn with_copies(surface: &TriangleSurface, is_copied: impl Fn(Vec3) -> bool) -> (TriangleSurface, usize) {
+    let mut doubled = surface.clone();
+    let copied = |triangle: &u32| surface.corners(*triangle).into_iter().all(&is_copied);
+    let copies: Vec<[u32; 3]> = (0..surface.triangles.len() as u32)
+        .filter(copied)
+        .map(|triangle| surface.triangles[triangle as usize])
+        .map(|[a, b, c]| [a, c, b])
+        .collect();
+    let (before, after) = copies.split_at(copies.len() / 2);
+    doubled.triangles = [before, &surface.triangles, after].concat();
+    (doubled, copies.len())
+}
+
+/// Copies that are turned over go, and what they are copies of stays: a corner of a side, a side, a side and what is around it, all.
+#[test]
+fn copies_that_are_turned_over_leave_no_hole() {
+    let cube = unit_cube(4.0);
+    let parts: [fn(Vec3) -> bool; 4] =
+        [|x| x.x + x.y < 0.6 && x.z == 0.0, |x| x.x == 1.0, |x| x.x > 0.4, |_| true];
+    for part in parts {
+        let (doubled, count) = with_copies(&cube, part);
+        assert!(count > 0 && !diagnose(&doubled).is_closed());
+        let (mended, repairs) = repair(&doubled, RepairLimits { hole: 0.0, ..RepairLimits::default() });
+        assert_eq!((repairs.doubled_triangles, repairs.facing_triangles), (count, 0));
+        assert_cube(&mended);
+    }
+}
+
+/// A hollow that another part fills exactly is none: both of its sides go, whichever comes first.
+#[test]
+fn a_filled_hollow_is_solid() {
+    let outer = unit_cube(2.0);
+    let shift = outer.points.len() as u32;
+    let mut points = outer.points.clone();
+    points.extend(outer.points.iter().map(|p| *p * 0.5 + Vec3::new(0.25, 0.25, 0.25)));
+    let inner: Vec<[u32; 3]> = outer.triangles.iter().map(|corners| corners.map(|p| p + shift)).collect();
+    let hollow: Vec<[u32; 3]> = inner.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    for sides in [[&inner, &hollow], [&hollow, &inner]] {
+        let triangles = [&outer.triangles, sides[0], sides[1]].into_iter().flatten().copied().collect();
+        let surface = TriangleSurface::new(points.clone(), triangles).unwrap();
+        let (mended, repairs) = repair(&surface, RepairLimits::default());
+        assert_eq!(repairs.facing_triangles, 2 * inner.len());
+        assert_cube(&mended);
+    }
+}
+
+/// A fin of two sides on a body holds nothing, and goes; the body stays closed.
+#[test]
+fn a_fin_of_two_sides_goes() {
+    let mut cube = unit_cube(2.0);
+    let at = |surface: &TriangleSurface, x: Vec3| surface.points.iter().position(|p| *p == x).unwrap() as u32;
+    let [a, b] = [Vec3::new(0.5, 0.5, 1.0), Vec3::new(0.5, 1.0, 1.0)].map(|x| at(&cube, x));
+    let c = cube.points.len() as u32;
+    cube.points.push(Vec3::new(0.5, 0.5, 2.0));
+    cube.points.push(Vec3::new(0.5, 1.0, 2.0));
+    cube.triangles.extend([[a, b, c], [b, c + 1, c], [a, c, b], [b, c, c + 1]]);
+    let (mended, repairs) = repair(&cube, RepairLimits::default());
+    assert_eq!(repairs.facing_triangles, 4);
+    assert_cube(&mended);
+}
+
 /// A part that is inside out is turned; a hollow within it stays a hollow.
 #[test]
 fn parts_face_outward_and_hollows_stay() {
