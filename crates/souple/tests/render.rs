@@ -8,7 +8,11 @@ use common::{Answer, CUBE, Folder, assert_errors, souple_in};
 
 fn render(folder: &Folder, source: &str, out: &str, more: &[&str]) -> Answer {
     // surfaces have no pixels
-    let small: &[&str] = if out.ends_with(".glb") { &[] } else { &["--size", "96,64", "--samples", "1"] };
+    let small: &[&str] = match () {
+        () if out.ends_with(".glb") => &[],
+        () if more.contains(&"--size") => &["--samples", "1"],
+        () => &["--size", "240,160", "--samples", "1"],
+    };
     let call = ["render", source, "--out", out, "--json"];
     souple_in(folder.path(), call.iter().chain(small).chain(more))
 }
@@ -52,7 +56,7 @@ fn pictures_of_scenes_and_runs() {
     assert_eq!((&answer["moments"], &answer["notes"]), (&1.into(), &serde_json::json!([])));
     let read = |file: &str| std::fs::read(folder.path().join(file)).expect("a picture");
     assert_eq!(read("scene.png"), read("run.png"));
-    assert_eq!(size_of(&folder, "run.png"), [96, 64]);
+    assert_eq!(size_of(&folder, "run.png"), [240, 160]);
     let mut seen = vec![read("run.png")];
     for (index, more) in [
         &["--time", "0"][..],
@@ -91,14 +95,13 @@ fn sheets_films_and_surfaces() {
     let folder = Folder::new("films");
     folder.write("scene.toml", CUBE);
     souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
-    let answer = render(&folder, "run", "sheet.png", &["--sheet", "4"]).ends(0).json();
+    let answer = render(&folder, "run", "sheet.png", &["--sheet", "4", "--size", "321,222"]).ends(0).json();
     assert_eq!(answer["moments"], 4);
-    // two by two, under one title, beside one legend
-    let [width, height] = size_of(&folder, "sheet.png");
-    assert!(width > 192 && (129..192).contains(&height), "{width} x {height}");
+    // two by two, under one title, beside one legend: as large as asked for
+    assert_eq!(size_of(&folder, "sheet.png"), [321, 222]);
     let bare =
         render(&folder, "run", "bare.png", &["--sheet", "4", "--title", "", "--colour", "none"]).ends(0);
-    assert_eq!((bare.json()["moments"].as_u64(), size_of(&folder, "bare.png")), (Some(4), [192, 128]));
+    assert_eq!((bare.json()["moments"].as_u64(), size_of(&folder, "bare.png")), (Some(4), [240, 160]));
     let beyond = render(&folder, "run", "late.png", &["--time", "77"]).ends(0);
     assert!(beyond.stderr.contains("there is nothing at 77 s: the last frame, of 0.1"), "{beyond:#?}");
     for (file, start) in [("a.gif", &b"GIF89a"[..]), ("a.apng", b"\x89PNG"), ("a.glb", b"glTF")] {
@@ -133,7 +136,12 @@ fn skins_and_meshes() {
     souple_in(folder.path(), make).ends(0);
     let answer = render(&folder, "box.msh", "box.png", &["--white", "--no-time"]).ends(0).json();
     assert_eq!(answer["moments"], 1);
-    assert_eq!(size_of(&folder, "box.png"), [96, 64]);
+    // which has no time
+    render(&folder, "box.msh", "same.png", &["--white"]).ends(0);
+    let [timeless, same] =
+        ["box.png", "same.png"].map(|file| std::fs::read(folder.path().join(file)).expect("a picture"));
+    assert!(timeless == same);
+    assert_eq!(size_of(&folder, "box.png"), [240, 160]);
 }
 
 /// Runs that went astray are drawn as they were when they could be.
@@ -296,7 +304,7 @@ fn a_run_is_drawn_from_elsewhere() {
     folder.write("b/scene.toml", CUBE);
     let [here, there] = ["a", "b"].map(|name| folder.path().join(name));
     souple_in(&here, ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
-    let small = ["--size", "96,64", "--samples", "1", "--json"];
+    let small = ["--size", "240,160", "--samples", "1", "--json"];
     let from = |place: &Path, run: &str| {
         let call = ["render", run, "--out", "picture.png"];
         let answer = souple_in(place, call.iter().chain(&small)).ends(0).json();
@@ -331,6 +339,8 @@ fn faulty_requests() {
         ("bad", "a.png", &[], "the time of a frame is \"nan\""),
         ("lost", "a.png", &[], "x.vtu"),
         ("run", "a.png", &["--colour", "temperature"], "no body has the field `temperature`"),
+        ("run", "a.png", &["--colour", "gap"], "--against RUN"),
+        ("run", "a.png", &["--sheet", "4", "--size", "90,60"], "to each of 4 pictures"),
         ("run", "a.png", &["--colour", "velocity.w"], "velocity (.x, .y, .z)"),
         ("run", "a.png", &["--arrows", "von_mises"], "a vector of each point: displacement, velocity"),
         ("run", "a.png", &["--map", "sequental"], "did you mean `sequential`"),

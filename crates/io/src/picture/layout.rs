@@ -14,11 +14,24 @@ pub(super) struct Layout {
     /// Height of capitals of plain text.
     pub letter: f64,
     pub margin: f64,
+    /// Lowest row of marks: above the margin, or above a legend that lies below the subject.
+    pub floor: f64,
     /// The title in lines that fit, and the height of its capitals.
     title: Vec<String>,
     title_letter: f64,
     subtitle: Vec<String>,
     legend: Option<LegendBox>,
+}
+
+/// Where a legend may stand, and the letters that it is written in.
+#[derive(Clone, Copy)]
+struct Room {
+    width: f64,
+    height: f64,
+    /// Below the title.
+    top: f64,
+    letter: f64,
+    margin: f64,
 }
 
 /// The colour bar with its writing.
@@ -28,26 +41,44 @@ struct LegendBox {
     right: f64,
     top: f64,
     bottom: f64,
+    along: Along,
+    /// Parts of the way along the bar, and what they are called.
     ticks: Vec<(f64, String)>,
-    /// Parts of the way through the colours, of boxes of one height from below, where values have names; the whole way where
-    /// there are none.
+    /// Parts of the way through the colours, of boxes of one length from the start of the bar, where values have names; the whole
+    /// way where there are none.
     boxes: Vec<f64>,
     /// Of the ticks' names.
     widest: f64,
     title: Vec<String>,
-    /// Left border of everything of it, and the middle under its title.
+    /// Left and upper border of everything of it, and the middle under its title.
     edge: f64,
+    head: f64,
     middle: f64,
+}
+
+/// Which way the colours of a bar go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Along {
+    /// On the right of the subject.
+    Upward,
+    /// Below the subject.
+    Rightward,
 }
 
 /// Half the height of the bar, and the height of a box with a name, as parts of the picture's.
 const HALF_BAR: f64 = 0.21;
 const TALLEST_BOX: f64 = 0.06;
 
-/// Part of the width that a legend leaves to the subject at least, whose middle it would cover otherwise: a smaller picture has none.
-const LEAST_LEFT: f64 = 0.35;
+/// Part of the width that a legend on the right leaves to the subject at least, and of the height one below: where neither does, there
+/// is none.
+const LEAST_LEFT: f64 = 0.5;
+/// In pictures that are this much higher than wide, a legend is better below.
+const TALL: f64 = 1.2;
+/// A shorter bar shows no colours, in letters.
+const SHORTEST_BAR: f64 = 4.0;
 
-/// Most powers of ten that are named beside a bar.
+/// Most numbers beside a bar, about, and most powers of ten.
+const MOST_NUMBERS: usize = 5;
 const MOST_POWERS: usize = 7;
 
 /// Lines of a title that does not fit in one.
@@ -56,7 +87,7 @@ const MOST_LINES: usize = 3;
 impl Layout {
     pub fn of(picture: &Picture, range: (f64, f64)) -> Self {
         let [width, height] = picture.size.map(|side| side as f64);
-        let letter = (0.0165 * height.min(0.8 * width)).max(8.0);
+        let letter = (0.0165 * picture.letters * height.min(0.8 * width)).max(8.0);
         let margin = 0.045 * width.min(height);
         let room = width - 2.0 * margin;
         // a title that is a little too long is set smaller, one that is much too long in lines
@@ -65,20 +96,31 @@ impl Layout {
             (wanted * room / text_width(&picture.title, wanted).max(1.0)).clamp(0.75 * wanted, wanted);
         let title = wrapped(&picture.title, title_letter, room, MOST_LINES);
         let subtitle = wrapped(&picture.subtitle, letter, room, MOST_LINES);
-        let beside = picture.legend.as_ref().filter(|legend| legend.place == LegendPlace::Beside);
-        let legend =
-            beside.map(|legend| LegendBox::of((legend, picture.scale), range, picture.size, letter, margin));
-        let legend = legend.filter(|legend| legend.edge >= LEAST_LEFT * width);
         let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
+        let top = (margin + above).min(0.4 * height);
+        let beside = picture.legend.as_ref().filter(|legend| legend.place == LegendPlace::Beside);
+        let room = Room { width, height, top, letter, margin };
+        let legend = beside.and_then(|legend| {
+            let named = Named { legend, scale: picture.scale, range };
+            let beside = LegendBox::beside(named, room).filter(|legend| legend.edge >= LEAST_LEFT * width);
+            match beside {
+                Some(beside) if height <= TALL * width && !beside.is_cut() => Some(beside),
+                beside => LegendBox::below(named, room).or(beside),
+            }
+        });
         // room for the shade around the place of contact
         let shade = if picture.ground.is_some() { 0.07 * height } else { 0.0 };
-        let right =
-            legend.as_ref().map_or(width - margin, |legend| legend.edge - 1.2 * letter).max(0.5 * width);
-        let top = (margin + above).min(0.4 * height);
+        let (mut right, mut floor) = (width - margin, height - margin);
+        match &legend {
+            Some(legend) if legend.along == Along::Upward => right = legend.edge - 1.2 * letter,
+            Some(legend) => floor = legend.head - 0.8 * letter,
+            None => {}
+        }
         Self {
-            frame: Frame { left: margin, top, right, bottom: (height - margin - shade).max(top + 1.0) },
+            frame: Frame { left: margin, top, right, bottom: (floor - shade).max(top + 1.0) },
             letter,
             margin,
+            floor,
             title,
             title_letter,
             subtitle,
@@ -139,47 +181,161 @@ pub(super) fn veil(canvas: &mut Canvas, palette: &Palette, columns: [f64; 2], ro
     }
 }
 
+/// What the colours of a legend mean.
+#[derive(Clone, Copy)]
+struct Named<'a> {
+    legend: &'a Legend,
+    scale: ColourScale,
+    range: (f64, f64),
+}
+
+impl Named<'_> {
+    /// Parts of the way along a bar with their names, about `count` numbers no nearer to its ends than `nearest`, and the unit.
+    fn ticks(self, count: usize, nearest: f64) -> (Vec<(f64, String)>, String) {
+        let Self { legend, scale: colours, range: (low, high) } = self;
+        let of_numbers = match colours {
+            ColourScale::Linear => scale(low, high, &legend.unit, count.min(MOST_NUMBERS), nearest),
+            ColourScale::Logarithmic => {
+                log_scale(low, high, &legend.unit, (count + 2).min(MOST_POWERS), nearest)
+            }
+        };
+        if !legend.names.is_empty() {
+            let middle = |index: usize| (index as f64 + 0.5) / legend.names.len() as f64;
+            let names = legend.names.iter().enumerate();
+            return (
+                names.map(|(index, (_, name))| (middle(index), name.clone())).collect(),
+                of_numbers.unit,
+            );
+        }
+        let [below, above] = legend.beyond;
+        let named = |(value, name): (f64, String)| {
+            let name = match () {
+                () if below && value <= low => format!("≤ {name}"),
+                () if above && value >= high => format!("≥ {name}"),
+                () => name,
+            };
+            (colours.share(value, (low, high)), name)
+        };
+        (of_numbers.ticks.into_iter().map(named).collect(), of_numbers.unit)
+    }
+
+    fn boxes(self) -> Vec<f64> {
+        self.legend.names.iter().map(|(value, _)| self.scale.share(*value, self.range)).collect()
+    }
+
+    fn title(self, unit: &str, letter: f64, room: f64) -> Vec<String> {
+        let title = match unit {
+            "" => self.legend.title.clone(),
+            unit => format!("{} [{unit}]", self.legend.title),
+        };
+        wrapped(&title, letter, room, MOST_LINES)
+    }
+}
+
+fn widest<'a>(texts: impl IntoIterator<Item = &'a String>, letter: f64) -> f64 {
+    texts.into_iter().map(|text| text_width(text, letter)).fold(0.0, f64::max)
+}
+
 impl LegendBox {
-    fn of(
-        (legend, colours): (&Legend, ColourScale),
-        (low, high): (f64, f64),
-        size: [usize; 2],
-        letter: f64,
-        margin: f64,
-    ) -> Self {
-        let [width, height] = size.map(|side| side as f64);
-        let named = legend.names.len() as f64;
+    /// On the right; `None` where the bar would be too short for its colours.
+    fn beside(named: Named, room: Room) -> Option<Self> {
+        let Room { width, height, letter, margin, .. } = room;
+        let boxes = named.boxes();
         // boxes are no higher than they need to be
-        let half = if named > 0.0 { (0.5 * TALLEST_BOX * named).min(HALF_BAR) } else { HALF_BAR };
-        let (top, bottom) = ((0.5 - half) * height, (0.5 + half) * height);
-        let nearest = 1.8 * letter / (bottom - top);
-        let scale = match colours {
-            ColourScale::Linear => scale(low, high, &legend.unit, 5, nearest),
-            ColourScale::Logarithmic => log_scale(low, high, &legend.unit, MOST_POWERS, nearest),
+        let wanted = match boxes.len() {
+            0 => 2.0 * HALF_BAR * height,
+            count => {
+                let of_box = (TALLEST_BOX * height).min(2.0 * HALF_BAR * height / count as f64);
+                of_box.max(1.6 * letter) * count as f64
+            }
         };
-        let share = |value: f64| colours.share(value, (low, high));
-        let place = |share: f64| bottom - share * (bottom - top);
-        let ticks: Vec<(f64, String)> = if legend.names.is_empty() {
-            scale.ticks.into_iter().map(|(value, name)| (place(share(value)), name)).collect()
-        } else {
-            let middle = |index: usize| place((index as f64 + 0.5) / named);
-            legend.names.iter().enumerate().map(|(index, (_, name))| (middle(index), name.clone())).collect()
+        let of_title = |title: &[String]| (1.4 + 1.6 * title.len() as f64) * letter;
+        // how wide numbers are says how the title is wrapped, and that how long the bar may be, which says how many there are
+        let mut long = wanted;
+        for _ in 0..2 {
+            let (ticks, unit) = named.ticks((long / (2.0 * letter)) as usize, 1.8 * letter / long);
+            let widest = widest(ticks.iter().map(|(_, name)| name), letter);
+            let bar = 1.4 * letter;
+            let body = bar + 0.95 * letter + widest;
+            let title = named.title(&unit, letter, body.max(0.24 * width));
+            let highest = room.top + of_title(&title);
+            let lowest = height - margin - 0.5 * letter;
+            if wanted.min(lowest - highest) < long {
+                long = lowest - highest;
+                let least = (1.6 * boxes.len() as f64).max(SHORTEST_BAR);
+                if long < least * letter {
+                    return None;
+                }
+                continue;
+            }
+            let top = (0.5 * (height - long)).max(highest);
+            let across = body.max(self::widest(&title, letter));
+            let edge = width - margin - across;
+            // under the middle of its title
+            let left = edge + 0.5 * (across - body);
+            return Some(Self {
+                left,
+                right: left + bar,
+                top,
+                bottom: top + long,
+                along: Along::Upward,
+                ticks,
+                head: top - of_title(&title),
+                boxes,
+                widest,
+                title,
+                edge,
+                middle: edge + 0.5 * across,
+            });
+        }
+        None
+    }
+
+    /// Below the subject; `None` where that leaves too little of the picture, or the bar is too short for its numbers.
+    fn below(named: Named, room: Room) -> Option<Self> {
+        let Room { width, height, top, letter, margin } = room;
+        let boxes = named.boxes();
+        let (mut ticks, mut unit) = named.ticks(MOST_NUMBERS, 0.0);
+        let mut widest = widest(ticks.iter().map(|(_, name)| name), letter);
+        let long = |widest: f64| width - 2.0 * margin - widest;
+        // fewer numbers may be narrower, never wider
+        if boxes.is_empty() {
+            let count = (long(widest) / (1.5 * widest + letter)) as usize;
+            (ticks, unit) = named.ticks(count.max(1), (1.2 * widest + letter) / long(widest).max(1.0));
+            widest = self::widest(ticks.iter().map(|(_, name)| name), letter);
+        }
+        let between = widest + 0.7 * letter;
+        let places = match boxes.len() {
+            0 => ticks.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(1.0, f64::min),
+            count => 1.0 / count as f64,
         };
-        let boxes = legend.names.iter().map(|(value, _)| share(*value)).collect();
-        let widest = ticks.iter().map(|(_, name)| text_width(name, letter)).fold(0.0, f64::max);
-        let title = match scale.unit.as_str() {
-            "" => legend.title.clone(),
-            unit => format!("{} [{unit}]", legend.title),
-        };
-        let bar = 1.4 * letter;
-        let body = bar + 0.95 * letter + widest;
-        let title = wrapped(&title, letter, body.max(0.24 * width), MOST_LINES);
-        let head = title.iter().map(|line| text_width(line, letter)).fold(0.0, f64::max);
-        let edge = width - margin - body.max(head);
-        // under the middle of its title
-        let left = edge + 0.5 * (body.max(head) - body);
-        let middle = edge + 0.5 * body.max(head);
-        Self { left, right: left + bar, top, bottom, ticks, boxes, widest, title, edge, middle }
+        let long = long(widest);
+        if long < SHORTEST_BAR * letter || places * long < between {
+            return None;
+        }
+        let title = named.title(&unit, letter, width - 2.0 * margin);
+        let bar_bottom = height - margin - 1.7 * letter;
+        let bar_top = bar_bottom - 1.1 * letter;
+        let head = bar_top - (0.2 + 1.6 * title.len() as f64) * letter;
+        (head - top >= LEAST_LEFT * (height - top)).then(|| Self {
+            left: margin + 0.5 * widest,
+            right: width - margin - 0.5 * widest,
+            top: bar_top,
+            bottom: bar_bottom,
+            along: Along::Rightward,
+            ticks,
+            boxes,
+            widest,
+            title,
+            edge: margin,
+            head,
+            middle: 0.5 * width,
+        })
+    }
+
+    /// Whether its title has more words than room.
+    fn is_cut(&self) -> bool {
+        self.title.iter().any(|line| line.ends_with('…'))
     }
 
     /// The same so many pixels to the right.
@@ -192,44 +348,76 @@ impl LegendBox {
         let whole = |value: f64| value.max(0.0) as usize;
         let (left, right) = (whole(self.left), whole(self.right));
         let (top, bottom) = (whole(self.top), whole(self.bottom));
-        let above = (1.4 + 1.6 * self.title.len() as f64) * letter;
-        let rows = [self.top - above, self.bottom + 1.2 * letter];
-        veil(canvas, palette, [self.edge - 0.8 * letter, canvas.width as f64], rows);
+        let lowest = match self.along {
+            Along::Upward => self.bottom + 1.2 * letter,
+            Along::Rightward => canvas.height as f64,
+        };
+        veil(canvas, palette, [self.edge - 0.8 * letter, canvas.width as f64], [self.head, lowest]);
         canvas.fill(left.saturating_sub(1)..right + 1, top.saturating_sub(1)..bottom + 1, palette.ink, 0.8);
-        for row in top..bottom {
-            let along = 1.0 - (row - top) as f64 / ((bottom - top).max(2) as f64 - 1.0);
+        let colour = |along: f64| {
             let of_box =
                 self.boxes.get(((along * self.boxes.len() as f64) as usize).min(self.boxes.len().max(1) - 1));
-            let share = of_box.copied().unwrap_or(along);
-            canvas.fill(left..right, row..row + 1, picture.colours.colour(share), 1.0);
+            picture.colours.colour(of_box.copied().unwrap_or(along))
+        };
+        let share = |index: usize, count: usize| index as f64 / (count.max(2) as f64 - 1.0);
+        match self.along {
+            Along::Upward => {
+                for row in top..bottom {
+                    let of_row = colour(1.0 - share(row - top, bottom - top));
+                    canvas.fill(left..right, row..row + 1, of_row, 1.0);
+                }
+            }
+            Along::Rightward => {
+                for column in left..right {
+                    let of_column = colour(share(column - left, right - left));
+                    canvas.fill(column..column + 1, top..bottom, of_column, 1.0);
+                }
+            }
         }
-        for (y, label) in &self.ticks {
-            canvas.line(&[[self.right + 1.0, *y], [self.right + 0.45 * letter, *y]], 1.2, palette.ink);
-            canvas.text(
-                label,
-                // one under the other by their last digits
-                [self.right + 0.95 * letter + self.widest, y + 0.5 * letter],
-                letter,
-                Anchor::Right,
-                palette.ink,
-            );
+        for (along, label) in &self.ticks {
+            let (line, place, anchor) = match self.along {
+                Along::Upward => {
+                    let y = self.bottom - along * (self.bottom - self.top);
+                    // one under the other by their last digits
+                    let place = [self.right + 0.95 * letter + self.widest, y + 0.5 * letter];
+                    ([[self.right + 1.0, y], [self.right + 0.45 * letter, y]], place, Anchor::Right)
+                }
+                Along::Rightward => {
+                    let x = self.left + along * (self.right - self.left);
+                    let line = [[x, self.bottom + 1.0], [x, self.bottom + 0.35 * letter]];
+                    (line, [x, self.bottom + 1.7 * letter], Anchor::Middle)
+                }
+            };
+            canvas.line(&line, 1.2, palette.ink);
+            canvas.text(label, place, letter, anchor, palette.ink);
         }
+        let above = match self.along {
+            Along::Upward => 1.4,
+            Along::Rightward => 0.7,
+        };
         for (index, line) in self.title.iter().rev().enumerate() {
-            let y = self.top - 1.4 * letter - 1.6 * letter * index as f64;
+            let y = self.top - (above + 1.6 * index as f64) * letter;
             canvas.text(line, [self.middle, y], letter, Anchor::Middle, palette.ink);
         }
     }
 }
 
 impl Picture {
+    /// Whether a legend that is asked for within the picture has room there.
+    pub fn has_room_for_legend(&self) -> bool {
+        let is_within = self.legend.as_ref().is_some_and(|legend| legend.place == LegendPlace::Beside);
+        !is_within || Layout::of(self, self.range()).legend.is_some()
+    }
+
     /// The legend alone, as a strip of that height to stand beside a sheet of pictures; `None` where there is none.
     pub fn legend_strip(&self, height: usize) -> Option<Image> {
-        let letter = (0.018 * height as f64).clamp(8.0, 16.0);
+        let letter = (0.018 * height as f64).clamp(8.0, 20.0);
         let margin = 2.0 * letter;
         // laid out in a strip that is wide enough for any title, of which the free part is left out
-        let wide = 4 * height.max(64);
-        let legend = (self.legend.as_ref()?, self.scale);
-        let of = LegendBox::of(legend, self.range(), [wide, height], letter, margin);
+        let wide = (1.6 * height as f64).max(44.0 * letter) as usize;
+        let named = Named { legend: self.legend.as_ref()?, scale: self.scale, range: self.range() };
+        let room = Room { width: wide as f64, height: height as f64, top: letter, letter, margin };
+        let of = LegendBox::beside(named, room)?;
         let spare = of.edge - margin;
         let mut canvas = Canvas::new((wide as f64 - spare).ceil() as usize, height);
         let palette = self.palette();
@@ -254,22 +442,37 @@ impl Image {
         Self { width, height, pixels }
     }
 
-    /// The same below a strip with a title, the background of a picture of that theme going on under it.
-    pub fn titled(&self, title: &str, theme: Theme) -> Self {
-        let (palette, width) = (theme.palette(), self.width as f64);
-        let letter = (0.011 * width).max(8.0);
+    /// A strip with a title to stand above a sheet, the background of a picture of that theme going on under it.
+    pub fn title_strip(title: &str, width: usize, theme: Theme) -> Self {
+        let palette = theme.palette();
+        let letter = (0.011 * width as f64).max(8.0);
         let margin = 1.4 * letter;
-        let lines = wrapped(title, letter, width - 2.0 * margin, MOST_LINES);
+        let lines = wrapped(title, letter, width as f64 - 2.0 * margin, MOST_LINES);
         let height = margin + lines.len() as f64 * 1.65 * letter;
-        let mut strip = Canvas::new(self.width, height as usize);
-        strip.fill(0..self.width, 0..strip.height, palette.top, 1.0);
+        let mut strip = Canvas::new(width, height as usize);
+        strip.fill(0..width, 0..strip.height, palette.top, 1.0);
         for (index, line) in lines.iter().enumerate() {
             let baseline = margin + (0.8 + 1.65 * index as f64) * letter;
             strip.text(line, [margin, baseline], letter, Anchor::Left, palette.ink);
         }
-        let Self { height, mut pixels, .. } = strip.finish();
-        pixels.extend(&self.pixels);
-        Self { width: self.width, height: height + self.height, pixels }
+        strip.finish()
+    }
+
+    /// The same with another of the same width below.
+    pub fn above(&self, other: &Self) -> Self {
+        let pixels = [&self.pixels[..], &other.pixels[..]].concat();
+        Self { width: self.width, height: self.height + other.height, pixels }
+    }
+
+    /// The same in a size that is a little larger, to which its right and its lower border go on.
+    pub fn grown(&self, [width, height]: [usize; 2]) -> Self {
+        let mut pixels = Vec::with_capacity(width * height);
+        for row in 0..height {
+            let row = row.min(self.height.saturating_sub(1)) * self.width;
+            pixels
+                .extend((0..width).map(|column| self.pixels[row + column.min(self.width.saturating_sub(1))]));
+        }
+        Self { width, height, pixels }
     }
 }
 
@@ -338,27 +541,65 @@ mod tests {
         }
     }
 
-    /// However wide its numbers and its title: the legend is within the picture and the subject beside it.
+    /// However wide its numbers and its title, and however small or narrow the picture: the legend is within it, its numbers do not
+    /// touch, and the subject stands beside or above it; where there is no room for both there is no legend.
     #[test]
     fn the_subject_stands_beside_the_legend() {
         let tiny = Picture { size: [48, 40], legend: Some(Legend::default()), ..Picture::default() };
-        assert!(Layout::of(&tiny, (0.0, 1234.5)).legend.is_none());
-        for (title, high, size) in [
-            ("von Mises stress", 3.5e-7, [1280, 800]),
-            ("s", 1.0, [300, 900]),
-            ("a very long name of a quantity", 99_999.0, [640, 400]),
-        ] {
-            let legend = Legend { title: title.to_owned(), unit: "Pa".to_owned(), ..Legend::default() };
-            let picture = Picture { size, legend: Some(legend), ..Picture::default() };
-            let layout = Layout::of(&picture, (-high, high));
-            let legend = layout.legend.as_ref().unwrap();
-            let widest =
-                legend.ticks.iter().map(|tick| text_width(&tick.1, layout.letter)).fold(0.0, f64::max);
-            assert!(legend.right + 0.95 * layout.letter + widest <= size[0] as f64);
-            assert!(
-                legend.edge <= legend.left
-                    && (layout.frame.right < legend.edge || layout.frame.right <= 0.5 * size[0] as f64)
-            );
+        assert!(Layout::of(&tiny, (0.0, 1234.5)).legend.is_none() && !tiny.has_room_for_legend());
+        let names = vec![(0.0, "1234 tet".to_owned()), (1.0, "56 hex".to_owned())];
+        for size in [[1280, 800], [300, 900], [640, 400], [200, 150], [120, 400], [160, 120], [240, 100]] {
+            for (title, high, names) in [
+                ("von Mises stress", 3.5e-7, &[][..]),
+                ("s", 1.0, &[]),
+                ("a very long name of a quantity", 99_999.0, &[]),
+                ("element", 1.0, &names),
+            ] {
+                let title = title.to_owned();
+                let (unit, names) = ("Pa".to_owned(), names.to_vec());
+                let legend = Legend { title, unit, names, beyond: [true; 2], ..Legend::default() };
+                let picture = Picture {
+                    size,
+                    title: "A title of several words".to_owned(),
+                    subtitle: "0.125 s".to_owned(),
+                    legend: Some(legend),
+                    ..Picture::default()
+                };
+                let layout = Layout::of(&picture, (-high, high));
+                let Some(legend) = &layout.legend else {
+                    assert!(size[0] < 250 || size[1] < 150, "{size:?}");
+                    continue;
+                };
+                let letter = layout.letter;
+                let [width, height] = size.map(|side| side as f64);
+                assert!(legend.edge >= 0.0 && legend.edge <= legend.left);
+                assert!(legend.head >= layout.frame.top - 1e-9);
+                let mut ends: Vec<[f64; 2]> = legend
+                    .ticks
+                    .iter()
+                    .map(|(along, name)| match legend.along {
+                        Along::Upward => {
+                            assert!(legend.right + 0.95 * letter + legend.widest <= width);
+                            let y = along * (legend.bottom - legend.top);
+                            [y - 0.5 * letter, y + 0.5 * letter]
+                        }
+                        Along::Rightward => {
+                            let x = legend.left + along * (legend.right - legend.left);
+                            let half = 0.5 * text_width(name, letter);
+                            assert!(x - half >= 0.0 && x + half <= width);
+                            [x - half, x + half]
+                        }
+                    })
+                    .collect();
+                ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                assert!(ends.windows(2).all(|pair| pair[0][1] < pair[1][0]), "{size:?} {:?}", legend.ticks);
+                match legend.along {
+                    Along::Upward => {
+                        assert!(layout.frame.right < legend.edge && legend.bottom < height);
+                    }
+                    Along::Rightward => assert!(layout.frame.bottom < legend.head),
+                }
+            }
         }
     }
 }

@@ -8,6 +8,7 @@ use super::colour::Colour;
 use super::image::{Anchor, Canvas};
 use super::layout::Layout;
 use super::legend::scaled_unit;
+use super::lettering::text_width;
 
 /// Which marks a picture has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -78,7 +79,7 @@ fn write_triad(camera: &Camera, layout: &Layout, palette: &Palette, canvas: &mut
     let length = AXIS * letter;
     // letters stand a little beyond the ends
     let room = 1.5 * length;
-    let [x, y] = [layout.margin + room, canvas.height as f64 - layout.margin - room];
+    let [x, y] = [layout.margin + room, layout.floor - room];
     // in the camera's directions: to the right, up, away
     let seen = |axis: usize| [camera.right[axis], camera.up[axis], camera.forward[axis]];
     let mut axes = [0, 1, 2];
@@ -101,15 +102,12 @@ fn write_bar(
     palette: &Palette,
     canvas: &mut Canvas,
 ) {
-    let depth = camera.forward.dot(bounds.centre() - camera.eye);
-    let per_metre = camera.focal() / depth;
+    let per_metre = pixels_of_metre(camera, bounds);
     let Some(length) = round_below(LONGEST_BAR * canvas.width as f64 / per_metre) else { return };
-    let (factor, unit) = scaled_unit(length, "m");
-    // round: few digits, but for what division makes of them
-    let text = format!("{} {unit}", (length / factor * 1e3).round() / 1e3);
+    let text = in_words(length, "m");
     let letter = layout.letter;
     let right = canvas.width as f64 - layout.margin;
-    let (left, y) = (right - length * per_metre, canvas.height as f64 - layout.margin);
+    let (left, y) = (right - length * per_metre, layout.floor);
     let line = |points: [[f64; 2]; 2]| (points.to_vec(), 0.2 * letter, palette.ink);
     let end = |x: f64| line([[x, y - 0.4 * letter], [x, y + 0.4 * letter]]);
     let drawing = Drawing {
@@ -117,6 +115,63 @@ fn write_bar(
         texts: vec![(text, [0.5 * (left + right), y - 0.8 * letter], palette.ink)],
     };
     drawing.write(letter, palette, canvas);
+}
+
+/// As it is seen in the middle of the subject.
+fn pixels_of_metre(camera: &Camera, bounds: BoundingBox) -> f64 {
+    camera.focal() / camera.forward.dot(bounds.centre() - camera.eye)
+}
+
+/// A round number with a unit that suits it.
+fn in_words(value: f64, unit: &str) -> String {
+    let (factor, unit) = scaled_unit(value, unit);
+    // round: few digits, but for what division makes of them
+    let number = (value / factor * 1e3).round() / 1e3;
+    // a power of ten is one number with what stands before it
+    let between = if unit.starts_with("10") { "·" } else { " " };
+    format!("{number}{between}{unit}").trim_end().to_owned()
+}
+
+/// An arrow of a round length with what it means, in the lower right corner, above the bar of a length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArrowKey {
+    pub title: String,
+    pub unit: String,
+    /// Metres of arrow for each unit.
+    pub scale: f64,
+}
+
+/// Above the bar of a length, in letters.
+const ABOVE_BAR: f64 = 3.2;
+
+impl ArrowKey {
+    pub(super) fn write(
+        &self,
+        (camera, bounds): (&Camera, BoundingBox),
+        (layout, marks): (&Layout, Marks),
+        palette: &Palette,
+        canvas: &mut Canvas,
+    ) {
+        let pixels = pixels_of_metre(camera, bounds) * self.scale;
+        let Some(value) = round_below(LONGEST_BAR * canvas.width as f64 / pixels) else { return };
+        let letter = layout.letter;
+        let (right, long) = (canvas.width as f64 - layout.margin, value * pixels);
+        let y = layout.floor - if marks.scale_bar { ABOVE_BAR * letter } else { 0.0 };
+        let text = format!("{} {}", self.title, in_words(value, &self.unit));
+        // what is written is wider than the arrow: both in the middle of one box
+        let middle = right - 0.5 * long.max(text_width(&text, letter));
+        let (from, to) = (middle - 0.5 * long, middle + 0.5 * long);
+        let back = (0.9 * letter).min(0.5 * long);
+        let line = |points: Vec<[f64; 2]>| (points, 0.16 * letter, palette.ink);
+        let drawing = Drawing {
+            lines: vec![
+                line(vec![[from, y], [to, y]]),
+                line(vec![[to - back, y - 0.4 * letter], [to, y], [to - back, y + 0.4 * letter]]),
+            ],
+            texts: vec![(text, [middle, y - 0.9 * letter], palette.ink)],
+        };
+        drawing.write(letter, palette, canvas);
+    }
 }
 
 /// The largest of 1, 2, 5 times a power of ten that is not above a length; `None` where there is no such length.
@@ -142,6 +197,20 @@ mod tests {
             cases.iter().all(|(most, length)| (round_below(*most).unwrap() / length - 1.0).abs() < 1e-12)
         );
         assert!([0.0, -1.0, f64::NAN, f64::INFINITY].iter().all(|most| round_below(*most).is_none()));
+    }
+
+    /// A power of ten is one number with what stands before it.
+    #[test]
+    fn lengths_are_told_in_words() {
+        for (value, unit, words) in [
+            (0.05, "m", "50 mm"),
+            (2.0, "m/s", "2 m/s"),
+            (5e-11, "m", "50·10⁻¹² m"),
+            (0.2, "", "0.2"),
+            (2000.0, "", "2·10³"),
+        ] {
+            assert_eq!(in_words(value, unit), words);
+        }
     }
 
     /// The bar is as long as a thing of its length in the middle of what is shown, and the triad's axes run as the things along

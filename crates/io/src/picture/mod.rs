@@ -48,7 +48,7 @@ pub use image::Image;
 pub(crate) use image::{Anchor, Canvas};
 pub use images::{ImageFile, Images};
 pub(crate) use legend::{labels, ticks};
-pub use marks::Marks;
+pub use marks::{ArrowKey, Marks};
 pub use mesh_surface::{Between, Cut, MeshSurface};
 pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
 
@@ -78,6 +78,10 @@ pub struct Picture {
     pub colours: ColourMap,
     pub scale: ColourScale,
     pub marks: Marks,
+    /// What the length of arrows means.
+    pub key: Option<ArrowKey>,
+    /// Height of letters, in those of a picture that is looked at by itself.
+    pub letters: f64,
 }
 
 /// The quantity of a colour map.
@@ -90,6 +94,8 @@ pub struct Legend {
     pub place: LegendPlace,
     /// Names of values, in the place of numbers.
     pub names: Vec<(f64, String)>,
+    /// Whether there are values below the first and above the last colour.
+    pub beyond: [bool; 2],
 }
 
 /// Where a legend is drawn.
@@ -139,6 +145,8 @@ impl Default for Picture {
             colours: ColourMap::default(),
             scale: ColourScale::default(),
             marks: Marks::default(),
+            key: None,
+            letters: 1.0,
         }
     }
 }
@@ -227,6 +235,9 @@ impl Picture {
         }
         layout.write(self, &scene.palette, &mut canvas);
         self.marks.write((&scene.camera, bounds), &layout, &scene.palette, &mut canvas);
+        if let Some(key) = &self.key {
+            key.write((&scene.camera, bounds), (&layout, self.marks), &scene.palette, &mut canvas);
+        }
         Ok(canvas.finish())
     }
 

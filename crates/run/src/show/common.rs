@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use souple_io::picture::{ColourScale, Cut, MeshSurface};
+use souple_io::picture::{ColourMap, ColourScale, Cut, MeshSurface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
+use souple_table::four_digits;
 
 use super::figure::Figure;
 use super::{BodyMoment, Moment, Show, ShowError, Stage, vectors};
@@ -19,6 +20,10 @@ pub struct Common {
     /// About as much as a pixel shows [m].
     pub(super) pixel: f64,
     pub(super) range: Option<(f64, f64)>,
+    /// Whether there are values below and above the range.
+    pub(super) beyond: [bool; 2],
+    /// Digits behind the point that tell moments apart [s].
+    pub(super) time_digits: usize,
     pub(super) arrow_scale: f64,
     /// What is to be said of the pictures.
     pub notes: Vec<String>,
@@ -41,6 +46,30 @@ fn spread((low, high): (f64, f64), noise: f64) -> (f64, f64) {
         return (if low < 0.0 { -noise } else { 0.0 }, noise);
     }
     if high - low > (ONE_VALUE * most).max(noise) { (low, high) } else { (low.min(0.0), high.max(0.0)) }
+}
+
+/// What to say of a diverging map whose colours are not those of values about zero.
+fn about_zero(range: Option<(f64, f64)>, found: Option<(f64, f64)>) -> Option<String> {
+    match (range, found?) {
+        (Some((low, high)), _) if (low + high).abs() > ONE_VALUE * (high - low) => Some(format!(
+            "the middle colour of the diverging map stands for {}, the middle of the range, and not for zero",
+            four_digits(0.5 * (low + high))
+        )),
+        (None, (low, high)) if low > 0.0 || high < 0.0 => Some(format!(
+            "the values, {} to {}, are on one side of zero, which has the middle colour of the diverging map: half of its colours are not met",
+            four_digits(low),
+            four_digits(high)
+        )),
+        _ => None,
+    }
+}
+
+/// Digits behind the point that tell times [s] apart: three, or more where they are closer than that.
+fn time_digits(times: &[f64]) -> usize {
+    let apart = times.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let apart = if times.len() > 1 { apart.fold(f64::INFINITY, f64::min) } else { times.iter().sum() };
+    let digits = if apart > 0.0 && apart.is_finite() { 1.0 - libm::floor(libm::log10(apart)) } else { 0.0 };
+    digits.clamp(3.0, 9.0) as usize
 }
 
 /// Least and greatest of finite values.
@@ -221,8 +250,27 @@ impl<'a> Gathering<'a> {
         {
             notes.push(format!("values go down to {least:.1e}: those below {low:.1e} have the first colour"));
         }
+        if figure.colours == ColourMap::Diverging {
+            notes.extend(about_zero(figure.range, self.found));
+        }
+        let beyond = match (self.found, range) {
+            (Some(found), Some(range)) => {
+                let rounding = ONE_VALUE * (range.1 - range.0);
+                [found.0 < range.0 - rounding, found.1 > range.1 + rounding]
+            }
+            _ => [false; 2],
+        };
         let pixels = FILLED * figure.size[0].min(figure.size[1]).max(1) as f64;
-        Ok(Common { framed, bounds, pixel: bounds.diagonal() / pixels, range, arrow_scale, notes })
+        Ok(Common {
+            framed,
+            bounds,
+            pixel: bounds.diagonal() / pixels,
+            range,
+            beyond,
+            time_digits: time_digits(&self.times),
+            arrow_scale,
+            notes,
+        })
     }
 }
 
@@ -330,6 +378,30 @@ mod tests {
         outermost.add([&corners[..], &[Vec3::new(0.5, 0.1, 1.0)]].concat().iter());
         let kept = outermost.points();
         assert!(corners.iter().all(|corner| kept.contains(corner)), "{kept:?}");
+    }
+
+    /// The middle of a diverging map is zero, or it is said what it is.
+    #[test]
+    fn diverging_maps_are_about_zero() {
+        let said = |range, found| about_zero(range, Some(found)).unwrap_or_default();
+        assert_eq!(said(None, (-1.0, 3.0)) + &said(Some((-2.0, 2.0)), (1.0, 3.0)), "");
+        assert!(said(None, (1.0, 3.0)).contains("the values, 1 to 3, are on one side of zero"));
+        assert!(said(Some((-0.1, 0.02)), (-1.0, 3.0)).contains("stands for -0.04, the middle of the range"));
+    }
+
+    /// Times of a picture, and of several, differ where they are written.
+    #[test]
+    fn moments_are_told_apart() {
+        for (times, digits) in [
+            (&[0.0][..], 3),
+            (&[2.5], 3),
+            (&[0.00042], 5),
+            (&[0.0, 0.25, 0.5], 3),
+            (&[0.0, 0.000125, 0.00025], 5),
+            (&[1.0, 1.0], 3),
+        ] {
+            assert_eq!(time_digits(times), digits, "{times:?}");
+        }
     }
 
     /// Values are spread over the colours; one value has its colour between zero and itself; what rounding makes of

@@ -2,8 +2,8 @@
 
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
-    Backdrop, Colour, ColourMap, ColourScale, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend, LegendPlace,
-    Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
+    ArrowKey, Backdrop, Colour, ColourMap, ColourScale, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend,
+    LegendPlace, Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
 };
 use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
@@ -43,6 +43,8 @@ pub struct Figure {
     pub shrink: f64,
     pub arrows: Option<Arrows>,
     pub edges: EdgeStyle,
+    /// Height of letters, in those of a picture that is looked at by itself.
+    pub letters: f64,
 }
 
 /// What shadows fall on where the scene has no ground.
@@ -87,6 +89,7 @@ impl Default for Figure {
             shrink: 0.0,
             arrows: None,
             edges: EdgeStyle::Drawn,
+            letters: 1.0,
         }
     }
 }
@@ -103,8 +106,10 @@ const ARROW_ON_DARK: [u8; 3] = [236, 238, 242];
 const AXES: [[u8; 3]; 3] = [[200, 48, 48], [40, 150, 70], [50, 90, 210]];
 /// Their length next to all that is seen.
 const AXIS: f64 = 0.03;
-/// Most arrows of a body: more hide it.
-const MOST_ARROWS: usize = 400;
+/// Most arrows of a body: more hide it, and fewer in a smaller picture, by its lesser side; but so many at least.
+const MOST_ARROWS: f64 = 400.0;
+const ROOM_OF_ARROWS: f64 = 800.0;
+const LEAST_ARROWS: f64 = 40.0;
 /// Most dots of a body.
 const MOST_DOTS: usize = 100_000;
 
@@ -157,6 +162,11 @@ impl Figure {
             range: common.range,
             place,
             names: names_of(self.colours, moment),
+            beyond: common.beyond,
+        });
+        let key = self.arrows.as_ref().map(|arrows| {
+            let quantity = Quantity::parse(&arrows.field);
+            ArrowKey { title: quantity.title(), unit: quantity.unit().to_owned(), scale: common.arrow_scale }
         });
         let PictureView { direction, up } = stage.view;
         let view = self.view.unwrap_or_else(|| View::along(direction, up));
@@ -171,11 +181,17 @@ impl Figure {
             theme: self.theme,
             backdrop: self.backdrop,
             title: self.title.clone().unwrap_or_else(|| stage.title.clone()),
-            subtitle: if self.clock { format!("{:.3} s", moment.time) } else { String::new() },
+            subtitle: if self.clock {
+                format!("{:.*} s", common.time_digits, moment.time)
+            } else {
+                String::new()
+            },
             legend,
             colours: self.colours,
             scale: self.scale,
             marks: self.marks,
+            key,
+            letters: self.letters,
         }
     }
 
@@ -266,7 +282,9 @@ impl Figure {
             return Vec::new();
         };
         let points = MeshSurface::of(&body.mesh).points;
-        let every = points.len().div_ceil(MOST_ARROWS).max(1);
+        let room = self.size[0].min(self.size[1]) as f64 / ROOM_OF_ARROWS;
+        let most = (MOST_ARROWS * room * room).clamp(LEAST_ARROWS, MOST_ARROWS) as usize;
+        let every = points.len().div_ceil(most).max(1);
         let colour = Colour::from_screen(match self.theme {
             Theme::Light => ARROW,
             Theme::Dark => ARROW_ON_DARK,

@@ -106,13 +106,23 @@ impl Reel {
         (0..self.times.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0)
     }
 
-    /// At most `count` moments, evenly chosen, the first and the last among them.
+    /// At most `count` moments, those nearest to times that are evenly spread over the run, the first and the last among them.
     pub fn chosen(&self, count: usize) -> Vec<usize> {
         let all = self.times.len();
-        match count.clamp(1, all.max(1)) {
-            1 => (all.saturating_sub(1)..all).collect(),
-            wanted => (0..wanted).map(|index| index * (all - 1) / (wanted - 1)).collect(),
+        let wanted = count.clamp(1, all.max(1));
+        if wanted == 1 {
+            return (all.saturating_sub(1)..all).collect();
         }
+        let (start, end) = (self.times[0], self.times[all - 1]);
+        let mut chosen: Vec<usize> = Vec::with_capacity(wanted);
+        for index in 0..wanted {
+            let time = start + (end - start) * index as f64 / (wanted - 1) as f64;
+            // each one after the one before, and as many left as are to come
+            let first = chosen.last().map_or(0, |last| last + 1);
+            let left = wanted - index - 1;
+            chosen.push(if left == 0 { all - 1 } else { self.nearest(time).clamp(first, all - 1 - left) });
+        }
+        chosen
     }
 
     /// Reads a moment; `before` lends its meshes where cells are the same.
@@ -182,5 +192,30 @@ impl BodyMoment {
             _ => Arc::new(mesh),
         };
         Ok(Self { name: name.to_owned(), mesh, positions, point_fields, cell_fields, frames: Vec::new() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Moments are those nearest to times evenly apart, each once, the first and the last among them; also where times are uneven.
+    #[test]
+    fn moments_are_evenly_spread() {
+        let chosen = |times: &[f64], count: usize| {
+            let takes = Takes::Held(Vec::new());
+            let reel = Reel { stage: Stage::default(), times: times.to_vec(), takes, against: None };
+            reel.chosen(count)
+        };
+        let even: Vec<f64> = (0..=30).map(f64::from).collect();
+        assert_eq!(chosen(&even, 7), [0, 5, 10, 15, 20, 25, 30]);
+        assert_eq!(chosen(&even, 9), [0, 4, 7, 11, 15, 19, 22, 26, 30]);
+        let ten: Vec<f64> = (0..10).map(f64::from).collect();
+        assert_eq!(chosen(&ten, 4), [0, 3, 6, 9]);
+        assert_eq!((chosen(&ten, 1), chosen(&ten, 99).len()), (vec![9], 10));
+        let uneven = [0.0, 0.1, 0.2, 0.3, 1.0];
+        assert_eq!((chosen(&uneven, 3), chosen(&uneven, 4)), (vec![0, 3, 4], vec![0, 2, 3, 4]));
+        assert_eq!(chosen(&[2.0, 2.0, 2.0], 2), [0, 2]);
+        assert!(chosen(&[], 3).is_empty());
     }
 }

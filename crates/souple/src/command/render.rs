@@ -2,6 +2,7 @@
 
 mod figure;
 mod fit;
+mod sheet;
 
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
@@ -18,6 +19,7 @@ use souple_run::show::{Figure, Gathering, Moment, Reel, Show, ShowError, Stage, 
 use tempfile::TempDir;
 
 use self::fit::Source;
+use self::sheet::Sheet;
 use super::progress::Meter;
 use super::run::play;
 use super::{
@@ -33,7 +35,7 @@ pub struct Arguments {
     /// .png: one picture or a sheet; .gif, .apng, .mp4: a film; .glb: the moving surfaces
     #[arg(long)]
     out: PathBuf,
-    /// Width and height in pixels, of a sheet those of each of its pictures
+    /// Width and height in pixels; of a sheet those of the whole
     #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = list::<2>, allow_hyphen_values = true)]
     size: Option<[f64; 2]>,
     /// Moment to show, as `0.5` or `500 ms`, to the nearest frame; the last by default
@@ -73,7 +75,7 @@ pub struct Arguments {
     /// Draws each cell smaller by this part of its size, about its own middle
     #[arg(long, default_value_t = 0.0, conflicts_with = "cut")]
     shrink: f64,
-    /// Arrows of a vector field: `displacement`, `velocity`
+    /// Arrows of a vector field, `displacement` or `velocity`, each from where its point stands; a key tells their length
     #[arg(long, value_name = "FIELD")]
     arrows: Option<String>,
     /// Metres of arrow for each unit of the field; fitted if left out
@@ -168,6 +170,10 @@ fn per_second(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "a film can be played at 0.1 to 100 frames per second".to_owned())
 }
 
+/// What to say of a picture without a legend that it should have.
+const NO_ROOM: &str =
+    "the picture is too small for a legend beside its colours: there is none; expected a larger `--size`";
+
 /// Most frames of a film where nothing is said.
 const FRAMES: u64 = 60;
 
@@ -224,7 +230,9 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
         reel = reel.without_worn();
     }
     let view = figure::view(arguments, &reel.stage)?;
-    let figure = Figure { view: Some(view), ..figure };
+    // a mesh by itself has no time
+    let clock = figure.clock && source != Source::Mesh;
+    let figure = Figure { view: Some(view), clock, ..figure };
     let Some(count) = draw(arguments, kind, (&reel, &scratch), figure, &mut notes)? else {
         return Ok(End::Interrupted);
     };
@@ -276,16 +284,20 @@ fn draw(
             let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
             let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
             let legend = figure.legend.map(|_| LegendPlace::Apart);
-            let figure = Figure { title: Some(String::new()), backdrop, legend, ..figure };
-            let (pictures, of_all) = figure.pictures(&show)?;
+            let whole = arguments.size.map(|_| figure.size);
+            let size = sheet::about(chosen.len(), whole);
+            let letters = sheet::LETTERS;
+            let figure = Figure { title: Some(String::new()), backdrop, legend, size, letters, ..figure };
+            let (mut pictures, of_all) = figure.pictures(&show)?;
             notes.extend(of_all);
+            let sheet = Sheet::new(&pictures, whole, (&title, figure.theme))?;
+            pictures.iter_mut().for_each(|picture| picture.size = sheet.cell);
+            if pictures.iter().any(|picture| picture.legend.is_some()) && !sheet.has_legend() {
+                notes.push(NO_ROOM.to_owned());
+            }
             let meter = Meter::new("pictures", arguments.quiet);
             let Some(images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
-            let sheet = Image::sheet(&images, columns(images.len()));
-            let legend = pictures.iter().find_map(|picture| picture.legend_strip(sheet.height));
-            let sheet = legend.map_or_else(|| sheet.clone(), |legend| sheet.beside(&legend));
-            let sheet = if title.is_empty() { sheet } else { sheet.titled(&title, figure.theme) };
-            write_picture(arguments, &sheet)?;
+            write_picture(arguments, &sheet.of(&images))?;
         }
         Kind::Picture => {
             let moment = match arguments.time {
@@ -299,6 +311,9 @@ fn draw(
             let (pictures, of_all) = figure.pictures(&show)?;
             notes.extend(of_all);
             for picture in pictures {
+                if !picture.has_room_for_legend() {
+                    notes.push(NO_ROOM.to_owned());
+                }
                 write_picture(arguments, &picture.render()?)?;
             }
         }
@@ -345,6 +360,9 @@ fn film(
             pictures.push(figure.picture_in(&reel.stage, &moment, &common));
             before = Some(moment);
         }
+        if film.count() == 0 && pictures.iter().any(|picture| !picture.has_room_for_legend()) {
+            notes.push(NO_ROOM.to_owned());
+        }
         let Some(images) = images(&pictures, (&meter, film.count(), chosen.len()))? else { return Ok(None) };
         images.iter().try_for_each(|image| film.push(image))?;
     }
@@ -390,6 +408,8 @@ fn reel(
         Kind::Picture => arguments.sheet.unwrap_or(if arguments.time.is_some() { 200 } else { 1 }),
         _ => arguments.frames.unwrap_or(FRAMES),
     };
+    // the start is shown beside the frames that are written on the way
+    let wanted = if wanted > 1 { wanted - 1 } else { 1 };
     let options = Options {
         out: Some(folder.clone()),
         frames: Some(wanted),
@@ -481,11 +501,6 @@ fn write_picture(arguments: &Arguments, image: &Image) -> Result<(), Refusal> {
     let out = &arguments.out;
     let written = if arguments.compact { image.write_compact_png(out) } else { image.write_png(out) };
     Ok(written?)
-}
-
-/// Columns of a sheet that is about as wide as high.
-fn columns(count: usize) -> usize {
-    (1..=count).find(|columns| columns * columns >= count).unwrap_or(1)
 }
 
 /// [s]

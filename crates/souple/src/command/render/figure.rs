@@ -70,8 +70,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         let message = format!("cells cannot shrink by {} of their size", arguments.shrink);
         return Err(Refusal::request("shrink", arguments.shrink.to_string(), "0 to less than 1", message));
     }
-    let size =
-        arguments.size.unwrap_or(if arguments.sheet.is_some() { [640.0, 480.0] } else { [1280.0, 800.0] });
+    let size = arguments.size.unwrap_or([1280.0, 800.0]);
     let is_one = kind == Kind::Picture && arguments.sheet.is_none();
     let samples = arguments.samples.unwrap_or(if is_one { 3 } else { 2 });
     let cut = arguments.cut.map(|[x, y, z, d]| {
@@ -105,6 +104,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
             .as_ref()
             .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
         edges,
+        letters: 1.0,
         floor: if arguments.floor { Floor::Below } else { Floor::None },
     })
 }

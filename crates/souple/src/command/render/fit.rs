@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use souple_io::{FORMATS, Format};
+use souple_run::show::GAP;
 use souple_table::Entry;
 
 use super::{Arguments, KINDS, Kind};
@@ -94,6 +95,13 @@ pub fn check(arguments: &Arguments, kind: Kind, source: Source) -> Result<(), Re
         let from = arguments.source.display().to_string();
         let message = format!("--set changes a scene before it is run, and {from} is none");
         return Err(Refusal::request("set", from, "a scene", message));
+    }
+    let measures_gap =
+        arguments.colour.as_deref().is_some_and(|colour| colour.split('.').next() == Some(GAP));
+    if measures_gap && arguments.against.is_none() {
+        let message =
+            "the quantity `gap` is how far bodies stand from those of another run, and none is given";
+        return Err(Refusal::request("against", "", "--against RUN, the folder of that run", message));
     }
     let size = arguments.size.unwrap_or_default();
     if kind == Kind::Film && size.iter().any(|side| side.round() % 2.0 != 0.0) {
