@@ -70,6 +70,12 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
         let expected = "OFF, COFF, NOFF or CNOFF, as text";
         return Err(Fault::new(place, "the kind of the OFF file", quoted(&words.join(&b' ')), expected));
     }
+    let numbers = match words[0] {
+        b"NOFF" => "x, y, z and a normal",
+        b"COFF" => "x, y, z and a colour",
+        b"CNOFF" => "x, y, z, a normal and a colour",
+        _ => "x, y and z",
+    };
     // the counts stand behind the kind or on the next line
     words.remove(0);
     let (place, counts) = if words.is_empty() { lines.expect("the counts", COUNTS)? } else { (place, words) };
@@ -77,11 +83,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
 
     let mut dataset = Dataset::default();
     for point in 0..point_count {
-        let (place, words) = lines.expect(&format!("point {point} of {point_count}"), "x, y and z")?;
+        let (place, words) = lines.expect(&format!("point {point} of {point_count}"), numbers)?;
         // with a normal, a colour of three or four numbers, or both; a facet among points has another length
         if ![1, 2, 3, 6, 7, 9, 10].contains(&words.len()) {
             let found = format!("{} numbers", words.len());
-            return Err(Fault::new(place, format!("point {point} of {point_count}"), found, "x, y and z"));
+            return Err(Fault::new(place, format!("point {point} of {point_count}"), found, numbers));
         }
         let mut position = [0.0; 3];
         for (axis, coordinate) in position.iter_mut().enumerate() {
@@ -207,6 +213,11 @@ mod tests {
             ("4 3 5", "4 -3 5", "the number of facets is \"-3\""),
             ("4 3 5", "4 4 5", "facet 3 of 4 is missing"),
             ("4 3 5", "5 2 5", "line 8: point 4 of 5 is 4 numbers; expected x, y and z"),
+            (
+                "OFF # a tent\n\n4 3 5",
+                "NOFF 5 2 5",
+                "point 4 of 5 is 4 numbers; expected x, y, z and a normal",
+            ),
             ("4 3 5", "3 4 5", "line 7: the number of corners of facet 0 is \"0.5\""),
             ("1 1 0", "1 inf 0", "line 6: y of point 2 is \"inf\"; expected a finite number"),
             ("1 1 0", "1 1", "line 6: z of point 2 is \"\""),

@@ -1,5 +1,7 @@
 //! What can be wrong with a mesh.
 
+use souple_table::{counted, in_number};
+
 use crate::ElementKind;
 
 /// A mesh, or a request for one, that cannot be used.
@@ -15,7 +17,7 @@ pub enum MeshError {
     TooManyPoints { count: usize },
     #[error("{kind} block holds {count} node numbers; expected a multiple of {}", .kind.node_count())]
     BlockLength { kind: ElementKind, count: usize },
-    #[error("{list}[{cell}] ({kind}) refers to point {point}, but the mesh has {point_count} points")]
+    #[error("{list}[{cell}] ({kind}) refers to point {point}, but the mesh has {}", counted(*.point_count as u64, "point"))]
     MissingPoint { list: &'static str, cell: u32, kind: ElementKind, point: u32, point_count: usize },
     #[error("{list}[{cell}] ({kind}) has point {point} twice; expected {} different points", .kind.node_count())]
     DuplicateNode { list: &'static str, cell: u32, kind: ElementKind, point: u32 },
@@ -40,8 +42,8 @@ pub enum MeshError {
     )]
     QuadrilateralMeetsTriangles { cell: u32, triangle_cells: [u32; 2] },
     #[error(
-        "the surface is open or badly oriented at the edge between points {a} and {b}: {forward} triangles run \
-         along it and {backward} against it; expected one of each"
+        "the surface is open or badly oriented at the edge between points {a} and {b}: {} along it \
+         and {backward} against it; expected one of each", in_number(*.forward as usize, "triangle runs", "triangles run")
     )]
     OpenSurface { a: u32, b: u32, forward: u32, backward: u32 },
     #[error("triangles[{triangle}] has no area; expected three points that are not on one line")]

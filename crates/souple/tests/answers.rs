@@ -158,9 +158,9 @@ fn fillings_are_refused_in_words() {
         souple_in(folder.path(), call).ends(2)
     };
     for (arguments, words) in [
-        (&["flat.obj", "a.msh", "size=0.1"][..], &["the surface is flat", "1.000 x 1.000 x 0.000"][..]),
+        (&["flat.obj", "a.msh", "size=0.1"][..], &["the surface is flat", "1 x 1 x 0 m"][..]),
         (&["open.obj", "a.msh", "size=0.1"], &["the surface has holes", "6 edges"]),
-        (&["large.stl", "a.msh", "size=0.5"], &["measures 900.000 x 900.000 x 900.000 m", "scale=0.001"]),
+        (&["large.stl", "a.msh", "size=0.5"], &["in a box of 900 x 900 x 900 m", "scale=0.001"]),
         (
             &["liver", "a.msh", "size=0.02", "growth=0.5", "largest=0.01"],
             &["`largest` is 0.01 m", "at least the size"],

@@ -147,7 +147,7 @@ fn fillings_that_cannot_be() {
         (
             "formula",
             &["formula=1", "low=-1,-1,-1", "high=1,1,1", "size=0.2"],
-            "the least value of the shape on the lattice is 1e0",
+            "its least value there is 1, and inside it is below 0",
         ),
     ] {
         let call = ["mesh", "fill", input, "out.msh"].into_iter().chain(parameters.iter().copied());
@@ -157,6 +157,27 @@ fn fillings_that_cannot_be() {
     // a box without its lid has most of an inside: it is filled, and what is not certain is said
     let open = souple_in(folder.path(), ["mesh", "fill", "open.obj", "out.msh", "size=0.1"]).ends(0);
     assert!(open.stdout.contains("the inside is not certain"), "{}", open.stdout);
+}
+
+/// What is accepted is said once, in a line of its own or in the message.
+#[test]
+fn refusals_say_once_what_is_expected() {
+    let folder = Folder::new("once");
+    folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (call, words) in [
+        (&["torus", "out.msh", "size=5kg"][..], "a length [m] is wanted"),
+        (&["torus", "out.msh", "size=5kg"], "expected a number of at least 0 [m]"),
+        (&["torus", "out.msh"], "expected one of them above 0"),
+        (&["torus", "out.msh", "count=1e12"], "must be a whole number between 0 and 50000000"),
+        (&["flat.obj", "out.msh", "size=0.1"], "it measures 1 x 1 x 0 m"),
+        (&["flat.obj", "out.msh", "size=0.1"], "expected one that encloses something"),
+        (&["torus", "out.msh", "size=1e-7"], "cells of 1e-7 m in a box of"),
+    ] {
+        let refused =
+            souple_in(folder.path(), ["mesh", "fill"].into_iter().chain(call.iter().copied())).ends(2);
+        assert!(refused.stderr.contains(words), "{call:?}: {}", refused.stderr);
+        assert!(refused.stderr.matches("expected").count() <= 1, "{call:?}: {}", refused.stderr);
+    }
 }
 
 /// A study is run into its database, table and graphs; what it asks for in vain is named.

@@ -7,7 +7,7 @@ use souple_table::{Parameter, Range, Value, Values, in_number, readable};
 use super::lattice::points_of;
 use super::{Cells, FillError, Grading, Part, Reach, Size, fill, lost};
 use crate::implicit::{Body, FormulaShape, Shape};
-use crate::{Cell, ElementKind, Mesh, MeshError};
+use crate::{Cell, ElementKind, Mesh, MeshError, available_memory};
 
 /// Parameters of every filling.
 pub const PARAMETERS: &[Parameter] = &[
@@ -166,6 +166,14 @@ impl Options {
         Size { smallest, grading }
     }
 
+    /// How many cells are asked for; `None` where a size is.
+    pub fn count(&self) -> Option<f64> {
+        match self.wanted {
+            Wanted::Count(count) => Some(count),
+            Wanted::Size(_) => None,
+        }
+    }
+
     /// Cells inside are not smaller than at the surface.
     fn check_largest(&self, size: f64) -> Result<(), MeshError> {
         match self.largest {
@@ -266,6 +274,7 @@ impl Options {
         parts: &[Part<'_>],
         count: f64,
     ) -> Result<(Mesh, Size), MeshError> {
+        self.cells.check_memory(count, available_memory())?;
         let extent = shape.bounds().size();
         let mut size = Size::for_count(extent.x * extent.y * extent.z, count);
         let mut best: Option<Attempt> = None;

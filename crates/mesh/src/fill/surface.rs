@@ -1,5 +1,7 @@
 //! Fills what triangles enclose: mended first, everything said.
 
+use souple_table::four_digits;
+
 use super::{FillError, Options, groups, lost};
 use crate::implicit::{Shape, Sign, SurfaceShape};
 use crate::repair::{RepairLimits, SurfaceRepairs, repair};
@@ -92,8 +94,9 @@ fn filled(
     if volume < KEPT * enclosed {
         let percent = 100.0 * volume / enclosed;
         notes.push(format!(
-            "the filling holds {volume:.4e} m³ of the {enclosed:.4e} m³ that the surface encloses, {percent:.0} %: \
-             {}",
+            "the filling holds {} m³ of the {} m³ that the surface encloses, {percent:.0} %: {}",
+            four_digits(volume),
+            four_digits(enclosed),
             if shape.sign() == Sign::WindingNumber {
                 "parts that overlap count once, and what is thinner than its cells is lost"
             } else {
@@ -112,11 +115,11 @@ fn lost_reach(shape: &SurfaceShape, mesh: &Mesh) -> Option<String> {
     let (wanted, found) = (shape.bounds().size().to_array(), mesh.bounds().size().to_array());
     let axis = (0..3).find(|axis| found[*axis] < REACHED * wanted[*axis])?;
     Some(format!(
-        "the filling is {:.3e} m long along {}, where the surface is {:.3e} m: ends that are thinner than its cells, or around \
+        "the filling is {} m long along {}, where the surface is {} m: ends that are thinner than its cells, or around \
          which the surface does not wind, are not filled",
-        found[axis],
+        four_digits(found[axis]),
         ["x", "y", "z"][axis],
-        wanted[axis]
+        four_digits(wanted[axis])
     ))
 }
 

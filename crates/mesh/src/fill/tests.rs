@@ -46,6 +46,18 @@ fn assert_sound(mesh: &mut Mesh) {
     assert!((inside - enclosed).abs() < bound * inside, "{inside} {enclosed}");
 }
 
+/// What does not fit into the memory is refused with both figures; where the system tells none, nothing is.
+#[test]
+fn what_does_not_fit_is_refused() {
+    let refused = |available| Cells::Tetrahedra.check_memory(5e7, available);
+    assert!(refused(None).is_ok() && refused(Some(1 << 40)).is_ok());
+    let message = refused(Some(8_000_000_000)).unwrap_err().to_string();
+    assert!(
+        message.contains("about 5.0e7 cells take 11.0 GB of memory to make, and 8.0 GB are available"),
+        "{message}"
+    );
+}
+
 /// The proven bounds hold for many shapes that lie to the lattice in every way.
 #[test]
 fn angles_of_uniform_fillings() {

@@ -5,7 +5,7 @@
 //! what may. Contacts, factors of direct solvers and pictures come on top.
 
 use souple_engine::Pair;
-use souple_mesh::MeshSize;
+use souple_mesh::{MeshSize, available_memory, gigabytes};
 
 use super::bodies::Placed;
 use super::network::size as network_size;
@@ -86,7 +86,7 @@ pub fn check_specified(spec: &Spec, sources: &Sources, log: &Log) {
         };
         Some(Needs { body: &body.name, site: mesh.site(), bytes, size })
     });
-    check(&needs.collect::<Vec<_>>(), available(), log);
+    check(&needs.collect::<Vec<_>>(), available_memory(), log);
 }
 
 /// The same when all is known of the meshes, before forces and matrices are made.
@@ -104,17 +104,17 @@ pub fn check_placed(spec: &Spec, bodies: &[Placed], log: &Log) {
             size: counts(size),
         }
     });
-    check(&needs.collect::<Vec<_>>(), available(), log);
+    check(&needs.collect::<Vec<_>>(), available_memory(), log);
 }
 
 /// Links for which there is memory.
 pub fn links_that_fit() -> usize {
-    available().map_or(LINKS_MAX, |bytes| LINKS_MAX.min(bytes / LINK)) as usize
+    available_memory().map_or(LINKS_MAX, |bytes| LINKS_MAX.min(bytes / LINK)) as usize
 }
 
 /// Pairs of a crowd for which there is memory.
 pub fn pairs_that_fit() -> usize {
-    available().map_or(u64::MAX, |bytes| bytes / PAIR) as usize
+    available_memory().map_or(u64::MAX, |bytes| bytes / PAIR) as usize
 }
 
 /// What a body of that size needs at least, with so many bytes for each cell [bytes].
@@ -153,10 +153,6 @@ fn check(needs: &[Needs], available: Option<u64>, log: &Log) {
     );
 }
 
-fn gigabytes(bytes: u64) -> String {
-    format!("{:.1} GB", bytes as f64 * 1e-9)
-}
-
 /// Implicit steppers store a matrix, unless they are told to do without.
 fn matrix_of(spec: &Spec, system: &str) -> Matrix {
     let stepper = spec.systems.iter().find(|candidate| candidate.name == system);
@@ -165,29 +161,6 @@ fn matrix_of(spec: &Spec, system: &str) -> Matrix {
         Some(souple_table::Value::Boolean(false)) => Matrix::Stored,
         _ => Matrix::None,
     }
-}
-
-/// Bytes that can be had: what the system says is available, or what is left to the group the process is in, if
-/// less; `None` where the system does not tell.
-fn available() -> Option<u64> {
-    let text = |path: &str| std::fs::read_to_string(path).ok();
-    let system = text("/proc/meminfo").and_then(|meminfo| {
-        Some(1024 * (entry(&meminfo, "MemAvailable:")? + entry(&meminfo, "SwapFree:").unwrap_or(0)))
-    })?;
-    let group = || {
-        let most: u64 = text("/sys/fs/cgroup/memory.max")?.trim().parse().ok()?;
-        let used: u64 = text("/sys/fs/cgroup/memory.current")?.trim().parse().ok()?;
-        // files held in memory are given up when it is needed
-        let cached = text("/sys/fs/cgroup/memory.stat").and_then(|stat| entry(&stat, "inactive_file"));
-        Some(most.saturating_sub(used.saturating_sub(cached.unwrap_or(0))))
-    };
-    Some(group().map_or(system, |group| group.min(system)))
-}
-
-/// The number behind a word at the start of a line.
-fn entry(text: &str, name: &str) -> Option<u64> {
-    let line = text.lines().find(|line| line.split_whitespace().next() == Some(name))?;
-    line.split_whitespace().nth(1)?.parse().ok()
 }
 
 #[cfg(test)]
@@ -219,11 +192,5 @@ mod tests {
         for words in ["needs at least 43.5 GB", "8.0 GB are available", "`large`", "10000000 points"] {
             assert!(refused[0].message.contains(words), "{}", refused[0].message);
         }
-    }
-
-    #[test]
-    fn entries_are_found_by_their_whole_name() {
-        let text = "MemFree: 5 kB\nMemAvailable:  7 kB\n";
-        assert_eq!((entry(text, "MemAvailable:"), entry(text, "Mem")), (Some(7), None));
     }
 }

@@ -140,9 +140,13 @@ impl Refusal {
             Some(text) => print_note(text),
             None => {
                 for error in &self.errors {
-                    print_note(format_args!("error: {}", error["message"].as_str().unwrap_or_default()));
+                    let message = error["message"].as_str().unwrap_or_default();
+                    print_note(format_args!("error: {message}"));
+                    // what the message has said is not said again
+                    let is_said =
+                        |expected: &str| message.contains("; expected ") || message.contains(expected);
                     match error["expected"].as_str() {
-                        Some(expected) if !expected.is_empty() => {
+                        Some(expected) if !is_said(expected) => {
                             print_note(format_args!("  = expected {expected}"));
                         }
                         _ => {}

@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::sync::Mutex;
+use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -12,8 +13,12 @@ const TICK: Duration = Duration::from_millis(120);
 /// Time between lines.
 const LINES: Duration = Duration::from_secs(5);
 
-/// Tells on a terminal that work goes on of which nobody knows how long it takes.
-pub struct Pulse(ProgressBar);
+/// Tells that work goes on of which nobody knows how long it takes: turning on a terminal, by a line now and then elsewhere.
+pub struct Pulse {
+    bar: ProgressBar,
+    /// Ends the lines when dropped; `None` where none are written.
+    _lines: Option<Sender<()>>,
+}
 
 impl Pulse {
     pub fn new(work: &'static str, quiet: bool) -> Self {
@@ -25,13 +30,26 @@ impl Pulse {
         }
         bar.set_message(work);
         bar.enable_steady_tick(TICK);
-        Self(bar)
+        Self { bar, _lines: (!quiet && !is_drawn).then(|| Self::lines(work)) }
+    }
+
+    /// Lines after ever longer times, until the other end is dropped.
+    fn lines(work: &'static str) -> Sender<()> {
+        let (running, end) = mpsc::channel();
+        std::thread::spawn(move || {
+            let (start, mut wait) = (Instant::now(), LINES);
+            while end.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
+                print_note(format_args!("{work}, for {} s so far", start.elapsed().as_secs()));
+                wait *= 2;
+            }
+        });
+        running
     }
 }
 
 impl Drop for Pulse {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 

@@ -6,20 +6,24 @@ use souple_mesh::fill::{FillError, Options, PARAMETERS, fill_mesh, surface_of};
 use souple_mesh::implicit::SHAPES;
 use souple_mesh::repair::{RepairLimits, repair};
 use souple_mesh::simplify::{Goal, simplify};
-use souple_mesh::{ElementKind, Mesh, MeshError, TriangleSurface};
-use souple_table::{Parameter, Range, Value, ValueError, Values, in_number, nearest};
+use souple_mesh::{ElementKind, Mesh, MeshError, TriangleSurface, gigabytes};
+use souple_table::{Parameter, Range, Value, ValueError, Values, four_digits, in_number, nearest};
 
 use super::{announce, parameters, read};
-use crate::command::Refusal;
 use crate::command::progress::Pulse;
+use crate::command::{Refusal, print_note};
 
 pub const SCALE: Parameter =
     Parameter::number("scale", "", Range::POSITIVE, "metres in one unit of the file").or(Value::Number(1.0));
 
 /// What parameters a filling takes, as `--help` prints it.
 pub fn parameters_help() -> String {
+    parameters_in_words(PARAMETERS.iter().chain([&SCALE]))
+}
+
+pub fn parameters_in_words<'a>(parameters: impl IntoIterator<Item = &'a Parameter>) -> String {
     let mut text = "Parameters:\n".to_owned();
-    for parameter in PARAMETERS.iter().chain([&SCALE]) {
+    for parameter in parameters {
         let default = parameter.default.map(|value| format!(", default {value}")).unwrap_or_default();
         text += &format!(
             "  {}: {}\n      {}{default}\n",
@@ -34,24 +38,28 @@ pub fn parameters_help() -> String {
 /// Fills a file's surface, or a shape known by name.
 pub fn fill(input: &str, texts: &[String], quiet: bool) -> Result<(Mesh, Vec<String>), Refusal> {
     let refuse = |error: MeshError| {
-        let expected = match &error {
-            MeshError::Fill(FillError::TooManyPoints { .. } | FillError::Nothing { .. })
-                if Path::new(input).exists() =>
-            {
-                "cells that fit the shape; lengths are metres: a file in millimetres takes scale=0.001"
-            }
-            MeshError::Fill(FillError::Undefined { .. } | FillError::Flat { .. }) => {
-                "a surface that encloses something"
-            }
-            MeshError::Fill(FillError::Thin { .. }) => {
-                "`size=` below the thickness of the shape, or more cells"
-            }
-            MeshError::Parameter { .. } | MeshError::Value(_) => {
-                "parameters as `souple mesh fill --help` names them"
-            }
-            _ => "a shape that has an inside, and cells that fit in it",
+        let told = error.to_string();
+        // what would be accepted stands in a line of its own
+        let (found, accepted) = told.split_once("; expected ").unwrap_or((
+            &told,
+            match error {
+                MeshError::Value(_) => "parameters as `souple mesh fill --help` names them",
+                _ => "a shape that has an inside, and cells that fit in it",
+            },
+        ));
+        let is_of_lengths = matches!(
+            error,
+            MeshError::Fill(
+                FillError::TooManyPoints { .. } | FillError::TooManyCells { .. } | FillError::Nothing { .. }
+            )
+        );
+        let hint = if is_of_lengths && Path::new(input).exists() {
+            "; lengths are metres: a file in millimetres takes scale=0.001"
+        } else {
+            ""
         };
-        let message = format!("`{input}` cannot be filled: {error}");
+        let expected = format!("{accepted}{hint}");
+        let message = format!("`{input}` cannot be filled: {found}");
         let of_parameter = match &error {
             MeshError::Parameter { name, value, expected } => Some((*name, value, expected)),
             MeshError::Value(ValueError::Unfit { name, value, expected }) => {
@@ -82,7 +90,10 @@ pub fn fill(input: &str, texts: &[String], quiet: bool) -> Result<(Mesh, Vec<Str
     let (filling, others) = parameters::split(given, PARAMETERS);
     let options = filling.completed(PARAMETERS).map_err(MeshError::from);
     let options = options.and_then(|values| Options::from_values(&values)).map_err(refuse)?;
-    let work = || Pulse::new("filling", quiet);
+    let work = || {
+        announce_filling(&options);
+        Pulse::new("filling", quiet)
+    };
     if let Some(entry) = shape {
         let _work = work();
         let body = entry.values(others).map_err(MeshError::from).and_then(|values| (entry.build)(&values));
@@ -98,6 +109,16 @@ pub fn fill(input: &str, texts: &[String], quiet: bool) -> Result<(Mesh, Vec<Str
     let filled = fill_mesh(&mesh, RepairLimits::default(), &options).map_err(refuse)?;
     notes.extend(filled.notes);
     Ok((filled.mesh, notes))
+}
+
+/// From so many cells on a person is told what is waited for.
+const MANY_CELLS: f64 = 1e6;
+
+fn announce_filling(options: &Options) {
+    if let Some(count) = options.count().filter(|count| *count >= MANY_CELLS) {
+        let memory = gigabytes(options.cells.memory(count));
+        print_note(format_args!("making about {count:e} cells takes {memory} of memory and some minutes …"));
+    }
 }
 
 const SIMPLIFY: &[Parameter] = &[
@@ -143,10 +164,10 @@ pub fn simplified(input: &Path, texts: &[String], quiet: bool) -> Result<(Mesh, 
     let simple = simplify(&mended, goal).map_err(refuse)?;
     drop(work);
     notes.push(format!(
-        "{} of {} triangles are left, within {:.3e} m of the given surface",
+        "{} of {} triangles are left, within {} m of the given surface",
         simple.surface.triangles.len(),
         surface.triangles.len(),
-        simple.distance
+        four_digits(simple.distance)
     ));
     let left = simple.surface.triangles.len();
     if distance <= 0.0 && left as f64 > MET_TRIANGLES * triangles as f64 {

@@ -9,12 +9,13 @@ use crate::command::{Refusal, did_you_mean};
 pub fn values(texts: &[String], known: &[&Parameter]) -> Result<Values, Refusal> {
     let mut values = Values::new();
     for text in texts {
-        let refuse =
-            |message: &str| Refusal::request("parameter", text, "NAME=VALUE", format!("`{text}`: {message}"));
-        let (key, value) = text.split_once('=').ok_or_else(|| refuse("there is no `=`"))?;
+        let refuse = |message: &str, expected: &str| {
+            Refusal::request("parameter", text, expected, format!("`{text}`: {message}"))
+        };
+        let (key, value) = text.split_once('=').ok_or_else(|| refuse("there is no `=`", "NAME=VALUE"))?;
         if texts.iter().filter(|text| text.split_once('=').is_some_and(|(other, _)| other == key)).count() > 1
         {
-            return Err(refuse("the name is given twice"));
+            return Err(refuse("the name is given twice", "each name once"));
         }
         let parameter = known.iter().find(|parameter| parameter.name == key);
         let unit = parameter.map_or("", |parameter| parameter.unit);
@@ -30,7 +31,8 @@ pub fn values(texts: &[String], known: &[&Parameter]) -> Result<Values, Refusal>
         );
         let numbers: Option<Vec<f64>> = if is_number {
             let numbers: Result<_, _> = list.split(',').map(number).collect();
-            Some(numbers.map_err(|error: souple_formal::UnitError| refuse(&error.to_string()))?)
+            let expected = parameter.map_or_else(String::new, |parameter| parameter.expected());
+            Some(numbers.map_err(|error: souple_formal::UnitError| refuse(&error.to_string(), &expected))?)
         } else {
             None
         };
