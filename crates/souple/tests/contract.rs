@@ -126,6 +126,11 @@ fn one_document_each() {
         assert_eq!(document["points"], generated["points"]);
     }
 
+    let surface = folder.at("ball.stl");
+    json(&["mesh", "convert", &mesh, &surface]);
+    let mended = json(&["mesh", "repair", &surface, &folder.at("ball.obj")]);
+    assert_keys(&mended, &["points", "triangles", "closed", "enclosed_volume", "repairs", "faults", "notes"]);
+
     let recording = folder.at("run.json");
     let out = folder.at("out");
     let run = ["run", &scene, "--quiet", "--record", &recording, "--out", &out, "--snapshot-every", "5"];

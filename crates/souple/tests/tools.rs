@@ -159,6 +159,57 @@ fn fillings_that_cannot_be() {
     assert!(open.stdout.contains("the inside is not certain"), "{}", open.stdout);
 }
 
+/// A surface is mended, what was done is counted and said, and what is left; what is no surface, and parameters out of range, are
+/// refused.
+#[test]
+fn surfaces_are_mended() {
+    let folder = Folder::new("mended");
+    let points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+    let sides = "f 1 4 3 2\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    // a lid, its copy turned over, a side turned over
+    let broken =
+        format!("{points}g lid\nf 5 8 7 6\nf 5 6 7 8\ng sides\n{}", sides.replace("1 2 6 5", "1 5 6 2"));
+    folder.write("broken.obj", broken);
+    folder.write("open.obj", format!("{points}{sides}"));
+    folder.write("whole.obj", format!("{points}{sides}f 5 6 7 8\n"));
+    let mend = |from: &str, to: &str, more: &[&str]| {
+        let call = ["mesh", "repair", from, to].into_iter().chain(more.iter().copied());
+        souple_in(folder.path(), call)
+    };
+    let answer = mend("broken.obj", "out.ply", &["scale=2", "--json"]).ends(0).json();
+    // of the lid the copy comes first
+    let (volume, repairs) =
+        (answer["enclosed_volume"].as_f64().expect("a closed surface"), &answer["repairs"]);
+    assert!((volume - 8.0).abs() < 1e-12 && answer["closed"] == true, "{answer:#}");
+    assert_eq!((&repairs["doubled_triangles"], &repairs["turned_triangles"]), (&2.into(), &4.into()));
+    let said = mend("broken.obj", "out.ply", &[]).ends(0).stdout;
+    for words in ["2 triangles were dropped: others have the same corners", "without the groups lid, sides"] {
+        assert!(said.contains(words), "{said}");
+    }
+    let said = mend("whole.obj", "out.stl", &[]).ends(0).stdout;
+    assert!(said.contains("there was nothing to mend"), "{said}");
+    // four open edges, of a hole that measures most of the box
+    let open = mend("open.obj", "out.obj", &["--json"]).ends(0).json();
+    assert_eq!((&open["closed"], &open["faults"]["open_edges"]), (&false.into(), &4.into()));
+    let closed = mend("open.obj", "out.obj", &["hole=1", "--json"]).ends(0).json();
+    assert_eq!((&closed["closed"], &closed["repairs"]["closed_holes"]), (&true.into(), &1.into()));
+
+    souple_in(folder.path(), ["mesh", "generate", "bar", "bar.msh", "size=1,1,1", "cells=2,1,1"]).ends(0);
+    folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    for (from, to, more, words) in [
+        ("bar.msh", "new.obj", &[][..], "`bar.msh` holds cells"),
+        ("line.obj", "new.obj", &[], "none of its triangles has an area"),
+        ("open.obj", "new.obj", &["hole=2"], "between 0 and 1"),
+        ("open.obj", "new.obj", &["holes=1"], "did you mean `hole`?"),
+        ("open.obj", "open.obj", &[], "would be lost"),
+        ("open.obj", "new.xyz", &[], "xyz"),
+    ] {
+        let refused = mend(from, to, more).ends(2);
+        assert!(refused.stderr.contains(words), "{from} {more:?}: {}", refused.stderr);
+    }
+    assert!(!folder.path().join("new.obj").exists());
+}
+
 /// What is accepted is said once, in a line of its own or in the message.
 #[test]
 fn refusals_say_once_what_is_expected() {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{SurfaceRepairs, sorted};
+use super::{SurfaceRepairs, edges_of, sorted};
 use crate::TriangleSurface;
 use crate::winding::WindingNumber;
 use souple_math::Vec3;
@@ -18,14 +18,14 @@ pub(super) fn drop_pairs(points: &[Vec3], triangles: &mut Vec<[u32; 3]>, repairs
         return;
     }
     let mut uses: HashMap<[u32; 2], Uses> = HashMap::new();
-    triangles.iter().flat_map(edges).for_each(|edge| uses.entry(edge).or_default().all += 1);
+    triangles.iter().flat_map(edges_of).for_each(|edge| uses.entry(edge).or_default().all += 1);
     for [first, _] in &pairs {
-        edges(&triangles[*first]).iter().for_each(|edge| uses.entry(*edge).or_default().of_pairs += 2);
+        edges_of(&triangles[*first]).iter().for_each(|edge| uses.entry(*edge).or_default().of_pairs += 2);
     }
     let mut around = vec![Around::default(); pairs.len()];
     let patch_of = patches(&pairs, triangles, &uses);
     for ([first, _], patch) in pairs.iter().zip(&patch_of) {
-        edges(&triangles[*first]).iter().for_each(|edge| around[*patch].add(uses[edge]));
+        edges_of(&triangles[*first]).iter().for_each(|edge| around[*patch].add(uses[edge]));
     }
     let is_alone = |pair: usize| around[patch_of[pair]] == Around::default();
     let mut is_of_alone = vec![false; triangles.len()];
@@ -107,7 +107,8 @@ fn pairs(triangles: &[[u32; 3]]) -> Vec<[usize; 2]> {
 fn patches(pairs: &[[usize; 2]], triangles: &[[u32; 3]], uses: &HashMap<[u32; 2], Uses>) -> Vec<usize> {
     let mut at_edge: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
     for (pair, [first, _]) in pairs.iter().enumerate() {
-        let own = edges(&triangles[*first]).into_iter().filter(|edge| uses[edge].all == uses[edge].of_pairs);
+        let own =
+            edges_of(&triangles[*first]).into_iter().filter(|edge| uses[edge].all == uses[edge].of_pairs);
         own.for_each(|edge| at_edge.entry(edge).or_default().push(pair));
     }
     let mut patch_of = vec![usize::MAX; pairs.len()];
@@ -115,15 +116,12 @@ fn patches(pairs: &[[usize; 2]], triangles: &[[u32; 3]], uses: &HashMap<[u32; 2]
         let mut reached = if patch_of[start] == usize::MAX { vec![start] } else { Vec::new() };
         while let Some(pair) = reached.pop() {
             patch_of[pair] = start;
-            let beside = edges(&triangles[pairs[pair][0]]).into_iter().filter_map(|edge| at_edge.get(&edge));
+            let beside =
+                edges_of(&triangles[pairs[pair][0]]).into_iter().filter_map(|edge| at_edge.get(&edge));
             reached.extend(beside.flatten().filter(|other| patch_of[**other] == usize::MAX));
         }
     }
     patch_of
-}
-
-fn edges([a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(|[from, to]| [*from.min(to), *from.max(to)])
 }
 
 /// Whether two triangles of the same corners run around them in opposite directions.

@@ -7,6 +7,7 @@
 mod crossing;
 mod diagnose;
 mod facing;
+mod flat;
 mod holes;
 mod orient;
 
@@ -43,6 +44,8 @@ impl Default for RepairLimits {
 pub struct SurfaceRepairs {
     pub welded_points: usize,
     pub flat_triangles: usize,
+    /// Triangles without area that share what their neighbour has.
+    pub joined_triangles: usize,
     pub doubled_triangles: usize,
     /// Triangles that lay back to back, where parts touch.
     pub facing_triangles: usize,
@@ -61,11 +64,12 @@ impl SurfaceRepairs {
         let counts = [
             (self.welded_points, ["point was", "points were"], "welded to another at the same place"),
             (self.flat_triangles, TRIANGLES, "dropped: without area"),
+            (self.joined_triangles, TRIANGLES, "joined with a neighbour by the other diagonal: without area"),
             (self.doubled_triangles, TRIANGLES, "dropped: others have the same corners"),
             (self.facing_triangles, TRIANGLES, "dropped: back to back with another, where parts touch"),
             (self.turned_triangles, TRIANGLES, "turned to agree with their neighbours"),
             (self.turned_parts, ["part was", "parts were"], "inside out, and turned"),
-            (self.closed_holes, ["hole was", "holes were"], "closed, of less than a tenth of the surface"),
+            (self.closed_holes, ["hole was", "holes were"], "closed: small next to the surface"),
         ];
         let told = counts.iter().filter(|(count, ..)| *count > 0);
         told.map(|(count, [one, many], done)| format!("{} {done}", in_number(*count, one, many))).collect()
@@ -78,20 +82,20 @@ pub fn repair(surface: &TriangleSurface, limits: RepairLimits) -> (TriangleSurfa
     let diagonal = surface.bounds().diagonal();
     let mut mended = weld(surface, limits.weld * diagonal, &mut repairs);
     orient::agree(&mut mended, &mut repairs);
+    flat::join(&mut mended, &mut repairs);
     holes::close(&mut mended, limits.hole * diagonal, &mut repairs);
     orient::face_outward(&mut mended, &mut repairs);
     (mended, repairs)
 }
 
-/// Joins points, drops triangles that this makes flat or equal to another, drops points of no triangle.
+/// Joins points, drops triangles that are flat or equal to another, drops points of no triangle.
 fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) -> TriangleSurface {
     let number = joined_points(&surface.points, distance);
     repairs.welded_points =
         number.iter().enumerate().filter(|(point, first)| *point as u32 != **first).count();
     let welded = surface.triangles.iter().map(|corners| corners.map(|point| number[point as usize]));
-    let (flat, mut triangles): (Vec<_>, Vec<_>) =
-        welded.partition(|corners| is_flat(*corners, &surface.points));
-    repairs.flat_triangles = flat.len();
+    let mut triangles: Vec<[u32; 3]> = welded.collect();
+    flat::drop(&surface.points, &mut triangles, repairs);
     facing::drop_pairs(&surface.points, &mut triangles, repairs);
     let mut seen: HashSet<[u32; 3]> = HashSet::new();
     let before = triangles.len();
@@ -100,6 +104,11 @@ fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) 
     let mut mended = TriangleSurface::from_mesh(&surface.points, &triangles, Vec::new());
     mended.mesh_points.clear();
     mended
+}
+
+/// Edges by their points, the lower first.
+fn edges_of([a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[from, to]| [*from.min(to), *from.max(to)])
 }
 
 fn sorted(mut corners: [u32; 3]) -> [u32; 3] {

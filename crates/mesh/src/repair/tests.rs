@@ -118,6 +118,22 @@ fn copies_that_are_turned_over_leave_no_hole() {
     }
 }
 
+/// A triangle whose corners lie on a line, where a corner stands on the edge of a larger triangle: what was closed stays closed,
+/// and no triangle is without area.
+#[test]
+fn a_line_between_triangles_opens_nothing() {
+    let mut cube = unit_cube(2.0);
+    let [a, b, c] = cube.triangles[0];
+    let middle = cube.points.len() as u32;
+    cube.points.push((cube.points[a as usize] + cube.points[b as usize]) * 0.5);
+    cube.triangles[0] = [a, middle, c];
+    cube.triangles.extend([[middle, b, c], [a, b, middle]]);
+    assert!(diagnose(&cube).is_closed() && diagnose(&cube).flat_triangles.len() == 1);
+    let (mended, repairs) = repair(&cube, RepairLimits { hole: 0.0, ..RepairLimits::default() });
+    assert_eq!((repairs.flat_triangles, repairs.joined_triangles, repairs.closed_holes), (0, 1, 0));
+    assert_cube(&mended);
+}
+
 /// A hollow that another part fills exactly is none: both of its sides go, whichever comes first.
 #[test]
 fn a_filled_hollow_is_solid() {

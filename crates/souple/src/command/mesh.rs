@@ -1,7 +1,8 @@
-//! `souple mesh`: generate, fill, simplify, skin, convert, quality.
+//! `souple mesh`: generate, fill, repair, simplify, skin, convert, quality.
 
 mod fill;
 mod parameters;
+mod repair;
 mod skin;
 mod summary;
 
@@ -42,6 +43,16 @@ enum Action {
         input: String,
         out: PathBuf,
         /// NAME=VALUE: size or count, and others below; of a shape also those that `souple describe` prints
+        parameters: Vec<String>,
+        #[arg(long)]
+        json: bool,
+    },
+    /// Mends a surface as far as that is safe, and says what was mended and what is left: `souple mesh repair organ.stl out.obj`
+    #[command(after_help = repair::parameters_help())]
+    Repair {
+        input: PathBuf,
+        out: PathBuf,
+        /// NAME=VALUE: weld, hole, scale
         parameters: Vec<String>,
         #[arg(long)]
         json: bool,
@@ -90,6 +101,7 @@ impl Arguments {
         match &self.action {
             Action::Generate { json, .. }
             | Action::Fill { json, .. }
+            | Action::Repair { json, .. }
             | Action::Simplify { json, .. }
             | Action::Skin { json, .. }
             | Action::Convert { json, .. }
@@ -109,6 +121,16 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             let format = souple_io::writable_format(None, &out)?;
             let (mesh, notes) = fill::fill(&input, &parameters, json)?;
             write(&out, format, &Output::new(&mesh), notes, json)
+        }
+        Action::Repair { input, out, parameters, json } => {
+            keep_input(&input, &out)?;
+            let format = souple_io::writable_format(None, &out)?;
+            let (mesh, repairs, notes) = repair::repaired(&input, &parameters)?;
+            let (written, notes) = written(&out, format, &Output::new(&mesh), notes)?;
+            let mut document = document_of(&written, &notes);
+            document["repairs"] = repair::counts(&repairs);
+            tell(&out, &document, json);
+            Ok(End::Done)
         }
         Action::Simplify { input, out, parameters, json } => {
             keep_input(&input, &out)?;
@@ -196,15 +218,27 @@ fn read(path: &Path) -> Result<(Mesh, Vec<String>), Refusal> {
     Ok(souple_io::read_mesh(path)?)
 }
 
-/// Writes a mesh in the format of that name, and tells what the file holds, which may be less: a format
-/// may know surfaces alone, or no groups.
+/// Writes a mesh in the format of that name, and tells what the file holds.
 fn write(
     path: &Path,
     format: &str,
     output: &Output,
-    mut notes: Vec<String>,
+    notes: Vec<String>,
     as_json: bool,
 ) -> Result<End, Refusal> {
+    let (written, notes) = written(path, format, output, notes)?;
+    report(path, &written, &notes, as_json);
+    Ok(End::Done)
+}
+
+/// Writes a mesh; what the file holds, which may be less, for a format may know surfaces alone, or no groups, and the notes with
+/// what it did not take.
+fn written(
+    path: &Path,
+    format: &str,
+    output: &Output,
+    mut notes: Vec<String>,
+) -> Result<(Mesh, Vec<String>), Refusal> {
     let written = match souple_io::write_and_read_back(format, path, output)? {
         Some(dataset) => dataset.mesh,
         // a format that is only written, and for surfaces
@@ -213,21 +247,27 @@ fn write(
         }
     };
     notes.extend(souple_io::losses(format, output)?);
-    report(path, &written, &notes, as_json);
-    Ok(End::Done)
+    Ok((written, notes))
 }
 
-/// Tells what a file holds: cells, or triangles that are measured as a surface.
+/// Tells what a file holds.
 fn report(path: &Path, mesh: &Mesh, notes: &[String], as_json: bool) {
-    let surface = mesh.facet_surface().filter(|_| mesh.cell_count() == 0);
-    let document = match surface {
+    tell(path, &document_of(mesh, notes), as_json);
+}
+
+/// Cells, or triangles that are measured as a surface.
+fn document_of(mesh: &Mesh, notes: &[String]) -> Json {
+    match mesh.facet_surface().filter(|_| mesh.cell_count() == 0) {
         Some(surface) => of_surface(mesh, &surface, notes),
         None => of_cells(mesh, notes),
-    };
+    }
+}
+
+fn tell(path: &Path, document: &Json, as_json: bool) {
     if as_json {
-        print_json(&document);
+        print_json(document);
     } else {
-        summary::sentences(&path.display().to_string(), &document).iter().for_each(print_line);
+        summary::sentences(&path.display().to_string(), document).iter().for_each(print_line);
     }
 }
 

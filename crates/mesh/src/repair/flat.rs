@@ -1,0 +1,78 @@
+//! Triangles without area: dropped where nothing opens without them, joined with a neighbour elsewhere.
+
+use std::collections::HashMap;
+
+use souple_math::Vec3;
+
+use super::{SurfaceRepairs, edges_of, is_flat};
+use crate::TriangleSurface;
+
+/// Drops triangles that are a point or a line. One that repeats a corner has the edge that is left twice, so that nothing opens
+/// without it. One whose corners lie on a line is dropped where more of its edges are open with it than without.
+pub(super) fn drop(points: &[Vec3], triangles: &mut Vec<[u32; 3]>, repairs: &mut SurfaceRepairs) {
+    let before = triangles.len();
+    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    let mut uses: HashMap<[u32; 2], usize> = HashMap::new();
+    triangles.iter().flat_map(edges_of).for_each(|edge| *uses.entry(edge).or_default() += 1);
+    triangles.retain(|corners| {
+        let even = edges_of(corners).iter().filter(|edge| uses[*edge].is_multiple_of(2)).count();
+        even > 1 || !is_flat(*corners, points)
+    });
+    repairs.flat_triangles += before - triangles.len();
+}
+
+/// Of a triangle whose corners lie on a line, and its neighbour at the longest edge, takes the other diagonal: both get an area,
+/// and the surface stays where it is.
+pub(super) fn join(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs) {
+    let flat: Vec<usize> = (0..surface.triangles.len())
+        .filter(|triangle| is_flat(surface.triangles[*triangle], &surface.points))
+        .collect();
+    if flat.is_empty() {
+        return;
+    }
+    let mut beside: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
+    for (triangle, corners) in surface.triangles.iter().enumerate() {
+        edges_of(corners).into_iter().for_each(|edge| beside.entry(edge).or_default().push(triangle));
+    }
+    for triangle in flat {
+        let [a, b, c] = from_longest_edge(surface, triangle);
+        let [first, second] = beside[&sorted(a, b)][..] else { continue };
+        let other = if first == triangle { second } else { first };
+        let of_other = surface.triangles[other];
+        let Some(d) = of_other.into_iter().find(|point| *point != a && *point != b) else { continue };
+        let runs_against = (0..3).any(|k| of_other[k] == b && of_other[(k + 1) % 3] == a);
+        if d == c || !runs_against || is_flat(of_other, &surface.points) || beside.contains_key(&sorted(c, d))
+        {
+            continue;
+        }
+        for of in [triangle, other] {
+            for edge in edges_of(&surface.triangles[of]) {
+                beside.entry(edge).or_default().retain(|user| *user != of);
+            }
+        }
+        (surface.triangles[triangle], surface.triangles[other]) = ([c, a, d], [d, b, c]);
+        for of in [triangle, other] {
+            for edge in edges_of(&surface.triangles[of]) {
+                beside.entry(edge).or_default().push(of);
+            }
+        }
+        repairs.joined_triangles += 1;
+    }
+}
+
+/// Corners from the start of the longest edge on.
+fn from_longest_edge(surface: &TriangleSurface, triangle: usize) -> [u32; 3] {
+    let [a, b, c] = surface.triangles[triangle];
+    let length = |[from, to, _]: &[u32; 3]| {
+        (surface.points[*to as usize] - surface.points[*from as usize]).length_sq()
+    };
+    let turns = [[a, b, c], [b, c, a], [c, a, b]];
+    turns
+        .into_iter()
+        .reduce(|best, turn| if length(&turn) > length(&best) { turn } else { best })
+        .unwrap_or([a, b, c])
+}
+
+fn sorted(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
