@@ -317,7 +317,7 @@ impl LegendBox {
         let bar_bottom = height - margin - 1.7 * letter;
         let bar_top = bar_bottom - 1.1 * letter;
         let head = bar_top - (0.2 + 1.6 * title.len() as f64) * letter;
-        (head - top >= LEAST_LEFT * (height - top)).then(|| Self {
+        (head - top >= LEAST_LEFT * (height - top)).then_some(Self {
             left: margin + 0.5 * widest,
             right: width - margin - 0.5 * widest,
             top: bar_top,
