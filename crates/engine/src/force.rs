@@ -220,15 +220,17 @@ pub trait Force: Send + Sync {
 
     /// `matrix += a ∂f/∂x + b ∂f/∂v` for weights that are not positive, without negative curvature: where the matrix of
     /// a part (an element, a link) has negative eigenvalues, their absolute values take their place. Asked of forces whose
-    /// tangent is symmetric; those that keep their blocks as they are may leave the sum indefinite.
+    /// tangent is symmetric; those that keep their blocks as they are may leave the sum indefinite. Returns whether there
+    /// was anything to turn round.
     fn add_definite_blocks(
         &self,
         at: &Configuration,
         weights: TangentWeights,
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
-    ) {
+    ) -> bool {
         self.add_blocks(at, weights, scratch, matrix);
+        false
     }
 
     /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.

@@ -51,7 +51,9 @@ pub enum Curvature {
 pub struct Assembled<'a> {
     pub matrix: &'a mut BlockMatrix,
     /// Symmetric and near the matrix, where that is not symmetric itself.
-    pub symmetric: Option<&'a BlockMatrix>,
+    pub symmetric: Option<&'a mut BlockMatrix>,
+    /// Whether anything of it was turned round to be definite.
+    pub turned: bool,
 }
 
 /// Where the matrix is taken.
@@ -80,15 +82,16 @@ impl Linearisation<'_> {
 impl Tangent {
     /// The matrix at a linearisation, constrained directions replaced by the identity scaled like the rest.
     pub fn assemble(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &mut BlockMatrix {
-        self.assemble_with(Curvature::Exact, at, scratches)
+        self.assemble_with(Curvature::Exact, at, scratches).0
     }
 
+    /// The matrix, and whether anything of it was turned round to be definite.
     fn assemble_with(
         &mut self,
         curvature: Curvature,
         at: &Linearisation,
         scratches: &mut [Scratch],
-    ) -> &mut BlockMatrix {
+    ) -> (&mut BlockMatrix, bool) {
         let system = at.system;
         self.update_patterns(system, &at.state.pairs);
         let trivial = system.kinematics.is_trivial();
@@ -96,12 +99,12 @@ impl Tangent {
         rows.set_zero();
         let weights =
             TangentWeights { position: -1.0, velocity: if trivial { -at.rates.velocity } else { 0.0 } };
-        add_row_blocks(curvature, at, weights, scratches, &mut rows);
+        let mut turned = add_row_blocks(curvature, at, weights, scratches, &mut rows);
         if trivial {
             // A = a b M - ∂f/∂x - a ∂f/∂v
             add_mass(system, at.rates.inertia(), &mut rows);
             constrain(system, &mut rows);
-            return self.rows.insert(rows);
+            return (self.rows.insert(rows), turned);
         }
         let kinematics = &system.kinematics;
         let mut blocks = self.blocks.take().unwrap_or_else(|| unreachable!("patterns were just made"));
@@ -116,7 +119,7 @@ impl Tangent {
                 self.row_velocities.take().unwrap_or_else(|| BlockMatrix::zeros(rows.pattern().clone()));
             damping.set_zero();
             let weights = TangentWeights { position: 0.0, velocity: -1.0 };
-            add_row_blocks(curvature, at, weights, scratches, &mut damping);
+            turned |= add_row_blocks(curvature, at, weights, scratches, &mut damping);
             transform_rows(kinematics, &damping, &mut blocks, &position_map, &velocity_map);
             self.row_velocities = Some(damping);
         }
@@ -147,7 +150,7 @@ impl Tangent {
             self.unbalanced = unbalanced;
         }
         constrain(system, &mut blocks);
-        self.blocks.insert(blocks)
+        (self.blocks.insert(blocks), turned)
     }
 
     /// [`Tangent::assemble`], and where forces are not symmetric the same with [`Force::add_symmetric_blocks`].
@@ -161,16 +164,25 @@ impl Tangent {
         let has_symmetry = |force: &dyn Force| force.declaration().symmetric_tangent;
         let all_symmetric = system.forces.iter().all(|force| has_symmetry(force.as_ref()));
         if all_symmetric || !system.kinematics.is_trivial() {
-            return Assembled { matrix: self.assemble_with(curvature, at, scratches), symmetric: None };
+            let (matrix, turned) = self.assemble_with(curvature, at, scratches);
+            return Assembled { matrix, symmetric: None, turned };
         }
         self.update_patterns(system, &at.state.pairs);
         let weights = TangentWeights { position: -1.0, velocity: -at.rates.velocity };
         let mut matrix = self.rows.take().unwrap_or_else(|| unreachable!("patterns were just made"));
         matrix.set_zero();
+        let mut turned = false;
         for (index, force) in system.forces.iter().enumerate() {
             if has_symmetry(force.as_ref()) {
                 let view = system.view(index, at.rows, at.state, &at.around);
-                add_blocks_of(force.as_ref(), curvature, &view, weights, &mut scratches[index], &mut matrix);
+                turned |= add_blocks_of(
+                    force.as_ref(),
+                    curvature,
+                    &view,
+                    weights,
+                    &mut scratches[index],
+                    &mut matrix,
+                );
             }
         }
         add_mass(system, at.rates.inertia(), &mut matrix);
@@ -186,7 +198,8 @@ impl Tangent {
         }
         constrain(system, &mut matrix);
         constrain(system, &mut symmetric);
-        Assembled { matrix: self.rows.insert(matrix), symmetric: Some(self.symmetric.insert(symmetric)) }
+        let symmetric = Some(self.symmetric.insert(symmetric));
+        Assembled { matrix: self.rows.insert(matrix), symmetric, turned }
     }
 
     /// The diagonal blocks alone, for preconditioning products without a matrix; for points only: rows of
@@ -310,17 +323,20 @@ fn rows_with_blocks(system: &System) -> impl Iterator<Item = usize> {
     (0..system.kinematics.row_count()).filter(move |row| *row < free || system.mass.diagonal[*row] != 0.0)
 }
 
+/// Whether anything was turned round to be definite.
 fn add_row_blocks(
     curvature: Curvature,
     at: &Linearisation,
     weights: TangentWeights,
     scratches: &mut [Scratch],
     matrix: &mut BlockMatrix,
-) {
+) -> bool {
+    let mut turned = false;
     for (index, force) in at.system.forces.iter().enumerate() {
         let view = at.system.view(index, at.rows, at.state, &at.around);
-        add_blocks_of(force.as_ref(), curvature, &view, weights, &mut scratches[index], matrix);
+        turned |= add_blocks_of(force.as_ref(), curvature, &view, weights, &mut scratches[index], matrix);
     }
+    turned
 }
 
 fn add_blocks_of(
@@ -330,13 +346,12 @@ fn add_blocks_of(
     weights: TangentWeights,
     scratch: &mut Scratch,
     matrix: &mut BlockMatrix,
-) {
-    match curvature {
-        Curvature::Definite if force.declaration().symmetric_tangent => {
-            force.add_definite_blocks(at, weights, scratch, matrix);
-        }
-        _ => force.add_blocks(at, weights, scratch, matrix),
+) -> bool {
+    if curvature == Curvature::Definite && force.declaration().symmetric_tangent {
+        return force.add_definite_blocks(at, weights, scratch, matrix);
     }
+    force.add_blocks(at, weights, scratch, matrix);
+    false
 }
 
 fn add_mass(system: &System, scale: f64, matrix: &mut BlockMatrix) {

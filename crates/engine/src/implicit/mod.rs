@@ -29,6 +29,9 @@ pub use history::Lent;
 pub(crate) use history::{accepts, carried, carry};
 pub use rates::Rates;
 
+/// Halvings of a direction before what is left of it is taken.
+const MAX_HALVINGS: u32 = 30;
+
 /// The step from `(q_start, v_start)` to the end of `timestep`.
 pub struct ImplicitStep<'a> {
     pub system: &'a System,
@@ -320,12 +323,18 @@ impl ImplicitStep<'_> {
             &*block_positions
         };
         let mut curvature = Curvature::Exact;
-        let (solved, rounding) = loop {
+        let (solved, made_definite, rounding) = loop {
             let clock = Instant::now();
-            let Assembled { matrix, symmetric: nearby } = if is_matrix_free {
-                Assembled { matrix: tangent.assemble_diagonal(&at, scratches), symmetric: None }
+            let Assembled { matrix, symmetric: nearby, turned } = if is_matrix_free {
+                let matrix = tangent.assemble_diagonal(&at, scratches);
+                Assembled { matrix, symmetric: None, turned: false }
             } else {
                 tangent.assemble_with_symmetric(curvature, &at, scratches)
+            };
+            // of matrices that are not symmetric none is known to be definite: what friction adds to that is left out
+            let (matrix, nearby, symmetric) = match nearby {
+                Some(nearby) if turned => (nearby, None, self.system.kinematics.is_conservative()),
+                nearby => (matrix, nearby.map(|nearby| &*nearby), symmetric),
             };
             if is_symmetrised {
                 matrix.symmetrise();
@@ -362,7 +371,7 @@ impl ImplicitStep<'_> {
                 {
                     curvature = Curvature::Definite;
                 }
-                solved => break (solved, rounding),
+                solved => break (solved, turned, rounding),
             }
         };
         system.project_free(direction);
@@ -375,7 +384,7 @@ impl ImplicitStep<'_> {
             let most_left = || largest(residual).filter(|_| error.may_be_indefinite());
             LinearError { block: error.block.or_else(most_left), ..error }
         })?;
-        Ok((Solved { made_definite: curvature == Curvature::Definite, ..solved }, rounding))
+        Ok((Solved { made_definite, ..solved }, rounding))
     }
 
     /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
@@ -422,6 +431,9 @@ impl ImplicitStep<'_> {
         let wanted = Wanted { constrained, indefinite, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
         q.copy_from_slice(&buffers.q_trial);
+        if solved.made_definite {
+            self.hold_back(state, q, ws, buffers);
+        }
         self.system.kinematics.retract(q, &buffers.direction);
         Ok(StepReport {
             newton_iterations: 1,
@@ -430,6 +442,38 @@ impl ImplicitStep<'_> {
             linear_residual: solved.residual,
             newton_residual: 0.0,
         })
+    }
+
+    /// Shortens the direction that a matrix made definite gave until the step's potential is no higher at its end than at its
+    /// beginning `q`: what such a matrix knows holds near to that alone. Constrained components go where they are led.
+    fn hold_back(
+        &self,
+        state: &SystemState,
+        q: &[Vec3],
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+    ) {
+        let whole = std::mem::take(&mut buffers.direction);
+        let mut direction = vec![Vec3::ZERO; whole.len()];
+        let mut potential = |fraction: f64, buffers: &mut ImplicitBuffers, direction: &mut [Vec3]| {
+            for ((part, whole), led) in direction.iter_mut().zip(&whole).zip(&buffers.prescribed) {
+                *part = *led + (*whole - *led) * fraction;
+            }
+            buffers.q_trial.copy_from_slice(q);
+            self.system.kinematics.retract(&mut buffers.q_trial, direction);
+            self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+            self.merit(state, ws, buffers)
+        };
+        let start = potential(0.0, buffers, &mut direction);
+        let mut fraction = 1.0;
+        for _ in 0..MAX_HALVINGS {
+            // what is no number is no less
+            if potential(fraction, buffers, &mut direction) <= start {
+                break;
+            }
+            fraction *= 0.5;
+        }
+        buffers.direction = direction;
     }
 
     /// Turns rigid frames on as they coast: the one solve is then about there. About where they start it would leave out

@@ -6,14 +6,12 @@ use souple_solve::newton::{self, NewtonProblem, Trial, newton};
 use souple_solve::reduce::norm;
 
 use super::history::Lent;
-use super::{Constrained, ImplicitBuffers, ImplicitStep, NewtonSettings, Wanted, largest};
+use super::{Constrained, ImplicitBuffers, ImplicitStep, MAX_HALVINGS, NewtonSettings, Wanted, largest};
 use crate::linear::{Indefinite, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::SystemWorkspace;
 
-/// Halvings of a predictor before it is given up.
-const MAX_HALVINGS: u32 = 30;
 /// Loosest linear solve of a Newton iteration, and how much tighter it gets as the residual falls: proportional to
 /// it, which keeps the convergence quadratic (Dembo, Eisenstat & Steihaug 1982).
 const LOOSEST: f64 = 1e-2;

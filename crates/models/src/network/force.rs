@@ -150,14 +150,16 @@ impl Links {
         LinkStance { length: reach.length, push: response.push, stored: response.stored }
     }
 
-    /// Calls `visit(rows, a ∂f1/∂d + b ∂f1/∂w)` for every link, with `d = P1 - P2` and its rate `w`.
+    /// Calls `visit(rows, a ∂f1/∂d + b ∂f1/∂w)` for every link, with `d = P1 - P2` and its rate `w`. Returns whether it turned
+    /// any round to be definite.
     fn visit_tangents(
         &self,
         at: &Configuration,
         curvature: Curvature,
         weights: TangentWeights,
         mut visit: impl FnMut([u32; 2], Mat3),
-    ) {
+    ) -> bool {
+        let mut turned = false;
         for (number, part) in self.layout.parts.iter().enumerate() {
             let memory = self.of_part(number, at.memory);
             for slot in 0..part.links.len() {
@@ -168,14 +170,16 @@ impl Links {
                 let [mut now, before] = self.law.slopes(&reach, at.time, &numbers);
                 // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
                 let mut across = if reach.length > 0.0 { push / reach.length } else { 0.0 };
-                if curvature == Curvature::Definite {
+                if curvature == Curvature::Definite && (now > 0.0 || across > 0.0) {
                     (now, across) = (-now.abs(), -across.abs());
+                    turned = true;
                 }
                 let position = n.outer(n) * (now - across) + Mat3::IDENTITY * across + n.outer(m) * before;
                 let velocity = n.outer(m) * (-self.timestep * before);
                 visit(rows, position * weights.position + velocity * weights.velocity);
             }
         }
+        turned
     }
 }
 
@@ -296,10 +300,10 @@ impl Force for Links {
         weights: TangentWeights,
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
-    ) {
+    ) -> bool {
         self.visit_tangents(at, Curvature::Definite, weights, |ends, block| {
             add_pair_blocks(ends, &block, matrix);
-        });
+        })
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {

@@ -9,6 +9,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use souple_math::{Mat3, Padded, Vec3};
@@ -141,7 +142,8 @@ impl Assembly {
     /// [`Self::add_blocks`] of symmetric blocks, the negative eigenvalues of every element's matrix turned round: the sum
     /// then has none. Cut off instead (Teran et al. 2005) they would leave directions in which an element pressed flat or
     /// turned inside out is held by its mass alone, and a step goes far beyond it; their size keeps it near (Chen et al.
-    /// 2024, Stabler neo-Hookean simulation: absolute eigenvalue filtering for projected Newton).
+    /// 2024, Stabler neo-Hookean simulation: absolute eigenvalue filtering for projected Newton). Returns whether there were
+    /// any.
     pub fn add_definite_blocks<K: Send + Sync, const I: usize>(
         &mut self,
         elements: &Elements<K>,
@@ -149,16 +151,22 @@ impl Assembly {
         partials: &mut Vec<Vec3>,
         matrix: &mut BlockMatrix,
         blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Padded]; I], &mut [f64]) + Sync,
-    ) {
+    ) -> bool {
         debug_assert_eq!(self.symmetry, Symmetry::Symmetric);
+        let turned = AtomicBool::new(false);
         self.add_blocks(elements, inputs, partials, matrix, |batch, chunk, blocks, inputs, out| {
             blocks_of(batch, chunk, blocks.clone(), inputs, out);
             let nodes = batch.kind.node_count();
             let block_len = 9 * Symmetry::Symmetric.pair_count(nodes) * LANES;
             for (block, numbers) in blocks.zip(out.chunks_exact_mut(block_len)) {
-                (0..chunk.lanes_in(block)).for_each(|lane| make_definite(nodes, lane, numbers));
+                for lane in 0..chunk.lanes_in(block) {
+                    if make_definite(nodes, lane, numbers) {
+                        turned.store(true, Ordering::Relaxed);
+                    }
+                }
             }
         });
+        turned.into_inner()
     }
 
     /// [`Self::add_blocks`] to a matrix of diagonal blocks, column by column: element blocks are computed three times, but
@@ -325,8 +333,8 @@ impl Assembly {
     }
 }
 
-/// Turns round the negative eigenvalues of the matrix of the element in a lane of a block of lanes.
-fn make_definite(nodes: usize, lane: usize, numbers: &mut [f64]) {
+/// Turns round the negative eigenvalues of the matrix of the element in a lane of a block of lanes; whether it had any.
+fn make_definite(nodes: usize, lane: usize, numbers: &mut [f64]) -> bool {
     let n = 3 * nodes;
     ELEMENT.with_borrow_mut(|(a, workspace)| {
         a.resize(n * n, 0.0);
@@ -340,12 +348,14 @@ fn make_definite(nodes: usize, lane: usize, numbers: &mut [f64]) {
         for (place, upper, lower) in pairs().flat_map(entries) {
             (a[upper], a[lower]) = (numbers[place], numbers[place]);
         }
-        if take_absolute(n, a, workspace) {
+        let turned = take_absolute(n, a, workspace);
+        if turned {
             for (place, upper, _) in pairs().flat_map(entries) {
                 numbers[place] = a[upper];
             }
         }
-    });
+        turned
+    })
 }
 
 /// Adds the element blocks of some blocks of lanes to the sums of its chunk.

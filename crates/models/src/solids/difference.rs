@@ -129,8 +129,8 @@ impl Force for DifferencedForce {
         weights: TangentWeights,
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
-    ) {
-        self.inner.add_definite_blocks(at, weights, &mut of(scratch).inner, matrix);
+    ) -> bool {
+        self.inner.add_definite_blocks(at, weights, &mut of(scratch).inner, matrix)
     }
 
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], pairs: &mut [Pair]) {

@@ -354,9 +354,9 @@ impl Force for SolidForce {
         weights: TangentWeights,
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
-    ) {
+    ) -> bool {
         if weights.position == 0.0 {
-            return;
+            return false;
         }
         let SolidScratch { partials, assembly, displacements } = SolidScratch::of(scratch);
         assembly.add_definite_blocks(
@@ -367,7 +367,7 @@ impl Force for SolidForce {
             |batch, chunk, blocks, [x], out| {
                 batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
             },
-        );
+        )
     }
 
     fn bytes(&self) -> usize {

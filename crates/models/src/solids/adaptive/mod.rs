@@ -334,13 +334,13 @@ impl Force for AdaptiveForce {
         weights: TangentWeights,
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
-    ) {
+    ) -> bool {
         let (laws, elements) = (self.laws(at.memory), &self.solids[0].elements);
         let AdaptiveScratch { partials, assembly, .. } = of(scratch);
         let inputs = [at.positions];
         assembly.add_definite_blocks(elements, inputs, partials, matrix, |batch, chunk, blocks, [x], out| {
             self.blocks(laws, (batch, chunk), blocks, x, weights.position, out);
-        });
+        })
     }
 
     fn advance_memory(&self, at: &Configuration, _: f64, memory: &mut [f64], _: &mut [Pair]) {
