@@ -18,7 +18,8 @@ export class Notes {
   keep(weight: Weight, text: string): void {
     this.list.querySelector(".quiet")?.remove();
     const time = new Date().toLocaleTimeString();
-    this.list.prepend(element("li", { class: weight }, element("time", {}, time), ` ${text}`));
+    // a note on the screen is of the class `note`
+    this.list.prepend(element("li", { class: weight === "note" ? "" : weight }, element("time", {}, time), ` ${text}`));
     while (this.list.childElementCount > KEPT) this.list.lastElementChild?.remove();
   }
 
