@@ -107,7 +107,7 @@ impl Skin {
         let mut values = places(bounds).into_iter().map(|place| (place, target.excess(place, scratch)));
         let (place, value) = values.find(|(_, value)| !value.is_finite())?;
         let place = place.to_array();
-        Some(format!("{} at t = {time} s", SkinError::TargetNotANumber { value, place }))
+        Some(format!("{} at t = {time} s", SkinError::TargetNotANumber { value, place, part: String::new() }))
     }
 
     /// A part that moves faster than the skin can follow.

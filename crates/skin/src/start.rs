@@ -23,6 +23,11 @@ pub trait Beginning: Sync {
 
     /// Two numbers that it lies between within a box.
     fn range(&self, within: BoundingBox) -> Between;
+
+    /// Which of its parts is no number at a place.
+    fn broken_part(&self, _point: Vec3) -> Option<usize> {
+        None
+    }
 }
 
 /// A function of which nothing is known but its values.
@@ -51,6 +56,10 @@ impl Beginning for PlacedTarget<'_> {
 
     fn range(&self, within: BoundingBox) -> Between {
         self.target.range(within, self.scratch)
+    }
+
+    fn broken_part(&self, point: Vec3) -> Option<usize> {
+        self.target.broken_part(point, self.scratch)
     }
 }
 
@@ -273,7 +282,9 @@ impl Skin {
             let f = as_what.value(place);
             let is_own = node.iter().all(|c| (1..=edge).contains(c));
             if !f.is_finite() {
-                return Err(SkinError::TargetNotANumber { value: f, place: place.to_array() });
+                let part =
+                    as_what.broken_part(place).map(|part| format!("parts[{part}] of ")).unwrap_or_default();
+                return Err(SkinError::TargetNotANumber { value: f, place: place.to_array(), part });
             }
             if is_border && is_own && f > 0.0 {
                 return Err(SkinError::BeyondDomain { place: place.to_array() });

@@ -1,6 +1,7 @@
 //! Skins: what they are drawn to, what moves them, how fine they are.
 
 use souple_formal::Formula;
+use souple_math::Vec3;
 use souple_models::loads::TIME_VARIABLES;
 use souple_skin::strategy::{BuildTerm, TERMS};
 use souple_skin::target::{BuildPart, BuildWarp, Combine, PARTS, WARPS};
@@ -155,11 +156,11 @@ pub struct SkinSpec {
     /// [m]
     pub voxel: f64,
     /// [m]
-    pub origin: souple_math::Vec3,
+    pub origin: Vec3,
     pub iso: f64,
     pub redistance: f64,
     /// [m]
-    pub domain: Option<[souple_math::Vec3; 2]>,
+    pub domain: Option<[Vec3; 2]>,
     pub parts: Vec<PartSpec>,
     pub start: Vec<PartSpec>,
     pub terms: Vec<Chosen<BuildTerm>>,
@@ -199,6 +200,19 @@ impl PartSpec {
     }
 }
 
+/// Corners in their order, lowest first.
+fn domain(reader: &Reader) -> Option<[Vec3; 2]> {
+    let [low, high] = reader.corners("domain")?;
+    let size = high - low;
+    if size.to_array().into_iter().all(|along| along > 0.0) {
+        return Some([low, high]);
+    }
+    let message = format!("this box goes from {:?} to {:?}", low.to_array(), high.to_array());
+    let expected = "the lowest corner, then the highest";
+    reader.log().add(Code::OutOfRange, &reader.site_of("domain"), message, expected);
+    None
+}
+
 fn parts(reader: &Reader, key: &str) -> Vec<PartSpec> {
     let parts: Vec<PartSpec> = reader.tables(key).iter().map(PartSpec::read).collect();
     if let Some(first) = parts.first().filter(|first| !first.combine.adds()) {
@@ -224,7 +238,7 @@ impl SkinSpec {
             origin: reader.vector("origin"),
             iso: reader.number("iso"),
             redistance: reader.number("redistance"),
-            domain: reader.corners("domain"),
+            domain: domain(reader),
             parts: Vec::new(),
             start: Vec::new(),
             terms: reader.tables("terms").iter().filter_map(|term| term.entry("term", &TERMS)).collect(),

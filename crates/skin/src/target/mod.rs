@@ -243,6 +243,22 @@ impl Target {
         Ok(())
     }
 
+    /// The first part whose potential is no number at a place.
+    pub fn broken_part(&self, point: Vec3, scratch: &TargetScratch) -> Option<usize> {
+        (0..self.parts.len())
+            .find(|part| scratch.there[*part] && !self.value(*part, point, scratch).is_finite())
+    }
+
+    /// The potential of a part as it is placed.
+    fn value(&self, index: usize, point: Vec3, scratch: &TargetScratch) -> f64 {
+        let (part, mut place) = (&self.parts[index], point - scratch.offsets[index]);
+        // the last warp is undone first
+        for warp in part.warps.iter().rev() {
+            place = warp.undo(place);
+        }
+        part.potential.value(place, &scratch.parts[index])
+    }
+
     /// The potential less its iso value; positive inside.
     pub fn excess(&self, point: Vec3, scratch: &TargetScratch) -> f64 {
         let mut sum: Option<f64> = None;
@@ -250,13 +266,7 @@ impl Target {
             if !scratch.there[index] {
                 continue;
             }
-            let mut place = point - scratch.offsets[index];
-            // the last warp is undone first
-            for warp in part.warps.iter().rev() {
-                place = warp.undo(place);
-            }
-            let value = part.potential.value(place, &scratch.parts[index]);
-            sum = part.combine.of(sum, value, self.iso);
+            sum = part.combine.of(sum, self.value(index, point, scratch), self.iso);
         }
         sum.unwrap_or(0.0) - self.iso
     }

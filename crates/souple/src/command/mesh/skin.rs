@@ -31,19 +31,23 @@ const COARSE: f64 = 2.0;
 /// The surface of a file's particles, and what it does not show.
 pub fn dressed(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Refusal> {
     let name = input.display().to_string();
-    let refuse = |message: String| {
+    let refuse = |message: String, expected: &str| {
         let message = format!("`{name}` cannot be dressed: {message}");
-        Refusal::request("skin", name.clone(), "radius=LENGTH, and voxel=LENGTH where it is another", message)
+        Refusal::request("skin", name.clone(), expected, message)
     };
+    let radius_is_missing =
+        |message: String| refuse(message, "radius=LENGTH, and voxel=LENGTH where it is another");
     let known: Vec<&Parameter> = PARAMETERS.iter().collect();
     let values = parameters::values(texts, &known)?;
-    let values = values.completed(PARAMETERS).map_err(|error| refuse(error.to_string()))?;
+    let values = values.completed(PARAMETERS).map_err(|error| radius_is_missing(error.to_string()))?;
     let (radius, time) = (values.number("radius"), values.number("time"));
     let is_table = input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
     let particles: Vec<(Vec3, f64)> = if is_table {
         let rows = souple_io::read_particles(input)?;
         if let Some(row) = rows.iter().position(|row| radius == 0.0 && row.radius.is_none()) {
-            return Err(refuse(format!("`radius` is missing, and particle {row} has none in the file")));
+            return Err(radius_is_missing(format!(
+                "`radius` is missing, and particle {row} has none in the file"
+            )));
         }
         let particle = |row: &souple_io::ParticleRow| Particle {
             position: row.position,
@@ -53,14 +57,15 @@ pub fn dressed(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Re
         };
         rows.iter().filter_map(|row| particle(row).at(time)).collect()
     } else if radius == 0.0 {
-        return Err(refuse("`radius` is missing, and the points of a mesh have none".to_owned()));
+        return Err(radius_is_missing("`radius` is missing, and the points of a mesh have none".to_owned()));
     } else {
         read(input)?.0.points.iter().map(|point| (*point, radius)).collect()
     };
     let smallest = particles.iter().map(|(_, radius)| *radius).fold(f64::INFINITY, f64::min);
     let voxel = if values.number("voxel") > 0.0 { values.number("voxel") } else { smallest };
     let iso = values.number("iso");
-    let dressed = souple_skin::dress(&particles, voxel, iso).map_err(|error| refuse(error.to_string()))?;
+    let dressed = souple_skin::dress(&particles, voxel, iso)
+        .map_err(|error| refuse(error.to_string(), "particles that a surface can go around"))?;
     let mut notes = Vec::new();
     if voxel > COARSE * smallest {
         notes.push(format!(
