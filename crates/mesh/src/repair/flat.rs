@@ -10,6 +10,9 @@ use crate::TriangleSurface;
 /// Drops triangles that are a point or a line. One that repeats a corner has the edge that is left twice, so that nothing opens
 /// without it. One whose corners lie on a line is dropped where more of its edges are open with it than without.
 pub(super) fn drop(points: &[Vec3], triangles: &mut Vec<[u32; 3]>, repairs: &mut SurfaceRepairs) {
+    if !triangles.iter().any(|corners| is_flat(*corners, points)) {
+        return;
+    }
     let before = triangles.len();
     triangles.retain(|[a, b, c]| a != b && b != c && c != a);
     let mut uses: HashMap<[u32; 2], usize> = HashMap::new();
