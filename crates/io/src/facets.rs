@@ -2,6 +2,7 @@
 
 use souple_math::Vec3;
 use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
+use souple_table::in_number;
 
 use crate::cursor::{Cursor, line_of, open_end};
 use crate::dataset::Output;
@@ -153,16 +154,19 @@ impl Polygons {
     /// What was not taken as it stands.
     pub fn notes(&self) -> Vec<String> {
         let told = [
-            (self.cut, "polygons of more than four corners were cut into triangles"),
+            (
+                self.cut,
+                "polygon of more than four corners was cut into triangles",
+                "polygons of more than four corners were cut into triangles",
+            ),
             (
                 self.degenerate,
+                "facet of fewer than three different corners, or folded onto itself, was left out",
                 "facets of fewer than three different corners, or folded onto themselves, were left out",
             ),
         ];
-        told.into_iter()
-            .filter(|(count, _)| *count > 0)
-            .map(|(count, what)| format!("{count} {what}"))
-            .collect()
+        let told = told.into_iter().filter(|(count, ..)| *count > 0);
+        told.map(|(count, one, many)| in_number(count, one, many)).collect()
     }
 }
 
@@ -192,12 +196,13 @@ pub(crate) fn check_end(bytes: &[u8], mesh: &Mesh, notes: &mut Vec<String>) -> R
     match (open_end(bytes, "the last line"), is_used.iter().position(|used| !used)) {
         (open, None) => notes.extend(open),
         (None, Some(first)) => notes.push(format!(
-            "{loose} points are in no facet, the first is points[{first}]: a file that is cut off looks like that"
+            "{} in no facet, the first is points[{first}]: a file that is cut off looks like that",
+            in_number(loose, "point is", "points are")
         )),
         (Some(_), Some(_)) => {
             let place = Place::Line(line_of(bytes, bytes.len()));
-            let subject =
-                format!("the last line has no end, and {loose} points are in no facet yet: the next facet");
+            let loose = in_number(loose, "point is", "points are");
+            let subject = format!("the last line has no end, and {loose} in no facet yet: the next facet");
             return Err(Fault::cut_off(place, subject, "facets of all points, and an end of the last line"));
         }
     }

@@ -7,7 +7,7 @@ use std::io::Write;
 
 use souple_math::Vec3;
 use souple_mesh::Mesh;
-use souple_table::Entry;
+use souple_table::{Entry, counted};
 
 use crate::cursor::parse;
 use crate::dataset::{Output, tidy_groups};
@@ -170,15 +170,15 @@ impl Reader {
     fn finish(mut self, bytes: &[u8]) -> Result<Dataset, Fault> {
         if self.facet_count == 0 {
             let place = Place::Line(crate::cursor::line_of(bytes, bytes.len()));
-            let found = format!("none ({} points)", self.mesh.points.len());
+            let found = format!("none ({})", counted(self.mesh.points.len() as u64, "point"));
             return Err(Fault::new(place, "the number of facets", found, "points (v) and facets (f)"));
         }
         tidy_groups(&mut self.mesh);
         let mut notes = self.polygons.notes();
         if self.crowded > 0 {
             notes.push(format!(
-                "{} lines of more than {MOST_GROUPS} groups: those behind were left out",
-                self.crowded
+                "{} of more than {MOST_GROUPS} groups: those behind were left out",
+                counted(self.crowded as u64, "line")
             ));
         }
         Ok(Dataset { mesh: self.mesh, notes, ..Dataset::default() })
@@ -331,7 +331,7 @@ mod tests {
         let notes = read(SURFACE.replace("g lid top", &format!("g {}", many(17).join(" "))).as_bytes())
             .unwrap()
             .notes;
-        assert_eq!(notes, ["1 lines of more than 16 groups: those behind were left out"]);
+        assert_eq!(notes, ["1 line of more than 16 groups: those behind were left out"]);
     }
 
     #[test]
@@ -343,7 +343,7 @@ mod tests {
             ("v 0 0 0\nf 1 1\n", 2, "2"),
             ("v 0 0 0\nf 0 0 0\n", 2, "\"0\""),
             ("v 0 0 0\n\n\u{1}rubbish\n", 3, "\"\\u{1}rubbish\""),
-            ("v 0 0 0\n", 2, "none (1 points)"),
+            ("v 0 0 0\n", 2, "none (1 point)"),
         ] {
             let fault = read(text.as_bytes()).unwrap_err();
             assert_eq!((fault.place, fault.found.as_str()), (Place::Line(line), found), "{text:?}");
@@ -359,9 +359,9 @@ mod tests {
         let at = |text: &str| whole.find(text).unwrap() + text.len();
         assert!(cut(whole.len()).unwrap().notes.is_empty());
         let fault = cut(at("f 1 2 3")).unwrap_err().to_string();
-        assert!(fault.contains("line 5") && fault.contains("1 points are in no facet"), "{fault}");
+        assert!(fault.contains("line 5") && fault.contains("1 point is in no facet"), "{fault}");
         let notes = cut(at("f 1 2 3\n")).unwrap().notes;
-        assert!(notes[0].contains("1 points are in no facet, the first is points[3]"), "{notes:?}");
+        assert!(notes[0].contains("1 point is in no facet, the first is points[3]"), "{notes:?}");
         let notes = cut(whole.len() - 1).unwrap().notes;
         assert_eq!(notes, ["the last line has no end: the file may be cut off"]);
     }

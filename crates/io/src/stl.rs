@@ -8,7 +8,7 @@ use std::io::Write;
 
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh};
-use souple_table::Entry;
+use souple_table::{Entry, counted, in_number};
 
 use crate::cursor::Cursor;
 use crate::dataset::Output;
@@ -138,7 +138,7 @@ fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {
     // some programs append a few bytes; a missing one means a cut
     if bytes.len() < length {
         let found = format!("cut off after {} bytes", bytes.len());
-        let expected = format!("{length} bytes for {count} triangles");
+        let expected = format!("{length} bytes for {}", counted(count as u64, "triangle"));
         return Err(Fault::new(Place::Byte(bytes.len()), "the list of triangles", found, expected));
     }
     let mut joiner = Joiner::default();
@@ -163,7 +163,10 @@ fn read_binary(bytes: &[u8]) -> Result<Dataset, Fault> {
     }
     let mut dataset = joiner.finish(Place::Byte(80))?;
     if bytes.len() > length {
-        dataset.notes.push(format!("{} bytes behind the last triangle were left out", bytes.len() - length));
+        dataset.notes.push(format!(
+            "behind the last triangle {} left out",
+            in_number(bytes.len() - length, "byte was", "bytes were")
+        ));
     }
     Ok(dataset)
 }

@@ -48,7 +48,7 @@ fn polygons_are_read_by_one_rule() {
         assert_eq!(facets, expected, "{format}");
         let told = |words: &str| dataset.notes.iter().any(|note| note.contains(words));
         assert!(
-            told("1 polygons of more than four corners") && told("2 facets of fewer"),
+            told("1 polygon of more than four corners") && told("2 facets of fewer"),
             "{:?}",
             dataset.notes
         );

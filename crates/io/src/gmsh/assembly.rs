@@ -178,7 +178,9 @@ impl Assembly {
         tidy_groups(&mut self.dataset.mesh);
         for (number, count) in self.skipped {
             let name = element_type::find(number).map_or("element", |element| element.name);
-            self.dataset.notes.push(format!("{count} elements of type {number} ({name}) were left out"));
+            let [elements, were] = if count == 1 { ["element", "was"] } else { ["elements", "were"] };
+            let note = format!("{count} {elements} of type {number} ({name}) {were} left out");
+            self.dataset.notes.push(note);
         }
         if !self.skipped_sections.is_empty() {
             let names: Vec<String> = self

@@ -75,7 +75,7 @@ fn sections_left_out_are_told() {
 fn elements_of_other_kinds() {
     let with = |element: &str| VERSION_2.replace("1 15 2 3 1 10", element);
     let dataset = read(with("1 8 2 0 1 10 20 30").as_bytes()).unwrap();
-    assert_eq!(dataset.notes, ["1 elements of type 8 (line of 3 nodes) were left out"]);
+    assert_eq!(dataset.notes, ["1 element of type 8 (line of 3 nodes) was left out"]);
     let fault = read(with("1 14 2 0 1 10 20 30 40 50 10 20 30 40 50 10 20 30 40").as_bytes()).unwrap_err();
     assert_eq!(fault.found, "14, a pyramid of 14 nodes");
     assert!(read(with("1 99 2 0 1 10").as_bytes()).unwrap_err().expected.contains("4, 11 (tetrahedra)"));

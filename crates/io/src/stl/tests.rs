@@ -72,7 +72,7 @@ fn strange_surfaces_are_told() {
     write_binary(&Output::new(&tetrahedron), &mut bytes).unwrap();
     assert!(read(&bytes).unwrap().notes.is_empty());
     bytes.extend([0; 7]);
-    assert_eq!(read(&bytes).unwrap().notes, ["7 bytes behind the last triangle were left out"]);
+    assert_eq!(read(&bytes).unwrap().notes, ["behind the last triangle 7 bytes were left out"]);
     let notes = read(TEXT.replace("normal 0 0 1", "normal 0 0 -1").as_bytes()).unwrap().notes;
     assert_eq!(notes.len(), 2, "{notes:?}");
     assert!(notes[0].starts_with("1 triangles have a normal against") && notes[1].starts_with("4 edges"));

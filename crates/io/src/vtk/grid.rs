@@ -142,9 +142,9 @@ impl Grid {
         }
         dataset.notes.extend(sorter.notes());
         for (number, count) in skipped {
-            dataset
-                .notes
-                .push(format!("{count} cells of VTK type {number} (no volume, no facet) were left out"));
+            let [cells, were] = if count == 1 { ["cell", "was"] } else { ["cells", "were"] };
+            let kind = format!("of VTK type {number} (no volume, no facet)");
+            dataset.notes.push(format!("{count} {cells} {kind} {were} left out"));
         }
         Ok(destinations)
     }

@@ -1,6 +1,7 @@
 //! Bodies that start inside what they touch: the contact throws them out with all the energy of the overlap.
 
 use souple_engine::{ContactPoint, Surroundings};
+use souple_table::in_number;
 
 use super::Draft;
 use super::contact::mean_edge;
@@ -31,10 +32,14 @@ pub fn warn(draft: &mut Draft) {
         };
         let place = owner.mesh.points[found.row as usize - owner.rows.start];
         warnings.push(format!(
-            "{}: {} points start deep inside what they touch, the deepest of body `{}` at ({:.4}, {:.4}, {:.4}) by \
+            "{}: {}, the deepest of body `{}` at ({:.4}, {:.4}, {:.4}) by \
              {:.4} m: the contact will throw it out; start apart",
             draft.place(&contact.site),
-            found.count,
+            in_number(
+                found.count,
+                "point starts deep inside what it touches",
+                "points start deep inside what they touch"
+            ),
             owner.spec.name,
             place.x,
             place.y,

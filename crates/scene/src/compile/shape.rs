@@ -3,6 +3,7 @@
 use souple_mesh::fill::{FillError, fill_mesh};
 use souple_mesh::repair::RepairLimits;
 use souple_mesh::{Mesh, MeshError};
+use souple_table::in_number;
 
 use super::Draft;
 use crate::diagnostic::{Code, Site};
@@ -127,10 +128,8 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
         }
         let turned = mesh.face_up();
         if let Some(first) = turned.first() {
-            let count = turned.len();
-            warnings.push(said(format!(
-                "{count} cells seen from below were turned, the first is cells[{first}]"
-            )));
+            let count = in_number(turned.len(), "cell seen from below was", "cells seen from below were");
+            warnings.push(said(format!("{count} turned, the first is cells[{first}]")));
         }
     }
     Some(Shape { mesh, point_numbers, warnings })

@@ -151,7 +151,7 @@ fn every_encoding_reads_the_same() {
     assert!((mesh.cell_volume(hexahedron) - 1.0).abs() < 1e-14);
     assert_eq!(mesh.groups["MaterialID=8"].cells, [1, 2]);
     assert_eq!(expected.cell_fields[0].values, [7.0, 8.0, 8.0]);
-    assert_eq!(expected.notes, ["1 cells of VTK type 3 (no volume, no facet) were left out"]);
+    assert_eq!(expected.notes, ["1 cell of VTK type 3 (no volume, no facet) was left out"]);
     for style in styles() {
         assert_eq!(read(&file(style)).as_ref(), Ok(&expected), "{style:?}");
     }
