@@ -190,7 +190,7 @@ pub enum Indefinite {
     Descend,
     /// The solution all the same.
     Solve,
-    /// An error, and soon, also where the matrix is not symmetric: whoever asks has another matrix to take.
+    /// An error, and soon where the matrix is not symmetric: whoever asks has another matrix to take.
     Refuse,
 }
 
@@ -285,7 +285,20 @@ impl LinearSolver {
         let mut system = system;
         let (method, symmetric) = (self.settings.method, system.symmetric);
         if !symmetric || matches!(method, Method::Gmres | Method::Bicgstab) {
-            return Ok(self.solve_general(&mut system, b, x)?);
+            let solved = self.solve_general(&mut system, b, x)?;
+            // xᵀ A x along a solution is xᵀ b
+            let curvature = reduce::dot(x, b);
+            if system.indefinite == Indefinite::Refuse && curvature < 0.0 {
+                let stop = Stop::Indefinite { curvature: curvature / reduce::dot(x, x) };
+                return Err(LinearError::from(SolveError::NotConverged {
+                    method: self.general.as_ref().map_or("gmres", |made| made.name),
+                    iterations: solved.iterations as usize,
+                    relative_residual: solved.residual,
+                    tolerance: self.settings.tolerance,
+                    stop,
+                }));
+            }
+            return Ok(solved);
         }
         let failed = match self.solve_symmetric(&mut system, b, x) {
             Err(error @ (SolveError::NotPositiveDefinite { .. } | SolveError::NotConverged { .. })) => error,
@@ -364,7 +377,7 @@ impl LinearSolver {
         let preconditioner = if is_free { automatic } else { self.settings.preconditioner };
         let is_small = system.matrix.pattern().block_count() < LU_BELOW;
         let patience = match system.indefinite {
-            Indefinite::Refuse => PATIENCE.min(self.settings.max_iterations),
+            Indefinite::Refuse if !system.symmetric => PATIENCE.min(self.settings.max_iterations),
             _ => self.settings.max_iterations,
         };
         let name = match self.settings.method {

@@ -256,6 +256,11 @@ impl Skin {
         left: Left,
     ) -> Result<(Moves, u32), SkinError> {
         let h = self.voxel();
+        if scratch.crossings.points.is_empty() {
+            // of a skin that is gone nothing comes back
+            scratch.speeds.clear();
+            return Ok((Moves { uniform: 0.0, tension: 0.0, redistance: 0.0 }, 1));
+        }
         scratch.excess.clear();
         scratch.excess.resize(scratch.crossings.points.len(), 0.0);
         if self.terms.iter().any(|term| term.needs_target()) {

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use common::{number, part, skin, term};
 use souple_engine::FieldState;
 use souple_math::Vec3;
-use souple_skin::target::{ISO, Moment, Target};
+use souple_skin::target::{ISO, Moment, Part, Target};
 use souple_skin::{Skin, SkinError, SkinScratch};
 use souple_table::Value;
 
@@ -69,7 +69,7 @@ fn speeds_that_look_at_the_size_do_not_overshoot() {
     assert!((before - 0.6).abs() < 1e-4, "{before}");
 }
 
-/// A target that ends, turns to no number or fills all while the world runs ends in words with the time.
+/// A target that turns to no number or ends while the world runs ends it in words with the time.
 #[test]
 fn targets_that_break_while_running() {
     let formula = |text: &'static str| {
@@ -82,9 +82,9 @@ fn targets_that_break_while_running() {
             ],
         )
     };
-    let fails = |text: &'static str| -> SkinError {
+    let fails = |text: &'static str, during: [f64; 2]| -> SkinError {
         let mut skin = skin(0.1, vec![term("attraction", &[("strength", number(1.0))])]);
-        skin.target = Some(Target { parts: vec![formula(text)], iso: ISO });
+        skin.target = Some(Target { parts: vec![Part { during, ..formula(text) }], iso: ISO });
         let mut scratch = skin.new_scratch();
         let mut field = ball(&skin, 0.5, &mut scratch);
         let mut steps = 1..=400;
@@ -93,7 +93,9 @@ fn targets_that_break_while_running() {
         });
         failed.unwrap_or_else(|| panic!("{text} goes on"))
     };
-    let error = fails("sqrt(0.55 - t)*(0.5 - sqrt(x^2 + y^2 + z^2))");
+    let error = fails("sqrt(0.55 - t)*(0.5 - sqrt(x^2 + y^2 + z^2))", [0.0, f64::INFINITY]);
     assert!(matches!(error, SkinError::Speed { .. }), "{error}");
     assert!(error.to_string().contains("expected a number"), "{error}");
+    let error = fails("0.5 - sqrt(x^2 + y^2 + z^2)", [0.0, 0.35]);
+    assert!(matches!(error, SkinError::Target(_)) && error.to_string().contains("at t = 0.4"), "{error}");
 }

@@ -31,6 +31,8 @@ pub use rates::Rates;
 
 /// Halvings of a direction before what is left of it is taken.
 const MAX_HALVINGS: u32 = 30;
+/// Potentials are sums of terms that cancel: what rises by less than this share of them is not held back.
+const POTENTIAL_ROUNDING: f64 = 1e-10;
 
 /// The step from `(q_start, v_start)` to the end of `timestep`.
 pub struct ImplicitStep<'a> {
@@ -333,7 +335,7 @@ impl ImplicitStep<'_> {
             };
             // of matrices that are not symmetric none is known to be definite: what friction adds to that is left out
             let (matrix, nearby, symmetric) = match nearby {
-                Some(nearby) if turned => (nearby, None, self.system.kinematics.is_conservative()),
+                Some(nearby) if turned => (nearby, None, system.kinematics.is_conservative()),
                 nearby => (matrix, nearby.map(|nearby| &*nearby), symmetric),
             };
             if is_symmetrised {
@@ -365,7 +367,7 @@ impl ImplicitStep<'_> {
             stages.solve += clock.elapsed().as_secs_f64();
             stages.products += operator.take_seconds();
             match solved {
-                // what is sought is where the step's potential is least, and this leads there
+                // a direction in which the potential falls, where there is one; Newton's method judges it by the residual
                 Err(error)
                     if error.may_be_indefinite() && curvature == Curvature::Exact && !is_matrix_free =>
                 {
@@ -431,9 +433,7 @@ impl ImplicitStep<'_> {
         let wanted = Wanted { constrained, indefinite, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
         q.copy_from_slice(&buffers.q_trial);
-        if solved.made_definite {
-            self.hold_back(state, q, ws, buffers);
-        }
+        self.hold_back(state, q, ws, buffers);
         self.system.kinematics.retract(q, &buffers.direction);
         Ok(StepReport {
             newton_iterations: 1,
@@ -444,8 +444,10 @@ impl ImplicitStep<'_> {
         })
     }
 
-    /// Shortens the direction that a matrix made definite gave until the step's potential is no higher at its end than at its
-    /// beginning `q`: what such a matrix knows holds near to that alone. Constrained components go where they are led.
+    /// Halves the direction of a linearised solve until the step's potential, less the work of forces that have none, is no higher
+    /// at its end than where it begins, at `q`. That of a linear system never is; of one that is bent so much that the solve knows
+    /// nothing of its end, it may be by any amount. Constrained components go where they are led. What is shortened stays
+    /// behind where inertia leads, so that momentum is lost with the energy.
     fn hold_back(
         &self,
         state: &SystemState,
@@ -454,26 +456,59 @@ impl ImplicitStep<'_> {
         buffers: &mut ImplicitBuffers,
     ) {
         let whole = std::mem::take(&mut buffers.direction);
-        let mut direction = vec![Vec3::ZERO; whole.len()];
-        let mut potential = |fraction: f64, buffers: &mut ImplicitBuffers, direction: &mut [Vec3]| {
+        // the right-hand side has served
+        let mut direction = std::mem::take(&mut buffers.rhs);
+        let mut place = |fraction: f64, ws: &mut SystemWorkspace, direction: &mut [Vec3]| {
             for ((part, whole), led) in direction.iter_mut().zip(&whole).zip(&buffers.prescribed) {
                 *part = *led + (*whole - *led) * fraction;
             }
-            buffers.q_trial.copy_from_slice(q);
-            self.system.kinematics.retract(&mut buffers.q_trial, direction);
-            self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+            let ImplicitBuffers { q_trial, v_trial, q_start, velocity_offset, .. } = &mut *buffers;
+            q_trial.copy_from_slice(q);
+            self.system.kinematics.retract(q_trial, direction);
+            self.velocity_into(q_trial, q_start, velocity_offset, v_trial);
+            self.system.place_rows(q_trial, v_trial, self.end, &mut ws.rows);
             self.merit(state, ws, buffers)
         };
-        let start = potential(0.0, buffers, &mut direction);
+        let start = place(0.0, ws, &mut direction);
         let mut fraction = 1.0;
-        for _ in 0..MAX_HALVINGS {
-            // what is no number is no less
-            if potential(fraction, buffers, &mut direction) <= start {
-                break;
+        let mut end = place(fraction, ws, &mut direction);
+        let allowed = start + POTENTIAL_ROUNDING * start.abs();
+        // what is no number is no less
+        let is_higher = |end: f64, work: f64| end.is_nan() || end - work > allowed;
+        if is_higher(end, 0.0) {
+            place(0.0, ws, &mut direction);
+            let work = self.work_without_potential(state, q, ws, &whole);
+            for _ in 0..MAX_HALVINGS {
+                end = place(fraction, ws, &mut direction);
+                if !is_higher(end, fraction * work) {
+                    break;
+                }
+                fraction *= 0.5;
             }
-            fraction *= 0.5;
         }
-        buffers.direction = direction;
+        (buffers.rhs, buffers.direction) = (whole, direction);
+    }
+
+    /// What forces without a potential do on the way along a direction, as they are at the placed rows [J].
+    fn work_without_potential(
+        &self,
+        state: &SystemState,
+        q: &[Vec3],
+        ws: &mut SystemWorkspace,
+        direction: &[Vec3],
+    ) -> f64 {
+        let system = self.system;
+        let mut forces = vec![Vec3::ZERO; ws.row_scratch.len()];
+        for (index, force) in system.forces.iter().enumerate() {
+            if !force.declaration().conservative {
+                let at = system.view(index, &ws.rows, state, &self.around);
+                force.add_force(&at, &mut ws.scratches[index], &mut forces);
+            }
+        }
+        let mut on_blocks = vec![Vec3::ZERO; direction.len()];
+        system.kinematics.forces_into(q, &mut forces, &mut on_blocks);
+        system.project_free(&mut on_blocks);
+        on_blocks.iter().zip(direction).map(|(force, way)| force.dot(*way)).sum()
     }
 
     /// Turns rigid frames on as they coast: the one solve is then about there. About where they start it would leave out

@@ -252,7 +252,7 @@ impl LegendBox {
         let of_title = |title: &[String]| (1.4 + 1.6 * title.len() as f64) * letter;
         // how wide numbers are says how the title is wrapped, and that how long the bar may be, which says how many there are
         let mut long = wanted;
-        for _ in 0..2 {
+        for _ in 0..4 {
             let (ticks, unit) = named.ticks((long / (2.0 * letter)) as usize, 1.8 * letter / long);
             let widest = widest(ticks.iter().map(|(_, name)| name), letter);
             let bar = 1.4 * letter;

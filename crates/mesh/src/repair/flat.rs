@@ -25,9 +25,9 @@ pub(super) fn drop(points: &[Vec3], triangles: &mut Vec<[u32; 3]>, repairs: &mut
 }
 
 /// Of a triangle whose corners lie on a line, and its neighbour at the longest edge, takes the other diagonal: both get an area,
-/// and the surface stays where it is.
+/// and the surface stays where it is. Where that neighbour is flat too it comes first.
 pub(super) fn join(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs) {
-    let flat: Vec<usize> = (0..surface.triangles.len())
+    let mut flat: Vec<usize> = (0..surface.triangles.len())
         .filter(|triangle| is_flat(surface.triangles[*triangle], &surface.points))
         .collect();
     if flat.is_empty() {
@@ -37,30 +37,46 @@ pub(super) fn join(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs) 
     for (triangle, corners) in surface.triangles.iter().enumerate() {
         edges_of(corners).into_iter().for_each(|edge| beside.entry(edge).or_default().push(triangle));
     }
-    for triangle in flat {
-        let [a, b, c] = from_longest_edge(surface, triangle);
-        let [first, second] = beside[&sorted(a, b)][..] else { continue };
-        let other = if first == triangle { second } else { first };
-        let of_other = surface.triangles[other];
-        let Some(d) = of_other.into_iter().find(|point| *point != a && *point != b) else { continue };
-        let runs_against = (0..3).any(|k| of_other[k] == b && of_other[(k + 1) % 3] == a);
-        if d == c || !runs_against || is_flat(of_other, &surface.points) || beside.contains_key(&sorted(c, d))
-        {
-            continue;
+    // one is done at least in each pass but the last
+    loop {
+        let before = flat.len();
+        flat.retain(|triangle| !take_other_diagonal(surface, *triangle, &mut beside));
+        repairs.joined_triangles += before - flat.len();
+        if flat.len() == before {
+            return;
         }
-        for of in [triangle, other] {
-            for edge in edges_of(&surface.triangles[of]) {
-                beside.entry(edge).or_default().retain(|user| *user != of);
-            }
-        }
-        (surface.triangles[triangle], surface.triangles[other]) = ([c, a, d], [d, b, c]);
-        for of in [triangle, other] {
-            for edge in edges_of(&surface.triangles[of]) {
-                beside.entry(edge).or_default().push(of);
-            }
-        }
-        repairs.joined_triangles += 1;
     }
+}
+
+/// Whether a triangle without area and its neighbour at the longest edge took the other diagonal.
+fn take_other_diagonal(
+    surface: &mut TriangleSurface,
+    triangle: usize,
+    beside: &mut HashMap<[u32; 2], Vec<usize>>,
+) -> bool {
+    let [a, b, c] = from_longest_edge(surface, triangle);
+    let [first, second] = beside[&sorted(a, b)][..] else { return false };
+    let other = if first == triangle { second } else { first };
+    let of_other = surface.triangles[other];
+    let Some(d) = of_other.into_iter().find(|point| *point != a && *point != b) else { return false };
+    let runs_against = (0..3).any(|k| of_other[k] == b && of_other[(k + 1) % 3] == a);
+    // an edge that was there and is gone has no triangles
+    let is_taken = beside.get(&sorted(c, d)).is_some_and(|users| !users.is_empty());
+    if d == c || !runs_against || is_flat(of_other, &surface.points) || is_taken {
+        return false;
+    }
+    for of in [triangle, other] {
+        for edge in edges_of(&surface.triangles[of]) {
+            beside.entry(edge).or_default().retain(|user| *user != of);
+        }
+    }
+    (surface.triangles[triangle], surface.triangles[other]) = ([c, a, d], [d, b, c]);
+    for of in [triangle, other] {
+        for edge in edges_of(&surface.triangles[of]) {
+            beside.entry(edge).or_default().push(of);
+        }
+    }
+    true
 }
 
 /// Corners from the start of the longest edge on.

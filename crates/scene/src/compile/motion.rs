@@ -101,7 +101,7 @@ const HALVINGS: u32 = 14;
 const JUMP: f64 = 0.01;
 
 /// When a function of time first jumps in a run of some `duration`, and by how much; what changes within a ten-thousandth of an
-/// `interval` jumps.
+/// `interval` jumps, or of a longer one where the run has more than can be looked at.
 fn first_jump<T>(
     of: impl Fn(f64) -> T,
     distance: impl Fn(&T, &T) -> f64,
@@ -119,7 +119,8 @@ fn first_jump<T>(
             return None;
         }
         let (mut from, mut to) = (time(index), time(index + 1));
-        let mut left = changes[index];
+        // the most that a part of it changes: the ends of a vibration may be at rest
+        let (mut whole, mut left) = (changes[index], changes[index]);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (from + to);
             let at_middle = of(middle);
@@ -130,11 +131,12 @@ fn first_jump<T>(
                 from = middle
             }
             left = before.max(after);
-            if left <= JUMP * changes[index] {
+            whole = whole.max(left);
+            if left <= JUMP * whole {
                 return None;
             }
         }
-        (left > JUMP * changes[index]).then_some((to, left))
+        Some((to, left))
     })
 }
 

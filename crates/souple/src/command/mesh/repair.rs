@@ -77,6 +77,7 @@ pub fn counts(repairs: &SurfaceRepairs) -> Json {
     json!({
         "welded_points": repairs.welded_points,
         "flat_triangles": repairs.flat_triangles,
+        "joined_triangles": repairs.joined_triangles,
         "doubled_triangles": repairs.doubled_triangles,
         "facing_triangles": repairs.facing_triangles,
         "turned_triangles": repairs.turned_triangles,
