@@ -2,11 +2,10 @@
 
 use std::collections::HashMap;
 
-use souple_math::Vec3;
-
-use super::{SurfaceRepairs, edges_of, sorted};
+use super::{SurfaceRepairs, edges_of, from_lowest};
 use crate::TriangleSurface;
 use crate::winding::WindingNumber;
+use souple_math::Vec3;
 
 /// Drops pairs of triangles that lie back to back where two closed parts touch: what is left is closed again.
 ///
@@ -93,11 +92,11 @@ impl Around {
 fn pairs(triangles: &[[u32; 3]]) -> Vec<[usize; 2]> {
     let mut open: HashMap<[u32; 3], usize> = HashMap::new();
     let mut pairs = Vec::new();
-    for (index, corners) in triangles.iter().enumerate() {
-        match open.remove(&sorted(*corners)) {
-            Some(other) if is_turned_over(*corners, triangles[other]) => pairs.push([other, index]),
-            _ => {
-                open.insert(sorted(*corners), index);
+    for (index, [a, b, c]) in triangles.iter().enumerate() {
+        match open.remove(&from_lowest([*a, *c, *b])) {
+            Some(other) => pairs.push([other, index]),
+            None => {
+                open.insert(from_lowest([*a, *b, *c]), index);
             }
         }
     }
@@ -123,9 +122,4 @@ fn patches(pairs: &[[usize; 2]], triangles: &[[u32; 3]], uses: &HashMap<[u32; 2]
         }
     }
     patch_of
-}
-
-/// Whether two triangles of the same corners run around them in opposite directions.
-fn is_turned_over([a, b, c]: [u32; 3], other: [u32; 3]) -> bool {
-    [[a, c, b], [c, b, a], [b, a, c]].contains(&other)
 }

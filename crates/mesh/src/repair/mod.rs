@@ -96,11 +96,12 @@ fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) 
     let welded = surface.triangles.iter().map(|corners| corners.map(|point| number[point as usize]));
     let mut triangles: Vec<[u32; 3]> = welded.collect();
     flat::drop(&surface.points, &mut triangles, repairs);
-    facing::drop_pairs(&surface.points, &mut triangles, repairs);
+    // copies that run the same way go first: what is left of three are two of opposite directions at most
     let mut seen: HashSet<[u32; 3]> = HashSet::new();
     let before = triangles.len();
-    triangles.retain(|corners| seen.insert(sorted(*corners)));
+    triangles.retain(|corners| seen.insert(from_lowest(*corners)));
     repairs.doubled_triangles += before - triangles.len();
+    facing::drop_pairs(&surface.points, &mut triangles, repairs);
     let mut mended = TriangleSurface::from_mesh(&surface.points, &triangles, Vec::new());
     mended.mesh_points.clear();
     mended
@@ -111,9 +112,10 @@ fn edges_of([a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|[from, to]| [*from.min(to), *from.max(to)])
 }
 
-fn sorted(mut corners: [u32; 3]) -> [u32; 3] {
-    corners.sort_unstable();
-    corners
+/// Corners in their direction, the lowest first.
+fn from_lowest([a, b, c]: [u32; 3]) -> [u32; 3] {
+    let turns = [[a, b, c], [b, c, a], [c, a, b]];
+    turns.into_iter().fold([a, b, c], |least, turn| least.min(turn))
 }
 
 /// Whether corners repeat or lie on one line, to rounding.

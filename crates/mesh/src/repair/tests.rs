@@ -118,6 +118,31 @@ fn copies_that_are_turned_over_leave_no_hole() {
     }
 }
 
+/// However many copies of whichever triangles, in any direction and order: the surface is closed again, and one of each is left.
+#[test]
+fn any_copies_leave_the_surface() {
+    let cube = unit_cube(3.0);
+    let mut noise = 12345_u64;
+    let mut below = |count: u64| {
+        noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (noise >> 33) % count
+    };
+    for _ in 0..40 {
+        let mut doubled = cube.clone();
+        for [a, b, c] in &cube.triangles {
+            for _ in 0..below(4) {
+                let place = below(doubled.triangles.len() as u64 + 1) as usize;
+                let copy = [[*a, *b, *c], [*c, *a, *b], [*a, *c, *b], [*c, *b, *a]][below(4) as usize];
+                doubled.triangles.insert(place, copy);
+            }
+        }
+        let count = doubled.triangles.len() - cube.triangles.len();
+        let (mended, repairs) = repair(&doubled, RepairLimits { hole: 0.0, ..RepairLimits::default() });
+        assert_eq!((repairs.doubled_triangles, repairs.facing_triangles), (count, 0));
+        assert_cube(&mended);
+    }
+}
+
 /// A triangle whose corners lie on a line, where a corner stands on the edge of a larger triangle: what was closed stays closed,
 /// and no triangle is without area.
 #[test]
