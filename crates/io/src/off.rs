@@ -5,7 +5,7 @@
 use std::io::Write;
 
 use souple_math::Vec3;
-use souple_table::Entry;
+use souple_table::{Entry, counted};
 
 use crate::Dataset;
 use crate::cursor::{Cursor, parse};
@@ -70,11 +70,12 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
         let expected = "OFF, COFF, NOFF or CNOFF, as text";
         return Err(Fault::new(place, "the kind of the OFF file", quoted(&words.join(&b' ')), expected));
     }
-    let numbers = match words[0] {
-        b"NOFF" => "x, y, z and a normal",
-        b"COFF" => "x, y, z and a colour",
-        b"CNOFF" => "x, y, z, a normal and a colour",
-        _ => "x, y and z",
+    // colours may be left out, as writers do; a point of a kind with normals that has none is cut off, or not meant as one
+    let (numbers, lengths): (_, &[usize]) = match words[0] {
+        b"NOFF" => ("x, y, z and a normal", &[6, 9, 10]),
+        b"COFF" => ("x, y, z and a colour", &[1, 2, 3, 6, 7, 9, 10]),
+        b"CNOFF" => ("x, y, z, a normal and a colour", &[6, 9, 10]),
+        _ => ("x, y and z", &[1, 2, 3, 6, 7, 9, 10]),
     };
     // the counts stand behind the kind or on the next line
     words.remove(0);
@@ -85,8 +86,8 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
     for point in 0..point_count {
         let (place, words) = lines.expect(&format!("point {point} of {point_count}"), numbers)?;
         // with a normal, a colour of three or four numbers, or both; a facet among points has another length
-        if ![1, 2, 3, 6, 7, 9, 10].contains(&words.len()) {
-            let found = format!("{} numbers", words.len());
+        if !lengths.contains(&words.len()) {
+            let found = counted(words.len() as u64, "number");
             return Err(Fault::new(place, format!("point {point} of {point_count}"), found, numbers));
         }
         let mut position = [0.0; 3];
@@ -216,7 +217,7 @@ mod tests {
             (
                 "OFF # a tent\n\n4 3 5",
                 "NOFF 5 2 5",
-                "point 4 of 5 is 4 numbers; expected x, y, z and a normal",
+                "point 0 of 5 is 3 numbers; expected x, y, z and a normal",
             ),
             ("4 3 5", "3 4 5", "line 7: the number of corners of facet 0 is \"0.5\""),
             ("1 1 0", "1 inf 0", "line 6: y of point 2 is \"inf\"; expected a finite number"),
