@@ -326,7 +326,7 @@ fn particles_are_dressed_and_what_is_left_out_is_said() {
     let refusal = |table: &str, more: &[&str]| dress(table, more).ends(2).json()["errors"].to_string();
     assert!(refusal(&row, &[]).contains("`radius` is missing"));
     let alone = refusal("x,y,z\n0,0,0\n", &["radius=0.01"]);
-    assert!(alone.contains("0.318 at most") && alone.contains("lower iso"));
+    assert!(alone.contains("0.318 at most") && alone.contains("an `iso` below 0.318"));
     // two that are there one after the other, and the second moves
     let two = "x,y,z,radius,vx,from,until\n0,0,0,0.01,0,-inf,1\n0,0,0,0.01,1,1,inf\n";
     let middle = |time: &str| {
