@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
+use souple_math::Vec3;
+
 use super::{SurfaceRepairs, edges_of, from_lowest};
 use crate::TriangleSurface;
 use crate::winding::WindingNumber;
-use souple_math::Vec3;
 
 /// Drops pairs of triangles that lie back to back where two closed parts touch: what is left is closed again.
 ///
