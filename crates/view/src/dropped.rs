@@ -114,6 +114,8 @@ pub fn scene_of(dropped: &DroppedFile) -> Result<String, String> {
          [world]\n\
          period = \"10 ms\"\n\
          gravity = [0, -{GRAVITY}, 0]\n\
+         [systems.main]\n\
+         stepper = {{ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-4 }}\n\
          [bodies.body]\n\
          mesh = {{ {source}, scale = {scale} }}\n\
          material = {{ name = \"stable_neo_hookean\", youngs_modulus = {youngs_modulus}, poissons_ratio = 0.4, \

@@ -125,8 +125,10 @@ class Page {
   }
 
   private send(wish: Wish): void {
-    if (this.connection.send(wish) || UNTOLD.has(wish.do)) return;
-    this.notes.say("warning", "The connection is lost: nothing was done.");
+    const isSent = this.connection.send(wish);
+    if (UNTOLD.has(wish.do)) return;
+    if (!isSent) this.notes.say("warning", "The connection is lost: nothing was done.");
+    else if (this.transport.isLong) this.notes.say("note", "This is done when the step ends that goes on now.");
   }
 
   /** What was pressed or set by a pointer does not keep the keys; what keys have come to does. */

@@ -89,10 +89,15 @@ export class Transport {
     this.shown = performance.now();
   }
 
+  /** Whether a step goes on for long: what is wished for is done when it ends. */
+  get isLong(): boolean {
+    return this.mode === "playing" && performance.now() - this.shown > Math.max(LONG_MS, 3 * this.between);
+  }
+
   /** No frame has come: a step that goes on for long is told. */
   wait(): void {
+    if (!this.isLong) return;
     const since = performance.now() - this.shown;
-    if (this.mode !== "playing" || since < Math.max(LONG_MS, 3 * this.between)) return;
     this.factor.textContent = `${number(since / 1000)} s in one step`;
     this.factor.classList.add("slow");
   }

@@ -13,6 +13,8 @@ export interface Aim {
 }
 
 const COLOUR = 0xf2a33a;
+/** Of numbers from the edge of the picture [px]. */
+const MARGIN = 6;
 /** Length of the arrow of a tool, in the size of all bodies. */
 const TOOL_ARROW = 0.12;
 
@@ -83,7 +85,11 @@ export class Hands {
   placeLabels(camera: Camera, width: number, height: number): void {
     for (const { label, place } of this.shown) {
       const at = place.clone().project(camera);
-      label.style.transform = `translate(${((at.x + 1) / 2) * width + 12}px, ${((1 - at.y) / 2) * height - 10}px)`;
+      // a hand may lead far out of the picture: its number stays at the edge
+      const within = (wanted: number, most: number) => Math.min(Math.max(wanted, MARGIN), Math.max(most - MARGIN, MARGIN));
+      const left = within(((at.x + 1) / 2) * width + 12, width - label.offsetWidth);
+      const top = within(((1 - at.y) / 2) * height - 10, height - label.offsetHeight);
+      label.style.transform = `translate(${left}px, ${top}px)`;
     }
   }
 
