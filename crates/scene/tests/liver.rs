@@ -21,28 +21,30 @@ fn a_thousand_tetrahedra_hang() {
     assert_steps(&["bodies.liver.mesh.size=0", "bodies.liver.mesh.count=1000"], 20);
 }
 
-/// One linearised solve a step goes on where cells are turned inside out and their tangents are not definite, with friction
-/// beside them: a finger goes through the organ in a third of a second, and what it leaves comes back to the ligaments.
+/// One linearised solve a step is held back where cells are turned inside out: a finger goes through the organ in a third of a
+/// second, and a second after it has left all hangs as if it had not been there.
 #[test]
 fn a_finger_goes_through() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/liver/scene.toml");
-    let through = "[[0, 0, 0], [0, 0, -0.14], [0, 0, -0.14], [0, 0, 0]]";
-    let settings = [
-        "bodies.liver.mesh.size=0".to_owned(),
-        "bodies.liver.mesh.count=1000".to_owned(),
-        "shapes.tool.motion.times=[0, 0.3, 0.4, 0.6]".to_owned(),
-        format!("shapes.tool.motion.offsets={through}"),
-    ];
-    let scene = souple_scene::read_file(&path, &settings).unwrap_or_else(|error| panic!("{error}"));
-    let mut world = scene.model.start(scene.state);
-    let mut made_definite = 0;
-    for step in 0..60 {
-        world.step().unwrap_or_else(|error| panic!("step {step}: {error}"));
-        made_definite += world.last_report().made_definite;
-    }
-    assert!(made_definite > 0);
-    // within the length of the organ from where it hangs
-    assert!(world.rows(0).positions.iter().all(|x| x.length() < 0.5));
+    let hanging = |offsets: &str| {
+        let settings = [
+            "bodies.liver.mesh.size=0".to_owned(),
+            "bodies.liver.mesh.count=1000".to_owned(),
+            "shapes.tool.motion.times=[0, 0.3, 0.4, 0.6]".to_owned(),
+            format!("shapes.tool.motion.offsets={offsets}"),
+        ];
+        let scene = souple_scene::read_file(&path, &settings).unwrap_or_else(|error| panic!("{error}"));
+        let mut world = scene.model.start(scene.state);
+        for step in 0..80 {
+            world.step().unwrap_or_else(|error| panic!("step {step}: {error}"));
+        }
+        world.rows(0).positions.clone()
+    };
+    let alone = hanging("[[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]");
+    let after = hanging("[[0, 0, 0], [0, 0, -0.14], [0, 0, -0.14], [0, 0, 0]]");
+    let farthest = alone.iter().zip(&after).map(|(a, b)| (*a - *b).length()).fold(0.0, f64::max);
+    // it swings, damped by 1/s, from some centimetres
+    assert!(farthest < 0.01, "{farthest}");
 }
 
 #[test]
