@@ -218,7 +218,7 @@ fn what_is_inside_out_flies_on() {
     // of 1000 kg/m³
     let mass = 62.5;
     let (mut made_definite, mut velocity) = (0, thrown);
-    for step in 1..=30 {
+    for _ in 1..=30 {
         world.step().unwrap();
         made_definite += world.last_report().made_definite;
         let (before, now) = (velocity + Vec3::Y * (fall * period), world.momentum().0 / mass);
