@@ -9,9 +9,7 @@ use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, MOST_SUBSTEPS};
 pub enum SkinError {
     #[error("its target cannot be placed: {0}")]
     Target(String),
-    #[error(
-        "{part}its target is {value} at {place:?}; expected a number, there and a block of 8 voxels around its box"
-    )]
+    #[error("{part}its target is {value} at {place:?}; expected a number")]
     TargetNotANumber { value: f64, place: [f64; 3], part: String },
     #[error(
         "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside, or smaller voxels where it is thinner than one"
