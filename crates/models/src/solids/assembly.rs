@@ -12,6 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
+use souple_engine::Curvature;
 use souple_math::{Mat3, Padded, Vec3};
 use souple_solve::dense::{self, take_absolute};
 use souple_solve::{BlockMatrix, Pattern};
@@ -139,13 +140,14 @@ impl Assembly {
         self.gather(matrix);
     }
 
-    /// [`Self::add_blocks`] of symmetric blocks, the negative eigenvalues of every element's matrix turned round: the sum
-    /// then has none. Cut off instead (Teran et al. 2005) they would leave directions in which an element pressed flat or
+    /// [`Self::add_blocks`] of symmetric blocks, exactly or with the negative eigenvalues of every element's matrix turned round:
+    /// the sum then has none. Cut off instead (Teran et al. 2005) they would leave directions in which an element pressed flat or
     /// turned inside out is held by its mass alone, and a step goes far beyond it; their size keeps it near (Chen et al.
-    /// 2024, Stabler neo-Hookean simulation: absolute eigenvalue filtering for projected Newton). Returns whether there were
-    /// any.
-    pub fn add_definite_blocks<K: Send + Sync, const I: usize>(
+    /// 2024, Stabler neo-Hookean simulation: absolute eigenvalue filtering for projected Newton). Returns whether any were
+    /// turned.
+    pub fn add<K: Send + Sync, const I: usize>(
         &mut self,
+        curvature: Curvature,
         elements: &Elements<K>,
         inputs: [&[Vec3]; I],
         partials: &mut Vec<Vec3>,
@@ -153,6 +155,10 @@ impl Assembly {
         blocks_of: impl Fn(&Batch<K>, &Chunk, Range<usize>, [&[Padded]; I], &mut [f64]) + Sync,
     ) -> bool {
         debug_assert_eq!(self.symmetry, Symmetry::Symmetric);
+        if curvature == Curvature::Exact {
+            self.add_blocks(elements, inputs, partials, matrix, blocks_of);
+            return false;
+        }
         let turned = AtomicBool::new(false);
         self.add_blocks(elements, inputs, partials, matrix, |batch, chunk, blocks, inputs, out| {
             blocks_of(batch, chunk, blocks.clone(), inputs, out);

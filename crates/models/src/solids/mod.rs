@@ -29,7 +29,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use souple_engine::state::Pair;
-use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{
+    CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights,
+};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, MAX_NODES, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
@@ -333,19 +335,7 @@ impl Force for SolidForce {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        if weights.position == 0.0 {
-            return;
-        }
-        let SolidScratch { partials, assembly, displacements } = SolidScratch::of(scratch);
-        assembly.add_blocks(
-            &self.elements,
-            [self.seen(at.positions, displacements)],
-            partials,
-            matrix,
-            |batch, chunk, blocks, [x], out| {
-                batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
-            },
-        );
+        self.assemble(Curvature::Exact, at, weights, scratch, matrix);
     }
 
     fn add_definite_blocks(
@@ -355,19 +345,7 @@ impl Force for SolidForce {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) -> bool {
-        if weights.position == 0.0 {
-            return false;
-        }
-        let SolidScratch { partials, assembly, displacements } = SolidScratch::of(scratch);
-        assembly.add_definite_blocks(
-            &self.elements,
-            [self.seen(at.positions, displacements)],
-            partials,
-            matrix,
-            |batch, chunk, blocks, [x], out| {
-                batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
-            },
-        )
+        self.assemble(Curvature::Definite, at, weights, scratch, matrix)
     }
 
     fn bytes(&self) -> usize {
@@ -388,6 +366,27 @@ impl Force for SolidForce {
 
     fn as_any(&self) -> &dyn Any {
         self
+    }
+}
+
+impl SolidForce {
+    /// Whether anything was turned round to be definite.
+    fn assemble(
+        &self,
+        curvature: Curvature,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) -> bool {
+        if weights.position == 0.0 {
+            return false;
+        }
+        let SolidScratch { partials, assembly, displacements } = SolidScratch::of(scratch);
+        let inputs = [self.seen(at.positions, displacements)];
+        assembly.add(curvature, &self.elements, inputs, partials, matrix, |batch, chunk, blocks, [x], out| {
+            batch.kernel.blocks(chunk, blocks, &batch.reference, x, weights.position, out);
+        })
     }
 }
 

@@ -38,7 +38,7 @@ impl Potential for Text {
         range.map_or(UNKNOWN, |range| range.map(|value| ISO + value))
     }
 
-    // it is looked for nowhere else
+    // told by the user, whatever the level
     fn bounds(&self, _: f64, _: &PartScratch) -> Option<BoundingBox> {
         Some(self.bounds)
     }

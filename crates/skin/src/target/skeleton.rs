@@ -40,8 +40,8 @@ impl Falloff {
     fn reach(self, level: f64) -> f64 {
         match self {
             _ if level >= 1.0 => 0.0,
-            Self::Compact => ((1.0 - level.cbrt()) / COMPACT).sqrt(),
-            Self::Gaussian => (-level.log2()).sqrt(),
+            Self::Compact => ((1.0 - libm::cbrt(level)) / COMPACT).sqrt(),
+            Self::Gaussian => (-libm::log2(level)).sqrt(),
             Self::Inverse => (1.0 / level - 1.0).sqrt(),
             Self::Linear => 2.0 * (1.0 - level),
         }

@@ -14,7 +14,9 @@ use std::cell::RefCell;
 use std::ops::Range;
 
 use souple_engine::state::Pair;
-use souple_engine::{Adapted, CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{
+    Adapted, CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights,
+};
 use souple_math::{Padded, Vec3};
 use souple_mesh::{MAX_NODES, Mesh};
 use souple_solve::BlockMatrix;
@@ -247,6 +249,25 @@ impl AdaptiveForce {
     }
 }
 
+impl AdaptiveForce {
+    /// Whether anything was turned round to be definite.
+    fn assemble(
+        &self,
+        curvature: Curvature,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) -> bool {
+        let (laws, elements) = (self.laws(at.memory), &self.solids[0].elements);
+        let AdaptiveScratch { partials, assembly, .. } = of(scratch);
+        let inputs = [at.positions];
+        assembly.add(curvature, elements, inputs, partials, matrix, |batch, chunk, blocks, [x], out| {
+            self.blocks(laws, (batch, chunk), blocks, x, weights.position, out);
+        })
+    }
+}
+
 impl Force for AdaptiveForce {
     fn name(&self) -> &str {
         self.solids[0].name()
@@ -321,11 +342,7 @@ impl Force for AdaptiveForce {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        let (laws, elements) = (self.laws(at.memory), &self.solids[0].elements);
-        let AdaptiveScratch { partials, assembly, .. } = of(scratch);
-        assembly.add_blocks(elements, [at.positions], partials, matrix, |batch, chunk, blocks, [x], out| {
-            self.blocks(laws, (batch, chunk), blocks, x, weights.position, out);
-        });
+        self.assemble(Curvature::Exact, at, weights, scratch, matrix);
     }
 
     fn add_definite_blocks(
@@ -335,12 +352,7 @@ impl Force for AdaptiveForce {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) -> bool {
-        let (laws, elements) = (self.laws(at.memory), &self.solids[0].elements);
-        let AdaptiveScratch { partials, assembly, .. } = of(scratch);
-        let inputs = [at.positions];
-        assembly.add_definite_blocks(elements, inputs, partials, matrix, |batch, chunk, blocks, [x], out| {
-            self.blocks(laws, (batch, chunk), blocks, x, weights.position, out);
-        })
+        self.assemble(Curvature::Definite, at, weights, scratch, matrix)
     }
 
     fn advance_memory(&self, at: &Configuration, _: f64, memory: &mut [f64], _: &mut [Pair]) {
