@@ -6,7 +6,7 @@
 
 use souple_formal::{Condition, Formula};
 use souple_math::Vec3;
-use souple_table::{Entry, Table, Value, Values};
+use souple_table::{Entry, Table, Value, Values, counted};
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node, Table as Document};
@@ -196,7 +196,13 @@ impl<'a> Reader<'a> {
         self.read(name, |value, key, expected| {
             let corners = value.list(expected, |item| item.vector(key.unit, key.range, expected))?;
             let count = corners.len();
-            let fault = || value.refuse(Code::WrongType, format!("the list has {count} items"), expected);
+            let fault = || {
+                value.refuse(
+                    Code::WrongType,
+                    format!("the list has {}", counted(count as u64, "item")),
+                    expected,
+                )
+            };
             <[Vec3; 2]>::try_from(corners).ok().or_else(fault)
         })
     }

@@ -4,7 +4,7 @@
 
 use souple_formal::{Condition, Formula, parse_quantity, quantity_in};
 use souple_math::Vec3;
-use souple_table::{Kind, Parameter, Range, Value, Values, nearest, readable};
+use souple_table::{Kind, Parameter, Range, Value, Values, counted, nearest, readable};
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node};
@@ -130,7 +130,7 @@ impl<'a> Reading<'a> {
     pub fn vector(&self, unit: &str, range: Range, expected: &str) -> Option<Vec3> {
         let items = self.items(expected)?;
         if items.len() != 3 {
-            let message = format!("the list has {} items", items.len());
+            let message = format!("the list has {}", counted(items.len() as u64, "item"));
             return self.refuse(Code::WrongType, message, expected);
         }
         let component = Parameter::number("", "", range, "").expected();
@@ -171,7 +171,11 @@ impl<'a> Reading<'a> {
         let count = formulas.len();
         match <[Formula; 3]>::try_from(formulas) {
             Ok(formulas) => Some(formulas),
-            Err(_) => self.refuse(Code::WrongType, format!("the list has {count} items"), expected),
+            Err(_) => self.refuse(
+                Code::WrongType,
+                format!("the list has {}", counted(count as u64, "item")),
+                expected,
+            ),
         }
     }
 

@@ -4,12 +4,15 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use souple_io::read_mesh;
+use souple_mesh::Mesh;
+use souple_mesh::fill::{Size, surface_of};
 use tempfile::TempDir;
 
 /// Largest file that is taken [bytes].
 pub const FILE_MAX: usize = 64 << 20;
-/// Cells of what a surface encloses, about.
-const CELLS: usize = 3000;
+/// Cells of what a surface encloses, at least and at most, about.
+const CELLS: f64 = 6000.0;
+const CELLS_MOST: f64 = 12_000.0;
 /// Longest extent that is taken for metres; longer ones are taken for millimetres [m].
 const METRES_MAX: f64 = 20.0;
 /// How much a body sinks under its own weight: `ρ g L²/E` in its length.
@@ -62,7 +65,7 @@ impl DropFolder {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
         let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        let wrong = |error: std::io::Error| format!("the file cannot be kept: {error}");
+        let wrong = |error: std::io::Error| format!("{name} cannot be kept: {error}");
         let folder = tempfile::Builder::new().prefix("souple-").tempdir().map_err(wrong)?;
         let file = DroppedFile {
             folder: Arc::new(folder),
@@ -102,8 +105,11 @@ pub fn scene_of(dropped: &DroppedFile) -> Result<String, String> {
     let length = scale * written;
     let file = path.display().to_string();
     let is_solid = mesh.cell_count() > 0 && mesh.dimension() == 3;
-    let source =
-        if is_solid { format!("file = {file:?}") } else { format!("fill = {file:?}, count = {CELLS}") };
+    let source = if is_solid {
+        format!("file = {file:?}")
+    } else {
+        format!("fill = {file:?}, count = {}", cells_of(&mesh))
+    };
     let youngs_modulus = DENSITY * GRAVITY * length / SAG;
     let floor = scale * bounds.low.y - 0.1 * length;
     let (x, z) = (scale * bounds.centre().x, scale * bounds.centre().z);
@@ -132,4 +138,15 @@ pub fn scene_of(dropped: &DroppedFile) -> Result<String, String> {
          quantity = \"position\"\n\
          component = \"y\"\n"
     ))
+}
+
+/// Tetrahedra that fill a surface: as many as make their lattice no coarser than twice the volume by the area, half the thickness
+/// of a rod, so that what is thin does not fall into parts; few enough to be led by a hand.
+fn cells_of(surface: &Mesh) -> f64 {
+    let needed = surface_of(surface).map(|surface| {
+        let (volume, area) = (surface.enclosed_volume().abs(), surface.area());
+        Size::count_for(volume, 2.0 * volume / area)
+    });
+    // a surface that encloses nothing is refused when it is filled
+    needed.filter(|count| count.is_finite()).unwrap_or(CELLS).clamp(CELLS, CELLS_MOST).round()
 }

@@ -183,6 +183,11 @@ impl Size {
     pub fn for_count(volume: f64, tetrahedra: f64) -> f64 {
         (12.0 * volume / tetrahedra).cbrt()
     }
+
+    /// About how many tetrahedra a body of a volume [m³] has on a lattice of an edge [m].
+    pub fn count_for(volume: f64, edge: f64) -> f64 {
+        12.0 * volume / edge.powi(3)
+    }
 }
 
 /// The mesh of a shape. Group `surface` holds the points of the boundary, each part is a group of cells and points.

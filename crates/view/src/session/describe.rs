@@ -108,7 +108,7 @@ impl Stage {
             "fields": FIELDS.entries.iter().map(|field| self.field_to_json(field)).collect::<Vec<_>>(),
             "arrows": ARROWS.entries.iter().map(arrow_to_json).collect::<Vec<_>>(),
             "counts": souple_run::counts(world, bodies),
-            "warnings": warnings,
+            "warnings": warnings.iter().map(|warning| self.origin.told(warning)).collect::<Vec<_>>(),
         })
     }
 

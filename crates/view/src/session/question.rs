@@ -68,7 +68,9 @@ impl Stage {
             Question::Report => {
                 let failed = self.session().failure.is_some();
                 let status = if failed { Status::Failed } else { Status::Interrupted };
-                Answered::Ready(Answer::json(&self.session_mut().report(status).to_json()))
+                let document = self.session_mut().report(status).to_json();
+                let save_as = Some(format!("{name}_{period}_report.json"));
+                Answered::Ready(Answer { save_as, ..Answer::json(&document) })
             }
             Question::Recording => {
                 let recording = Box::new(self.session().recording());

@@ -57,6 +57,16 @@ pub enum Origin {
     Text { mesh: Option<DroppedFile> },
 }
 
+impl Origin {
+    /// A message about the scene, in words of whoever gave it.
+    pub fn told(&self, message: &str) -> String {
+        match self {
+            Self::Text { mesh: Some(mesh) } => mesh.told(message),
+            Self::File | Self::Text { mesh: None } => message.to_owned(),
+        }
+    }
+}
+
 /// How each page looks at the world.
 #[derive(Clone, Debug, Default)]
 pub struct Looks {

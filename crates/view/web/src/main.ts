@@ -254,6 +254,7 @@ class Page {
     this.legend.set(fields[index] ?? null, map, this.info?.arrows.find(({ name }) => name === look.arrows) ?? null);
     this.picture.setStyle(look.style, this.dark);
     this.picture.setCut(look.cut);
+    this.picture.follow(look.follow);
     const arrows = (this.info?.arrows ?? []).findIndex(({ name }) => name === look.arrows);
     const unit = this.info?.arrows[arrows]?.unit ?? "";
     this.picture.setExtras({ arrows, unit, explode: look.explode, axes: look.axes });

@@ -86,8 +86,8 @@ export async function seen(page) {
 }
 
 /**
- * The share of a picture that is in strong colours, the same of its lower left quarter, how many colours are on it, and a number
- * that tells pictures apart.
+ * The share of a picture that is in strong colours, the same of its lower left corner, the middle of the others in parts of its
+ * width and height, how many colours are on it, and a number that tells pictures apart.
  */
 export function seenIn(page, picture) {
   return page.evaluate(async (png) => {
@@ -98,19 +98,29 @@ export function seenIn(page, picture) {
     context.drawImage(image, 0, 0);
     const { data } = context.getImageData(0, 0, image.width, image.height);
     const colours = new Set();
-    let [strong, corner, print] = [0, 0, 0];
+    let [corner, print] = [0, 0];
+    const strong = [];
     for (let i = 0; i < data.length; i += 4) {
       const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
       colours.add(((r >> 4) << 8) | ((g >> 4) << 4) | (b >> 4));
       if (Math.max(r, g, b) - Math.min(r, g, b) > 40) {
-        strong += 1;
         const [x, y] = [(i / 4) % image.width, Math.floor(i / 4 / image.width)];
         if (x < image.width / 4 && y > 0.75 * image.height) corner += 1;
+        else strong.push([x, y]);
       }
       print = (31 * print + r + 7 * g + 13 * b) % 1_000_000_007;
     }
     const all = data.length / 4;
-    return { share: strong / all, corner: corner / all, colours: colours.size, print };
+    // the legend stands in the corner
+    const middle = half(strong).map((place, axis) => place / [image.width, image.height][axis]);
+    return { share: (strong.length + corner) / all, corner: corner / all, middle, colours: colours.size, print };
+
+    /** Half of the places lie to the left; of those about that column half lie above. */
+    function half(places) {
+      const median = (numbers) => numbers.sort((a, b) => a - b)[numbers.length >> 1] ?? 0;
+      const x = median(places.map(([x]) => x));
+      return [x, median(places.filter((place) => Math.abs(place[0] - x) < 3).map(([, y]) => y))];
+    }
   }, picture.toString("base64"));
 }
 
@@ -211,7 +221,13 @@ export async function photograph(page, name) {
 }
 
 /** A place of the stage, in parts of its width and height. */
-export async function at(page, x = 0.48, y = 0.52) {
+export async function at(page, x, y) {
   const box = await page.locator("#stage canvas").boundingBox();
   return [box.x + x * box.width, box.y + y * box.height];
+}
+
+/** A place in the middle of what is in strong colours on the stage. */
+export async function onBody(page) {
+  const { middle } = await seen(page);
+  return at(page, ...middle);
 }

@@ -15,6 +15,8 @@ export interface Look {
   /** How far cells are apart, in their distance from the middle. */
   explode: number;
   axes: boolean;
+  /** Whether the view goes along with the bodies. */
+  follow: boolean;
 }
 
 const STYLES: [Style, string][] = [
@@ -31,7 +33,16 @@ const AXES: [string, string][] = [
 
 export class Display {
   readonly root: HTMLElement;
-  readonly look: Look = { field: null, map: "sequential", style: "smooth", cut: null, arrows: null, explode: 0, axes: true };
+  readonly look: Look = {
+    field: null,
+    map: "sequential",
+    style: "smooth",
+    cut: null,
+    arrows: null,
+    explode: 0,
+    axes: true,
+    follow: false,
+  };
   private readonly field = element("select", { id: "field" });
   private readonly map = element("select", { id: "map" });
   private readonly style = element("select", { id: "style" });
@@ -45,6 +56,7 @@ export class Display {
   private readonly arrows = element("select", { id: "arrows" });
   private readonly axes = element("input", { type: "checkbox", id: "axes", checked: true });
   private readonly axesRow: HTMLElement;
+  private readonly follow = element("input", { type: "checkbox", id: "follow" });
 
   constructor(
     private readonly changed: () => void,
@@ -56,7 +68,7 @@ export class Display {
     options(this.axis, AXES);
     // chosen by a person: a scene that lacks it does not make it forgotten
     this.field.addEventListener("change", () => remember("field", this.field.value));
-    for (const control of [this.field, this.map, this.style, this.axis, this.otherHalf, this.arrows, this.axes]) {
+    for (const control of [this.field, this.map, this.style, this.axis, this.otherHalf, this.arrows, this.axes, this.follow]) {
       control.addEventListener("change", () => this.read());
     }
     for (const control of [this.place, this.explode]) control.addEventListener("input", () => this.read());
@@ -78,6 +90,7 @@ export class Display {
       this.explodeRow,
       row("Arrows", this.arrows),
       this.axesRow,
+      row("Follow the bodies", this.follow),
       element(
         "div",
         { class: "buttons" },
@@ -129,6 +142,7 @@ export class Display {
     look.explode = this.explodeRow.hidden ? 0 : Number(this.explode.value);
     look.arrows = this.arrows.value || null;
     look.axes = this.axes.checked;
+    look.follow = this.follow.checked;
     const axis = this.axis.value;
     this.place.hidden = this.otherHalfRow.hidden = axis === "none";
     look.cut =

@@ -110,10 +110,7 @@ export class Parameters {
     let known = "";
     let scale: Scale | null = null;
     let isAutomatic = false;
-    const forget = () => {
-      text.removeAttribute("aria-invalid");
-      refusal.hidden = true;
-    };
+    const forget = () => (refusal.hidden = true);
     text.addEventListener("input", forget);
     slider.addEventListener("input", forget);
     text.addEventListener("change", () => {
@@ -139,10 +136,8 @@ export class Parameters {
       slider.hidden = scale === null;
       if (scale && !isMoved) slider.value = String(SLIDER_STEPS * scale.place(value));
     };
-    const refuse = (message: string) => {
-      text.setAttribute("aria-invalid", "true");
-      say(refusal, message);
-    };
+    // the value that holds comes back, and is none that is wrong
+    const refuse = (message: string) => say(refusal, message);
     this.controls.set(path, { show, refuse, holdsFocus: () => [text, slider].some((input) => input === document.activeElement) });
     return [text, slider];
   }
@@ -211,8 +206,10 @@ function shown({ value, type }: Adjustable): string {
 /** What a person wrote, as a scene file would have it. */
 function written(text: string, type: Adjustable["type"]): string {
   const trimmed = text.trim();
-  if (type === "vector" && !trimmed.startsWith("[")) return `[${trimmed}]`;
-  return trimmed;
+  if (type !== "vector" || trimmed.startsWith("[")) return trimmed;
+  // with its unit a part is a text
+  const part = (text: string) => (Number.isFinite(Number(text)) ? text : JSON.stringify(text));
+  return `[${trimmed.split(",").map((text) => part(text.trim())).join(", ")}]`;
 }
 
 function quoted(text: string): string {

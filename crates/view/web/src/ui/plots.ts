@@ -100,16 +100,20 @@ export class Plots {
 
   private add(table: Table, first: number, title: string, unit: string, lines: Line[]): void {
     const axis = { stroke: () => style("--quiet"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false } };
-    const said = (_: uPlot, value: number | null) => (value === null ? "" : number(value));
+    // what is under the mouse, or else what came last
+    const at = (plot: uPlot, value: number | null, line: number) => value ?? plot.data[line]?.at(-1) ?? null;
+    const said = (plot: uPlot, value: number | null, line: number) => {
+      const last = at(plot, value, line);
+      return last === null ? "" : number(last);
+    };
     const line = ({ name, colour }: Line) => ({ label: name, stroke: colour, width: 1.5, points: { show: false }, value: said });
-    const time = { label: "time", value: (_: uPlot, value: number | null) => (value === null ? "" : `${number(value)} s`) };
+    const time = { label: "time", value: (...about: Parameters<typeof said>) => `${said(...about)} s` };
     const plot = new uPlot(
       {
         width: this.width(),
         height: HEIGHT,
         title: unit ? `${title} [${inPrint(unit)}]` : title,
         scales: { x: { time: false } },
-        // values under the mouse
         legend: { live: true, isolate: true },
         cursor: { drag: { x: false, y: false } },
         axes: [

@@ -106,7 +106,7 @@ export class Scenes {
     url.searchParams.set("page", String(this.page));
     try {
       const answer = await fetch(url, { method: "POST", body: file });
-      if (!answer.ok) this.say(`${file.name}: ${(await answer.text()).trim()}`);
+      if (!answer.ok) this.say((await answer.text()).trim());
     } catch {
       this.say(`${file.name} could not be sent`);
     }

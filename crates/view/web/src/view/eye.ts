@@ -8,8 +8,11 @@ const KEY_TURN = 0.08;
 const KEY_SHARE = 0.08;
 /** The eye stays as far from where it would look straight down or up [rad]. */
 const POLE = 0.1;
-/** Of the picture's height and width a box that is looked at leaves as much free, about. */
-const MARGIN = 1.12;
+/** What is looked at could be as many times as high and as wide: it has room to move. */
+const MARGIN = 1.2;
+/** At the foot of the picture stand axes, the scale and the legend: no more of its height [px], and no more of it [1]. */
+const FOOT = 84;
+const FOOT_SHARE = 0.25;
 /** What is nearer than this part of the distance, or farther away than so many of it, is not drawn. */
 const NEAR = 1 / 200;
 const FAR = 40;
@@ -21,6 +24,8 @@ export class Eye {
   readonly up = new Vector3(0, 1, 0);
   readonly direction = new Vector3(-0.5, -0.45, -1);
   private readonly ray = new Raycaster();
+  /** Of the picture [px]. */
+  private size = { width: 1, height: 1 };
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.controls = new OrbitControls(this.camera, canvas);
@@ -31,16 +36,32 @@ export class Eye {
   /** Looks at all of a box, from where the scene wants to be seen. */
   fit(bounds: Box3): void {
     const centre = bounds.getCenter(new Vector3());
-    const radius = Math.max(0.5 * bounds.getSize(new Vector3()).length(), 1e-6);
-    const half = 0.5 * this.camera.fov * (Math.PI / 180);
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect));
-    const distance = (MARGIN * radius) / Math.sin(narrow);
+    const { width, height } = this.size;
+    const slope = Math.tan(0.5 * this.camera.fov * (Math.PI / 180));
+    // a corner is in the picture where it is no farther aside than these times its distance
+    const [aside, above] = [(slope * width) / height, (slope * (height - this.foot)) / height];
+    const back = this.direction.clone().negate().normalize();
+    const right = this.up.clone().cross(back).normalize();
+    const up = back.clone().cross(right);
+    let distance = 1e-6;
+    for (const corner of corners(bounds)) {
+      corner.sub(centre);
+      const needed = Math.max(Math.abs(corner.dot(right)) / aside, Math.abs(corner.dot(up)) / above);
+      distance = Math.max(distance, corner.dot(back) + MARGIN * needed);
+    }
     this.camera.up.copy(this.up);
-    this.camera.position.copy(centre).addScaledVector(this.direction, -distance);
+    this.camera.position.copy(centre).addScaledVector(back, distance);
     this.camera.near = NEAR * distance;
     this.camera.far = FAR * distance;
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(centre);
+    this.controls.update();
+  }
+
+  /** Goes a way without turning. */
+  shift(way: Vector3): void {
+    this.camera.position.add(way);
+    this.controls.target.add(way);
     this.controls.update();
   }
 
@@ -91,8 +112,19 @@ export class Eye {
     return (2 * distance * Math.tan(0.5 * this.camera.fov * (Math.PI / 180))) / Math.max(height, 1);
   }
 
+  /** What is looked at stands in the middle above the foot of the picture, however the view turns: the lens is shifted. */
   resize(width: number, height: number): void {
-    this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.size = { width, height };
+    this.camera.setViewOffset(width, height, 0, 0.5 * this.foot, width, height);
   }
+
+  /** Height of what stands at the foot of the picture [px]. */
+  private get foot(): number {
+    return Math.min(FOOT, FOOT_SHARE * this.size.height);
+  }
+}
+
+export function corners({ min, max }: Box3): Vector3[] {
+  const ends = [min, max];
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => new Vector3(ends[i & 1]!.x, ends[(i >> 1) & 1]!.y, ends[i >> 2]!.z));
 }

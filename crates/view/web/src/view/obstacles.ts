@@ -2,6 +2,7 @@
 
 import {
   BackSide,
+  Box3,
   BufferAttribute,
   BufferGeometry,
   FrontSide,
@@ -14,8 +15,9 @@ import {
   ShadowMaterial,
   Vector3,
 } from "three";
-import type { Box3, Material } from "three";
+import type { Material } from "three";
 import type { ObstacleInfo, Surface } from "../protocol";
+import { corners } from "./eye";
 import { floor } from "./floor";
 import { OBSTACLE_COLOUR } from "./palette";
 
@@ -56,6 +58,14 @@ export class Obstacles {
     });
   }
 
+  /** Of each shape as it stands. */
+  get bounds(): Box3[] {
+    return this.shapes.map(({ geometry, matrix }) => {
+      if (!geometry.boundingBox) geometry.computeBoundingBox();
+      return new Box3().copy(geometry.boundingBox!).applyMatrix4(matrix);
+    });
+  }
+
   dispose(): void {
     this.group.traverse((thing) => {
       if (thing instanceof Mesh) {
@@ -87,12 +97,7 @@ function wall(side: number): Mesh {
 /** Where nothing is below, a shadow on nothing tells how high things hang. */
 function shade(up: Vector3, bounds: Box3, size: number): Mesh {
   const mesh = new Mesh(new PlaneGeometry(8 * size, 8 * size), new ShadowMaterial({ opacity: 0.16 }));
-  const corners = [bounds.min, bounds.max];
-  const lowest = Math.min(
-    ...[0, 1, 2, 3, 4, 5, 6, 7].map((i) =>
-      new Vector3(corners[i & 1]!.x, corners[(i >> 1) & 1]!.y, corners[i >> 2]!.z).dot(up),
-    ),
-  );
+  const lowest = Math.min(...corners(bounds).map((corner) => corner.dot(up)));
   const centre = bounds.getCenter(new Vector3());
   const foot = centre.addScaledVector(up, lowest - 0.22 * size - centre.dot(up));
   mesh.applyMatrix4(new Matrix4().compose(foot, facing(up), new Vector3(1, 1, 1)));

@@ -68,6 +68,8 @@ const KEY_EVEN = 0.5 * KEY;
 const SKY_EVEN = 0.8;
 const GROUND = 0x8a7f78;
 const GROUND_EVEN = 0xdcd8d4;
+/** A shape is looked at beside the bodies where both together are at most as many times as large as they are. */
+const WITH_SHAPE = 2;
 /** By how much of what is too much the range of colours shrinks with each frame. */
 const SHRINKING = 0.02;
 
@@ -103,11 +105,14 @@ export class Picture {
   /** Where that is; null without a cut, and while nothing is there to be cut. */
   private cutPlane: Plane | null = null;
   readonly meanings = new Meanings();
-  private hasSkins = false;
+  /** Whether the view has been fitted to the scene's first frame: it alone tells where shapes and lone skins are. */
+  private isFitted = false;
   /** The last frame of the scene. */
   private last: Frame | null = null;
   /** What is looked at: the camera stays while it is the same. */
   private subject = "";
+  /** Where the middle of all bodies was when the view last went along with them; null while it stays. */
+  private followed: Vector3 | null = null;
   /** Whether what is in the picture is no longer as it was drawn. */
   private isStale = true;
   /** From where it was drawn. */
@@ -200,13 +205,10 @@ export class Picture {
     this.placeLight();
     const subject = JSON.stringify([info.name, info.bodies.map(({ name, points }) => [name, points]), info.skins]);
     // begun anew, or shown again after the connection was lost, it is seen from where a person went
-    this.hasSkins = subject === this.subject;
-    if (subject === this.subject) this.applyCut();
-    else {
-      this.fit();
-      this.placeCut(true);
-    }
+    this.isFitted = subject === this.subject;
     this.subject = subject;
+    if (this.isFitted) this.applyCut();
+    else this.look();
   }
 
   /** The cells of a body have come. */
@@ -249,12 +251,11 @@ export class Picture {
     this.obstacles?.move(frame.poses);
     this.hands.update(frame.hands);
     this.tools.update(frame.hands);
-    if (!this.hasSkins && frame.skins.length > 0) {
-      // a skin that stands alone is known by its first frame
-      this.hasSkins = true;
-      this.fit();
-      this.placeCut(true);
+    if (!this.isFitted) {
+      this.isFitted = true;
+      this.look();
     }
+    this.goAlong();
     this.paint(frame, SHRINKING);
   }
 
@@ -333,12 +334,40 @@ export class Picture {
     this.arrows.setCut(planes);
   }
 
-  /** Looks at all bodies as they stand, from where the scene wants to be seen. */
+  /** Whether the view goes along with the bodies. */
+  follow(isWanted: boolean): void {
+    if (isWanted !== (this.followed !== null)) this.followed = isWanted ? this.middle : null;
+  }
+
+  private goAlong(): void {
+    if (!this.followed) return;
+    const middle = this.middle;
+    this.eye.shift(middle.clone().sub(this.followed));
+    this.followed = middle;
+  }
+
+  private get middle(): Vector3 {
+    return this.boundsNow().getCenter(new Vector3());
+  }
+
+  /** Begins to look at what is there. */
+  private look(): void {
+    this.fit();
+    this.placeCut(true);
+  }
+
+  /** Looks at all bodies, and shapes near them, as they stand, from where the scene wants to be seen. */
   fit(): void {
     const bounds = this.boundsNow();
     if (bounds.isEmpty()) bounds.expandByPoint(new Vector3());
-    if (bounds.getSize(new Vector3()).length() === 0) bounds.expandByScalar(0.5 * this.size);
-    this.eye.fit(bounds);
+    if (diagonal(bounds) === 0) bounds.expandByScalar(0.5 * this.size);
+    const most = WITH_SHAPE * diagonal(bounds);
+    const all = bounds.clone();
+    for (const shape of this.obstacles?.bounds ?? []) {
+      if (diagonal(bounds.clone().union(shape)) <= most) all.union(shape);
+    }
+    this.eye.fit(all);
+    if (this.followed) this.followed = this.middle;
   }
 
   /** Whether there is anything, and no part of it is in the picture. */
@@ -501,6 +530,10 @@ export class Picture {
     this.renderer.setSize(width, height);
     this.eye.resize(width, height);
   }
+}
+
+function diagonal(bounds: Box3): number {
+  return bounds.getSize(new Vector3()).length();
 }
 
 /** How many of a skin's numbers are positions of points that its triangles have. */
