@@ -7,6 +7,7 @@ use souple_math::Vec3;
 use crate::constraint::Constraint;
 use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
 use crate::implicit::ImplicitBuffers;
+use crate::interruption::Interruption;
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::mass::Mass;
@@ -59,6 +60,8 @@ pub struct SystemWorkspace {
     pub implicit: Option<ImplicitBuffers>,
     pub staggered: StaggeredBuffers,
     pub stages: StageTimes,
+    /// What may break a step off.
+    pub interruption: Interruption,
 }
 
 /// What a solve that fails leaves other than it was.
@@ -197,6 +200,7 @@ impl System {
             implicit: None,
             staggered: StaggeredBuffers::default(),
             stages: StageTimes::default(),
+            interruption: Interruption::default(),
         }
     }
 

@@ -9,6 +9,7 @@ use crate::constraint::Constraint;
 use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
 use crate::force::{Configuration, Force, Scratch};
+use crate::interruption::Interruption;
 use crate::snapshot::SnapshotError;
 use crate::state::{FieldState, State};
 use crate::steppers::{Step, StepError, StepReport};
@@ -30,24 +31,33 @@ pub trait Field: Send + Sync {
         Box::new(())
     }
 
-    /// Moves `field` on from `start` to `start + timestep` seconds, reading the committed rows of all systems. What the
-    /// scratch holds must not change a bit of the result.
+    /// Moves `field` on over a span of time, reading the committed rows of all systems. What the scratch holds must not
+    /// change a bit of the result.
     ///
     /// # Errors
-    /// The field cannot be stepped; says why.
+    /// [`StepError::Field`] says why it cannot be stepped; it was broken off.
     fn step(
         &self,
         rows: CommittedRows,
-        start: f64,
-        timestep: f64,
+        span: &Span,
         field: &mut FieldState,
         scratch: &mut Scratch,
-    ) -> Result<(), String>;
+    ) -> Result<(), StepError>;
 
     /// Bytes of constant data and of a scratch on the heap, for the memory report.
     fn bytes(&self, _scratch: &Scratch) -> usize {
         0
     }
+}
+
+/// A step of a field: from when, how far.
+pub struct Span<'a> {
+    /// [s]
+    pub start: f64,
+    /// [s]
+    pub timestep: f64,
+    /// What may break it off.
+    pub interruption: &'a Interruption,
 }
 
 /// The rows of all systems as they stand at the end of a period.
@@ -93,6 +103,7 @@ pub struct Workspace {
     next: State,
     /// For each coupling the number of its force in the faster system.
     fast_ends: Vec<Option<usize>>,
+    interruption: Interruption,
 }
 
 /// A model, its state and its scratch, stepped together.
@@ -142,7 +153,8 @@ impl Model {
         };
         let fast_ends = self.couplings.iter().map(fast_end).collect();
         let field_scratches = self.fields.iter().map(|field| field.new_scratch()).collect();
-        let workspace = Workspace { systems, field_scratches, next: state.clone(), fast_ends };
+        let (next, interruption) = (state.clone(), Interruption::default());
+        let workspace = Workspace { systems, field_scratches, next, fast_ends, interruption };
         let mut world =
             World { model: self, state, workspace, log: Vec::new(), last_report: StepReport::default() };
         world.place_all_rows();
@@ -288,8 +300,17 @@ impl World {
         }
     }
 
-    /// Goes on counting the time of stages where another world left off.
-    pub fn inherit_stages(&mut self, other: &Self) {
+    /// From here on steps end without a result ([`StepError::Interrupted`]) while it is wished.
+    pub fn heed(&mut self, interruption: &Interruption) {
+        self.workspace.interruption = interruption.clone();
+        for ws in &mut self.workspace.systems {
+            ws.interruption = interruption.clone();
+        }
+    }
+
+    /// Goes on counting the time of stages where another world left off, and heeds what that did.
+    pub fn inherit(&mut self, other: &Self) {
+        self.heed(&other.workspace.interruption);
         for (own, before) in self.workspace.systems.iter_mut().zip(&other.workspace.systems) {
             own.stages = before.stages;
         }
@@ -351,6 +372,7 @@ impl World {
         let (clock, before) = (Instant::now(), ws.stages.total());
         let has_pairs = system.forces.iter().any(|force| force.declaration().changing_pattern);
         for step in 0..system.steps_per_period {
+            ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
             let time = start + f64::from(step) * timestep;
             let around = Surroundings { driven: &next.driven, fields: &next.fields, load: 1.0 };
             let state = &mut next.systems[index];
@@ -401,10 +423,10 @@ impl World {
         let rows = CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems };
         let scratches = &mut self.workspace.field_scratches;
         for ((field, state), scratch) in self.model.fields.iter().zip(&mut next.fields).zip(scratches) {
-            field.step(rows, start, self.model.period, state, scratch).map_err(|message| WorldError {
-                place: format!("field `{}`", field.name()),
-                error: StepError::Field(message),
-            })?;
+            let span =
+                Span { start, timestep: self.model.period, interruption: &self.workspace.interruption };
+            let stepped = field.step(rows, &span, state, scratch);
+            stepped.map_err(|error| WorldError { place: format!("field `{}`", field.name()), error })?;
         }
         Ok(())
     }

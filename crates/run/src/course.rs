@@ -13,7 +13,9 @@ use souple_scene::spec::picture::PictureView;
 use crate::expect::Span;
 use crate::frames::Frames;
 use crate::output::{OutputError, OutputFolder};
-use crate::{Change, Control, Options, Outcome, Progress, Report, RunError, Session, Status, Trace, Verdict};
+use crate::{
+    Change, Control, Options, Outcome, Progress, Report, RunError, Session, Status, Stepped, Trace, Verdict,
+};
 use crate::{picture, report, snapshot_name};
 
 /// A run on its way.
@@ -103,8 +105,17 @@ impl Course {
         }
         for step in 1..=steps {
             dues.make(session)?;
-            if !session.step() {
-                return Ok(Status::Failed);
+            match session.step() {
+                Stepped::On => {}
+                Stepped::Refused => return Ok(Status::Failed),
+                Stepped::BrokenOff => {
+                    let is_kept = options.snapshot_every.is_some();
+                    if let (true, Some(folder)) = (is_kept, &mut *folder) {
+                        keep_state(session, folder)?;
+                    }
+                    session.push_hash();
+                    return Ok(Status::Interrupted);
+                }
             }
             session.measure(&mut |probe, time, value| traces[probe].push(time, value));
             let last = step == steps;
@@ -123,8 +134,7 @@ impl Course {
             if let (Some(every), Some(folder)) = (options.snapshot_every, &mut *folder)
                 && (last || stops || step.is_multiple_of(every))
             {
-                let path = folder.claim(&snapshot_name(session.world.state().period))?;
-                session.write_snapshot(&path).map_err(OutputError::from)?;
+                keep_state(session, folder)?;
             }
             session.around.write += write_clock.elapsed().as_secs_f64();
             if stops {
@@ -184,6 +194,12 @@ impl Course {
         let _ = report::write_report(folder, &report);
         report
     }
+}
+
+fn keep_state(session: &mut Session, folder: &mut OutputFolder) -> Result<(), RunError> {
+    let path = folder.claim(&snapshot_name(session.world.state().period))?;
+    session.write_snapshot(&path).map_err(OutputError::from)?;
+    Ok(())
 }
 
 /// Commands that the world has not seen: those after its state, and those at its state's period that came later

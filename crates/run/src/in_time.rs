@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use souple_engine::{Edit, EditError};
 use souple_haptics::{DeviceNow, Histogram, Moving, Served, Service, ServiceError, Smoothing, Station};
 
-use crate::{Control, Progress, Session, Trace};
+use crate::{Control, Progress, Session, Stepped, Trace};
 
 /// How the world kept its time.
 #[derive(Clone, Debug, Default)]
@@ -101,7 +101,9 @@ pub fn run_in_time(
         toll.begun.push((clock - begun).as_secs_f64());
         begun = clock;
         lead(session, &service, &mut held)?;
-        if !session.step() {
+        let stepped = session.step();
+        if stepped != Stepped::On {
+            was_stopped = stepped == Stepped::BrokenOff;
             break;
         }
         service.tell(session.hands.iter().map(|hand| {

@@ -26,7 +26,7 @@ mod trace;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use souple_engine::World;
+use souple_engine::{Interruption, World};
 use souple_scene::{BodyInfo, Scene, SkinInfo};
 use souple_table::readable;
 
@@ -42,7 +42,7 @@ pub use machine::{binary, instruction_set, peak_bytes};
 pub use output::{MANIFEST, OutputError};
 pub use recording::{Divergence, Hashed, Recording, RecordingError};
 pub use report::{AroundSteps, Report, SkinChange, Status, counts};
-pub use session::{Change, ChangeError, Session, put_setting};
+pub use session::{Change, ChangeError, Session, Stepped, put_setting};
 pub use snapshot_file::{Snapshot, SnapshotFileError, read_snapshot, write_snapshot};
 pub use trace::{Trace, write_csv};
 
@@ -76,6 +76,8 @@ pub struct Options {
     /// How the scene is called in the report.
     pub scene_name: String,
     pub seed: Option<u64>,
+    /// What breaks a step off, and with it the run.
+    pub interruption: Interruption,
 }
 
 /// How a run stands, for progress bars and interruption.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use souple_engine::{Edit, EditError, ResumeError, StepReport, World};
+use souple_engine::{Edit, EditError, ResumeError, StepError, StepReport, World};
 use souple_io::IoError;
 use souple_scene::{
     Adjustable, BodyInfo, Diagnostics, HandInfo, Measurement, ProbeInfo, Scene, SkinInfo, inputs::Inputs,
@@ -47,6 +47,16 @@ pub struct Session {
     momentum_at_start: (souple_math::Vec3, souple_math::Vec3),
 }
 
+/// What became of a period that was to be stepped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stepped {
+    On,
+    /// [`Session::failure`] tells why; the world can go no further.
+    Refused,
+    /// From outside ([`Options::interruption`]): the world stands where it stood, and may go on.
+    BrokenOff,
+}
+
 /// A value of the scene set while it runs: the scene is read again with it, and goes on from where it stood.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Change {
@@ -79,6 +89,7 @@ impl Session {
         let Scene { title, model, state, bodies, skins, hands, probes, adjustables, .. } = scene;
         let Scene { scene_sha256, inputs, warnings, run, .. } = scene;
         let mut world = model.start(state);
+        world.heed(&options.interruption);
         if let Some(snapshot) = &options.resume {
             let period = snapshot.state.period;
             let resumed = world.resume_edited(snapshot.state.clone(), snapshot.commands.clone());
@@ -122,8 +133,8 @@ impl Session {
         self.clock = Instant::now();
     }
 
-    /// Steps a period; `false` where the step was refused, which [`Session::failure`] tells.
-    pub fn step(&mut self) -> bool {
+    /// Steps a period.
+    pub fn step(&mut self) -> Stepped {
         let events = |world: &World, skins: &[SkinInfo]| -> Vec<u64> {
             skins.iter().map(|skin| skin.view(world).events()).collect()
         };
@@ -132,10 +143,14 @@ impl Session {
             Ok(()) => {
                 self.solver.merge(self.world.last_report());
                 self.note_changes(&before);
+                Stepped::On
             }
-            Err(error) => self.failure = Some(Failure::of_step(error, &self.world, &self.bodies)),
+            Err(error) if *error.error.cause() == StepError::Interrupted => Stepped::BrokenOff,
+            Err(error) => {
+                self.failure = Some(Failure::of_step(error, &self.world, &self.bodies));
+                Stepped::Refused
+            }
         }
-        self.failure.is_none()
     }
 
     /// Notes the skins that count more changes of their topology than before.
@@ -232,7 +247,7 @@ impl Session {
         let (state, log) = (self.world.state().clone(), self.world.log().to_vec());
         let other = |error| ChangeError::OtherWorld { setting: setting.to_owned(), error };
         world.resume_edited(state, log).map_err(other)?;
-        world.inherit_stages(&self.world);
+        world.inherit(&self.world);
         let told = scene.warnings.into_iter().chain(forecast_warnings(&mut world));
         let new: Vec<String> = told.filter(|warning| !self.warnings.contains(warning)).collect();
         self.warnings.extend(new);

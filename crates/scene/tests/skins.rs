@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use souple_engine::World;
+use souple_engine::{Interruption, StepError, World};
 use souple_scene::spec::quantity::QUANTITIES;
 use souple_scene::{Scene, SkinInfo, read_text};
 use souple_skin::strategy::TERMS;
@@ -41,6 +41,23 @@ fn balloon(origin: &str, start: &str, low: &str, high: &str) -> String {
         high = {high}
         "#
     )
+}
+
+/// A skin's step is broken off between its sub-steps, and goes on from where the world stood.
+#[test]
+fn steps_of_skins_are_broken_off() {
+    let text = balloon("[0, 0, 0]", "0.5 - sqrt(x^2 + y^2 + z^2)", "[-0.6, -0.6, -0.6]", "[0.6, 0.6, 0.6]");
+    let (mut world, _) = started(&text);
+    let interruption = Interruption::default();
+    world.heed(&interruption);
+    let before = world.state().hash();
+    interruption.wish();
+    assert_eq!(world.step().unwrap_err().error, StepError::Interrupted);
+    assert_eq!(world.state().hash(), before);
+    interruption.withdraw();
+    let (mut undisturbed, _) = started(&text);
+    steps(&mut world, 1).and_then(|()| steps(&mut undisturbed, 1)).expect("they grow");
+    assert_eq!(world.state().hash(), undisturbed.state().hash());
 }
 
 /// A skin that grows past the domain it began in gets a larger grid, and its radius is what its speed makes of it.

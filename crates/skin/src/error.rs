@@ -7,6 +7,8 @@ use crate::skin::{MOST_BLOCKS, MOST_SAMPLED, MOST_SUBSTEPS};
 /// Why a skin cannot start or go on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkinError {
+    #[error("its step was broken off")]
+    Interrupted,
     #[error("its target cannot be placed: {0}")]
     Target(String),
     #[error("{part}its target is {value} at {place:?}; expected a number")]

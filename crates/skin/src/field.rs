@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use souple_engine::{CommittedRows, Field, FieldState, Scratch};
+use souple_engine::{CommittedRows, Field, FieldState, Scratch, Span, StepError};
 use souple_math::Vec3;
 
+use crate::error::SkinError;
 use crate::grid::{Grid, NEAR, WORDS};
 use crate::skin::{HEAD_INDICES, Skin, SkinScratch};
 use crate::target::{Moment, Rows};
@@ -44,16 +45,19 @@ impl Field for SkinField {
     fn step(
         &self,
         rows: CommittedRows,
-        start: f64,
-        timestep: f64,
+        &Span { start, timestep, interruption }: &Span,
         field: &mut FieldState,
         scratch: &mut Scratch,
-    ) -> Result<(), String> {
+    ) -> Result<(), StepError> {
         let Some(scratch) = scratch.downcast_mut::<SkinScratch>() else {
-            return Err("its scratch is of another field".to_owned());
+            return Err(StepError::Field("its scratch is of another field".to_owned()));
         };
         let end = Moment { time: start + timestep, rows: &rows };
-        self.0.step(&end, timestep, field, scratch).map_err(|error| error.to_string())
+        let mut go_on = || interruption.check().map_err(|_| SkinError::Interrupted);
+        self.0.step_while(&mut go_on, &end, timestep, field, scratch).map_err(|error| match error {
+            SkinError::Interrupted => StepError::Interrupted,
+            error => StepError::Field(error.to_string()),
+        })
     }
 
     fn bytes(&self, scratch: &Scratch) -> usize {

@@ -218,6 +218,21 @@ impl Skin {
         field: &mut FieldState,
         scratch: &mut SkinScratch,
     ) -> Result<(), SkinError> {
+        self.step_while(&mut || Ok(()), end, timestep, field, scratch)
+    }
+
+    /// The same, while `go_on` says so before each sub-step.
+    ///
+    /// # Errors
+    /// Why it cannot go on, or what `go_on` says.
+    pub(crate) fn step_while(
+        &self,
+        go_on: &mut dyn FnMut() -> Result<(), SkinError>,
+        end: &Moment,
+        timestep: f64,
+        field: &mut FieldState,
+        scratch: &mut SkinScratch,
+    ) -> Result<(), SkinError> {
         let (mut done, mut substeps) = (0.0, 0);
         let start = end.time - timestep;
         if let (Some(target), Some(placed)) = (&self.target, &mut scratch.target) {
@@ -226,6 +241,7 @@ impl Skin {
         self.find_surface(field, scratch);
         field.indices[WORK] = 0;
         while done < timestep {
+            go_on()?;
             if substeps > 0 {
                 self.find_crossings(field, scratch);
                 self.measure_size(field, scratch);

@@ -330,6 +330,35 @@ fn interrupt(signal: &str) {
     souple(["replay", &recording, "--verify", "--quiet"]).ends(0);
 }
 
+/// A step that lasts longer than anybody waits is broken off by the system's wish to end: what was before it is told.
+#[cfg(unix)]
+#[test]
+fn interruption_breaks_long_steps_off() {
+    let folder = Folder::new("long-step");
+    let endless = "[systems.main]\nstepper = \"symplectic_euler\"\nsteps_per_period = 1000000\n";
+    let scene =
+        folder.write("endless.toml", &format!("{CUBE}{endless}").replace("[2, 2, 2]", "[10, 10, 10]"));
+    let mut command = command();
+    command.args(["run", &scene, "--json", "--out", &folder.at("out")]);
+    let call = format!("{command:?}");
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    // its first state is written before its first step
+    let begun = folder.path().join("out/frames/cube_0000.vtu");
+    for _ in 0..600 {
+        if begun.exists() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    assert!(begun.exists(), "no frame within half a minute");
+    let sent = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(sent.expect("kill").success());
+    let answer = Answer::of(call, child.wait_with_output().expect("an end")).ends(130);
+    let report = answer.json();
+    assert_report(&report);
+    assert_eq!(report["status"], "interrupted");
+}
+
 /// The writing end of a pipe that nobody reads.
 fn broken_pipe() -> Stdio {
     let (reader, writer): (PipeReader, _) = std::io::pipe().expect("a pipe");

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use rayon::prelude::*;
+use souple_engine::Interruption;
 use souple_run::{Control, Options, Outcome, Status};
 use souple_scene::Scene;
 
@@ -88,7 +89,7 @@ pub fn sweep(
     fingerprints: &[String],
     database: &mut Database,
     workers: Workers,
-    stop: &AtomicBool,
+    stop: &Interruption,
     watch: &mut dyn FnMut(Progress),
 ) -> Result<Summary, SweepError> {
     let mut summary = Summary::default();
@@ -112,11 +113,11 @@ pub fn sweep(
         for _ in 0..workers.count.clamp(1, wanted.len().max(1)) {
             let sender = sender.clone();
             let (wanted, next, failed) = (&wanted, &next, &failed);
-            let is_over = move || stop.load(Ordering::Relaxed) || failed.load(Ordering::Relaxed);
+            let is_over = move || stop.is_wished() || failed.load(Ordering::Relaxed);
             scope.spawn(move || {
                 while !is_over() {
                     let Some(number) = wanted.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
-                    let made = run(study, *number, workers.threads, &is_over);
+                    let made = run(study, *number, workers.threads, stop, &is_over);
                     if sender.send((*number, made)).is_err() {
                         return;
                     }
@@ -157,12 +158,18 @@ fn run(
     study: &Study,
     number: usize,
     threads: usize,
+    stop: &Interruption,
     is_over: &(impl Fn() -> bool + Sync),
 ) -> Result<Outcome, SweepError> {
     let plan = &study.runs[number];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     pool.install(|| {
-        let options = Options { steps: study.steps, scene_name: name(&study.scene), ..Options::default() };
+        let options = Options {
+            steps: study.steps,
+            scene_name: name(&study.scene),
+            interruption: stop.clone(),
+            ..Options::default()
+        };
         let mut watch = |_: &souple_run::Progress| if is_over() { Control::Stop } else { Control::Continue };
         souple_run::run(read(study, number)?, &options, &mut watch).map_err(|error| SweepError::Scene {
             run: number + 1,

@@ -1,8 +1,8 @@
 //! A study from its file to its database, table and graphs; interrupted, and gone on with.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
+use souple_engine::Interruption;
 use souple_sweep::{Database, Study, Summary, SweepError, Workers, fingerprints, graphs, sweep, table_of};
 
 /// A folder of temporary files with a study of the block on springs.
@@ -59,7 +59,7 @@ fn read(study: &Study) -> Vec<String> {
 }
 
 fn made(study: &Study, database: &mut Database, again: bool) -> Summary {
-    sweep(study, &read(study), database, workers(again), &AtomicBool::new(false), &mut |_| {}).unwrap()
+    sweep(study, &read(study), database, workers(again), &Interruption::default(), &mut |_| {}).unwrap()
 }
 
 /// Four runs fall as far as `g t²/2` says, are in rows that SQL finds, and on a graph; runs that are held are not made again.
@@ -97,7 +97,7 @@ fn runs_are_made_once_and_kept() {
     assert_eq!(file.query_row(query, [], |row| row.get::<_, i64>(0)).unwrap(), 2);
 }
 
-/// Stopped when its first run is told, a study keeps what was made and goes on with the others.
+/// Stopped when its first run is told, in whatever step of the next, a study keeps what was made and goes on with the others.
 #[test]
 fn a_study_goes_on_where_it_stopped() {
     // so many that the one worker is not through them before the first is told
@@ -107,11 +107,11 @@ fn a_study_goes_on_where_it_stopped() {
     let folder = Folder::new("stopped", &format!("title = \"Stopped\"\nsteps = 20\n{vary}"));
     let study = folder.study();
     let mut database = folder.database(&study);
-    let stop = AtomicBool::new(false);
+    let stop = Interruption::default();
     let one = Workers { count: 1, ..workers(false) };
     let mut watch = |progress: souple_sweep::Progress| {
         if progress.done == 1 {
-            stop.store(true, Ordering::Relaxed);
+            stop.wish();
         }
     };
     let first = sweep(&study, &read(&study), &mut database, one, &stop, &mut watch).unwrap();

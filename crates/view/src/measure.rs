@@ -4,6 +4,7 @@
 use std::net::{Ipv4Addr, TcpStream};
 use std::time::{Duration, Instant};
 
+use souple_engine::Interruption;
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_scene::Scene;
@@ -32,7 +33,7 @@ pub struct FrameCost {
 /// The scene cannot be shown.
 pub fn frame_cost(scene: Scene, samples: usize) -> Result<FrameCost, String> {
     let hub = Hub::default();
-    let mut stage = Stage::new(scene, "measured".to_owned(), 0, &hub)?;
+    let mut stage = Stage::new(scene, "measured".to_owned(), 0, &Interruption::default(), &hub)?;
     stage.fulfil(0, Wish::Colour(Some("displacement".to_owned())), &hub)?;
     let (page, _outbox) = hub.join();
     hub.welcome(page);

@@ -3,7 +3,7 @@
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::mpsc::sync_channel;
 use std::time::Duration;
 
 use souple_scene::Scene;
@@ -14,7 +14,7 @@ use crate::guard::Guard;
 use crate::http::{Rejection, Request, Response};
 use crate::hub::{Hub, PageId};
 use crate::protocol::Wish;
-use crate::session::{Answer, Input, Live, Question};
+use crate::session::{Answer, Input, Inputs, Live, Question};
 use crate::{page, socket};
 
 /// Connections at a time; more are turned away, so that threads and memory stay bounded.
@@ -54,14 +54,14 @@ pub enum ViewError {
 /// A world that pages look at.
 pub struct Viewer {
     address: String,
-    inputs: SyncSender<Input>,
+    inputs: Inputs,
     dropped: Arc<DropFolder>,
 }
 
 struct Server {
     guard: Guard,
     hub: Arc<Hub>,
-    inputs: SyncSender<Input>,
+    inputs: Inputs,
     connections: AtomicUsize,
     dropped: Arc<DropFolder>,
 }
@@ -78,7 +78,7 @@ impl Viewer {
         let local = listener.local_addr().map_err(bind)?;
         let guard = Guard::new(local).map_err(ViewError::Token)?;
         let address = guard.address();
-        let (hub, (inputs, inbox)) = (Arc::new(Hub::default()), sync_channel(INPUTS_MAX));
+        let (hub, (inputs, inbox)) = (Arc::new(Hub::default()), Inputs::new(INPUTS_MAX));
         let catalogue = options.catalogue;
         let live = Live::new(scene, options.scene_name, catalogue, Arc::clone(&hub), inputs.clone())
             .map_err(ViewError::World)?;

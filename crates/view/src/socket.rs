@@ -3,7 +3,6 @@
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::sync::Arc;
-use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
 use tungstenite::handshake::derive_accept_key;
@@ -13,7 +12,7 @@ use tungstenite::{Bytes, Error, Message, Utf8Bytes};
 use crate::http::{Rejection, Request};
 use crate::hub::{Hub, Next, Outbox, Outgoing, PageId};
 use crate::protocol::{SUBPROTOCOL, refusal};
-use crate::session::Input;
+use crate::session::{Input, Inputs};
 
 /// Longest message of a page [bytes]: a scene as text fits.
 const MESSAGE_MAX: usize = 1 << 20;
@@ -57,12 +56,7 @@ pub fn accept(request: &Request) -> Result<String, Rejection> {
 ///
 /// # Errors
 /// The connection breaks before it is set up.
-pub fn serve(
-    stream: TcpStream,
-    first_bytes: Vec<u8>,
-    hub: &Arc<Hub>,
-    inputs: &SyncSender<Input>,
-) -> io::Result<()> {
+pub fn serve(stream: TcpStream, first_bytes: Vec<u8>, hub: &Arc<Hub>, inputs: &Inputs) -> io::Result<()> {
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(GONE_AFTER))?;
     stream.set_write_timeout(Some(WRITE_PATIENCE))?;
@@ -119,7 +113,7 @@ fn config() -> WebSocketConfig {
         .max_frame_size(Some(MESSAGE_MAX))
 }
 
-fn read(stream: TcpStream, first_bytes: Vec<u8>, page: PageId, outbox: &Outbox, inputs: &SyncSender<Input>) {
+fn read(stream: TcpStream, first_bytes: Vec<u8>, page: PageId, outbox: &Outbox, inputs: &Inputs) {
     let end = ReadingEnd { stream, outbox };
     let mut socket = WebSocket::from_partially_read(end, first_bytes, Role::Server, Some(config()));
     let mut nonsense = 0;

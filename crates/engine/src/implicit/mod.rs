@@ -418,6 +418,7 @@ impl ImplicitStep<'_> {
         buffers: &mut ImplicitBuffers,
     ) -> Result<StepReport, StepError> {
         let state = &lent.0;
+        ws.interruption.check()?;
         self.place_coasting(buffers);
         buffers.q_trial.copy_from_slice(q);
         buffers.v_trial.copy_from_slice(&buffers.velocity_offset);

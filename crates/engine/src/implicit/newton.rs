@@ -114,6 +114,7 @@ impl ImplicitProblem<'_, '_> {
     }
 
     fn solve(&mut self, constrained: Constrained, tolerance: f64) -> Result<Solved, StepError> {
+        self.ws.interruption.check()?;
         let indefinite = if self.step.is_symmetric() { Indefinite::Descend } else { Indefinite::Solve };
         let wanted = Wanted { constrained, indefinite, used_as: Use::Direction, tolerance };
         let (solved, rounding) = self.step.solve(self.state, self.ws, self.buffers, wanted)?;

@@ -96,6 +96,9 @@ pub enum StepError {
     PairsUnsettled { searches: u32 },
     #[error("{0}")]
     Field(String),
+    /// It was broken off from outside ([`crate::Interruption`]).
+    #[error("the step was broken off")]
+    Interrupted,
     #[error(
         "{field} is not finite after the step to {time} s; the step may be too long for what is stiff there"
     )]

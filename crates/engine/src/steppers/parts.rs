@@ -37,7 +37,9 @@ pub(super) fn in_parts(
                 report.merge(&led);
                 reached = to;
             }
-            Err(error) if halvings == most => return Err(Stuck { reached, part, error }),
+            Err(error) if halvings == most || error == StepError::Interrupted => {
+                return Err(Stuck { reached, part, error });
+            }
             Err(_) => {
                 ws.return_to_mark(next);
                 halvings += 1;

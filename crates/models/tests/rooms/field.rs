@@ -4,8 +4,8 @@ use std::any::Any;
 
 use souple_engine::state::Pair;
 use souple_engine::{
-    CommittedRows, Configuration, Declaration, Energy, Field, FieldState, Force, Model, Scratch, State,
-    TangentWeights,
+    CommittedRows, Configuration, Declaration, Energy, Field, FieldState, Force, Interruption, Model,
+    Scratch, Span, State, StepError, TangentWeights, World,
 };
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
@@ -22,13 +22,12 @@ impl Field for Pressure {
     fn step(
         &self,
         rows: CommittedRows,
-        _: f64,
-        timestep: f64,
+        span: &Span,
         field: &mut FieldState,
         _: &mut Scratch,
-    ) -> Result<(), String> {
+    ) -> Result<(), StepError> {
         let cell = (rows.of(0).positions[0].x.clamp(0.0, 2.0)) as usize;
-        field.values[cell] += timestep;
+        field.values[cell] += span.timestep;
         field.indices[0] = cell as u64;
         Ok(())
     }
@@ -66,17 +65,18 @@ impl Force for Follow {
     }
 }
 
+fn start() -> World {
+    let (system, q) = points(&[Vec3::ZERO], &[1.0], vec![Box::new(Follow)], stepper("symplectic_euler"));
+    let field = FieldState { values: vec![0.0; 3], indices: vec![0] };
+    let state = State { systems: vec![system.initial_state(q)], fields: vec![field], ..State::default() };
+    Model { period: 0.1, systems: vec![system], fields: vec![Box::new(Pressure)], ..Model::default() }
+        .start(state)
+}
+
 /// The point feels the pressure of the last commit: `v_n = h Σ p_k` with `p_k = k h`, so `v_n = h² n(n-1)/2`
 /// while it stays in its cell; the field's part of State is saved and resumed with the rest.
 #[test]
 fn a_field_pushes_points() {
-    let start = || {
-        let (system, q) = points(&[Vec3::ZERO], &[1.0], vec![Box::new(Follow)], stepper("symplectic_euler"));
-        let field = FieldState { values: vec![0.0; 3], indices: vec![0] };
-        let state = State { systems: vec![system.initial_state(q)], fields: vec![field], ..State::default() };
-        Model { period: 0.1, systems: vec![system], fields: vec![Box::new(Pressure)], ..Model::default() }
-            .start(state)
-    };
     let mut world = start();
     (0..10).for_each(|_| world.step().unwrap());
     let v = world.state().systems[0].v[0].x;
@@ -87,6 +87,23 @@ fn a_field_pushes_points() {
     resumed.resume(State::from_bytes(&saved).unwrap()).unwrap();
     (0..20).for_each(|_| resumed.step().unwrap());
     assert_eq!(resumed.state().hash(), world.state().hash());
+}
+
+/// A step that is broken off leaves State as it was, and the world goes on as if nothing had been.
+#[test]
+fn steps_are_broken_off() {
+    let (mut world, mut undisturbed) = (start(), start());
+    let interruption = Interruption::default();
+    world.heed(&interruption);
+    world.step().unwrap();
+    interruption.wish();
+    let before = world.state().hash();
+    assert_eq!(world.step().unwrap_err().error, StepError::Interrupted);
+    assert_eq!(world.state().hash(), before);
+    interruption.withdraw();
+    world.step().unwrap();
+    (0..2).for_each(|_| undisturbed.step().unwrap());
+    assert_eq!(world.state().hash(), undisturbed.state().hash());
 }
 
 /// A field of other sizes than the model's own is refused by name.

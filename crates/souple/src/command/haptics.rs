@@ -50,9 +50,9 @@ pub fn haptics(arguments: &Arguments) -> Result<End, Refusal> {
         return Err(Refusal::request("duration", duration.to_string(), "up to an hour", message));
     }
     let scene_name = scene_path(&arguments.scene).display().to_string();
-    let mut session = Session::start(scene, &Options { scene_name, ..Options::default() })?;
+    let interruption = interruption::heed();
+    let mut session = Session::start(scene, &Options { scene_name, interruption, ..Options::default() })?;
     session.forecast();
-    interruption::heed();
     let meter = Meter::new("periods", arguments.quiet);
     let mut watch = |progress: &Progress| {
         let behind = progress.wall_seconds - progress.simulated_seconds;

@@ -1,16 +1,19 @@
 //! Work that ends cleanly at Ctrl-C.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::LazyLock;
 
-/// Set by the first Ctrl-C, or by the system's wish that the program ends (SIGTERM), once [`heed`] was called.
-pub static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+use souple_engine::Interruption;
 
-/// From here on Ctrl-C asks for an end instead of making one.
-pub fn heed() {
+/// Wished by the first Ctrl-C, or by the system's wish that the program ends (SIGTERM), once [`heed`] was called.
+static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(Interruption::default);
+
+/// From here on Ctrl-C asks for an end instead of making one: of steps too, that heed what is returned.
+pub fn heed() -> Interruption {
     // a second handler in one process would be refused: the first one does the same
-    let _ = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    let _ = ctrlc::set_handler(|| INTERRUPTION.wish());
+    INTERRUPTION.clone()
 }
 
 pub fn is_interrupted() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
+    INTERRUPTION.is_wished()
 }

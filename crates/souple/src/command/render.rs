@@ -414,6 +414,7 @@ fn reel(
         out: Some(folder.clone()),
         frames: Some(wanted),
         scene_name: scene_path(&path).display().to_string(),
+        interruption: interruption::heed(),
         ..Options::default()
     };
     let outcome = play(scene, &options, arguments.quiet)?;

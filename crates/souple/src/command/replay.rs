@@ -6,7 +6,7 @@ use serde_json::json;
 use souple_run::{Divergence, Options, Recording, RecordingError, Status};
 
 use super::run::{Manner, Output, Strictness, conclude, play};
-use super::{End, Refusal, print_json, print_line, print_note, use_threads};
+use super::{End, Refusal, interruption, print_json, print_line, print_note, use_threads};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -54,6 +54,7 @@ pub fn replay(arguments: &Arguments) -> Result<End, Refusal> {
         places,
         scene_name: recording.scene.clone(),
         seed: Some(recording.seed),
+        interruption: interruption::heed(),
         ..Options::default()
     };
     let outcome = play(scene, &options, arguments.quiet)?;

@@ -85,6 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<End, Refusal> {
         record: arguments.record.clone(),
         scene_name: scene_path(&arguments.scene).display().to_string(),
         seed: arguments.seed,
+        interruption: interruption::heed(),
         ..Options::default()
     };
     if let Some(path) = &arguments.resume {
@@ -121,9 +122,8 @@ fn read_resumed(path: &Path, scene_sha256: &str) -> Result<souple_run::Snapshot,
     Ok(snapshot)
 }
 
-/// Runs with progress, stopping cleanly at Ctrl-C and SIGTERM.
+/// Runs with progress, stopping cleanly at Ctrl-C and SIGTERM once they are heeded ([`Options::interruption`]).
 pub fn play(scene: Scene, options: &Options, quiet: bool) -> Result<Outcome, Refusal> {
-    interruption::heed();
     let meter = Meter::new("steps", quiet);
     let mut watch = |progress: &Progress| {
         let factor = progress.simulated_seconds / progress.wall_seconds.max(1e-9);
@@ -233,7 +233,12 @@ pub fn run_default_scene() -> Result<End, Refusal> {
     );
     let scene = souple_scene::read_text("liver", DEFAULT_SCENE, Path::new("."), &[])?;
     let out = PathBuf::from("out").join("liver");
-    let options = Options { out: Some(out.clone()), scene_name: "liver".to_owned(), ..Options::default() };
+    let options = Options {
+        out: Some(out.clone()),
+        scene_name: "liver".to_owned(),
+        interruption: interruption::heed(),
+        ..Options::default()
+    };
     let outcome = play(scene, &options, false)?;
     let manner = Manner { out: Some(&out), output: Output::Lines, quiet: false, expect: Strictness::Strict };
     let end = conclude(&outcome, &manner);

@@ -64,12 +64,11 @@ pub fn sweep(arguments: &Arguments) -> Result<End, Refusal> {
         threads: arguments.threads as usize,
         again: arguments.again,
     };
-    interruption::heed();
+    let interruption = interruption::heed();
     let meter = Meter::new("runs", arguments.quiet);
     let mut watch = |progress: Progress| meter.show(progress.done as u64, progress.runs as u64, "");
     let fingerprints = fingerprints(&study, workers)?;
-    let summary =
-        make_runs(&study, &fingerprints, &mut database, workers, &interruption::INTERRUPTED, &mut watch)?;
+    let summary = make_runs(&study, &fingerprints, &mut database, workers, &interruption, &mut watch)?;
     drop(meter);
     let table = table_of(&study, &fingerprints, &database)?;
     let csv = out.with_extension("csv");

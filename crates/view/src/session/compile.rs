@@ -2,12 +2,11 @@
 
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::SyncSender;
 
 use souple_run::Session;
 use souple_scene::Scene;
 
-use super::Input;
+use super::{Input, Inputs};
 use crate::catalogue::Catalogue;
 use crate::dropped::DroppedFile;
 use crate::hub::PageId;
@@ -64,13 +63,13 @@ const WAITING_MAX: usize = 64;
 
 /// Reads one scene at a time, in order.
 pub struct Compiler {
-    inputs: SyncSender<Input>,
+    inputs: Inputs,
     busy: Option<Purpose>,
     waiting: VecDeque<(PageId, Purpose)>,
 }
 
 impl Compiler {
-    pub fn new(inputs: SyncSender<Input>) -> Self {
+    pub fn new(inputs: Inputs) -> Self {
         Self { inputs, busy: None, waiting: VecDeque::new() }
     }
 

@@ -3,6 +3,7 @@
 mod compile;
 mod describe;
 mod hands;
+mod inputs;
 mod pace;
 mod picture;
 mod question;
@@ -10,13 +11,16 @@ mod shown;
 mod stage;
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
+use souple_engine::Interruption;
+use souple_run::Stepped;
 use souple_scene::Scene;
 
-pub use question::{Answer, Answered, Question};
+pub use inputs::{Input, Inputs};
+pub use question::{Answer, Question};
 pub use shown::Shown;
 pub use stage::{Origin, Stage};
 
@@ -25,16 +29,6 @@ use crate::hub::{Hub, PageId};
 use crate::protocol::{Wish, document, refusal};
 use compile::{Compiled, Compiler, Purpose};
 use pace::Pace;
-
-/// What reaches the world from outside.
-pub enum Input {
-    Joined(PageId),
-    Left(PageId),
-    Said(PageId, Wish),
-    Asked(Question, SyncSender<Answered>),
-    Compiled(Box<Compiled>),
-    Stop,
-}
 
 /// Pictures a second, at most.
 const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 60);
@@ -67,6 +61,8 @@ impl Mode {
 pub struct Live {
     hub: Arc<Hub>,
     catalogue: Catalogue,
+    /// What breaks off the step that goes on.
+    interruption: Interruption,
     compiler: Compiler,
     stage: Stage,
     mode: Mode,
@@ -98,13 +94,15 @@ impl Live {
         name: String,
         catalogue: Catalogue,
         hub: Arc<Hub>,
-        inputs: SyncSender<Input>,
+        inputs: Inputs,
     ) -> Result<Self, String> {
-        let stage = Stage::new(scene, name, 0, &hub)?;
+        let interruption = inputs.interruption().clone();
+        let stage = Stage::new(scene, name, 0, &interruption, &hub)?;
         let now = Instant::now();
         let live = Self {
             hub,
             catalogue,
+            interruption,
             compiler: Compiler::new(inputs),
             stage,
             mode: Mode::Waiting,
@@ -122,6 +120,8 @@ impl Live {
     /// The world until it is told to stop.
     pub fn run(mut self, inbox: &Receiver<Input>) {
         loop {
+            // what wished for it is taken now, or wishes again when it is there to be taken
+            self.interruption.withdraw();
             // not longer than a picture lasts, however much is wished for
             let until = Instant::now() + FRAME;
             while Instant::now() < until {
@@ -178,11 +178,12 @@ impl Live {
 
     fn step(&mut self) {
         self.is_changed = true;
-        let stepped = self.stage.step(&self.hub);
-        self.pace.stepped(Instant::now(), self.stage.time());
-        if let Err(message) = stepped {
-            self.set_mode(Mode::Failed(message));
+        match self.stage.step(&self.hub) {
+            Ok(Stepped::BrokenOff) => return,
+            Ok(_) => {}
+            Err(message) => self.set_mode(Mode::Failed(message)),
         }
+        self.pace.stepped(Instant::now(), self.stage.time());
     }
 
     fn show(&mut self, now: Instant) {
@@ -365,7 +366,7 @@ impl Live {
             Purpose::LoadText { name, .. } => name.clone(),
             Purpose::Reset | Purpose::Set(_) => self.stage.name().to_owned(),
         };
-        let mut stage = Stage::new(scene, name, self.stage.number() + 1, &self.hub)?;
+        let mut stage = Stage::new(scene, name, self.stage.number() + 1, &self.interruption, &self.hub)?;
         match purpose {
             Purpose::LoadText { mesh, .. } => stage.origin = Origin::Text { mesh: mesh.clone() },
             Purpose::Reset => stage.begin_anew(&self.stage),

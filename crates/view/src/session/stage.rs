@@ -5,9 +5,9 @@ use std::path::Path;
 
 use souple_engine::hand::is_hand_name;
 use souple_engine::obstacle::{Form, Obstacle};
-use souple_engine::{Edit, Model, StageTimes, Tool};
+use souple_engine::{Edit, Interruption, Model, StageTimes, Tool};
 use souple_run::show::obstacles_of;
-use souple_run::{Options, Session};
+use souple_run::{Options, Session, Stepped};
 use souple_scene::Scene;
 use souple_scene::spec::picture::PictureView;
 use souple_table::Table;
@@ -100,9 +100,15 @@ fn scenery_of(model: &Model) -> Vec<Obstacle> {
 impl Stage {
     /// # Errors
     /// The session cannot start.
-    pub fn new(mut scene: Scene, name: String, number: u32, hub: &Hub) -> Result<Self, String> {
+    pub fn new(
+        mut scene: Scene,
+        name: String,
+        number: u32,
+        interruption: &Interruption,
+        hub: &Hub,
+    ) -> Result<Self, String> {
         let (view, description) = (scene.picture, std::mem::take(&mut scene.description));
-        let options = Options { scene_name: name, ..Options::default() };
+        let options = Options { scene_name: name, interruption: interruption.clone(), ..Options::default() };
         let mut session = Session::start(scene, &options).map_err(|error| error.to_string())?;
         session.forecast();
         let columns = ENERGY_COLUMNS.len()
@@ -234,15 +240,23 @@ impl Stage {
         Wanted { fields: all(fields), arrows: all(arrows), inside: !inside.is_empty() }
     }
 
-    /// Steps a period.
+    /// Steps a period, or breaks that off.
     ///
     /// # Errors
     /// The step is refused: says which and why.
-    pub fn step(&mut self, hub: &Hub) -> Result<(), String> {
+    pub fn step(&mut self, hub: &Hub) -> Result<Stepped, String> {
         let edits = self.hands.advance(self.session.world.model().period);
         self.edit(edits)?;
-        if !self.session.step() {
-            return Err(self.session.failure.as_ref().map_or_else(String::new, souple_run::Failure::message));
+        match self.session.step() {
+            Stepped::On => {}
+            Stepped::BrokenOff => return Ok(Stepped::BrokenOff),
+            Stepped::Refused => {
+                return Err(self
+                    .session
+                    .failure
+                    .as_ref()
+                    .map_or_else(String::new, souple_run::Failure::message));
+            }
         }
         let report = self.session.world.last_report();
         self.iterations[0] += report.newton_iterations;
@@ -251,7 +265,7 @@ impl Stage {
             self.session.check_growth().map_err(|error| error.to_string())?;
             self.sample(hub);
         }
-        Ok(())
+        Ok(Stepped::On)
     }
 
     /// Tells all pages what has changed since they were told.

@@ -12,7 +12,7 @@ use souple_view::{Catalogue, Options, SUBPROTOCOL, Viewer};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Error, Message, WebSocket};
 
-const SCENE: &str = r#"
+pub const SCENE: &str = r#"
     format = 1
     title = "A bar"
     [world]

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde_json::json;
 use souple_view::SUBPROTOCOL;
 
-use crate::client::{Page, World};
+use crate::client::{Page, SCENE, World};
 
 /// The world goes on: its time passes.
 fn assert_alive(world: &World) {
@@ -185,6 +185,28 @@ fn worlds_begin_as_they_should() {
     page.wish(json!({"do": "load_text", "name": "ball.toml", "text": text}));
     page.document_where("scene", |loaded| loaded["scene"] != anew["scene"]);
     page.document_where("status", |status| status["mode"] == "playing");
+}
+
+/// A world in a step that lasts for minutes is left for another at once, begun anew, and paused.
+#[test]
+fn long_steps_are_broken_off() {
+    let world = World::open_with(&[
+        "bodies.bar.mesh.cells=[20, 8, 8]",
+        "systems.main.stepper=symplectic_euler",
+        "systems.main.steps_per_period=1000000",
+    ]);
+    let mut page = Page::open(&world);
+    let scene = page.document("scene");
+    page.wish(json!({"do": "pause"}));
+    page.document_where("status", |status| status["mode"] == "paused");
+    page.wish(json!({"do": "play"}));
+    page.document_where("status", |status| status["mode"] == "playing");
+    page.wish(json!({"do": "reset"}));
+    let anew = page.document_where("scene", |anew| anew["scene"] != scene["scene"]);
+    let text = SCENE.replace("\"A bar\"", "\"Another bar\"");
+    page.wish(json!({"do": "load_text", "name": "bar.toml", "text": text}));
+    page.document_where("scene", |loaded| loaded["scene"] != anew["scene"]);
+    page.frame_where(|frame| frame.time > 0.05);
 }
 
 /// What was done by hand, values set among it, is repeated bit for bit from the recording.

@@ -27,6 +27,8 @@ const LOOK_EVERY = 400;
 const GRAVITY = "world.gravity";
 /** What a page says by itself, or says again when the connection is back. */
 const UNTOLD = new Set<Wish["do"]>(["seen", "move", "release", "colour", "arrows", "inside"]);
+/** What breaks a long step off. */
+const AT_ONCE = new Set<Wish["do"]>(["pause", "reset", "load", "load_text"]);
 
 class Page {
   private readonly notes = new Notes(place("notes"));
@@ -128,7 +130,7 @@ class Page {
     const isSent = this.connection.send(wish);
     if (UNTOLD.has(wish.do)) return;
     if (!isSent) this.notes.say("warning", "The connection is lost: nothing was done.");
-    else if (this.transport.isLong) this.notes.say("note", "This is done when the step ends that goes on now.");
+    else if (this.transport.isLong && !AT_ONCE.has(wish.do)) this.notes.say("note", "This is done when the step ends that goes on now.");
   }
 
   /** What was pressed or set by a pointer does not keep the keys; what keys have come to does. */
