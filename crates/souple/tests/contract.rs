@@ -3,6 +3,7 @@
 mod common;
 
 use std::io::PipeReader;
+use std::path::Path;
 use std::process::Stdio;
 
 use common::{Answer, CUBE, Folder, assert_errors, assert_report, command, souple};
@@ -296,35 +297,9 @@ fn interruption_leaves_complete_files() {
 fn interrupt(signal: &str) {
     let folder = Folder::new("interrupted");
     let scene = folder.write("long.toml", CUBE.replace("\"100 ms\"", "\"10000 s\""));
-    let recording = folder.at("run.json");
-    let mut command = command();
-    command.args([
-        "run",
-        &scene,
-        "--json",
-        "--out",
-        &folder.at("out"),
-        "--frames",
-        "100000",
-        "--record",
-        &recording,
-    ]);
-    let call = format!("{command:?}");
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
-    let third = folder.path().join("out/frames/cube_0002.vtu");
-    for _ in 0..600 {
-        if third.exists() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(50));
-    }
-    assert!(third.exists(), "no frame within half a minute");
-    let sent = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
-    assert!(sent.expect("kill").success());
-    let answer = Answer::of(call, child.wait_with_output().expect("an end")).ends(130);
-    let report = answer.json();
-    assert_report(&report);
-    assert_eq!(report["status"], "interrupted");
+    let (out, recording) = (folder.at("out"), folder.at("run.json"));
+    let call = ["run", &scene, "--json", "--out", &out, "--frames", "100000", "--record", &recording];
+    let report = ended_by(signal, &call, &folder.path().join("out/frames/cube_0002.vtu"));
     assert!(report["steps"].as_u64().is_some_and(|steps| steps > 0 && steps < 1_000_000));
     assert_complete(&folder, "interrupted");
     souple(["replay", &recording, "--verify", "--quiet"]).ends(0);
@@ -336,27 +311,35 @@ fn interrupt(signal: &str) {
 fn interruption_breaks_long_steps_off() {
     let folder = Folder::new("long-step");
     let endless = "[systems.main]\nstepper = \"symplectic_euler\"\nsteps_per_period = 1000000\n";
-    let scene =
-        folder.write("endless.toml", &format!("{CUBE}{endless}").replace("[2, 2, 2]", "[10, 10, 10]"));
-    let mut command = command();
-    command.args(["run", &scene, "--json", "--out", &folder.at("out")]);
-    let call = format!("{command:?}");
-    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+    let text = format!("{CUBE}{endless}").replace("[2, 2, 2]", "[10, 10, 10]");
+    let (scene, out) = (folder.write("endless.toml", text), folder.at("out"));
     // its first state is written before its first step
     let begun = folder.path().join("out/frames/cube_0000.vtu");
+    let report = ended_by("-TERM", &["run", &scene, "--json", "--out", &out], &begun);
+    assert_eq!(report["steps"], 0);
+}
+
+/// The report of a call that is ended by a signal when a file is there.
+#[cfg(unix)]
+fn ended_by(signal: &str, call: &[&str], file: &Path) -> Value {
+    let mut command = command();
+    command.args(call);
+    let call = format!("{command:?}");
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
     for _ in 0..600 {
-        if begun.exists() {
+        if file.exists() {
             break;
         }
         std::thread::sleep(std::time::Duration::from_millis(50));
     }
-    assert!(begun.exists(), "no frame within half a minute");
-    let sent = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(file.exists(), "no frame within half a minute");
+    let sent = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
     assert!(sent.expect("kill").success());
     let answer = Answer::of(call, child.wait_with_output().expect("an end")).ends(130);
     let report = answer.json();
     assert_report(&report);
     assert_eq!(report["status"], "interrupted");
+    report
 }
 
 /// The writing end of a pipe that nobody reads.
