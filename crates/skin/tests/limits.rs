@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use common::{number, part, skin, term};
 use souple_engine::FieldState;
 use souple_math::Vec3;
+use souple_skin::target::particles::Cloud;
 use souple_skin::target::{ISO, Moment, Part, Target};
 use souple_skin::{Skin, SkinError, SkinScratch};
 use souple_table::Value;
@@ -98,4 +99,17 @@ fn targets_that_break_while_running() {
     assert!(error.to_string().contains("expected a number"), "{error}");
     let error = fails("0.5 - sqrt(x^2 + y^2 + z^2)", [0.0, 0.35]);
     assert!(matches!(error, SkinError::Target(_)) && error.to_string().contains("at t = 0.4"), "{error}");
+}
+
+/// Particles so near to each other that each place would sum over thousands are refused, with where they are.
+#[test]
+fn crowds_of_particles_are_refused() {
+    let place = |spacing: f64| {
+        let at = |i: u32| Vec3::new(f64::from(i % 20), f64::from(i / 20 % 20), f64::from(i / 400)) * spacing;
+        Cloud::default().place((0..8000).map(|i| (at(i), 0.01)))
+    };
+    assert_eq!(place(0.02), Ok(()));
+    let error = place(1e-5).unwrap_err();
+    assert!(error.contains("8000 particles are within a cube of 0.04 m about [0.0, 0.0, 0.0]"), "{error}");
+    assert!(error.contains("at most 4096"), "{error}");
 }

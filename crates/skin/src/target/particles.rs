@@ -5,7 +5,7 @@
 
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
-use souple_table::{Entry, Parameter, Range, Value};
+use souple_table::{Entry, Parameter, Range, Value, readable};
 
 use super::{Between, Followed, Moment, PartEntry, PartError, PartScratch, Potential, UNKNOWN};
 
@@ -73,6 +73,10 @@ pub struct Cloud {
     high: Vec3,
 }
 
+/// Particles in a cell, four times their radius wide, that stand at twice their radius from each other.
+const FILLING: usize = 8;
+/// In a cell at most: eight times as near to each other along each axis. Each place in a cell sums over all of them.
+const MOST_IN_CELL: usize = 4096;
 /// Rows of cells that are gone through for a range, at most: of a box of more nothing is said.
 const MOST_ROWS: u64 = 1 << 10;
 /// Cells along each axis at most: three coordinates in a key.
@@ -82,7 +86,7 @@ impl Cloud {
     /// Sorts particles given by position and radius.
     ///
     /// # Errors
-    /// One is nowhere, or has no radius.
+    /// One is nowhere, or has no radius; too many are at one place.
     pub fn place(&mut self, particles: impl Iterator<Item = (Vec3, f64)>) -> Result<(), String> {
         self.placed.clear();
         self.placed.extend(particles);
@@ -111,7 +115,17 @@ impl Cloud {
             self.sorted.push((key(x, y, z), index as u32));
         }
         self.sorted.sort_unstable();
-        Ok(())
+        let Some(crowd) = self.sorted.chunk_by(|a, b| a.0 == b.0).find(|crowd| crowd.len() > MOST_IN_CELL)
+        else {
+            return Ok(());
+        };
+        Err(format!(
+            "{} particles are within a cube of {} m about {:?}, where {FILLING} fill it; expected at most {MOST_IN_CELL}: a \
+             smaller radius, or fewer particles",
+            crowd.len(),
+            readable(self.cell),
+            self.placed[crowd[0].1 as usize].0.to_array(),
+        ))
     }
 
     /// Coordinates of the cell of a place, from 1 for those of particles.
