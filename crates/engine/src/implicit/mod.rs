@@ -22,7 +22,7 @@ use crate::kinematics::UnknownKind;
 use crate::linear::{Indefinite, LinearError, LinearSystem, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
-use crate::system::{Surroundings, System, SystemWorkspace};
+use crate::system::{Rows, Surroundings, System, SystemWorkspace};
 use crate::tangent::{Assembled, Curvature, Linearisation, OperatorBuffers, TangentOperator};
 
 pub use history::Lent;
@@ -160,6 +160,13 @@ struct Wanted {
     tolerance: f64,
 }
 
+/// What came of a linear solve.
+struct Attempt {
+    solved: Result<Solved, LinearError>,
+    /// The residual that rounding of positions makes.
+    rounding: f64,
+}
+
 impl ImplicitStep<'_> {
     /// Starts from `next`: what was, with `v₀` and `p` as if nothing had been before, for a formula to change.
     pub fn begin(&self, next: &SystemState, buffers: &mut ImplicitBuffers) {
@@ -276,43 +283,80 @@ impl ImplicitStep<'_> {
         buffers: &mut ImplicitBuffers,
         wanted: Wanted,
     ) -> Result<(Solved, f64), LinearError> {
-        let system = self.system;
-        let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
-        let ImplicitBuffers {
-            unbalanced,
-            residual,
-            direction,
-            prescribed,
-            rhs,
-            q_trial,
-            v_trial,
-            operator,
-            block_positions,
-            ..
-        } = buffers;
-        let at = Linearisation {
-            system,
+        buffers.rhs.copy_from_slice(&buffers.residual);
+        if wanted.constrained == Constrained::Led {
+            self.lift_prescribed(state, ws, buffers);
+        }
+        let mut attempt = self.attempt(Curvature::Exact, state, ws, buffers, wanted);
+        if !ws.linear.is_matrix_free() && attempt.solved.as_ref().is_err_and(LinearError::may_be_indefinite) {
+            // a direction in which the potential falls, where there is one; Newton's method judges it by the residual
+            attempt = self.attempt(Curvature::Definite, state, ws, buffers, wanted);
+        }
+        let ImplicitBuffers { residual, direction, prescribed, .. } = buffers;
+        self.system.project_free(direction);
+        if wanted.constrained == Constrained::Led {
+            for (direction, prescribed) in direction.iter_mut().zip(prescribed.iter()) {
+                *direction += *prescribed;
+            }
+        }
+        let solved = attempt.solved.map_err(|error| {
+            let most_left = || largest(residual).filter(|_| error.may_be_indefinite());
+            LinearError { block: error.block.or_else(most_left), ..error }
+        })?;
+        Ok((solved, attempt.rounding))
+    }
+
+    /// Takes from the right-hand side what prescribed motion brings: `A (δ_free + δ_prescribed) = -r`.
+    fn lift_prescribed(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
+        let SystemWorkspace { scratches, rows, stages, .. } = ws;
+        let ImplicitBuffers { unbalanced, direction, prescribed, rhs, q_trial, v_trial, operator, .. } =
+            buffers;
+        let clock = Instant::now();
+        let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
+        TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
+        // it counts as assembly
+        operator.take_seconds();
+        for (rhs, lift) in rhs.iter_mut().zip(direction.iter()) {
+            *rhs -= *lift;
+        }
+        self.system.project_free(rhs);
+        stages.assembly += clock.elapsed().as_secs_f64();
+    }
+
+    fn linearisation<'a>(
+        &'a self,
+        state: &'a SystemState,
+        rows: &'a Rows,
+        (q, v): (&'a [Vec3], &'a [Vec3]),
+        unbalanced: &'a [Vec3],
+    ) -> Linearisation<'a> {
+        Linearisation {
+            system: self.system,
             state,
             around: self.around,
             rows,
-            q: q_trial,
-            v: v_trial,
+            q,
+            v,
             rates: self.rates,
             unbalanced,
-        };
-        rhs.copy_from_slice(residual);
-        if wanted.constrained == Constrained::Led {
-            let clock = Instant::now();
-            // A (δ_free + δ_prescribed) = -r
-            TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
-            // it counts as assembly
-            operator.take_seconds();
-            for (rhs, lift) in rhs.iter_mut().zip(direction.iter()) {
-                *rhs -= *lift;
-            }
-            system.project_free(rhs);
-            stages.assembly += clock.elapsed().as_secs_f64();
         }
+    }
+
+    /// `direction = A⁻¹ rhs` with the tangent of a curvature.
+    fn attempt(
+        &self,
+        curvature: Curvature,
+        state: &SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+        wanted: Wanted,
+    ) -> Attempt {
+        let system = self.system;
+        let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
+        let ImplicitBuffers {
+            unbalanced, direction, rhs, q_trial, v_trial, operator, block_positions, ..
+        } = buffers;
+        let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
         let is_matrix_free = linear.is_matrix_free();
         let is_symmetrised = !is_matrix_free
             && self.turns_alone_break_symmetry()
@@ -324,69 +368,46 @@ impl ImplicitStep<'_> {
             system.block_positions_into(&rows.positions, block_positions);
             &*block_positions
         };
-        let mut curvature = Curvature::Exact;
-        let (solved, made_definite, rounding) = loop {
-            let clock = Instant::now();
-            let Assembled { matrix, symmetric: nearby, turned } = if is_matrix_free {
-                let matrix = tangent.assemble_diagonal(&at, scratches);
-                Assembled { matrix, symmetric: None, turned: false }
-            } else {
-                tangent.assemble_with_symmetric(curvature, &at, scratches)
-            };
-            // of matrices that are not symmetric none is known to be definite: what friction adds to that is left out
-            let (matrix, nearby, symmetric) = match nearby {
-                Some(nearby) if turned => (nearby, None, system.kinematics.is_conservative()),
-                nearby => (matrix, nearby.map(|nearby| &*nearby), symmetric),
-            };
-            if is_symmetrised {
-                matrix.symmetrise();
-            }
-            stages.assembly += clock.elapsed().as_secs_f64();
-            let weighted = (0..positions.len()).map(|block| {
-                (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2)
-            });
-            let rounding = f64::EPSILON * weighted.sum::<f64>().sqrt();
-            let clock = Instant::now();
-            let products = is_matrix_free.then(|| TangentOperator::new(&at, scratches, operator));
-            let linear_system = LinearSystem {
-                matrix,
-                operator: products.as_ref().map(|operator| operator as _),
-                nearby,
-                symmetric,
-                kinematics: &system.kinematics,
-                reference: history::reference(&system.kinematics, &state.history),
-                positions,
-                indefinite: match curvature {
-                    Curvature::Exact => wanted.indefinite,
-                    Curvature::Definite => Indefinite::Solve,
-                },
-                used_as: wanted.used_as,
-                tolerance: wanted.tolerance,
-            };
-            let solved = linear.solve(linear_system, rhs, direction);
-            stages.solve += clock.elapsed().as_secs_f64();
-            stages.products += operator.take_seconds();
-            match solved {
-                // a direction in which the potential falls, where there is one; Newton's method judges it by the residual
-                Err(error)
-                    if error.may_be_indefinite() && curvature == Curvature::Exact && !is_matrix_free =>
-                {
-                    curvature = Curvature::Definite;
-                }
-                solved => break (solved, turned, rounding),
-            }
+        let clock = Instant::now();
+        let Assembled { matrix, symmetric: nearby, turned } = if is_matrix_free {
+            let matrix = tangent.assemble_diagonal(&at, scratches);
+            Assembled { matrix, symmetric: None, turned: false }
+        } else {
+            tangent.assemble_with_symmetric(curvature, &at, scratches)
         };
-        system.project_free(direction);
-        if wanted.constrained == Constrained::Led {
-            for (direction, prescribed) in direction.iter_mut().zip(prescribed.iter()) {
-                *direction += *prescribed;
-            }
+        // of matrices that are not symmetric none is known to be definite: what friction adds to that is left out
+        let (matrix, nearby, symmetric) = match nearby {
+            Some(nearby) if turned => (nearby, None, system.kinematics.is_conservative()),
+            nearby => (matrix, nearby.map(|nearby| &*nearby), symmetric),
+        };
+        if is_symmetrised {
+            matrix.symmetrise();
         }
-        let solved = solved.map_err(|error| {
-            let most_left = || largest(residual).filter(|_| error.may_be_indefinite());
-            LinearError { block: error.block.or_else(most_left), ..error }
-        })?;
-        Ok((Solved { made_definite, ..solved }, rounding))
+        stages.assembly += clock.elapsed().as_secs_f64();
+        let weighted = (0..positions.len())
+            .map(|block| (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2));
+        let rounding = f64::EPSILON * weighted.sum::<f64>().sqrt();
+        let clock = Instant::now();
+        let products = is_matrix_free.then(|| TangentOperator::new(&at, scratches, operator));
+        let linear_system = LinearSystem {
+            matrix,
+            operator: products.as_ref().map(|operator| operator as _),
+            nearby,
+            symmetric,
+            kinematics: &system.kinematics,
+            reference: history::reference(&system.kinematics, &state.history),
+            positions,
+            indefinite: match curvature {
+                Curvature::Exact => wanted.indefinite,
+                Curvature::Definite => Indefinite::Solve,
+            },
+            used_as: wanted.used_as,
+            tolerance: wanted.tolerance,
+        };
+        let solved = linear.solve(linear_system, rhs, direction);
+        stages.solve += clock.elapsed().as_secs_f64();
+        stages.products += operator.take_seconds();
+        Attempt { solved: solved.map(|solved| Solved { made_definite: turned, ..solved }), rounding }
     }
 
     /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
