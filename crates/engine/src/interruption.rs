@@ -1,28 +1,29 @@
 //! Steps that are broken off from outside: by who ends the program, or shows another scene.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::steppers::StepError;
 
-/// A wish that the step that goes on ends without a result; clones share it. A world heeds one by
-/// [`crate::World::heed`].
+/// Wishes that the step that goes on ends without a result, as many as are not taken back; clones share them. A world heeds
+/// them by [`crate::World::heed`].
 #[derive(Clone, Debug, Default)]
-pub struct Interruption(Arc<AtomicBool>);
+pub struct Interruption(Arc<AtomicUsize>);
 
 impl Interruption {
-    /// From now on every step ends as soon as it can.
+    /// Until this wish is taken back every step ends as soon as it can.
     pub fn wish(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// From now on steps go on.
+    /// Takes one wish back.
     pub fn withdraw(&self) {
-        self.0.store(false, Ordering::Relaxed);
+        // one that was never made is none
+        let _ = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |wishes| wishes.checked_sub(1));
     }
 
     pub fn is_wished(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.load(Ordering::Relaxed) > 0
     }
 
     /// Goes on with a step, between parts of it that may last.

@@ -46,4 +46,6 @@ pub use steppers::{Step, StepError, StepReport, Stepper};
 pub use system::{Rows, StageTimes, Surroundings, System, SystemWorkspace};
 pub use tangent::Curvature;
 pub use tool::{Tool, Toolbox};
-pub use world::{CommittedRows, EnergyReport, Field, Model, ResumeError, Span, Workspace, World, WorldError};
+pub use world::{
+    CommittedRows, EnergyReport, Field, FieldStep, Model, ResumeError, Workspace, World, WorldError,
+};

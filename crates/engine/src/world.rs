@@ -31,15 +31,15 @@ pub trait Field: Send + Sync {
         Box::new(())
     }
 
-    /// Moves `field` on over a span of time, reading the committed rows of all systems. What the scratch holds must not
-    /// change a bit of the result.
+    /// Moves `field` on, reading the committed rows of all systems. What the scratch holds must not change a bit of the
+    /// result.
     ///
     /// # Errors
-    /// [`StepError::Field`] says why it cannot be stepped; it was broken off.
+    /// [`StepError::Field`] with what stands in the way; [`StepError::Interrupted`].
     fn step(
         &self,
         rows: CommittedRows,
-        span: &Span,
+        step: &FieldStep,
         field: &mut FieldState,
         scratch: &mut Scratch,
     ) -> Result<(), StepError>;
@@ -51,7 +51,7 @@ pub trait Field: Send + Sync {
 }
 
 /// A step of a field: from when, how far.
-pub struct Span<'a> {
+pub struct FieldStep<'a> {
     /// [s]
     pub start: f64,
     /// [s]
@@ -423,9 +423,9 @@ impl World {
         let rows = CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems };
         let scratches = &mut self.workspace.field_scratches;
         for ((field, state), scratch) in self.model.fields.iter().zip(&mut next.fields).zip(scratches) {
-            let span =
-                Span { start, timestep: self.model.period, interruption: &self.workspace.interruption };
-            let stepped = field.step(rows, &span, state, scratch);
+            let step =
+                FieldStep { start, timestep: self.model.period, interruption: &self.workspace.interruption };
+            let stepped = field.step(rows, &step, state, scratch);
             stepped.map_err(|error| WorldError { place: format!("field `{}`", field.name()), error })?;
         }
         Ok(())

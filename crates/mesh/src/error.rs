@@ -64,3 +64,14 @@ pub enum MeshError {
     #[error(transparent)]
     UnknownGenerator(#[from] souple_table::UnknownName),
 }
+
+impl MeshError {
+    /// What is wrong, and what would be accepted where that is told.
+    pub fn in_two(&self) -> (String, Option<String>) {
+        let told = self.to_string();
+        match told.split_once("; expected ") {
+            Some((wrong, accepted)) => (wrong.to_owned(), Some(accepted.to_owned())),
+            None => (told, None),
+        }
+    }
+}

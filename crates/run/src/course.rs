@@ -109,10 +109,7 @@ impl Course {
                 Stepped::On => {}
                 Stepped::Refused => return Ok(Status::Failed),
                 Stepped::BrokenOff => {
-                    let is_kept = options.snapshot_every.is_some();
-                    if let (true, Some(folder)) = (is_kept, &mut *folder) {
-                        keep_state(session, folder)?;
-                    }
+                    keep_state(session, folder.as_mut().filter(|_| options.snapshot_every.is_some()))?;
                     session.push_hash();
                     return Ok(Status::Interrupted);
                 }
@@ -131,11 +128,8 @@ impl Course {
             let wall_seconds = session.clock.elapsed().as_secs_f64();
             let progress = Progress { step, steps, simulated_seconds: step as f64 * period, wall_seconds };
             let stops = watch(&progress) == Control::Stop && !last;
-            if let (Some(every), Some(folder)) = (options.snapshot_every, &mut *folder)
-                && (last || stops || step.is_multiple_of(every))
-            {
-                keep_state(session, folder)?;
-            }
+            let is_due = |every: u64| last || stops || step.is_multiple_of(every);
+            keep_state(session, folder.as_mut().filter(|_| options.snapshot_every.is_some_and(is_due)))?;
             session.around.write += write_clock.elapsed().as_secs_f64();
             if stops {
                 session.push_hash();
@@ -196,7 +190,9 @@ impl Course {
     }
 }
 
-fn keep_state(session: &mut Session, folder: &mut OutputFolder) -> Result<(), RunError> {
+/// Writes a snapshot, where there is a folder for it.
+fn keep_state(session: &mut Session, folder: Option<&mut OutputFolder>) -> Result<(), RunError> {
+    let Some(folder) = folder else { return Ok(()) };
     let path = folder.claim(&snapshot_name(session.world.state().period))?;
     session.write_snapshot(&path).map_err(OutputError::from)?;
     Ok(())

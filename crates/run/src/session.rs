@@ -145,7 +145,7 @@ impl Session {
                 self.note_changes(&before);
                 Stepped::On
             }
-            Err(error) if *error.error.cause() == StepError::Interrupted => Stepped::BrokenOff,
+            Err(error) if error.error == StepError::Interrupted => Stepped::BrokenOff,
             Err(error) => {
                 self.failure = Some(Failure::of_step(error, &self.world, &self.bodies));
                 Stepped::Refused

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use souple_engine::{CommittedRows, Field, FieldState, Scratch, Span, StepError};
+use souple_engine::{CommittedRows, Field, FieldState, FieldStep, Scratch, StepError};
 use souple_math::Vec3;
 
 use crate::error::SkinError;
@@ -45,7 +45,7 @@ impl Field for SkinField {
     fn step(
         &self,
         rows: CommittedRows,
-        &Span { start, timestep, interruption }: &Span,
+        &FieldStep { start, timestep, interruption }: &FieldStep,
         field: &mut FieldState,
         scratch: &mut Scratch,
     ) -> Result<(), StepError> {
@@ -53,8 +53,7 @@ impl Field for SkinField {
             return Err(StepError::Field("its scratch is of another field".to_owned()));
         };
         let end = Moment { time: start + timestep, rows: &rows };
-        let mut go_on = || interruption.check().map_err(|_| SkinError::Interrupted);
-        self.0.step_while(&mut go_on, &end, timestep, field, scratch).map_err(|error| match error {
+        self.0.step_heeding(interruption, &end, timestep, field, scratch).map_err(|error| match error {
             SkinError::Interrupted => StepError::Interrupted,
             error => StepError::Field(error.to_string()),
         })

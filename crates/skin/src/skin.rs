@@ -1,7 +1,7 @@
 //! A skin: its lattice, its target, its terms, and the step that moves its grid in State.
 
 use rayon::prelude::*;
-use souple_engine::FieldState;
+use souple_engine::{FieldState, Interruption};
 use souple_math::Vec3;
 
 use crate::crossings::Crossings;
@@ -218,16 +218,16 @@ impl Skin {
         field: &mut FieldState,
         scratch: &mut SkinScratch,
     ) -> Result<(), SkinError> {
-        self.step_while(&mut || Ok(()), end, timestep, field, scratch)
+        self.step_heeding(&Interruption::default(), end, timestep, field, scratch)
     }
 
-    /// The same, while `go_on` says so before each sub-step.
+    /// The same, unless it is broken off before a sub-step.
     ///
     /// # Errors
-    /// Why it cannot go on, or what `go_on` says.
-    pub(crate) fn step_while(
+    /// Why it cannot go on.
+    pub fn step_heeding(
         &self,
-        go_on: &mut dyn FnMut() -> Result<(), SkinError>,
+        interruption: &Interruption,
         end: &Moment,
         timestep: f64,
         field: &mut FieldState,
@@ -241,7 +241,7 @@ impl Skin {
         self.find_surface(field, scratch);
         field.indices[WORK] = 0;
         while done < timestep {
-            go_on()?;
+            interruption.check().map_err(|_| SkinError::Interrupted)?;
             if substeps > 0 {
                 self.find_crossings(field, scratch);
                 self.measure_size(field, scratch);

@@ -101,15 +101,19 @@ fn targets_that_break_while_running() {
     assert!(matches!(error, SkinError::Target(_)) && error.to_string().contains("at t = 0.4"), "{error}");
 }
 
-/// Particles so near to each other that each place would sum over thousands are refused, with where they are.
+/// Particles so near to each other that each place would sum over thousands are refused, with where they are; small ones
+/// beside a large one are none.
 #[test]
 fn crowds_of_particles_are_refused() {
-    let place = |spacing: f64| {
-        let at = |i: u32| Vec3::new(f64::from(i % 20), f64::from(i / 20 % 20), f64::from(i / 400)) * spacing;
-        Cloud::default().place((0..8000).map(|i| (at(i), 0.01)))
+    let place = |count: u32, radius: f64| {
+        let at = |i: u32| Vec3::new(f64::from(i % 20), f64::from(i / 20 % 20), f64::from(i / 400)) * 1e-5;
+        let large = (Vec3::ZERO, 0.01);
+        Cloud::default().place((1..count).map(|i| (at(i), radius)).chain([large]))
     };
-    assert_eq!(place(0.02), Ok(()));
-    let error = place(1e-5).unwrap_err();
-    assert!(error.contains("8000 particles are within a cube of 0.04 m about [0.0, 0.0, 0.0]"), "{error}");
-    assert!(error.contains("at most 4096"), "{error}");
+    // a cell is as wide as four radii, and eight particles fill it
+    assert_eq!(place(4096, 0.01), Ok(()));
+    assert_eq!(place(8000, 0.005), Ok(()));
+    let error = place(4097, 0.01).unwrap_err();
+    assert!(error.contains("4097 particles are in a cube of 0.04 m about [0.0, 0.0, 0.0]"), "{error}");
+    assert!(error.contains("expected 512 at most"), "{error}");
 }

@@ -1,7 +1,7 @@
 //! The runs of a study, several at once.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 
 use rayon::prelude::*;
@@ -79,8 +79,8 @@ pub fn fingerprints(study: &Study, workers: Workers) -> Result<Vec<String>, Swee
     Ok(fingerprints)
 }
 
-/// Makes the runs that the file does not hold by the [`fingerprints`] of their scenes, stores each as it ends, and stops where
-/// `stop` is set.
+/// Makes the runs that the file does not hold by the [`fingerprints`] of their scenes, stores each as it ends, and breaks off
+/// where `stop` is wished.
 ///
 /// # Errors
 /// A scene cannot be started, the file cannot be written.
@@ -107,17 +107,15 @@ pub fn sweep(
     let runs = study.runs.len();
     watch(Progress { done: summary.held, runs });
     let next = AtomicUsize::new(0);
-    let failed = AtomicBool::new(false);
     let (sender, receiver) = mpsc::channel();
     std::thread::scope(|scope| {
         for _ in 0..workers.count.clamp(1, wanted.len().max(1)) {
             let sender = sender.clone();
-            let (wanted, next, failed) = (&wanted, &next, &failed);
-            let is_over = move || stop.is_wished() || failed.load(Ordering::Relaxed);
+            let (wanted, next) = (&wanted, &next);
             scope.spawn(move || {
-                while !is_over() {
+                while !stop.is_wished() {
                     let Some(number) = wanted.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
-                    let made = run(study, *number, workers.threads, stop, &is_over);
+                    let made = run(study, *number, workers.threads, stop);
                     if sender.send((*number, made)).is_err() {
                         return;
                     }
@@ -134,10 +132,14 @@ pub fn sweep(
                 Ok(())
             });
             if let (Err(error), true) = (stored, result.is_ok()) {
-                failed.store(true, Ordering::Relaxed);
+                // the other workers need not go on
+                stop.wish();
                 result = Err(error);
             }
             watch(Progress { done: summary.held + summary.made, runs });
+        }
+        if result.is_err() {
+            stop.withdraw();
         }
         result
     })?;
@@ -154,13 +156,7 @@ fn read(study: &Study, number: usize) -> Result<Scene, SweepError> {
 }
 
 /// One run, within threads of its own.
-fn run(
-    study: &Study,
-    number: usize,
-    threads: usize,
-    stop: &Interruption,
-    is_over: &(impl Fn() -> bool + Sync),
-) -> Result<Outcome, SweepError> {
+fn run(study: &Study, number: usize, threads: usize, stop: &Interruption) -> Result<Outcome, SweepError> {
     let plan = &study.runs[number];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     pool.install(|| {
@@ -170,7 +166,8 @@ fn run(
             interruption: stop.clone(),
             ..Options::default()
         };
-        let mut watch = |_: &souple_run::Progress| if is_over() { Control::Stop } else { Control::Continue };
+        let mut watch =
+            |_: &souple_run::Progress| if stop.is_wished() { Control::Stop } else { Control::Continue };
         souple_run::run(read(study, number)?, &options, &mut watch).map_err(|error| SweepError::Scene {
             run: number + 1,
             settings: plan.settings().join(", "),

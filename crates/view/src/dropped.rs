@@ -65,7 +65,7 @@ impl DropFolder {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
         let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        let wrong = |error: std::io::Error| format!("{name} cannot be kept: {error}");
+        let wrong = |error: std::io::Error| format!("it cannot be kept: {error}");
         let folder = tempfile::Builder::new().prefix("souple-").tempdir().map_err(wrong)?;
         let file = DroppedFile {
             folder: Arc::new(folder),
@@ -149,4 +149,27 @@ fn cells_of(surface: &Mesh) -> f64 {
     });
     // a surface that encloses nothing is refused when it is filled
     needed.filter(|count| count.is_finite()).unwrap_or(CELLS).clamp(CELLS, CELLS_MOST).round()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is thin is filled with more cells, up to a number that still steps in time; so is nothing that encloses nothing.
+    #[test]
+    fn thin_surfaces_have_more_cells() {
+        let folder = DropFolder::default();
+        let scene_with = |depth: f64, faces: &str| {
+            let corner = |i: u32| format!("v {} {} {}\n", i & 1, f64::from(i >> 1 & 1) * depth, f64::from(i >> 2) * depth);
+            let text = (0..8).map(corner).collect::<String>() + faces;
+            scene_of(&folder.keep("rod.obj", text.as_bytes()).unwrap()).unwrap()
+        };
+        let all = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+        for (depth, faces, count) in
+            [(1.0, all, 6000), (0.02, all, 6000), (0.014, all, 7512), (0.01, all, 12_000), (0.01, "f 1 3 4\n", 6000)]
+        {
+            let scene = scene_with(depth, faces);
+            assert!(scene.contains(&format!("count = {count}")), "{depth}: {scene}");
+        }
+    }
 }

@@ -6,7 +6,7 @@ use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
 
 use super::implicit_formula::{NEWTON_ITERATIONS, NEWTON_TOLERANCE, newton_settings, settle};
-use super::parts::in_parts;
+use super::parts::{Stuck, in_parts};
 use super::static_equilibrium::conserves;
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
@@ -108,10 +108,13 @@ impl Stepper for QuasiStatic {
             self.follow(&Step { system, around: &around, start: from, timestep }, next, ws, &mut buffers)
         });
         ws.implicit = Some(buffers);
-        outcome.map_err(|stuck| StepError::NoEquilibrium {
-            from: start + stuck.reached * timestep,
-            parts: stuck.part * timestep,
-            error: Box::new(stuck.error),
+        outcome.map_err(|Stuck { reached, part, error }| match error {
+            StepError::Interrupted => error,
+            error => StepError::NoEquilibrium {
+                from: start + reached * timestep,
+                parts: part * timestep,
+                error: Box::new(error),
+            },
         })
     }
 }

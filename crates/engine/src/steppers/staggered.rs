@@ -225,7 +225,9 @@ impl Stage<'_, '_> {
         rows.time = end;
     }
 
-    fn run(&mut self, schedule: Schedule) {
+    /// # Errors
+    /// It is broken off.
+    fn run(&mut self, schedule: Schedule) -> Result<(), StepError> {
         let Step { system, around, start, timestep } = *self.step;
         for (index, levels) in bodies(system) {
             let memory = &mut self.next.memory[system.memory_range(index)];
@@ -237,6 +239,7 @@ impl Stage<'_, '_> {
         let tick_length = timestep / f64::from(ticks);
         self.hold_steady();
         for tick in 0..ticks {
+            self.ws.interruption.check()?;
             if system.refresh_pairs(self.ws, self.next, around) {
                 self.buffers.prepare(system, self.next);
             }
@@ -251,6 +254,7 @@ impl Stage<'_, '_> {
         // what is held is where it is held, also where coarser points carry it
         let rows = &mut self.ws.rows;
         system.impose_constraints(&mut rows.positions, &mut rows.velocities, self.step.end(), around.load);
+        Ok(())
     }
 }
 
@@ -300,11 +304,12 @@ impl Stepper for Staggered {
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);
         ws.rows.time = step.start;
-        Stage { step, division, next: &mut *next, ws: &mut *ws, buffers: &mut buffers }.run(self.schedule);
+        let mut stage = Stage { step, division, next: &mut *next, ws: &mut *ws, buffers: &mut buffers };
+        let ran = stage.run(self.schedule);
         std::mem::swap(&mut next.q, &mut ws.rows.positions);
         std::mem::swap(&mut next.v, &mut ws.rows.velocities);
         ws.staggered = buffers;
-        Ok(StepReport::default())
+        ran.map(|()| StepReport::default())
     }
 }
 

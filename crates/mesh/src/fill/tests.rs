@@ -411,6 +411,8 @@ fn fillings_by_count() {
         assert!((ratio - 1.0).abs() < tolerance, "{ratio} of {count}");
     }
     assert!(options(0.1, 10).is_err() && options(0.0, 0).is_err());
+    let edge = Size::for_count(0.3, 5000.0);
+    assert!((Size::count_for(0.3, edge) / 5000.0 - 1.0).abs() < 1e-14);
 }
 
 /// Groups of a surface come onto its filling: the two ends of a box and its half of cells keep their areas and volume to

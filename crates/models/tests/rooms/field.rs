@@ -4,8 +4,8 @@ use std::any::Any;
 
 use souple_engine::state::Pair;
 use souple_engine::{
-    CommittedRows, Configuration, Declaration, Energy, Field, FieldState, Force, Interruption, Model,
-    Scratch, Span, State, StepError, TangentWeights, World,
+    CommittedRows, Configuration, Declaration, Energy, Field, FieldState, FieldStep, Force, Model, Scratch,
+    State, StepError, TangentWeights, World,
 };
 use souple_math::Vec3;
 use souple_solve::BlockMatrix;
@@ -22,12 +22,12 @@ impl Field for Pressure {
     fn step(
         &self,
         rows: CommittedRows,
-        span: &Span,
+        step: &FieldStep,
         field: &mut FieldState,
         _: &mut Scratch,
     ) -> Result<(), StepError> {
         let cell = (rows.of(0).positions[0].x.clamp(0.0, 2.0)) as usize;
-        field.values[cell] += span.timestep;
+        field.values[cell] += step.timestep;
         field.indices[0] = cell as u64;
         Ok(())
     }
@@ -87,23 +87,6 @@ fn a_field_pushes_points() {
     resumed.resume(State::from_bytes(&saved).unwrap()).unwrap();
     (0..20).for_each(|_| resumed.step().unwrap());
     assert_eq!(resumed.state().hash(), world.state().hash());
-}
-
-/// A step that is broken off leaves State as it was, and the world goes on as if nothing had been.
-#[test]
-fn steps_are_broken_off() {
-    let (mut world, mut undisturbed) = (start(), start());
-    let interruption = Interruption::default();
-    world.heed(&interruption);
-    world.step().unwrap();
-    interruption.wish();
-    let before = world.state().hash();
-    assert_eq!(world.step().unwrap_err().error, StepError::Interrupted);
-    assert_eq!(world.state().hash(), before);
-    interruption.withdraw();
-    world.step().unwrap();
-    (0..2).for_each(|_| undisturbed.step().unwrap());
-    assert_eq!(world.state().hash(), undisturbed.state().hash());
 }
 
 /// A field of other sizes than the model's own is refused by name.

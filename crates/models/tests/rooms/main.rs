@@ -11,6 +11,7 @@ mod forces;
 mod frame_and_tets;
 mod ghosts;
 mod implicit_formulas;
+mod interruption;
 mod plastic_link;
 mod stability;
 mod sticking_pair;

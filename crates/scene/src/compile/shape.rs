@@ -66,7 +66,10 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
             log.add(Code::Mesh, spec.site_of(name), message, expected);
             return None;
         }
-        Err(error) => return refuse(error.to_string(), "a mesh that can be made"),
+        Err(error) => {
+            let (message, accepted) = error.in_two();
+            return refuse(message, accepted.as_deref().unwrap_or("a mesh that can be made"));
+        }
     };
     let section = body.section();
     if mesh.cell_count() == 0 && section.dimension() == 2 {

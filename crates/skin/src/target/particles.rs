@@ -5,7 +5,7 @@
 
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
-use souple_table::{Entry, Parameter, Range, Value, readable};
+use souple_table::{Entry, Parameter, Range, Value, counted, readable};
 
 use super::{Between, Followed, Moment, PartEntry, PartError, PartScratch, Potential, UNKNOWN};
 
@@ -73,10 +73,9 @@ pub struct Cloud {
     high: Vec3,
 }
 
-/// Particles in a cell, four times their radius wide, that stand at twice their radius from each other.
-const FILLING: usize = 8;
-/// In a cell at most: eight times as near to each other along each axis. Each place in a cell sums over all of them.
-const MOST_IN_CELL: usize = 4096;
+/// How many cells the particles in one of them may fill, which stands for eight to each along each axis: every place in it sums
+/// over all of them.
+const MOST_FILLINGS: f64 = 512.0;
 /// Rows of cells that are gone through for a range, at most: of a box of more nothing is said.
 const MOST_ROWS: u64 = 1 << 10;
 /// Cells along each axis at most: three coordinates in a key.
@@ -115,16 +114,26 @@ impl Cloud {
             self.sorted.push((key(x, y, z), index as u32));
         }
         self.sorted.sort_unstable();
-        let Some(crowd) = self.sorted.chunk_by(|a, b| a.0 == b.0).find(|crowd| crowd.len() > MOST_IN_CELL)
-        else {
+        self.check_crowds()
+    }
+
+    fn check_crowds(&self) -> Result<(), String> {
+        // of twice the radius, as the kernel counts it
+        let volume = |radius: f64| (2.0 * radius).powi(3);
+        let most = MOST_FILLINGS * self.cell.powi(3);
+        let filled = |crowd: &[(u64, u32)]| {
+            crowd.iter().map(|(_, index)| volume(self.placed[*index as usize].1)).sum::<f64>()
+        };
+        let Some(crowd) = self.sorted.chunk_by(|a, b| a.0 == b.0).find(|crowd| filled(crowd) > most) else {
             return Ok(());
         };
         Err(format!(
-            "{} particles are within a cube of {} m about {:?}, where {FILLING} fill it; expected at most {MOST_IN_CELL}: a \
-             smaller radius, or fewer particles",
-            crowd.len(),
+            "{} are in a cube of {} m about {:?} and would fill {:.0} such; expected {MOST_FILLINGS} at most: a smaller \
+             radius, or fewer particles",
+            counted(crowd.len() as u64, "particle"),
             readable(self.cell),
             self.placed[crowd[0].1 as usize].0.to_array(),
+            filled(crowd) / self.cell.powi(3),
         ))
     }
 

@@ -149,9 +149,8 @@ fn in_words(diagnostics: &souple_scene::Diagnostics, is_text: bool) -> String {
     let Some(first) = diagnostics.0.first() else { return diagnostics.to_string() };
     let line = if is_text { format!("{}:{}: ", first.file, first.line) } else { String::new() };
     let place = if first.path.is_empty() { line } else { format!("{line}{}: ", first.path) };
-    // a message of the geometry says itself what it expects
-    let is_told = first.expected.is_empty() || first.message.contains("; expected ");
-    let expected = if is_told { String::new() } else { format!("; expected {}", first.expected) };
+    let expected =
+        if first.expected.is_empty() { String::new() } else { format!("; expected {}", first.expected) };
     let more = match diagnostics.0.len() {
         1 => String::new(),
         count => format!(" (and {} more)", count - 1),

@@ -1,6 +1,7 @@
 //! The way in: what is sent to the world, and breaks off the step that goes on where it makes that pointless.
 
-use std::sync::mpsc::{Receiver, SendError, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SendError, SyncSender, TryRecvError, sync_channel};
+use std::time::Duration;
 
 use souple_engine::Interruption;
 
@@ -20,7 +21,7 @@ pub enum Input {
 }
 
 impl Input {
-    /// Whether nobody wants any longer what comes of the step that goes on.
+    /// Whether it goes before what comes of the step that goes on.
     fn ends_step(&self) -> bool {
         match self {
             Self::Stop => true,
@@ -44,9 +45,10 @@ pub struct Inputs {
 
 impl Inputs {
     /// Room for so many that wait; whoever puts more waits too.
-    pub fn new(most: usize) -> (Self, Receiver<Input>) {
+    pub fn new(most: usize) -> (Self, Inbox) {
         let (sender, receiver) = sync_channel(most);
-        (Self { sender, interruption: Interruption::default() }, receiver)
+        let interruption = Interruption::default();
+        (Self { sender, interruption: interruption.clone() }, Inbox { receiver, interruption })
     }
 
     /// What steps of the world heed.
@@ -57,16 +59,38 @@ impl Inputs {
     /// # Errors
     /// The world has ended.
     pub fn send(&self, input: Input) -> Result<(), SendError<Input>> {
-        let ends_step = input.ends_step();
-        if ends_step {
-            // the world may have no room for more until its step has ended
+        // no step goes on until it is taken; before it is there, as there may be no room for it while one goes on
+        if input.ends_step() {
             self.interruption.wish();
         }
-        self.sender.send(input)?;
-        if ends_step {
-            // it may have begun another before this was there to be taken
-            self.interruption.wish();
+        self.sender.send(input)
+    }
+}
+
+/// Where the world takes them.
+pub struct Inbox {
+    receiver: Receiver<Input>,
+    interruption: Interruption,
+}
+
+impl Inbox {
+    /// # Errors
+    /// There is none, or nobody is left to put one.
+    pub fn try_take(&self) -> Result<Input, TryRecvError> {
+        self.receiver.try_recv().inspect(|input| self.taken(input))
+    }
+
+    /// Waits for one.
+    ///
+    /// # Errors
+    /// None came in this time, or nobody is left to put one.
+    pub fn take_within(&self, time: Duration) -> Result<Input, RecvTimeoutError> {
+        self.receiver.recv_timeout(time).inspect(|input| self.taken(input))
+    }
+
+    fn taken(&self, input: &Input) {
+        if input.ends_step() {
+            self.interruption.withdraw();
         }
-        Ok(())
     }
 }

@@ -11,7 +11,7 @@ mod shown;
 mod stage;
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
+use std::sync::mpsc::{RecvTimeoutError, TryRecvError};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
@@ -19,7 +19,7 @@ use souple_engine::Interruption;
 use souple_run::Stepped;
 use souple_scene::Scene;
 
-pub use inputs::{Input, Inputs};
+pub use inputs::{Inbox, Input, Inputs};
 pub use question::{Answer, Question};
 pub use shown::Shown;
 pub use stage::{Origin, Stage};
@@ -42,6 +42,8 @@ enum Mode {
     Waiting,
     Playing,
     Paused,
+    /// One step of a paused world.
+    Stepping,
     /// A step was refused; says which and why.
     Failed(String),
 }
@@ -52,6 +54,7 @@ impl Mode {
             Self::Waiting => "waiting",
             Self::Playing => "playing",
             Self::Paused => "paused",
+            Self::Stepping => "stepping",
             Self::Failed(_) => "failed",
         }
     }
@@ -118,14 +121,12 @@ impl Live {
     }
 
     /// The world until it is told to stop.
-    pub fn run(mut self, inbox: &Receiver<Input>) {
+    pub fn run(mut self, inbox: &Inbox) {
         loop {
-            // what wished for it is taken now, or wishes again when it is there to be taken
-            self.interruption.withdraw();
             // not longer than a picture lasts, however much is wished for
             let until = Instant::now() + FRAME;
             while Instant::now() < until {
-                match inbox.try_recv() {
+                match inbox.try_take() {
                     Ok(input) => {
                         if self.take(input) == Course::Ends {
                             return;
@@ -152,7 +153,7 @@ impl Live {
             if is_due {
                 continue;
             }
-            match inbox.recv_timeout(self.patience(now)) {
+            match inbox.take_within(self.patience(now)) {
                 Ok(input) => {
                     if self.take(input) == Course::Ends {
                         return;
@@ -294,10 +295,13 @@ impl Live {
                 if let Mode::Failed(message) = &self.mode {
                     return Err(format!("{message}; reset the world first"));
                 }
-                if self.mode != Mode::Paused {
+                // it may last
+                self.set_mode(Mode::Stepping);
+                self.tell_news();
+                self.step();
+                if self.mode == Mode::Stepping {
                     self.set_mode(Mode::Paused);
                 }
-                self.step();
             }
             Wish::Speed(speed) => {
                 self.pace.set_speed(speed, Instant::now(), self.stage.time());

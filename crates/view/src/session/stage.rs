@@ -32,6 +32,8 @@ pub struct Stage {
     obstacles: Vec<Obstacle>,
     shown: Vec<Shown>,
     hands: Hands,
+    /// The period for which they were led last.
+    led: Option<u64>,
     looks: Looks,
     /// Pages that know the cells.
     pub(super) told_inside: BTreeSet<PageId>,
@@ -122,6 +124,7 @@ impl Stage {
             obstacles: scenery_of(session.world.model()),
             shown: session.bodies.iter().map(Shown::new).collect(),
             hands: Hands::default(),
+            led: None,
             looks: Looks::default(),
             told_inside: BTreeSet::new(),
             are_pins_new: false,
@@ -245,8 +248,7 @@ impl Stage {
     /// # Errors
     /// The step is refused: says which and why.
     pub fn step(&mut self, hub: &Hub) -> Result<Stepped, String> {
-        let edits = self.hands.advance(self.session.world.model().period);
-        self.edit(edits)?;
+        self.lead_hands()?;
         match self.session.step() {
             Stepped::On => {}
             Stepped::BrokenOff => return Ok(Stepped::BrokenOff),
@@ -266,6 +268,16 @@ impl Stage {
             self.sample(hub);
         }
         Ok(Stepped::On)
+    }
+
+    /// Brings hands nearer to where they are led, once in a period: also where its step was broken off.
+    fn lead_hands(&mut self) -> Result<(), String> {
+        let period = self.session.world.state().period;
+        if self.led.replace(period) == Some(period) {
+            return Ok(());
+        }
+        let edits = self.hands.advance(self.session.world.model().period);
+        self.edit(edits)
     }
 
     /// Tells all pages what has changed since they were told.

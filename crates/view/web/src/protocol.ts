@@ -143,7 +143,7 @@ export interface Pins {
 
 export interface Status {
   kind: "status";
-  mode: "waiting" | "playing" | "paused" | "failed";
+  mode: "waiting" | "playing" | "paused" | "stepping" | "failed";
   speed: number;
   busy: "reset" | "load" | "set" | null;
   message: string | null;

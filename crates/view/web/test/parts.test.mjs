@@ -6,14 +6,17 @@ import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 /** The modules as one, bundled for this program. */
-const sources = ["format", "view/furniture", "view/normals"].map((name) => fileURLToPath(new URL(`../src/${name}.ts`, import.meta.url)));
+const sources = ["format", "ui/parameters", "view/eye", "view/furniture", "view/normals"].map((name) => fileURLToPath(new URL(`../src/${name}.ts`, import.meta.url)));
 const { outputFiles } = await build({
-  stdin: { contents: sources.map((path) => `export * from ${JSON.stringify(path)};`).join("\n"), resolveDir: fileURLToPath(new URL("..", import.meta.url)) },
+  stdin: {
+    contents: [...sources, "three"].map((path) => `export * from ${JSON.stringify(path)};`).join("\n"),
+    resolveDir: fileURLToPath(new URL("..", import.meta.url)),
+  },
   bundle: true,
   format: "esm",
   write: false,
 });
-const { divideAtCreases, number, quantity, roundLength, smoothNormals } = await import(
+const { Box3, Eye, Vector3, corners, divideAtCreases, number, quantity, roundLength, smoothNormals, written } = await import(
   `data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`
 );
 
@@ -55,4 +58,35 @@ test("surfaces are smooth over bends and sharp at creases", () => {
     const wanted = corner < 6 ? [0, 1, 0] : [Math.sin((41 * Math.PI) / 180), Math.cos((41 * Math.PI) / 180), 0];
     wanted.forEach((value, axis) => assert.ok(Math.abs(normals[3 * own + axis] - value) < 1e-6, `${corner}: ${normals.slice(3 * own, 3 * own + 3)}`));
   });
+});
+
+test("what is looked at stands above the foot of the picture, from everywhere", () => {
+  const silent = { addEventListener() {}, removeEventListener() {}, getRootNode: () => silent, style: {} };
+  silent.ownerDocument = silent;
+  const bounds = new Box3(new Vector3(-1, 2, 0), new Vector3(3, 2.5, 1));
+  for (const [width, height] of [[1400, 800], [470, 318], [420, 330], [300, 900]]) {
+    for (const direction of [[-0.5, -0.45, -1], [0, 0, -1], [1, 0.2, 0], [-1, -2, -1]]) {
+      const eye = new Eye(silent);
+      eye.resize(width, height);
+      eye.direction.fromArray(direction).normalize();
+      eye.fit(bounds);
+      eye.camera.updateMatrixWorld();
+      // 84 px of it, or a quarter
+      const low = -1 + (2 * Math.min(84, 0.25 * height)) / height;
+      const seen = corners(bounds).map((corner) => corner.project(eye.camera));
+      for (const { x, y } of seen) assert.ok(Math.abs(x) < 1 && y < 1 && y > low, `${width} x ${height}, ${direction}: ${x}, ${y}`);
+      // no smaller than the room that it has for moving asks for
+      const reach = Math.max(...seen.map(({ x, y }) => Math.max(Math.abs(x), Math.abs((2 * y - low - 1) / (1 - low)))));
+      assert.ok(reach > 0.8, `${width} x ${height}, ${direction}: ${reach}`);
+    }
+  }
+});
+
+test("values are written as scene files have them", () => {
+  assert.equal(written(" 12 kPa ", "number"), "12 kPa");
+  assert.equal(written("0, -9.81, 0", "vector"), "[0, -9.81, 0]");
+  assert.equal(written("0, -9.81 m/s^2, 0", "vector"), '[0, "-9.81 m/s^2", 0]');
+  assert.equal(written("[0, 1, 0]", "vector"), "[0, 1, 0]");
+  assert.equal(written("[0, 5 cm, 0]", "vector"), '[0, "5 cm", 0]');
+  assert.equal(written('[0, "5 cm", 0]', "vector"), '[0, "5 cm", 0]');
 });

@@ -38,15 +38,12 @@ pub fn parameters_in_words<'a>(parameters: impl IntoIterator<Item = &'a Paramete
 /// Fills a file's surface, or a shape known by name.
 pub fn fill(input: &str, texts: &[String], quiet: bool) -> Result<(Mesh, Vec<String>), Refusal> {
     let refuse = |error: MeshError| {
-        let told = error.to_string();
         // what would be accepted stands in a line of its own
-        let (found, accepted) = told.split_once("; expected ").unwrap_or((
-            &told,
-            match error {
-                MeshError::Value(_) => "parameters as `souple mesh fill --help` names them",
-                _ => "a shape that has an inside, and cells that fit in it",
-            },
-        ));
+        let (found, accepted) = error.in_two();
+        let accepted = accepted.unwrap_or_else(|| match error {
+            MeshError::Value(_) => "parameters as `souple mesh fill --help` names them".to_owned(),
+            _ => "a shape that has an inside, and cells that fit in it".to_owned(),
+        });
         let is_of_lengths = matches!(
             error,
             MeshError::Fill(

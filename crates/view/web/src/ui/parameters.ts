@@ -204,12 +204,13 @@ function shown({ value, type }: Adjustable): string {
 }
 
 /** What a person wrote, as a scene file would have it. */
-function written(text: string, type: Adjustable["type"]): string {
+export function written(text: string, type: Adjustable["type"]): string {
   const trimmed = text.trim();
-  if (type !== "vector" || trimmed.startsWith("[")) return trimmed;
+  if (type !== "vector") return trimmed;
   // with its unit a part is a text
-  const part = (text: string) => (Number.isFinite(Number(text)) ? text : JSON.stringify(text));
-  return `[${trimmed.split(",").map((text) => part(text.trim())).join(", ")}]`;
+  const part = (text: string) => (Number.isFinite(Number(text)) || text.startsWith('"') ? text : JSON.stringify(text));
+  const parts = trimmed.replace(/^\[|\]$/g, "").split(",");
+  return `[${parts.map((text) => part(text.trim())).join(", ")}]`;
 }
 
 function quoted(text: string): string {

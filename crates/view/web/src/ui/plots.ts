@@ -101,13 +101,12 @@ export class Plots {
   private add(table: Table, first: number, title: string, unit: string, lines: Line[]): void {
     const axis = { stroke: () => style("--quiet"), grid: { stroke: () => style("--line"), width: 1 }, ticks: { show: false } };
     // what is under the mouse, or else what came last
-    const at = (plot: uPlot, value: number | null, line: number) => value ?? plot.data[line]?.at(-1) ?? null;
-    const said = (plot: uPlot, value: number | null, line: number) => {
-      const last = at(plot, value, line);
-      return last === null ? "" : number(last);
+    const said = (unit: string) => (plot: uPlot, value: number | null, line: number) => {
+      const shown = value ?? plot.data[line]?.at(-1) ?? null;
+      return shown === null ? "" : `${number(shown)}${unit}`;
     };
-    const line = ({ name, colour }: Line) => ({ label: name, stroke: colour, width: 1.5, points: { show: false }, value: said });
-    const time = { label: "time", value: (...about: Parameters<typeof said>) => `${said(...about)} s` };
+    const line = ({ name, colour }: Line) => ({ label: name, stroke: colour, width: 1.5, points: { show: false }, value: said("") });
+    const time = { label: "time", value: said(" s") };
     const plot = new uPlot(
       {
         width: this.width(),

@@ -106,7 +106,9 @@ export class Scenes {
     url.searchParams.set("page", String(this.page));
     try {
       const answer = await fetch(url, { method: "POST", body: file });
-      if (!answer.ok) this.say((await answer.text()).trim());
+      const said = answer.ok ? "" : (await answer.text()).trim();
+      // what is wrong in a file is told with its name; that it is too large, or not let in, is not
+      if (!answer.ok) this.say(said.startsWith(file.name) ? said : `${file.name}: ${said}`);
     } catch {
       this.say(`${file.name} could not be sent`);
     }

@@ -59,7 +59,12 @@ export class Transport {
   }
 
   toggle(): void {
-    this.send({ do: this.mode === "playing" ? "pause" : "play" });
+    this.send({ do: this.isGoing ? "pause" : "play" });
+  }
+
+  /** Playing, or in the step of a paused world. */
+  private get isGoing(): boolean {
+    return this.mode === "playing" || this.mode === "stepping";
   }
 
   take(tool: Tool): void {
@@ -91,7 +96,7 @@ export class Transport {
 
   /** Whether a step goes on for long: what is wished for is done when it ends. */
   get isLong(): boolean {
-    return this.mode === "playing" && performance.now() - this.shown > Math.max(LONG_MS, 3 * this.between);
+    return this.isGoing && performance.now() - this.shown > Math.max(LONG_MS, 3 * this.between);
   }
 
   /** No frame has come: a step that goes on for long is told. */
@@ -99,6 +104,8 @@ export class Transport {
     if (!this.isLong) return;
     const since = performance.now() - this.shown;
     this.factor.textContent = `${number(since / 1000)} s in one step`;
+    // a step that does not last is over before anybody could
+    this.play.textContent = "Pause";
     this.factor.classList.add("slow");
   }
 

@@ -340,8 +340,10 @@ export class Picture {
   }
 
   private goAlong(): void {
-    if (!this.followed) return;
-    const middle = this.middle;
+    const bounds = this.boundsNow();
+    // what is gone is waited for where it was
+    if (!this.followed || bounds.isEmpty()) return;
+    const middle = bounds.getCenter(new Vector3());
     this.eye.shift(middle.clone().sub(this.followed));
     this.followed = middle;
   }
