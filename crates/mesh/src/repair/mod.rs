@@ -1,7 +1,7 @@
 //! Surfaces as found in the wild: what is wrong with them, and what can be mended without guessing.
 //!
 //! [`diagnose`] finds everything at once; [`repair`] welds points, drops triangles that are flat or doubled, turns
-//! triangles until neighbours agree and every outer part faces outward, and closes small holes. Crossings, sheets
+//! triangles until neighbours agree and every closed part faces outward, and closes small holes. Crossings, sheets
 //! and large holes stay: a [`SurfaceShape`](crate::implicit::SurfaceShape) then decides by winding number.
 
 mod crossing;
@@ -51,7 +51,7 @@ pub struct SurfaceRepairs {
     pub facing_triangles: usize,
     /// Triangles turned so that neighbours agree.
     pub turned_triangles: usize,
-    /// Parts that were inside out as a whole.
+    /// Closed parts that were inside out as a whole.
     pub turned_parts: usize,
     pub closed_holes: usize,
 }

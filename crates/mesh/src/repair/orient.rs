@@ -57,8 +57,8 @@ fn neighbours(surface: &TriangleSurface) -> Vec<Vec<(usize, bool)>> {
     neighbours
 }
 
-/// Turns the parts whose back is seen from outside. A part within another keeps how it lies to the outer one, so
-/// that hollows stay hollows.
+/// Turns the closed parts whose back is seen from outside. A part within another keeps how it lies to the outer one, so
+/// that hollows stay hollows. An open part has no inside, and faces where it was meant to.
 pub(super) fn face_outward(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs) {
     let (part_of, count) = components(surface);
     let mut triangles_of = vec![Vec::new(); count];
@@ -72,7 +72,8 @@ pub(super) fn face_outward(surface: &mut TriangleSurface, repairs: &mut SurfaceR
     let windings: Vec<WindingNumber> = parts.iter().map(WindingNumber::new).collect();
     let boxes: Vec<Aabb> = parts.iter().map(|part| Aabb::of(part.points.iter().copied())).collect();
     let tree = AabbTree::build(&boxes);
-    let volumes: Vec<f64> = parts.iter().map(TriangleSurface::enclosed_volume).collect();
+    let closed: Vec<bool> = parts.iter().map(|part| part.check_closed().is_ok()).collect();
+    let is_inside_out = |part: usize| closed[part] && parts[part].enclosed_volume() < 0.0;
     let around = |inner: usize| -> Vec<usize> {
         let point = parts[inner].points[0];
         let mut around = Vec::new();
@@ -88,8 +89,9 @@ pub(super) fn face_outward(surface: &mut TriangleSurface, repairs: &mut SurfaceR
     let around: Vec<Vec<usize>> = (0..count).map(around).collect();
     // the outermost part that goes around this one decides
     let outermost = |inner: usize| around[inner].iter().copied().find(|outer| around[*outer].is_empty());
-    let is_turned: Vec<bool> =
-        (0..count).map(|number| volumes[outermost(number).unwrap_or(number)] < 0.0).collect();
+    let is_turned: Vec<bool> = (0..count)
+        .map(|number| closed[number] && is_inside_out(outermost(number).unwrap_or(number)))
+        .collect();
     for (triangle, corners) in surface.triangles.iter_mut().enumerate() {
         if is_turned[part_of[triangle] as usize] {
             corners.swap(1, 2);

@@ -212,6 +212,35 @@ fn parts_face_outward_and_hollows_stay() {
     }
 }
 
+/// Triangles with corners of their own that nothing welds, and a lid, have no inside: they face where they did.
+#[test]
+fn open_parts_face_where_they_did() {
+    let cube = unit_cube(3.0);
+    let mut soup = TriangleSurface::default();
+    for triangle in 0..cube.triangles.len() as u32 {
+        let start = soup.points.len() as u32;
+        // smaller by a hundredth, so that no corners meet
+        let corners = cube.corners(triangle);
+        let middle = corners.into_iter().sum::<Vec3>() / 3.0;
+        soup.points.extend(corners.map(|corner| middle + (corner - middle) * 0.99));
+        soup.triangles.push([start, start + 1, start + 2]);
+    }
+    let mut lid = cube.clone();
+    lid.triangles.retain(|corners| corners.iter().all(|point| cube.points[*point as usize].z > 0.5));
+    for given in [soup, lid] {
+        let mut turned_over = given.clone();
+        turned_over.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        for surface in [given, turned_over] {
+            let (mended, repairs) = repair(&surface, RepairLimits { hole: 0.0, ..RepairLimits::default() });
+            assert_eq!(repairs, SurfaceRepairs::default());
+            let areas = |surface: &TriangleSurface| -> Vec<Vec3> {
+                (0..surface.triangles.len() as u32).map(|triangle| surface.area_vector(triangle)).collect()
+            };
+            assert_eq!(areas(&mended), areas(&surface));
+        }
+    }
+}
+
 /// Two cubes shifted into each other cross; cubes side by side do not.
 #[test]
 fn crossings_are_found() {
