@@ -1,7 +1,7 @@
 //! Wavefront OBJ: surfaces of triangles and quadrilaterals, with their groups.
 //!
-//! Normals, textures and materials are not read. Polygons of more corners are cut into triangles from their
-//! first corner, which is right for convex ones; a note says so.
+//! Normals, textures and materials are not read. Polygons of more corners are cut into triangles; a note
+//! says so.
 
 use std::io::Write;
 

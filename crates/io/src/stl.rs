@@ -229,12 +229,11 @@ fn read_text(bytes: &[u8]) -> Result<Dataset, Fault> {
 /// Corners of the triangles to write, with their unit normals; a triangle without area has a normal of zeros.
 fn triangles(output: &Output<'_>) -> Vec<(Vec3, [Vec3; 3])> {
     let part = SurfacePart::of(output);
-    let triangles = part.facets.iter().flat_map(|facet| facet.triangles());
     let with_normal = |corners: [u32; 3]| {
         let [a, b, c] = corners.map(|corner| part.positions[corner as usize]);
         ((b - a).cross(c - a).try_normalised().unwrap_or(Vec3::ZERO), [a, b, c])
     };
-    triangles.map(with_normal).collect()
+    part.triangles().map(with_normal).collect()
 }
 
 fn write_binary(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
