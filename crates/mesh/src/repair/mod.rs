@@ -14,7 +14,7 @@ mod orient;
 use std::collections::{HashMap, HashSet};
 
 use souple_math::Vec3;
-use souple_table::in_number;
+use souple_table::{four_digits, in_number};
 
 use crate::TriangleSurface;
 
@@ -40,7 +40,7 @@ impl Default for RepairLimits {
 }
 
 /// What [`repair`] did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceRepairs {
     pub welded_points: usize,
     pub flat_triangles: usize,
@@ -54,6 +54,61 @@ pub struct SurfaceRepairs {
     /// Closed parts that were inside out as a whole.
     pub turned_parts: usize,
     pub closed_holes: usize,
+    /// Relative to the diagonal of the surface's box, as [`RepairLimits::hole`].
+    pub largest_closed_hole: f64,
+    /// Closed holes of which some triangles lie on each other.
+    pub folded_holes: usize,
+    pub left: Left,
+}
+
+/// What [`repair`] left on purpose.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Left {
+    /// Holes larger than the limit.
+    pub holes: usize,
+    /// Relative to the diagonal of the surface's box.
+    pub smallest_hole: f64,
+    pub largest_hole: f64,
+    /// Rings of open edges around sheets, which are no holes.
+    pub outlines: usize,
+    /// Open edges that are in no ring of their own: of holes that touch at a point, or that end at an edge of three triangles.
+    pub tangled_edges: usize,
+}
+
+impl Left {
+    fn add_hole(&mut self, size: f64) {
+        self.smallest_hole = if self.holes == 0 { size } else { self.smallest_hole.min(size) };
+        self.largest_hole = self.largest_hole.max(size);
+        self.holes += 1;
+    }
+
+    /// One line for each kind of thing that was left; empty where nothing was.
+    pub fn messages(&self, limits: RepairLimits) -> Vec<String> {
+        let (least, most) = (four_digits(self.smallest_hole), four_digits(self.largest_hole));
+        let sizes = if least == most { least } else { format!("{least} to {most}") };
+        let told = [
+            (
+                self.holes,
+                ["hole is", "holes are"],
+                format!(
+                    "left: {sizes} of the surface's diagonal, from corner to corner of the box around it, and hole={} is the limit",
+                    four_digits(limits.hole)
+                ),
+            ),
+            (
+                self.outlines,
+                ["ring of open edges is", "rings of open edges are"],
+                "left: the outline of a sheet, not of a hole".to_owned(),
+            ),
+            (
+                self.tangled_edges,
+                ["open edge is", "open edges are"],
+                "left: of holes that touch at a point, or end at an edge of several triangles".to_owned(),
+            ),
+        ];
+        let told = told.into_iter().filter(|(count, ..)| *count > 0);
+        told.map(|(count, [one, many], why)| format!("{} {why}", in_number(count, one, many))).collect()
+    }
 }
 
 const TRIANGLES: [&str; 2] = ["triangle was", "triangles were"];
@@ -61,15 +116,22 @@ const TRIANGLES: [&str; 2] = ["triangle was", "triangles were"];
 impl SurfaceRepairs {
     /// One line for each kind of repair; empty for a surface in order.
     pub fn messages(&self) -> Vec<String> {
+        let largest =
+            format!("closed, {} of the surface's diagonal at most", four_digits(self.largest_closed_hole));
         let counts = [
             (self.welded_points, ["point was", "points were"], "welded to another at the same place"),
             (self.flat_triangles, TRIANGLES, "dropped: without area"),
-            (self.joined_triangles, TRIANGLES, "joined with a neighbour by the other diagonal: without area"),
             (self.doubled_triangles, TRIANGLES, "dropped: others have the same corners"),
             (self.facing_triangles, TRIANGLES, "dropped: back to back with another, where parts touch"),
-            (self.turned_triangles, TRIANGLES, "turned to agree with their neighbours"),
+            (self.turned_triangles, TRIANGLES, "turned to agree with neighbours"),
+            (self.closed_holes, ["hole was", "holes were"], &largest),
+            (
+                self.folded_holes,
+                ["of them was", "of them were"],
+                "closed by triangles that lie on each other: no view shows all of the rim",
+            ),
+            (self.joined_triangles, TRIANGLES, "joined with a neighbour by the other diagonal: without area"),
             (self.turned_parts, ["part was", "parts were"], "inside out, and turned"),
-            (self.closed_holes, ["hole was", "holes were"], "closed: small next to the surface"),
         ];
         let told = counts.iter().filter(|(count, ..)| *count > 0);
         told.map(|(count, [one, many], done)| format!("{} {done}", in_number(*count, one, many))).collect()
@@ -83,7 +145,9 @@ pub fn repair(surface: &TriangleSurface, limits: RepairLimits) -> (TriangleSurfa
     let mut mended = weld(surface, limits.weld * diagonal, &mut repairs);
     orient::agree(&mut mended, &mut repairs);
     flat::join(&mut mended, &mut repairs);
-    holes::close(&mut mended, limits.hole * diagonal, &mut repairs);
+    holes::close(&mut mended, limits.hole, diagonal, &mut repairs);
+    // what closes a slit has no area
+    flat::join(&mut mended, &mut repairs);
     orient::face_outward(&mut mended, &mut repairs);
     (mended, repairs)
 }

@@ -63,6 +63,7 @@ fn everything_at_once() {
     assert_eq!(repairs.messages().len(), 5);
 }
 
+/// What is left counts the holes and tells how large they are, in the measure of the limit.
 #[test]
 fn large_holes_stay_and_are_said() {
     let mut cube = unit_cube(2.0);
@@ -72,6 +73,11 @@ fn large_holes_stay_and_are_said() {
     let diagnosis = diagnose(&mended);
     assert_eq!(diagnosis.open_edges.len(), 8);
     assert!(diagnosis.messages()[0].contains("holes"));
+    // a side of the cube is √2 from corner to corner, and the cube √3
+    let size = 2.0_f64.sqrt() / 3.0_f64.sqrt();
+    let left = Left { holes: 1, smallest_hole: size, largest_hole: size, ..Left::default() };
+    assert_eq!(repairs, SurfaceRepairs { left, ..SurfaceRepairs::default() });
+    assert!(left.messages(RepairLimits::default())[0].contains("0.8165 of the surface's diagonal"));
 }
 
 /// Two cubes that touch along a side are one body: the triangles between them go in pairs, and what is left is closed.
@@ -232,12 +238,88 @@ fn open_parts_face_where_they_did() {
         turned_over.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
         for surface in [given, turned_over] {
             let (mended, repairs) = repair(&surface, RepairLimits { hole: 0.0, ..RepairLimits::default() });
-            assert_eq!(repairs, SurfaceRepairs::default());
+            assert_eq!(repairs.messages(), [""; 0]);
             let areas = |surface: &TriangleSurface| -> Vec<Vec3> {
                 (0..surface.triangles.len() as u32).map(|triangle| surface.area_vector(triangle)).collect()
             };
             assert_eq!(areas(&mended), areas(&surface));
         }
+    }
+}
+
+/// Sheets have outlines and no holes, however small they are: nothing is laid back to back with them, nor closed by a fold.
+#[test]
+fn sheets_are_not_closed() {
+    let cube = unit_cube(2.0);
+    let stray = |corners: &[[f64; 3]], triangles: &[[u32; 3]]| {
+        let shift = cube.points.len() as u32;
+        let points = corners.iter().map(|[x, y, z]| Vec3::new(3.0 + 0.01 * x, 0.01 * y, 0.01 * z));
+        let mut surface = cube.clone();
+        surface.points.extend(points);
+        surface.triangles.extend(triangles.iter().map(|corners| corners.map(|point| point + shift)));
+        surface
+    };
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.01]];
+    let fold = [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [1.0, 1.0, 0.0], [0.0, 1.0, 1.0]];
+    for surface in [
+        stray(&square[..3], &[[0, 1, 2]]),
+        stray(&fold, &[[0, 1, 2], [0, 2, 3]]),
+        stray(&square, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]),
+    ] {
+        let (mended, repairs) = repair(&surface, RepairLimits { hole: 1.0, ..RepairLimits::default() });
+        assert_eq!(mended.triangles, surface.triangles);
+        assert_eq!((repairs.messages().len(), repairs.left.outlines), (0, 1));
+    }
+}
+
+/// The cube without the squares of its top in a pattern of four by four.
+fn without_squares(pattern: [&[u8; 4]; 4]) -> TriangleSurface {
+    let mut cube = unit_cube(4.0);
+    let points = cube.points.clone();
+    cube.triangles.retain(|corners| {
+        let middle = corners.iter().map(|point| points[*point as usize]).sum::<Vec3>() / 3.0;
+        let [row, column] = [middle.y, middle.x].map(|at| (4.0 * at) as usize);
+        middle.z < 0.999 || pattern[row][column] == b'.'
+    });
+    cube
+}
+
+/// A hole is closed within its rim, whatever its form: the cube is whole again, and its sides have their area.
+#[test]
+fn holes_are_closed_within_their_rim() {
+    let patterns: [[&[u8; 4]; 4]; 5] = [
+        [b"....", b".##.", b"..#.", b"...."],
+        [b"....", b".#..", b".##.", b"...."],
+        [b"#...", b"#...", b"###.", b"...."],
+        [b"#.##", b"#..#", b"####", b"...."],
+        [b"....", b"####", b"....", b"...."],
+    ];
+    for pattern in patterns {
+        let surface = without_squares(pattern);
+        let (mended, repairs) = repair(&surface, RepairLimits { hole: 1.0, ..RepairLimits::default() });
+        assert_eq!((repairs.closed_holes, repairs.folded_holes), (1, 0));
+        assert_cube(&mended);
+        assert!((mended.area() - 6.0).abs() < 1e-13, "{}", mended.area());
+        assert_eq!(repair(&mended, RepairLimits::default()), (mended, SurfaceRepairs::default()));
+    }
+}
+
+/// Corners on the sides of larger triangles leave slits: they are closed, and nothing without area is left.
+#[test]
+fn slits_are_closed_without_flat_triangles() {
+    for inner in 1..5 {
+        let mut cube = unit_cube(2.0);
+        let [a, b, c] = cube.triangles[0];
+        let first = cube.points.len() as u32;
+        let [from, to] = [a, b].map(|point| cube.points[point as usize]);
+        cube.points.extend((1..=inner).map(|k| from + (to - from) * (f64::from(k) / f64::from(inner + 1))));
+        let side: Vec<u32> = [a].into_iter().chain(first..first + inner).chain([b]).collect();
+        cube.triangles[0] = [side[0], side[1], c];
+        cube.triangles.extend(side[1..].windows(2).map(|pair| [pair[0], pair[1], c]));
+        let (mended, repairs) = repair(&cube, RepairLimits { hole: 1.0, ..RepairLimits::default() });
+        assert_eq!((repairs.closed_holes, repairs.joined_triangles), (1, inner as usize));
+        assert_cube(&mended);
+        assert_eq!(repair(&mended, RepairLimits::default()), (mended, SurfaceRepairs::default()));
     }
 }
 
