@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use souple_table::in_number;
 
 use super::crossing::{Crossings, crossings};
-use super::{is_flat, joined_points};
+use super::is_flat;
+use super::weld::equal_points;
 use crate::TriangleSurface;
 
 /// Most pairs of triangles that pass through each other of which a diagnosis tells: a surface with as many is not mended by hand.
@@ -36,7 +37,7 @@ pub struct Diagnosis {
 
 /// Looks at a whole surface.
 pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
-    let first_at = joined_points(&surface.points, 0.0);
+    let first_at = equal_points(&surface.points);
     let mut diagnosis = Diagnosis {
         duplicate_points: first_at
             .iter()

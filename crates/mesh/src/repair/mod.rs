@@ -10,8 +10,7 @@ mod facing;
 mod flat;
 mod holes;
 mod orient;
-
-use std::collections::{HashMap, HashSet};
+mod weld;
 
 use souple_math::Vec3;
 use souple_table::{four_digits, in_number};
@@ -43,6 +42,8 @@ impl Default for RepairLimits {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceRepairs {
     pub welded_points: usize,
+    /// How far apart points were that are one now [m].
+    pub longest_weld: f64,
     pub flat_triangles: usize,
     /// Triangles without area that share what their neighbour has.
     pub joined_triangles: usize,
@@ -64,6 +65,10 @@ pub struct SurfaceRepairs {
 /// What [`repair`] left on purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Left {
+    /// Closed parts that are as thin as what is welded: joined at equal points alone.
+    pub thin_parts: usize,
+    /// Places where closed parts touch, which stay several points.
+    pub touching_points: usize,
     /// Holes larger than the limit.
     pub holes: usize,
     /// Relative to the diagonal of the surface's box.
@@ -87,6 +92,19 @@ impl Left {
         let (least, most) = (four_digits(self.smallest_hole), four_digits(self.largest_hole));
         let sizes = if least == most { least } else { format!("{least} to {most}") };
         let told = [
+            (
+                self.thin_parts,
+                ["closed part is", "closed parts are"],
+                format!(
+                    "left: as thin as what weld={} joins, which would flatten it",
+                    four_digits(limits.weld)
+                ),
+            ),
+            (
+                self.touching_points,
+                ["place where closed parts touch is", "places where closed parts touch are"],
+                "left: each part has a point of its own there".to_owned(),
+            ),
             (
                 self.holes,
                 ["hole is", "holes are"],
@@ -118,8 +136,12 @@ impl SurfaceRepairs {
     pub fn messages(&self) -> Vec<String> {
         let largest =
             format!("closed, {} of the surface's diagonal at most", four_digits(self.largest_closed_hole));
+        let welded = match self.longest_weld {
+            0.0 => "welded to another at the same place".to_owned(),
+            distance => format!("welded to another, up to {} m away", four_digits(distance)),
+        };
         let counts = [
-            (self.welded_points, ["point was", "points were"], "welded to another at the same place"),
+            (self.welded_points, ["point was", "points were"], welded.as_str()),
             (self.flat_triangles, TRIANGLES, "dropped: without area"),
             (self.doubled_triangles, TRIANGLES, "dropped: others have the same corners"),
             (self.facing_triangles, TRIANGLES, "dropped: back to back with another, where parts touch"),
@@ -142,7 +164,7 @@ impl SurfaceRepairs {
 pub fn repair(surface: &TriangleSurface, limits: RepairLimits) -> (TriangleSurface, SurfaceRepairs) {
     let mut repairs = SurfaceRepairs::default();
     let diagonal = surface.bounds().diagonal();
-    let mut mended = weld(surface, limits.weld * diagonal, &mut repairs);
+    let mut mended = weld::weld(surface, limits.weld * diagonal, &mut repairs);
     orient::agree(&mut mended, &mut repairs);
     flat::join(&mut mended, &mut repairs);
     holes::close(&mut mended, limits.hole, diagonal, &mut repairs);
@@ -150,25 +172,6 @@ pub fn repair(surface: &TriangleSurface, limits: RepairLimits) -> (TriangleSurfa
     flat::join(&mut mended, &mut repairs);
     orient::face_outward(&mut mended, &mut repairs);
     (mended, repairs)
-}
-
-/// Joins points, drops triangles that are flat or equal to another, drops points of no triangle.
-fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) -> TriangleSurface {
-    let number = joined_points(&surface.points, distance);
-    repairs.welded_points =
-        number.iter().enumerate().filter(|(point, first)| *point as u32 != **first).count();
-    let welded = surface.triangles.iter().map(|corners| corners.map(|point| number[point as usize]));
-    let mut triangles: Vec<[u32; 3]> = welded.collect();
-    flat::drop(&surface.points, &mut triangles, repairs);
-    // copies that run the same way go first: what is left of three are two of opposite directions at most
-    let mut seen: HashSet<[u32; 3]> = HashSet::new();
-    let before = triangles.len();
-    triangles.retain(|corners| seen.insert(from_lowest(*corners)));
-    repairs.doubled_triangles += before - triangles.len();
-    facing::drop_pairs(&surface.points, &mut triangles, repairs);
-    let mut mended = TriangleSurface::from_mesh(&surface.points, &triangles, Vec::new());
-    mended.mesh_points.clear();
-    mended
 }
 
 /// Edges by their points, the lower first.
@@ -191,43 +194,6 @@ fn is_flat(corners: [u32; 3], points: &[Vec3]) -> bool {
     let [a, b, c] = corners.map(|point| points[point as usize]);
     let longest_sq = (b - a).length_sq().max((c - b).length_sq()).max((a - c).length_sq());
     (b - a).cross(c - a).length() <= 1e-14 * longest_sq
-}
-
-/// The lowest number of the points within a distance, for each point; chains are not followed.
-fn joined_points(points: &[Vec3], distance: f64) -> Vec<u32> {
-    if distance == 0.0 {
-        return equal_points(points);
-    }
-    // cells of twice the distance: close points are in touching cells
-    let cell = |point: Vec3| (point * (0.5 / distance)).to_array().map(|c| c.floor() as i64);
-    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    let mut number: Vec<u32> = Vec::with_capacity(points.len());
-    for (index, point) in points.iter().enumerate() {
-        let home = cell(*point);
-        let mut first = index as u32;
-        for step in 0..27_i64 {
-            let beside = [home[0] + step % 3 - 1, home[1] + step / 3 % 3 - 1, home[2] + step / 9 - 1];
-            let near = grid.get(&beside).into_iter().flatten();
-            let close = near.copied().filter(|other| (points[*other as usize] - *point).length() <= distance);
-            first = close.fold(first, u32::min);
-        }
-        number.push(first);
-        if first == index as u32 {
-            grid.entry(home).or_default().push(first);
-        }
-    }
-    number
-}
-
-/// The lowest number of the points at the same place, for each point.
-fn equal_points(points: &[Vec3]) -> Vec<u32> {
-    let mut first_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len());
-    let number = |(index, point): (usize, &Vec3)| {
-        // zeros of both signs are one place
-        let place = point.to_array().map(|c| (c + 0.0).to_bits());
-        *first_at.entry(place).or_insert(index as u32)
-    };
-    points.iter().enumerate().map(number).collect()
 }
 
 #[cfg(test)]

@@ -323,6 +323,64 @@ fn slits_are_closed_without_flat_triangles() {
     }
 }
 
+/// Closed parts that touch at a point or along an edge stay several surfaces, as indexed triangles and as triangles with corners of
+/// their own; a second repair has nothing to do.
+#[test]
+fn parts_that_touch_at_an_edge_stay_apart() {
+    for (shift, places) in [(Vec3::new(1.0, 1.0, 0.0), 2), (Vec3::new(1.0, 1.0, 1.0), 1)] {
+        let mut indexed = unit_cube(1.0);
+        let other = indexed.clone();
+        let count = indexed.points.len() as u32;
+        indexed.points.extend(other.points.iter().map(|p| *p + shift));
+        indexed.triangles.extend(other.triangles.iter().map(|corners| corners.map(|point| point + count)));
+        let (mended, repairs) = repair(&indexed, RepairLimits::default());
+        assert_eq!((repairs.messages().len(), repairs.left.touching_points), (0, places));
+        assert_eq!((&mended.points, &mended.triangles), (&indexed.points, &indexed.triangles));
+
+        let soup = TriangleSurface::new(
+            (0..indexed.triangles.len() as u32).flat_map(|triangle| indexed.corners(triangle)).collect(),
+            (0..indexed.triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect(),
+        );
+        let (mended, repairs) = repair(&soup.unwrap(), RepairLimits::default());
+        assert_eq!((mended.points.len(), repairs.left.touching_points), (16, places));
+        assert!(diagnose(&mended).is_simple() && diagnose(&mended).component_count == 2);
+        let (again, repairs) = repair(&mended, RepairLimits::default());
+        assert!(again == mended && repairs.messages().is_empty());
+    }
+}
+
+/// A closed plate as thin as what is welded stays closed, alone, beside others and given as triangles with corners of their own; its
+/// points are told to be left, and how far others have moved.
+#[test]
+fn thin_parts_stay_closed() {
+    let plate = {
+        let mut plate = unit_cube(3.0);
+        plate.points.iter_mut().for_each(|point| point.z *= 1e-4);
+        plate
+    };
+    let limits = RepairLimits { weld: 1e-3, ..RepairLimits::default() };
+    let (mended, repairs) = repair(&plate, limits);
+    assert_eq!((repairs.left.thin_parts, mended.triangles), (1, plate.triangles.clone()));
+    // beside it an open box, of which two corners are a little apart
+    let mut both = plate.clone();
+    let (mut open, shift) = (unit_cube(1.0), plate.points.len() as u32);
+    let apart = open.points[open.triangles[0][0] as usize] + Vec3::X * 1e-4;
+    open.triangles[0][0] = open.points.len() as u32;
+    open.points.push(apart);
+    both.points.extend(open.points.iter().map(|point| *point + Vec3::X * 2.0));
+    both.triangles.extend(open.triangles.iter().map(|corners| corners.map(|point| point + shift)));
+    let (mended, repairs) = repair(&both, limits);
+    assert_eq!((repairs.left.thin_parts, repairs.welded_points), (1, 1));
+    assert!((repairs.longest_weld - 1e-4).abs() < 1e-15);
+    assert!(
+        repairs.messages()[0].contains("welded to another, up to 0.0001 m away"),
+        "{:?}",
+        repairs.messages()
+    );
+    assert!(diagnose(&mended).is_simple());
+    assert_volume(&mended, 1.0 + 1e-4);
+}
+
 /// Two cubes shifted into each other cross; cubes side by side do not.
 #[test]
 fn crossings_are_found() {
