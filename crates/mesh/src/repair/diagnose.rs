@@ -1,6 +1,6 @@
 //! Everything that is wrong with a surface, counted, with a first place for each.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use souple_table::in_number;
 
@@ -27,6 +27,8 @@ pub struct Diagnosis {
     pub crowded_edges: Vec<[u32; 2]>,
     /// Edges along which two triangles run the same way.
     pub misoriented_edges: Vec<[u32; 2]>,
+    /// Points where fans of triangles meet that share no edge there.
+    pub pinched_points: Vec<u32>,
     /// Pairs of triangles that pass through each other, the first [`MOST_CROSSINGS`] of them.
     pub crossings: Crossings,
     /// Parts that share no point.
@@ -68,6 +70,11 @@ pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
             _ => diagnosis.crowded_edges.push(edge),
         }
     }
+    // at the ends of edges that are faulty the fans are so too, which is told
+    let faulty = diagnosis.crowded_edges.iter().chain(&diagnosis.misoriented_edges).flatten();
+    let faulty: HashSet<u32> = faulty.copied().collect();
+    diagnosis.pinched_points = surface.pinched_points();
+    diagnosis.pinched_points.retain(|point| !faulty.contains(point));
     diagnosis
 }
 
@@ -131,6 +138,16 @@ impl Diagnosis {
                 "edges lie between triangles of opposite orientation",
             ],
             edge(&self.misoriented_edges),
+        );
+        let point =
+            |list: &[u32]| list.first().map(|p| format!(", the first is points[{p}]")).unwrap_or_default();
+        say(
+            self.pinched_points.len(),
+            [
+                "point joins triangles that share no edge there",
+                "points join triangles that share no edge there",
+            ],
+            point(&self.pinched_points),
         );
         let pairs = &self.crossings.pairs;
         let pair = pairs.first().map(|[s, t]| format!(", the first are triangles[{s}] and triangles[{t}]"));

@@ -69,6 +69,10 @@ pub struct Left {
     pub thin_parts: usize,
     /// Places where closed parts touch, which stay several points.
     pub touching_points: usize,
+    /// Parts that have one side only, or whose triangles cannot agree otherwise.
+    pub one_sided_parts: usize,
+    /// Closed parts within others that face the same way.
+    pub nested_parts: usize,
     /// Holes larger than the limit.
     pub holes: usize,
     /// Relative to the diagonal of the surface's box.
@@ -104,6 +108,18 @@ impl Left {
                 self.touching_points,
                 ["place where closed parts touch is", "places where closed parts touch are"],
                 "left: each part has a point of its own there".to_owned(),
+            ),
+            (
+                self.one_sided_parts,
+                ["part is", "parts are"],
+                "left with edges between triangles of opposite orientation: with a twist, as a Möbius strip, it has one side only"
+                    .to_owned(),
+            ),
+            (
+                self.nested_parts,
+                ["closed part is", "closed parts are"],
+                "left within others that face the same way: what both enclose counts twice in the enclosed volume"
+                    .to_owned(),
             ),
             (
                 self.holes,

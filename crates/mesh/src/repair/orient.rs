@@ -6,7 +6,8 @@ use crate::winding::WindingNumber;
 use crate::{Aabb, AabbTree, TriangleSurface};
 
 /// Turns triangles so that the two at an edge run along it in opposite directions, starting from the first triangle
-/// of each part; of each part the smaller number is turned. Edges of three triangles or more are not crossed.
+/// of each part; of each part the smaller number is turned. Edges of three triangles or more are not crossed. A part on which there
+/// is a way to the other side cannot agree: it is turned where that leaves fewer edges that do not, and counted.
 pub(super) fn agree(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs) {
     let neighbours = neighbours(surface);
     let count = surface.triangles.len();
@@ -30,6 +31,15 @@ pub(super) fn agree(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs)
         // turning of the fewer: what most triangles say was meant
         let count_turned = part.iter().filter(|triangle| turned[**triangle] == Some(true)).count();
         let turn = if 2 * count_turned > part.len() { Some(false) } else { Some(true) };
+        let edges =
+            || part.iter().flat_map(|triangle| neighbours[*triangle].iter().map(|other| (*triangle, *other)));
+        let torn = edges().filter(|(s, (t, agrees))| (turned[*s] == turned[*t]) != *agrees).count();
+        if torn > 0 {
+            repairs.left.one_sided_parts += 1;
+            if torn >= edges().filter(|(_, (_, agrees))| !agrees).count() {
+                continue;
+            }
+        }
         for triangle in part.iter().filter(|triangle| turned[**triangle] == turn) {
             surface.triangles[*triangle].swap(1, 2);
             repairs.turned_triangles += 1;
@@ -92,6 +102,13 @@ pub(super) fn face_outward(surface: &mut TriangleSurface, repairs: &mut SurfaceR
     let is_turned: Vec<bool> = (0..count)
         .map(|number| closed[number] && is_inside_out(outermost(number).unwrap_or(number)))
         .collect();
+    let winds = |part: usize| -> f64 {
+        let turn = if is_turned[part] { -1.0 } else { 1.0 };
+        if closed[part] { turn * parts[part].enclosed_volume().signum() } else { 0.0 }
+    };
+    repairs.left.nested_parts = (0..count)
+        .filter(|inner| winds(*inner) > 0.0 && around[*inner].iter().copied().map(winds).sum::<f64>() > 0.0)
+        .count();
     for (triangle, corners) in surface.triangles.iter_mut().enumerate() {
         if is_turned[part_of[triangle] as usize] {
             corners.swap(1, 2);

@@ -381,6 +381,68 @@ fn thin_parts_stay_closed() {
     assert_volume(&mended, 1.0 + 1e-4);
 }
 
+/// A strip with a twist has one side: it is left as it is, and that is said; cut open it has two, and is turned to agree.
+#[test]
+fn a_strip_with_a_twist_is_left() {
+    let count = 20;
+    let point = |k: u32| {
+        let around = std::f64::consts::TAU * f64::from(k / 2) / f64::from(count);
+        let across = (f64::from(k % 2) - 0.5) * Vec3::new((0.5 * around).cos(), 0.0, (0.5 * around).sin());
+        let radius = 1.0 + across.x;
+        Vec3::new(radius * around.cos(), radius * around.sin(), across.z)
+    };
+    let points: Vec<Vec3> = (0..2 * count).map(point).collect();
+    let square = |k: u32| {
+        let corners = [2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 3];
+        // the end meets the start turned over
+        let [a, b, c, d] = if k + 1 == count { [2 * k, 2 * k + 1, 1, 0] } else { corners };
+        [[a, b, c], [b, d, c]]
+    };
+    let strip = TriangleSurface::new(points.clone(), (0..count).flat_map(square).collect()).unwrap();
+    let (mended, repairs) = repair(&strip, RepairLimits { hole: 0.0, ..RepairLimits::default() });
+    assert_eq!((repairs.messages().len(), repairs.left.one_sided_parts), (0, 1));
+    assert_eq!(mended, strip);
+    let mut open: Vec<[u32; 3]> = (0..count - 1).flat_map(square).collect();
+    open[7].swap(0, 1);
+    let open = TriangleSurface::new(points, open).unwrap();
+    let (_, repairs) = repair(&open, RepairLimits { hole: 0.0, ..RepairLimits::default() });
+    assert_eq!((repairs.turned_triangles, repairs.left.one_sided_parts), (1, 0));
+}
+
+/// Parts within others are told where what they enclose counts twice, and not where they are hollows.
+#[test]
+fn nested_parts_are_told() {
+    let outer = unit_cube(2.0);
+    let shift = outer.points.len() as u32;
+    let mut nested = outer.clone();
+    nested.points.extend(outer.points.iter().map(|p| *p * 0.5 + Vec3::new(0.25, 0.25, 0.25)));
+    let mut hollow = nested.clone();
+    nested.triangles.extend(outer.triangles.iter().map(|corners| corners.map(|point| point + shift)));
+    hollow.triangles.extend(outer.triangles.iter().map(|[a, b, c]| [a + shift, c + shift, b + shift]));
+    for (surface, told) in [(nested, 1), (hollow, 0)] {
+        let (_, repairs) = repair(&surface, RepairLimits::default());
+        assert_eq!((repairs.messages().len(), repairs.left.nested_parts), (0, told));
+    }
+}
+
+/// A point of two cubes is no manifold, and told.
+#[test]
+fn pinched_points_are_told() {
+    let mut pinched = unit_cube(1.0);
+    let last = pinched.points.iter().position(|p| *p == Vec3::new(1.0, 1.0, 1.0)).unwrap() as u32;
+    let first = pinched.points.iter().position(|p| *p == Vec3::ZERO).unwrap() as u32;
+    let (other, shift) = (pinched.clone(), pinched.points.len() as u32);
+    pinched.points.extend(other.points.iter().map(|p| *p + Vec3::new(1.0, 1.0, 1.0)));
+    let joined = |point: u32| if point == first { last } else { point + shift };
+    pinched.triangles.extend(other.triangles.iter().map(|corners| corners.map(joined)));
+    let (mended, repairs) = repair(&pinched, RepairLimits::default());
+    // the first point of the second cube is no longer used
+    assert_eq!((repairs.welded_points, repairs.left), (1, Left::default()));
+    let diagnosis = diagnose(&mended);
+    assert_eq!(diagnosis.pinched_points, [last]);
+    assert!(diagnosis.messages()[0].contains("1 point joins triangles"), "{:?}", diagnosis.messages());
+}
+
 /// Two cubes shifted into each other cross; cubes side by side do not.
 #[test]
 fn crossings_are_found() {
