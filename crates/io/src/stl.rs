@@ -244,6 +244,13 @@ fn write_binary(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteErr
         let expected = "at most 3.4e38, the largest number of 4 bytes (the format `stl_text` takes more)";
         return Err(IoError::request("a coordinate", format!("{largest:e}"), expected).into());
     }
+    let rounded = |corner: Vec3| corner.to_array().map(|c| c as f32);
+    let is_lost = |[a, b, c]: [[f32; 3]; 3]| a == b || b == c || c == a;
+    if !triangles.is_empty() && triangles.iter().all(|(_, corners)| is_lost(corners.map(rounded))) {
+        let expected = "one that has triangles left in numbers of 4 bytes, which end at 1.4e-45 and have seven digits (the format `stl_text` \
+                        takes more)";
+        return Err(IoError::request("the largest coordinate", format!("{largest:e}"), expected).into());
+    }
     let count = u32::try_from(triangles.len())
         .map_err(|_| IoError::request("the number of triangles", triangles.len(), "less than 2^32"))?;
     // the head must not begin with "solid"
