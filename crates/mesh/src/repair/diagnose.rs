@@ -33,7 +33,7 @@ pub struct Diagnosis {
     pub crossings: Crossings,
     /// Parts that share no point.
     pub component_count: usize,
-    /// Whether the enclosed volume is negative.
+    /// Whether the surface is closed and its enclosed volume negative.
     pub is_inside_out: bool,
 }
 
@@ -48,7 +48,7 @@ pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
             .count(),
         crossings: crossings(surface, MOST_CROSSINGS),
         component_count: components(surface).1,
-        is_inside_out: surface.enclosed_volume() < 0.0,
+        is_inside_out: surface.check_closed().is_ok() && surface.enclosed_volume() < 0.0,
         ..Diagnosis::default()
     };
     let mut seen: HashMap<[u32; 3], u32> = HashMap::new();

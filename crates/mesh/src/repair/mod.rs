@@ -67,7 +67,7 @@ pub struct SurfaceRepairs {
 pub struct Left {
     /// Closed parts that are as thin as what is welded: joined at equal points alone.
     pub thin_parts: usize,
-    /// Places where closed parts touch, which stay several points.
+    /// Places where closed parts touch each other or themselves, which stay several points.
     pub touching_points: usize,
     /// Parts that have one side only, or whose triangles cannot agree otherwise.
     pub one_sided_parts: usize,
@@ -106,8 +106,8 @@ impl Left {
             ),
             (
                 self.touching_points,
-                ["place where closed parts touch is", "places where closed parts touch are"],
-                "left: each part has a point of its own there".to_owned(),
+                ["place where the surface touches itself is", "places where the surface touches itself are"],
+                "left: each side of it has a point of its own there".to_owned(),
             ),
             (
                 self.one_sided_parts,
@@ -125,14 +125,14 @@ impl Left {
                 self.holes,
                 ["hole is", "holes are"],
                 format!(
-                    "left: {sizes} of the surface's diagonal, from corner to corner of the box around it, and hole={} is the limit",
+                    "left: {sizes} of the surface's diagonal from corner to corner of the box, more than hole={}",
                     four_digits(limits.hole)
                 ),
             ),
             (
                 self.outlines,
                 ["ring of open edges is", "rings of open edges are"],
-                "left: the outline of a sheet, not of a hole".to_owned(),
+                "left: outlines of sheets are no holes".to_owned(),
             ),
             (
                 self.tangled_edges,
