@@ -15,6 +15,8 @@ pub struct Dataset {
     pub cell_fields: Vec<Field>,
     /// What a user should know: parts that were skipped, what was taken for what.
     pub notes: Vec<String>,
+    /// What the file holds beside that no mesh takes and a copy of it is without: of use to who writes one.
+    pub unread: Option<String>,
 }
 
 /// Named values, `components` for each point or cell.

@@ -1,7 +1,7 @@
 //! What surface formats have in common: what they write of a mesh, and how they read polygons.
 
 use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
+use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles, polygon_triangles};
 use souple_table::in_number;
 
 use crate::cursor::{Cursor, line_of, open_end};
@@ -54,11 +54,6 @@ impl Facet {
     pub fn corners(&self) -> &[u32] {
         &self.corners[..usize::from(self.count)]
     }
-
-    /// As triangles around the first corner.
-    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        self.corners().windows(2).skip(1).map(|pair| [self.corners[0], pair[0], pair[1]])
-    }
 }
 
 /// A surface with points of its own.
@@ -103,6 +98,12 @@ impl SurfacePart {
         let positions = points.iter().map(|point| output.positions()[*point as usize]).collect();
         Self { positions, points, facets, origin }
     }
+
+    /// The facets as triangles.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let position = |corner: u32| self.positions[corner as usize];
+        self.facets.iter().flat_map(move |facet| polygon_triangles(facet.corners(), position))
+    }
 }
 
 /// Puts polygons of any number of corners among the facets of a mesh: one rule for all formats.
@@ -116,8 +117,8 @@ pub(crate) struct Polygons {
 
 impl Polygons {
     /// Corners that coincide with their neighbour make no side and are dropped: a quadrilateral may stand for a triangle. What
-    /// is left is a triangle, a quadrilateral, or triangles around the first corner; none where it encloses nothing. Returns
-    /// how many facets it has become.
+    /// is left is a triangle, a quadrilateral, or triangles that cut it; none where it encloses nothing. Returns how many facets
+    /// it has become. Points stand before facets in every format; of one that is not there the reader tells.
     pub fn push(&mut self, mesh: &mut Mesh, corners: &[u32]) -> usize {
         let distinct = &mut self.distinct;
         distinct.clear();
@@ -135,14 +136,12 @@ impl Polygons {
                 mesh.push_facet(ElementKind::Quad4, distinct);
                 1
             }
-            [start, others @ ..] if others.len() > 3 => {
+            [_, _, _, _, _, ..] => {
                 self.cut += 1;
-                let mut made = 0;
-                for pair in others.windows(2).filter(|pair| !pair.contains(start)) {
-                    mesh.push_facet(ElementKind::Tri3, &[*start, pair[0], pair[1]]);
-                    made += 1;
-                }
-                made
+                let position = |corner: u32| mesh.points.get(corner as usize).copied().unwrap_or(Vec3::ZERO);
+                let triangles = polygon_triangles(distinct, position);
+                triangles.iter().for_each(|corners| mesh.push_facet(ElementKind::Tri3, corners));
+                triangles.len()
             }
             _ => {
                 self.degenerate += 1;

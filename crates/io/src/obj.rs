@@ -1,7 +1,7 @@
 //! Wavefront OBJ: surfaces of triangles and quadrilaterals, with their groups.
 //!
-//! Normals, textures and materials are not read. Polygons of more corners are cut into triangles from their
-//! first corner, which is right for convex ones; a note says so.
+//! Normals, textures and materials are not read. Polygons of more corners are cut into triangles; a note
+//! says so.
 
 use std::io::Write;
 
@@ -54,6 +54,13 @@ const WITHOUT_GEOMETRY: &[&[u8]] = &[
     b"trace_obj",
 ];
 
+/// Of those what a file has of looks, in the words of a note.
+const LOOKS: [(&str, &[&[u8]]); 3] = [
+    ("normals", &[b"vn"]),
+    ("texture coordinates", &[b"vt"]),
+    ("materials", &[b"usemtl", b"mtllib", b"usemap", b"maplib"]),
+];
+
 /// Most groups that one facet is in.
 const MOST_GROUPS: usize = 16;
 
@@ -74,6 +81,8 @@ struct Reader {
     /// Corners of the facet at hand.
     corners: Vec<u32>,
     polygons: Polygons,
+    /// Which of [`LOOKS`] there are.
+    has_looks: [bool; LOOKS.len()],
 }
 
 pub(crate) fn read(bytes: &[u8]) -> Result<Dataset, Fault> {
@@ -122,7 +131,11 @@ impl Reader {
                 self.groups = names.filter(|name| name != DEFAULT).collect();
                 self.crowded += usize::from(words.next().is_some());
             }
-            other if WITHOUT_GEOMETRY.contains(&other) => {}
+            other if WITHOUT_GEOMETRY.contains(&other) => {
+                for (has, (_, keywords)) in self.has_looks.iter_mut().zip(LOOKS) {
+                    *has |= keywords.contains(&other);
+                }
+            }
             other => {
                 let expected = "v, f, g, o, vn, vt, s, usemtl, mtllib, l, p or a comment";
                 return Err(Fault::new(place, "the statement", quoted(other), expected));
@@ -181,7 +194,10 @@ impl Reader {
                 counted(self.crowded as u64, "line")
             ));
         }
-        Ok(Dataset { mesh: self.mesh, notes, ..Dataset::default() })
+        let looks = LOOKS.iter().zip(self.has_looks).filter(|(_, has)| *has).map(|((name, _), _)| *name);
+        let looks = looks.collect::<Vec<_>>().join(", ");
+        let unread = (!looks.is_empty()).then(|| format!("without what the file has of looks: {looks}"));
+        Ok(Dataset { mesh: self.mesh, notes, unread, ..Dataset::default() })
     }
 }
 
@@ -277,6 +293,7 @@ mod tests {
         assert_eq!(dataset.mesh.groups["top"].facets, [0]);
         assert_eq!(dataset.mesh.groups["side"].facets, [1]);
         assert!(dataset.notes.is_empty(), "{:?}", dataset.notes);
+        assert_eq!(dataset.unread.unwrap(), "without what the file has of looks: normals, materials");
     }
 
     #[test]

@@ -229,12 +229,11 @@ fn read_text(bytes: &[u8]) -> Result<Dataset, Fault> {
 /// Corners of the triangles to write, with their unit normals; a triangle without area has a normal of zeros.
 fn triangles(output: &Output<'_>) -> Vec<(Vec3, [Vec3; 3])> {
     let part = SurfacePart::of(output);
-    let triangles = part.facets.iter().flat_map(|facet| facet.triangles());
     let with_normal = |corners: [u32; 3]| {
         let [a, b, c] = corners.map(|corner| part.positions[corner as usize]);
         ((b - a).cross(c - a).try_normalised().unwrap_or(Vec3::ZERO), [a, b, c])
     };
-    triangles.map(with_normal).collect()
+    part.triangles().map(with_normal).collect()
 }
 
 fn write_binary(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
@@ -244,6 +243,13 @@ fn write_binary(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteErr
     if largest > f64::from(f32::MAX) {
         let expected = "at most 3.4e38, the largest number of 4 bytes (the format `stl_text` takes more)";
         return Err(IoError::request("a coordinate", format!("{largest:e}"), expected).into());
+    }
+    let rounded = |corner: Vec3| corner.to_array().map(|c| c as f32);
+    let is_lost = |[a, b, c]: [[f32; 3]; 3]| a == b || b == c || c == a;
+    if !triangles.is_empty() && triangles.iter().all(|(_, corners)| is_lost(corners.map(rounded))) {
+        let expected = "one that has triangles left in numbers of 4 bytes, which end at 1.4e-45 and have seven digits (the format `stl_text` \
+                        takes more)";
+        return Err(IoError::request("the largest coordinate", format!("{largest:e}"), expected).into());
     }
     let count = u32::try_from(triangles.len())
         .map_err(|_| IoError::request("the number of triangles", triangles.len(), "less than 2^32"))?;

@@ -5,6 +5,7 @@
 
 use souple_math::Vec3;
 
+use crate::polygon::{fan, polygon_triangles};
 use crate::{Cell, ElementKind, Mesh, MeshError, Order, TriangleSurface};
 
 /// A face that belongs to one cell only.
@@ -150,12 +151,17 @@ impl Mesh {
         }
     }
 
-    /// Facets read from a file as triangles, for meshes that are surfaces only. `None` if there are no facets.
+    /// Facets read from a file as triangles, for meshes that are surfaces only: quadrilaterals are cut within. `None` if there are
+    /// no facets.
     pub fn facet_surface(&self) -> Option<TriangleSurface> {
         let mut triangles = Vec::new();
         let mut facets = Vec::new();
         for (facet, view) in self.facets().enumerate() {
-            for triangle in facet_triangles(view.kind, view.nodes) {
+            let cut = match view.kind.order() {
+                Order::Linear => polygon_triangles(view.nodes, |node| self.points[node as usize]),
+                Order::Quadratic => facet_triangles(view.kind, view.nodes),
+            };
+            for triangle in cut {
                 triangles.push(triangle);
                 facets.push(facet as u32);
             }
@@ -189,19 +195,16 @@ pub fn facet_triangles(kind: ElementKind, nodes: &[u32]) -> Vec<[u32; 3]> {
         return Vec::new();
     }
     if middles.is_empty() {
-        return fan(corners).collect();
+        return around_lowest(corners).collect();
     }
     let n = corners.len();
     let cut_off = (0..n).map(|k| [middles[(k + n - 1) % n], corners[k], middles[k]]);
-    cut_off.chain(fan(middles)).collect()
+    cut_off.chain(around_lowest(middles)).collect()
 }
 
-/// A polygon as triangles around its corner of lowest number.
-fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
-    let n = corners.len();
-    let first = (0..n).min_by_key(|corner| corners[*corner]).unwrap_or(0);
-    (1..n.saturating_sub(1))
-        .map(move |k| [corners[first], corners[(first + k) % n], corners[(first + k + 1) % n]])
+/// A face as triangles around its corner of lowest number, as the cells on both sides of it have it.
+fn around_lowest(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+    fan(corners).map(|places| places.map(|place| corners[place]))
 }
 
 fn face_key(cell: Cell<'_>, face: usize) -> Key {

@@ -162,7 +162,7 @@ impl Mesh {
             hinged_parts: self.hinged_parts(&split),
             // beside quadrilaterals that meet triangles the boundary has edges of three
             pinched: if self.dimension() == 3 && split.is_empty() {
-                boundary.pinched_points()
+                boundary.pinched_points().iter().map(|point| boundary.mesh_points[*point as usize]).collect()
             } else {
                 Vec::new()
             },

@@ -126,7 +126,7 @@ impl TriangleSurface {
         directed.chunk_by(|a, b| a.0 == b.0).map(count).collect()
     }
 
-    /// Points of the mesh at which the surface is no manifold, ascending: their triangles are not one fan around them.
+    /// Points at which the surface is no manifold, ascending: their triangles are not one fan around them.
     pub fn pinched_points(&self) -> Vec<u32> {
         // each triangle leads around its corner from the next one to the one after
         let mut leads: Vec<[u32; 3]> = Vec::with_capacity(3 * self.triangles.len());
@@ -134,13 +134,8 @@ impl TriangleSurface {
             leads.extend([[*a, *b, *c], [*b, *c, *a], [*c, *a, *b]]);
         }
         leads.sort_unstable();
-        let mut pinched: Vec<u32> = leads
-            .chunk_by(|a, b| a[0] == b[0])
-            .filter(|around| !is_one_fan(around))
-            .map(|around| self.mesh_points[around[0][0] as usize])
-            .collect();
-        pinched.sort_unstable();
-        pinched
+        let around = leads.chunk_by(|a, b| a[0] == b[0]);
+        around.filter(|around| !is_one_fan(around)).map(|around| around[0][0]).collect()
     }
 
     /// # Errors

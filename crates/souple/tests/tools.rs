@@ -171,7 +171,7 @@ fn surfaces_are_mended() {
         format!("{points}g lid\nf 5 8 7 6\nf 5 6 7 8\ng sides\n{}", sides.replace("1 2 6 5", "1 5 6 2"));
     folder.write("broken.obj", broken);
     folder.write("open.obj", format!("{points}{sides}"));
-    folder.write("whole.obj", format!("{points}{sides}f 5 6 7 8\n"));
+    folder.write("whole.obj", format!("{points}g sides\n{sides}g lid\nf 5 6 7 8\n"));
     let mend = |from: &str, to: &str, more: &[&str]| {
         let call = ["mesh", "repair", from, to].into_iter().chain(more.iter().copied());
         souple_in(folder.path(), call)
@@ -183,22 +183,43 @@ fn surfaces_are_mended() {
     assert!((volume - 8.0).abs() < 1e-12 && answer["closed"] == true, "{answer:#}");
     assert_eq!((&repairs["doubled_triangles"], &repairs["turned_triangles"]), (&2.into(), &4.into()));
     let said = mend("broken.obj", "out.ply", &[]).ends(0).stdout;
-    for words in ["2 triangles were dropped: others have the same corners", "without the groups lid, sides"] {
+    for words in
+        ["  mended   2 triangles were dropped: others have the same corners", "without the groups lid, sides"]
+    {
         assert!(said.contains(words), "{said}");
     }
-    let said = mend("whole.obj", "out.stl", &[]).ends(0).stdout;
-    assert!(said.contains("there was nothing to mend"), "{said}");
+    // what is in order stays as it is, with its quadrilaterals and its groups
+    let said = mend("whole.obj", "out.obj", &["scale=2"]).ends(0).stdout;
+    for words in ["there was nothing to mend", "6 facets", "groups   lid, sides", "encloses 8 m³"] {
+        assert!(said.contains(words), "{said}");
+    }
     // four open edges, of a hole that measures most of the box
     let open = mend("open.obj", "out.obj", &["--json"]).ends(0).json();
     assert_eq!((&open["closed"], &open["faults"]["open_edges"]), (&false.into(), &4.into()));
+    let left = &open["repairs"]["left"];
+    let size = left["largest_hole"].as_f64().expect("a size");
+    assert!(left["holes"] == 1 && (size - (2.0_f64 / 3.0).sqrt()).abs() < 1e-15, "{left:#}");
+    let said = mend("open.obj", "out.obj", &[]).ends(0).stdout;
+    for line in [
+        "  fault    4 edges have one triangle only",
+        "  left     1 hole is left: 0.8165 of the surface's diagonal",
+        "  note     nothing was mended",
+    ] {
+        assert!(said.contains(line), "{said}");
+    }
     let closed = mend("open.obj", "out.obj", &["hole=1", "--json"]).ends(0).json();
     assert_eq!((&closed["closed"], &closed["repairs"]["closed_holes"]), (&true.into(), &1.into()));
 
     souple_in(folder.path(), ["mesh", "generate", "bar", "bar.msh", "size=1,1,1", "cells=2,1,1"]).ends(0);
-    folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    folder.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 4 0 0\nf 1 2 3\nf 2 3 4\nf 1 3 4\n");
+    folder.write("huge.obj", "v 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n");
+    folder.write("tiny.obj", "v 0 0 0\nv 1e-200 0 0\nv 0 1e-200 0\nf 1 2 3\n");
     for (from, to, more, words) in [
         ("bar.msh", "new.obj", &[][..], "`bar.msh` holds cells"),
         ("line.obj", "new.obj", &[], "none of its triangles has an area"),
+        ("huge.obj", "new.obj", &[], "1e200 m long"),
+        ("tiny.obj", "new.obj", &[], "1e-200 m long"),
+        ("open.obj", "new.obj", &["scale=1e-320"], "e-320 m long"),
         ("open.obj", "new.obj", &["hole=2"], "between 0 and 1"),
         ("open.obj", "new.obj", &["holes=1"], "did you mean `hole`?"),
         ("open.obj", "open.obj", &[], "would be lost"),

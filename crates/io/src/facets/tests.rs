@@ -76,3 +76,23 @@ fn values_of_large_polygons_are_bounded() {
     assert_eq!((dataset.mesh.facet_count(), dataset.cell_fields.len()), (corners as usize - 2, 0));
     assert!(dataset.notes.iter().any(|note| note.contains("became 19998 facets")), "{:?}", dataset.notes);
 }
+
+/// The outline of a plate, with a notch, is a polygon of its own area in every format of polygons; a dart is cut within, whichever of
+/// its corners comes first, where it is written to a file of triangles.
+#[test]
+fn polygons_that_are_not_convex_keep_their_area() {
+    let area = |mesh: &souple_mesh::Mesh| mesh.facet_surface().unwrap().area();
+    let notched = "OFF\n8 1 0\n0 0 0\n3 0 0\n3 2 0\n2 2 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n8 0 1 2 3 4 5 6 7\n";
+    let mesh = read_dataset_bytes("off", notched.as_bytes()).unwrap().mesh;
+    assert_eq!((mesh.facet_count(), area(&mesh)), (6, 5.0));
+    for first in 1..5 {
+        let corners: String = (0..4).map(|k| format!(" {}", (first + k) % 4 + 1)).collect();
+        let dart = format!("v 0 0 0\nv 2 -1 0\nv 0 3 0\nv -2 -1 0\nf{corners}\n");
+        let mesh = read_dataset_bytes("obj", dart.as_bytes()).unwrap().mesh;
+        let mut stl = Vec::new();
+        let write = crate::FORMATS.find("stl").unwrap().build.write.unwrap();
+        write(&crate::Output::new(&mesh), &mut stl).unwrap();
+        let written = read_dataset_bytes("stl", &stl).unwrap().mesh;
+        assert_eq!([area(&mesh), area(&written)], [6.0, 6.0]);
+    }
+}

@@ -156,7 +156,7 @@ fn nothing_is_written_that_cannot_be_read() {
     // rounded to 4 bytes all corners are one
     let small = Mesh { points: mesh.points.iter().map(|p| *p * 1e-60).collect(), ..mesh.clone() };
     let error = write_and_read_back("stl", &path, &Output::new(&small)).unwrap_err();
-    assert!(matches!(&error, IoError::Content { .. }), "{error}");
+    assert!(matches!(&error, IoError::Request { .. }), "{error}");
     assert_eq!(std::fs::read(&path).unwrap(), older);
     assert!(write_and_read_back("gltf", &folder.path("a.glb"), &Output::new(&mesh)).unwrap().is_none());
     let tets = tetrahedra_mesh();

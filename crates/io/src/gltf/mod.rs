@@ -376,7 +376,7 @@ fn write_mesh(output: &Output<'_>, out: &mut dyn Write) -> Result<(), WriteError
     let part = SurfacePart::of(output);
     let surface = MovingSurface {
         name: "surface".to_owned(),
-        triangles: part.facets.iter().flat_map(|facet| facet.triangles()).collect(),
+        triangles: part.triangles().collect(),
         during: 0..1,
         frames: vec![part.positions],
         colour: Colour::tissue(),

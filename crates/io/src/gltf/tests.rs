@@ -31,11 +31,7 @@ fn floats(document: &Value, numbers: &[u8], accessor: &Value) -> Vec<f32> {
 
 fn swing() -> Animation {
     let mesh = surface_mesh();
-    let triangles = SurfacePart::of(&Output::new(&mesh))
-        .facets
-        .iter()
-        .flat_map(|f| f.triangles().collect::<Vec<_>>())
-        .collect();
+    let triangles = SurfacePart::of(&Output::new(&mesh)).triangles().collect();
     let frame = |step: usize| mesh.points.iter().map(|p| *p + Vec3::Y * (0.5 * step as f64 * p.x)).collect();
     let surface = MovingSurface {
         name: "flag".into(),

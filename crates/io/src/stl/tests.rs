@@ -27,6 +27,22 @@ fn text_and_binary_agree() {
     assert_eq!((text.mesh.points.len(), text.mesh.facet_count()), (4, 2));
 }
 
+/// What has no triangles left in numbers of 4 bytes is refused before it is written; as text it is written.
+#[test]
+fn triangles_that_are_lost_in_four_bytes() {
+    let mut mesh = read(TEXT.as_bytes()).unwrap().mesh;
+    mesh.points.iter_mut().for_each(|point| *point = *point * 1e-200);
+    let mut bytes = Vec::new();
+    let Err(WriteError::Request(error)) = write_binary(&Output::new(&mesh), &mut bytes) else { panic!() };
+    let message = error.to_string();
+    assert!(
+        bytes.is_empty() && message.starts_with("the largest coordinate is 1e-200; expected"),
+        "{message}"
+    );
+    write_text(&Output::new(&mesh), &mut bytes).unwrap();
+    assert_eq!(read(&bytes).unwrap().mesh, mesh);
+}
+
 /// Words of a text are of either case, its first one too; a binary file may begin with the same word, and have bytes behind it.
 #[test]
 fn what_begins_with_solid() {

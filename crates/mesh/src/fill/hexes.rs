@@ -102,9 +102,10 @@ pub(super) fn hex_dominant(lattice: &Lattice, shape: &dyn Shape) -> Mesh {
         }
         let mesh = filling.mesh();
         let known = without_hexes.len();
-        for point in mesh.boundary_surface().pinched_points() {
-            match (point as usize).checked_sub(background.points.len()) {
-                None => without_hexes.extend([point]),
+        let boundary = mesh.boundary_surface();
+        for point in boundary.pinched_points() {
+            match (boundary.mesh_points[point as usize] as usize).checked_sub(background.points.len()) {
+                None => without_hexes.extend([boundary.mesh_points[point as usize]]),
                 Some(cut) => without_hexes.extend(warped.cuts.get(cut).iter().flat_map(|cut| cut.ends)),
             }
         }

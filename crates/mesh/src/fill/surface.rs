@@ -54,11 +54,16 @@ fn filled(
     limits: RepairLimits,
     options: &Options,
 ) -> Result<(FilledSurface, SurfaceShape), MeshError> {
-    let (mended, repairs) = repair(surface, limits);
+    let (mut mended, repairs) = repair(surface, limits);
     if mended.triangles.is_empty() {
         return Err(FillError::NoArea { triangles: surface.triangles.len() }.into());
     }
     let mut notes = repairs.messages();
+    // an open surface has no inside of its own: to fill it means that it has one
+    if mended.enclosed_volume() < 0.0 {
+        mended.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+        notes.push("the surface, which is open, faced inward, and was turned".to_owned());
+    }
     let enclosed = mended.enclosed_volume().abs();
     let extent = mended.bounds().size();
     if extent.to_array().iter().any(|length| *length <= FLAT * extent.largest_component()) {

@@ -342,6 +342,11 @@ fn surfaces_are_filled() {
     assert!(open.notes.iter().any(|note| note.contains("holes")), "{:?}", open.notes);
     // the cap of height 0.2 has 2.8 % of the ball's volume
     assert!((open.mesh.volume() / whole.mesh.volume() - 1.0).abs() < 0.06);
+    // which way an open surface faces is left as it is, but of one that is to be filled it is known
+    surface.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
+    let turned = fill_surface(&surface, Default::default(), &options).unwrap();
+    assert!(turned.notes.iter().any(|note| note.contains("faced inward")), "{:?}", turned.notes);
+    assert!((turned.mesh.volume() / open.mesh.volume() - 1.0).abs() < 0.01);
 }
 
 /// What encloses nothing is refused by its cause: a flat sheet, a strip with a twist, half a ball, triangles here and there.

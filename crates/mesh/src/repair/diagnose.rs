@@ -1,11 +1,12 @@
 //! Everything that is wrong with a surface, counted, with a first place for each.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use souple_table::in_number;
 
 use super::crossing::{Crossings, crossings};
-use super::{is_flat, joined_points};
+use super::is_flat;
+use super::weld::equal_points;
 use crate::TriangleSurface;
 
 /// Most pairs of triangles that pass through each other of which a diagnosis tells: a surface with as many is not mended by hand.
@@ -26,17 +27,19 @@ pub struct Diagnosis {
     pub crowded_edges: Vec<[u32; 2]>,
     /// Edges along which two triangles run the same way.
     pub misoriented_edges: Vec<[u32; 2]>,
+    /// Points where fans of triangles meet that share no edge there.
+    pub pinched_points: Vec<u32>,
     /// Pairs of triangles that pass through each other, the first [`MOST_CROSSINGS`] of them.
     pub crossings: Crossings,
     /// Parts that share no point.
     pub component_count: usize,
-    /// Whether the enclosed volume is negative.
+    /// Whether the surface is closed and its enclosed volume negative.
     pub is_inside_out: bool,
 }
 
 /// Looks at a whole surface.
 pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
-    let first_at = joined_points(&surface.points, 0.0);
+    let first_at = equal_points(&surface.points);
     let mut diagnosis = Diagnosis {
         duplicate_points: first_at
             .iter()
@@ -45,7 +48,7 @@ pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
             .count(),
         crossings: crossings(surface, MOST_CROSSINGS),
         component_count: components(surface).1,
-        is_inside_out: surface.enclosed_volume() < 0.0,
+        is_inside_out: surface.check_closed().is_ok() && surface.enclosed_volume() < 0.0,
         ..Diagnosis::default()
     };
     let mut seen: HashMap<[u32; 3], u32> = HashMap::new();
@@ -67,6 +70,11 @@ pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
             _ => diagnosis.crowded_edges.push(edge),
         }
     }
+    // at the ends of edges that are faulty the fans are so too, which is told
+    let faulty = diagnosis.crowded_edges.iter().chain(&diagnosis.misoriented_edges).flatten();
+    let faulty: HashSet<u32> = faulty.copied().collect();
+    diagnosis.pinched_points = surface.pinched_points();
+    diagnosis.pinched_points.retain(|point| !faulty.contains(point));
     diagnosis
 }
 
@@ -130,6 +138,16 @@ impl Diagnosis {
                 "edges lie between triangles of opposite orientation",
             ],
             edge(&self.misoriented_edges),
+        );
+        let point =
+            |list: &[u32]| list.first().map(|p| format!(", the first is points[{p}]")).unwrap_or_default();
+        say(
+            self.pinched_points.len(),
+            [
+                "point joins triangles that share no edge there",
+                "points join triangles that share no edge there",
+            ],
+            point(&self.pinched_points),
         );
         let pairs = &self.crossings.pairs;
         let pair = pairs.first().map(|[s, t]| format!(", the first are triangles[{s}] and triangles[{t}]"));

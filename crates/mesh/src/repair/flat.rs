@@ -15,6 +15,10 @@ pub(super) fn drop(points: &[Vec3], triangles: &mut Vec<[u32; 3]>, repairs: &mut
     }
     let before = triangles.len();
     triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    // of nothing but lines nothing is left to be opened
+    if triangles.iter().all(|corners| is_flat(*corners, points)) {
+        triangles.clear();
+    }
     let mut uses: HashMap<[u32; 2], usize> = HashMap::new();
     triangles.iter().flat_map(edges_of).for_each(|edge| *uses.entry(edge).or_default() += 1);
     triangles.retain(|corners| {

@@ -1,7 +1,7 @@
 //! Surfaces as found in the wild: what is wrong with them, and what can be mended without guessing.
 //!
 //! [`diagnose`] finds everything at once; [`repair`] welds points, drops triangles that are flat or doubled, turns
-//! triangles until neighbours agree and every outer part faces outward, and closes small holes. Crossings, sheets
+//! triangles until neighbours agree and every closed part faces outward, and closes small holes. Crossings, sheets
 //! and large holes stay: a [`SurfaceShape`](crate::implicit::SurfaceShape) then decides by winding number.
 
 mod crossing;
@@ -10,11 +10,10 @@ mod facing;
 mod flat;
 mod holes;
 mod orient;
-
-use std::collections::{HashMap, HashSet};
+mod weld;
 
 use souple_math::Vec3;
-use souple_table::in_number;
+use souple_table::{four_digits, in_number};
 
 use crate::TriangleSurface;
 
@@ -40,9 +39,11 @@ impl Default for RepairLimits {
 }
 
 /// What [`repair`] did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceRepairs {
     pub welded_points: usize,
+    /// How far apart points were that are one now [m].
+    pub longest_weld: f64,
     pub flat_triangles: usize,
     /// Triangles without area that share what their neighbour has.
     pub joined_triangles: usize,
@@ -51,9 +52,97 @@ pub struct SurfaceRepairs {
     pub facing_triangles: usize,
     /// Triangles turned so that neighbours agree.
     pub turned_triangles: usize,
-    /// Parts that were inside out as a whole.
+    /// Closed parts that were inside out as a whole.
     pub turned_parts: usize,
     pub closed_holes: usize,
+    /// Relative to the diagonal of the surface's box, as [`RepairLimits::hole`].
+    pub largest_closed_hole: f64,
+    /// Closed holes of which some triangles lie on each other.
+    pub folded_holes: usize,
+    pub left: Left,
+}
+
+/// What [`repair`] left on purpose.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Left {
+    /// Closed parts that are as thin as what is welded: joined at equal points alone.
+    pub thin_parts: usize,
+    /// Places where closed parts touch each other or themselves, which stay several points.
+    pub touching_points: usize,
+    /// Parts that have one side only, or whose triangles cannot agree otherwise.
+    pub one_sided_parts: usize,
+    /// Closed parts within others that face the same way.
+    pub nested_parts: usize,
+    /// Holes larger than the limit.
+    pub holes: usize,
+    /// Relative to the diagonal of the surface's box.
+    pub smallest_hole: f64,
+    pub largest_hole: f64,
+    /// Rings of open edges around sheets, which are no holes.
+    pub outlines: usize,
+    /// Open edges that are in no ring of their own: of holes that touch at a point, or that end at an edge of three triangles.
+    pub tangled_edges: usize,
+}
+
+impl Left {
+    fn add_hole(&mut self, size: f64) {
+        self.smallest_hole = if self.holes == 0 { size } else { self.smallest_hole.min(size) };
+        self.largest_hole = self.largest_hole.max(size);
+        self.holes += 1;
+    }
+
+    /// One line for each kind of thing that was left; empty where nothing was.
+    pub fn messages(&self, limits: RepairLimits) -> Vec<String> {
+        let (least, most) = (four_digits(self.smallest_hole), four_digits(self.largest_hole));
+        let sizes = if least == most { least } else { format!("{least} to {most}") };
+        let told = [
+            (
+                self.thin_parts,
+                ["closed part is", "closed parts are"],
+                format!(
+                    "left: as thin as what weld={} joins, which would flatten it",
+                    four_digits(limits.weld)
+                ),
+            ),
+            (
+                self.touching_points,
+                ["place where the surface touches itself is", "places where the surface touches itself are"],
+                "left: each side of it has a point of its own there".to_owned(),
+            ),
+            (
+                self.one_sided_parts,
+                ["part is", "parts are"],
+                "left with edges between triangles of opposite orientation: with a twist, as a Möbius strip, it has one side only"
+                    .to_owned(),
+            ),
+            (
+                self.nested_parts,
+                ["closed part is", "closed parts are"],
+                "left within others that face the same way: what both enclose counts twice in the enclosed volume"
+                    .to_owned(),
+            ),
+            (
+                self.holes,
+                ["hole is", "holes are"],
+                format!(
+                    "left: {sizes} of the surface's diagonal from corner to corner of the box, more than hole={}",
+                    four_digits(limits.hole)
+                ),
+            ),
+            (
+                self.outlines,
+                ["ring of open edges is", "rings of open edges are"],
+                "left: outlines of sheets are no holes".to_owned(),
+            ),
+            (
+                self.tangled_edges,
+                ["open edge is", "open edges are"],
+                "left: of holes that touch at a point, or end at an edge of several triangles".to_owned(),
+            ),
+        ];
+        let told = told.into_iter().filter(|(count, ..)| *count > 0);
+        told.map(|(count, [one, many], why)| format!("{} {why}", in_number(count, one, many))).collect()
+    }
 }
 
 const TRIANGLES: [&str; 2] = ["triangle was", "triangles were"];
@@ -61,15 +150,26 @@ const TRIANGLES: [&str; 2] = ["triangle was", "triangles were"];
 impl SurfaceRepairs {
     /// One line for each kind of repair; empty for a surface in order.
     pub fn messages(&self) -> Vec<String> {
+        let largest =
+            format!("closed, {} of the surface's diagonal at most", four_digits(self.largest_closed_hole));
+        let welded = match self.longest_weld {
+            0.0 => "welded to another at the same place".to_owned(),
+            distance => format!("welded to another, up to {} m away", four_digits(distance)),
+        };
         let counts = [
-            (self.welded_points, ["point was", "points were"], "welded to another at the same place"),
+            (self.welded_points, ["point was", "points were"], welded.as_str()),
             (self.flat_triangles, TRIANGLES, "dropped: without area"),
-            (self.joined_triangles, TRIANGLES, "joined with a neighbour by the other diagonal: without area"),
             (self.doubled_triangles, TRIANGLES, "dropped: others have the same corners"),
             (self.facing_triangles, TRIANGLES, "dropped: back to back with another, where parts touch"),
-            (self.turned_triangles, TRIANGLES, "turned to agree with their neighbours"),
+            (self.turned_triangles, TRIANGLES, "turned to agree with neighbours"),
+            (self.closed_holes, ["hole was", "holes were"], &largest),
+            (
+                self.folded_holes,
+                ["of them was", "of them were"],
+                "closed by triangles that lie on each other: no view shows all of the rim",
+            ),
+            (self.joined_triangles, TRIANGLES, "joined with a neighbour by the other diagonal: without area"),
             (self.turned_parts, ["part was", "parts were"], "inside out, and turned"),
-            (self.closed_holes, ["hole was", "holes were"], "closed: small next to the surface"),
         ];
         let told = counts.iter().filter(|(count, ..)| *count > 0);
         told.map(|(count, [one, many], done)| format!("{} {done}", in_number(*count, one, many))).collect()
@@ -80,31 +180,14 @@ impl SurfaceRepairs {
 pub fn repair(surface: &TriangleSurface, limits: RepairLimits) -> (TriangleSurface, SurfaceRepairs) {
     let mut repairs = SurfaceRepairs::default();
     let diagonal = surface.bounds().diagonal();
-    let mut mended = weld(surface, limits.weld * diagonal, &mut repairs);
+    let mut mended = weld::weld(surface, limits.weld * diagonal, &mut repairs);
     orient::agree(&mut mended, &mut repairs);
     flat::join(&mut mended, &mut repairs);
-    holes::close(&mut mended, limits.hole * diagonal, &mut repairs);
+    holes::close(&mut mended, limits.hole, diagonal, &mut repairs);
+    // what closes a slit has no area
+    flat::join(&mut mended, &mut repairs);
     orient::face_outward(&mut mended, &mut repairs);
     (mended, repairs)
-}
-
-/// Joins points, drops triangles that are flat or equal to another, drops points of no triangle.
-fn weld(surface: &TriangleSurface, distance: f64, repairs: &mut SurfaceRepairs) -> TriangleSurface {
-    let number = joined_points(&surface.points, distance);
-    repairs.welded_points =
-        number.iter().enumerate().filter(|(point, first)| *point as u32 != **first).count();
-    let welded = surface.triangles.iter().map(|corners| corners.map(|point| number[point as usize]));
-    let mut triangles: Vec<[u32; 3]> = welded.collect();
-    flat::drop(&surface.points, &mut triangles, repairs);
-    // copies that run the same way go first: what is left of three are two of opposite directions at most
-    let mut seen: HashSet<[u32; 3]> = HashSet::new();
-    let before = triangles.len();
-    triangles.retain(|corners| seen.insert(from_lowest(*corners)));
-    repairs.doubled_triangles += before - triangles.len();
-    facing::drop_pairs(&surface.points, &mut triangles, repairs);
-    let mut mended = TriangleSurface::from_mesh(&surface.points, &triangles, Vec::new());
-    mended.mesh_points.clear();
-    mended
 }
 
 /// Edges by their points, the lower first.
@@ -127,43 +210,6 @@ fn is_flat(corners: [u32; 3], points: &[Vec3]) -> bool {
     let [a, b, c] = corners.map(|point| points[point as usize]);
     let longest_sq = (b - a).length_sq().max((c - b).length_sq()).max((a - c).length_sq());
     (b - a).cross(c - a).length() <= 1e-14 * longest_sq
-}
-
-/// The lowest number of the points within a distance, for each point; chains are not followed.
-fn joined_points(points: &[Vec3], distance: f64) -> Vec<u32> {
-    if distance == 0.0 {
-        return equal_points(points);
-    }
-    // cells of twice the distance: close points are in touching cells
-    let cell = |point: Vec3| (point * (0.5 / distance)).to_array().map(|c| c.floor() as i64);
-    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
-    let mut number: Vec<u32> = Vec::with_capacity(points.len());
-    for (index, point) in points.iter().enumerate() {
-        let home = cell(*point);
-        let mut first = index as u32;
-        for step in 0..27_i64 {
-            let beside = [home[0] + step % 3 - 1, home[1] + step / 3 % 3 - 1, home[2] + step / 9 - 1];
-            let near = grid.get(&beside).into_iter().flatten();
-            let close = near.copied().filter(|other| (points[*other as usize] - *point).length() <= distance);
-            first = close.fold(first, u32::min);
-        }
-        number.push(first);
-        if first == index as u32 {
-            grid.entry(home).or_default().push(first);
-        }
-    }
-    number
-}
-
-/// The lowest number of the points at the same place, for each point.
-fn equal_points(points: &[Vec3]) -> Vec<u32> {
-    let mut first_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len());
-    let number = |(index, point): (usize, &Vec3)| {
-        // zeros of both signs are one place
-        let place = point.to_array().map(|c| (c + 0.0).to_bits());
-        *first_at.entry(place).or_insert(index as u32)
-    };
-    points.iter().enumerate().map(number).collect()
 }
 
 #[cfg(test)]

@@ -145,7 +145,7 @@ fn closed(surface: TriangleSurface) -> (TriangleSurface, Option<String>) {
     let warning = match (open_edges(&mended), repairs.closed_holes) {
         // points at one place were several
         (0, 0) => None,
-        (0, _) => Some(format!("is open: {closed} by triangles around their middles")),
+        (0, _) => Some(format!("is open: {closed} by triangles within their rims")),
         (open, _) => {
             let edges = in_number(open, "edge has", "edges have");
             Some(format!("is open: {closed}, {edges} one triangle still, and a skin finds no rest there"))

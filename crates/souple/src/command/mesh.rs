@@ -125,10 +125,11 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
         Action::Repair { input, out, parameters, json } => {
             keep_input(&input, &out)?;
             let format = souple_io::writable_format(None, &out)?;
-            let (mesh, repairs, notes) = repair::repaired(&input, &parameters)?;
-            let (written, notes) = written(&out, format, &Output::new(&mesh), notes)?;
+            let repaired = repair::repaired(&input, &parameters)?;
+            let output = Output::new(&repaired.mesh);
+            let (written, notes) = written(&out, format, &output, repaired.notes.clone())?;
             let mut document = document_of(&written, &notes);
-            document["repairs"] = repair::counts(&repairs);
+            repaired.tell(&mut document);
             tell(&out, &document, json);
             Ok(End::Done)
         }
@@ -148,7 +149,9 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
             keep_input(&input, &out)?;
             let format = souple_io::writable_format(format.as_deref(), &out)?;
             let scale = scale(&parameters)?;
-            let Dataset { mut mesh, point_fields, cell_fields, notes } = souple_io::read_dataset(&input)?;
+            let Dataset { mut mesh, point_fields, cell_fields, mut notes, unread } =
+                souple_io::read_dataset(&input)?;
+            notes.extend(unread);
             mesh.points.iter_mut().for_each(|point| *point = *point * scale);
             let output =
                 Output { point_fields: &point_fields, cell_fields: &cell_fields, ..Output::new(&mesh) };
@@ -385,6 +388,7 @@ fn faults(surface: &TriangleSurface) -> Json {
         "open_edges": diagnosis.open_edges.len(),
         "crowded_edges": diagnosis.crowded_edges.len(),
         "misoriented_edges": diagnosis.misoriented_edges.len(),
+        "pinched_points": diagnosis.pinched_points.len(),
         "crossings": diagnosis.crossings.pairs.len(),
         "more_crossings": diagnosis.crossings.is_cut_off,
         "duplicate_points": diagnosis.duplicate_points,

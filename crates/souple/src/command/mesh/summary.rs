@@ -35,8 +35,14 @@ pub fn sentences(name: &str, document: &Json) -> Vec<String> {
         say("quality", quality(document));
     }
     lines.extend(document["problem"].as_str().map(|problem| format!("  problem  {problem}")));
-    for list in [&document["faults"]["messages"], &document["notes"]] {
-        lines.extend(texts(list).map(|note| format!("  note     {note}")));
+    let repairs = &document["repairs"];
+    for (what, list) in [
+        ("mended", &repairs["messages"]),
+        ("fault", &document["faults"]["messages"]),
+        ("left", &repairs["left"]["messages"]),
+        ("note", &document["notes"]),
+    ] {
+        lines.extend(texts(list).map(|text| format!("  {what:9}{text}")));
     }
     lines
 }
