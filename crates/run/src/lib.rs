@@ -110,7 +110,8 @@ pub enum RunError {
     #[error("the recording is lost: {0}")]
     Recording(souple_io::IoError),
     #[error(
-        "the simulation has blown up: body `{body}` is {growth:.0e} times as large as at rest; take shorter steps, an implicit stepper, or more damping"
+        "the simulation has blown up: body `{body}` is {} times as large as at rest; take shorter steps, an implicit stepper, or more damping",
+        readable(format!("{growth:.0e}").parse().unwrap_or(*growth))
     )]
     BlownUp { body: String, growth: f64 },
     #[error(

@@ -262,6 +262,7 @@ fn shrink_row(f: &Values, at: usize, tension: f32) -> [f32; EDGE] {
     let (xpzp, xpzm, xmzp, xmzm) =
         (line(at + 1 + dz), line(at + 1 - dz), line(at - 1 + dz), line(at - 1 - dz));
     let mut out = [0.0; EDGE];
+    let mut is_flat = false;
     for i in 0..EDGE {
         let twice = 2.0 * c[i];
         let (x, y, z) = (0.5 * (xp[i] - xm[i]), 0.5 * (yp[i] - ym[i]), 0.5 * (zp[i] - zm[i]));
@@ -271,9 +272,19 @@ fn shrink_row(f: &Values, at: usize, tension: f32) -> [f32; EDGE] {
         let yz = 0.5 * ((ypzp[i] - ypzm[i]) - (ymzp[i] - ymzm[i]));
         let xz = 0.5 * ((xpzp[i] - xpzm[i]) - (xmzp[i] - xmzm[i]));
         let slope_sq = (x * x + y * y + z * z).max(FLAT);
+        is_flat |= slope_sq <= FLAT;
         let sum = x * x * (yy + zz) + y * y * (xx + zz) + z * z * (xx + yy)
             - (x * y * xy + y * z * yz + x * z * xz);
         out[i] = tension * sum / slope_sq;
+    }
+    if is_flat {
+        for i in 0..EDGE {
+            let about = [xm[i], xp[i], ym[i], yp[i], zm[i], zp[i]];
+            // about a node that a ball has shrunk onto nothing slopes, and it would stay: two of the three equal bends of a ball
+            if about.iter().all(|value| (*value > 0.0) != (c[i] > 0.0)) {
+                out[i] = tension * (2.0 / 3.0) * (about.iter().sum::<f32>() - 6.0 * c[i]);
+            }
+        }
     }
     out
 }

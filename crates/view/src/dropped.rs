@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use souple_io::read_mesh;
-use souple_mesh::Mesh;
 use souple_mesh::fill::{Size, surface_of};
+use souple_mesh::{Mesh, USUAL_SIZES};
 use tempfile::TempDir;
 
 /// Largest file that is taken [bytes].
@@ -13,8 +13,6 @@ pub const FILE_MAX: usize = 64 << 20;
 /// Cells of what a surface encloses, at least and at most, about.
 const CELLS: f64 = 6000.0;
 const CELLS_MOST: f64 = 12_000.0;
-/// Longest extent that is taken for metres; longer ones are taken for millimetres [m].
-const METRES_MAX: f64 = 20.0;
 /// How much a body sinks under its own weight: `ρ g L²/E` in its length.
 const SAG: f64 = 0.05;
 const DENSITY: f64 = 1000.0;
@@ -101,7 +99,8 @@ pub fn scene_of(dropped: &DroppedFile) -> Result<String, String> {
     if !(written.is_finite() && written > 0.0) {
         return Err(format!("{title} has no extent"));
     }
-    let scale = if written > METRES_MAX { 1e-3 } else { 1.0 };
+    // a file knows no units
+    let scale = if written > USUAL_SIZES[1] { 1e-3 } else { 1.0 };
     let length = scale * written;
     let file = path.display().to_string();
     let is_solid = mesh.cell_count() > 0 && mesh.dimension() == 3;
@@ -160,14 +159,20 @@ mod tests {
     fn thin_surfaces_have_more_cells() {
         let folder = DropFolder::default();
         let scene_with = |depth: f64, faces: &str| {
-            let corner = |i: u32| format!("v {} {} {}\n", i & 1, f64::from(i >> 1 & 1) * depth, f64::from(i >> 2) * depth);
+            let corner = |i: u32| {
+                format!("v {} {} {}\n", i & 1, f64::from(i >> 1 & 1) * depth, f64::from(i >> 2) * depth)
+            };
             let text = (0..8).map(corner).collect::<String>() + faces;
             scene_of(&folder.keep("rod.obj", text.as_bytes()).unwrap()).unwrap()
         };
         let all = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
-        for (depth, faces, count) in
-            [(1.0, all, 6000), (0.02, all, 6000), (0.014, all, 7512), (0.01, all, 12_000), (0.01, "f 1 3 4\n", 6000)]
-        {
+        for (depth, faces, count) in [
+            (1.0, all, 6000),
+            (0.02, all, 6000),
+            (0.014, all, 7512),
+            (0.01, all, 12_000),
+            (0.01, "f 1 3 4\n", 6000),
+        ] {
             let scene = scene_with(depth, faces);
             assert!(scene.contains(&format!("count = {count}")), "{depth}: {scene}");
         }

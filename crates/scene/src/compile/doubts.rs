@@ -5,7 +5,7 @@ use souple_engine::linear::Method;
 use souple_mesh::repair::diagnose;
 use souple_mesh::{Order, USUAL_SIZES};
 use souple_models::materials::{Build, Material};
-use souple_table::{Value, readable};
+use souple_table::{Value, four_digits, readable};
 
 use super::{Draft, contact};
 use crate::diagnostic::Code;
@@ -41,7 +41,11 @@ pub fn warn(draft: &mut Draft) {
             let hint =
                 if size > sizes[1] { "did you mean mm (`scale = 0.001`)?" } else { "is the scale right?" };
             let place = draft.place(site);
-            warnings.push(format!("{place}: body `{}` is {size:.3e} m across: {hint}", body.spec.name));
+            warnings.push(format!(
+                "{place}: body `{}` is {} m across: {hint}",
+                body.spec.name,
+                four_digits(size)
+            ));
         }
         let is_linear = body.mesh.blocks.iter().any(|block| block.kind.order() == Order::Linear);
         for (chosen, material) in materials(body.spec) {

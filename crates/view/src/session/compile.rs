@@ -127,10 +127,8 @@ impl Compiler {
                 (_, Some(path)) => souple_scene::read_file(&path, &[]),
                 _ => souple_scene::read_again(&texts, places),
             }));
-            // whoever set a value wrote no line, and whoever dropped a mesh no scene
-            let is_text = !matches!(purpose, Purpose::Set(_) | Purpose::LoadText { mesh: Some(_), .. });
             let scene = match scene {
-                Ok(read) => read.map_err(|diagnostics| in_words(&diagnostics, is_text)),
+                Ok(read) => read.map_err(|diagnostics| in_words(&diagnostics, &purpose)),
                 Err(_) => Err("the program failed over this scene: please report it".to_owned()),
             };
             // the world may have ended
@@ -144,11 +142,18 @@ impl Compiler {
     }
 }
 
-/// The first fault, and what would be accepted in its place; in a text that somebody wrote with its line.
-fn in_words(diagnostics: &souple_scene::Diagnostics, is_text: bool) -> String {
+/// The first fault, and what would be accepted in its place, and where it is in the words of whoever wished: who set a value
+/// wrote no line, and who dropped a mesh no scene.
+fn in_words(diagnostics: &souple_scene::Diagnostics, purpose: &Purpose) -> String {
     let Some(first) = diagnostics.0.first() else { return diagnostics.to_string() };
-    let line = if is_text { format!("{}:{}: ", first.file, first.line) } else { String::new() };
-    let place = if first.path.is_empty() { line } else { format!("{line}{}: ", first.path) };
+    let path = if first.path.is_empty() { String::new() } else { format!("{}: ", first.path) };
+    let place = match purpose {
+        Purpose::Set(_) => path,
+        Purpose::LoadText { name, mesh: Some(_), .. } => format!("{name}: "),
+        Purpose::Reset | Purpose::Load(_) | Purpose::LoadText { mesh: None, .. } => {
+            format!("{}:{}: {path}", first.file, first.line)
+        }
+    };
     let expected =
         if first.expected.is_empty() { String::new() } else { format!("; expected {}", first.expected) };
     let more = match diagnostics.0.len() {

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use serde_json::json;
 use souple_engine::hand::is_hand_name;
 use souple_engine::obstacle::{Form, Obstacle};
 use souple_engine::{Edit, Interruption, Model, StageTimes, Tool};
@@ -18,7 +19,7 @@ use super::picture::Wanted;
 use crate::dropped::DroppedFile;
 use crate::fields::{ARROWS, FIELDS};
 use crate::hub::{Hub, Outgoing, PageId};
-use crate::protocol::{self, Wish};
+use crate::protocol::{self, Wish, document};
 use crate::tools::TOOLS;
 
 /// A scene that is shown.
@@ -451,7 +452,11 @@ impl Stage {
     /// # Errors
     /// The scene is another world now; this one goes on as it was.
     pub fn change(&mut self, scene: Scene, setting: &str, hub: &Hub) -> Result<(), String> {
+        let told = self.session.warnings.len();
         self.session.take_over(scene, setting).map_err(|error| error.to_string())?;
+        for warning in &self.session.warnings[told..] {
+            hub.tell_all(&document("warning", json!({"message": self.origin.told(warning)})));
+        }
         self.obstacles = scenery_of(self.session.world.model());
         hub.tell_all(&self.adjustables());
         Ok(())

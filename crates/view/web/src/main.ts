@@ -201,6 +201,9 @@ class Page {
         if (message.about === "set" && this.parameters.refuse(message.message)) this.notes.keep("error", message.message);
         else this.notes.say("error", message.message);
         break;
+      case "warning":
+        this.notes.say("warning", message.message);
+        break;
       case "frame":
         this.frame = message;
         this.unanswered += 1;

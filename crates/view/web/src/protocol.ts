@@ -155,7 +155,13 @@ export interface Refused {
   message: string;
 }
 
-export type Document = Hello | SceneInfo | Adjustables | Pins | Status | Refused;
+/** What a value that was set makes doubtful. */
+export interface Warning {
+  kind: "warning";
+  message: string;
+}
+
+export type Document = Hello | SceneInfo | Adjustables | Pins | Status | Warning | Refused;
 
 export type Wish =
   | { do: "seen" | "play" | "pause" | "step" | "reset" }

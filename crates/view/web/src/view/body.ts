@@ -136,6 +136,16 @@ export class Body {
     this.setVisible();
   }
 
+  /** Places of what is drawn as loose balls and links, and how far these reach about them [m]; null of a surface. */
+  get loose(): { places: Float32Array; reach: number } | null {
+    return this.network ? { places: this.positions, reach: this.network.largest } : null;
+  }
+
+  /** Balls are drawn as large at least [m]. */
+  setLeast(radius: number): void {
+    if (this.network) this.network.least = radius;
+  }
+
   /** Cells whose shapes have come. */
   get cellCount(): number {
     return this.inside ? this.info.cells : 0;

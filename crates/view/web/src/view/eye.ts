@@ -1,6 +1,6 @@
 // The eye: where the picture is seen from, and what lies under a place of the screen.
 
-import { Box3, Frustum, Matrix4, PerspectiveCamera, Plane, Raycaster, Vector2, Vector3 } from "three";
+import { Box3, Frustum, Matrix4, PerspectiveCamera, Plane, Raycaster, Sphere, Vector2, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 /** How far a key turns the view [rad], and the share by which it comes nearer or goes away. */
@@ -33,29 +33,51 @@ export class Eye {
     this.controls.dampingFactor = 0.12;
   }
 
-  /** Looks at all of a box, from where the scene wants to be seen. */
-  fit(bounds: Box3): void {
+  /** Looks at all of a box, from where the scene wants to be seen; what turns within another about its middle stays in the picture. */
+  fit(bounds: Box3, turning: Box3): void {
     const centre = bounds.getCenter(new Vector3());
+    this.camera.up.copy(this.up);
+    this.camera.position.copy(centre).addScaledVector(this.direction, -1);
+    this.camera.lookAt(centre);
+    const radius = 0.5 * turning.getSize(new Vector3()).length();
+    const beside = turning.getCenter(new Vector3());
+    const points = corners(bounds);
+    const distance = Math.max(1e-6, ...points.map((corner) => this.needed(corner, centre, 0, MARGIN)), this.needed(beside, centre, radius, 1));
+    this.camera.position.copy(centre).addScaledVector(this.direction, -distance);
+    this.reach(distance);
+    this.controls.target.copy(centre);
+    this.controls.update();
+  }
+
+  /** Goes back until all of a box is in the picture. */
+  include(bounds: Box3): void {
+    const { target } = this.controls;
+    const distance = this.camera.position.distanceTo(target);
+    const needed = Math.max(...corners(bounds).map((corner) => this.needed(corner, target, 0, 1)));
+    if (needed <= distance) return;
+    this.camera.position.sub(target).multiplyScalar(needed / distance).add(target);
+    this.reach(needed);
+    this.controls.update();
+  }
+
+  /** From how far a ball about a point is in the picture, seen as now with a target in its middle, were it farther from that by a factor. */
+  private needed(point: Vector3, target: Vector3, radius: number, factor: number): number {
+    this.camera.updateMatrixWorld();
+    const [right, up, back] = [0, 1, 2].map((axis) => new Vector3().setFromMatrixColumn(this.camera.matrixWorld, axis));
+    const offset = point.clone().sub(target);
     const { width, height } = this.size;
     const slope = Math.tan(0.5 * this.camera.fov * (Math.PI / 180));
-    // a corner is in the picture where it is no farther aside than these times its distance
-    const [aside, above] = [(slope * width) / height, (slope * (height - this.foot)) / height];
-    const back = this.direction.clone().negate().normalize();
-    const right = this.up.clone().cross(back).normalize();
-    const up = back.clone().cross(right);
-    let distance = 1e-6;
-    for (const corner of corners(bounds)) {
-      corner.sub(centre);
-      const needed = Math.max(Math.abs(corner.dot(right)) / aside, Math.abs(corner.dot(up)) / above);
-      distance = Math.max(distance, corner.dot(back) + MARGIN * needed);
-    }
-    this.camera.up.copy(this.up);
-    this.camera.position.copy(centre).addScaledVector(back, distance);
+    const from = (slope: number, aside: number) => (factor * Math.abs(aside) + radius * Math.hypot(1, slope)) / slope;
+    const aside = from((slope * width) / height, offset.dot(right!));
+    const above = from((slope * (height - this.foot)) / height, offset.dot(up!));
+    return offset.dot(back!) + Math.max(aside, above);
+  }
+
+  /** Draws what is about as far. */
+  private reach(distance: number): void {
     this.camera.near = NEAR * distance;
     this.camera.far = FAR * distance;
     this.camera.updateProjectionMatrix();
-    this.controls.target.copy(centre);
-    this.controls.update();
   }
 
   /** Goes a way without turning. */
@@ -90,6 +112,19 @@ export class Eye {
     this.camera.updateMatrixWorld();
     const seen = new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
     return new Frustum().setFromProjectionMatrix(seen).intersectsBox(bounds);
+  }
+
+  /** Whether any of some balls about places may be in the picture. */
+  seesAny(places: ArrayLike<number>, radius: number): boolean {
+    this.camera.updateMatrixWorld();
+    const seen = new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    const frustum = new Frustum().setFromProjectionMatrix(seen);
+    const ball = new Sphere(new Vector3(), radius);
+    for (let i = 0; i < places.length; i += 3) {
+      ball.center.set(places[i]!, places[i + 1]!, places[i + 2]!);
+      if (frustum.intersectsSphere(ball)) return true;
+    }
+    return false;
   }
 
   /** The ray to a place of the screen. */

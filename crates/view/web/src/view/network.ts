@@ -23,6 +23,10 @@ export class Network {
   private readonly own: Float32Array;
   private readonly states = STATE_COLOURS.map(linearOf);
   private readonly links: Uint32Array;
+  /** Balls are drawn as large at least: of one smaller than a pixel nothing is seen [m]. */
+  least = 0;
+  /** Of the largest ball [m]. */
+  readonly largest: number;
 
   constructor(shape: NetworkShape, rest: Float32Array, index: number, size: number) {
     this.links = shape.links;
@@ -30,6 +34,7 @@ export class Network {
     const count = shape.links.length / 2;
     this.radius = Math.min(MOST * size, Math.max(LEAST * size, OF_LENGTH * meanLength(shape.links, rest)));
     this.sizes = this.sizesOf(shape, rest.length / 3, size);
+    this.largest = this.sizes.reduce((most, radius) => Math.max(most, radius), 0);
     this.sticks = new Instances("stick", count);
     this.balls = new Instances("ball", this.sizes.filter((radius) => radius > 0).length);
     this.group.add(this.sticks.mesh, this.balls.mesh);
@@ -75,7 +80,7 @@ export class Network {
     for (let point = 0; point < this.sizes.length; point++) {
       const radius = this.sizes[point]!;
       if (radius <= 0) continue;
-      this.balls.ball(positions, 3 * point, radius);
+      this.balls.ball(positions, 3 * point, Math.max(radius, this.least));
       if (values && !ofLinks) this.balls.put(map, colourAt(values[point]!, range), point);
       else this.balls.put(this.own, 0, point);
     }

@@ -68,6 +68,8 @@ const KEY_EVEN = 0.5 * KEY;
 const SKY_EVEN = 0.8;
 const GROUND = 0x8a7f78;
 const GROUND_EVEN = 0xdcd8d4;
+/** Balls are drawn as large at least [px]. */
+const LEAST_BALL = 1.5;
 /** A shape is looked at beside the bodies where both together are at most as many times as large as they are. */
 const WITH_SHAPE = 2;
 /** By how much of what is too much the range of colours shrinks with each frame. */
@@ -186,8 +188,8 @@ export class Picture {
     for (const { points } of ofBodies) {
       for (let i = 0; i < points.length; i += 3) this.bounds.expandByPoint(point.fromArray(points, i));
     }
-    // one mass alone is as large as its ball
-    const radius = Math.max(0, ...networks.flatMap((network) => [...(network?.radii.slice(0, 1) ?? [])]));
+    // masses are as large as their balls
+    const radius = networks.reduce((most, network) => network?.radii.reduce((most, radius) => Math.max(most, radius), most) ?? most, 0);
     if (!this.bounds.isEmpty()) this.bounds.expandByScalar(radius);
     this.size = this.bounds.isEmpty() ? 1 : Math.max(this.bounds.getSize(point).length(), 1e-6);
     this.eye.up.fromArray(info.up).normalize();
@@ -271,6 +273,8 @@ export class Picture {
     meanings.size = this.size;
     this.arrows.update(bodies, this.extras.arrows, this.dark, meanings.rest(this.extras.unit));
     meanings.longest = this.arrows.longest;
+    const least = LEAST_BALL * this.eye.metresPerPixel(this.place.clientHeight);
+    this.bodies.forEach((body) => body.setLeast(least));
     const values = bodies.map((body) => body.fields.get(this.field));
     meanings.follow(values, bodies, shrinking);
     // a skin hides what the colours of its body tell, and its inside
@@ -345,6 +349,7 @@ export class Picture {
     if (!this.followed || bounds.isEmpty()) return;
     const middle = bounds.getCenter(new Vector3());
     this.eye.shift(middle.clone().sub(this.followed));
+    this.eye.include(bounds);
     this.followed = middle;
   }
 
@@ -368,14 +373,20 @@ export class Picture {
     for (const shape of this.obstacles?.bounds ?? []) {
       if (diagonal(bounds.clone().union(shape)) <= most) all.union(shape);
     }
-    this.eye.fit(all);
+    this.eye.fit(all, bounds);
     if (this.followed) this.followed = this.middle;
+    // balls are to be seen from there
+    this.repaint();
   }
 
   /** Whether there is anything, and no part of it is in the picture. */
   get isOutOfSight(): boolean {
-    const all = this.boundsOfEach().filter((bounds) => !bounds.isEmpty());
-    return all.length > 0 && !all.some((bounds) => this.eye.sees(bounds));
+    const all = this.boundsOfEach();
+    if (all.every((bounds) => bounds.isEmpty())) return false;
+    const isSeen = ({ loose }: Body): boolean => loose !== null && this.eye.seesAny(loose.places, loose.reach);
+    // what is loose may have left on all sides, and a box about it is everywhere
+    const boxes = all.filter((bounds, index) => !bounds.isEmpty() && !this.bodies[index]?.loose);
+    return !boxes.some((bounds) => this.eye.sees(bounds)) && !this.bodies.some(isSeen);
   }
 
   /** Of all bodies and skins as they stand. */
@@ -387,10 +398,10 @@ export class Picture {
     const point = new Vector3();
     const skins = this.skins.map(({ mesh }) => mesh.geometry);
     const ofSkins = skins.map((geometry) => geometry.getAttribute("position")?.array.slice(0, drawnNumbers(geometry)) ?? []);
-    return [...this.bodies.map((body) => body.positions), ...ofSkins].map((positions) => {
+    return [...this.bodies.map((body) => body.positions), ...ofSkins].map((positions, index) => {
       const bounds = new Box3();
       for (let i = 0; i < positions.length; i += 3) bounds.expandByPoint(point.fromArray(positions, i));
-      return bounds;
+      return bounds.isEmpty() ? bounds : bounds.expandByScalar(this.bodies[index]?.loose?.reach ?? 0);
     });
   }
 
