@@ -13,6 +13,8 @@ const MARGIN = 1.2;
 /** At the foot of the picture stand axes, the scale and the legend: no more of its height [px], and no more of it [1]. */
 const FOOT = 84;
 const FOOT_SHARE = 0.25;
+/** The same of what is followed. */
+const FOLLOWED = 1.08;
 /** What is nearer than this part of the distance, or farther away than so many of it, is not drawn. */
 const NEAR = 1 / 200;
 const FAR = 40;
@@ -53,7 +55,7 @@ export class Eye {
   include(bounds: Box3): void {
     const { target } = this.controls;
     const distance = this.camera.position.distanceTo(target);
-    const needed = Math.max(...corners(bounds).map((corner) => this.needed(corner, target, 0, 1)));
+    const needed = Math.max(...corners(bounds).map((corner) => this.needed(corner, target, 0, FOLLOWED)));
     if (needed <= distance) return;
     this.camera.position.sub(target).multiplyScalar(needed / distance).add(target);
     this.reach(needed);

@@ -69,7 +69,7 @@ const SKY_EVEN = 0.8;
 const GROUND = 0x8a7f78;
 const GROUND_EVEN = 0xdcd8d4;
 /** Balls are drawn as large at least [px]. */
-const LEAST_BALL = 1.5;
+const LEAST_BALL = 2.5;
 /** A shape is looked at beside the bodies where both together are at most as many times as large as they are. */
 const WITH_SHAPE = 2;
 /** By how much of what is too much the range of colours shrinks with each frame. */
