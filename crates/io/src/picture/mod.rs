@@ -38,7 +38,7 @@ use raster::{PaintAt, Painted, Samples};
 use shadow::Shadow;
 
 pub use animated_png::write_animated_png;
-pub use camera::View;
+pub use camera::{Framed, View};
 pub use colour::Colour;
 pub use colour_map::{COLOUR_MAPS, ColourMap, ELEMENT_KINDS};
 pub use colour_scale::{COLOUR_SCALES, ColourScale};
@@ -60,8 +60,8 @@ pub struct Picture {
     pub strokes: Vec<Stroke>,
     pub ground: Option<Ground>,
     pub view: View,
-    /// Points that the camera stands back for; the bounds of the view where there are none.
-    pub framed: Vec<Vec3>,
+    /// What the camera stands back for; the bounds of the view where there is nothing of it.
+    pub framed: Vec<Framed>,
     /// Width and height [pixels].
     pub size: [usize; 2],
     /// Samples along each side of a pixel: 1 is rough, 2 good, 3 fine.
@@ -285,7 +285,7 @@ impl Picture {
 
     fn camera(&self, bounds: BoundingBox, layout: &Layout) -> Camera {
         let height = self.size[1] as f64;
-        let framed = self.framed.iter().copied().filter(|point| point.is_finite());
+        let framed = self.framed.iter().copied().filter(|ball| ball.centre.is_finite());
         match self.view.bounds {
             _ if framed.clone().next().is_some() => Camera::fitted(&self.view, framed, layout.frame, height),
             Some(_) => Camera::fitted(&self.view, corners_of(bounds), layout.frame, height),
@@ -303,7 +303,12 @@ impl Picture {
         let (low, high) = given.or_else(of_surfaces).unwrap_or((0.0, 1.0));
         let spread = |range| self.scale.spread(self.colours.spread(range));
         let (low, high) = if given.is_some() { (low, high) } else { spread((low, high)) };
-        if low < high { (low, high) } else { (low, low + low.abs().max(f64::MIN_POSITIVE)) }
+        match () {
+            () if low < high => (low, high),
+            // zeros have the colour of zero
+            () if low == 0.0 => self.colours.spread((0.0, f64::MIN_POSITIVE)),
+            () => (low, low + low.abs()),
+        }
     }
 
     fn painted(&self, camera: &Camera, range: (f64, f64)) -> Vec<Painted> {
