@@ -33,6 +33,7 @@ use camera::Camera;
 use ground::ShadedGround;
 use layout::Layout;
 use light::Lamps;
+use marks::Placed;
 use near::Corner;
 use raster::{PaintAt, Painted, Samples};
 use shadow::Shadow;
@@ -48,7 +49,7 @@ pub use image::Image;
 pub(crate) use image::{Anchor, Canvas};
 pub use images::{ImageFile, Images};
 pub(crate) use legend::{labels, ticks};
-pub use marks::{ArrowKey, Marks};
+pub use marks::{ArrowKey, LEGEND, Marks, MarksStrip};
 pub use mesh_surface::{Between, Cut, MeshSurface};
 pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
 
@@ -224,6 +225,7 @@ impl Picture {
             lamps,
             palette: self.palette(),
             ground,
+            fades: self.backdrop != Backdrop::Graded,
             open,
             strokes,
         };
@@ -234,11 +236,14 @@ impl Picture {
             scene.develop(&samples, &mut canvas);
         }
         layout.write(self, &scene.palette, &mut canvas);
-        self.marks.write((&scene.camera, bounds), &layout, &scene.palette, &mut canvas);
-        if let Some(key) = &self.key {
-            key.write((&scene.camera, bounds), (&layout, self.marks), &scene.palette, &mut canvas);
-        }
+        let marks = Placed::of(self, &scene.camera, &layout, &scene.palette);
+        marks.write(layout.letter, &scene.palette, &mut canvas);
         Ok(canvas.finish())
+    }
+
+    /// What is behind the subject, at the bottom.
+    pub fn background(&self) -> [u8; 3] {
+        self.palette().bottom.to_screen()
     }
 
     fn palette(&self) -> Palette {
@@ -355,6 +360,17 @@ fn corners_of(bounds: BoundingBox) -> impl Iterator<Item = Vec3> {
     })
 }
 
+/// Part of a side of a picture over which its ground fades at either end.
+const FADED: f64 = 0.12;
+
+/// How far a place along a side is from both of its ends: nothing at them, one beyond the part that fades.
+fn inside(along: f64, side: usize) -> f32 {
+    let part = along / side as f64;
+    let near = (part.min(1.0 - part) / FADED).clamp(0.0, 1.0);
+    // without a crease where it begins
+    (near * near * (3.0 - 2.0 * near)) as f32
+}
+
 /// What samples are developed with.
 struct Scene {
     camera: Camera,
@@ -362,6 +378,8 @@ struct Scene {
     shadow: Shadow,
     palette: Palette,
     ground: Option<ShadedGround>,
+    /// Whether the ground goes over into the background towards the borders, as those of pictures that stand side by side.
+    fades: bool,
     /// Share of the sky that each pixel sees.
     open: Vec<f32>,
     strokes: Vec<stroke::Drawn>,
@@ -379,7 +397,8 @@ impl Scene {
                 let pixel = pixel_row * canvas.width + column / n;
                 let (x, y) = samples.position(column, row);
                 let sample = &samples.samples[row * samples.width + column];
-                let (mut colour, inverse_depth) = self.light(sample, x, y, pixel, canvas.height);
+                let (mut colour, inverse_depth) =
+                    self.light(sample, [x, y], pixel, [canvas.width, canvas.height]);
                 for stroke in &strokes {
                     colour = stroke.over(colour, [x, y], inverse_depth);
                 }
@@ -388,16 +407,25 @@ impl Scene {
         }
     }
 
-    fn light(&self, sample: &raster::Sample, x: f64, y: f64, pixel: usize, height: usize) -> (Colour, f32) {
+    /// `size`: of the picture [pixels].
+    fn light(
+        &self,
+        sample: &raster::Sample,
+        [x, y]: [f64; 2],
+        pixel: usize,
+        size: [usize; 2],
+    ) -> (Colour, f32) {
         let ray = self.camera.ray(x, y);
         let below = self.ground.as_ref().map_or(0.0, |ground| ground.inverse_depth(&self.camera, ray));
         if sample.inverse_depth <= below {
-            let background = self.palette.background(y, height);
+            let background = self.palette.background(y, size[1]);
             let colour = match &self.ground {
                 Some(ground) if below > 0.0 => {
                     let colour = ground.colour(&self.camera, ray, background, self.palette.grid);
                     let place = self.camera.eye + ray * (1.0 / f64::from(below));
-                    colour.scaled(1.0 - GROUND_SHADOW * (1.0 - self.shadow.lit(place, None, x, y)))
+                    let shadow = GROUND_SHADOW * (1.0 - self.shadow.lit(place, None, x, y));
+                    let seen = if self.fades { inside(x, size[0]).min(inside(y, size[1])) } else { 1.0 };
+                    background.mixed(colour.scaled(1.0 - shadow), seen)
                 }
                 _ => background,
             };

@@ -170,9 +170,13 @@ fn per_second(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "a film can be played at 0.1 to 100 frames per second".to_owned())
 }
 
-/// What to say of a picture without a legend that it should have.
-const NO_ROOM: &str =
-    "the picture is too small for a legend beside its colours: there is none; expected a larger `--size`";
+/// What to say of a picture without what it should have.
+fn no_room(left_out: &[&str]) -> Option<String> {
+    let (last, others) = left_out.split_last()?;
+    let all =
+        if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    Some(format!("the picture has no room for: {all}; expected a larger `--size`"))
+}
 
 /// Most frames of a film where nothing is said.
 const FRAMES: u64 = 60;
@@ -290,14 +294,16 @@ fn draw(
             let figure = Figure { title: Some(String::new()), backdrop, legend, size, letters, ..figure };
             let (mut pictures, of_all) = figure.pictures(&show)?;
             notes.extend(of_all);
-            let sheet = Sheet::new(&pictures, whole, (&title, figure.theme))?;
+            let common = sheet::Common::taken(&mut pictures);
+            let sheet = Sheet::new(&pictures, whole, (&title, figure.theme), common)?;
             pictures.iter_mut().for_each(|picture| picture.size = sheet.cell);
-            if pictures.iter().any(|picture| picture.legend.is_some()) && !sheet.has_legend() {
-                notes.push(NO_ROOM.to_owned());
-            }
+            let mut left_out = pictures.first().map(Picture::left_out).unwrap_or_default();
             let meter = Meter::new("pictures", arguments.quiet);
             let Some(images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
-            write_picture(arguments, &sheet.of(&images))?;
+            let (image, of_sheet) = sheet.of(&pictures, &images);
+            left_out.extend(of_sheet);
+            notes.extend(no_room(&left_out));
+            write_picture(arguments, &image)?;
         }
         Kind::Picture => {
             let moment = match arguments.time {
@@ -311,9 +317,7 @@ fn draw(
             let (pictures, of_all) = figure.pictures(&show)?;
             notes.extend(of_all);
             for picture in pictures {
-                if !picture.has_room_for_legend() {
-                    notes.push(NO_ROOM.to_owned());
-                }
+                notes.extend(no_room(&picture.left_out()));
                 write_picture(arguments, &picture.render()?)?;
             }
         }
@@ -360,8 +364,8 @@ fn film(
             pictures.push(figure.picture_in(&reel.stage, &moment, &common));
             before = Some(moment);
         }
-        if film.count() == 0 && pictures.iter().any(|picture| !picture.has_room_for_legend()) {
-            notes.push(NO_ROOM.to_owned());
+        if film.count() == 0 {
+            notes.extend(no_room(&pictures.first().map(Picture::left_out).unwrap_or_default()));
         }
         let Some(images) = images(&pictures, (&meter, film.count(), chosen.len()))? else { return Ok(None) };
         images.iter().try_for_each(|image| film.push(image))?;
