@@ -715,7 +715,11 @@ mod tests {
                     size,
                     title: "A bar of rubber that is bent by its own weight".to_owned(),
                     subtitle: "0.125 s".to_owned(),
-                    legend: Some(Legend { title: "von Mises stress".to_owned(), ..Legend::default() }),
+                    legend: Some(Legend {
+                        title: "von Mises stress".to_owned(),
+                        range: Some((0.0, 1234.5)),
+                        ..Legend::default()
+                    }),
                     marks,
                     key,
                     ..Picture::default()

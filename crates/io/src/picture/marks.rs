@@ -216,14 +216,20 @@ pub struct MarksStrip {
 }
 
 impl Picture {
-    /// Marks and key alone, as a strip of a width to stand below a sheet of pictures like this one, which has none of them itself;
-    /// `None` where none is asked for. Its height does not depend on the size of the pictures.
-    pub fn marks_strip(&self, marks: Marks, key: Option<&ArrowKey>, width: usize) -> Option<MarksStrip> {
+    /// Marks and key alone, as a strip to stand below a sheet of pictures like this one, which has none of them itself, in letters
+    /// that suit a sheet of a width and a height; `None` where none is asked for. How high it is does not depend on the size of
+    /// the pictures.
+    pub fn marks_strip(
+        &self,
+        marks: Marks,
+        key: Option<&ArrowKey>,
+        [width, height]: [usize; 2],
+    ) -> Option<MarksStrip> {
         if marks == Marks::default() && key.is_none() {
             return None;
         }
         let palette = self.palette();
-        let letter = (0.011 * width as f64).max(8.0);
+        let letter = (0.011 * width as f64).min(0.02 * height as f64).max(8.0);
         let margin = 1.4 * letter;
         let (layout, bounds) = (Layout::of(self, self.range()), self.bounds());
         let camera = self.camera(bounds, &layout);
@@ -365,13 +371,14 @@ mod tests {
             samples_per_pixel: 1,
             ..Picture::default()
         };
-        let marked = Picture { marks: Marks { triad: true, scale_bar: true }, ..plain.clone() };
-        let [plain, image] = [&plain, &marked].map(|picture| picture.render().unwrap());
-        let differs = |x: usize, y: usize| plain.pixels[y * 600 + x] != image.pixels[y * 600 + x];
+        let marked = Picture { marks: Marks { triad: true, scale_bar: true }, ..plain };
+        let image = marked.render().unwrap();
+        // ink is darker than anything beside and below the subject
+        let is_ink = |x: usize, y: usize| image.pixels[y * 600 + x].iter().all(|part| *part < 120);
         // along a line just above the bar its two ends differ alone
         let layout = Layout::of(&marked, (0.0, 1.0));
         let row = (400.0 - layout.margin - 0.3 * layout.letter) as usize;
-        let ends: Vec<usize> = (300..600).filter(|x| differs(*x, row)).collect();
+        let ends: Vec<usize> = (300..600).filter(|x| is_ink(*x, row)).collect();
         let long = (ends[ends.len() - 1] - ends[0]) as f64;
         let camera = marked.camera(marked.bounds(), &layout);
         let [from, to] = [Vec3::ZERO, Vec3::new(0.05, 0.0, 0.0)].map(|x| camera.project(x).x);
@@ -379,9 +386,11 @@ mod tests {
         assert!((long - (to - from)).abs() < 4.0, "{long} {}", to - from);
         let red = |x: usize, y: usize| {
             let [r, g, b] = image.pixels[y * 600 + x];
-            differs(x, y) && i32::from(r) > i32::from(g) + 80 && i32::from(r) > i32::from(b) + 80
+            i32::from(r) > i32::from(g) + 80 && i32::from(r) > i32::from(b) + 80
         };
-        let is_red: Vec<usize> = (0..400).filter(|y| (0..300).filter(|x| red(*x, *y)).count() > 10).collect();
+        let beside = layout.corner.beside as usize;
+        let is_red: Vec<usize> =
+            (0..400).filter(|y| (0..beside).filter(|x| red(*x, *y)).count() > 10).collect();
         assert!(!is_red.is_empty() && is_red.len() < 5, "x lies across: {is_red:?}");
     }
 }

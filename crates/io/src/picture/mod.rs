@@ -160,6 +160,9 @@ const GROUND_SHADOW: f32 = 0.3;
 /// Rows of pixels that are sampled at once, to keep memory small.
 const BAND: usize = 64;
 
+/// From the origin, in sizes of what is shown.
+const FAR: f64 = 1e3;
+
 /// Colours of a theme.
 struct Palette {
     top: Colour,
@@ -203,6 +206,9 @@ impl Picture {
     /// A size out of range; a surface whose lists do not fit each other.
     pub fn render(&self) -> Result<Image, IoError> {
         self.check()?;
+        if let Some(near) = self.about_origin() {
+            return near.render();
+        }
         let [width, height] = self.size;
         let range = self.range();
         let layout = Layout::of(self, range);
@@ -271,6 +277,25 @@ impl Picture {
             ));
         }
         self.surfaces.iter().enumerate().try_for_each(|(number, surface)| surface.check(number))
+    }
+
+    /// The same about the origin, of what stands so far from it that maps of shadow and depth would round it away.
+    fn about_origin(&self) -> Option<Self> {
+        let bounds = self.bounds();
+        let by = -bounds.centre();
+        if !by.is_finite() || by.length() <= FAR * bounds.diagonal() {
+            return None;
+        }
+        let mut near = self.clone();
+        let points = near.surfaces.iter_mut().flat_map(|surface| &mut surface.points);
+        let points = points.chain(near.strokes.iter_mut().flat_map(|stroke| stroke.shape.points_mut()));
+        let points = points.chain(near.framed.iter_mut().map(|ball| &mut ball.centre));
+        let points = points.chain(near.ground.iter_mut().map(|ground| &mut ground.point));
+        points.chain(near.view.eye.iter_mut()).for_each(|point| *point += by);
+        if let Some(bounds) = &mut near.view.bounds {
+            *bounds = BoundingBox { low: bounds.low + by, high: bounds.high + by };
+        }
+        Some(near)
     }
 
     fn shown_points(&self) -> impl Iterator<Item = Vec3> + '_ {

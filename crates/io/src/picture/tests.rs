@@ -266,3 +266,21 @@ fn grounds_fade_into_one_colour() {
         }
     }
 }
+
+/// A ball is drawn the same wherever it stands: the centre is a power of two, to which its coordinates are rounded by `2⁻²⁶` of its
+/// size at most, which turns a normal by less than a step of a colour.
+#[test]
+fn pictures_do_not_depend_on_the_place() {
+    let drawn = |by: Vec3| {
+        let mut surface = MeshSurface::of(&ball("hex8")).surface;
+        surface.points.iter_mut().for_each(|point| *point += by);
+        let ground = Some(Ground { point: by - Vec3::Y, normal: Vec3::Y });
+        Picture { surfaces: vec![surface], ground, size: [200, 150], ..Picture::default() }.render().unwrap()
+    };
+    let near = drawn(Vec3::ZERO);
+    let far = drawn(Vec3::new(f64::from(1 << 20), -f64::from(1 << 26), 0.0));
+    let steps = |a: &[u8; 3], b: &[u8; 3]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+    // a sample at the outline may fall on the other side of it
+    let off = near.pixels.iter().zip(&far.pixels).filter(|(a, b)| steps(a, b) > 2).count();
+    assert!(off < near.pixels.len() / 1000, "{off} pixels differ");
+}

@@ -52,6 +52,20 @@ fn spread((low, high): (f64, f64), noise: f64) -> (f64, f64) {
     if high - low > (ONE_VALUE * most).max(noise) { (low, high) } else { (low.min(0.0), high.max(0.0)) }
 }
 
+/// What to say of a range that has none of the values.
+fn all_beyond((least, most): (f64, f64), (low, high): (f64, f64), unit: &str) -> Option<String> {
+    let side = if least >= high {
+        "above"
+    } else if most <= low {
+        "below"
+    } else {
+        return None;
+    };
+    let [least, most, low, high] = [least, most, low, high].map(four_digits);
+    let range = format!("{low} to {high} {unit}");
+    Some(format!("all values, {least} to {most} {unit}, are {side} the range {}", range.trim_end()))
+}
+
 /// What to say of a diverging map whose colours are not those of values about zero.
 fn about_zero(range: Option<(f64, f64)>, found: Option<(f64, f64)>) -> Option<String> {
     match (range, found?) {
@@ -253,6 +267,7 @@ impl<'a> Gathering<'a> {
             let of_values = |range| if is_log { by_powers(range) } else { linear(range) };
             range = figure.colours.own_range().or(self.found.map(of_values));
         }
+        let unit = figure.quantity().map_or("", |quantity| quantity.unit());
         let mut notes = Vec::new();
         if let (Some(Arrows { field, .. }), None) = (arrows, arrow_scale) {
             notes.push(format!("there is no arrow: all values of `{field}` are zero"));
@@ -267,6 +282,7 @@ impl<'a> Gathering<'a> {
         {
             notes.push(format!("values go down to {least:.1e}: those below {low:.1e} have the first colour"));
         }
+        notes.extend(self.found.zip(figure.range).and_then(|(found, range)| all_beyond(found, range, unit)));
         if figure.colours == ColourMap::Diverging {
             notes.extend(about_zero(figure.range, self.found));
         }
@@ -370,7 +386,11 @@ fn refuse_unknown_vectors(moment: &Moment, name: &str) -> Result<(), ShowError> 
     let mut known: Vec<&str> = fields.map(|field| field.name.as_str()).collect();
     known.sort_unstable();
     known.dedup();
-    let expected = format!("a vector of each point: {}", known.join(", "));
+    let expected = if known.is_empty() {
+        "a body with vectors on its points, as those of a run's frames are".to_owned()
+    } else {
+        format!("a vector of each point: {}", known.join(", "))
+    };
     Err(ShowError::UnknownField { name: name.to_owned(), expected })
 }
 
@@ -415,6 +435,15 @@ mod tests {
         assert_eq!(said(None, (-1.0, 3.0)) + &said(Some((-2.0, 2.0)), (1.0, 3.0)), "");
         assert!(said(None, (1.0, 3.0)).contains("the values, 1 to 3, are on one side of zero"));
         assert!(said(Some((-0.1, 0.02)), (-1.0, 3.0)).contains("stands for -0.04, the middle of the range"));
+    }
+
+    /// A range that has none of the values is told with its unit, in which it may have been mistaken.
+    #[test]
+    fn ranges_without_values_are_told() {
+        let said = |found, range| all_beyond(found, range, "Pa").unwrap_or_default();
+        assert_eq!(said((2e3, 5e3), (0.0, 1e4)) + &said((2e3, 5e3), (0.0, 3e3)), "");
+        assert!(said((2e3, 5e3), (0.0, 1.0)).ends_with("5000 Pa, are above the range 0 to 1 Pa"));
+        assert!(said((0.0, 0.5), (1.0, 2.0)).contains("are below the range"));
     }
 
     /// Times of a picture, and of several, differ where they are written.

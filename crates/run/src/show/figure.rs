@@ -43,6 +43,7 @@ pub struct Figure {
     pub shrink: f64,
     pub arrows: Option<Arrows>,
     pub edges: EdgeStyle,
+    pub worn: Worn,
     /// Height of letters, in those of a picture that is looked at by itself.
     pub letters: f64,
 }
@@ -54,6 +55,15 @@ pub enum Floor {
     None,
     /// A floor a little below the bodies, which touches nothing and is in the picture alone.
     Below,
+}
+
+/// How much is seen of a body that wears a skin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Worn {
+    #[default]
+    Whole,
+    /// Its arrows, on the skin that hides it.
+    Arrows,
 }
 
 /// How far below the bodies, as a part of their size: near enough for their shade, clear of touching.
@@ -89,6 +99,7 @@ impl Default for Figure {
             shrink: 0.0,
             arrows: None,
             edges: EdgeStyle::Drawn,
+            worn: Worn::default(),
             letters: 1.0,
         }
     }
@@ -157,9 +168,15 @@ impl Figure {
         let mut surfaces = Vec::new();
         let mut strokes = Vec::new();
         let mut has_dots = false;
-        for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_drawable()) {
-            surfaces.extend(self.surfaces(body, index, common));
+        let is_hidden = |body: &&BodyMoment| self.worn == Worn::Arrows && moment.wears_skin(body);
+        let all = moment.bodies.iter().filter(|body| body.is_drawable());
+        for body in all {
             strokes.extend(common.arrow_scale.iter().flat_map(|scale| self.arrows_of(body, *scale)));
+        }
+        // colours of bodies go by their number among those that are seen
+        let seen = moment.bodies.iter().filter(|body| !is_hidden(body)).enumerate();
+        for (index, body) in seen.filter(|(_, body)| body.is_drawable()) {
+            surfaces.extend(self.surfaces(body, index, common));
             strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
             let dots = self.dots_of(body, index, common.range);
             has_dots |= !dots.is_empty();
@@ -210,7 +227,14 @@ impl Figure {
     }
 
     fn floor_below(&self, common: &Common, up: Vec3) -> Option<Ground> {
-        let lowest = common.framed.iter().map(|ball| ball.centre.dot(up) - ball.radius).reduce(f64::min)?;
+        // bodies that are taken apart are framed by their bounds
+        let corners = (0..8).map(|corner| {
+            let of =
+                |axis: usize| if corner >> axis & 1 == 0 { common.bounds.low } else { common.bounds.high };
+            Vec3::new(of(0).x, of(1).y, of(2).z).dot(up)
+        });
+        let framed = common.framed.iter().map(|ball| ball.centre.dot(up) - ball.radius).reduce(f64::min);
+        let lowest = framed.or_else(|| corners.reduce(f64::min))?;
         let height = lowest - FLOOR_GAP * common.bounds.diagonal();
         (self.floor == Floor::Below).then(|| Ground { point: up * height, normal: up })
     }

@@ -54,13 +54,15 @@ impl Grid {
 }
 
 /// A legend that is worth another shape of a sheet leaves so much more to its pictures.
-const WORTH: f64 = 1.25;
+const WORTH: f64 = 1.05;
 
 /// A sheet before its pictures are drawn.
 pub struct Sheet {
     grid: Grid,
     /// Of all pictures together [pixels].
     size: [usize; 2],
+    /// Height of all, with title and legend, where it is asked for [pixels].
+    whole: usize,
     /// Of each picture [pixels].
     pub cell: [usize; 2],
     title: Option<Image>,
@@ -124,7 +126,8 @@ impl Sheet {
             let size = [cell[0] * grid.columns, cell[1] * grid.rows];
             let beside = beside(size[1]);
             let title = strip(size[0] + width_of(&beside));
-            return Ok(Self { grid, size, cell, title, beside, below: None, common, background });
+            let whole = size[1];
+            return Ok(Self { grid, size, whole, cell, title, beside, below: None, common, background });
         };
         let asked = format!("{},{}", whole[0], whole[1]);
         if whole.iter().any(|side| !(1..=LARGEST).contains(side)) {
@@ -132,8 +135,7 @@ impl Sheet {
             return Err(Refusal::request("size", asked, format!("1 to {LARGEST} pixels"), message));
         }
         let title = strip(whole[0]);
-        let marks =
-            pictures.first().and_then(|of| of.marks_strip(common.marks, common.key.as_ref(), whole[0]));
+        let marks = pictures.first().and_then(|of| of.marks_strip(common.marks, common.key.as_ref(), whole));
         let taken = height_of(&title) + marks.map_or(0, |marks| marks.image.height);
         let height = whole[1].saturating_sub(taken);
         let mut beside = beside(height);
@@ -160,7 +162,8 @@ impl Sheet {
                 format!("{least_width} x {least_height} for each at least, beside title and legend");
             return Err(Refusal::request("size", asked, expected, message));
         }
-        Ok(Self { grid, size, cell, title, beside, below, common, background })
+        let whole = whole[1];
+        Ok(Self { grid, size, whole, cell, title, beside, below, common, background })
     }
 
     /// The sheet of the pictures as they are drawn, and what has no room on it.
@@ -176,7 +179,8 @@ impl Sheet {
             sheet = sheet.above(&legend);
         }
         let Common { marks, key } = self.common;
-        let strip = pictures.first().and_then(|of| of.marks_strip(marks, key.as_ref(), sheet.width));
+        let strip =
+            pictures.first().and_then(|of| of.marks_strip(marks, key.as_ref(), [sheet.width, self.whole]));
         if let Some(strip) = strip {
             left_out.extend(strip.left_out);
             sheet = sheet.above(&strip.image);
