@@ -120,7 +120,7 @@ pub fn check(arguments: &Arguments, kind: Kind, source: Source) -> Result<(), Re
         (arguments.colour.as_deref(), of_colours.iter().find(|(_, is_given)| *is_given))
     {
         let message = format!("--{name} says nothing where `--colour none` leaves no quantity to colour by");
-        return Err(Refusal::request(*name, "none", "a quantity, or no such option", message));
+        return Err(Refusal::request(name, "none", "a quantity, or no such option", message));
     }
     let size = arguments.size.unwrap_or_default();
     if kind == Kind::Film && size.iter().any(|side| side % 2 != 0) {
