@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use souple_io::Field;
-use souple_io::picture::{ColourMap, Paint};
+use souple_io::picture::{ColourMap, Paint, Picture, Stroke, StrokeShape};
 use souple_math::Vec3;
 use souple_mesh::Mesh;
-use souple_run::show::{BodyMoment, Figure, GAP, Moment, Show, Stage, map_of};
+use souple_run::show::{Arrows, BodyMoment, Figure, GAP, Moment, Show, Stage, map_of};
 use souple_table::{Value, Values};
 
 /// A bar of a hexahedron, then six tetrahedra, moved by `shift`.
@@ -82,4 +82,95 @@ fn gaps_are_distances() {
     let mut strangers = other;
     strangers.moments[0].bodies[0].name = "beam".to_owned();
     assert!(one.against(&strangers).unwrap_err().to_string().contains("without a body `bar`"));
+}
+
+/// Balls of several radii without cells, at several moments, that move with `velocity` at the last of them.
+fn balls(velocity: Vec3) -> Show {
+    let places = [(0.0, 0.0, 0.0), (3.0, 0.5, 0.0), (1.0, 2.0, -1.0)].map(|(x, y, z)| Vec3::new(x, y, z));
+    let radii = [1.2, 0.4, 0.8];
+    let moment = |time: f64| {
+        let positions: Vec<Vec3> = places.iter().map(|x| *x + Vec3::Y * time).collect();
+        let velocities = positions.iter().flat_map(|_| (velocity * time).to_array()).collect();
+        let body = BodyMoment {
+            name: "balls".to_owned(),
+            mesh: Arc::new(Mesh { points: positions.clone(), ..Mesh::default() }),
+            positions,
+            point_fields: vec![
+                Field::new("radius", 1, radii.to_vec()),
+                Field::new("velocity", 3, velocities),
+            ],
+            cell_fields: Vec::new(),
+            frames: Vec::new(),
+        };
+        Moment { time, bodies: vec![body] }
+    };
+    Show { stage: Stage::default(), moments: vec![moment(0.0), moment(0.5), moment(1.0)] }
+}
+
+fn arrows_of(picture: &Picture) -> Vec<[Vec3; 2]> {
+    let arrow = |stroke: &Stroke| match stroke.shape {
+        StrokeShape::Arrow(from, to) => Some([from, to]),
+        _ => None,
+    };
+    picture.strokes.iter().filter_map(arrow).collect()
+}
+
+/// Along any direction what the camera stands back for reaches as far as every ball with its radius and every arrow with its tip do
+/// at any moment, but for the three hundredths of the size that the margin has room for.
+#[test]
+fn balls_and_arrows_are_framed() {
+    let show = balls(Vec3::new(0.0, 2.0, 0.3));
+    for scale in [None, Some(3.0)] {
+        let arrows = Some(Arrows { field: "velocity".to_owned(), scale });
+        let (pictures, notes) = Figure { arrows, ..coloured_by("radius") }.pictures(&show).unwrap();
+        assert!(notes.is_empty(), "{notes:?}");
+        let reach = |direction: Vec3, picture: &Picture| {
+            let balls = picture.framed.iter().map(|ball| ball.centre.dot(direction) + ball.radius);
+            balls.fold(f64::NEG_INFINITY, f64::max)
+        };
+        let size = pictures[0].view.bounds.unwrap().diagonal();
+        for picture in &pictures {
+            let seen = picture.surfaces.iter().flat_map(|surface| &surface.points).copied();
+            let tips = arrows_of(picture).into_iter().flatten();
+            for point in seen.chain(tips) {
+                let middle = picture.view.bounds.unwrap().centre();
+                let out = (point - middle).try_normalised().unwrap();
+                assert!(reach(out, picture) > point.dot(out) - 0.03 * size, "{point:?}");
+            }
+        }
+    }
+}
+
+/// Particles have arrows, each as long as the key says, that begin where they leave their ball; one of length zero is none.
+#[test]
+fn particles_have_arrows() {
+    let show = balls(Vec3::new(0.0, 2.0, 0.0));
+    let arrows = Some(Arrows { field: "velocity".to_owned(), scale: Some(0.25) });
+    let (pictures, _) = Figure { arrows, ..coloured_by("radius") }.pictures(&show).unwrap();
+    assert!(arrows_of(&pictures[0]).is_empty());
+    let drawn = arrows_of(&pictures[2]);
+    assert_eq!(drawn.len(), 3);
+    for ([from, to], (x, radius)) in
+        drawn.iter().zip(show.moments[2].bodies[0].positions.iter().zip([1.2, 0.4, 0.8]))
+    {
+        assert!(((*from - *x) - Vec3::Y * radius).length() < 1e-12, "{from:?}");
+        assert!(((*to - *from) - Vec3::Y * 0.5).length() < 1e-12, "{to:?}");
+    }
+    assert_eq!(pictures[2].key.as_ref().unwrap().scale, 0.25);
+}
+
+/// Of a field that is zero everywhere the legend says zero, and there are no arrows, which is said, and no key of their length.
+#[test]
+fn zeros_are_told() {
+    let show = balls(Vec3::ZERO);
+    for scale in [None, Some(1.0)] {
+        let arrows = Some(Arrows { field: "velocity".to_owned(), scale });
+        let (pictures, notes) = Figure { arrows, ..coloured_by("velocity") }.pictures(&show).unwrap();
+        assert!(notes.concat().contains("there is no arrow: all values of `velocity` are zero"), "{notes:?}");
+        for picture in &pictures {
+            assert!(picture.strokes.is_empty() && picture.key.is_none());
+            assert_eq!(picture.legend.as_ref().unwrap().range, Some((0.0, 0.0)));
+            picture.render().unwrap();
+        }
+    }
 }

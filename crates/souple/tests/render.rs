@@ -230,6 +230,98 @@ fn colours_by_powers_of_ten() {
     assert!(!folder.path().join("b.png").exists());
 }
 
+/// What is asked for and changes nothing, or is less than asked for, is told; ends of a range may have units.
+#[test]
+fn what_has_no_effect_is_told() {
+    let folder = Folder::new("no_effect");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    let notes = |more: &[&str]| render(&folder, "run", "a.png", more).ends(0).json()["notes"].to_string();
+    assert!(notes(&["--cut", "1,0,0,99"]).contains("the cut takes nothing away"));
+    assert!(!notes(&["--cut", "0,0,1,0.4"]).contains("nothing"));
+    assert!(notes(&["--sheet", "99", "--size", "900x700"]).contains("moments, not 99: each is shown once"));
+    assert!(
+        notes(&["--colour", "velocity", "--range", "1 km/s,2 km/s"])
+            .contains("below the range 1000 to 2000 m/s")
+    );
+    assert!(notes(&["--size", "48,32"]).contains("the picture has no room for: "));
+    let read = || std::fs::read(folder.path().join("a.png")).expect("a picture");
+    let pictures = [
+        &["--range", "0,2000"][..],
+        &["--range", "0,2kPa"],
+        &["--explode", "0.5"],
+        &["--explode", "0.5", "--floor"],
+    ]
+    .map(|more| {
+        render(&folder, "run", "a.png", more).ends(0);
+        read()
+    });
+    assert!(pictures[0] == pictures[1] && pictures[2] != pictures[3]);
+}
+
+/// A frame of a run is drawn with its fields, from its own file and from the list of frames.
+#[test]
+fn files_of_frames_have_fields() {
+    let folder = Folder::new("frame_files");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    let frames = folder.files().into_iter().filter(|file| file.ends_with(".vtu"));
+    let last = frames.max().expect("a frame");
+    for source in [last.as_str(), "run/frames/cube.pvd"] {
+        for more in
+            [&["--colour", "von_mises"][..], &["--arrows", "displacement"], &["--colour", "velocity.y"]]
+        {
+            let notes = render(&folder, source, "a.png", more).ends(0).json()["notes"].clone();
+            assert_eq!(notes, serde_json::json!([]), "{source} {more:?}");
+        }
+    }
+    assert_eq!(
+        render(&folder, "run/frames/cube.pvd", "a.gif", &["--frames", "3"]).ends(0).json()["moments"],
+        3
+    );
+    souple_in(
+        folder.path(),
+        ["mesh", "generate", "box", "box.msh", "size=1,1,1", "cells=2,2,2", "element=hex8"],
+    )
+    .ends(0);
+    let bare = render(&folder, "box.msh", "b.png", &["--colour", "velocity"]).ends(2).stderr;
+    assert!(bare.contains("element or none: no body has fields"), "{bare}");
+}
+
+/// A skin has one colour, with arrows or without: what differs are the arrows.
+#[test]
+fn skins_keep_their_colour() {
+    use souple::io::picture::Surface;
+    use souple::run::show::{Arrows, Figure, Show, Stage, Worn};
+
+    let folder = Folder::new("skin_colour");
+    let scene = common::scenes().join("skin_thread");
+    let run = [
+        "run",
+        scene.to_str().expect("a path"),
+        "--quiet",
+        "--expect",
+        "warn",
+        "--steps",
+        "2",
+        "--out",
+        "run",
+    ];
+    souple_in(folder.path(), run).ends(0);
+    let show = Show::of_run(&folder.path().join("run"), Stage::default()).expect("frames");
+    let seen = |figure: Figure, moment: usize| -> Vec<Surface> {
+        let moment = show.moments[moment].clone();
+        let moment = if figure.arrows.is_none() { moment.without_worn() } else { moment };
+        let show = Show { stage: Stage::default(), moments: vec![moment] };
+        let (pictures, _) = figure.pictures(&show).expect("pictures");
+        pictures.into_iter().flat_map(|picture| picture.surfaces).collect()
+    };
+    let last = show.moments.len() - 1;
+    let arrows = Some(Arrows { field: "velocity".to_owned(), scale: None });
+    let bare = Figure { colour_by: None, worn: Worn::Arrows, ..Figure::default() };
+    assert_eq!(seen(bare.clone(), last), seen(Figure { arrows, ..bare }, last));
+}
+
 /// Bodies of every dimension have values to be coloured by, from the frames of their run as from the run itself.
 #[test]
 fn sheets_and_cables_are_coloured() {
@@ -350,6 +442,15 @@ fn faulty_requests() {
         ("run", "a.png", &["--edges", "dotted"], "drawn, hidden or wireframe"),
         ("run", "a.png", &["--range", "2,1"], "the lower one first"),
         ("run", "a.png", &["--range", "2"], "expected 2 numbers with commas"),
+        ("run", "a.png", &["--range", "1 kg,2 kg"], "in Pa, or each with a unit of its kind"),
+        ("run", "a.png", &["--against", "run"], "--against says nothing without the quantity `gap`"),
+        ("run", "a.png", &["--colour", "none", "--map", "grey"], "--map says nothing"),
+        ("run", "a.png", &["--colour", "none", "--range", "0,1"], "--range says nothing"),
+        ("run", "a.png", &["--sheet", "-1"], "expected a whole number, 1 to 100"),
+        ("run", "a.png", &["--sheet", "2.5"], "expected a whole number, 1 to 100"),
+        ("run", "a.png", &["--threads", "-1"], "expected a whole number, 1 to 1024"),
+        ("run", "a.png", &["--field-of-view", "abc"], "expected a number of degrees"),
+        ("run", "a.png", &["--time", "abc"], "expected a time, as 0.5 or 500 ms"),
         ("run", "a.png", &["--cut", "0,0,0,1"], "a normal that is not zero"),
         ("run", "a.png", &["--cut", "0,0,nan,1"], "expected 4 numbers"),
         ("run", "a.png", &["--explode", "-1"], "0 to 100"),
@@ -380,7 +481,7 @@ fn faulty_requests() {
         assert!(answer.stderr.contains(words), "`{words}`: {answer:#?}");
         assert_errors(&answer.json());
     }
-    for size in ["0,0", "99999,10", "-5,10"] {
+    for size in ["0,0", "99999,10", "-5,10", "300.5,200", "800", "800,600,3"] {
         let call = ["render", "run", "--out", "a.png", "--size", size, "--json"];
         let answer = souple_in(folder.path(), call);
         assert_eq!(answer.status, Some(2), "{answer:#?}");

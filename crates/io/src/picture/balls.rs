@@ -45,15 +45,22 @@ const FACES: [[u32; 3]; 20] = [
     [8, 6, 7],
     [9, 8, 1],
 ];
-/// Balls of a picture up to which each is drawn finely: few are large on it.
-const FEW: usize = 300;
+/// Triangles of all balls of a body, about, and most cuts of their faces: few balls are large in a picture, and each is drawn finely.
+const MOST_FACES: usize = 100_000;
+const MOST_CUTS: u32 = 4;
+
+/// How often the faces of each of so many balls are cut.
+fn cuts_of(count: usize) -> u32 {
+    let faces = |cuts: u32| FACES.len() * 4_usize.pow(cuts) * count;
+    (2..=MOST_CUTS).rev().find(|cuts| faces(*cuts) <= MOST_FACES).unwrap_or(1)
+}
 
 impl MeshSurface {
     /// A ball about each point with a radius above zero [m]; of a cut, those whose middle it leaves.
     pub fn balls(positions: &[Vec3], radii: &[f64], cut: Option<Cut>) -> Self {
         let is_left = |x: Vec3| cut.is_none_or(|cut| (x - cut.point).dot(cut.normal) <= 0.0);
         let drawn = (0..positions.len()).filter(|i| radii[*i] > 0.0 && is_left(positions[*i]));
-        let (corners, faces) = unit_ball(if drawn.clone().count() > FEW { 1 } else { 2 });
+        let (corners, faces) = unit_ball(cuts_of(drawn.clone().count()));
         let mut of = Self::default();
         for point in drawn {
             let first = of.points.len() as u32;
@@ -68,7 +75,7 @@ impl MeshSurface {
 }
 
 /// An icosahedron whose faces are cut in four some times, its corners on the unit sphere.
-fn unit_ball(cuts: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+fn unit_ball(cuts: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let unit = |x: Vec3| x.try_normalised().unwrap_or(Vec3::Z);
     let mut corners: Vec<Vec3> = CORNERS.iter().map(|corner| unit(Vec3::from_array(*corner))).collect();
     let mut faces = FACES.to_vec();
@@ -96,7 +103,7 @@ mod tests {
     /// A ball looks outward and has nearly its volume: inscribed, a little less; finer ones have more of it.
     #[test]
     fn balls_look_outward() {
-        let volume = |cuts: usize| -> f64 {
+        let volume = |cuts: u32| -> f64 {
             let (corners, faces) = unit_ball(cuts);
             let corner = |face: &[u32; 3], k: usize| corners[face[k] as usize];
             faces.iter().map(|face| corner(face, 0).dot(corner(face, 1).cross(corner(face, 2))) / 6.0).sum()
@@ -108,6 +115,15 @@ mod tests {
             lost.windows(2).all(|pair| pair[1] > 0.0 && (3.0..4.2).contains(&(pair[0] / pair[1]))),
             "{lost:?}"
         );
+    }
+
+    /// The outline of a ball that fills a picture of 800 pixels is off a circle by less than a pixel: of the edges of an
+    /// icosahedron, 1.05 radii long, `n` cuts leave `1.05 / 2ⁿ`, and an edge of length `e` is `e² / 8` inside.
+    #[test]
+    fn few_balls_are_round() {
+        let off = |count: usize| (1.05 / f64::from(1 << cuts_of(count))).powi(2) / 8.0;
+        assert!(400.0 * off(2) < 1.0 && 400.0 * off(19) < 1.0, "{} {}", 400.0 * off(2), 400.0 * off(19));
+        assert_eq!([1, 100, 300, 5000].map(cuts_of), [4, 2, 2, 1]);
     }
 
     #[test]

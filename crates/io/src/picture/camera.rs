@@ -35,6 +35,21 @@ impl View {
     }
 }
 
+/// A ball that must be in the picture, or a point, which is one without a radius.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Framed {
+    /// [m]
+    pub centre: Vec3,
+    /// [m]
+    pub radius: f64,
+}
+
+impl From<Vec3> for Framed {
+    fn from(centre: Vec3) -> Self {
+        Self { centre, radius: 0.0 }
+    }
+}
+
 /// The part of the picture that the subject may fill [pixels].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Frame {
@@ -74,35 +89,43 @@ pub(super) struct Projected {
 /// Rounding of depths, in the nearest one of a picture of bodies a thousand times as large.
 const ROUNDED: f64 = 1e-6;
 
+/// To the right, up and away, as they are seen.
+pub(super) fn axes(view: &View) -> [Vec3; 3] {
+    let forward = view.direction.try_normalised().unwrap_or(-Vec3::Z);
+    let right = forward.cross(view.up).try_normalised().unwrap_or_else(|| forward.any_orthogonal());
+    [right, right.cross(forward), forward]
+}
+
 impl Camera {
-    /// The closest camera along the direction of `view` that has all `points` within `frame`.
+    /// The closest camera along the direction of `view` that has all of what is `framed` within `frame`.
     pub fn fitted(
         view: &View,
-        points: impl Iterator<Item = Vec3>,
+        framed: impl Iterator<Item = impl Into<Framed>>,
         frame: Frame,
         picture_height: f64,
     ) -> Self {
-        let forward = view.direction.try_normalised().unwrap_or(-Vec3::Z);
-        let right = forward.cross(view.up).try_normalised().unwrap_or_else(|| forward.any_orthogonal());
-        let up = right.cross(forward);
+        let [right, up, forward] = axes(view);
         let field_of_view = if view.field_of_view.is_finite() { view.field_of_view } else { 0.5 };
         let focal = 0.5 * picture_height / libm::tan(0.5 * field_of_view.clamp(0.01, 2.5));
 
         // In coordinates (a, b, c) along right, up, forward a point is within the frame, if
         // |a − a₀| ≤ k (c − c₀) with k = half the width of the frame / focal; likewise for b.
         // So a₀ ≥ max(a − k c) + k c₀ and −a₀ ≥ max(−a − k c) + k c₀, whose sum bounds c₀.
+        // A ball reaches r √(1 + k²) beyond its centre, which is r along the normal of a plane of the frame.
         let slope = [0.5 * (frame.right - frame.left) / focal, 0.5 * (frame.bottom - frame.top) / focal];
         let mut most = [[f64::NEG_INFINITY; 2]; 2];
         let (mut nearest, mut extent) = (f64::INFINITY, BoundingBox::EMPTY);
-        for point in points.filter(|point| point.is_finite()) {
-            let across = [right.dot(point), up.dot(point)];
-            let along = forward.dot(point);
+        let is_finite = |ball: &Framed| ball.centre.is_finite() && ball.radius.is_finite();
+        for Framed { centre, radius } in framed.map(Into::into).filter(is_finite) {
+            let across = [right.dot(centre), up.dot(centre)];
+            let along = forward.dot(centre);
             for axis in 0..2 {
-                most[axis][0] = most[axis][0].max(across[axis] - slope[axis] * along);
-                most[axis][1] = most[axis][1].max(-across[axis] - slope[axis] * along);
+                let reach = radius * (1.0 + slope[axis] * slope[axis]).sqrt();
+                most[axis][0] = most[axis][0].max(across[axis] - slope[axis] * along + reach);
+                most[axis][1] = most[axis][1].max(-across[axis] - slope[axis] * along + reach);
             }
-            nearest = nearest.min(along);
-            extent = extent.with(point);
+            nearest = nearest.min(along - radius);
+            extent = extent.union(BoundingBox::of([centre]).grown(radius));
         }
         if !nearest.is_finite() {
             (most, nearest, extent) = ([[0.0; 2]; 2], 0.0, extent.with(Vec3::ZERO));
@@ -180,6 +203,36 @@ mod tests {
             assert!((left + right).min(top + bottom) < 1e-9, "{margins:?}");
             let centre = camera.ray(0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom));
             assert!((centre - camera.forward).length() < 1e-12);
+        }
+    }
+
+    /// Every ball is within the frame with its whole radius, from any side, in frames of any shape, and one touches each of two
+    /// opposite borders. What is seen of a ball is bounded by the planes through the eye that touch it.
+    #[test]
+    fn balls_are_framed_with_their_radius() {
+        let balls = [(-3.0, 1.0, 0.0, 1.5), (5.0, 2.0, 1.5, 0.2), (0.0, -4.0, 2.0, 0.7)]
+            .map(|(x, y, z, radius)| Framed { centre: Vec3::new(x, y, z), radius });
+        for [width, height] in [[400.0, 300.0], [1280.0, 800.0], [300.0, 900.0], [900.0, 120.0]] {
+            let frame = Frame { left: 20.0, top: 60.0, right: width - 40.0, bottom: height - 20.0 };
+            for direction in [Vec3::new(-0.5, -0.4, -1.0), Vec3::X, -Vec3::Y, Vec3::new(0.3, 2.0, -1.0)] {
+                let view = View { direction, ..View::along(direction, Vec3::new(0.1, 0.9, 0.3)) };
+                let camera = Camera::fitted(&view, balls.into_iter(), frame, height);
+                let inward = [
+                    (camera.ray(frame.left, camera.centre[1]), camera.up, -1.0),
+                    (camera.ray(frame.right, camera.centre[1]), camera.up, 1.0),
+                    (camera.ray(camera.centre[0], frame.top), camera.right, -1.0),
+                    (camera.ray(camera.centre[0], frame.bottom), camera.right, 1.0),
+                ]
+                .map(|(ray, along, side)| ray.cross(along).try_normalised().unwrap() * side);
+                let inward = inward.map(|normal| normal * normal.dot(camera.forward).signum());
+                let rooms = inward.map(|normal| {
+                    let room = |ball: &Framed| normal.dot(ball.centre - camera.eye) - ball.radius;
+                    balls.iter().map(room).fold(f64::INFINITY, f64::min)
+                });
+                // rounding of lengths of some metres
+                assert!(rooms.iter().all(|room| *room > -1e-12), "{width} {height} {rooms:?}");
+                assert!((rooms[0] + rooms[1]).min(rooms[2] + rooms[3]) < 1e-9, "{rooms:?}");
+            }
         }
     }
 

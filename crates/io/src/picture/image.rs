@@ -41,9 +41,8 @@ pub(super) fn cause(error: png::EncodingError) -> std::io::Error {
 }
 
 impl Image {
-    /// Several images as one, row by row, each in a cell as large as the largest; cells that are left free take the
-    /// background of the first image, as its left border has it.
-    pub fn sheet(images: &[Self], columns: usize) -> Self {
+    /// Several images as one, row by row, each in a cell as large as the largest; what is left free has one colour.
+    pub fn sheet(images: &[Self], columns: usize, background: [u8; 3]) -> Self {
         let columns = columns.clamp(1, images.len().max(1));
         let side = |of: fn(&Self) -> usize| images.iter().map(of).max().unwrap_or(1);
         let [width, height] = [side(|image| image.width), side(|image| image.height)];
@@ -51,7 +50,7 @@ impl Image {
         let mut sheet = Self {
             width: width * columns,
             height: height * rows,
-            pixels: vec![[255; 3]; width * columns * height * rows],
+            pixels: vec![background; width * columns * height * rows],
         };
         for (index, image) in images.iter().enumerate() {
             let (left, top) = (index % columns * width, index / columns * height);
@@ -59,15 +58,6 @@ impl Image {
                 let to = (top + row) * sheet.width + left;
                 let from = row * image.width;
                 sheet.pixels[to..to + image.width].copy_from_slice(&image.pixels[from..from + image.width]);
-            }
-        }
-        if let Some(first) = images.first() {
-            for index in images.len()..rows * columns {
-                let (left, top) = (index % columns * width, index / columns * height);
-                for row in 0..first.height {
-                    let to = (top + row) * sheet.width + left;
-                    sheet.pixels[to..to + width].fill(first.pixels[row * first.width]);
-                }
             }
         }
         sheet

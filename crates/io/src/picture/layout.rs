@@ -1,11 +1,12 @@
 //! Where title, legend and subject stand in a picture, and the writing of the first two.
 
-use super::camera::Frame;
+use super::camera::{Frame, axes};
 use super::colour::Colour;
 use super::colour_scale::ColourScale;
 use super::image::{Anchor, Canvas};
 use super::legend::{log_scale, scale};
 use super::lettering::text_width;
+use super::marks::{Corner, Mark, Shown};
 use super::{Image, Legend, LegendPlace, Palette, Picture, Theme};
 
 /// All in pixels.
@@ -14,8 +15,10 @@ pub(super) struct Layout {
     /// Height of capitals of plain text.
     pub letter: f64,
     pub margin: f64,
-    /// Lowest row of marks: above the margin, or above a legend that lies below the subject.
-    pub floor: f64,
+    /// Of the marks, above the margin, or above a legend that lies below the subject.
+    pub corner: Corner,
+    /// The marks that there is room for.
+    pub shown: Shown,
     /// The title in lines that fit, and the height of its capitals.
     title: Vec<String>,
     title_letter: f64,
@@ -72,6 +75,8 @@ const TALLEST_BOX: f64 = 0.06;
 /// Part of the width that a legend on the right leaves to the subject at least, and of the height one below: where neither does, there
 /// is none.
 const LEAST_LEFT: f64 = 0.5;
+/// Part of the room under the title, or of the width, that marks take at most.
+const MOST_OF_MARKS: f64 = 1.0 / 3.0;
 /// In pictures that are this much higher than wide, a legend is better below.
 const TALL: f64 = 1.2;
 /// A shorter bar shows no colours, in letters.
@@ -94,10 +99,16 @@ impl Layout {
         let wanted = 1.45 * letter;
         let title_letter =
             (wanted * room / text_width(&picture.title, wanted).max(1.0)).clamp(0.75 * wanted, wanted);
-        let title = wrapped(&picture.title, title_letter, room, MOST_LINES);
-        let subtitle = wrapped(&picture.subtitle, letter, room, MOST_LINES);
-        let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
-        let top = (margin + above).min(0.4 * height);
+        // as much as leaves half of the picture: of a title of several lines the last go first, then the time
+        let wishes = [(3, 1), (2, 1), (1, 1), (1, 0), (0, 1), (0, 0)];
+        let texts = wishes.map(|(lines, times)| {
+            let title = wrapped(&picture.title, title_letter, room, lines);
+            let subtitle = wrapped(&picture.subtitle, letter, room, times);
+            let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
+            (title, subtitle, margin + above)
+        });
+        let fits = |(_, _, top): &(Vec<String>, Vec<String>, f64)| *top <= (1.0 - LEAST_LEFT) * height;
+        let (title, subtitle, top) = texts.into_iter().find(fits).unwrap_or_default();
         let beside = picture.legend.as_ref().filter(|legend| legend.place == LegendPlace::Beside);
         let room = Room { width, height, top, letter, margin };
         let legend = beside.and_then(|legend| {
@@ -116,16 +127,54 @@ impl Layout {
             Some(legend) => floor = legend.head - 0.8 * letter,
             None => {}
         }
+        // marks stand beside the subject, not on it, and leave most of the picture to it
+        let mut shown =
+            Shown { triad: picture.marks.triad, bar: picture.marks.scale_bar, key: picture.key.is_some() };
+        let most = MOST_OF_MARKS * (floor - top);
+        shown.bar &= shown.tall() * letter <= most;
+        shown.key &= shown.tall() * letter <= most;
+        let [wide, tall] = triad_size(picture, letter);
+        let is_tall = height > TALL * width;
+        let has_room = if is_tall { tall <= most } else { tall <= floor - top };
+        shown.triad &= has_room && wide <= MOST_OF_MARKS * (right - margin);
+        let [wide, tall] = if shown.triad { [wide + letter, tall] } else { [0.0; 2] };
+        let marks = (shown.tall() * letter).max(if is_tall { tall } else { 0.0 });
+        let lowest = if marks > 0.0 { floor - marks - 0.5 * letter } else { floor };
+        // bar and key stand below a legend, or beside one that comes down so far
+        let comes_down = |legend: &&LegendBox| {
+            legend.along == Along::Upward
+                && legend.bottom + 1.2 * letter > floor - (shown.tall() + 0.5) * letter
+        };
+        let corner = Corner {
+            left: margin,
+            beside: margin + wide,
+            right: legend.as_ref().filter(comes_down).map_or(width - margin, |_| right),
+            floor,
+        };
+        let left = if is_tall { margin } else { margin + wide };
         Self {
-            frame: Frame { left: margin, top, right, bottom: (floor - shade).max(top + 1.0) },
+            frame: Frame { left, top, right, bottom: (floor - shade).min(lowest).max(top + 1.0) },
             letter,
             margin,
-            floor,
+            corner,
+            shown,
             title,
             title_letter,
             subtitle,
             legend,
         }
+    }
+
+    pub fn has_title(&self) -> bool {
+        !self.title.is_empty()
+    }
+
+    pub fn has_subtitle(&self) -> bool {
+        !self.subtitle.is_empty()
+    }
+
+    pub fn has_legend(&self) -> bool {
+        self.legend.is_some()
     }
 
     pub fn write(&self, picture: &Picture, palette: &Palette, canvas: &mut Canvas) {
@@ -155,6 +204,13 @@ impl Layout {
             legend.write(picture, self.letter, palette, canvas);
         }
     }
+}
+
+/// Width and height of the axes.
+fn triad_size(picture: &Picture, letter: f64) -> [f64; 2] {
+    let [left, top, right, bottom] =
+        Mark::triad(axes(&picture.view), letter, &picture.palette()).reach(letter);
+    [right - left, bottom - top]
 }
 
 /// Contrast from which on letters can be read (WCAG 2.2, 1.4.3).
@@ -344,6 +400,12 @@ impl LegendBox {
         Self { left: left + by, right: right + by, edge: edge + by, middle: middle + by, ..self }
     }
 
+    /// The same so many pixels higher.
+    fn raised(self, by: f64) -> Self {
+        let Self { top, bottom, head, .. } = self;
+        Self { top: top - by, bottom: bottom - by, head: head - by, ..self }
+    }
+
     fn write(&self, picture: &Picture, letter: f64, palette: &Palette, canvas: &mut Canvas) {
         let whole = |value: f64| value.max(0.0) as usize;
         let (left, right) = (whole(self.left), whole(self.right));
@@ -403,10 +465,21 @@ impl LegendBox {
 }
 
 impl Picture {
-    /// Whether a legend that is asked for within the picture has room there.
-    pub fn has_room_for_legend(&self) -> bool {
-        let is_within = self.legend.as_ref().is_some_and(|legend| legend.place == LegendPlace::Beside);
-        !is_within || Layout::of(self, self.range()).legend.is_some()
+    /// The legend alone, as a strip of that width to stand below a sheet of pictures; `None` where there is none, or no room for it.
+    pub fn legend_below(&self, width: usize) -> Option<Image> {
+        let letter = (0.018 * width as f64).clamp(8.0, 20.0);
+        let margin = 1.4 * letter;
+        let named = Named { legend: self.legend.as_ref()?, scale: self.scale, range: self.range() };
+        // laid out in a strip that is high enough for any title, of which the free part is left out
+        let high = 40.0 * letter;
+        let room = Room { width: width as f64, height: high, top: 0.0, letter, margin };
+        let of = LegendBox::below(named, room)?;
+        let spare = of.head - 0.8 * letter;
+        let mut canvas = Canvas::new(width, (high - spare).ceil() as usize);
+        let palette = self.palette();
+        canvas.fill(0..width, 0..canvas.height, palette.bottom, 1.0);
+        of.raised(spare).write(self, letter, &palette, &mut canvas);
+        Some(canvas.finish())
     }
 
     /// The legend alone, as a strip of that height to stand beside a sheet of pictures; `None` where there is none.
@@ -464,13 +537,14 @@ impl Image {
         Self { width: self.width, height: self.height + other.height, pixels }
     }
 
-    /// The same in a size that is a little larger, to which its right and its lower border go on.
-    pub fn grown(&self, [width, height]: [usize; 2]) -> Self {
-        let mut pixels = Vec::with_capacity(width * height);
-        for row in 0..height {
-            let row = row.min(self.height.saturating_sub(1)) * self.width;
-            pixels
-                .extend((0..width).map(|column| self.pixels[row + column.min(self.width.saturating_sub(1))]));
+    /// The same in a size that is a little larger, in one colour on its right and below.
+    pub fn grown(&self, [width, height]: [usize; 2], background: [u8; 3]) -> Self {
+        let mut pixels = vec![background; width * height];
+        for (to, from) in
+            pixels.chunks_exact_mut(width.max(1)).zip(self.pixels.chunks_exact(self.width.max(1)))
+        {
+            let both = width.min(self.width);
+            to[..both].copy_from_slice(&from[..both]);
         }
         Self { width, height, pixels }
     }
@@ -508,6 +582,10 @@ fn wrapped(text: &str, letter: f64, room: f64, most: usize) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use souple_math::Vec3;
+
+    use super::super::marks::Placed;
+    use super::super::{ArrowKey, LEGEND, Marks, Surface};
     use super::*;
 
     /// No line is wider than the room; all words are there where lines are left, an ellipsis where not.
@@ -546,7 +624,7 @@ mod tests {
     #[test]
     fn the_subject_stands_beside_the_legend() {
         let tiny = Picture { size: [48, 40], legend: Some(Legend::default()), ..Picture::default() };
-        assert!(Layout::of(&tiny, (0.0, 1234.5)).legend.is_none() && !tiny.has_room_for_legend());
+        assert!(Layout::of(&tiny, (0.0, 1234.5)).legend.is_none() && tiny.left_out() == [LEGEND]);
         let names = vec![(0.0, "1234 tet".to_owned()), (1.0, "56 hex".to_owned())];
         for size in [[1280, 800], [300, 900], [640, 400], [200, 150], [120, 400], [160, 120], [240, 100]] {
             for (title, high, names) in [
@@ -601,5 +679,103 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// However small or narrow a picture is, and whatever it has of them: title, legend, axes, bar, key and the subject are within
+    /// it and none overlaps another; what has no room is left out, and told.
+    #[test]
+    fn nothing_overlaps() {
+        let points = [[0.0, 0.0, 0.0], [0.3, 0.1, 0.0], [0.0, 0.2, 0.1]].map(Vec3::from_array).to_vec();
+        let surface = Surface { points, triangles: vec![[0, 1, 2]], ..Surface::default() };
+        let key = |title: &str| ArrowKey { title: title.to_owned(), unit: "m/s".to_owned(), scale: 0.7 };
+        let mut told = 0;
+        for size in [
+            [1280, 800],
+            [600, 450],
+            [300, 200],
+            [120, 90],
+            [48, 32],
+            [300, 600],
+            [300, 900],
+            [400, 800],
+            [1500, 400],
+            [160, 120],
+            [240, 160],
+            [99, 400],
+            [2000, 2000],
+        ] {
+            for (marks, key) in [
+                (Marks { triad: true, scale_bar: true }, Some(key("displacement"))),
+                (Marks { triad: false, scale_bar: true }, Some(key("a field of a very long name indeed"))),
+                (Marks { triad: true, scale_bar: false }, None),
+            ] {
+                let (wanted_key, wanted_marks) = (key.is_some(), marks);
+                let picture = Picture {
+                    surfaces: vec![surface.clone()],
+                    size,
+                    title: "A bar of rubber that is bent by its own weight".to_owned(),
+                    subtitle: "0.125 s".to_owned(),
+                    legend: Some(Legend {
+                        title: "von Mises stress".to_owned(),
+                        range: Some((0.0, 1234.5)),
+                        ..Legend::default()
+                    }),
+                    marks,
+                    key,
+                    ..Picture::default()
+                };
+                let layout = Layout::of(&picture, (0.0, 1234.5));
+                let (letter, margin) = (layout.letter, layout.margin);
+                let [width, height] = size.map(|side| side as f64);
+                let widths = |lines: &[String], letter: f64| widest(lines, letter);
+                let title_bottom = margin
+                    + layout.title.len() as f64 * 1.65 * layout.title_letter
+                    + layout.subtitle.len() as f64 * 1.8 * letter;
+                let title_right =
+                    margin + widths(&layout.title, layout.title_letter).max(widths(&layout.subtitle, letter));
+                let camera = picture.camera(picture.bounds(), &layout);
+                let placed = Placed::of(&picture, &camera, &layout, &picture.palette());
+                let Frame { left, top, right, bottom } = layout.frame;
+                let mut boxes = vec![("title", [margin, margin, title_right, title_bottom])];
+                boxes.push(("subject", [left, top, right, bottom]));
+                boxes.extend(layout.legend.as_ref().map(|legend| {
+                    (
+                        "legend",
+                        match legend.along {
+                            Along::Upward => {
+                                [legend.edge, legend.head, width - margin, legend.bottom + 0.5 * letter]
+                            }
+                            Along::Rightward => [legend.edge, legend.head, width - margin, height - margin],
+                        },
+                    )
+                }));
+                let marks = [("axes", &placed.triad), ("bar", &placed.bar), ("key", &placed.key)];
+                boxes.extend(
+                    marks.iter().filter_map(|(name, mark)| Some((*name, mark.as_ref()?.reach(letter)))),
+                );
+                for (index, (name, a)) in boxes.iter().enumerate() {
+                    // lines end half of their width, a part of a letter, beyond the margin
+                    let within = a[0] >= 0.0 && a[1] >= 0.0 && a[2] <= width && a[3] <= height + 0.5 * letter;
+                    assert!(within && a[0] <= a[2] && a[1] <= a[3], "{size:?} {name} {a:?}");
+                    for (other, b) in &boxes[index + 1..] {
+                        let apart = a[2] <= b[0] + 1e-9
+                            || b[2] <= a[0] + 1e-9
+                            || a[3] <= b[1] + 1e-9
+                            || b[3] <= a[1] + 1e-9;
+                        assert!(apart, "{size:?} {name} {a:?} {other} {b:?}");
+                    }
+                }
+                let lost = picture.left_out();
+                let is_lost = |name: &str| lost.contains(&name);
+                assert_eq!(is_lost("axes"), wanted_marks.triad && placed.triad.is_none());
+                assert_eq!(is_lost("key of the arrows"), wanted_key && placed.key.is_none());
+                assert_eq!(is_lost(LEGEND), layout.legend.is_none());
+                if size[0] >= 1280 {
+                    assert!(lost.is_empty(), "{size:?} {lost:?}");
+                }
+                told += lost.len();
+            }
+        }
+        assert!(told > 0);
     }
 }

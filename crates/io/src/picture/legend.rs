@@ -38,6 +38,10 @@ const PREFIXES: [(i32, &str); 7] = [(-9, "n"), (-6, "µ"), (-3, "m"), (0, ""), (
 /// The names of a scale: round numbers, and both ends; a round number closer to an end than `nearest`, a share of the
 /// whole, gives way to it.
 pub(super) fn scale(low: f64, high: f64, unit: &str, about: usize, nearest: f64) -> Scale {
+    // between zero and the least number there is nothing to tell: all values are zero
+    if low.abs().max(high.abs()) <= f64::MIN_POSITIVE {
+        return Scale { ticks: vec![(0.0, "0".to_owned())], unit: unit.to_owned() };
+    }
     let (factor, unit) = scaled_unit(low.abs().max(high.abs()), unit);
     let (low, high) = (low / factor, high / factor);
     let span = high - low;
@@ -213,6 +217,11 @@ mod tests {
         assert_eq!(names(0.0, 0.02, ""), of(&["0", "5", "10", "15", "20"], "10⁻³"));
         assert_eq!(names(0.0, 2e12, "Pa"), of(&["0.0", "0.5", "1.0", "1.5", "2.0"], "10¹² Pa"));
         assert_eq!(names(2.0, 2.0, "m"), of(&["2"], "m"));
+        // of zeros, as of the least range about them, there is one number
+        for range in [0.0, f64::MIN_POSITIVE] {
+            assert_eq!(names(0.0, range, "m/s"), of(&["0"], "m/s"));
+            assert_eq!(names(-range, range, "m/s"), of(&["0"], "m/s"));
+        }
         for (low, high) in [(0.0, f64::INFINITY), (f64::NAN, 1.0), (-1e308, 1e308), (1.0, 1.0 + 1e-15)] {
             assert!(scale(low, high, "m", 5, 0.05).ticks.len() < 50);
         }

@@ -33,12 +33,13 @@ use camera::Camera;
 use ground::ShadedGround;
 use layout::Layout;
 use light::Lamps;
+use marks::Placed;
 use near::Corner;
 use raster::{PaintAt, Painted, Samples};
 use shadow::Shadow;
 
 pub use animated_png::write_animated_png;
-pub use camera::View;
+pub use camera::{Framed, View};
 pub use colour::Colour;
 pub use colour_map::{COLOUR_MAPS, ColourMap, ELEMENT_KINDS};
 pub use colour_scale::{COLOUR_SCALES, ColourScale};
@@ -48,7 +49,7 @@ pub use image::Image;
 pub(crate) use image::{Anchor, Canvas};
 pub use images::{ImageFile, Images};
 pub(crate) use legend::{labels, ticks};
-pub use marks::{ArrowKey, Marks};
+pub use marks::{ArrowKey, LEGEND, Marks, MarksStrip};
 pub use mesh_surface::{Between, Cut, MeshSurface};
 pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
 
@@ -60,8 +61,8 @@ pub struct Picture {
     pub strokes: Vec<Stroke>,
     pub ground: Option<Ground>,
     pub view: View,
-    /// Points that the camera stands back for; the bounds of the view where there are none.
-    pub framed: Vec<Vec3>,
+    /// What the camera stands back for; the bounds of the view where there is nothing of it.
+    pub framed: Vec<Framed>,
     /// Width and height [pixels].
     pub size: [usize; 2],
     /// Samples along each side of a pixel: 1 is rough, 2 good, 3 fine.
@@ -159,6 +160,9 @@ const GROUND_SHADOW: f32 = 0.3;
 /// Rows of pixels that are sampled at once, to keep memory small.
 const BAND: usize = 64;
 
+/// From the origin, in sizes of what is shown.
+const FAR: f64 = 1e3;
+
 /// Colours of a theme.
 struct Palette {
     top: Colour,
@@ -202,6 +206,9 @@ impl Picture {
     /// A size out of range; a surface whose lists do not fit each other.
     pub fn render(&self) -> Result<Image, IoError> {
         self.check()?;
+        if let Some(near) = self.about_origin() {
+            return near.render();
+        }
         let [width, height] = self.size;
         let range = self.range();
         let layout = Layout::of(self, range);
@@ -224,6 +231,7 @@ impl Picture {
             lamps,
             palette: self.palette(),
             ground,
+            fades: self.backdrop != Backdrop::Graded,
             open,
             strokes,
         };
@@ -234,11 +242,14 @@ impl Picture {
             scene.develop(&samples, &mut canvas);
         }
         layout.write(self, &scene.palette, &mut canvas);
-        self.marks.write((&scene.camera, bounds), &layout, &scene.palette, &mut canvas);
-        if let Some(key) = &self.key {
-            key.write((&scene.camera, bounds), (&layout, self.marks), &scene.palette, &mut canvas);
-        }
+        let marks = Placed::of(self, &scene.camera, &layout, &scene.palette);
+        marks.write(layout.letter, &scene.palette, &mut canvas);
         Ok(canvas.finish())
+    }
+
+    /// What is behind the subject, at the bottom.
+    pub fn background(&self) -> [u8; 3] {
+        self.palette().bottom.to_screen()
     }
 
     fn palette(&self) -> Palette {
@@ -268,6 +279,25 @@ impl Picture {
         self.surfaces.iter().enumerate().try_for_each(|(number, surface)| surface.check(number))
     }
 
+    /// The same about the origin, of what stands so far from it that maps of shadow and depth would round it away.
+    fn about_origin(&self) -> Option<Self> {
+        let bounds = self.bounds();
+        let by = -bounds.centre();
+        if !by.is_finite() || by.length() <= FAR * bounds.diagonal() {
+            return None;
+        }
+        let mut near = self.clone();
+        let points = near.surfaces.iter_mut().flat_map(|surface| &mut surface.points);
+        let points = points.chain(near.strokes.iter_mut().flat_map(|stroke| stroke.shape.points_mut()));
+        let points = points.chain(near.framed.iter_mut().map(|ball| &mut ball.centre));
+        let points = points.chain(near.ground.iter_mut().map(|ground| &mut ground.point));
+        points.chain(near.view.eye.iter_mut()).for_each(|point| *point += by);
+        if let Some(bounds) = &mut near.view.bounds {
+            *bounds = BoundingBox { low: bounds.low + by, high: bounds.high + by };
+        }
+        Some(near)
+    }
+
     fn shown_points(&self) -> impl Iterator<Item = Vec3> + '_ {
         let corners = self.surfaces.iter().flat_map(|surface| {
             surface.triangles.iter().flatten().map(|corner| surface.points[*corner as usize])
@@ -285,7 +315,7 @@ impl Picture {
 
     fn camera(&self, bounds: BoundingBox, layout: &Layout) -> Camera {
         let height = self.size[1] as f64;
-        let framed = self.framed.iter().copied().filter(|point| point.is_finite());
+        let framed = self.framed.iter().copied().filter(|ball| ball.centre.is_finite());
         match self.view.bounds {
             _ if framed.clone().next().is_some() => Camera::fitted(&self.view, framed, layout.frame, height),
             Some(_) => Camera::fitted(&self.view, corners_of(bounds), layout.frame, height),
@@ -303,7 +333,12 @@ impl Picture {
         let (low, high) = given.or_else(of_surfaces).unwrap_or((0.0, 1.0));
         let spread = |range| self.scale.spread(self.colours.spread(range));
         let (low, high) = if given.is_some() { (low, high) } else { spread((low, high)) };
-        if low < high { (low, high) } else { (low, low + low.abs().max(f64::MIN_POSITIVE)) }
+        match () {
+            () if low < high => (low, high),
+            // zeros have the colour of zero
+            () if low == 0.0 => self.colours.spread((0.0, f64::MIN_POSITIVE)),
+            () => (low, low + low.abs()),
+        }
     }
 
     fn painted(&self, camera: &Camera, range: (f64, f64)) -> Vec<Painted> {
@@ -350,6 +385,17 @@ fn corners_of(bounds: BoundingBox) -> impl Iterator<Item = Vec3> {
     })
 }
 
+/// Part of a side of a picture over which its ground fades at either end.
+const FADED: f64 = 0.12;
+
+/// How far a place along a side is from both of its ends: nothing at them, one beyond the part that fades.
+fn inside(along: f64, side: usize) -> f32 {
+    let part = along / side as f64;
+    let near = (part.min(1.0 - part) / FADED).clamp(0.0, 1.0);
+    // without a crease where it begins
+    (near * near * (3.0 - 2.0 * near)) as f32
+}
+
 /// What samples are developed with.
 struct Scene {
     camera: Camera,
@@ -357,6 +403,8 @@ struct Scene {
     shadow: Shadow,
     palette: Palette,
     ground: Option<ShadedGround>,
+    /// Whether the ground goes over into the background towards the borders, as those of pictures that stand side by side.
+    fades: bool,
     /// Share of the sky that each pixel sees.
     open: Vec<f32>,
     strokes: Vec<stroke::Drawn>,
@@ -374,7 +422,8 @@ impl Scene {
                 let pixel = pixel_row * canvas.width + column / n;
                 let (x, y) = samples.position(column, row);
                 let sample = &samples.samples[row * samples.width + column];
-                let (mut colour, inverse_depth) = self.light(sample, x, y, pixel, canvas.height);
+                let (mut colour, inverse_depth) =
+                    self.light(sample, [x, y], pixel, [canvas.width, canvas.height]);
                 for stroke in &strokes {
                     colour = stroke.over(colour, [x, y], inverse_depth);
                 }
@@ -383,16 +432,25 @@ impl Scene {
         }
     }
 
-    fn light(&self, sample: &raster::Sample, x: f64, y: f64, pixel: usize, height: usize) -> (Colour, f32) {
+    /// `size`: of the picture [pixels].
+    fn light(
+        &self,
+        sample: &raster::Sample,
+        [x, y]: [f64; 2],
+        pixel: usize,
+        size: [usize; 2],
+    ) -> (Colour, f32) {
         let ray = self.camera.ray(x, y);
         let below = self.ground.as_ref().map_or(0.0, |ground| ground.inverse_depth(&self.camera, ray));
         if sample.inverse_depth <= below {
-            let background = self.palette.background(y, height);
+            let background = self.palette.background(y, size[1]);
             let colour = match &self.ground {
                 Some(ground) if below > 0.0 => {
                     let colour = ground.colour(&self.camera, ray, background, self.palette.grid);
                     let place = self.camera.eye + ray * (1.0 / f64::from(below));
-                    colour.scaled(1.0 - GROUND_SHADOW * (1.0 - self.shadow.lit(place, None, x, y)))
+                    let shadow = GROUND_SHADOW * (1.0 - self.shadow.lit(place, None, x, y));
+                    let seen = if self.fades { inside(x, size[0]).min(inside(y, size[1])) } else { 1.0 };
+                    background.mixed(colour.scaled(1.0 - shadow), seen)
                 }
                 _ => background,
             };

@@ -182,6 +182,8 @@ impl Painted {
             normal = normal.map(|component| -component);
         }
         let (normal, albedo) = (normalised(normal), self.albedo(weights));
+        // lines are seen from all sides, and have no inside that lies in the dark
+        let inside = inside && !self.wireframe;
         Sample { inverse_depth, normal, albedo, inside, shows_through: !self.see_through }
     }
 

@@ -83,6 +83,14 @@ impl StrokeShape {
             Self::Arrow(from, to) => vec![*from, *to],
         }
     }
+
+    pub(super) fn points_mut(&mut self) -> Vec<&mut Vec3> {
+        match self {
+            Self::Dot(point) => vec![point],
+            Self::Line(points) => points.iter_mut().collect(),
+            Self::Arrow(from, to) => vec![from, to],
+        }
+    }
 }
 
 impl Surface {

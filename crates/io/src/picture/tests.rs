@@ -235,3 +235,52 @@ fn sections_of_warped_cells_close() {
         }
     }
 }
+
+/// On one colour the ground goes over into it: its border is the background, whatever stands on it and wherever shadows fall, so
+/// that pictures that stand side by side have no seam; and what a sheet leaves free has the same colour.
+#[test]
+fn grounds_fade_into_one_colour() {
+    let surface = MeshSurface::of(&ball("hex8")).surface;
+    for backdrop in [Backdrop::Plain, Backdrop::White] {
+        let picture = Picture {
+            surfaces: vec![surface.clone()],
+            ground: Some(Ground { point: -Vec3::Y, normal: Vec3::Y }),
+            backdrop,
+            size: [160, 120],
+            ..Picture::default()
+        };
+        let image = picture.render().unwrap();
+        let near = |pixel: [u8; 3]| pixel.iter().zip(picture.background()).all(|(a, b)| a.abs_diff(b) <= 1);
+        for (index, pixel) in image.pixels.iter().enumerate() {
+            let (column, row) = (index % 160, index / 160);
+            let is_border = column == 0 || column == 159 || row == 0 || row == 119;
+            assert!(!is_border || near(*pixel), "{backdrop:?} {column} {row} {pixel:?}");
+        }
+        assert!(image.pixels.iter().any(|pixel| !near(*pixel)));
+        let sheet =
+            Image::sheet(&vec![image; 3], 2, picture.background()).grown([330, 250], picture.background());
+        for (index, pixel) in sheet.pixels.iter().enumerate() {
+            let (column, row) = (index % 330, index / 330);
+            let is_free = (column >= 160 && row >= 120) || column >= 320 || row >= 240;
+            assert!(!is_free || *pixel == picture.background(), "{column} {row}");
+        }
+    }
+}
+
+/// A ball is drawn the same wherever it stands: the centre is a power of two, to which its coordinates are rounded by `2⁻²⁶` of its
+/// size at most, which turns a normal by less than a step of a colour.
+#[test]
+fn pictures_do_not_depend_on_the_place() {
+    let drawn = |by: Vec3| {
+        let mut surface = MeshSurface::of(&ball("hex8")).surface;
+        surface.points.iter_mut().for_each(|point| *point += by);
+        let ground = Some(Ground { point: by - Vec3::Y, normal: Vec3::Y });
+        Picture { surfaces: vec![surface], ground, size: [200, 150], ..Picture::default() }.render().unwrap()
+    };
+    let near = drawn(Vec3::ZERO);
+    let far = drawn(Vec3::new(f64::from(1 << 20), -f64::from(1 << 26), 0.0));
+    let steps = |a: &[u8; 3], b: &[u8; 3]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+    // a sample at the outline may fall on the other side of it
+    let off = near.pixels.iter().zip(&far.pixels).filter(|(a, b)| steps(a, b) > 2).count();
+    assert!(off < near.pixels.len() / 1000, "{off} pixels differ");
+}

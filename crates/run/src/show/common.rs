@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use souple_io::picture::{ColourMap, ColourScale, Cut, MeshSurface};
+use souple_io::picture::{ColourMap, ColourScale, Cut, Framed, MeshSurface};
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_table::four_digits;
 
-use super::figure::Figure;
+use super::figure::{Arrows, Figure, Foot};
 use super::{BodyMoment, Moment, Show, ShowError, Stage, vectors};
 use crate::links::{LINK_STATE, RADIUS};
 
@@ -16,7 +16,7 @@ use crate::links::{LINK_STATE, RADIUS};
 pub struct Common {
     pub(super) bounds: BoundingBox,
     /// What is farthest out in any direction, at any moment; none where the bounds must do.
-    pub(super) framed: Vec<Vec3>,
+    pub(super) framed: Vec<Framed>,
     /// About as much as a pixel shows [m].
     pub(super) pixel: f64,
     pub(super) range: Option<(f64, f64)>,
@@ -24,7 +24,8 @@ pub struct Common {
     pub(super) beyond: [bool; 2],
     /// Digits behind the point that tell moments apart [s].
     pub(super) time_digits: usize,
-    pub(super) arrow_scale: f64,
+    /// Metres of arrow for each unit of the field; `None` where no arrow is longer than zero.
+    pub(super) arrow_scale: Option<f64>,
     /// What is to be said of the pictures.
     pub notes: Vec<String>,
 }
@@ -39,13 +40,30 @@ const TUBES: [f64; 2] = [0.0012, 0.0035];
 const OF_EDGE: f64 = 0.12;
 
 /// The range of colours for values from `low` to `high`: from zero where all are one value but for rounding, and to
-/// `noise`, what rounding makes of zero, where there is nothing more.
+/// `noise`, what rounding makes of zero, where there is nothing more; none but zero where that is all there is.
 fn spread((low, high): (f64, f64), noise: f64) -> (f64, f64) {
     let most = low.abs().max(high.abs());
+    if most == 0.0 {
+        return (0.0, 0.0);
+    }
     if most <= noise {
         return (if low < 0.0 { -noise } else { 0.0 }, noise);
     }
     if high - low > (ONE_VALUE * most).max(noise) { (low, high) } else { (low.min(0.0), high.max(0.0)) }
+}
+
+/// What to say of a range that has none of the values.
+fn all_beyond((least, most): (f64, f64), (low, high): (f64, f64), unit: &str) -> Option<String> {
+    let side = if least >= high {
+        "above"
+    } else if most <= low {
+        "below"
+    } else {
+        return None;
+    };
+    let [least, most, low, high] = [least, most, low, high].map(four_digits);
+    let range = format!("{low} to {high} {unit}");
+    Some(format!("all values, {least} to {most} {unit}, are {side} the range {}", range.trim_end()))
 }
 
 /// What to say of a diverging map whose colours are not those of values about zero.
@@ -84,15 +102,15 @@ fn extremes(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 /// of the size, farther, which the margin of pictures has room for.
 const DIRECTIONS: usize = 128;
 
-/// The points that are farthest out in each of many directions: a camera that has them in its picture has all.
+/// The points and balls that are farthest out in each of many directions: a camera that has them in its picture has all.
 struct Outermost(Vec<Farthest>);
 
-/// The point that is farthest out in a direction.
+/// What is farthest out in a direction.
 struct Farthest {
     direction: Vec3,
-    /// [m]; infinitely far back before the first point.
+    /// [m]; infinitely far back before there is anything.
     along: f64,
-    point: Vec3,
+    ball: Framed,
 }
 
 impl Default for Outermost {
@@ -104,29 +122,30 @@ impl Default for Outermost {
             let (sin, cos) = libm::sincos(golden * index as f64);
             let across = (1.0 - z * z).sqrt();
             let direction = Vec3::new(across * cos, across * sin, z);
-            Farthest { direction, along: f64::NEG_INFINITY, point: Vec3::ZERO }
+            Farthest { direction, along: f64::NEG_INFINITY, ball: Framed::default() }
         };
         Self((0..DIRECTIONS).map(nothing_yet).collect())
     }
 }
 
 impl Outermost {
-    fn add<'a>(&mut self, points: impl IntoIterator<Item = &'a Vec3>) {
-        for point in points.into_iter().filter(|point| point.is_finite()) {
+    fn add(&mut self, balls: impl IntoIterator<Item = impl Into<Framed>>) {
+        let balls = balls.into_iter().map(Into::into);
+        for ball in balls.filter(|ball: &Framed| ball.centre.is_finite() && ball.radius.is_finite()) {
             for farthest in &mut self.0 {
-                let along = farthest.direction.dot(*point);
+                let along = farthest.direction.dot(ball.centre) + ball.radius;
                 if along > farthest.along {
-                    (farthest.along, farthest.point) = (along, *point);
+                    (farthest.along, farthest.ball) = (along, ball);
                 }
             }
         }
     }
 
-    fn points(self) -> Vec<Vec3> {
+    fn balls(self) -> Vec<Framed> {
         let met = self.0.into_iter().filter(|farthest| farthest.along.is_finite());
-        let mut points: Vec<Vec3> = met.map(|farthest| farthest.point).collect();
-        points.dedup();
-        points
+        let mut balls: Vec<Framed> = met.map(|farthest| farthest.ball).collect();
+        balls.dedup();
+        balls
     }
 }
 
@@ -143,6 +162,7 @@ pub struct Gathering<'a> {
     /// Values that have no colour, of how many.
     colourless: [usize; 2],
     longest_arrow: f64,
+    arrows: Vec<Foot>,
 }
 
 impl<'a> Gathering<'a> {
@@ -157,6 +177,7 @@ impl<'a> Gathering<'a> {
             noise: 0.0,
             colourless: [0; 2],
             longest_arrow: 0.0,
+            arrows: Vec::new(),
         }
     }
 
@@ -176,8 +197,12 @@ impl<'a> Gathering<'a> {
         // what is cut away is not made room for
         let is_left = |point: &Vec3| figure.cut.is_none_or(|cut| (*point - cut.point).dot(cut.normal) <= 0.0);
         for body in moment.bodies.iter().filter(|body| body.is_drawable()) {
-            self.bounds = self.bounds.union(BoundingBox::of(body.positions.iter().copied()));
-            self.framed.add(body.positions.iter().filter(|point| is_left(point)));
+            for (point, ball) in body.balls().enumerate() {
+                self.bounds = self.bounds.union(BoundingBox::of([ball.centre]).grown(ball.radius));
+                if is_left(&body.positions[point]) {
+                    self.framed.add([ball]);
+                }
+            }
             if let Some(quantity) = &quantity {
                 self.noise = self.noise.max(quantity.noise(body, self.stage.stiffness));
                 let values = quantity.at_points(body).unwrap_or_default();
@@ -191,6 +216,7 @@ impl<'a> Gathering<'a> {
             let arrows = figure.arrows.as_ref().and_then(|arrows| vectors(body, &arrows.field));
             let lengths = arrows.iter().flatten().map(|v| v.length()).filter(|length| length.is_finite());
             self.longest_arrow = lengths.fold(self.longest_arrow, f64::max);
+            self.arrows.extend(figure.feet_of(body));
         }
         Ok(())
     }
@@ -201,18 +227,26 @@ impl<'a> Gathering<'a> {
         let Self { figure, stage, mut bounds, mut framed, .. } = self;
         for time in &self.times {
             let shapes = stage.points_near(*time, bounds);
-            framed.add(&shapes);
+            framed.add(shapes.iter().copied());
             if !shapes.is_empty() {
                 bounds = bounds.union(BoundingBox::of(shapes));
             }
         }
-        let mut framed = framed.points();
+        let fitted = bounds.diagonal() / (6.0 * self.longest_arrow);
+        let arrows = figure.arrows.as_ref();
+        let arrow_scale =
+            arrows.filter(|_| self.longest_arrow > 0.0).map(|arrows| arrows.scale.unwrap_or(fitted));
+        let tips = || arrow_scale.iter().flat_map(|scale| self.arrows.iter().map(|foot| foot.tip(*scale)));
+        framed.add(tips());
+        let mut framed = framed.balls();
         // exploded bodies are larger about their middles; those of all bodies together are near enough
         if figure.explode > 0.0 {
             if figure.cut.is_some() && !framed.is_empty() {
-                bounds = BoundingBox::of(framed.iter().copied());
+                let boxes = framed.iter().map(|ball| BoundingBox::of([ball.centre]).grown(ball.radius));
+                bounds = boxes.fold(BoundingBox::EMPTY, BoundingBox::union);
             }
             bounds = bounds.grown(0.5 * figure.explode * bounds.diagonal() / 3f64.sqrt());
+            bounds = bounds.union(BoundingBox::of(tips().filter(|tip| tip.is_finite())));
             framed.clear();
         }
         let [colourless, values] = self.colourless;
@@ -233,13 +267,11 @@ impl<'a> Gathering<'a> {
             let of_values = |range| if is_log { by_powers(range) } else { linear(range) };
             range = figure.colours.own_range().or(self.found.map(of_values));
         }
-        let mut arrow_scale = 1.0;
-        if let Some(arrows) = &figure.arrows {
-            let fitted =
-                if self.longest_arrow > 0.0 { bounds.diagonal() / (6.0 * self.longest_arrow) } else { 1.0 };
-            arrow_scale = arrows.scale.unwrap_or(fitted);
-        }
+        let unit = figure.quantity().map_or("", |quantity| quantity.unit());
         let mut notes = Vec::new();
+        if let (Some(Arrows { field, .. }), None) = (arrows, arrow_scale) {
+            notes.push(format!("there is no arrow: all values of `{field}` are zero"));
+        }
         if colourless > 0 {
             notes.push(format!(
                 "{colourless} of {values} values are below 0 and have no place on a scale of powers of ten: they are grey"
@@ -250,6 +282,7 @@ impl<'a> Gathering<'a> {
         {
             notes.push(format!("values go down to {least:.1e}: those below {low:.1e} have the first colour"));
         }
+        notes.extend(self.found.zip(figure.range).and_then(|(found, range)| all_beyond(found, range, unit)));
         if figure.colours == ColourMap::Diverging {
             notes.extend(about_zero(figure.range, self.found));
         }
@@ -330,6 +363,12 @@ impl BodyMoment {
         (field.values.len() == self.mesh.cell_count()).then_some(field.values.as_slice())
     }
 
+    /// Its points, each with its radius where it is a ball.
+    fn balls(&self) -> impl Iterator<Item = Framed> + '_ {
+        let radius = |point: usize| self.radii().map_or(0.0, |radii| radii[point].max(0.0));
+        self.positions.iter().enumerate().map(move |(point, x)| Framed { centre: *x, radius: radius(point) })
+    }
+
     /// Of each point that is a ball [m]; `None` where none is.
     pub(super) fn radii(&self) -> Option<&[f64]> {
         let field = self.point_fields.iter().find(|field| field.name == RADIUS)?;
@@ -347,7 +386,11 @@ fn refuse_unknown_vectors(moment: &Moment, name: &str) -> Result<(), ShowError> 
     let mut known: Vec<&str> = fields.map(|field| field.name.as_str()).collect();
     known.sort_unstable();
     known.dedup();
-    let expected = format!("a vector of each point: {}", known.join(", "));
+    let expected = if known.is_empty() {
+        "a body with vectors on its points, as those of a run's frames are".to_owned()
+    } else {
+        format!("a vector of each point: {}", known.join(", "))
+    };
     Err(ShowError::UnknownField { name: name.to_owned(), expected })
 }
 
@@ -365,19 +408,24 @@ mod tests {
         };
         let points: Vec<Vec3> = (0..5000).map(ball).collect();
         let mut outermost = Outermost::default();
-        outermost.add(&points);
-        let kept = outermost.points();
+        outermost.add(points.iter().copied());
+        let kept = outermost.balls();
         for direction in &points {
-            let farthest = kept.iter().map(|point| point.dot(*direction)).fold(0.0, f64::max);
+            let farthest = kept.iter().map(|ball| ball.centre.dot(*direction)).fold(0.0, f64::max);
             assert!(farthest > 15.5_f64.to_radians().cos(), "{farthest} along {direction:?}");
         }
         let corners: Vec<Vec3> = (0..8)
             .map(|i| Vec3::new((i & 1) as f64, (i >> 1 & 1) as f64 * 0.3, (i >> 2) as f64 * 2.0))
             .collect();
         let mut outermost = Outermost::default();
-        outermost.add([&corners[..], &[Vec3::new(0.5, 0.1, 1.0)]].concat().iter());
-        let kept = outermost.points();
-        assert!(corners.iter().all(|corner| kept.contains(corner)), "{kept:?}");
+        outermost.add([&corners[..], &[Vec3::new(0.5, 0.1, 1.0)]].concat());
+        let kept = outermost.balls();
+        assert!(corners.iter().all(|corner| kept.contains(&Framed::from(*corner))), "{kept:?}");
+        // a ball within others is kept where it reaches out of them
+        let mut outermost = Outermost::default();
+        outermost.add(corners);
+        outermost.add([Framed { centre: Vec3::new(0.5, 0.1, 1.0), radius: 1.5 }]);
+        assert!(outermost.balls().iter().any(|ball| ball.radius == 1.5));
     }
 
     /// The middle of a diverging map is zero, or it is said what it is.
@@ -387,6 +435,15 @@ mod tests {
         assert_eq!(said(None, (-1.0, 3.0)) + &said(Some((-2.0, 2.0)), (1.0, 3.0)), "");
         assert!(said(None, (1.0, 3.0)).contains("the values, 1 to 3, are on one side of zero"));
         assert!(said(Some((-0.1, 0.02)), (-1.0, 3.0)).contains("stands for -0.04, the middle of the range"));
+    }
+
+    /// A range that has none of the values is told with its unit, in which it may have been mistaken.
+    #[test]
+    fn ranges_without_values_are_told() {
+        let said = |found, range| all_beyond(found, range, "Pa").unwrap_or_default();
+        assert_eq!(said((2e3, 5e3), (0.0, 1e4)) + &said((2e3, 5e3), (0.0, 3e3)), "");
+        assert!(said((2e3, 5e3), (0.0, 1.0)).ends_with("5000 Pa, are above the range 0 to 1 Pa"));
+        assert!(said((0.0, 0.5), (1.0, 2.0)).contains("are below the range"));
     }
 
     /// Times of a picture, and of several, differ where they are written.
@@ -412,6 +469,6 @@ mod tests {
         assert_eq!(spread((3.0, 3.0 + 1e-9), 1e-12), (0.0, 3.0 + 1e-9));
         assert_eq!(spread((1e-12, 8e-12), 1e-9), (0.0, 1e-9));
         assert_eq!(spread((-1e-12, 8e-12), 1e-9), (-1e-9, 1e-9));
-        assert_eq!(spread((0.0, 0.0), 0.0), (0.0, 0.0));
+        assert_eq!([spread((0.0, 0.0), 0.0), spread((0.0, 0.0), 1e-9)], [(0.0, 0.0); 2]);
     }
 }

@@ -43,6 +43,7 @@ pub struct Figure {
     pub shrink: f64,
     pub arrows: Option<Arrows>,
     pub edges: EdgeStyle,
+    pub worn: Worn,
     /// Height of letters, in those of a picture that is looked at by itself.
     pub letters: f64,
 }
@@ -54,6 +55,15 @@ pub enum Floor {
     None,
     /// A floor a little below the bodies, which touches nothing and is in the picture alone.
     Below,
+}
+
+/// How much is seen of a body that wears a skin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Worn {
+    #[default]
+    Whole,
+    /// Its arrows, on the skin that hides it.
+    Arrows,
 }
 
 /// How far below the bodies, as a part of their size: near enough for their shade, clear of touching.
@@ -89,6 +99,7 @@ impl Default for Figure {
             shrink: 0.0,
             arrows: None,
             edges: EdgeStyle::Drawn,
+            worn: Worn::default(),
             letters: 1.0,
         }
     }
@@ -112,6 +123,20 @@ const ROOM_OF_ARROWS: f64 = 800.0;
 const LEAST_ARROWS: f64 = 40.0;
 /// Most dots of a body.
 const MOST_DOTS: usize = 100_000;
+
+/// Where an arrow begins [m], and the vector that it shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    from: Vec3,
+    vector: Vec3,
+}
+
+impl Foot {
+    /// Where it ends, at so many metres for each unit of the field.
+    pub fn tip(self, scale: f64) -> Vec3 {
+        self.from + self.vector * scale
+    }
+}
 
 impl Figure {
     /// Pictures of all moments of a show, in one frame and one range of colours, and what is to be said of them.
@@ -143,9 +168,15 @@ impl Figure {
         let mut surfaces = Vec::new();
         let mut strokes = Vec::new();
         let mut has_dots = false;
-        for (index, body) in moment.bodies.iter().enumerate().filter(|(_, body)| body.is_drawable()) {
+        let is_hidden = |body: &&BodyMoment| self.worn == Worn::Arrows && moment.wears_skin(body);
+        let all = moment.bodies.iter().filter(|body| body.is_drawable());
+        for body in all {
+            strokes.extend(common.arrow_scale.iter().flat_map(|scale| self.arrows_of(body, *scale)));
+        }
+        // colours of bodies go by their number among those that are seen
+        let seen = moment.bodies.iter().filter(|body| !is_hidden(body)).enumerate();
+        for (index, body) in seen.filter(|(_, body)| body.is_drawable()) {
             surfaces.extend(self.surfaces(body, index, common));
-            strokes.extend(self.arrows_of(body, common.arrow_scale));
             strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
             let dots = self.dots_of(body, index, common.range);
             has_dots |= !dots.is_empty();
@@ -164,9 +195,9 @@ impl Figure {
             names: names_of(self.colours, moment),
             beyond: common.beyond,
         });
-        let key = self.arrows.as_ref().map(|arrows| {
+        let key = self.arrows.as_ref().zip(common.arrow_scale).map(|(arrows, scale)| {
             let quantity = Quantity::parse(&arrows.field);
-            ArrowKey { title: quantity.title(), unit: quantity.unit().to_owned(), scale: common.arrow_scale }
+            ArrowKey { title: quantity.title(), unit: quantity.unit().to_owned(), scale }
         });
         let PictureView { direction, up } = stage.view;
         let view = self.view.unwrap_or_else(|| View::along(direction, up));
@@ -196,7 +227,14 @@ impl Figure {
     }
 
     fn floor_below(&self, common: &Common, up: Vec3) -> Option<Ground> {
-        let lowest = common.framed.iter().map(|point| point.dot(up)).reduce(f64::min)?;
+        // bodies that are taken apart are framed by their bounds
+        let corners = (0..8).map(|corner| {
+            let of =
+                |axis: usize| if corner >> axis & 1 == 0 { common.bounds.low } else { common.bounds.high };
+            Vec3::new(of(0).x, of(1).y, of(2).z).dot(up)
+        });
+        let framed = common.framed.iter().map(|ball| ball.centre.dot(up) - ball.radius).reduce(f64::min);
+        let lowest = framed.or_else(|| corners.reduce(f64::min))?;
         let height = lowest - FLOOR_GAP * common.bounds.diagonal();
         (self.floor == Floor::Below).then(|| Ground { point: up * height, normal: up })
     }
@@ -277,24 +315,40 @@ impl Figure {
         loose.step_by(every).map(dot).collect()
     }
 
-    fn arrows_of(&self, body: &BodyMoment, scale: f64) -> Vec<Stroke> {
+    /// Where arrows begin and what they show, of as many points of a body as are drawn.
+    pub(super) fn feet_of(&self, body: &BodyMoment) -> Vec<Foot> {
         let Some(field) = self.arrows.as_ref().and_then(|arrows| vectors(body, &arrows.field)) else {
             return Vec::new();
         };
-        let points = MeshSurface::of(&body.mesh).points;
+        let of_surface = MeshSurface::of(&body.mesh).points.into_iter().map(|point| point.from as usize);
+        let mut points: Vec<usize> = of_surface.collect();
+        // particles and cables have no surface: all of their points are seen
+        if points.is_empty() {
+            points = (0..body.positions.len()).collect();
+        }
         let room = self.size[0].min(self.size[1]) as f64 / ROOM_OF_ARROWS;
         let most = (MOST_ARROWS * room * room).clamp(LEAST_ARROWS, MOST_ARROWS) as usize;
         let every = points.len().div_ceil(most).max(1);
+        let foot = |point: usize| {
+            let vector = field[point];
+            // a ball hides what is within: an arrow begins where it leaves it
+            let radius = body.radii().map_or(0.0, |radii| radii[point].max(0.0));
+            let from = body.positions[point] + vector.try_normalised()? * radius;
+            (vector.is_finite() && from.is_finite()).then_some(Foot { from, vector })
+        };
+        points.into_iter().step_by(every).filter_map(foot).collect()
+    }
+
+    fn arrows_of(&self, body: &BodyMoment, scale: f64) -> Vec<Stroke> {
         let colour = Colour::from_screen(match self.theme {
             Theme::Light => ARROW,
             Theme::Dark => ARROW_ON_DARK,
         });
-        let stroke = |point: &souple_io::picture::Between| {
-            let (from, vector) = (body.positions[point.from as usize], field[point.from as usize] * scale);
-            let shape = StrokeShape::Arrow(from, from + vector);
-            vector.is_finite().then_some(Stroke { shape, colour, width: 2.0 })
+        let stroke = |foot: Foot| {
+            let shape = StrokeShape::Arrow(foot.from, foot.tip(scale));
+            Stroke { shape, colour, width: 2.0 }
         };
-        points.iter().step_by(every).filter_map(stroke).collect()
+        self.feet_of(body).into_iter().map(stroke).collect()
     }
 
     /// The boundaries of all bodies and shapes over all moments, coloured as at the last, and what is to be said of them.

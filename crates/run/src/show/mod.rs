@@ -23,7 +23,7 @@ use souple_scene::{BodyInfo, SkinInfo};
 use crate::Session;
 
 pub use common::{Common, Gathering};
-pub use figure::{Arrows, Figure, Floor};
+pub use figure::{Arrows, Figure, Floor, Worn};
 pub use film::{FilmError, write_film};
 pub use gap::GAP;
 pub use quantity::number_of;
@@ -33,6 +33,11 @@ pub use stage::{Stage, obstacles_of};
 /// The map whose colours mean what a quantity says, `element` or `adaptation`; `None` where any will do.
 pub fn map_of(quantity: &str) -> Option<ColourMap> {
     quantity::Quantity::parse(quantity).own_map()
+}
+
+/// The unit of a quantity; nothing where it has none that is known.
+pub fn unit_of(quantity: &str) -> &'static str {
+    quantity::Quantity::parse(quantity).unit()
 }
 
 /// All bodies and skins at one time.
@@ -131,9 +136,7 @@ fn vectors(body: &BodyMoment, name: &str) -> Option<Vec<Vec3>> {
 impl Moment {
     /// Whether a body has a field of this name, on points or cells.
     pub fn has_field(&self, name: &str) -> bool {
-        let mut fields =
-            self.bodies.iter().flat_map(|body| body.point_fields.iter().chain(&body.cell_fields));
-        fields.any(|field| field.name == name)
+        self.bodies.iter().any(|body| body.has_field(name))
     }
 
     /// Whether all of it can be drawn.
@@ -172,6 +175,12 @@ impl Moment {
         Self { time: world.time(), bodies: bodies.chain(session.skins.iter().map(skin)).collect() }
     }
 
+    /// Whether a body wears one of the skins.
+    pub fn wears_skin(&self, body: &BodyMoment) -> bool {
+        let skin = crate::frames::worn_by(&body.name);
+        self.bodies.iter().any(|other| other.name == skin)
+    }
+
     /// Without the bodies that wear a skin, which hides them.
     #[must_use]
     pub fn without_worn(mut self) -> Self {
@@ -188,6 +197,11 @@ fn frames_of(world: &World, info: &BodyInfo) -> Vec<[Vec3; 4]> {
 }
 
 impl BodyMoment {
+    /// Whether it has a field of this name, on points or cells.
+    pub fn has_field(&self, name: &str) -> bool {
+        self.point_fields.iter().chain(&self.cell_fields).any(|field| field.name == name)
+    }
+
     /// Whether it can be drawn: it is finite, and has not grown beyond all bounds; of one that has, a point or two
     /// would be seen.
     fn is_drawable(&self) -> bool {

@@ -151,7 +151,7 @@ impl<'a> Quantity<'a> {
             None => self.field.to_owned(),
         };
         let expected = if known.is_empty() {
-            "none".to_owned()
+            "element or none: no body has fields".to_owned()
         } else {
             format!("one of {}, element, none", known.join(", "))
         };

@@ -73,6 +73,39 @@ impl Reel {
         Self { stage, times, takes: Takes::Held(moments), against: None }
     }
 
+    /// A mesh and its fields as its file has them, and what is to be said of them.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn of_file(path: &Path) -> Result<(Self, Vec<String>), ShowError> {
+        let souple_io::Dataset { mesh, point_fields, cell_fields, notes, .. } =
+            souple_io::read_dataset(path)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let mut reel = Self::of_mesh(&name, mesh);
+        if let Takes::Held(moments) = &mut reel.takes {
+            for body in moments.iter_mut().flat_map(|moment| &mut moment.bodies) {
+                (body.point_fields, body.cell_fields) = (point_fields.clone(), cell_fields.clone());
+            }
+        }
+        Ok((reel, notes))
+    }
+
+    /// One body, from the list of its frames.
+    ///
+    /// # Errors
+    /// The list cannot be read, or names no frame.
+    pub fn of_series(list: &Path) -> Result<Self, ShowError> {
+        let (times, files): (Vec<f64>, Vec<PathBuf>) = read_series(list)?.into_iter().unzip();
+        let name = list.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if times.is_empty() {
+            let found = "it names no frame".to_owned();
+            return Err(ShowError::NoFrames { folder: list.to_owned(), found });
+        }
+        let mut stage = Stage::default();
+        stage.title.clone_from(&name);
+        Ok(Self { stage, times, takes: Takes::Files(vec![Series { name, files }]), against: None })
+    }
+
     /// Without the bodies that wear a skin, which hides them.
     #[must_use]
     pub fn without_worn(mut self) -> Self {

@@ -25,7 +25,7 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     settings: Vec<String>,
     /// Worker threads of the world
-    #[arg(long)]
+    #[arg(long, value_parser = super::thread_count)]
     threads: Option<usize>,
     /// Writes a recording that `souple replay` repeats bit for bit, without devices and without a clock
     #[arg(long, value_name = "FILE")]

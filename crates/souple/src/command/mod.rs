@@ -360,7 +360,11 @@ pub fn count<const N: u64>(text: &str) -> Result<u64, String> {
 /// A time on the command line [s]: a number of seconds, or a quantity such as `5 ms`.
 pub fn seconds(text: &str) -> Result<f64, String> {
     let number = text.parse().or_else(|_| souple_formal::quantity_in(text, "s"));
-    let number: f64 = number.map_err(|error| error.to_string())?;
+    let has_number = text.contains(|letter: char| letter.is_ascii_digit());
+    let number: f64 = number.map_err(|error| match has_number {
+        true => error.to_string(),
+        false => "expected a time, as 0.5 or 500 ms".to_owned(),
+    })?;
     if number.is_finite() { Ok(number) } else { Err(format!("{number} is no time")) }
 }
 
@@ -374,6 +378,11 @@ pub fn scene_path(path: &str) -> PathBuf {
     let path = PathBuf::from(path);
     let inside = path.join("scene.toml");
     if inside.is_file() { inside } else { path }
+}
+
+/// A number of threads on the command line.
+pub fn thread_count(text: &str) -> Result<usize, String> {
+    text.trim().parse().map_err(|_| "expected a whole number, 1 to 1024".to_owned())
 }
 
 /// Sets the number of threads of the whole process.

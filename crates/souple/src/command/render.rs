@@ -13,9 +13,10 @@ use serde_json::json;
 use souple_io::picture::{
     Backdrop, Cut, Image, ImageFile, Images, LegendPlace, Picture, write_animated_png, write_gif,
 };
-use souple_io::read_mesh;
 use souple_run::Options;
-use souple_run::show::{Figure, Gathering, Moment, Reel, Show, ShowError, Stage, write_film};
+use souple_run::show::{
+    BodyMoment, Figure, Gathering, Moment, Reel, Show, ShowError, Stage, Worn, write_film,
+};
 use tempfile::TempDir;
 
 use self::fit::Source;
@@ -24,28 +25,29 @@ use super::progress::Meter;
 use super::run::play;
 use super::{
     End, Refusal, interruption, print_json, print_line, print_note, read_scene, scene_path, seconds,
-    use_threads,
+    thread_count, use_threads,
 };
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
 pub struct Arguments {
-    /// Scene file or folder with a scene.toml, which is run; the folder of a run, whose frames are shown; or a file of a mesh
+    /// Scene file or folder with a scene.toml, which is run; the folder of a run, whose frames are shown; a file of a mesh, with its
+    /// fields; or a series of them, .pvd
     source: PathBuf,
     /// .png: one picture or a sheet; .gif, .apng, .mp4: a film; .glb: the moving surfaces
     #[arg(long)]
     out: PathBuf,
     /// Width and height in pixels; of a sheet those of the whole
-    #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = list::<2>, allow_hyphen_values = true)]
-    size: Option<[f64; 2]>,
+    #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = pixels, allow_hyphen_values = true)]
+    size: Option<[usize; 2]>,
     /// Moment to show, as `0.5` or `500 ms`, to the nearest frame; the last by default
     #[arg(long, conflicts_with = "sheet", value_parser = seconds)]
     time: Option<f64>,
     /// Several moments in one picture
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=100))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<1, 100>)]
     sheet: Option<u64>,
     /// Most frames of a film; 60 if left out
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=4096))]
+    #[arg(long, value_parser = whole::<1, 4096>)]
     frames: Option<u64>,
     /// Frames of a film per second, 0.1 to 100; in real time if left out
     #[arg(long, value_parser = per_second)]
@@ -63,16 +65,16 @@ pub struct Arguments {
     /// The folder of another run, from which the quantity `gap` is measured
     #[arg(long, value_name = "RUN")]
     against: Option<PathBuf>,
-    /// Values of the first and the last colour
-    #[arg(long, value_name = "LOW,HIGH", value_parser = list::<2>, allow_hyphen_values = true)]
-    range: Option<[f64; 2]>,
-    /// Cuts away what lies beyond the plane n · x = d
+    /// Values of the first and the last colour, in Pa, m, m/s, …, whatever the legend says, or with units: `1 kPa,5 kPa`
+    #[arg(long, value_name = "LOW,HIGH", value_parser = two, allow_hyphen_values = true)]
+    range: Option<[String; 2]>,
+    /// Cuts away what lies beyond the plane n · x = d; not with --shrink
     #[arg(long, value_name = "NX,NY,NZ,D", value_parser = list::<4>, allow_hyphen_values = true)]
     cut: Option<[f64; 4]>,
     /// Moves cells apart, by this part of their distance from the middle; with a cut, those that it leaves whole
     #[arg(long, default_value_t = 0.0)]
     explode: f64,
-    /// Draws each cell smaller by this part of its size, about its own middle
+    /// Draws each cell smaller by this part of its size, about its own middle; not with --cut
     #[arg(long, default_value_t = 0.0, conflicts_with = "cut")]
     shrink: f64,
     /// Arrows of a vector field, `displacement` or `velocity`, each from where its point stands; a key tells their length
@@ -103,7 +105,7 @@ pub struct Arguments {
     #[arg(long)]
     floor: bool,
     /// Angle between the upper and the lower border [deg], 1 to 140; 28.65 if left out
-    #[arg(long)]
+    #[arg(long, value_parser = degrees)]
     field_of_view: Option<f64>,
     /// In place of the scene's; "" for none
     #[arg(long)]
@@ -129,12 +131,12 @@ pub struct Arguments {
     #[arg(long)]
     compact: bool,
     /// Samples along each side of a pixel; 3 by default, 2 where there are several pictures
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..=8))]
+    #[arg(long, value_parser = whole::<1, 8>)]
     samples: Option<u64>,
     /// Changes a value of the scene, as with `souple run`
     #[arg(long = "set", value_name = "PATH=VALUE")]
     settings: Vec<String>,
-    #[arg(long)]
+    #[arg(long, value_parser = thread_count)]
     threads: Option<usize>,
     #[arg(long)]
     pub json: bool,
@@ -147,7 +149,7 @@ impl Arguments {
     /// Whether what is asked for is of bodies, also of those that a skin hides.
     fn looks_inside(&self) -> bool {
         let has_colour = self.colour.as_ref().is_some_and(|colour| colour != "none");
-        has_colour || self.cut.is_some() || self.arrows.is_some() || self.explode > 0.0 || self.shrink > 0.0
+        has_colour || self.cut.is_some() || self.explode > 0.0 || self.shrink > 0.0
     }
 }
 
@@ -160,6 +162,35 @@ fn list<const N: usize>(text: &str) -> Result<[f64; N], String> {
         .ok_or_else(|| format!("expected {N} numbers with commas, as {}", vec!["1"; N].join(",")))
 }
 
+/// Two ends, which are numbers or quantities as their unit says.
+fn two(text: &str) -> Result<[String; 2], String> {
+    let ends: Vec<String> = text.split(',').map(|end| end.trim().to_owned()).collect();
+    let ends = <[String; 2]>::try_from(ends).ok().filter(|ends| ends.iter().all(|end| !end.is_empty()));
+    ends.ok_or_else(|| "expected 2 numbers with commas, as 0,1000 or 0 kPa,1 kPa".to_owned())
+}
+
+/// Width and height of a picture.
+fn pixels(text: &str) -> Result<[usize; 2], String> {
+    let sides: Vec<Option<usize>> =
+        text.split([',', 'x', '×']).map(|side| side.trim().parse().ok()).collect();
+    match sides[..] {
+        [Some(width), Some(height)] if [width, height].iter().all(|side| (1..=16384).contains(side)) => {
+            Ok([width, height])
+        }
+        _ => Err("expected width and height, whole numbers of 1 to 16384 pixels, as 1280,800".to_owned()),
+    }
+}
+
+/// A whole number between two others.
+fn whole<const LOW: u64, const HIGH: u64>(text: &str) -> Result<u64, String> {
+    let number = text.trim().parse().ok().filter(|number| (LOW..=HIGH).contains(number));
+    number.ok_or_else(|| format!("expected a whole number, {LOW} to {HIGH}"))
+}
+
+fn degrees(text: &str) -> Result<f64, String> {
+    text.trim().parse().map_err(|_| "expected a number of degrees, 1 to 140".to_owned())
+}
+
 fn positive(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
     number.ok_or_else(|| "expected a number above 0".to_owned())
@@ -170,9 +201,13 @@ fn per_second(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "a film can be played at 0.1 to 100 frames per second".to_owned())
 }
 
-/// What to say of a picture without a legend that it should have.
-const NO_ROOM: &str =
-    "the picture is too small for a legend beside its colours: there is none; expected a larger `--size`";
+/// What to say of a picture without what it should have.
+fn no_room(left_out: &[&str]) -> Option<String> {
+    let (last, others) = left_out.split_last()?;
+    let all =
+        if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    Some(format!("the picture has no room for: {all}; expected a larger `--size`"))
+}
 
 /// Most frames of a film where nothing is said.
 const FRAMES: u64 = 60;
@@ -226,7 +261,7 @@ pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
         let other = Reel::of_run(other, reel.stage.clone())?;
         reel = reel.against(other);
     }
-    if !arguments.looks_inside() {
+    if figure.worn == Worn::Arrows && arguments.arrows.is_none() {
         reel = reel.without_worn();
     }
     let view = figure::view(arguments, &reel.stage)?;
@@ -259,9 +294,18 @@ fn draw(
         Kind::Picture => arguments.sheet.unwrap_or(1),
         _ => arguments.frames.unwrap_or(FRAMES),
     } as usize);
+    let asked = if kind == Kind::Picture { arguments.sheet } else { arguments.frames };
+    notes.extend(
+        asked
+            .filter(|asked| chosen.len() < *asked as usize)
+            .map(|asked| format!("there are {} moments, not {asked}: each is shown once", chosen.len())),
+    );
     // what colours show where nothing is asked for is there in all moments or in none
     let fit = |mut figure: Figure, first: &Moment| {
-        if arguments.colour.is_none() && !first.has_field(figure::STRESS) {
+        let is_seen = |body: &&BodyMoment| figure.worn == Worn::Whole || !first.wears_skin(body);
+        if arguments.colour.is_none()
+            && !first.bodies.iter().filter(is_seen).any(|body| body.has_field(figure::STRESS))
+        {
             figure.colour_by = None;
         }
         figure
@@ -277,9 +321,7 @@ fn draw(
         Kind::Picture if arguments.sheet.is_some() => {
             let show = reel.show(&chosen)?;
             figure = show.moments.iter().take(1).fold(figure, fit);
-            notes.extend(
-                figure.cut.and_then(|cut| all_cut_away(cut, show.moments.iter().map(|m| reach(cut, m)))),
-            );
+            notes.extend(figure.cut.and_then(|cut| of_cut(cut, show.moments.iter().map(|m| reach(cut, m)))));
             // one title for all of them
             let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
             let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
@@ -290,14 +332,16 @@ fn draw(
             let figure = Figure { title: Some(String::new()), backdrop, legend, size, letters, ..figure };
             let (mut pictures, of_all) = figure.pictures(&show)?;
             notes.extend(of_all);
-            let sheet = Sheet::new(&pictures, whole, (&title, figure.theme))?;
+            let common = sheet::Common::taken(&mut pictures);
+            let sheet = Sheet::new(&pictures, whole, (&title, figure.theme), common)?;
             pictures.iter_mut().for_each(|picture| picture.size = sheet.cell);
-            if pictures.iter().any(|picture| picture.legend.is_some()) && !sheet.has_legend() {
-                notes.push(NO_ROOM.to_owned());
-            }
+            let mut left_out = pictures.first().map(Picture::left_out).unwrap_or_default();
             let meter = Meter::new("pictures", arguments.quiet);
             let Some(images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
-            write_picture(arguments, &sheet.of(&images))?;
+            let (image, of_sheet) = sheet.of(&pictures, &images);
+            left_out.extend(of_sheet);
+            notes.extend(no_room(&left_out));
+            write_picture(arguments, &image)?;
         }
         Kind::Picture => {
             let moment = match arguments.time {
@@ -305,15 +349,13 @@ fn draw(
                 None => reel.last_drawable()?,
             };
             figure = fit(figure, &moment);
-            notes.extend(figure.cut.and_then(|cut| all_cut_away(cut, [reach(cut, &moment)].into_iter())));
+            notes.extend(figure.cut.and_then(|cut| of_cut(cut, [reach(cut, &moment)].into_iter())));
             notes.extend(other_moment(arguments.time, &moment, reel));
             let show = Show { stage: reel.stage.clone(), moments: vec![moment] };
             let (pictures, of_all) = figure.pictures(&show)?;
             notes.extend(of_all);
             for picture in pictures {
-                if !picture.has_room_for_legend() {
-                    notes.push(NO_ROOM.to_owned());
-                }
+                notes.extend(no_room(&picture.left_out()));
                 write_picture(arguments, &picture.render()?)?;
             }
         }
@@ -349,7 +391,7 @@ fn film(
         }
     }
     let common = gathering.finish()?;
-    notes.extend(figure.cut.and_then(|cut| all_cut_away(cut, reaches.into_iter())));
+    notes.extend(figure.cut.and_then(|cut| of_cut(cut, reaches.into_iter())));
     notes.extend(common.notes.iter().cloned());
     let mut film = ImageFile::create(&scratch.path()?.join("film"))?;
     let meter = Meter::new("pictures", arguments.quiet);
@@ -360,8 +402,8 @@ fn film(
             pictures.push(figure.picture_in(&reel.stage, &moment, &common));
             before = Some(moment);
         }
-        if film.count() == 0 && pictures.iter().any(|picture| !picture.has_room_for_legend()) {
-            notes.push(NO_ROOM.to_owned());
+        if film.count() == 0 {
+            notes.extend(no_room(&pictures.first().map(Picture::left_out).unwrap_or_default()));
         }
         let Some(images) = images(&pictures, (&meter, film.count(), chosen.len()))? else { return Ok(None) };
         images.iter().try_for_each(|image| film.push(image))?;
@@ -394,10 +436,9 @@ fn reel(
             return Ok((Reel::of_run(from, stage)?, note.into_iter().collect()));
         }
         Source::Mesh => {
-            let (mesh, notes) = read_mesh(from)?;
-            let name = from.file_stem().unwrap_or_default().to_string_lossy();
-            return Ok((Reel::of_mesh(&name, mesh), notes));
+            return Ok(Reel::of_file(from)?);
         }
+        Source::Series => return Ok((Reel::of_series(from)?, Vec::new())),
         Source::Scene => {}
     }
     let path = from.display().to_string();
@@ -469,11 +510,16 @@ fn reach(cut: Cut, moment: &Moment) -> [f64; 2] {
     along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], d| [low.min(d), high.max(d)])
 }
 
-/// What to say where a cut leaves nothing of any body at any of the moments.
-fn all_cut_away(cut: Cut, reaches: impl Iterator<Item = [f64; 2]>) -> Option<String> {
+/// What to say where a cut leaves nothing of any body at any of the moments, or takes nothing away.
+fn of_cut(cut: Cut, reaches: impl Iterator<Item = [f64; 2]>) -> Option<String> {
     let of_all = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let [low, high] = reaches.reduce(of_all)?;
     let plane = cut.normal.dot(cut.point) / cut.normal.length();
+    if high <= plane {
+        return Some(format!(
+            "the cut takes nothing away: along its normal, bodies reach from {low:.4} m to {high:.4} m, and what lies beyond {plane:.4} m is cut away"
+        ));
+    }
     (low > plane).then(|| {
         format!(
             "the cut leaves nothing: along its normal, bodies reach from {low:.4} m to {high:.4} m, and what lies beyond {plane:.4} m is cut away"

@@ -18,7 +18,7 @@ pub struct Arguments {
     /// Folder for report, probes and frames; what an earlier run wrote there is replaced
     #[arg(long)]
     out: Option<PathBuf>,
-    #[arg(long)]
+    #[arg(long, value_parser = super::thread_count)]
     threads: Option<usize>,
     #[arg(long)]
     pub json: bool,

@@ -32,7 +32,7 @@ pub struct Arguments {
     #[arg(long = "set", value_name = "PATH=VALUE")]
     settings: Vec<String>,
     /// Worker threads; the results do not depend on it
-    #[arg(long)]
+    #[arg(long, value_parser = super::thread_count)]
     threads: Option<usize>,
     /// Recorded with the run, though nothing is random yet; the scene's by default
     #[arg(long, value_parser = count::<0>)]

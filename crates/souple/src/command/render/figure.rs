@@ -5,7 +5,7 @@ use souple_io::picture::{
     View,
 };
 use souple_math::Vec3;
-use souple_run::show::{Arrows, Figure, Floor, Stage, map_of};
+use souple_run::show::{Arrows, Figure, Floor, Stage, Worn, map_of, unit_of};
 use souple_scene::spec::picture::PictureSpec;
 
 use super::{Arguments, Kind};
@@ -35,8 +35,9 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         }
         None => ColourScale::default(),
     };
+    let range = arguments.range.as_ref().map(|ends| range_of(ends, colour)).transpose()?;
     if scale == ColourScale::Logarithmic {
-        check_log(colours, arguments.range)?;
+        check_log(colours, range)?;
     }
     let edges = match arguments.edges.as_deref().unwrap_or("drawn") {
         "drawn" => EdgeStyle::Drawn,
@@ -51,7 +52,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
             ));
         }
     };
-    if let Some([low, high]) = arguments.range
+    if let Some([low, high]) = range
         && low >= high
     {
         let message = format!("the range {low} to {high} is empty");
@@ -70,7 +71,6 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         let message = format!("cells cannot shrink by {} of their size", arguments.shrink);
         return Err(Refusal::request("shrink", arguments.shrink.to_string(), "0 to less than 1", message));
     }
-    let size = arguments.size.unwrap_or([1280.0, 800.0]);
     let is_one = kind == Kind::Picture && arguments.sheet.is_none();
     let samples = arguments.samples.unwrap_or(if is_one { 3 } else { 2 });
     let cut = arguments.cut.map(|[x, y, z, d]| {
@@ -82,8 +82,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         return Err(Refusal::request("cut", "0,0,0", "a normal that is not zero, and d", message));
     }
     Ok(Figure {
-        // what is no size of a picture is refused where it is drawn
-        size: size.map(|side| side.round().clamp(0.0, 1e9) as usize),
+        size: arguments.size.unwrap_or([1280, 800]),
         samples_per_pixel: samples as usize,
         theme: if arguments.dark { Theme::Dark } else { Theme::Light },
         backdrop: if arguments.white { Backdrop::White } else { Backdrop::default() },
@@ -95,7 +94,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         colour_by: Some(colour.to_owned()).filter(|colour| colour != "none"),
         colours,
         scale,
-        range: arguments.range.map(|[low, high]| (low, high)),
+        range: range.map(|[low, high]| (low, high)),
         cut,
         explode: arguments.explode,
         shrink: arguments.shrink,
@@ -104,9 +103,33 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
             .as_ref()
             .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
         edges,
+        worn: worn(arguments),
         letters: 1.0,
         floor: if arguments.floor { Floor::Below } else { Floor::None },
     })
+}
+
+/// Arrows on a skin are those of the body that wears it, which is seen where what is asked for is of its inside.
+fn worn(arguments: &Arguments) -> Worn {
+    if arguments.looks_inside() { Worn::Whole } else { Worn::Arrows }
+}
+
+/// The ends of a range: numbers in the unit of a quantity, or quantities of its kind.
+fn range_of(ends: &[String; 2], quantity: &str) -> Result<[f64; 2], Refusal> {
+    let unit = unit_of(quantity);
+    let end = |text: &String| {
+        let number = text.parse().or_else(|_| souple_formal::quantity_in(text, unit));
+        number.ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
+            let message = format!("`{text}` is no value of {quantity}");
+            let expected = match unit {
+                "" => "2 numbers with commas".to_owned(),
+                unit => format!("2 numbers with commas, in {unit}, or each with a unit of its kind"),
+            };
+            Refusal::request("range", text.clone(), expected, message)
+        })
+    };
+    let [low, high] = ends;
+    Ok([end(low)?, end(high)?])
 }
 
 /// Refuses what a scale of powers of ten cannot have: colours about zero or with a meaning of their own, ends that are not above

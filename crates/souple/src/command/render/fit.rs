@@ -17,6 +17,8 @@ pub enum Source {
     Run,
     /// A file that holds a mesh.
     Mesh,
+    /// A list of the frames of one body.
+    Series,
 }
 
 pub fn source(path: &Path) -> Source {
@@ -26,6 +28,8 @@ pub fn source(path: &Path) -> Source {
     };
     if path.join("frames").is_dir() || path.join("report.json").is_file() {
         Source::Run
+    } else if path.is_file() && extension == "pvd" {
+        Source::Series
     } else if path.is_file() && FORMATS.entries.iter().any(|format| holds_mesh(&format)) {
         Source::Mesh
     } else {
@@ -96,15 +100,30 @@ pub fn check(arguments: &Arguments, kind: Kind, source: Source) -> Result<(), Re
         let message = format!("--set changes a scene before it is run, and {from} is none");
         return Err(Refusal::request("set", from, "a scene", message));
     }
-    let measures_gap =
-        arguments.colour.as_deref().is_some_and(|colour| colour.split('.').next() == Some(GAP));
+    let fields = [arguments.colour.as_deref(), arguments.arrows.as_deref()];
+    let measures_gap = fields.iter().flatten().any(|field| field.split('.').next() == Some(GAP));
     if measures_gap && arguments.against.is_none() {
         let message =
             "the quantity `gap` is how far bodies stand from those of another run, and none is given";
         return Err(Refusal::request("against", "", "--against RUN, the folder of that run", message));
     }
+    if let Some(other) = arguments.against.as_ref().filter(|_| !measures_gap) {
+        let message = "--against says nothing without the quantity `gap`".to_owned();
+        return Err(Refusal::request("against", other.display().to_string(), "--colour gap", message));
+    }
+    let of_colours = [
+        ("map", arguments.map.is_some()),
+        ("colour-scale", arguments.colour_scale.is_some()),
+        ("range", arguments.range.is_some()),
+    ];
+    if let (Some("none"), Some((name, _))) =
+        (arguments.colour.as_deref(), of_colours.iter().find(|(_, is_given)| *is_given))
+    {
+        let message = format!("--{name} says nothing where `--colour none` leaves no quantity to colour by");
+        return Err(Refusal::request(name, "none", "a quantity, or no such option", message));
+    }
     let size = arguments.size.unwrap_or_default();
-    if kind == Kind::Film && size.iter().any(|side| side.round() % 2.0 != 0.0) {
+    if kind == Kind::Film && size.iter().any(|side| side % 2 != 0) {
         let [width, height] = size;
         let message = format!("a film of {width} x {height} pixels cannot be coded");
         return Err(Refusal::request("size", format!("{width},{height}"), "even numbers of pixels", message));
