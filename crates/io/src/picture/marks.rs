@@ -386,7 +386,8 @@ mod tests {
         assert!((long - (to - from)).abs() < 4.0, "{long} {}", to - from);
         let red = |x: usize, y: usize| {
             let [r, g, b] = image.pixels[y * 600 + x];
-            i32::from(r) > i32::from(g) + 80 && i32::from(r) > i32::from(b) + 80
+            // of a line between two rows of pixels each has a half
+            i32::from(r) > i32::from(g) + 40 && i32::from(r) > i32::from(b) + 40
         };
         let beside = layout.corner.beside as usize;
         let is_red: Vec<usize> =
