@@ -1,5 +1,7 @@
 //! A skin: its lattice, its target, its terms, and the step that moves its grid in State.
 
+use std::sync::LazyLock;
+
 use rayon::prelude::*;
 use souple_engine::{FieldState, Interruption};
 use souple_math::Vec3;
@@ -218,7 +220,9 @@ impl Skin {
         field: &mut FieldState,
         scratch: &mut SkinScratch,
     ) -> Result<(), SkinError> {
-        self.step_heeding(&Interruption::default(), end, timestep, field, scratch)
+        // made once: a step allocates nothing
+        static NEVER: LazyLock<Interruption> = LazyLock::new(Interruption::default);
+        self.step_heeding(&NEVER, end, timestep, field, scratch)
     }
 
     /// The same, unless it is broken off before a sub-step.
