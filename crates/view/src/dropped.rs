@@ -170,7 +170,7 @@ mod tests {
             (1.0, all, 6000),
             (0.02, all, 6000),
             (0.014, all, 7002),
-            (0.01, all, 12_000),
+            (0.008, all, 12_000),
             (0.01, "f 1 3 4\n", 6000),
         ] {
             let scene = scene_with(depth, faces);

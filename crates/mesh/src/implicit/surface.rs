@@ -88,25 +88,39 @@ const GRID: usize = 24;
 /// How far from a whole number a winding number is still one: dipoles are off by 0.02, and small holes by their share of the sphere.
 const WHOLE: f64 = 0.15;
 
-/// Triangles at which it is asked how often the surface winds around what lies before and behind them.
+/// Places on triangles at which it is asked how often the surface winds around what lies before them, at least.
 const SAMPLES: usize = 256;
+/// A place on a triangle is as much nearer to its middle than to the edges: before an edge that is concave other triangles are.
+const INWARD: f64 = 0.9;
 
 /// Whether what lies before its triangles is outside of all of it: parts within each other that face the same way, and parts
 /// that overlap where no triangles cross, have normals that tell nothing.
 fn winds_once(surface: &TriangleSurface) -> bool {
     let winding = WindingNumber::new(surface);
-    let outside = |triangle: usize| {
+    let outside = |triangle: usize, place: usize| {
         let [a, b, c] = surface.corners(triangle as u32);
         let normal = (b - a).cross(c - a);
         // a thousandth of its size before it
         let offset = normal * (1e-3 / normal.length().sqrt());
-        winding.at((a + b + c) / 3.0 + offset).round()
+        let [u, v] = spread(place).map(|part| INWARD * part + (1.0 - INWARD) / 3.0);
+        winding.at(a + (b - a) * u + (c - a) * v + offset).round()
     };
-    let first = outside(0);
+    let first = outside(0, 0);
     let count = surface.triangles.len();
+    let places = SAMPLES.div_ceil(count);
+    let mut looked_at = (0..count)
+        .step_by(count.div_ceil(SAMPLES))
+        .flat_map(|triangle| (0..places).map(move |k| (triangle, k)));
     // a surface that faces inward has the outside behind it
-    (first == 0.0 || first == -1.0)
-        && (0..count).step_by(count.div_ceil(SAMPLES)).all(|triangle| outside(triangle) == first)
+    (first == 0.0 || first == -1.0) && looked_at.all(|(triangle, place)| outside(triangle, place) == first)
+}
+
+/// Places on a triangle, as parts of two of its sides: the first is its middle, each of the others far from those before
+/// (Roberts 2018, by multiples of powers of the plastic number).
+fn spread(place: usize) -> [f64; 2] {
+    let [u, v] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3]
+        .map(|part| (1.0 / 3.0 + part * place as f64).fract());
+    if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
 }
 
 fn wound(surface: TriangleSurface, is_closed: bool) -> Distance {
@@ -180,6 +194,30 @@ mod tests {
         let hollow = SurfaceShape::new(hollow).unwrap();
         assert_eq!(hollow.sign(), Sign::Normals);
         assert!(hollow.value(Vec3::ZERO) > 0.0 && hollow.value(Vec3::new(0.75, 0.0, 0.0)) < 0.0);
+    }
+
+    /// Of two cubes the edges of one meet faces of the other exactly on their diagonals, where no triangle passes through
+    /// another; what both hold is inside all the same.
+    #[test]
+    fn parts_that_meet_on_diagonals() {
+        let values = souple_table::Values::new()
+            .with("size", souple_table::Value::Vector([1.0; 3]))
+            .with("cells", souple_table::Value::Vector([1.0; 3]));
+        let cube = crate::generate("box", values).unwrap().boundary_surface();
+        let count = cube.points.len() as u32;
+        let half = Vec3::new(0.5, 0.5, 0.5);
+        let points: Vec<Vec3> =
+            cube.points.iter().copied().chain(cube.points.iter().map(|p| *p + half)).collect();
+        let moved = cube.triangles.iter().map(|corners| corners.map(|corner| corner + count));
+        let triangles: Vec<[u32; 3]> = cube.triangles.iter().copied().chain(moved).collect();
+        let shape = SurfaceShape::new(TriangleSurface::from_mesh(&points, &triangles, Vec::new())).unwrap();
+        assert_eq!(shape.sign(), Sign::WindingNumber);
+        let low = cube.bounds().low;
+        for inside in [0.05, 0.45, 0.55, 0.75, 0.95, 1.05, 1.45] {
+            let place = low + Vec3::new(inside, inside, inside);
+            assert!(shape.value(place) < 0.0, "{inside}");
+        }
+        assert!(shape.value(low + Vec3::new(1.2, 0.2, 0.2)) > 0.0);
     }
 
     /// Of balls that cross, boxes away from all triangles are known to be inside or outside without a look at each point; of one with

@@ -102,6 +102,9 @@ impl Shape for Scaled {
     }
 }
 
+/// What a surface encloses at least, in the cube of its diagonal: less is rounding of what is flat.
+const NOTHING: f64 = 1e-9;
+
 pub(super) static MESH: PartEntry = Entry {
     name: "mesh",
     summary: "what the triangles of a file enclose: parts that overlap by more than a voxel are joined, holes are closed, with a warning; what crosses itself is known by winding numbers",
@@ -117,12 +120,16 @@ pub(super) static MESH: PartEntry = Entry {
         let refuse = |message: String| PartError {
             parameter: "file",
             value: format!("\"{file}\""),
-            expected: format!("a file of triangles: {message}"),
+            expected: format!("a file of triangles that enclose something: {message}"),
         };
         let mut surface = around.surface(file).map_err(refuse)?;
         let scale = values.number("scale");
         surface.points.iter_mut().for_each(|point| *point = *point * scale);
         let (surface, warning) = closed(surface);
+        let (volume, diagonal) = (surface.enclosed_volume().abs(), surface.bounds().diagonal());
+        if volume <= NOTHING * diagonal.powi(3) {
+            return Err(refuse(format!("this surface encloses {volume} m³")));
+        }
         if let Some(warning) = warning {
             around.warn(format!("`{file}` {warning}"));
         }
@@ -132,17 +139,23 @@ pub(super) static MESH: PartEntry = Entry {
     },
 };
 
-/// A surface with its holes closed, however large they are, and what there is to say of that. Across an open hole the sign of a
-/// distance changes where the distance does not vanish: a skin would find no rest there.
+/// A surface with its holes closed, however large they are, and its triangles facing as their neighbours do, and what there is to
+/// say of that. Across an open hole the sign of a distance changes where the distance does not vanish: a skin would find no rest
+/// there.
 fn closed(surface: TriangleSurface) -> (TriangleSurface, Option<String>) {
     let open_edges =
         |surface: &TriangleSurface| surface.edge_uses().iter().filter(|(_, up, down)| up + down == 1).count();
-    if open_edges(&surface) == 0 {
+    let is_mixed = surface.edge_uses().iter().any(|(_, up, down)| up + down == 2 && up != down);
+    if open_edges(&surface) == 0 && !is_mixed {
         return (surface, None);
     }
     let (mended, repairs) = repair(&surface, RepairLimits { hole: f64::INFINITY, ..RepairLimits::default() });
     let closed = in_number(repairs.closed_holes, "hole was closed", "holes were closed");
-    let warning = match (open_edges(&mended), repairs.closed_holes) {
+    let turned = (repairs.turned_triangles > 0).then(|| {
+        let turned = in_number(repairs.turned_triangles, "triangle was turned", "triangles were turned");
+        format!("faces both ways: {turned} to agree with those beside")
+    });
+    let opened = match (open_edges(&mended), repairs.closed_holes) {
         // points at one place were several
         (0, 0) => None,
         (0, _) => Some(format!("is open: {closed} by triangles within their rims")),
@@ -151,7 +164,8 @@ fn closed(surface: TriangleSurface) -> (TriangleSurface, Option<String>) {
             Some(format!("is open: {closed}, {edges} one triangle still, and a skin finds no rest there"))
         }
     };
-    (mended, warning)
+    let told: Vec<String> = turned.into_iter().chain(opened).collect();
+    (mended, (!told.is_empty()).then(|| told.join("; it ")))
 }
 
 /// What triangles enclose: closed parts that overlap are joined, others are known by winding numbers.
@@ -264,3 +278,27 @@ pub(super) static SURFACE: PartEntry = Entry {
         Ok(Box::new(part.map_err(refuse)?))
     },
 };
+
+#[cfg(test)]
+mod tests {
+    use souple_math::Vec3;
+
+    use super::*;
+
+    /// A closed surface of which some triangles are turned over encloses what it should, and that is told; of a sound one
+    /// nothing is.
+    #[test]
+    fn triangles_that_face_otherwise_are_turned() {
+        let corner = |i: u32| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2));
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles: Vec<[u32; 3]> =
+            quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        let sound = TriangleSurface::new((0..8).map(corner).collect(), triangles).unwrap();
+        assert_eq!(closed(sound.clone()).1, None);
+        let mut mixed = sound;
+        mixed.triangles.iter_mut().step_by(2).for_each(|corners| corners.swap(1, 2));
+        let (mended, told) = closed(mixed);
+        assert!((mended.enclosed_volume() - 1.0).abs() < 1e-14);
+        assert_eq!(told.unwrap(), "faces both ways: 6 triangles were turned to agree with those beside");
+    }
+}
