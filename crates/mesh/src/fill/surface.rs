@@ -4,7 +4,7 @@ use souple_table::four_digits;
 
 use super::{FillError, Options, groups, lost};
 use crate::implicit::{Shape, Sign, SurfaceShape};
-use crate::repair::{RepairLimits, SurfaceRepairs, repair};
+use crate::repair::{RepairLimits, SurfaceRepairs, components, repair};
 use crate::{Mesh, MeshError, TriangleSurface};
 
 /// The inside of a surface.
@@ -48,6 +48,30 @@ pub fn fill_surface(
     Ok(filled(surface, limits, options)?.0)
 }
 
+/// Turns what of a surface is open, where it faces inward as a whole, as loose triangles may: it has no inside of its own, but to
+/// fill it means that it has one. Closed parts know theirs.
+fn turn_open_outward(surface: &mut TriangleSurface) -> Option<String> {
+    let (parts, count) = components(surface);
+    let mut part_of_point = vec![0; surface.points.len()];
+    for (corners, part) in surface.triangles.iter().zip(&parts) {
+        corners.iter().for_each(|point| part_of_point[*point as usize] = *part as usize);
+    }
+    let mut is_open = vec![false; count];
+    for ([point, _], up, down) in surface.edge_uses() {
+        is_open[part_of_point[point as usize]] |= up + down == 1;
+    }
+    let of_triangle = surface.triangles.iter().zip(&parts);
+    let open =
+        of_triangle.filter(|(_, part)| is_open[**part as usize]).map(|(corners, _)| *corners).collect();
+    let open = TriangleSurface { triangles: open, ..surface.clone() };
+    if open.triangles.is_empty() || open.enclosed_volume() >= 0.0 {
+        return None;
+    }
+    let of_triangle = surface.triangles.iter_mut().zip(&parts);
+    of_triangle.filter(|(_, part)| is_open[**part as usize]).for_each(|(corners, _)| corners.swap(1, 2));
+    Some("what of the surface is open faced inward, and was turned".to_owned())
+}
+
 /// The filling, and the shape that the mended surface encloses.
 fn filled(
     surface: &TriangleSurface,
@@ -59,11 +83,7 @@ fn filled(
         return Err(FillError::NoArea { triangles: surface.triangles.len() }.into());
     }
     let mut notes = repairs.messages();
-    // an open surface has no inside of its own: to fill it means that it has one
-    if mended.enclosed_volume() < 0.0 {
-        mended.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
-        notes.push("the surface, which is open, faced inward, and was turned".to_owned());
-    }
+    notes.extend(turn_open_outward(&mut mended));
     let enclosed = mended.enclosed_volume().abs();
     let extent = mended.bounds().size();
     if extent.to_array().iter().any(|length| *length <= FLAT * extent.largest_component()) {

@@ -346,6 +346,13 @@ fn surfaces_are_filled() {
     surface.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
     let turned = fill_surface(&surface, Default::default(), &options).unwrap();
     assert!(turned.notes.iter().any(|note| note.contains("faced inward")), "{:?}", turned.notes);
+    // a closed part beside it stays as it is, though it is the smaller one
+    let small = whole.mesh.boundary_surface();
+    let shift = surface.points.len() as u32;
+    surface.points.extend(small.points.iter().map(|point| *point * 0.5 + Vec3::X * 3.0));
+    surface.triangles.extend(small.triangles.iter().map(|corners| corners.map(|point| point + shift)));
+    let both = fill_surface(&surface, Default::default(), &options).unwrap();
+    assert!(both.mesh.volume() > 1.05 * turned.mesh.volume(), "{}", both.mesh.volume());
     assert!((turned.mesh.volume() / open.mesh.volume() - 1.0).abs() < 0.01);
 }
 

@@ -9,8 +9,8 @@ use super::{SurfaceRepairs, edges_of};
 use crate::polygon::{area_vector, cut};
 use crate::{BoundingBox, TriangleSurface};
 
-/// A ring with more than this share of its part's area has the part across it, which is flat: it is an outline.
-const OUTLINE: f64 = 0.95;
+/// A part whose triangles face one way, to this share of their area, is a flat sheet, and its rings are outlines.
+const FLAT: f64 = 0.999;
 
 /// A ring whose area is less, relative to the square of its length, is a slit: rounding.
 const SLIT: f64 = 1e-12;
@@ -46,15 +46,23 @@ struct Parts {
     point_counts: Vec<usize>,
     /// [m²]
     areas: Vec<f64>,
+    /// Sums of area times normal [m²].
+    area_vectors: Vec<Vec3>,
 }
 
 impl Parts {
     fn of(surface: &TriangleSurface) -> Self {
         let (of_triangle, count) = components(surface);
-        let mut parts =
-            Self { of_point: HashMap::new(), point_counts: vec![0; count], areas: vec![0.0; count] };
+        let mut parts = Self {
+            of_point: HashMap::new(),
+            point_counts: vec![0; count],
+            areas: vec![0.0; count],
+            area_vectors: vec![Vec3::ZERO; count],
+        };
         for (triangle, part) in of_triangle.iter().enumerate() {
-            parts.areas[*part as usize] += surface.area_vector(triangle as u32).length();
+            let area_vector = surface.area_vector(triangle as u32);
+            parts.areas[*part as usize] += area_vector.length();
+            parts.area_vectors[*part as usize] += area_vector;
             for point in surface.triangles[triangle] {
                 if parts.of_point.insert(point, *part).is_none() {
                     parts.point_counts[*part as usize] += 1;
@@ -64,10 +72,12 @@ impl Parts {
         parts
     }
 
-    /// Whether a ring goes around a sheet: through all of its points, or around one that is flat.
+    /// Whether a ring goes around a sheet: through all of its points, or of more area than half of one that is flat.
     fn have_outline(&self, ring: &[u32], corners: &[Vec3]) -> bool {
         let part = self.of_point[&ring[0]] as usize;
-        self.point_counts[part] == ring.len() || area_vector(corners).length() > OUTLINE * self.areas[part]
+        let is_flat = self.area_vectors[part].length() > FLAT * self.areas[part];
+        self.point_counts[part] == ring.len()
+            || is_flat && area_vector(corners).length() > 0.5 * self.areas[part]
     }
 }
 

@@ -272,6 +272,22 @@ fn sheets_are_not_closed() {
     }
 }
 
+/// Flat boxes without their lids, and bands, are no sheets: their rings are holes, whatever share of their area these have.
+#[test]
+fn flat_boxes_and_bands_are_closed() {
+    for (height, is_band) in [(0.01, false), (0.3, true)] {
+        let mut surface = unit_cube(2.0);
+        let points = surface.points.clone();
+        let is_at = |corners: &[u32; 3], z: f64| corners.iter().all(|point| points[*point as usize].z == z);
+        surface.triangles.retain(|corners| !is_at(corners, 1.0) && !(is_band && is_at(corners, 0.0)));
+        surface.points.iter_mut().for_each(|point| point.z *= height);
+        let limits = RepairLimits { hole: f64::INFINITY, ..RepairLimits::default() };
+        let (mended, repairs) = repair(&surface, limits);
+        assert_eq!((repairs.closed_holes, repairs.left.outlines), (1 + usize::from(is_band), 0), "{height}");
+        assert!((mended.enclosed_volume() / height - 1.0).abs() < 1e-12);
+    }
+}
+
 /// The cube without the squares of its top in a pattern of four by four.
 fn without_squares(pattern: [&[u8; 4]; 4]) -> TriangleSurface {
     let mut cube = unit_cube(4.0);

@@ -77,10 +77,15 @@ fn joined_points(surface: &TriangleSurface, distance: f64, repairs: &mut Surface
     (0..close.len()).map(|point| if is_thin[point] { equal[point] } else { close[point] }).collect()
 }
 
+/// Cells to each side, beyond which no distance is told from rounding.
+const FARTHEST: f64 = 9_007_199_254_740_992.0;
+
 /// The lowest number of the points within a distance, for each point that may be joined; chains are not followed.
 fn close_points(points: &[Vec3], distance: f64, may_join: impl Fn(usize) -> bool) -> Vec<u32> {
     // cells of twice the distance: close points are in touching cells
-    let cell = |point: Vec3| (point * (0.5 / distance)).to_array().map(|c| c.floor() as i64);
+    let cell = |point: Vec3| {
+        (point * (0.5 / distance)).to_array().map(|c| c.floor().clamp(-FARTHEST, FARTHEST) as i64)
+    };
     let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
     let mut number: Vec<u32> = (0..points.len() as u32).collect();
     for (index, point) in points.iter().enumerate().filter(|(index, _)| may_join(*index)) {

@@ -54,9 +54,9 @@ fn spread((low, high): (f64, f64), noise: f64) -> (f64, f64) {
 
 /// What to say of a range that has none of the values.
 fn all_beyond((least, most): (f64, f64), (low, high): (f64, f64), unit: &str) -> Option<String> {
-    let side = if least >= high {
+    let side = if least > high {
         "above"
-    } else if most <= low {
+    } else if most < low {
         "below"
     } else {
         return None;

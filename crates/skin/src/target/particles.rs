@@ -76,6 +76,8 @@ pub struct Cloud {
 /// How many cells the particles in one of them may fill, which stands for eight to each along each axis: every place in it sums
 /// over all of them.
 const MOST_FILLINGS: f64 = 512.0;
+/// Particles in a cell at most, however small.
+const MOST_IN_CELL: usize = 65_536;
 /// Rows of cells that are gone through for a range, at most: of a box of more nothing is said.
 const MOST_ROWS: u64 = 1 << 10;
 /// Cells along each axis at most: three coordinates in a key.
@@ -124,9 +126,21 @@ impl Cloud {
         let filled = |crowd: &[(u64, u32)]| {
             crowd.iter().map(|(_, index)| volume(self.placed[*index as usize].1)).sum::<f64>()
         };
-        let Some(crowd) = self.sorted.chunk_by(|a, b| a.0 == b.0).find(|crowd| filled(crowd) > most) else {
+        let Some(crowd) = self
+            .sorted
+            .chunk_by(|a, b| a.0 == b.0)
+            .find(|crowd| crowd.len() > MOST_IN_CELL || filled(crowd) > most)
+        else {
             return Ok(());
         };
+        if crowd.len() > MOST_IN_CELL {
+            return Err(format!(
+                "{} are in a cube of {} m, four times the largest radius; expected {MOST_IN_CELL} at most: radii more alike, or \
+                 fewer particles",
+                counted(crowd.len() as u64, "particle"),
+                readable(self.cell),
+            ));
+        }
         Err(format!(
             "{} are in a cube of {} m about {:?} and would fill {:.0} such; expected {MOST_FILLINGS} at most: a smaller \
              radius, or fewer particles",

@@ -88,7 +88,7 @@ pub fn repaired(input: &Path, texts: &[String]) -> Result<Repaired, Refusal> {
         check_size(&name, &surface)?;
     }
     let limits = RepairLimits { weld: values.number("weld"), hole: values.number("hole") };
-    let (mut mended, repairs) = repair(&surface, limits);
+    let (mut mended, mut repairs) = repair(&surface, limits);
     if mended.triangles.is_empty() {
         let message =
             format!("`{name}` has nothing left once it is mended: none of its triangles has an area");
@@ -97,6 +97,7 @@ pub fn repaired(input: &Path, texts: &[String]) -> Result<Repaired, Refusal> {
     let scale = values.number("scale");
     let is_unchanged = repairs.messages().is_empty();
     mended.points.iter_mut().for_each(|point| *point = *point * scale);
+    repairs.longest_weld *= scale;
     check_size(&name, &mended)?;
     // quadrilaterals and groups stay where nothing was mended
     if is_unchanged {
