@@ -6,8 +6,8 @@ export type Weight = "note" | "warning" | "error";
 
 const SECONDS: Record<Weight, number> = { note: 4, warning: 8, error: 12 };
 const KEPT = 50;
-/** Notes on the screen at once. */
-const SHOWN = 4;
+/** Notes on the screen at once: more would cover what they are about, and the list has them all. */
+const SHOWN = 2;
 
 export class Notes {
   readonly list = element("ol", { class: "log" }, element("li", { class: "quiet" }, "Nothing to tell."));
