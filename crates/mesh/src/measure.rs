@@ -64,6 +64,14 @@ impl BoundingBox {
         })
     }
 
+    /// The eight corners [m].
+    pub fn corners(self) -> impl Iterator<Item = Vec3> {
+        (0..8).map(move |corner| {
+            let end = |axis: usize| if corner >> axis & 1 == 0 { self.low } else { self.high };
+            Vec3::new(end(0).x, end(1).y, end(2).z)
+        })
+    }
+
     pub fn centre(self) -> Vec3 {
         (self.low + self.high) * 0.5
     }

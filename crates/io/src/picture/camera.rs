@@ -189,7 +189,7 @@ mod tests {
     fn fits_the_frame() {
         let frame = Frame { left: 20.0, top: 60.0, right: 500.0, bottom: 380.0 };
         let bounds = BoundingBox { low: Vec3::new(-3.0, 1.0, 0.0), high: Vec3::new(5.0, 2.0, 1.5) };
-        let corners: Vec<Vec3> = super::super::corners_of(bounds).collect();
+        let corners: Vec<Vec3> = bounds.corners().collect();
         for direction in [Vec3::new(-0.5, -0.4, -1.0), Vec3::new(1.0, 0.0, 0.2), Vec3::new(0.0, -1.0, 0.0)] {
             let view = View { direction, ..View::default() };
             let camera = Camera::fitted(&view, corners.iter().copied(), frame, 400.0);

@@ -318,7 +318,7 @@ impl Picture {
         let framed = self.framed.iter().copied().filter(|ball| ball.centre.is_finite());
         match self.view.bounds {
             _ if framed.clone().next().is_some() => Camera::fitted(&self.view, framed, layout.frame, height),
-            Some(_) => Camera::fitted(&self.view, corners_of(bounds), layout.frame, height),
+            Some(_) => Camera::fitted(&self.view, bounds.corners(), layout.frame, height),
             None => Camera::fitted(&self.view, self.shown_points(), layout.frame, height),
         }
     }
@@ -375,14 +375,6 @@ impl Picture {
         }
         painted
     }
-}
-
-/// The eight corners of a box.
-fn corners_of(bounds: BoundingBox) -> impl Iterator<Item = Vec3> {
-    (0..8).map(move |corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.low[axis] } else { bounds.high[axis] };
-        Vec3::new(pick(0), pick(1), pick(2))
-    })
 }
 
 /// Part of a side of a picture over which its ground fades at either end.

@@ -228,11 +228,7 @@ impl Figure {
 
     fn floor_below(&self, common: &Common, up: Vec3) -> Option<Ground> {
         // bodies that are taken apart are framed by their bounds
-        let corners = (0..8).map(|corner| {
-            let of =
-                |axis: usize| if corner >> axis & 1 == 0 { common.bounds.low } else { common.bounds.high };
-            Vec3::new(of(0).x, of(1).y, of(2).z).dot(up)
-        });
+        let corners = common.bounds.corners().map(|corner| corner.dot(up));
         let framed = common.framed.iter().map(|ball| ball.centre.dot(up) - ball.radius).reduce(f64::min);
         let lowest = framed.or_else(|| corners.reduce(f64::min))?;
         let height = lowest - FLOOR_GAP * common.bounds.diagonal();

@@ -145,8 +145,8 @@ pub(super) static MESH: PartEntry = Entry {
 fn closed(surface: TriangleSurface) -> (TriangleSurface, Option<String>) {
     let open_edges =
         |surface: &TriangleSurface| surface.edge_uses().iter().filter(|(_, up, down)| up + down == 1).count();
-    let is_mixed = surface.edge_uses().iter().any(|(_, up, down)| up + down == 2 && up != down);
-    if open_edges(&surface) == 0 && !is_mixed {
+    let is_sound = |(_, up, down): &([u32; 2], u32, u32)| up + down != 1 && (up + down != 2 || up == down);
+    if surface.edge_uses().iter().all(is_sound) {
         return (surface, None);
     }
     let (mended, repairs) = repair(&surface, RepairLimits { hole: f64::INFINITY, ..RepairLimits::default() });

@@ -111,22 +111,25 @@ export class Eye {
 
   /** Whether any part of a box may be in the picture. */
   sees(bounds: Box3): boolean {
-    this.camera.updateMatrixWorld();
-    const seen = new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
-    return new Frustum().setFromProjectionMatrix(seen).intersectsBox(bounds);
+    return this.frustum().intersectsBox(bounds);
   }
 
   /** Whether any of some balls about places may be in the picture. */
   seesAny(places: ArrayLike<number>, radius: number): boolean {
-    this.camera.updateMatrixWorld();
-    const seen = new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
-    const frustum = new Frustum().setFromProjectionMatrix(seen);
+    const frustum = this.frustum();
     const ball = new Sphere(new Vector3(), radius);
     for (let i = 0; i < places.length; i += 3) {
       ball.center.set(places[i]!, places[i + 1]!, places[i + 2]!);
       if (frustum.intersectsSphere(ball)) return true;
     }
     return false;
+  }
+
+  /** What is in the picture. */
+  private frustum(): Frustum {
+    this.camera.updateMatrixWorld();
+    const seen = new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    return new Frustum().setFromProjectionMatrix(seen);
   }
 
   /** The ray to a place of the screen. */
