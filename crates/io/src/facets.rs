@@ -1,7 +1,10 @@
 //! What surface formats have in common: what they write of a mesh, and how they read polygons.
 
 use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles, polygon_triangles};
+use souple_mesh::{
+    Cell, CutPolygon, ElementKind, MOST_POLYGON_CORNERS, Mesh, Order, cut_polygon, facet_triangles,
+    polygon_triangles,
+};
 use souple_table::in_number;
 
 use crate::cursor::{Cursor, line_of, open_end};
@@ -111,7 +114,12 @@ impl SurfacePart {
 pub(crate) struct Polygons {
     /// Corners of the polygon at hand without repetitions.
     distinct: Vec<u32>,
+    /// So far.
+    count: usize,
     cut: usize,
+    /// Of those that were cut, the ones whose triangles overlap, and the number of the first.
+    folded: usize,
+    first_folded: usize,
     degenerate: usize,
 }
 
@@ -120,6 +128,8 @@ impl Polygons {
     /// is left is a triangle, a quadrilateral, or triangles that cut it; none where it encloses nothing. Returns how many facets
     /// it has become. Points stand before facets in every format; of one that is not there the reader tells.
     pub fn push(&mut self, mesh: &mut Mesh, corners: &[u32]) -> usize {
+        let number = self.count;
+        self.count += 1;
         let distinct = &mut self.distinct;
         distinct.clear();
         distinct.extend_from_slice(corners);
@@ -137,9 +147,19 @@ impl Polygons {
                 1
             }
             [_, _, _, _, _, ..] => {
-                self.cut += 1;
                 let position = |corner: u32| mesh.points.get(corner as usize).copied().unwrap_or(Vec3::ZERO);
-                let triangles = polygon_triangles(distinct, position);
+                let CutPolygon { triangles, overlaps, .. } = cut_polygon(distinct, position);
+                if triangles.is_empty() {
+                    self.degenerate += 1;
+                    return 0;
+                }
+                self.cut += 1;
+                if overlaps {
+                    if self.folded == 0 {
+                        self.first_folded = number;
+                    }
+                    self.folded += 1;
+                }
                 triangles.iter().for_each(|corners| mesh.push_facet(ElementKind::Tri3, corners));
                 triangles.len()
             }
@@ -165,7 +185,15 @@ impl Polygons {
             ),
         ];
         let told = told.into_iter().filter(|(count, ..)| *count > 0);
-        told.map(|(count, one, many)| in_number(count, one, many)).collect()
+        let folded = (self.folded > 0).then(|| {
+            format!(
+                "{} into triangles that overlap, the first is facets[{}]: expected polygons that do not cross themselves, and of more \
+                 than {MOST_POLYGON_CORNERS} corners convex ones",
+                in_number(self.folded, "polygon was cut", "polygons were cut"),
+                self.first_folded
+            )
+        });
+        told.map(|(count, one, many)| in_number(count, one, many)).chain(folded).collect()
     }
 }
 

@@ -109,10 +109,9 @@ fn read_content(path: &Path, bytes: &[u8]) -> Result<Dataset, IoError> {
         (Ok(named), None) => named,
         (Err(_), None) => return Err(unknown_extension(path, |format| format.read.is_some())),
     };
-    let read = entry.build.read.ok_or(IoError::Unsupported {
-        format: entry.name,
-        action: "read",
-        expected: readable(),
+    let read = entry.build.read.ok_or_else(|| {
+        let what = format!("the format of {}", path.display());
+        IoError::request(what, format!("{}, which cannot be read", entry.name), readable())
     })?;
     let mut dataset = content.read(read).map_err(refuse)?;
     if by_extension(path).map_or(true, |named| !std::ptr::eq(named, entry)) {

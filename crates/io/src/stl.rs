@@ -67,9 +67,7 @@ struct Joiner {
 
 impl Joiner {
     fn point(&mut self, position: Vec3) -> u32 {
-        // adding zero makes one of the two zeros
-        let key = position.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
-        *self.points.entry(key).or_insert_with(|| {
+        *self.points.entry(position.key()).or_insert_with(|| {
             self.mesh.points.push(position);
             self.mesh.points.len() as u32 - 1
         })

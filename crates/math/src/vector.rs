@@ -59,6 +59,11 @@ impl Vec3<f64> {
     pub fn largest_component(self) -> f64 {
         self.x.abs().max(self.y.abs()).max(self.z.abs())
     }
+
+    /// What vectors that compare equal have in common, to look them up by: zeros of both signs are one.
+    pub fn key(self) -> [u64; 3] {
+        self.to_array().map(|c| (c + 0.0).to_bits())
+    }
 }
 
 impl<R> Vec3<R> {

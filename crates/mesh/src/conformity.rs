@@ -7,6 +7,7 @@
 use souple_math::Vec3;
 use souple_table::in_number;
 
+use crate::sets::Sets;
 use crate::{Aabb, AabbTree, Cell, Feature, Mesh, TriangleSurface, closest_point_on_triangle};
 
 /// What [`Mesh::conformity`] found.
@@ -140,15 +141,6 @@ impl Conformity {
     }
 }
 
-/// The lowest number of the part that a cell belongs to.
-fn root(parent: &mut [u32], mut cell: u32) -> u32 {
-    while parent[cell as usize] != cell {
-        parent[cell as usize] = parent[parent[cell as usize] as usize];
-        cell = parent[cell as usize];
-    }
-    cell
-}
-
 impl Mesh {
     /// Looks at all faces, at the points of the boundary, and at the shapes of cells. The mesh must have passed
     /// [`Mesh::validate`].
@@ -179,7 +171,7 @@ impl Mesh {
         if self.dimension() != 3 {
             return 0;
         }
-        let mut parent: Vec<u32> = (0..self.cell_count() as u32).collect();
+        let mut joined = Sets::new(self.cell_count());
         let mut uses: Vec<([u32; 4], u32)> = Vec::new();
         for (number, cell) in self.cells().enumerate() {
             for face in 0..cell.kind.faces().len() {
@@ -192,10 +184,8 @@ impl Mesh {
         let mut parts = self.cell_count();
         let same = uses.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
         let across = split.iter().flat_map(|(cell, others)| others.map(|other| [*cell, other]));
-        for pair in same.chain(across) {
-            let [a, b] = pair.map(|cell| root(&mut parent, cell));
-            parts -= usize::from(a != b);
-            parent[a.max(b) as usize] = a.min(b);
+        for [a, b] in same.chain(across) {
+            parts -= usize::from(joined.join(a, b));
         }
         parts.saturating_sub(self.components().1)
     }

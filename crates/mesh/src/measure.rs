@@ -2,6 +2,7 @@
 
 use souple_math::Vec3;
 
+use crate::sets::Sets;
 use crate::{Cell, ElementKind, MAX_NODES, Mesh, Order, QuadratureRule};
 
 /// An axis-aligned box around points [m].
@@ -154,15 +155,10 @@ impl Mesh {
     /// Connected parts: the part of each cell, parts numbered by their first cell, and how many there are.
     /// Two cells are of one part when a chain of cells that share points joins them.
     pub fn components(&self) -> (Vec<u32>, usize) {
-        let mut parent: Vec<u32> = (0..self.points.len() as u32).collect();
+        let mut joined = Sets::new(self.points.len());
         for cell in self.cells() {
-            let first = root(&mut parent, cell.nodes[0]);
             for &node in &cell.nodes[1..] {
-                let other = root(&mut parent, node);
-                let first = root(&mut parent, first);
-                // the smaller number is the root, whatever the order of the cells
-                let (low, high) = (first.min(other), first.max(other));
-                parent[high as usize] = low;
+                joined.join(cell.nodes[0], node);
             }
         }
         let mut number = vec![u32::MAX; self.points.len()];
@@ -175,7 +171,7 @@ impl Mesh {
             }
             *slot
         };
-        let parts = self.cells().map(|cell| part_of(root(&mut parent, cell.nodes[0]))).collect();
+        let parts = self.cells().map(|cell| part_of(joined.of(cell.nodes[0]))).collect();
         (parts, count as usize)
     }
 }
@@ -186,16 +182,6 @@ pub(crate) fn volume_rule(kind: ElementKind) -> &'static QuadratureRule {
         Order::Linear => kind.default_rule(),
         Order::Quadratic => kind.mass_rule(),
     }
-}
-
-/// Root of a union-find forest, halving the path on the way.
-pub(crate) fn root(parent: &mut [u32], mut node: u32) -> u32 {
-    while parent[node as usize] != node {
-        let grandparent = parent[parent[node as usize] as usize];
-        parent[node as usize] = grandparent;
-        node = grandparent;
-    }
-    node
 }
 
 #[cfg(test)]

@@ -110,7 +110,7 @@ fn cut_off_surfaces_are_refused() {
         ("not_finite.off", b"OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "line 4: z of point 1 is \"inf\""),
         ("line.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n", "expected 3 or more"),
         ("open.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "open.off"),
-        ("model.glb", b"glTF\x02\0\0\0", "the format `gltf` cannot be read"),
+        ("model.glb", b"glTF\x02\0\0\0", "is gltf, which cannot be read"),
     ];
     let mut failures = Vec::new();
     for (file, content, words) in cases {
@@ -228,7 +228,7 @@ fn conversions_tell_what_they_lose() {
     for (from, to, words) in [
         ("mixed.vtu", "b.ele", "is hex8; expected tet4"),
         ("a.stl", "b.xyz", "no format has the extension `xyz`"),
-        ("a.glb", "b.stl", "the format `gltf` cannot be read"),
+        ("a.glb", "b.stl", "is gltf, which cannot be read"),
         ("a.stl", "no/such/folder.ply", "its folder is missing"),
     ] {
         let answer = souple_in(folder.path(), ["mesh", "convert", from, to, "--json"]);

@@ -11,8 +11,8 @@ use souple_table::in_number;
 
 use super::{Grading, Reach, Size};
 use crate::implicit::{Shape, Sign, SurfaceShape};
-use crate::measure::root;
 use crate::repair::components;
+use crate::sets::Sets;
 use crate::{BoundingBox, Mesh, TriangleSurface};
 
 /// A loss of less than this part of a surface or of a volume is not told: tips and edges, which every filling bevels.
@@ -401,24 +401,24 @@ impl<'a> Closer<'a> {
                 }
             }
         }
-        let mut parent: Vec<u32> = (0..places.len() as u32).collect();
+        let mut joined = Sets::new(places.len());
         for place in (0..self.values.len()).filter(is_inside) {
             for other in ACROSS.iter().filter_map(|steps| self.beside(place, *steps)).filter(is_inside) {
                 if part[place] == part[other] {
                     continue;
                 }
-                let [a, b] = [place, other].map(|place| root(&mut parent, part[place]));
+                let [a, b] = [place, other].map(|place| joined.of(part[place]));
                 let middle = (self.position(place) + self.position(other)) * 0.5;
                 if a != b && self.shape.value(middle) < 0.0 {
-                    parent[a.max(b) as usize] = a.min(b);
+                    joined.join(a, b);
                 }
             }
         }
-        let mut joined = vec![0; places.len()];
+        let mut of_all = vec![0; places.len()];
         for (part, places) in places.iter().enumerate() {
-            joined[root(&mut parent, part as u32) as usize] += places;
+            of_all[joined.of(part as u32) as usize] += places;
         }
-        joined.iter().filter(|places| **places >= PLACES_OF_A_CUBE).count()
+        of_all.iter().filter(|places| **places >= PLACES_OF_A_CUBE).count()
     }
 }
 

@@ -106,32 +106,49 @@ pub fn triangles_cross(a: [u32; 3], b: [u32; 3], position: impl Fn(u32) -> Vec3)
     }
     // an edge that ends in a corner of the other triangle touches it without passing through
     let passes = |edges: [u32; 3], through: [u32; 3]| {
-        (0..3)
-            .map(|i| [edges[i], edges[(i + 1) % 3]])
-            .filter(|edge| !edge.iter().any(|p| through.contains(p)))
-            .any(|edge| {
-                let [p, q] = edge.map(&position);
-                segment_passes(p, q, through.map(&position))
-            })
+        let corners = through.map(&position);
+        let sides = sides_of(corners, edges.map(&position));
+        // most pairs are told here: all of one lies on one side of the other, as those of a flat part do
+        if !(sides.contains(&1) && sides.contains(&-1)) {
+            return false;
+        }
+        let crosses = |i: usize| {
+            let next = (i + 1) % 3;
+            let is_apart = ![edges[i], edges[next]].iter().any(|p| through.contains(p));
+            is_apart
+                && sides[i] * sides[next] < 0
+                && line_meets([edges[i], edges[next]].map(&position), corners)
+        };
+        (0..3).any(crosses)
     };
     passes(a, b) || passes(b, a)
 }
 
-/// Whether a segment passes through the inside of a triangle from one side to the other. What only touches, to
+/// Rounding of a product of three differences of coordinates, relative to their lengths.
+const ROUNDING: f64 = 1e-13;
+
+/// For each of three points the side of a triangle's plane that it is on: 1 or -1, and 0 in the plane, to rounding.
+fn sides_of([a, b, c]: [Vec3; 3], points: [Vec3; 3]) -> [i8; 3] {
+    let (u, v) = (b - a, c - a);
+    let normal = u.cross(v);
+    let rounding_sq = ROUNDING * ROUNDING * u.length_sq() * v.length_sq();
+    points.map(|point| {
+        let w = point - a;
+        let height = normal.dot(w);
+        if height * height <= rounding_sq * w.length_sq() { 0 } else { height.signum() as i8 }
+    })
+}
+
+/// Whether the line through two points on both sides of a triangle's plane meets its inside. What only touches its border, to
 /// rounding, does not count.
-fn segment_passes(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
-    let volume = |a: Vec3, b: Vec3, c: Vec3, d: Vec3| {
-        let [u, v, w] = [b - a, c - a, d - a];
-        let value = u.dot(v.cross(w));
-        // rounding of a product of three differences of coordinates
-        let scale = u.length() * v.length() * w.length();
-        if value.abs() <= 1e-13 * scale { 0.0 } else { value }
+fn line_meets([p, q]: [Vec3; 2], [a, b, c]: [Vec3; 3]) -> bool {
+    let side = |u: Vec3, v: Vec3| {
+        let [along, u, v] = [q - p, u - p, v - p];
+        let volume = along.dot(u.cross(v));
+        let rounding = ROUNDING * along.length() * u.length() * v.length();
+        if volume.abs() <= rounding { 0.0 } else { volume }
     };
-    let (from, to) = (volume(a, b, c, p), volume(a, b, c, q));
-    if from * to >= 0.0 {
-        return false;
-    }
-    let around = [(a, b), (b, c), (c, a)].map(|(u, v)| volume(p, q, u, v));
+    let around = [side(a, b), side(b, c), side(c, a)];
     around.iter().all(|v| *v > 0.0) || around.iter().all(|v| *v < 0.0)
 }
 

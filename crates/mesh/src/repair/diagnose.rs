@@ -8,6 +8,7 @@ use super::crossing::{Crossings, crossings};
 use super::is_flat;
 use super::weld::equal_points;
 use crate::TriangleSurface;
+use crate::sets::Sets;
 
 /// Most pairs of triangles that pass through each other of which a diagnosis tells: a surface with as many is not mended by hand.
 pub const MOST_CROSSINGS: usize = 1000;
@@ -177,25 +178,16 @@ impl Diagnosis {
 /// The part of each triangle, parts numbered by their first triangle, and how many there are; triangles of a part
 /// are joined by shared points.
 pub(crate) fn components(surface: &TriangleSurface) -> (Vec<u32>, usize) {
-    let mut parent: Vec<u32> = (0..surface.points.len() as u32).collect();
-    fn root(parent: &mut [u32], mut point: u32) -> u32 {
-        while parent[point as usize] != point {
-            parent[point as usize] = parent[parent[point as usize] as usize];
-            point = parent[point as usize];
-        }
-        point
-    }
+    let mut joined = Sets::new(surface.points.len());
     for [a, b, c] in &surface.triangles {
-        for other in [*b, *c] {
-            let (p, q) = (root(&mut parent, *a), root(&mut parent, other));
-            parent[p.max(q) as usize] = p.min(q);
-        }
+        joined.join(*a, *b);
+        joined.join(*a, *c);
     }
     let mut number: HashMap<u32, u32> = HashMap::new();
     let mut parts = Vec::with_capacity(surface.triangles.len());
     for [a, ..] in &surface.triangles {
         let next = number.len() as u32;
-        parts.push(*number.entry(root(&mut parent, *a)).or_insert(next));
+        parts.push(*number.entry(joined.of(*a)).or_insert(next));
     }
     (parts, number.len())
 }

@@ -1,6 +1,6 @@
 //! Triangles without area: dropped where nothing opens without them, joined with a neighbour elsewhere.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use souple_math::Vec3;
 
@@ -31,10 +31,10 @@ pub(super) fn drop(points: &[Vec3], triangles: &mut Vec<[u32; 3]>, repairs: &mut
 /// Of a triangle whose corners lie on a line, and its neighbour at the longest edge, takes the other diagonal: both get an area,
 /// and the surface stays where it is. Where that neighbour is flat too it comes first.
 pub(super) fn join(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs) {
-    let mut flat: Vec<usize> = (0..surface.triangles.len())
+    let mut waiting: BTreeSet<usize> = (0..surface.triangles.len())
         .filter(|triangle| is_flat(surface.triangles[*triangle], &surface.points))
         .collect();
-    if flat.is_empty() {
+    if waiting.is_empty() {
         return;
     }
     let mut beside: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
@@ -43,31 +43,44 @@ pub(super) fn join(surface: &mut TriangleSurface, repairs: &mut SurfaceRepairs) 
     }
     // one is done at least in each pass but the last
     loop {
-        let before = flat.len();
-        flat.retain(|triangle| !take_other_diagonal(surface, *triangle, &mut beside));
-        repairs.joined_triangles += before - flat.len();
-        if flat.len() == before {
+        let before = waiting.len();
+        let mut next: Vec<usize> = waiting.iter().rev().copied().collect();
+        while let Some(triangle) = next.pop() {
+            let is_waiting = waiting.contains(&triangle);
+            let Some(pair) =
+                is_waiting.then(|| take_other_diagonal(surface, triangle, &mut beside)).flatten()
+            else {
+                continue;
+            };
+            waiting.remove(&triangle);
+            // those that waited for it, at edges of two
+            let edges = pair.into_iter().flat_map(|of| edges_of(&surface.triangles[of]));
+            let of_two = edges.filter_map(|edge| beside.get(&edge).filter(|users| users.len() == 2));
+            next.extend(of_two.flatten().filter(|other| waiting.contains(other)));
+        }
+        repairs.joined_triangles += before - waiting.len();
+        if waiting.len() == before {
             return;
         }
     }
 }
 
-/// Whether a triangle without area and its neighbour at the longest edge took the other diagonal.
+/// A triangle without area and its neighbour at the longest edge, where they took the other diagonal.
 fn take_other_diagonal(
     surface: &mut TriangleSurface,
     triangle: usize,
     beside: &mut HashMap<[u32; 2], Vec<usize>>,
-) -> bool {
+) -> Option<[usize; 2]> {
     let [a, b, c] = from_longest_edge(surface, triangle);
-    let [first, second] = beside[&sorted(a, b)][..] else { return false };
+    let [first, second] = beside[&sorted(a, b)][..] else { return None };
     let other = if first == triangle { second } else { first };
     let of_other = surface.triangles[other];
-    let Some(d) = of_other.into_iter().find(|point| *point != a && *point != b) else { return false };
+    let d = of_other.into_iter().find(|point| *point != a && *point != b)?;
     let runs_against = (0..3).any(|k| of_other[k] == b && of_other[(k + 1) % 3] == a);
     // an edge that was there and is gone has no triangles
     let is_taken = beside.get(&sorted(c, d)).is_some_and(|users| !users.is_empty());
     if d == c || !runs_against || is_flat(of_other, &surface.points) || is_taken {
-        return false;
+        return None;
     }
     for of in [triangle, other] {
         for edge in edges_of(&surface.triangles[of]) {
@@ -80,7 +93,7 @@ fn take_other_diagonal(
             beside.entry(edge).or_default().push(of);
         }
     }
-    true
+    Some([triangle, other])
 }
 
 /// Corners from the start of the longest edge on.

@@ -6,7 +6,7 @@ use souple_math::Vec3;
 
 use super::diagnose::components;
 use super::{SurfaceRepairs, edges_of};
-use crate::polygon::{area_vector, cut};
+use crate::polygon::{area_vector, cut_polygon};
 use crate::{BoundingBox, TriangleSurface};
 
 /// A part whose triangles face one way, to this share of their area, is a flat sheet, and its rings are outlines.
@@ -104,7 +104,7 @@ fn cover(
     };
     let is_slit = normal.length() <= SLIT * around_sq;
     if is_slit || ring.len() == 3 || !sides().all(is_seen) {
-        let within = cut(ring, |point| surface.points[point as usize]);
+        let within = cut_polygon(ring, |point| surface.points[point as usize]);
         let sides: HashSet<[u32; 2]> =
             sides().map(|place| place.map(|place| ring[place])).map(|[p, q]| [p.min(q), p.max(q)]).collect();
         let across = || within.triangles.iter().flat_map(edges_of).filter(|edge| !sides.contains(edge));

@@ -7,6 +7,7 @@ use souple_math::Vec3;
 use super::diagnose::components;
 use super::{SurfaceRepairs, facing, flat, from_lowest};
 use crate::TriangleSurface;
+use crate::sets::Sets;
 
 /// A closed part that would keep less of its volume is flattened.
 const KEPT_VOLUME: f64 = 0.5;
@@ -108,11 +109,7 @@ fn close_points(points: &[Vec3], distance: f64, may_join: impl Fn(usize) -> bool
 /// The lowest number of the points at the same place, for each point.
 pub(super) fn equal_points(points: &[Vec3]) -> Vec<u32> {
     let mut first_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len());
-    let number = |(index, point): (usize, &Vec3)| {
-        // zeros of both signs are one place
-        let place = point.to_array().map(|c| (c + 0.0).to_bits());
-        *first_at.entry(place).or_insert(index as u32)
-    };
+    let number = |(index, point): (usize, &Vec3)| *first_at.entry(point.key()).or_insert(index as u32);
     points.iter().enumerate().map(number).collect()
 }
 
@@ -156,19 +153,23 @@ fn part_touching(
         let corners: Vec<[u32; 3]> = users.iter().map(|triangle| old[*triangle]).collect();
         let own: Vec<u32> = corners.iter().map(|corners| given_at(*corners, point)).collect();
         let given_edge = |user: usize, other: u32| (own[user], given_at(corners[user], other));
-        let Some(mut fan) = closed_fans(point, &corners, given_edge) else { continue };
+        let Some(mut fans) = closed_fans(point, &corners, given_edge) else { continue };
         // what was one point stays one
+        let mut first_of: HashMap<u32, u32> = HashMap::new();
         for (user, point) in own.iter().enumerate() {
-            let first = own.iter().position(|other| other == point).unwrap_or(user);
-            join(&mut fan, first, user);
+            fans.join(*first_of.entry(*point).or_insert(user as u32), user as u32);
         }
-        if fan.iter().all(|number| *number == fan[0]) {
+        let mut lowest_of: HashMap<u32, u32> = HashMap::new();
+        for (user, point) in own.iter().enumerate() {
+            let lowest = lowest_of.entry(fans.of(user as u32)).or_insert(*point);
+            *lowest = (*lowest).min(*point);
+        }
+        if lowest_of.len() == 1 {
             continue;
         }
         repairs.left.touching_points += 1;
         for (user, triangle) in users.iter().enumerate() {
-            let of_fan = own.iter().zip(&fan).filter(|(_, number)| **number == fan[user]);
-            let lowest = of_fan.map(|(point, _)| *point).min().unwrap_or(point);
+            let lowest = lowest_of[&fans.of(user as u32)];
             number[own[user] as usize] = lowest;
             let at = old[*triangle].iter().position(|corner| *corner == point);
             at.into_iter().for_each(|at| triangles[*triangle][at] = lowest);
@@ -176,37 +177,32 @@ fn part_touching(
     }
 }
 
-/// For each triangle around a point the fan that it is in, or `None` where a fan is open. At an edge of more than two triangles those
+/// The triangles around a point by the fans that they are in, or `None` where a fan is open. At an edge of more than two triangles those
 /// follow each other that did so as they were given.
 fn closed_fans(
     point: u32,
     corners: &[[u32; 3]],
     given_edge: impl Fn(usize, u32) -> (u32, u32),
-) -> Option<Vec<usize>> {
+) -> Option<Sets> {
     let mut at_edge: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (user, corners) in corners.iter().enumerate() {
         let others = corners.iter().filter(|other| **other != point);
         others.for_each(|other| at_edge.entry(*other).or_default().push(user));
     }
-    let mut fan: Vec<usize> = (0..corners.len()).collect();
+    let mut fans = Sets::new(corners.len());
     for (other, users) in &at_edge {
-        for (place, user) in users.iter().enumerate() {
-            let follows = |before: &&usize| {
-                users.len() == 2 || given_edge(**before, *other) == given_edge(*user, *other)
-            };
-            users[..place].iter().filter(follows).for_each(|before| join(&mut fan, *before, *user));
+        let mut last_at: HashMap<(u32, u32), usize> = HashMap::new();
+        for user in users {
+            let edge = if users.len() == 2 { (point, *other) } else { given_edge(*user, *other) };
+            if let Some(before) = last_at.insert(edge, *user) {
+                fans.join(before as u32, *user as u32);
+            }
         }
     }
-    let is_closed = |users: &Vec<usize>| {
-        users.iter().all(|user| users.iter().filter(|other| fan[**other] == fan[*user]).count() == 2)
+    let mut is_closed = |users: &Vec<usize>| {
+        let mut counts: HashMap<u32, usize> = HashMap::new();
+        users.iter().for_each(|user| *counts.entry(fans.of(*user as u32)).or_default() += 1);
+        counts.into_values().all(|count| count == 2)
     };
-    at_edge.values().all(is_closed).then_some(fan)
-}
-
-/// Gives the sets of two members one number.
-fn join(set_of: &mut [usize], a: usize, b: usize) {
-    let (to, from) = (set_of[a], set_of[b]);
-    if to != from {
-        set_of.iter_mut().filter(|set| **set == from).for_each(|set| *set = to);
-    }
+    at_edge.values().all(&mut is_closed).then_some(fans)
 }

@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use souple_math::Vec3;
+use souple_mesh::Sets;
 use souple_models::contact::{ContactPoint, Shape};
 use souple_models::loads::RigidMotion;
 
@@ -147,24 +148,16 @@ fn joints_of(draft: &Draft, system: usize) -> Vec<Joint> {
 
 /// Parts that joints connect, each group ascending.
 fn groups(part_count: usize, part_of_row: &[usize], joints: &[Joint]) -> Vec<Vec<usize>> {
-    // the least part that each is joined to, by repeated halving of the way there
-    let mut parent: Vec<usize> = (0..part_count).collect();
-    fn root(parent: &mut [usize], mut part: usize) -> usize {
-        while parent[part] != part {
-            parent[part] = parent[parent[part]];
-            part = parent[part];
-        }
-        part
-    }
+    let mut joined = Sets::new(part_count);
     for joint in joints {
         for pair in joint.ends.windows(2) {
-            let [a, b] = [pair[0].0, pair[1].0].map(|row| root(&mut parent, part_of_row[row as usize]));
-            parent[a.max(b)] = a.min(b);
+            let [a, b] = [pair[0].0, pair[1].0].map(|row| part_of_row[row as usize] as u32);
+            joined.join(a, b);
         }
     }
-    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for part in 0..part_count {
-        groups.entry(root(&mut parent, part)).or_default().push(part);
+        groups.entry(joined.of(part as u32)).or_default().push(part);
     }
     groups.into_values().collect()
 }

@@ -146,7 +146,7 @@ pub fn simplified(input: &Path, texts: &[String], quiet: bool) -> Result<(Mesh, 
     let (distance, triangles) = (values.number("distance"), values.integer("triangles") as usize);
     let goal = match (distance > 0.0, triangles > 0) {
         (false, false) => {
-            let value = "missing".to_owned();
+            let value = "0, or missing".to_owned();
             let expected = "a largest distance above 0 [m], or a number of `triangles`".to_owned();
             return Err(refuse(MeshError::Parameter { name: "distance", value, expected }));
         }

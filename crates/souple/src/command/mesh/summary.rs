@@ -1,7 +1,7 @@
 //! What is told of a mesh or a surface, in sentences: the same as in the JSON document, without its brackets.
 
 use serde_json::Value as Json;
-use souple_table::{counted, four_digits, in_number};
+use souple_table::{counted, four_digits, in_number, readable};
 
 /// Lines for people of a document of `souple mesh`; `name` is the file's.
 pub fn sentences(name: &str, document: &Json) -> Vec<String> {
@@ -100,11 +100,27 @@ fn quality(document: &Json) -> String {
 }
 
 fn bounds(corners: &Json) -> String {
+    let coordinate = |corner: usize, axis: usize| corners[corner][axis].as_f64();
     let corner = |index: usize| {
-        let numbers: Vec<String> = corners[index].as_array().into_iter().flatten().map(number).collect();
-        numbers.join(", ")
+        let numbers = (0..3).map(|axis| {
+            let both = coordinate(0, axis).zip(coordinate(1, axis));
+            let extent = both.map_or(0.0, |(low, high)| high - low);
+            coordinate(index, axis).map_or_else(|| "—".to_owned(), |number| four_digits_of(number, extent))
+        });
+        numbers.collect::<Vec<_>>().join(", ")
     };
     format!("({}) to ({}) m", corner(0), corner(1))
+}
+
+/// A number to four digits of itself, and of an extent that it is an end of: far from the origin too it is seen how large that is.
+fn four_digits_of(number: f64, extent: f64) -> String {
+    if !(extent > 0.0 && extent < number.abs()) {
+        return four_digits(number);
+    }
+    let exponent = |number: f64| format!("{number:e}").rsplit('e').next().and_then(|e| e.parse::<i64>().ok());
+    let digits = exponent(number).zip(exponent(extent)).map_or(3, |(own, other)| own - other + 3);
+    let rounded = format!("{number:.*e}", digits.clamp(3, 16) as usize).parse().unwrap_or(number);
+    readable(rounded)
 }
 
 fn number(value: &Json) -> String {
@@ -142,5 +158,7 @@ mod tests {
                 "  note     a note",
             ]
         );
+        let far = json!([[1e6, -0.123_456, 0.0], [1_000_002.345_67, 0.5, 0.0]]);
+        assert_eq!(bounds(&far), "(1000000, -0.1235, 0) to (1000002.346, 0.5, 0) m");
     }
 }
