@@ -61,8 +61,9 @@ pub fn read_scene(content: &[u8]) {
 
 /// Reads a content as a list of frames.
 pub fn read_series(content: &[u8]) {
-    let Ok(frames) = read_series_bytes(Path::new("fuzzed.pvd"), content) else { return };
-    assert!(!frames.is_empty() && frames.iter().all(|(time, _)| time.is_finite()));
+    let Ok(parts) = read_series_bytes(Path::new("fuzzed.pvd"), content) else { return };
+    assert!(!parts.is_empty() && parts.iter().all(|part| !part.frames.is_empty()));
+    assert!(parts.iter().flat_map(|part| &part.frames).all(|(time, _)| time.is_finite()));
 }
 
 /// Reads a content as a study, what stands behind a line `--- table` as its table; each run has a value for each path.

@@ -38,4 +38,4 @@ pub use format::{
 };
 pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
 pub use particles::{ParticleRow, read_particle_bytes, read_particles};
-pub use vtk::{Series, read_series, read_series_bytes};
+pub use vtk::{Series, SeriesPart, read_series, read_series_bytes};

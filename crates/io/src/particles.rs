@@ -23,9 +23,14 @@ pub struct ParticleRow {
     pub during: [f64; 2],
 }
 
-/// Whether a column holds a number: times may be those of always.
-fn is_taken(column: usize, number: f64) -> bool {
-    number.is_finite() || (number.is_infinite() && matches!(COLUMNS[column], "from" | "until"))
+/// What a column holds, and whether a number is such: times may be those of always.
+fn expected_of(column: usize) -> (&'static str, fn(f64) -> bool) {
+    match COLUMNS[column] {
+        "from" => ("a number or -inf", |number| number < f64::INFINITY),
+        "until" => ("a number or inf", |number| number > f64::NEG_INFINITY),
+        "radius" => ("a finite number above 0", |number| number.is_finite() && number > 0.0),
+        _ => ("a finite number", f64::is_finite),
+    }
 }
 
 const COLUMNS: [&str; 9] = ["x", "y", "z", "radius", "vx", "vy", "vz", "from", "until"];
@@ -85,21 +90,23 @@ pub fn read_particle_bytes(name: &str, bytes: &[u8]) -> Result<Vec<ParticleRow>,
         let mut values = [None; COLUMNS.len()];
         for (column, (value, place)) in values.iter_mut().zip(places).enumerate() {
             let Some(cell) = place.map(|place| cells[place]) else { continue };
-            *value = cell.parse().ok().filter(|number| is_taken(column, *number));
+            let (expected, is_taken) = expected_of(column);
+            *value = cell.parse().ok().filter(|number| is_taken(*number));
             if value.is_none() {
-                return refuse(
-                    format!("{} in line {number}", COLUMNS[column]),
-                    cell,
-                    "a finite number; `from` and `until` may be infinite".to_owned(),
-                );
+                return refuse(format!("{} in line {number}", COLUMNS[column]), cell, expected.to_owned());
             }
         }
         let at = |column: usize, default: f64| values[column].unwrap_or(default);
+        let during = [at(7, f64::NEG_INFINITY), at(8, f64::INFINITY)];
+        if during[0] >= during[1] {
+            let what = format!("from in line {number}");
+            return refuse(what, &during[0].to_string(), format!("a time before `until`, {}", during[1]));
+        }
         rows.push(ParticleRow {
             position: Vec3::new(at(0, 0.0), at(1, 0.0), at(2, 0.0)),
             velocity: Vec3::new(at(4, 0.0), at(5, 0.0), at(6, 0.0)),
             radius: values[3],
-            during: [at(7, f64::NEG_INFINITY), at(8, f64::INFINITY)],
+            during,
         });
     }
     Ok(rows)
@@ -129,7 +136,17 @@ mod tests {
             ("x,y,z\n0,inf,0\n", "y in line 2 of drops.csv is `inf`; expected a finite number"),
             ("x,y,z,vy\n0,0,0,-inf\n", "vy in line 2 of drops.csv is `-inf`"),
             ("x,y,z,until\n0,0,0,nan\n", "until in line 2 of drops.csv is `nan`"),
+            ("x,y,z,until\n0,0,0,-inf\n", "until in line 2 of drops.csv is `-inf`; expected a number or inf"),
+            ("x,y,z,from\n0,0,0,inf\n", "from in line 2 of drops.csv is `inf`; expected a number or -inf"),
             ("x,y,z,radius\n0,0,0,\n", "radius in line 2 of drops.csv is ``"),
+            (
+                "x,y,z,radius\n0,0,0,1\n0,0,0,-1\n",
+                "radius in line 3 of drops.csv is `-1`; expected a finite number above 0",
+            ),
+            (
+                "x,y,z,from,until\n0,0,0,2,1\n",
+                "from in line 2 of drops.csv is `2`; expected a time before `until`, 1",
+            ),
         ] {
             let message = message(text);
             assert!(message.contains(words), "{text:?}: {message}");

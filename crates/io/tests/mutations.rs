@@ -183,10 +183,11 @@ fn mutated_series_are_read_or_refused() {
     let cases = repeat(4000, |seed| {
         let content = Mutator::new(seed, words.clone()).mutated(&seeds);
         guard(seed, &content, 5.0, || {
-            let Ok(frames) = souple_io::read_series_bytes(Path::new("run/mutated.pvd"), &content) else {
+            let Ok(parts) = souple_io::read_series_bytes(Path::new("run/mutated.pvd"), &content) else {
                 return;
             };
-            assert!(!frames.is_empty() && frames.iter().all(|(time, _)| time.is_finite()));
+            assert!(!parts.is_empty() && parts.iter().all(|part| !part.frames.is_empty()));
+            assert!(parts.iter().flat_map(|part| &part.frames).all(|(time, _)| time.is_finite()));
             read += 1;
         });
     });

@@ -166,7 +166,10 @@ fn zeros_are_told() {
     for scale in [None, Some(1.0)] {
         let arrows = Some(Arrows { field: "velocity".to_owned(), scale });
         let (pictures, notes) = Figure { arrows, ..coloured_by("velocity") }.pictures(&show).unwrap();
-        assert!(notes.concat().contains("there is no arrow: all values of `velocity` are zero"), "{notes:?}");
+        assert!(
+            notes.concat().contains("there is no arrow: all values of `velocity` that are seen are zero"),
+            "{notes:?}"
+        );
         for picture in &pictures {
             assert!(picture.strokes.is_empty() && picture.key.is_none());
             assert_eq!(picture.legend.as_ref().unwrap().range, Some((0.0, 0.0)));

@@ -245,6 +245,13 @@ fn what_has_no_effect_is_told() {
             .contains("below the range 1000 to 2000 m/s")
     );
     assert!(notes(&["--size", "48,32"]).contains("the picture has no room for: "));
+    folder.write("shapes.toml", with_shapes());
+    let on_ground = render(&folder, "shapes.toml", "b.png", &["--floor"]).ends(0).json()["notes"].to_string();
+    assert!(on_ground.contains("the scene has a ground of its own"), "{on_ground}");
+    let generate = ["mesh", "generate", "box", "box.msh", "size=1,1,1", "cells=2,2,2", "element=hex8"];
+    souple_in(folder.path(), generate).ends(0);
+    let bare = render(&folder, "box.msh", "b.png", &["--range", "0,1"]).ends(0).json()["notes"].to_string();
+    assert!(bare.contains("no body has stress") && bare.contains("--range changes nothing"), "{bare}");
     let read = || std::fs::read(folder.path().join("a.png")).expect("a picture");
     let pictures = [
         &["--range", "0,2000"][..],
@@ -286,6 +293,63 @@ fn files_of_frames_have_fields() {
     .ends(0);
     let bare = render(&folder, "box.msh", "b.png", &["--colour", "velocity"]).ends(2).stderr;
     assert!(bare.contains("element or none: no body has fields"), "{bare}");
+}
+
+/// A list of several parts shows all of them, one beside the other, in the order of time.
+#[test]
+fn lists_of_parts_show_all_bodies() {
+    use souple::run::show::Reel;
+
+    let folder = Folder::new("parts");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--frames", "2", "--quiet"]).ends(0);
+    let entry = |time: u32, part: u32, frame: u32| {
+        format!("<DataSet timestep=\"{time}\" part=\"{part}\" file=\"run/frames/cube_000{frame}.vtu\"/>")
+    };
+    let list =
+        |entries: &[String]| format!("<VTKFile><Collection>{}</Collection></VTKFile>", entries.concat());
+    folder.write("two.pvd", list(&[entry(1, 0, 1), entry(1, 1, 2), entry(0, 0, 0), entry(0, 1, 0)]));
+    let reel = Reel::of_series(&folder.path().join("two.pvd")).expect("a series");
+    assert_eq!(reel.times(), [0.0, 1.0]);
+    let last = reel.moment(1, None).expect("frames");
+    let names: Vec<&str> = last.bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(names, ["two 0", "two 1"]);
+    assert_ne!(last.bodies[0].positions, last.bodies[1].positions);
+    render(&folder, "two.pvd", "a.png", &[]).ends(0);
+    folder.write("uneven.pvd", list(&[entry(0, 0, 0), entry(1, 1, 1)]));
+    let refused = render(&folder, "uneven.pvd", "b.png", &[]).ends(2).stderr;
+    assert!(refused.contains("the times of `uneven 1` are not those of the body before it"), "{refused}");
+}
+
+/// Arrows begin at the surface that a cut leaves, its section with it, and nowhere in what it takes away.
+#[test]
+fn arrows_are_cut_with_their_bodies() {
+    use souple::io::picture::{Cut, Stroke, StrokeShape};
+    use souple::math::Vec3;
+    use souple::run::show::{Arrows, Figure, Show, Stage};
+
+    let folder = Folder::new("cut_arrows");
+    folder.write("scene.toml", CUBE);
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet"]).ends(0);
+    let mut show = Show::of_run(&folder.path().join("run"), Stage::default()).expect("frames");
+    show.moments.drain(..show.moments.len() - 1);
+    let middle = show.bounds().centre();
+    let feet = |cut: Option<Cut>| -> Vec<Vec3> {
+        let arrows = Some(Arrows { field: "displacement".to_owned(), scale: None });
+        let (pictures, _) = Figure { arrows, cut, ..Figure::default() }.pictures(&show).expect("pictures");
+        let foot = |stroke: Stroke| match stroke.shape {
+            StrokeShape::Arrow(from, _) => Some(from),
+            _ => None,
+        };
+        pictures.into_iter().flat_map(|picture| picture.strokes).filter_map(foot).collect()
+    };
+    let (all, left) = (feet(None), feet(Some(Cut { point: middle, normal: Vec3::X })));
+    // places on a section are between two points, each rounded
+    let rounding = 8.0 * f64::EPSILON * show.bounds().diagonal();
+    let is_left = |foot: &&Vec3| foot.x <= middle.x + rounding;
+    assert!(all.iter().filter(is_left).count() < all.len());
+    assert!(!left.is_empty() && left.iter().all(|foot| is_left(&foot)), "{left:?}");
+    assert!(left.iter().any(|foot| (foot.x - middle.x).abs() < rounding), "{left:?}");
 }
 
 /// A skin has one colour, with arrows or without: what differs are the arrows.

@@ -94,31 +94,8 @@ impl Layout {
         let [width, height] = picture.size.map(|side| side as f64);
         let letter = (0.0165 * picture.letters * height.min(0.8 * width)).max(8.0);
         let margin = 0.045 * width.min(height);
-        let room = width - 2.0 * margin;
-        // a title that is a little too long is set smaller, one that is much too long in lines
-        let wanted = 1.45 * letter;
-        let title_letter =
-            (wanted * room / text_width(&picture.title, wanted).max(1.0)).clamp(0.75 * wanted, wanted);
-        // as much as leaves half of the picture: of a title of several lines the last go first, then the time
-        let wishes = [(3, 1), (2, 1), (1, 1), (1, 0), (0, 1), (0, 0)];
-        let texts = wishes.map(|(lines, times)| {
-            let title = wrapped(&picture.title, title_letter, room, lines);
-            let subtitle = wrapped(&picture.subtitle, letter, room, times);
-            let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
-            (title, subtitle, margin + above)
-        });
-        let fits = |(_, _, top): &(Vec<String>, Vec<String>, f64)| *top <= (1.0 - LEAST_LEFT) * height;
-        let (title, subtitle, top) = texts.into_iter().find(fits).unwrap_or_default();
-        let beside = picture.legend.as_ref().filter(|legend| legend.place == LegendPlace::Beside);
-        let room = Room { width, height, top, letter, margin };
-        let legend = beside.and_then(|legend| {
-            let named = Named { legend, scale: picture.scale, range };
-            let beside = LegendBox::beside(named, room).filter(|legend| legend.edge >= LEAST_LEFT * width);
-            match beside {
-                Some(beside) if height <= TALL * width && !beside.is_cut() => Some(beside),
-                beside => LegendBox::below(named, room).or(beside),
-            }
-        });
+        let Head { title, title_letter, subtitle, height: top } = Head::of(picture, letter, margin);
+        let legend = legend_of(picture, range, Room { width, height, top, letter, margin });
         // room for the shade around the place of contact
         let shade = if picture.ground.is_some() { 0.07 * height } else { 0.0 };
         let (mut right, mut floor) = (width - margin, height - margin);
@@ -203,6 +180,49 @@ impl Layout {
         if let Some(legend) = &self.legend {
             legend.write(picture, self.letter, palette, canvas);
         }
+    }
+}
+
+/// What stands above the subject.
+#[derive(Default)]
+struct Head {
+    title: Vec<String>,
+    title_letter: f64,
+    subtitle: Vec<String>,
+    /// With the margin above.
+    height: f64,
+}
+
+impl Head {
+    /// As much as leaves half of the picture: of a title of several lines the last go first, then the time.
+    fn of(picture: &Picture, letter: f64, margin: f64) -> Self {
+        let [width, height] = picture.size.map(|side| side as f64);
+        let room = width - 2.0 * margin;
+        // a title that is a little too long is set smaller, one that is much too long in lines
+        let wanted = 1.45 * letter;
+        let title_letter =
+            (wanted * room / text_width(&picture.title, wanted).max(1.0)).clamp(0.75 * wanted, wanted);
+        let of_lines = |(lines, times): (usize, usize)| {
+            let title = wrapped(&picture.title, title_letter, room, lines);
+            let subtitle = wrapped(&picture.subtitle, letter, room, times);
+            let above = title.len() as f64 * 1.65 * title_letter + subtitle.len() as f64 * 1.8 * letter;
+            Self { title, title_letter, subtitle, height: margin + above }
+        };
+        let wishes = [(3, 1), (2, 1), (1, 1), (1, 0), (0, 1), (0, 0)];
+        let fits = |head: &Self| head.height <= (1.0 - LEAST_LEFT) * height;
+        wishes.into_iter().map(of_lines).find(fits).unwrap_or_default()
+    }
+}
+
+/// The legend beside the subject, or below it where that leaves it more room; `None` where there is room for neither.
+fn legend_of(picture: &Picture, range: (f64, f64), room: Room) -> Option<LegendBox> {
+    let legend = picture.legend.as_ref().filter(|legend| legend.place == LegendPlace::Beside)?;
+    let named = Named { legend, scale: picture.scale, range };
+    let Room { width, height, .. } = room;
+    let beside = LegendBox::beside(named, room).filter(|legend| legend.edge >= LEAST_LEFT * width);
+    match beside {
+        Some(beside) if height <= TALL * width && !beside.is_cut() => Some(beside),
+        beside => LegendBox::below(named, room).or(beside),
     }
 }
 

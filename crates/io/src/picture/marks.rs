@@ -180,22 +180,19 @@ pub(super) struct Placed {
 impl Placed {
     pub fn of(picture: &Picture, camera: &Camera, layout: &Layout, palette: &Palette) -> Self {
         let (letter, corner, shown) = (layout.letter, layout.corner, layout.shown);
-        let (pixels, width) = (pixels_of_metre(camera, picture.bounds()), picture.size[0] as f64);
+        let wanted = Marks { triad: shown.triad, scale_bar: shown.bar };
+        let key = picture.key.as_ref().filter(|_| shown.key);
+        let [triad, bar, key] = about_origins(picture, (wanted, key), camera, letter, palette);
         let at = |mark: Mark, y: f64| {
             let mark = mark.moved([corner.right, y]);
             (mark.reach(letter)[0] >= corner.beside).then_some(mark)
         };
-        let triad = shown.triad.then(|| {
-            let mark = Mark::triad([camera.right, camera.up, camera.forward], letter, palette);
-            let [left, _, _, bottom] = mark.reach(letter);
-            mark.moved([corner.left - left, corner.floor - bottom])
-        });
-        let bar = shown.bar.then(|| Mark::bar(pixels, width, letter, palette)).flatten();
         let above = if shown.bar { ABOVE_BAR * letter } else { 0.0 };
-        let key = picture.key.as_ref().filter(|_| shown.key);
-        let key = key.and_then(|key| Mark::key(key, pixels, width, letter, palette));
         Self {
-            triad,
+            triad: triad.map(|mark| {
+                let [left, _, _, bottom] = mark.reach(letter);
+                mark.moved([corner.left - left, corner.floor - bottom])
+            }),
             bar: bar.and_then(|bar| at(bar, corner.floor)),
             key: key.and_then(|key| at(key, corner.floor - above)),
         }
@@ -205,6 +202,23 @@ impl Placed {
         let marks = [&self.triad, &self.bar, &self.key].into_iter().flatten();
         marks.for_each(|mark| mark.write(letter, palette, canvas));
     }
+}
+
+/// The axes, the bar and the key that are wanted of a picture, each about an origin of its own.
+fn about_origins(
+    picture: &Picture,
+    (marks, key): (Marks, Option<&ArrowKey>),
+    camera: &Camera,
+    letter: f64,
+    palette: &Palette,
+) -> [Option<Mark>; 3] {
+    let (pixels, width) = (pixels_of_metre(camera, picture.bounds()), picture.size[0] as f64);
+    let directions = [camera.right, camera.up, camera.forward];
+    [
+        marks.triad.then(|| Mark::triad(directions, letter, palette)),
+        marks.scale_bar.then(|| Mark::bar(pixels, width, letter, palette)).flatten(),
+        key.and_then(|key| Mark::key(key, pixels, width, letter, palette)),
+    ]
 }
 
 /// The marks that pictures of a sheet have in common.
@@ -231,11 +245,8 @@ impl Picture {
         let palette = self.palette();
         let letter = (0.011 * width as f64).min(0.02 * height as f64).max(8.0);
         let margin = 1.4 * letter;
-        let (layout, bounds) = (Layout::of(self, self.range()), self.bounds());
-        let camera = self.camera(bounds, &layout);
-        let (pixels, across) = (pixels_of_metre(&camera, bounds), self.size[0] as f64);
-        let triad =
-            marks.triad.then(|| Mark::triad([camera.right, camera.up, camera.forward], letter, &palette));
+        let camera = self.camera(self.bounds(), &Layout::of(self, self.range()));
+        let [triad, bar, key] = about_origins(self, (marks, key), &camera, letter, &palette);
         let tall = triad.as_ref().map_or(0.0, |mark| {
             let [_, top, _, bottom] = mark.reach(letter);
             bottom - top
@@ -256,8 +267,6 @@ impl Picture {
                 left += high - low + letter;
             }
         }
-        let bar = marks.scale_bar.then(|| Mark::bar(pixels, across, letter, &palette)).flatten();
-        let key = key.and_then(|key| Mark::key(key, pixels, across, letter, &palette));
         for (mark, name) in [(bar, SCALE_BAR), (key, KEY)] {
             let Some(mark) = mark else { continue };
             let mark = mark.moved([right, height - 1.3 * letter]);

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles};
+use souple_mesh::{Cell, ElementKind, Mesh, Order, facet_triangles, polygon_triangles};
 
 use super::surface::{Paint, Surface};
 use super::tubes::along;
@@ -18,11 +18,13 @@ pub struct Between {
 }
 
 impl Between {
-    pub(super) fn at(point: u32) -> Self {
+    /// A point of the mesh.
+    pub fn at(point: u32) -> Self {
         Self { from: point, to: point, share: 0.0 }
     }
 
-    pub(super) fn of<T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(
+    /// The value there, of those at the points of the mesh.
+    pub fn of<T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>>(
         &self,
         values: &[T],
     ) -> T {
@@ -205,7 +207,8 @@ impl MeshSurface {
         }
     }
 
-    /// A polygon as triangles around its corner of the lowest number, as the cells on both sides of it have it.
+    /// A polygon as triangles around its corner of the lowest number, as the cells on both sides of it have it; one that no solid is
+    /// beside is cut within.
     fn push(&mut self, mesh: &Mesh, nodes: &[u32], cell: u32, numbers: &mut HashMap<u32, u32>) {
         let corners: Vec<u32> = nodes
             .iter()
@@ -219,9 +222,24 @@ impl MeshSurface {
             .collect();
         let lowest = (0..nodes.len()).min_by_key(|corner| nodes[*corner]).unwrap_or(0);
         let corners: Vec<u32> = (0..corners.len()).map(|k| corners[(lowest + k) % corners.len()]).collect();
-        for k in 1..corners.len().saturating_sub(1) {
-            self.surface.triangles.push([corners[0], corners[k], corners[k + 1]]);
-            self.surface.edges.push([k == 1, true, k + 2 == corners.len()]);
+        let count = corners.len();
+        let is_sheet = mesh.cell_count() == 0 || mesh.dimension() < 3;
+        let around = (1..count.saturating_sub(1)).map(|k| [0, k, k + 1]);
+        let places: Vec<[usize; 3]> = if is_sheet && count > 3 {
+            let own: Vec<u32> = (0..count as u32).collect();
+            let position = |place: u32| mesh.points[nodes[(lowest + place as usize) % count] as usize];
+            let within = polygon_triangles(&own, position).into_iter();
+            within.map(|triangle| triangle.map(|place| place as usize)).collect()
+        } else {
+            around.collect()
+        };
+        for places in places {
+            let is_side = |k: usize| {
+                let (from, to) = (places[k], places[(k + 1) % 3]);
+                (from + 1) % count == to || (to + 1) % count == from
+            };
+            self.surface.triangles.push(places.map(|place| corners[place]));
+            self.surface.edges.push([0, 1, 2].map(is_side));
             self.cells.push(cell);
         }
     }

@@ -102,6 +102,23 @@ fn quadrilaterals_have_no_diagonal() {
     assert!(triangles.edges.iter().flatten().all(|mark| *mark));
 }
 
+/// A quadrilateral with a corner that points inward is cut within, and keeps its four edges.
+#[test]
+fn darts_are_cut_within() {
+    let points =
+        [[2.0, -1.0, 0.0], [0.0, 3.0, 0.0], [-2.0, -1.0, 0.0], [0.0, 0.0, 0.0]].map(Vec3::from_array);
+    let mut dart = Mesh { points: points.to_vec(), ..Mesh::default() };
+    dart.push_facet(ElementKind::Quad4, &[0, 1, 2, 3]);
+    let surface = MeshSurface::of(&dart).surface;
+    assert!(surface.edges.iter().all(|marks| marks.iter().filter(|mark| **mark).count() == 2));
+    let heights = surface.triangles.iter().map(|corners| {
+        let [a, b, c] = corners.map(|corner| surface.points[corner as usize]);
+        (b - a).cross(c - a).z
+    });
+    let twice: Vec<f64> = heights.collect();
+    assert!(twice.iter().all(|area| *area > 0.0) && twice.iter().sum::<f64>() == 12.0, "{twice:?}");
+}
+
 /// Normals of a box stand on its faces, those of a ball along its radius.
 #[test]
 fn normals_keep_creases_and_round_balls() {

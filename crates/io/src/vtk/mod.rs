@@ -11,7 +11,7 @@ mod vtu;
 mod vtu_write;
 mod xml;
 
-pub use series::{Series, read_series, read_series_bytes};
+pub use series::{Series, SeriesPart, read_series, read_series_bytes};
 
 pub(crate) use legacy::VTK_LEGACY;
 pub(crate) use vtu::VTU;

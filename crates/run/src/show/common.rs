@@ -7,7 +7,7 @@ use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 use souple_table::four_digits;
 
-use super::figure::{Arrows, Figure, Foot};
+use super::figure::{Arrows, Figure, Floor, Foot};
 use super::{BodyMoment, Moment, Show, ShowError, Stage, vectors};
 use crate::links::{LINK_STATE, RADIUS};
 
@@ -194,16 +194,15 @@ impl<'a> Gathering<'a> {
         if let (Some(arrows), true) = (&figure.arrows, is_first) {
             refuse_unknown_vectors(moment, &arrows.field)?;
         }
-        // what is cut away is not made room for
-        let is_left = |point: &Vec3| figure.cut.is_none_or(|cut| (*point - cut.point).dot(cut.normal) <= 0.0);
         for body in moment.bodies.iter().filter(|body| body.is_drawable()) {
             for (point, ball) in body.balls().enumerate() {
                 self.bounds = self.bounds.union(BoundingBox::of([ball.centre]).grown(ball.radius));
-                if is_left(&body.positions[point]) {
+                // what is cut away is not made room for
+                if figure.is_left(body.positions[point]) {
                     self.framed.add([ball]);
                 }
             }
-            if let Some(quantity) = &quantity {
+            if let Some(quantity) = quantity.as_ref().filter(|_| !figure.hides(moment, body)) {
                 self.noise = self.noise.max(quantity.noise(body, self.stage.stiffness));
                 let values = quantity.at_points(body).unwrap_or_default();
                 let spanning = values.iter().copied().filter(|value| figure.scale.spans(*value));
@@ -213,79 +212,31 @@ impl<'a> Gathering<'a> {
                 self.colourless[0] += finite.clone().filter(|value| !figure.scale.has(**value)).count();
                 self.colourless[1] += finite.count();
             }
-            let arrows = figure.arrows.as_ref().and_then(|arrows| vectors(body, &arrows.field));
-            let lengths = arrows.iter().flatten().map(|v| v.length()).filter(|length| length.is_finite());
-            self.longest_arrow = lengths.fold(self.longest_arrow, f64::max);
-            self.arrows.extend(figure.feet_of(body));
+            let feet = figure.feet_of(body);
+            self.longest_arrow = feet.iter().map(|foot| foot.length()).fold(self.longest_arrow, f64::max);
+            self.arrows.extend(feet);
         }
         Ok(())
     }
 
     /// # Errors
     /// No value has a colour on a scale of powers of ten.
-    pub fn finish(self) -> Result<Common, ShowError> {
-        let Self { figure, stage, mut bounds, mut framed, .. } = self;
-        for time in &self.times {
-            let shapes = stage.points_near(*time, bounds);
-            framed.add(shapes.iter().copied());
-            if !shapes.is_empty() {
-                bounds = bounds.union(BoundingBox::of(shapes));
-            }
-        }
-        let fitted = bounds.diagonal() / (6.0 * self.longest_arrow);
-        let arrows = figure.arrows.as_ref();
-        let arrow_scale =
-            arrows.filter(|_| self.longest_arrow > 0.0).map(|arrows| arrows.scale.unwrap_or(fitted));
-        let tips = || arrow_scale.iter().flat_map(|scale| self.arrows.iter().map(|foot| foot.tip(*scale)));
-        framed.add(tips());
-        let mut framed = framed.balls();
-        // exploded bodies are larger about their middles; those of all bodies together are near enough
-        if figure.explode > 0.0 {
-            if figure.cut.is_some() && !framed.is_empty() {
-                let boxes = framed.iter().map(|ball| BoundingBox::of([ball.centre]).grown(ball.radius));
-                bounds = boxes.fold(BoundingBox::EMPTY, BoundingBox::union);
-            }
-            bounds = bounds.grown(0.5 * figure.explode * bounds.diagonal() / 3f64.sqrt());
-            bounds = bounds.union(BoundingBox::of(tips().filter(|tip| tip.is_finite())));
-            framed.clear();
-        }
-        let [colourless, values] = self.colourless;
-        let is_log = figure.scale == ColourScale::Logarithmic;
-        if is_log && values > 0 && self.found.is_none() && figure.range.is_none() {
+    pub fn finish(mut self) -> Result<Common, ShowError> {
+        let figure = self.figure;
+        let [_, values] = self.colourless;
+        if figure.scale == ColourScale::Logarithmic
+            && values > 0
+            && self.found.is_none()
+            && figure.range.is_none()
+        {
             return Err(ShowError::Request {
                 what: "colour scale",
                 value: "log, and no value is above 0".to_owned(),
                 expected: "linear, or a quantity with values above 0".to_owned(),
             });
         }
-        let mut range = figure.range;
-        if let (Some(_), None) = (figure.quantity(), range) {
-            let linear = |range| figure.colours.spread(spread(range, self.noise));
-            // what rounding makes of zero is no power of ten worth a colour of its own
-            let by_powers =
-                |(low, high): (f64, f64)| figure.scale.spread((low.max(self.noise).min(high), high));
-            let of_values = |range| if is_log { by_powers(range) } else { linear(range) };
-            range = figure.colours.own_range().or(self.found.map(of_values));
-        }
-        let unit = figure.quantity().map_or("", |quantity| quantity.unit());
-        let mut notes = Vec::new();
-        if let (Some(Arrows { field, .. }), None) = (arrows, arrow_scale) {
-            notes.push(format!("there is no arrow: all values of `{field}` are zero"));
-        }
-        if colourless > 0 {
-            notes.push(format!(
-                "{colourless} of {values} values are below 0 and have no place on a scale of powers of ten: they are grey"
-            ));
-        }
-        if let (true, Some((least, _)), Some((low, _))) = (is_log, self.found, range)
-            && least < low
-        {
-            notes.push(format!("values go down to {least:.1e}: those below {low:.1e} have the first colour"));
-        }
-        notes.extend(self.found.zip(figure.range).and_then(|(found, range)| all_beyond(found, range, unit)));
-        if figure.colours == ColourMap::Diverging {
-            notes.extend(about_zero(figure.range, self.found));
-        }
+        let (bounds, framed, arrow_scale) = self.frame();
+        let range = self.range();
         let beyond = match (self.found, range) {
             (Some(found), Some(range)) => {
                 let rounding = ONE_VALUE * (range.1 - range.0);
@@ -302,8 +253,83 @@ impl<'a> Gathering<'a> {
             beyond,
             time_digits: time_digits(&self.times),
             arrow_scale,
-            notes,
+            notes: self.notes(range, arrow_scale),
         })
+    }
+
+    /// What all pictures have room for, what is farthest out in it, and the scale of the arrows.
+    fn frame(&mut self) -> (BoundingBox, Vec<Framed>, Option<f64>) {
+        let (figure, mut bounds) = (self.figure, self.bounds);
+        let mut framed = std::mem::take(&mut self.framed);
+        for time in &self.times {
+            let shapes = self.stage.points_near(*time, bounds);
+            framed.add(shapes.iter().copied());
+            if !shapes.is_empty() {
+                bounds = bounds.union(BoundingBox::of(shapes));
+            }
+        }
+        let fitted = bounds.diagonal() / (6.0 * self.longest_arrow);
+        let arrows = figure.arrows.as_ref().filter(|_| self.longest_arrow > 0.0);
+        let arrow_scale = arrows.map(|arrows| arrows.scale.unwrap_or(fitted));
+        let tips = || arrow_scale.iter().flat_map(|scale| self.arrows.iter().map(|foot| foot.tip(*scale)));
+        framed.add(tips());
+        let mut framed = framed.balls();
+        // exploded bodies are larger about their middles; those of all bodies together are near enough
+        if figure.explode > 0.0 {
+            if figure.cut.is_some() && !framed.is_empty() {
+                let boxes = framed.iter().map(|ball| BoundingBox::of([ball.centre]).grown(ball.radius));
+                bounds = boxes.fold(BoundingBox::EMPTY, BoundingBox::union);
+            }
+            bounds = bounds.grown(0.5 * figure.explode * bounds.diagonal() / 3f64.sqrt());
+            bounds = bounds.union(BoundingBox::of(tips().filter(|tip| tip.is_finite())));
+            framed.clear();
+        }
+        (bounds, framed, arrow_scale)
+    }
+
+    /// Values of the first and the last colour.
+    fn range(&self) -> Option<(f64, f64)> {
+        let figure = self.figure;
+        if figure.range.is_some() || figure.quantity().is_none() {
+            return figure.range;
+        }
+        let of_values = |(low, high): (f64, f64)| match figure.scale {
+            ColourScale::Linear => figure.colours.spread(spread((low, high), self.noise)),
+            // what rounding makes of zero is no power of ten worth a colour of its own
+            ColourScale::Logarithmic => figure.scale.spread((low.max(self.noise).min(high), high)),
+        };
+        figure.colours.own_range().or(self.found.map(of_values))
+    }
+
+    /// What is to be said of the pictures.
+    fn notes(&self, range: Option<(f64, f64)>, arrow_scale: Option<f64>) -> Vec<String> {
+        let figure = self.figure;
+        let mut notes = Vec::new();
+        if let (Some(Arrows { field, .. }), None) = (&figure.arrows, arrow_scale) {
+            notes.push(format!("there is no arrow: all values of `{field}` that are seen are zero"));
+        }
+        let [colourless, values] = self.colourless;
+        if colourless > 0 {
+            notes.push(format!(
+                "{colourless} of {values} values are below 0 and have no place on a scale of powers of ten: they are grey"
+            ));
+        }
+        if let (ColourScale::Logarithmic, Some((least, _)), Some((low, _))) =
+            (figure.scale, self.found, range)
+            && least < low
+        {
+            notes.push(format!("values go down to {least:.1e}: those below {low:.1e} have the first colour"));
+        }
+        let unit = figure.quantity().map_or("", |quantity| quantity.unit());
+        notes.extend(self.found.zip(figure.range).and_then(|(found, range)| all_beyond(found, range, unit)));
+        if figure.colours == ColourMap::Diverging {
+            notes.extend(about_zero(figure.range, self.found));
+        }
+        let has_ground = self.times.first().is_some_and(|time| self.stage.ground(*time).is_some());
+        if figure.floor == Floor::Below && has_ground {
+            notes.push("the scene has a ground of its own: no floor is drawn below the bodies".to_owned());
+        }
+        notes
     }
 }
 

@@ -2,8 +2,8 @@
 
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
-    ArrowKey, Backdrop, Colour, ColourMap, ColourScale, Cut, ELEMENT_KINDS, EdgeStyle, Ground, Legend,
-    LegendPlace, Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
+    ArrowKey, Backdrop, Between, Colour, ColourMap, ColourScale, Cut, ELEMENT_KINDS, EdgeStyle, Ground,
+    Legend, LegendPlace, Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
 };
 use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
@@ -110,6 +110,8 @@ const BODIES: [[u8; 3]; 5] =
     [[214, 122, 104], [112, 150, 196], [160, 178, 96], [206, 168, 96], [160, 128, 184]];
 /// Links in a state beyond that of the start: yielded ones are amber.
 const STATES: [[u8; 3]; 5] = [[230, 170, 40], [88, 164, 120], [170, 96, 180], [60, 130, 190], [190, 90, 60]];
+/// Bodies without values, where a quantity colours others.
+const NO_VALUE: [u8; 3] = [172, 174, 178];
 const ARROW: [u8; 3] = [40, 44, 52];
 /// The same on a dark backdrop.
 const ARROW_ON_DARK: [u8; 3] = [236, 238, 242];
@@ -132,6 +134,11 @@ pub(super) struct Foot {
 }
 
 impl Foot {
+    /// How much of the field it shows.
+    pub fn length(self) -> f64 {
+        self.vector.length()
+    }
+
     /// Where it ends, at so many metres for each unit of the field.
     pub fn tip(self, scale: f64) -> Vec3 {
         self.from + self.vector * scale
@@ -168,13 +175,12 @@ impl Figure {
         let mut surfaces = Vec::new();
         let mut strokes = Vec::new();
         let mut has_dots = false;
-        let is_hidden = |body: &&BodyMoment| self.worn == Worn::Arrows && moment.wears_skin(body);
         let all = moment.bodies.iter().filter(|body| body.is_drawable());
         for body in all {
             strokes.extend(common.arrow_scale.iter().flat_map(|scale| self.arrows_of(body, *scale)));
         }
         // colours of bodies go by their number among those that are seen
-        let seen = moment.bodies.iter().filter(|body| !is_hidden(body)).enumerate();
+        let seen = moment.bodies.iter().filter(|body| !self.hides(moment, body)).enumerate();
         for (index, body) in seen.filter(|(_, body)| body.is_drawable()) {
             surfaces.extend(self.surfaces(body, index, common));
             strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
@@ -226,6 +232,16 @@ impl Figure {
         }
     }
 
+    /// Whether a body is not seen, as the skin that it wears is.
+    pub fn hides(&self, moment: &Moment, body: &BodyMoment) -> bool {
+        self.worn == Worn::Arrows && moment.wears_skin(body)
+    }
+
+    /// Whether a point is not cut away.
+    pub(super) fn is_left(&self, point: Vec3) -> bool {
+        self.cut.is_none_or(|cut| (point - cut.point).dot(cut.normal) <= 0.0)
+    }
+
     fn floor_below(&self, common: &Common, up: Vec3) -> Option<Ground> {
         // bodies that are taken apart are framed by their bounds
         let corners = common.bounds.corners().map(|corner| corner.dot(up));
@@ -238,6 +254,7 @@ impl Figure {
     /// What is seen of a body: its surface, or its links, those of each state in a colour, and its balls.
     fn surfaces(&self, body: &BodyMoment, index: usize, common: &Common) -> Vec<Surface> {
         let quantity = self.quantity();
+        let is_coloured = quantity.is_some();
         let values = quantity.as_ref().and_then(|quantity| quantity.at_points(body));
         // colours with a meaning of their own are not mixed between cells
         let by_cell = quantity.filter(|_| self.colours.own_range().is_some() && !body.is_of_edges());
@@ -246,6 +263,8 @@ impl Figure {
             match (&by_cell, &values) {
                 (Some(values), _) => of.paint_cells(values),
                 (None, Some(values)) => of.paint_points(values),
+                // no colour of the scale is what has no value
+                (None, None) if is_coloured => of.surface.paint = Paint::Plain(Colour::from_screen(NO_VALUE)),
                 (None, None) => of.surface.paint = Paint::Plain(colour_of(index, state)),
             }
             of.surface
@@ -265,23 +284,30 @@ impl Figure {
     }
 
     fn surface(&self, body: &BodyMoment, common: &Common) -> MeshSurface {
+        if body.is_of_edges() {
+            return body.tubes(common, self.cut, None);
+        }
+        let mut surface = self.bare_surface(body);
+        let hides = body.is_skin() && self.edges == EdgeStyle::Drawn;
+        surface.surface.edge_style = if hides { EdgeStyle::Hidden } else { self.edges };
+        surface
+    }
+
+    /// The surface of a body where it is drawn, cut and taken apart; edges as lines without width, which stay together.
+    fn bare_surface(&self, body: &BodyMoment) -> MeshSurface {
+        let [explode, shrink] = if body.is_of_edges() { [0.0; 2] } else { [self.explode, self.shrink] };
         let mut surface = match self.cut {
-            _ if body.is_of_edges() => body.tubes(common, self.cut, None),
-            Some(cut) if self.explode > 0.0 => MeshSurface::of_cells_left(&body.mesh, &body.positions, cut),
+            Some(cut) if explode > 0.0 => MeshSurface::of_cells_left(&body.mesh, &body.positions, cut),
             Some(cut) => MeshSurface::cut(&body.mesh, &body.positions, cut),
-            None if self.explode > 0.0 || self.shrink > 0.0 => MeshSurface::of_cells(&body.mesh),
+            None if explode > 0.0 || shrink > 0.0 => MeshSurface::of_cells(&body.mesh),
             None => MeshSurface::of(&body.mesh),
         };
-        if !body.is_of_edges() {
-            surface.move_to(&body.positions);
-            let hides = body.is_skin() && self.edges == EdgeStyle::Drawn;
-            surface.surface.edge_style = if hides { EdgeStyle::Hidden } else { self.edges };
+        surface.move_to(&body.positions);
+        if explode > 0.0 {
+            surface.explode(explode);
         }
-        if self.explode > 0.0 && !body.is_of_edges() {
-            surface.explode(self.explode);
-        }
-        if self.cut.is_none() && self.shrink > 0.0 {
-            surface.shrink(self.shrink);
+        if self.cut.is_none() && shrink > 0.0 {
+            surface.shrink(shrink);
         }
         surface
     }
@@ -316,20 +342,24 @@ impl Figure {
         let Some(field) = self.arrows.as_ref().and_then(|arrows| vectors(body, &arrows.field)) else {
             return Vec::new();
         };
-        let of_surface = MeshSurface::of(&body.mesh).points.into_iter().map(|point| point.from as usize);
-        let mut points: Vec<usize> = of_surface.collect();
-        // particles and cables have no surface: all of their points are seen
+        let surface = self.bare_surface(body);
+        // a field has no values in the middles of curved cells, where a cut has points
+        let has_value = |(of, _): &(Between, Vec3)| (of.from.max(of.to) as usize) < field.len();
+        let mut points: Vec<(Between, Vec3)> =
+            surface.points.into_iter().zip(surface.surface.points).filter(has_value).collect();
+        // particles have no surface: all of their points are seen
         if points.is_empty() {
-            points = (0..body.positions.len()).collect();
+            let all = body.positions.iter().enumerate().filter(|(_, x)| self.is_left(**x));
+            points = all.map(|(point, x)| (Between::at(point as u32), *x)).collect();
         }
         let room = self.size[0].min(self.size[1]) as f64 / ROOM_OF_ARROWS;
         let most = (MOST_ARROWS * room * room).clamp(LEAST_ARROWS, MOST_ARROWS) as usize;
         let every = points.len().div_ceil(most).max(1);
-        let foot = |point: usize| {
-            let vector = field[point];
+        let foot = |(point, place): (Between, Vec3)| {
+            let vector = point.of(&field);
             // a ball hides what is within: an arrow begins where it leaves it
-            let radius = body.radii().map_or(0.0, |radii| radii[point].max(0.0));
-            let from = body.positions[point] + vector.try_normalised()? * radius;
+            let radius = body.radii().map_or(0.0, |radii| point.of(radii).max(0.0));
+            let from = place + vector.try_normalised()? * radius;
             (vector.is_finite() && from.is_finite()).then_some(Foot { from, vector })
         };
         points.into_iter().step_by(every).filter_map(foot).collect()

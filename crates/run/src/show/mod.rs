@@ -73,7 +73,7 @@ pub struct Show {
 pub enum ShowError {
     #[error(transparent)]
     Io(#[from] IoError),
-    #[error("{}: {found}; expected the folder of a run with its series in `frames`", .folder.display())]
+    #[error("{}: {found}; expected the folder of a run with its series in `frames`, or a list of frames, whose bodies have the same times", .folder.display())]
     NoFrames { folder: PathBuf, found: String },
     #[error("no body has the field `{name}`; expected {expected}")]
     UnknownField { name: String, expected: String },

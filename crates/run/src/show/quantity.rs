@@ -42,6 +42,8 @@ impl<'a> Quantity<'a> {
         };
         match self.component {
             Some(component) => format!("{name}, {component}"),
+            // the root of the sum of the squares of its six components
+            None if self.field == "stress" => format!("{name}, norm of its components"),
             None => name,
         }
     }
@@ -95,7 +97,7 @@ impl<'a> Quantity<'a> {
     /// What rounding makes of zero in a body of a stiffness [Pa]; zero where that is not known of the quantity.
     pub fn noise(&self, body: &BodyMoment, stiffness: f64) -> f64 {
         // positions and gradients of them are rounded: strains by this, of bodies not too far from the origin
-        const ROUNDING: f64 = 1e-12;
+        const ROUNDING: f64 = 1e-11;
         let scale = match self.field {
             "stress" | "von_mises" => stiffness,
             // a difference of energies of the size of the stiffness

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use souple_io::read_series;
+use souple_io::{SeriesPart, read_series};
 use souple_mesh::Mesh;
+use souple_table::counted;
 
 use super::gap::add_gap;
 use super::{BodyMoment, Moment, Show, ShowError, Stage};
@@ -47,21 +48,33 @@ impl Reel {
         let mut lists: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
         lists.retain(|path| path.extension().is_some_and(|extension| extension == "pvd"));
         lists.sort();
+        if lists.is_empty() {
+            return no_frames("there is no series (`.pvd`) in `frames`".to_owned());
+        }
+        Self::of_lists(folder, &lists, stage)
+    }
+
+    /// The bodies of some lists of frames, each part of a list a body.
+    fn of_lists(from: &Path, lists: &[PathBuf], stage: Stage) -> Result<Self, ShowError> {
         let mut times: Vec<f64> = Vec::new();
         let mut takes: Vec<Series> = Vec::new();
-        for list in &lists {
-            let name = list.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let (own, files): (Vec<f64>, Vec<PathBuf>) = read_series(list)?.into_iter().unzip();
-            if takes.is_empty() {
-                times.clone_from(&own);
+        for list in lists {
+            let stem = list.file_stem().unwrap_or_default().to_string_lossy();
+            let parts = read_series(list)?;
+            let is_one = parts.len() == 1;
+            for SeriesPart { name, frames } in parts {
+                let name = if is_one { stem.to_string() } else { format!("{stem} {name}") };
+                let (own, files): (Vec<f64>, Vec<PathBuf>) = frames.into_iter().unzip();
+                if takes.is_empty() {
+                    times.clone_from(&own);
+                }
+                if let Some(difference) = difference(&own, &times) {
+                    let found =
+                        format!("the times of `{name}` are not those of the body before it: {difference}");
+                    return Err(ShowError::NoFrames { folder: from.to_owned(), found });
+                }
+                takes.push(Series { name, files });
             }
-            if own != times {
-                return no_frames(format!("the times of `{name}` are not those of the body before it"));
-            }
-            takes.push(Series { name, files });
-        }
-        if times.is_empty() {
-            return no_frames("there is no series (`.pvd`) in `frames`".to_owned());
         }
         Ok(Self { stage, times, takes: Takes::Files(takes), against: None })
     }
@@ -90,20 +103,15 @@ impl Reel {
         Ok((reel, notes))
     }
 
-    /// One body, from the list of its frames.
+    /// The bodies of one list of frames.
     ///
     /// # Errors
-    /// The list cannot be read, or names no frame.
+    /// The list cannot be read, or its parts have other times.
     pub fn of_series(list: &Path) -> Result<Self, ShowError> {
-        let (times, files): (Vec<f64>, Vec<PathBuf>) = read_series(list)?.into_iter().unzip();
-        let name = list.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if times.is_empty() {
-            let found = "it names no frame".to_owned();
-            return Err(ShowError::NoFrames { folder: list.to_owned(), found });
-        }
+        let title = list.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut stage = Stage::default();
-        stage.title.clone_from(&name);
-        Ok(Self { stage, times, takes: Takes::Files(vec![Series { name, files }]), against: None })
+        stage.title = title;
+        Self::of_lists(list, &[list.to_owned()], stage)
     }
 
     /// Without the bodies that wear a skin, which hides them.
@@ -208,6 +216,18 @@ impl Reel {
             moments.push(moment);
         }
         Ok(Show { stage: self.stage.clone(), moments })
+    }
+}
+
+/// What differs between the times of a body and those of another.
+fn difference(own: &[f64], others: &[f64]) -> Option<String> {
+    let frame = own.iter().zip(others).position(|(own, other)| own != other);
+    match frame {
+        Some(frame) => Some(format!("frame {frame} is of {} s, not of {} s", own[frame], others[frame])),
+        None if own.len() != others.len() => {
+            Some(format!("it has {}, not {}", counted(own.len() as u64, "frame"), others.len()))
+        }
+        None => None,
     }
 }
 

@@ -14,9 +14,7 @@ use souple_io::picture::{
     Backdrop, Cut, Image, ImageFile, Images, LegendPlace, Picture, write_animated_png, write_gif,
 };
 use souple_run::Options;
-use souple_run::show::{
-    BodyMoment, Figure, Gathering, Moment, Reel, Show, ShowError, Stage, Worn, write_film,
-};
+use souple_run::show::{Figure, Gathering, Moment, Reel, Show, ShowError, Stage, Worn, write_film};
 use tempfile::TempDir;
 
 use self::fit::Source;
@@ -68,7 +66,7 @@ pub struct Arguments {
     /// Values of the first and the last colour, in Pa, m, m/s, …, whatever the legend says, or with units: `1 kPa,5 kPa`
     #[arg(long, value_name = "LOW,HIGH", value_parser = two, allow_hyphen_values = true)]
     range: Option<[String; 2]>,
-    /// Cuts away what lies beyond the plane n · x = d; not with --shrink
+    /// Cuts away of bodies what lies beyond the plane n · x = d, shapes stay whole; not with --shrink
     #[arg(long, value_name = "NX,NY,NZ,D", value_parser = list::<4>, allow_hyphen_values = true)]
     cut: Option<[f64; 4]>,
     /// Moves cells apart, by this part of their distance from the middle; with a cut, those that it leaves whole
@@ -286,7 +284,7 @@ fn draw(
     arguments: &Arguments,
     kind: Kind,
     (reel, scratch): (&Reel, &Scratch),
-    mut figure: Figure,
+    figure: Figure,
     notes: &mut Vec<String>,
 ) -> Result<Option<usize>, Refusal> {
     let out = arguments.out.as_path();
@@ -300,47 +298,24 @@ fn draw(
             .filter(|asked| chosen.len() < *asked as usize)
             .map(|asked| format!("there are {} moments, not {asked}: each is shown once", chosen.len())),
     );
-    // what colours show where nothing is asked for is there in all moments or in none
-    let fit = |mut figure: Figure, first: &Moment| {
-        let is_seen = |body: &&BodyMoment| figure.worn == Worn::Whole || !first.wears_skin(body);
-        if arguments.colour.is_none()
-            && !first.bodies.iter().filter(is_seen).any(|body| body.has_field(figure::STRESS))
-        {
-            figure.colour_by = None;
-        }
-        figure
-    };
     match kind {
         Kind::Surfaces => {
             let show = reel.show(&chosen)?;
-            figure = show.moments.iter().take(1).fold(figure, fit);
+            let figure = in_colours(arguments, figure, show.moments.first(), notes);
             let (animation, of_all) = figure.animation(&show)?;
             notes.extend(of_all);
+            if figure.colour_by.is_some() && show.moments.len() > 1 {
+                notes.push(
+                    "points move in it, and keep the colours of the last moment: glTF moves no colours"
+                        .to_owned(),
+                );
+            }
             animation.write_glb(out)?;
         }
         Kind::Picture if arguments.sheet.is_some() => {
             let show = reel.show(&chosen)?;
-            figure = show.moments.iter().take(1).fold(figure, fit);
-            notes.extend(figure.cut.and_then(|cut| of_cut(cut, show.moments.iter().map(|m| reach(cut, m)))));
-            // one title for all of them
-            let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
-            let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
-            let legend = figure.legend.map(|_| LegendPlace::Apart);
-            let whole = arguments.size.map(|_| figure.size);
-            let size = sheet::about(chosen.len(), whole);
-            let letters = sheet::LETTERS;
-            let figure = Figure { title: Some(String::new()), backdrop, legend, size, letters, ..figure };
-            let (mut pictures, of_all) = figure.pictures(&show)?;
-            notes.extend(of_all);
-            let common = sheet::Common::taken(&mut pictures);
-            let sheet = Sheet::new(&pictures, whole, (&title, figure.theme), common)?;
-            pictures.iter_mut().for_each(|picture| picture.size = sheet.cell);
-            let mut left_out = pictures.first().map(Picture::left_out).unwrap_or_default();
-            let meter = Meter::new("pictures", arguments.quiet);
-            let Some(images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
-            let (image, of_sheet) = sheet.of(&pictures, &images);
-            left_out.extend(of_sheet);
-            notes.extend(no_room(&left_out));
+            let figure = in_colours(arguments, figure, show.moments.first(), notes);
+            let Some(image) = sheet_of(arguments, &show, figure, notes)? else { return Ok(None) };
             write_picture(arguments, &image)?;
         }
         Kind::Picture => {
@@ -348,7 +323,7 @@ fn draw(
                 Some(time) => reel.moment(reel.nearest(time), None)?,
                 None => reel.last_drawable()?,
             };
-            figure = fit(figure, &moment);
+            let figure = in_colours(arguments, figure, Some(&moment), notes);
             notes.extend(figure.cut.and_then(|cut| of_cut(cut, [reach(cut, &moment)].into_iter())));
             notes.extend(other_moment(arguments.time, &moment, reel));
             let show = Show { stage: reel.stage.clone(), moments: vec![moment] };
@@ -360,8 +335,8 @@ fn draw(
             }
         }
         Kind::Gif | Kind::AnimatedPng | Kind::Film => {
-            figure =
-                chosen.first().map(|first| reel.moment(*first, None)).transpose()?.iter().fold(figure, fit);
+            let first = chosen.first().map(|first| reel.moment(*first, None)).transpose()?;
+            let figure = in_colours(arguments, figure, first.as_ref(), notes);
             let Some(film) = film(arguments, (reel, &chosen), &figure, (scratch, notes))? else {
                 return Ok(None);
             };
@@ -369,6 +344,58 @@ fn draw(
         }
     }
     Ok(Some(chosen.len()))
+}
+
+/// The same figure without colours where none are asked for and there is no stress to show: what there is at the first moment is
+/// there at all or at none. Options that change nothing then are told.
+fn in_colours(
+    arguments: &Arguments,
+    figure: Figure,
+    first: Option<&Moment>,
+    notes: &mut Vec<String>,
+) -> Figure {
+    let has_stress = |moment: &Moment| {
+        let mut seen = moment.bodies.iter().filter(|body| !figure.hides(moment, body));
+        seen.any(|body| body.has_field(figure::STRESS))
+    };
+    if arguments.colour.is_some() || first.is_none_or(has_stress) {
+        return figure;
+    }
+    let unheard = fit::of_colours(arguments).map(|name| {
+        format!("no body has stress, and no other quantity is named by `--colour`: --{name} changes nothing")
+    });
+    notes.extend(unheard);
+    Figure { colour_by: None, ..figure }
+}
+
+/// Some moments in one picture, with what they have in common once; `None` where Ctrl-C ends it.
+fn sheet_of(
+    arguments: &Arguments,
+    show: &Show,
+    figure: Figure,
+    notes: &mut Vec<String>,
+) -> Result<Option<Image>, Refusal> {
+    notes.extend(figure.cut.and_then(|cut| of_cut(cut, show.moments.iter().map(|m| reach(cut, m)))));
+    // one title for all of them
+    let title = figure.title.clone().unwrap_or_else(|| show.stage.title.clone());
+    let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
+    let legend = figure.legend.map(|_| LegendPlace::Apart);
+    let whole = arguments.size.map(|_| figure.size);
+    let size = sheet::about(show.moments.len(), whole);
+    let letters = sheet::LETTERS;
+    let figure = Figure { title: Some(String::new()), backdrop, legend, size, letters, ..figure };
+    let (mut pictures, of_all) = figure.pictures(show)?;
+    notes.extend(of_all);
+    let common = sheet::Common::taken(&mut pictures);
+    let sheet = Sheet::new(&pictures, whole, (&title, figure.theme), common)?;
+    pictures.iter_mut().for_each(|picture| picture.size = sheet.cell);
+    let mut left_out = pictures.first().map(Picture::left_out).unwrap_or_default();
+    let meter = Meter::new("pictures", arguments.quiet);
+    let Some(images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
+    let (image, of_sheet) = sheet.of(&pictures, &images);
+    left_out.extend(of_sheet);
+    notes.extend(no_room(&left_out));
+    Ok(Some(image))
 }
 
 /// The images of a film in a file: twice through the moments, for what all have in common and to draw them, with no more of them

@@ -81,6 +81,16 @@ const OPTIONS: &[Limited] = &[
     limited("white", DRAWN, |given| given.white),
 ];
 
+/// Options that are given and say something about colours alone.
+pub fn of_colours(arguments: &Arguments) -> impl Iterator<Item = &'static str> {
+    let all = [
+        ("map", arguments.map.is_some()),
+        ("colour-scale", arguments.colour_scale.is_some()),
+        ("range", arguments.range.is_some()),
+    ];
+    all.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name)
+}
+
 /// Refuses what cannot be done before anything is.
 ///
 /// # Errors
@@ -111,14 +121,7 @@ pub fn check(arguments: &Arguments, kind: Kind, source: Source) -> Result<(), Re
         let message = "--against says nothing without the quantity `gap`".to_owned();
         return Err(Refusal::request("against", other.display().to_string(), "--colour gap", message));
     }
-    let of_colours = [
-        ("map", arguments.map.is_some()),
-        ("colour-scale", arguments.colour_scale.is_some()),
-        ("range", arguments.range.is_some()),
-    ];
-    if let (Some("none"), Some((name, _))) =
-        (arguments.colour.as_deref(), of_colours.iter().find(|(_, is_given)| *is_given))
-    {
+    if let (Some("none"), Some(name)) = (arguments.colour.as_deref(), of_colours(arguments).next()) {
         let message = format!("--{name} says nothing where `--colour none` leaves no quantity to colour by");
         return Err(Refusal::request(name, "none", "a quantity, or no such option", message));
     }
