@@ -110,6 +110,8 @@ pub struct FramesInfo {
     pub rows: Vec<u32>,
     /// Origin and axes of each frame at rest, in the order of the rows.
     pub rest: Vec<Vec3>,
+    /// The number of the frame whose weights are shown.
+    pub shown: usize,
     /// Of each point of the mesh: the weight of the frame that is shown.
     pub influence: Vec<f64>,
 }
@@ -236,6 +238,7 @@ impl BodyInfo {
                 place.map_or(0.0, |place| carried.rows[place][0].0)
             };
             FramesInfo {
+                shown: shown as usize,
                 influence: frames.carried_points.iter().map(weight).collect(),
                 rest: frames.configuration().collect(),
                 rows: frames.rows,

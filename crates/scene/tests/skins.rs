@@ -60,6 +60,26 @@ fn steps_of_skins_are_broken_off() {
     assert_eq!(world.state().hash(), undisturbed.state().hash());
 }
 
+/// A skin that starts where its target is not is told; one that meets it, and one that no target draws, are not.
+#[test]
+fn starts_beside_the_target_are_told() {
+    let told = |at: &str, term: &str| {
+        let ball = |centre: &str| format!("part = \"point\"\nat = {centre}\nradius = 0.5\n");
+        let text = format!(
+            "format = 1\n[world]\nperiod = 1\n[skins.ball]\nvoxel = 0.1\nterms = [{{ {term} }}]\n\
+             [[skins.ball.start]]\n{}[[skins.ball.parts]]\n{}",
+            ball("[0, 0, 0]"),
+            ball(at)
+        );
+        let warnings = scene_in(Path::new("."), &text).warnings;
+        warnings.iter().filter(|warning| warning.contains("starts beside its target")).count()
+    };
+    let attraction = "term = \"attraction\", strength = 1";
+    assert_eq!([told("[3, 0, 0]", attraction), told("[0.8, 0, 0]", attraction)], [1, 0]);
+    assert_eq!(told("[3, 0, 0]", "term = \"tension\", strength = 0.1"), 0);
+    assert_eq!(told("[3, 0, 0]", "term = \"speed\", formula = \"0.01*abs(g)\""), 0);
+}
+
 /// A skin that grows past the domain it began in gets a larger grid, and its radius is what its speed makes of it.
 #[test]
 fn a_skin_grows_out_of_its_domain() {

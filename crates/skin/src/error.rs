@@ -14,7 +14,7 @@ pub enum SkinError {
     #[error("{part}its target is {value} at {place:?}; expected a number")]
     TargetNotANumber { value: f64, place: [f64; 3], part: String },
     #[error(
-        "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside, or smaller voxels where it is thinner than one"
+        "its target is inside nowhere in the box from {low:?} to {high:?} at voxels of {voxel} m; expected an inside: an `iso` that it comes up to, below 1 for skeletons, or smaller voxels where it is thinner than one"
     )]
     Empty { low: [f64; 3], high: [f64; 3], voxel: f64 },
     #[error(
@@ -27,7 +27,9 @@ pub enum SkinError {
         "its target is inside at {place:?}, on the border of the box it is looked for in; expected one that ends within, or a larger `domain`"
     )]
     BeyondDomain { place: [f64; 3] },
-    #[error("its target does not say where it is; expected a `domain`")]
+    #[error(
+        "its target does not say where it ends; expected a `domain`, or an `iso` above 0 where its parts end"
+    )]
     NoDomain,
     #[error(
         "at voxels of {voxel} m {cubes} cubes of {edge} m may hold its surface, in a box of {size:?} m; expected at most {most}: larger voxels"
@@ -55,12 +57,12 @@ pub enum SkinError {
          other, or larger voxels"
     )]
     FarParticle { particle: usize, place: [f64; 3], most: f64, origin: [f64; 3] },
-    #[error("its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
-    Speed { speed: f64, place: [f64; 3], time: f64 },
+    #[error("{term}its speed is {speed} m/s at {place:?} at t = {time} s; expected a number")]
+    Speed { speed: f64, place: [f64; 3], time: f64, term: String },
     #[error(
-        "terms[{term}] is {speed} m/s at t = {time} s, where the area is {area} m² and the volume {volume} m³; expected a number: formulas of time that have one, and goals above 0"
+        "terms[{term}] is {speed} m/s at t = {time} s, where the area is {area} m² and the volume {volume} m³; expected {expected}"
     )]
-    Term { term: usize, speed: f64, area: f64, volume: f64, time: f64 },
+    Term { term: usize, speed: f64, area: f64, volume: f64, time: f64, expected: String },
     #[error(
         "a step of {timestep} s would be more than {MOST_SUBSTEPS} sub-steps of {substep:.3e} s: larger voxels, slower terms or shorter steps"
     )]

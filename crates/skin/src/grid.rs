@@ -131,20 +131,58 @@ impl<'a> Grid<'a> {
         (mix(along_y[0], along_y[1], t.z), gradient)
     }
 
-    /// Second derivatives at a place between nodes, trilinear [1/voxel]: those by two different coordinates.
-    pub fn bend(&self, place: Vec3) -> Mat3 {
-        let Some((corners, t)) = self.cell(place) else { return Mat3::ZERO };
-        let at = |x: usize, y: usize, z: usize| corners[x + 2 * y + 4 * z];
-        let xy = |z| at(1, 1, z) - at(0, 1, z) - at(1, 0, z) + at(0, 0, z);
-        let yz = |x| at(x, 1, 1) - at(x, 0, 1) - at(x, 1, 0) + at(x, 0, 0);
-        let xz = |y| at(1, y, 1) - at(0, y, 1) - at(1, y, 0) + at(0, y, 0);
-        let (xy, yz, xz) = (mix(xy(0), xy(1), t.z), mix(yz(0), yz(1), t.x), mix(xz(0), xz(1), t.y));
-        Mat3::from_columns(Vec3::new(0.0, xy, xz), Vec3::new(xy, 0.0, yz), Vec3::new(xz, yz, 0.0))
+    /// The values around a place as a quadratic spline has them, whose slopes have no kinks: value, gradient and second derivatives
+    /// [voxels]. It smooths: a ball's values are `h²/4R` lower. `None` where the place is beyond all blocks, or not finite.
+    pub fn smooth(&self, place: Vec3) -> Option<(f64, Vec3, Mat3)> {
+        if !is_within(place) {
+            return None;
+        }
+        let nearest = place.to_array().map(|c| c.round() as i64);
+        // weights of the node before, the nearest and the one after along each axis, their slopes, and slopes of those
+        let along = |axis: usize| {
+            let t = place[axis] - nearest[axis] as f64;
+            let (before, after) = (0.5 - t, 0.5 + t);
+            [
+                [0.5 * before * before, 0.75 - t * t, 0.5 * after * after],
+                [-before, -2.0 * t, after],
+                [1.0, -2.0, 1.0],
+            ]
+        };
+        let [x, y, z] = [along(0), along(1), along(2)];
+        // sums over all 27 nodes by how often they are derived along each axis
+        let mut sums = [[[0.0; 3]; 3]; 3];
+        for number in 0..27 {
+            let [i, j, k] = [number % 3, number / 3 % 3, number / 9];
+            let steps = [i, j, k].map(|step| step as i64 - 1);
+            let value = self.node([0, 1, 2].map(|axis| nearest[axis] + steps[axis]));
+            for (dx, dy, dz) in [
+                (0, 0, 0),
+                (1, 0, 0),
+                (0, 1, 0),
+                (0, 0, 1),
+                (2, 0, 0),
+                (0, 2, 0),
+                (0, 0, 2),
+                (1, 1, 0),
+                (0, 1, 1),
+                (1, 0, 1),
+            ] {
+                sums[dx][dy][dz] += value * x[dx][i] * y[dy][j] * z[dz][k];
+            }
+        }
+        let gradient = Vec3::new(sums[1][0][0], sums[0][1][0], sums[0][0][1]);
+        let (xy, yz, xz) = (sums[1][1][0], sums[0][1][1], sums[1][0][1]);
+        let bend = Mat3::from_columns(
+            Vec3::new(sums[2][0][0], xy, xz),
+            Vec3::new(xy, sums[0][2][0], yz),
+            Vec3::new(xz, yz, sums[0][0][2]),
+        );
+        Some((sums[0][0][0], gradient, bend))
     }
 
     /// The corners of the cell a place is in, and where in it; `None` beyond all blocks, and where it is not finite.
     fn cell(&self, place: Vec3) -> Option<([f64; 8], Vec3)> {
-        if !place.to_array().into_iter().all(|c| c.abs() < (FARTHEST * EDGE as i64) as f64) {
+        if !is_within(place) {
             return None;
         }
         let low = place.to_array().map(|c| c.floor() as i64);
@@ -184,6 +222,11 @@ impl<'a> Grid<'a> {
         let edge = EDGE as i64;
         Some([bounds[0].map(|c| c * edge), bounds[1].map(|c| c * edge + edge - 1)])
     }
+}
+
+/// Whether a place is where blocks may be.
+fn is_within(place: Vec3) -> bool {
+    place.to_array().into_iter().all(|c| c.abs() < (FARTHEST * EDGE as i64) as f64)
 }
 
 fn mix(a: f64, b: f64, t: f64) -> f64 {

@@ -128,18 +128,30 @@ const SLOW: f32 = 0.05;
 /// normals, but for what tension does to it, which is as much less as its step is short of the longest [voxels].
 const SETTLED: f32 = 2.5;
 /// `β Δt ≤ voxel²/6` (6).
-pub const TENSION_LIMIT: f64 = 1.0 / 6.0;
+const TENSION_LIMIT: f64 = 1.0 / 6.0;
 /// Of the budget of a sub-step, what speed and tension may take.
-pub const MOVING: f64 = 0.8;
+const MOVING: f64 = 0.8;
+/// What moves farther lets waves along the diagonal of a cell grow: `c² (Σ nᵢ θᵢ)⁴ ≤ Σ nᵢ² θᵢ⁴` for all waves `θ` of Lax and
+/// Wendroff's scheme that is not split by axes [voxels per sub-step].
+const WAVES: f64 = 1.0 / 3.0;
 
 /// What a sub-step takes of its budget by its speed [voxels] and its tension.
-pub fn taken(speed: f64, tension: f64) -> f64 {
+fn taken(speed: f64, tension: f64) -> f64 {
     3.0_f64.sqrt() * speed + 4.0 * tension
 }
 
-/// The most that can be relaxed in a sub-step that took so much of its budget.
-pub fn relaxable(taken: f64) -> f64 {
-    (1.0 - taken).max(0.0) / 3.0_f64.sqrt()
+/// The longest sub-step for a speed [voxels/s] and a tension `β/voxel²` [1/s] together [s].
+pub fn longest_step(speed: f64, tension: f64) -> f64 {
+    let (by_budget, by_waves) = (MOVING / taken(speed, tension), 0.9 * WAVES / speed);
+    by_budget.min(by_waves).min(TENSION_LIMIT / tension)
+}
+
+/// The most that can be relaxed in a sub-step of a speed [voxels] and a tension.
+pub fn relaxable(speed: f64, tension: f64) -> f64 {
+    let by_budget = (1.0 - taken(speed, tension)) / 3.0_f64.sqrt();
+    // what relaxes moves levels too
+    let by_waves = if speed > f64::from(SLOW) { WAVES - speed } else { f64::INFINITY };
+    by_budget.min(by_waves).max(0.0)
 }
 /// Of squared slopes: a level that is flat has no curvature.
 const FLAT: f32 = 1e-3;
@@ -169,8 +181,12 @@ impl Rows for MovingRows<'_> {
             }
             None => beside(neighbours, crossings, block),
         };
-        // relaxed near the surface by what tension does there
-        let settling = motion.redistance * (motion.tension / TENSION_LIMIT as f32).min(1.0);
+        let keeping = Keeping {
+            // relaxed near the surface by what tension does there
+            settling: motion.redistance * (motion.tension / TENSION_LIMIT as f32).min(1.0),
+            redistance: motion.redistance,
+            moves_alike: motion.speeds.is_none() && motion.uniform != 0.0,
+        };
         let (old, _) = grid.block(block).as_chunks::<EDGE>();
         let (new, _) = next.as_chunks_mut::<EDGE>();
         *next_marks = Marks::default();
@@ -192,8 +208,7 @@ impl Rows for MovingRows<'_> {
                 let shrinking =
                     if motion.tension > 0.0 { shrink_row(f, at, motion.tension) } else { [0.0; EDGE] };
                 let beside = row_of(&beside, y, z);
-                let change =
-                    move_row(f, at, &speed, &shrinking, beside, [settling, motion.redistance], fastest);
+                let change = move_row(f, at, &speed, &shrinking, beside, &keeping, fastest);
                 let mut moved = old[row];
                 for x in 0..EDGE {
                     moved[x] = (moved[x] + change[x]).clamp(-NEAR, NEAR);
@@ -313,6 +328,15 @@ fn bend_row(f: &Values, at: usize) -> [f32; EDGE] {
     out
 }
 
+/// How values are kept near distances.
+struct Keeping {
+    /// Shares of the way to `|∇f| = 1` near the surface, and farther out.
+    settling: f32,
+    redistance: f32,
+    /// Whether all speeds are one, which is that of the edge of the band too: what is beyond it goes on as what is before it.
+    moves_alike: bool,
+}
+
 /// How a row changes by its speeds and by what it shrinks, and as it is relaxed.
 #[inline(always)]
 fn move_row(
@@ -321,7 +345,7 @@ fn move_row(
     speeds: &[f32; EDGE],
     shrinking: &[f32; EDGE],
     beside: u8,
-    [settling, redistance]: [f32; 2],
+    &Keeping { settling, redistance, moves_alike }: &Keeping,
     fastest: &mut [f32; EDGE],
 ) -> [f32; EDGE] {
     let (dy, dz) = (wide(0, 1, 0), wide(0, 0, 1));
@@ -331,32 +355,52 @@ fn move_row(
     let (ym, yp) = (line(at - dy), line(at + dy));
     let (zm, zp) = (line(at - dz), line(at + dz));
     let (mut changes, mut carried, mut slopes) = (*shrinking, [0.0; EDGE], [0.0; EDGE]);
+    let mut drifts = [0.0; EDGE];
+    let is_fast = speeds.iter().fold(0.0_f32, |fastest, speed| fastest.max(speed.abs())) > SLOW;
     for i in 0..EDGE {
         let c = c[i];
-        let (below, above) = ([c - xm[i], c - ym[i], c - zm[i]], [xp[i] - c, yp[i] - c, zp[i] - c]);
-        // slopes towards larger and towards smaller values, to second order where f is smooth
-        let (mut rising, mut falling) = (0.0_f32, 0.0_f32);
+        let (before, after) = ([xm[i], ym[i], zm[i]], [xp[i], yp[i], zp[i]]);
+        // slopes towards larger and towards smaller values, to second order where f is smooth; what moves alike takes those of
+        // first order where nothing keeps waves from growing
+        let is_inner = !moves_alike | (c.abs() < SETTLED);
+        let keeps = if is_inner { 1.0 } else { 0.0 };
+        let (mut rising, mut falling, mut slope_sq) = (0.0_f32, 0.0_f32, 0.0_f32);
         for k in 0..3 {
-            let half_bend = (0.5 * (above[k] - below[k])).clamp(-SMOOTH, SMOOTH);
-            let (low, high) = (below[k] + half_bend, above[k] - half_bend);
+            let (below, above) = (c - before[k], after[k] - c);
+            // beyond the band values stand still: what moves alike goes on as it comes
+            let is_end = |value: f32| moves_alike & (value.abs() >= NEAR);
+            let (is_end_before, is_end_after) = (is_end(before[k]), is_end(after[k]));
+            let low = if is_end_before & !is_end_after { above } else { below };
+            let high = if is_end_after & !is_end_before { below } else { above };
+            let half_bend = (0.5 * (high - low)).clamp(-SMOOTH, SMOOTH);
+            let (smooth_low, smooth_high) = (low + half_bend, high - half_bend);
+            // towards the surface
+            let along =
+                if c > 0.0 { smooth_low.max(-smooth_high) } else { smooth_high.max(-smooth_low) }.max(0.0);
+            slope_sq += along * along;
+            let (low, high) = (low + keeps * half_bend, high - keeps * half_bend);
             let up = high.max(-low).max(0.0);
             let down = low.max(-high).max(0.0);
             rising += up * up;
             falling += down * down;
         }
         carried[i] = if speeds[i] > 0.0 { rising } else { falling }.sqrt();
-        let slope = if c > 0.0 { falling } else { rising }.sqrt();
+        let slope = slope_sq.sqrt();
         let far = (c.abs() - SETTLED).clamp(0.0, 1.0);
         let share = settling + (redistance - settling) * far;
-        let relaxed = share * (c / (c * c + 1.0).sqrt()) * (1.0 - slope);
-        changes[i] += relaxed;
+        let pull = share * (c / (c * c + 1.0).sqrt());
+        changes[i] += pull * (1.0 - slope);
         slopes[i] = slope;
+        drifts[i] = if moves_alike { speeds[i] - pull } else { speeds[i] };
     }
-    if speeds.iter().fold(0.0_f32, |fastest, speed| fastest.max(speed.abs())) > SLOW {
-        // f_tt = a² n·∇∇f n  (Lax & Wendroff): nothing of a distance, but it keeps waves from growing
+    if is_fast {
+        // f_t = (a − ρS) |∇f| + ρS, so f_tt = (a − ρS)² n·∇∇f n  (Lax & Wendroff): nothing of a distance, but it keeps waves
+        // from growing
         let bends = bend_row(f, at);
         for i in 0..EDGE {
-            changes[i] += 0.5 * speeds[i] * speeds[i] * bends[i].clamp(-2.0 * SMOOTH, 2.0 * SMOOTH);
+            let bend = bends[i].clamp(-2.0 * SMOOTH, 2.0 * SMOOTH);
+            let is_inner = !moves_alike | (c[i].abs() < SETTLED);
+            changes[i] += if is_inner { 0.5 * drifts[i] * drifts[i] * bend } else { 0.0 };
         }
     }
     for i in 0..EDGE {

@@ -16,10 +16,11 @@ pub struct Seen {
     pub curvature: Mat3,
 }
 
-/// Between the eight nodes around a point; `None` outside of the band of voxels around the skin, where no value changes.
+/// Between the nodes around a point, without kinks, over which what rests on the skin would come to no rest; `None` outside of the band
+/// of voxels around the skin, where no value changes.
 pub fn look_up(grid: Grid, lattice: &Lattice, point: Vec3) -> Option<Seen> {
     let place = lattice.to_voxels(point);
-    let (value, gradient) = grid.sample(place);
+    let (value, _) = grid.sample(place);
     if value >= BAND {
         let (depth, normal) = way_out(grid, place)?;
         return Some(Seen { distance: -depth * lattice.voxel, normal, curvature: Mat3::ZERO });
@@ -27,10 +28,11 @@ pub fn look_up(grid: Grid, lattice: &Lattice, point: Vec3) -> Option<Seen> {
     if value <= -BAND {
         return None;
     }
+    let (value, gradient, bend) = grid.smooth(place)?;
     let normal = (-gradient).try_normalised()?;
     // n = −∇f/|∇f|:  ∂n/∂x = −(I − n nᵀ) ∇∇f/|∇f|
     let across = Mat3::IDENTITY - normal.outer(normal);
-    let curvature = across * grid.bend(place) * across * (-1.0 / (gradient.length() * lattice.voxel));
+    let curvature = across * bend * across * (-1.0 / (gradient.length() * lattice.voxel));
     Some(Seen { distance: -value * lattice.voxel, normal, curvature })
 }
 
@@ -82,7 +84,7 @@ mod tests {
             let n = direction.try_normalised().unwrap();
             for depth in [-1.5, 0.0, 1.5] {
                 let seen = look_up(grid, &skin.lattice, n * (radius - depth * voxel)).unwrap();
-                // chords of a cell: (h/R)²/8 of the radius, some for each axis
+                // a spline is h²/4R deeper, of a level at R
                 assert!((seen.distance + depth * voxel).abs() < voxel * voxel, "{seen:?} at {depth}");
                 // its slope to first order, which turns by a voxel over the radius in a cell
                 assert!((seen.normal - n).length() < 2.0 * voxel, "{seen:?} at {depth}");
@@ -97,6 +99,34 @@ mod tests {
         }
         assert_eq!(look_up(grid, &skin.lattice, Vec3::new(2.0, 0.0, 0.0)), None);
         assert_eq!(look_up(grid, &skin.lattice, Vec3::new(f64::NAN, 0.0, 0.0)), None);
+    }
+
+    /// Where cells meet, normals are as on both sides.
+    #[test]
+    fn normals_have_no_kinks() {
+        let keys = [crate::grid::key_of([0, 0, 0])];
+        let values: Vec<f32> = (0..crate::grid::NODES)
+            .map(|node| {
+                ((node % 8) as f32 - 3.5).hypot((node / 8 % 8) as f32 - 3.2).hypot((node / 64) as f32 - 3.1)
+            })
+            .map(|distance| 2.5 - distance)
+            .collect();
+        let grid = Grid { keys: &keys, values: &values };
+        let lattice = Lattice { origin: Vec3::ZERO, voxel: 1.0 };
+        let step = 1e-9;
+        for at in [
+            Vec3::new(5.0, 4.0, 4.0),
+            Vec3::new(5.5, 4.5, 3.5),
+            Vec3::new(3.5, 3.0, 5.5),
+            Vec3::new(2.0, 2.0, 2.5),
+        ] {
+            for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+                let [before, after] =
+                    [-step, step].map(|step| look_up(grid, &lattice, at + axis * step).unwrap());
+                assert!((after.normal - before.normal).length() < 4.0 * step, "{before:?} {after:?}");
+                assert!((after.distance - before.distance).abs() < 4.0 * step, "{before:?} {after:?}");
+            }
+        }
     }
 
     /// Within a cell normals turn, for steps across them, by the curvature that is told.

@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use souple_math::Vec3;
+use souple_mesh::Sets;
 
 use crate::cases::{CASES, edge_place};
 use crate::crossings::Crossings;
@@ -216,8 +217,8 @@ pub struct Audit {
     fans: Vec<[u32; 2]>,
     /// Of each point, from 1: alike only where they are joined.
     labels: Vec<u32>,
-    /// Labels that others were joined to.
-    parents: Vec<u32>,
+    /// Labels that are of one component; that of points that have none is alone.
+    joined: Sets,
 }
 
 /// A third of the area vectors of the triangles around each point, in place of what stands in `out`.
@@ -263,8 +264,8 @@ impl Audit {
         self.fans.resize(3 * triangles.len(), [0; 2]);
         self.labels.clear();
         self.labels.resize(point_count, 0);
-        self.parents.clear();
-        self.parents.push(0);
+        self.joined.clear();
+        self.joined.add();
         for corners in triangles {
             let [a, b, c] = *corners;
             for (point, edge) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
@@ -281,9 +282,7 @@ impl Audit {
             let fan = &mut self.fans[self.starts[point] as usize..self.starts[point + 1] as usize];
             check_fan(point as u32, fan)?;
         }
-        let is_root = |(label, parent): (usize, &u32)| label as u32 == *parent;
-        // all but the label of points that have none
-        let components = self.parents.iter().enumerate().skip(1).filter(|root| is_root(*root)).count();
+        let components = self.joined.count() - 1;
         let euler = point_count as i64 - triangles.len() as i64 / 2;
         Ok((euler, components as u64))
     }
@@ -293,18 +292,18 @@ impl Audit {
         let own = corners.map(|point| self.labels[point as usize]);
         let mut label = own[0].max(own[1]).max(own[2]);
         if label == 0 {
-            label = self.parents.len() as u32;
-            self.parents.push(label);
+            label = self.joined.add();
         } else if own.iter().fold(false, |differ, own| differ | ((*own != 0) & (*own != label))) {
-            own.iter().filter(|own| **own != 0).for_each(|own| join(&mut self.parents, label, *own));
-            label = root(&mut self.parents, label);
+            for own in own.into_iter().filter(|own| *own != 0) {
+                self.joined.join(label, own);
+            }
+            label = self.joined.of(label);
         }
         corners.iter().for_each(|point| self.labels[*point as usize] = label);
     }
 
     pub fn bytes(&self) -> usize {
-        4 * (self.starts.capacity() + self.labels.capacity() + self.parents.capacity())
-            + 8 * self.fans.capacity()
+        4 * (self.starts.capacity() + self.labels.capacity()) + self.joined.bytes() + 8 * self.fans.capacity()
     }
 }
 
@@ -358,21 +357,6 @@ fn check_fan_by_search(at: u32, fan: &mut [[u32; 2]]) -> Result<(), Torn> {
         return Err(Torn::Pinched { point: at });
     }
     Ok(())
-}
-
-fn root(parents: &mut [u32], mut label: u32) -> u32 {
-    while parents[label as usize] != label {
-        let above = parents[parents[label as usize] as usize];
-        parents[label as usize] = above;
-        label = above;
-    }
-    label
-}
-
-fn join(parents: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parents, a), root(parents, b));
-    let (low, high) = (a.min(b), a.max(b));
-    parents[high as usize] = low;
 }
 
 /// Whether no node of a grid is inside.

@@ -9,7 +9,7 @@ use souple_math::Vec3;
 use crate::crossings::Crossings;
 use crate::error::SkinError;
 use crate::grid::{Grid, Lattice, Neighbours};
-use crate::level_set::{Advance, MOVING, Motion, Surface, TENSION_LIMIT, advance, relaxable, taken};
+use crate::level_set::{Advance, Motion, Surface, advance, longest_step, relaxable};
 use crate::marks::Marks;
 use crate::polygons::{Audit, area_and_volume, polygonise};
 use crate::reaction::{Reaction, ReactionScratch};
@@ -305,7 +305,7 @@ impl Skin {
             }
             scratch.speeds.iter_mut().for_each(|speed| *speed *= substep / h);
             let tension = self.tension() * substep / (h * h);
-            let redistance = self.redistance.min(relaxable(taken(asked.fastest * substep / h, tension)));
+            let redistance = self.redistance.min(relaxable(asked.fastest * substep / h, tension));
             return Ok((Moves { uniform: asked.uniform * substep / h, tension, redistance }, parts));
         }
     }
@@ -344,7 +344,8 @@ impl Skin {
             let speed = entry.uniform(whole);
             if !speed.is_finite() {
                 let Whole { time, area, volume, .. } = *whole;
-                return Err(SkinError::Term { term, speed, area, volume, time });
+                let expected = entry.expected(whole);
+                return Err(SkinError::Term { term, speed, area, volume, time, expected });
             }
             sum += speed;
         }
@@ -367,13 +368,39 @@ impl Skin {
             term.add_at(SurfacePoints { points, excess: &scratch.excess }, &whole, &mut scratch.speeds);
         }
         let mut fastest = 0.0_f64;
-        for (speed, point) in scratch.speeds.iter().zip(points) {
+        for (index, speed) in scratch.speeds.iter().enumerate() {
             if !speed.is_finite() {
-                return Err(SkinError::Speed { speed: *speed, place: point.to_array(), time });
+                return Err(self.no_speed(points[index], (scratch.excess[index], *speed), &whole, scratch));
             }
             fastest = fastest.max(speed.abs());
         }
         Ok(Asked { time, uniform, fastest })
+    }
+
+    /// Why a point has no speed: what its target is there, or which of its terms is none.
+    fn no_speed(
+        &self,
+        point: Vec3,
+        (excess, speed): (f64, f64),
+        whole: &Whole,
+        scratch: &SkinScratch,
+    ) -> SkinError {
+        let (place, time) = (point.to_array(), whole.time);
+        if !excess.is_finite() {
+            let placed = self.target.as_ref().zip(scratch.target.as_ref());
+            let part = placed.and_then(|(target, placed)| target.broken_part(point, placed));
+            let part = part.map(|part| format!("parts[{part}] of ")).unwrap_or_default();
+            let part = format!("at t = {time} s {part}");
+            return SkinError::TargetNotANumber { value: excess, place, part };
+        }
+        let at = SurfacePoints { points: &[point], excess: &[excess] };
+        let term = self.terms.iter().position(|term| {
+            let mut own = [0.0];
+            term.add_at(at, whole, &mut own);
+            !own[0].is_finite()
+        });
+        let term = term.map(|term| format!("by terms[{term}] ")).unwrap_or_default();
+        SkinError::Speed { speed, place, time, term }
     }
 
     /// The target's potential less its iso value at the crossings.
@@ -409,11 +436,8 @@ impl Skin {
 
     fn longest_substep(&self, fastest: f64, answer: f64) -> f64 {
         let h = self.voxel();
-        let by_motion = MOVING / taken(fastest / h, self.tension() / (h * h));
-        let by_tension = TENSION_LIMIT * h * h / self.tension();
         // a term that answers itself goes half the way at most
-        let by_answer = 0.5 / answer;
-        by_motion.min(by_tension).min(by_answer)
+        longest_step(fastest / h, self.tension() / (h * h)).min(0.5 / answer)
     }
 
     /// One sub-step, with the speeds of the crossings in voxels; how far the surface moved [voxels].

@@ -282,8 +282,8 @@ impl Skin {
             let f = as_what.value(place);
             let is_own = node.iter().all(|c| (1..=edge).contains(c));
             if !f.is_finite() {
-                let part =
-                    as_what.broken_part(place).map(|part| format!("parts[{part}] of ")).unwrap_or_default();
+                let part = as_what.broken_part(place);
+                let part = part.map(|part| format!("parts[{part}] of ")).unwrap_or_default();
                 return Err(SkinError::TargetNotANumber { value: f, place: place.to_array(), part });
             }
             if is_border && is_own && f > 0.0 {
@@ -305,8 +305,11 @@ impl Skin {
             self.find_crossings(field, scratch);
             scratch.speeds.clear();
             scratch.speeds.resize(scratch.crossings.points.len(), 0.0);
-            let moves =
-                Moves { uniform: 0.0, tension: 0.0, redistance: (2.0 * self.redistance).min(relaxable(0.0)) };
+            let moves = Moves {
+                uniform: 0.0,
+                tension: 0.0,
+                redistance: (2.0 * self.redistance).min(relaxable(0.0, 0.0)),
+            };
             self.move_by(field, scratch, moves, 0.0)?;
         }
         Ok(())

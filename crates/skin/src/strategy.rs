@@ -51,6 +51,11 @@ pub trait Term: Send + Sync {
         0.0
     }
 
+    /// What it would need at a moment at which its speed is no number.
+    fn expected(&self, _whole: &Whole) -> String {
+        "a formula that has a number at that time".to_owned()
+    }
+
     /// How fast the term at a point answers a change of the whole skin's size that it made itself [1/s]: by what speed for each
     /// metre that the whole skin moves. It limits sub-steps.
     fn answer(&self, _point: Vec3, _excess: f64, _whole: &Whole) -> f64 {
@@ -87,6 +92,11 @@ pub trait Term: Send + Sync {
 
     /// Whether it needs a target.
     fn needs_target(&self) -> bool {
+        false
+    }
+
+    /// Whether it draws the skin together where the target is not.
+    fn draws_to_target(&self) -> bool {
         false
     }
 }
@@ -144,6 +154,10 @@ impl Term for Attraction {
 
     fn needs_target(&self) -> bool {
         true
+    }
+
+    fn draws_to_target(&self) -> bool {
+        self.0 > 0.0
     }
 }
 
@@ -213,6 +227,14 @@ impl Term for Constant {
         if goal > 0.0 && goal.is_finite() { self.rate * (goal - now) / goal } else { f64::NAN }
     }
 
+    fn expected(&self, whole: &Whole) -> String {
+        let unit = match self.held {
+            Held::Area => "m²",
+            Held::Volume => "m³",
+        };
+        format!("a goal above 0, which is {} {unit}", self.goal(whole))
+    }
+
     fn answer(&self, _: Vec3, _: f64, whole: &Whole) -> f64 {
         let goal = self.goal(whole);
         if goal <= 0.0 {
@@ -241,7 +263,8 @@ static CONSTANT_AREA: TermEntry = Entry {
     source: SOURCE,
     parameters: &[
         Parameter::number("rate", "m/s", Range::NOT_NEGATIVE, "gamma_A"),
-        Parameter::text("area", "A0 [m^2] as a formula of t; empty: that of the start").or(Value::Text("")),
+        Parameter::text("area", "A0 [m^2], above 0, as a formula of t; empty: that of the start")
+            .or(Value::Text("")),
     ],
     build: |values| {
         let goal = formula(values, "constant_area", "area", TIME)?;
@@ -255,7 +278,8 @@ static CONSTANT_VOLUME: TermEntry = Entry {
     source: SOURCE,
     parameters: &[
         Parameter::number("rate", "m/s", Range::NOT_NEGATIVE, "gamma_V"),
-        Parameter::text("volume", "V0 [m^3] as a formula of t; empty: that of the start").or(Value::Text("")),
+        Parameter::text("volume", "V0 [m^3], above 0, as a formula of t; empty: that of the start")
+            .or(Value::Text("")),
     ],
     build: |values| {
         let goal = formula(values, "constant_volume", "volume", TIME)?;

@@ -62,6 +62,25 @@ fn a_sphere_under_tension_shrinks_by_its_formula() {
     }
 }
 
+/// A ball that is pressed in or blown up by many voxels stays round, and has the radius that its speed makes of it, at each of its
+/// points: to a tenth of a voxel, a hundredth of the way, in long sub-steps and in short ones.
+#[test]
+fn a_pressed_ball_stays_round() {
+    let voxel = 0.05;
+    for (from, speed) in [(1.0, "-1"), (0.5, "1")] {
+        let to: f64 = if from > 0.75 { 0.5 } else { 1.0 };
+        for steps in [10_u32, 50, 250] {
+            let skin = skin(voxel, vec![term("pressure", &[("speed", Value::Text(speed))])]);
+            let mut scratch = skin.new_scratch();
+            let mut field = ball(&skin, from, &mut scratch);
+            run(&skin, &mut field, &mut scratch, steps as usize, 0.5 / f64::from(steps));
+            let radii = scratch.points().iter().map(|point| point.length());
+            let off = radii.map(|radius| (radius - to).abs()).fold(0.0, f64::max);
+            assert!(off < 0.1 * voxel, "{off} m from {to} m in {steps} steps");
+        }
+    }
+}
+
 /// The error of that falls by the second order in space, as long as the sphere has lost little: a part of it is that of the
 /// volume's chords, which a sphere at rest has too.
 #[test]
@@ -98,9 +117,11 @@ fn curvature_is_of_second_order() {
     }
 }
 
-/// On a fixed target the skin gets ever slower, without oscillation, and rests within half a voxel of it everywhere.
+/// On a fixed target the skin gets ever slower, without oscillation, until it rests, within half a voxel of it everywhere.
 #[test]
 fn a_skin_comes_to_rest_on_its_target() {
+    // a five-hundredth of a voxel in a step [m/s], of half a metre per second at first
+    const AT_REST: f64 = 1e-3;
     let voxel = 0.05;
     let point =
         |x: f64| part("point", &[("at", Value::Vector([x, 0.0, 0.0])), ("radius", Value::Number(0.5))]);
@@ -113,11 +134,10 @@ fn a_skin_comes_to_rest_on_its_target() {
     for _ in 0..12 {
         run(&skin, &mut field, &mut scratch, 10, 0.1);
         let speed = skin.view(&field).speed();
-        assert!(speed < last, "{speed} after {last}: it does not only get slower");
+        assert!(speed < last || speed < AT_REST, "{speed} after {last}: it does not only get slower");
         last = speed;
     }
-    // of half a metre per second at first
-    assert!(last < 1e-3, "{last}");
+    assert!(last < AT_REST, "{last}");
     let target = skin.target.as_ref().unwrap();
     let mut placed = target.new_scratch();
     target.place(&Moment::at(0.0), &mut placed).unwrap();

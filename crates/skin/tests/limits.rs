@@ -95,10 +95,32 @@ fn targets_that_break_while_running() {
         failed.unwrap_or_else(|| panic!("{text} goes on"))
     };
     let error = fails("sqrt(0.55 - t)*(0.5 - sqrt(x^2 + y^2 + z^2))", [0.0, f64::INFINITY]);
-    assert!(matches!(error, SkinError::Speed { .. }), "{error}");
-    assert!(error.to_string().contains("expected a number"), "{error}");
+    assert!(matches!(error, SkinError::TargetNotANumber { .. }), "{error}");
+    assert!(error.to_string().contains("parts[0] of its target is NaN at"), "{error}");
     let error = fails("0.5 - sqrt(x^2 + y^2 + z^2)", [0.0, 0.35]);
     assert!(matches!(error, SkinError::Target(_)) && error.to_string().contains("at t = 0.4"), "{error}");
+}
+
+/// A term that has no number at a moment is named, with the goal that makes none.
+#[test]
+fn terms_that_break_are_named() {
+    let fails = |broken: Box<dyn souple_skin::strategy::Term>| {
+        let skin = skin(0.1, vec![speed("0.01"), broken]);
+        let mut scratch = skin.new_scratch();
+        let mut field = ball(&skin, 0.5, &mut scratch);
+        let failed = (1..=10).find_map(|step| {
+            skin.step(&Moment::at(0.1 * f64::from(step)), 0.1, &mut field, &mut scratch).err()
+        });
+        failed.expect("it goes on").to_string()
+    };
+    let rate = ("rate", number(0.1));
+    let error = fails(term("constant_volume", &[rate, ("volume", Value::Text("-1 - t"))]));
+    assert!(
+        error.contains("terms[1] is NaN") && error.contains("expected a goal above 0, which is -1"),
+        "{error}"
+    );
+    let error = fails(speed("0.01*sqrt(0.5 - t - x)"));
+    assert!(error.starts_with("by terms[1] its speed is NaN m/s at ["), "{error}");
 }
 
 /// Particles so near to each other that each place would sum over thousands are refused, with where they are; small ones

@@ -9,7 +9,7 @@ use souple_engine::FieldState;
 use souple_math::Vec3;
 use souple_skin::target::particles::Density;
 use souple_skin::target::{ISO, Moment, Part, Particle, Particles, Target};
-use souple_skin::{Skin, look_up, surface_of};
+use souple_skin::{Skin, surface_of};
 use souple_table::Value;
 
 /// What tension makes of a surface in a time [s], by its nodes: where `exact` is 0 the surface must be.
@@ -211,7 +211,7 @@ fn corners_of_particles_move_to_second_order() {
         skin.step(&Moment::at(way), way, &mut field, &mut scratch).unwrap();
         // by the values where the surface was: triangles would add their chords
         let grid = skin.view(&field).grid;
-        let moved = |p: &Vec3| -look_up(grid, &skin.lattice, *p).unwrap().distance;
+        let moved = |p: &Vec3| grid.sample(skin.lattice.to_voxels(*p)).0 * skin.lattice.voxel;
         before.points.iter().map(|p| (moved(p) / way - 1.0).abs()).fold(0.0, f64::max)
     };
     let shares = [1.0 / 2.0, 1.0 / 4.0];

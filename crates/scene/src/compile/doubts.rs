@@ -136,8 +136,10 @@ fn of_material(material: &Material, is_linear: bool) -> impl Iterator<Item = Str
         // ν = λ / (2 (λ + μ))
         let poisson = 0.5 * ratio / (ratio + 1.0);
         format!(
-            "Poisson's ratio is {poisson:.4}: linear elements lock when nearly incompressible, the body will be too \
-             stiff; take at most 0.475, or hexahedra and a finer mesh, and compare"
+            "nearly incompressible, with a Poisson's ratio of {poisson:.4} or a bulk modulus of {:.0} shear moduli: linear \
+             elements lock, and the body may be too stiff, tetrahedra most of all; compare with quadratic elements, a finer mesh, or at \
+             most 0.475, 20 shear moduli",
+            ratio + 2.0 / 3.0
         )
     });
     let of_law = material.warnings().iter().map(|doubt| format!("the law: {doubt}"));

@@ -101,7 +101,8 @@ impl Cloud {
             ));
         }
         let Some((first, _)) = self.placed.first() else {
-            return Err("there is no particle".to_owned());
+            return Err("there is no particle at this time; expected one or more from the first to the last"
+                .to_owned());
         };
         (self.low, self.high) = self
             .placed

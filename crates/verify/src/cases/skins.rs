@@ -5,6 +5,10 @@ use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
 
 const SOURCE: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
 
+/// Of the volume of a ball of 0.85 m at voxels of 62.5 mm: the chords of its triangles, which lack 0.66 h²/R² of it as a ball of 64
+/// cells across does, are 3.6e-3, and a hundredth of a voxel is 2.2e-3.
+const AT_REST_ON_A_BALL: Tolerance = Tolerance::Relative(5.8e-3);
+
 const SKIN: Case = Case {
     id: "",
     capabilities: &[],
@@ -82,8 +86,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::last("volume"),
         // R = 0.847427 m
         reference: BALANCED,
-        // a hundredth of a voxel of 62.5 mm
-        tolerance: Tolerance::Relative(2.5e-3),
+        tolerance: AT_REST_ON_A_BALL,
         mutation: "skins.ball.terms[1].strength=5e-3",
         ..SKIN
     },
@@ -95,8 +98,7 @@ pub(super) const CASES: &[Case] = &[
         settings: &["skins.ball.terms[1].strength=0"],
         // 4/3 π 0.85³
         reference: 2.572_440_784_514_441_7,
-        // a hundredth of a voxel of 62.5 mm
-        tolerance: Tolerance::Relative(2.5e-3),
+        tolerance: AT_REST_ON_A_BALL,
         mutation: "skins.ball.terms[1].strength=5e-4",
         ..SKIN
     },
@@ -108,7 +110,7 @@ pub(super) const CASES: &[Case] = &[
         settings: &["skins.ball.terms[1].strength=5e-3"],
         // R = 0.823532 m
         reference: 2.339_539_144_285_654_4,
-        tolerance: Tolerance::Relative(2.5e-3),
+        tolerance: AT_REST_ON_A_BALL,
         mutation: "skins.ball.terms[1].strength=4e-3",
         ..SKIN
     },

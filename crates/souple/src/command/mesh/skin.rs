@@ -39,14 +39,21 @@ pub fn dressed(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Re
         |message: String| refuse(message, "radius=LENGTH, and voxel=LENGTH where it is another");
     let known: Vec<&Parameter> = PARAMETERS.iter().collect();
     let values = parameters::values(texts, &known)?;
-    let values = values.completed(PARAMETERS).map_err(|error| radius_is_missing(error.to_string()))?;
+    let as_described = "parameters as `souple mesh skin --help` names them";
+    let values = values.completed(PARAMETERS).map_err(|error| refuse(error.to_string(), as_described))?;
     let (radius, time) = (values.number("radius"), values.number("time"));
     let is_table = input.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+    let mut notes = Vec::new();
     let particles: Vec<(Vec3, f64)> = if is_table {
         let rows = souple_io::read_particles(input)?;
+        if radius > 0.0 && rows.iter().any(|row| row.radius.is_some()) {
+            notes.push(format!(
+                "all particles have the radius {radius} m that is given, not those of the file"
+            ));
+        }
         if let Some(row) = rows.iter().position(|row| radius == 0.0 && row.radius.is_none()) {
             return Err(radius_is_missing(format!(
-                "`radius` is missing, and particle {row} has none in the file"
+                "`radius` is missing or 0, and particle {row} has none in the file"
             )));
         }
         let particle = |row: &souple_io::ParticleRow| Particle {
@@ -55,9 +62,18 @@ pub fn dressed(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Re
             radius: row.radius.filter(|_| radius == 0.0).unwrap_or(radius),
             during: row.during,
         };
-        rows.iter().filter_map(|row| particle(row).at(time)).collect()
+        let there: Vec<(Vec3, f64)> = rows.iter().filter_map(|row| particle(row).at(time)).collect();
+        if there.is_empty() && !rows.is_empty() {
+            let from = rows.iter().map(|row| row.during[0]).fold(f64::INFINITY, f64::min);
+            let until = rows.iter().map(|row| row.during[1]).fold(f64::NEG_INFINITY, f64::max);
+            let message = format!("no particle is there at {time} s");
+            return Err(refuse(message, &format!("time=SECONDS, from {from} s to before {until} s")));
+        }
+        there
     } else if radius == 0.0 {
-        return Err(radius_is_missing("`radius` is missing, and the points of a mesh have none".to_owned()));
+        return Err(radius_is_missing(
+            "`radius` is missing or 0, and the points of a mesh have none".to_owned(),
+        ));
     } else {
         read(input)?.0.points.iter().map(|point| (*point, radius)).collect()
     };
@@ -66,7 +82,6 @@ pub fn dressed(input: &Path, texts: &[String]) -> Result<(Mesh, Vec<String>), Re
     let iso = values.number("iso");
     let dressed = souple_skin::dress(&particles, voxel, iso)
         .map_err(|error| refuse(error.to_string(), "particles that a surface can go around"))?;
-    let mut notes = Vec::new();
     if voxel > COARSE * smallest {
         notes.push(format!(
             "voxels of {voxel} m are larger than {COARSE} radii of {smallest} m: what is smaller than a voxel is lost"
