@@ -39,6 +39,8 @@ impl Mass {
             }
             same
         });
+        // elements share most of their pairs
+        self.couplings.shrink_to_fit();
     }
 
     /// Bytes held.

@@ -263,6 +263,23 @@ impl System {
         })
     }
 
+    /// The norm of the largest force at the placed rows, evaluated one by one: what is balanced where the sum is nothing [N].
+    pub fn largest_force(
+        &self,
+        rows: &Rows,
+        state: &SystemState,
+        around: &Surroundings,
+        scratches: &mut [Scratch],
+    ) -> f64 {
+        let mut alone = vec![Vec3::ZERO; rows.positions.len()];
+        let norms = self.forces.iter().enumerate().map(|(index, force)| {
+            alone.fill(Vec3::ZERO);
+            force.add_force(&self.view(index, rows, state, around), &mut scratches[index], &mut alone);
+            souple_solve::reduce::norm(&alone)
+        });
+        norms.fold(0.0, f64::max)
+    }
+
     /// `(a ∂f/∂x + b ∂f/∂v) δ` summed over forces, for row displacements `delta`.
     pub fn sum_row_differentials(
         &self,

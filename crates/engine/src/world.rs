@@ -162,6 +162,7 @@ impl Model {
             // couplings hold what they are stretched by from the start on
             let mut state = std::mem::take(&mut world.state);
             world.publish_slow_points(0.0, &mut state);
+            world.find_first_pairs(&mut state);
             world.state = state;
         }
         world
@@ -395,6 +396,17 @@ impl World {
         let claimed = ws.stages.total() - before;
         ws.stages.advance += (clock.elapsed().as_secs_f64() - claimed).max(0.0);
         Ok(report)
+    }
+
+    /// Those that are near each other from the start on: their energy is there before the first step.
+    fn find_first_pairs(&mut self, state: &mut State) {
+        let State { systems, driven, fields, .. } = state;
+        let around = Surroundings { driven, fields, load: 1.0 };
+        for ((system, state), ws) in self.model.systems.iter().zip(systems).zip(&mut self.workspace.systems) {
+            if system.forces.iter().any(|force| force.declaration().changing_pattern) {
+                system.update_pairs(ws, state, &around);
+            }
+        }
     }
 
     fn publish_slow_points(&self, start: f64, next: &mut State) {

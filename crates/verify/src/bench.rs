@@ -205,6 +205,11 @@ pub const BENCHES: &[Bench] = &[
         run: beams::static_100k,
     },
     Bench {
+        name: "memory_100k",
+        what: "bytes for each tetrahedron of an implicit step of the reference bar, n = 12, with a matrix and without [B/tet]",
+        run: beams::memory_100k,
+    },
+    Bench {
         name: "law_text_tensor",
         what: "steps with a law as text of tensor operations, over those with the same law of the table [x built-in]",
         run: |effort| laws::law_text("law_text_tensor", laws::Writing::Tensors, 1.3, effort),

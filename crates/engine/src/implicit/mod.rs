@@ -61,7 +61,7 @@ pub struct ImplicitBuffers {
     pub v_start: Vec<Vec3>,
     /// `v₀` of [`Rates`].
     pub velocity_offset: Vec<Vec3>,
-    /// `p` of [`Rates`], over velocity blocks and over rows.
+    /// `p` of [`Rates`], over velocity blocks and over rows; those over rows are empty where rows are blocks.
     pub coasting: Vec<Vec3>,
     coasting_rows: Vec<Vec3>,
     /// For formulas, in the size of the velocity.
@@ -96,7 +96,7 @@ impl ImplicitBuffers {
             v_start: blocks(),
             velocity_offset: blocks(),
             coasting: blocks(),
-            coasting_rows: rows(),
+            coasting_rows: if system.kinematics.is_trivial() { Vec::new() } else { rows() },
             displacement: blocks(),
             residual: blocks(),
             unbalanced: rows(),
@@ -112,6 +112,11 @@ impl ImplicitBuffers {
             operator: OperatorBuffers::new(system),
             newton: iteration::Workspace::default(),
         }
+    }
+
+    /// `p` over rows.
+    fn row_coasting(&self) -> &[Vec3] {
+        if self.coasting_rows.is_empty() { &self.coasting } else { &self.coasting_rows }
     }
 
     /// Bytes held.
@@ -206,7 +211,9 @@ impl ImplicitStep<'_> {
     /// Row velocities from which acceleration counts.
     fn place_coasting(&self, buffers: &mut ImplicitBuffers) {
         let ImplicitBuffers { q_start, coasting, coasting_rows, .. } = buffers;
-        self.system.kinematics.velocities_into(q_start, coasting, coasting_rows);
+        if !coasting_rows.is_empty() {
+            self.system.kinematics.velocities_into(q_start, coasting, coasting_rows);
+        }
     }
 
     /// `g = b M (ẋ - p) - f` over rows and `-Tᵀ g` without constrained components at `(q_trial, v_trial)`;
@@ -217,16 +224,15 @@ impl ImplicitStep<'_> {
         let clock = Instant::now();
         system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
         ws.stages.forces += clock.elapsed().as_secs_f64();
-        let g = &mut buffers.unbalanced;
-        g.fill(Vec3::ZERO);
+        buffers.unbalanced.fill(Vec3::ZERO);
         if self.rates.has_inertia() {
-            let coasting = &buffers.coasting_rows;
+            let coasting = buffers.row_coasting();
             for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(coasting) {
                 *change = (*now - *before) * self.rates.acceleration;
             }
-            system.mass.add_product(&ws.row_scratch, g);
+            system.mass.add_product(&ws.row_scratch, &mut buffers.unbalanced);
         }
-        for (g, f) in g.iter_mut().zip(&ws.row_force) {
+        for (g, f) in buffers.unbalanced.iter_mut().zip(&ws.row_force) {
             *g -= *f;
         }
         self.contract(ws, buffers);
@@ -254,7 +260,7 @@ impl ImplicitStep<'_> {
         if !self.rates.has_inertia() {
             return stored;
         }
-        let coasting = &buffers.coasting_rows;
+        let coasting = buffers.row_coasting();
         for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(coasting) {
             *change = *now - *before;
         }

@@ -53,7 +53,8 @@ impl ImplicitStep<'_> {
                 max_iterations: settings.max_iterations as usize,
                 ..newton::Settings::default()
             };
-            newton(&mut problem, &limits, &mut workspace)
+            let solved = newton(&mut problem, &limits, &mut workspace)?;
+            Ok(if solved.converged() { solved } else { problem.judge_by_loads(solved) })
         });
         let (scale, mut report) = (problem.scale, problem.report);
         buffers.newton = workspace;
@@ -125,6 +126,22 @@ impl ImplicitProblem<'_, '_> {
         self.report.made_definite += u64::from(solved.made_definite);
         self.report.linear_residual = self.report.linear_residual.max(solved.residual);
         Ok(solved)
+    }
+
+    /// What a body that hangs on nothing began with may be rounding already, and no scale: what has not converged is judged by the
+    /// forces that balance each other.
+    fn judge_by_loads(&mut self, solved: newton::Report) -> newton::Report {
+        self.place(None);
+        let residual = self.evaluate();
+        let SystemWorkspace { scratches, rows, .. } = &mut *self.ws;
+        let forces = self.step.system.largest_force(rows, self.state, &self.step.around, scratches);
+        self.scale = self.scale.max(SHARE_OF_LOADS * forces);
+        let is_balanced = self.scale.is_finite() && residual <= self.settings.tolerance * self.scale;
+        newton::Report {
+            residual,
+            stop: if is_balanced { newton::Stop::Converged } else { solved.stop },
+            ..solved
+        }
     }
 
     /// Brings constrained components to where they are led, and the free ones along.

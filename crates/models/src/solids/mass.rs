@@ -60,14 +60,20 @@ pub fn consistent_mass(
 ) {
     for (index, cell) in mesh.cells().enumerate() {
         let density = density_of_cell(index);
+        // over all samples before rows: one coupling for each pair of nodes, not one for each sample
+        let mut own = [[0.0; MAX_NODES]; MAX_NODES];
         over_samples(mesh, cell, 4, |shape, volume| {
-            for (a, weight_a) in cell.nodes.iter().zip(shape) {
-                for (b, weight_b) in cell.nodes.iter().zip(shape) {
-                    let (a, b) = (a + first_row as u32, b + first_row as u32);
-                    mass.add(a, b, density * volume * weight_a * weight_b);
+            for (own, weight_a) in own.iter_mut().zip(shape) {
+                for (own, weight_b) in own.iter_mut().zip(shape) {
+                    *own += density * volume * weight_a * weight_b;
                 }
             }
         });
+        for (own, a) in own.iter().zip(cell.nodes) {
+            for (own, b) in own.iter().zip(cell.nodes) {
+                mass.add(a + first_row as u32, b + first_row as u32, *own);
+            }
+        }
     }
 }
 

@@ -132,6 +132,44 @@ pub fn soft_beam(name: &str, [x, y, z]: [u32; 3], peer: f64, effort: Effort) -> 
     Ok(figures)
 }
 
+/// Bytes of forces, vectors and matrices for each tetrahedron after an implicit step of the reference bar, with a matrix and without.
+pub fn memory_100k(effort: Effort) -> Result<Vec<Figure>, String> {
+    let n: u32 = effort.choose(6, 12);
+    let tets = f64::from(60 * n * n * n);
+    let cases = [("memory_100k_matrix", false, 1500.0), ("memory_100k_matrix_free", true, 300.0)];
+    let figures = cases.map(|(name, is_matrix_free, most)| {
+        let stepper = format!(
+            "systems.main.stepper={{ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-2, \
+             matrix_free = {is_matrix_free} }}"
+        );
+        let settings = [format!("bodies.bar.mesh.cells=[{}, {n}, {n}]", 10 * n), stepper];
+        let timing = Timing {
+            scene: "cantilever",
+            settings: &settings,
+            prepare: as_it_is,
+            warm_up: 0,
+            samples: 1,
+            steps_per_sample: 1,
+        };
+        let timed = timing.sample(rayon::current_num_threads())?;
+        Ok(Figure {
+            by_processor: None,
+            name: name.to_owned(),
+            value: timed.bytes as f64 / tets,
+            unit: "B/tet",
+            higher_is_better: false,
+            error: 0.0,
+            error_of: "bytes are counted".to_owned(),
+            baseline: Some(most),
+            threads: timed.threads,
+            samples: 1,
+            spread: 0.0,
+            bytes: timed.bytes,
+        })
+    });
+    figures.into_iter().collect()
+}
+
 pub fn static_100k(effort: Effort) -> Result<Vec<Figure>, String> {
     let (n, name) = effort.choose((6, "static_13k"), (12, "static_100k"));
     let settings = |n: u32| {
