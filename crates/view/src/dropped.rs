@@ -104,10 +104,14 @@ pub fn scene_of(dropped: &DroppedFile) -> Result<String, String> {
     let length = scale * written;
     let file = path.display().to_string();
     let is_solid = mesh.cell_count() > 0 && mesh.dimension() == 3;
-    let source = if is_solid {
-        format!("file = {file:?}")
+    let (source, filled) = if is_solid {
+        (format!("file = {file:?}"), String::new())
     } else {
-        format!("fill = {file:?}, count = {}", cells_of(&mesh))
+        let count = cells_of(&mesh);
+        let filled = format!(
+            " It is filled with about {count} cells: a scene file of your own takes any size of them."
+        );
+        (format!("fill = {file:?}, count = {count}"), filled)
     };
     let youngs_modulus = DENSITY * GRAVITY * length / SAG;
     let floor = scale * bounds.low.y - 0.1 * length;
@@ -115,7 +119,7 @@ pub fn scene_of(dropped: &DroppedFile) -> Result<String, String> {
     Ok(format!(
         "format = 1\n\
          title = {title}\n\
-         description = \"A mesh that was dropped on the page: a soft body that falls on a floor.\"\n\
+         description = \"A mesh that was dropped on the page: a soft body that falls on a floor.{filled}\"\n\
          [world]\n\
          period = \"10 ms\"\n\
          gravity = [0, -{GRAVITY}, 0]\n\

@@ -23,8 +23,8 @@ pub struct Field {
 pub enum Source {
     /// Of a point, by its number in the mesh.
     Point(fn(&World, &BodyInfo, usize) -> f64),
-    /// Of each point of the mesh, where the body has such a thing.
-    Weights(fn(&BodyInfo) -> Option<&[f64]>),
+    /// Of each point of the mesh, of a frame that carries it.
+    Influence,
     /// Of the cells about a point, in the mean.
     Cells(fn(&CellField) -> f64),
     /// Of a link.
@@ -64,12 +64,7 @@ pub static FIELDS: Table<Field> = Table {
             Source::Cells(|field| field.current_volume / field.volume),
             "volume over volume at rest",
         ),
-        &entry(
-            "influence",
-            "",
-            Source::Weights(|body| body.frames.as_ref().map(|frames| frames.influence.as_slice())),
-            "the weight of one of the frames that carry a body",
-        ),
+        &entry("influence", "", Source::Influence, "the weight of one of the frames that carry a body"),
         &entry(
             "link_force",
             "N",
@@ -163,8 +158,8 @@ impl Field {
             Source::Point(value) => {
                 Some(points.iter().map(|point| value(world, body, *point as usize) as f32).collect())
             }
-            Source::Weights(weights) => {
-                let weights = weights(body)?;
+            Source::Influence => {
+                let weights = &body.frames.as_ref()?.influence;
                 Some(points.iter().map(|point| weights[*point as usize] as f32).collect())
             }
             Source::Cells(value) => {
@@ -193,7 +188,7 @@ impl Field {
         let bodies = &session.bodies;
         match self.source {
             Source::Point(_) => !bodies.is_empty(),
-            Source::Weights(weights) => bodies.iter().any(|body| weights(body).is_some()),
+            Source::Influence => bodies.iter().any(|body| body.frames.is_some()),
             Source::Cells(_) => {
                 let has_cells = |body: &BodyInfo| {
                     let force = session.world.force_named(body.system, &body.force);
@@ -215,8 +210,24 @@ impl Field {
         match self.source {
             Source::Links(_) => "links",
             Source::Classes(_) => "cells",
-            Source::Point(_) | Source::Weights(_) | Source::Cells(_) => "points",
+            Source::Point(_) | Source::Influence | Source::Cells(_) => "points",
         }
+    }
+
+    /// What it is of, where its name does not say it: of which frame of which body.
+    pub fn title(&self, session: &Session) -> Option<String> {
+        if !matches!(self.source, Source::Influence) {
+            return None;
+        }
+        let carried =
+            session.bodies.iter().filter_map(|body| Some((&body.name, body.frames.as_ref()?.shown)));
+        let carried: Vec<(&String, usize)> = carried.collect();
+        let (_, first) = carried.first()?;
+        if carried.iter().all(|(_, shown)| shown == first) {
+            return Some(format!("influence of frame {first}"));
+        }
+        let of_each: Vec<String> = carried.iter().map(|(name, shown)| format!("{shown} of {name}")).collect();
+        Some(format!("influence of frames {}", of_each.join(", ")))
     }
 
     /// Names and colours of what its numbers stand for; `None` where they are quantities.

@@ -117,7 +117,8 @@ impl Stage {
         let class = |(name, colour): (String, Colour)| json!({"name": name, "colour": hexadecimal(colour)});
         let classes = build.classes(self.session()).map(|all| all.into_iter().map(class).collect::<Vec<_>>());
         json!({
-            "name": name, "summary": summary, "unit": build.unit, "of": build.of(), "classes": classes,
+            "name": name, "title": build.title(self.session()), "summary": summary, "unit": build.unit,
+            "of": build.of(), "classes": classes,
             "is_here": build.is_in(self.session(), self.shown()),
         })
     }

@@ -146,6 +146,10 @@ fn frames_are_shown() {
     let world = World::of(CARRIED);
     let mut page = Page::open(&world);
     assert_eq!(page.frame().frame_counts, [2]);
+    let scene = page.document("scene");
+    let fields = scene["fields"].as_array().unwrap();
+    let titles: Vec<_> = fields.iter().filter(|field| !field["title"].is_null()).collect();
+    assert!(titles.len() == 1 && titles[0]["title"] == "influence of frame 0", "{titles:?}");
     page.wish(json!({"do": "colour", "field": "influence"}));
     page.wish(json!({"do": "arrows", "of": "velocity"}));
     page.wish(json!({"do": "arrows", "of": "nothing"}));

@@ -30,6 +30,12 @@ const UNTOLD = new Set<Wish["do"]>(["seen", "move", "release", "colour", "arrows
 /** What breaks a long step off. */
 const AT_ONCE = new Set<Wish["do"]>(["pause", "reset", "load", "load_text"]);
 
+/** What keys do, for who sees the page. */
+const KEYS =
+  "Keys: space plays and pauses, S makes one step, R begins anew, F shows everything, W draws surfaces another way. G pulls, O pushes, " +
+  "T throws, P pins. H takes hold in the middle of the picture and lets go; arrows and page keys lead what is held, and turn the view or " +
+  "come nearer where nothing is.";
+
 class Page {
   private readonly notes = new Notes(place("notes"));
   private readonly title = element("h1", {}, "Souple");
@@ -91,6 +97,8 @@ class Page {
     element("button", { click: () => this.picture.fit() }, "Show it"),
   );
 
+  private readonly reading = element("p", { class: "sight reading", hidden: true }, "The other scene is being read …");
+
   constructor() {
     const say = (text: string, weight: Weight = "error") => this.notes.say(weight, text);
     this.picture = new Picture(place("stage"), say, (picture) => {
@@ -99,7 +107,7 @@ class Page {
     });
     place("top").append(element("div", { class: "name" }, this.title, this.link), this.transport.root);
     place("side").append(
-      panel("About", false, this.description),
+      panel("About", false, this.description, element("p", { class: "keys" }, KEYS)),
       this.display.root,
       this.hand.root,
       this.parameters.root,
@@ -110,8 +118,11 @@ class Page {
     );
     place("bottom").append(this.stages.root);
     place("messages").prepend(this.failure);
-    place("stage").append(this.sight);
+    place("stage").append(this.sight, this.reading);
     this.setDark(this.isDark());
+    // with the gap below it
+    const legend = place("legend");
+    new ResizeObserver(() => this.picture.setLegend(legend.hidden ? 0 : legend.offsetHeight + 12)).observe(legend);
     matchMedia(DARK).addEventListener("change", () => this.setDark(this.isDark()));
     window.addEventListener("keydown", (event) => this.key(event));
     this.freeKeys();
@@ -285,6 +296,7 @@ class Page {
       this.notes.keep("error", status.message);
     }
     document.body.classList.toggle("busy", status.busy !== null);
+    this.reading.hidden = status.busy !== "load";
   }
 
   private setLink(link: Link, why: string): void {
@@ -327,7 +339,7 @@ class Page {
     this.picture.draw();
     if (performance.now() - this.lastLook < LOOK_EVERY) return;
     this.lastLook = performance.now();
-    this.sight.hidden = !this.picture.isOutOfSight;
+    this.sight.hidden = !this.reading.hidden || !this.picture.isOutOfSight;
   }
 
   /** As was chosen by hand; as the system has it where nothing was. */

@@ -70,6 +70,8 @@ export interface ProbeInfo {
 
 export interface FieldInfo {
   name: string;
+  /** What it is of, where the name does not say it; null: the name does. */
+  title: string | null;
   summary: string;
   unit: string;
   /** Of cells: a value for each triangle of the surface, then one for each cell while the inside comes as well. */

@@ -56,7 +56,7 @@ export class Legend {
     const isScale = field !== null && field.classes === null && hasValues && range.low <= range.high;
     const entries = field ? classes.flatMap((number) => field.classes?.[number] ?? []) : linkStates.map(stateOf);
     const hasArrows = arrows !== null && longest > 0;
-    this.title.textContent = field ? label(field.name) : entries.length > 0 ? "Links" : "";
+    this.title.textContent = field ? (field.title ?? label(field.name)) : entries.length > 0 ? "Links" : "";
     this.title.hidden = !this.title.textContent;
     this.bar.hidden = this.ends.hidden = !isScale;
     this.none.hidden = field === null || hasValues;

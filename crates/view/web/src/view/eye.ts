@@ -10,35 +10,51 @@ const KEY_SHARE = 0.08;
 const POLE = 0.1;
 /** What is looked at could be as many times as high and as wide: it has room to move. */
 const MARGIN = 1.2;
-/** At the foot of the picture stand axes, the scale and the legend: no more of its height [px], and no more of it [1]. */
+/** The axes and the scale at the foot of the picture take so much of its height [px]. */
 const FOOT = 84;
-const FOOT_SHARE = 0.25;
-/** The same of what is followed. */
-const FOLLOWED = 1.08;
+/** What stands at the foot takes no more of the height of the picture. */
+const FOOT_SHARE = 0.4;
 /** What is nearer than this part of the distance, or farther away than so many of it, is not drawn. */
 const NEAR = 1 / 200;
 const FAR = 40;
 
 export class Eye {
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 100);
-  readonly controls: OrbitControls;
+  controls: OrbitControls;
   /** What is up in the picture, and the way that it looks. */
   readonly up = new Vector3(0, 1, 0);
   readonly direction = new Vector3(-0.5, -0.45, -1);
   private readonly ray = new Raycaster();
   /** Of the picture [px]. */
   private size = { width: 1, height: 1 };
+  /** Height of what stands at its foot [px]. */
+  private foot = 0;
+  /** What the view was fitted to last, and where the eye went for it. */
+  private fitted: { bounds: Box3; turning: Box3; position: Vector3 } | null = null;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.enableDamping = true;
-    this.controls.dampingFactor = 0.12;
+    this.controls = this.newControls();
   }
 
-  /** Looks at all of a box, from where the scene wants to be seen; what turns within another about its middle stays in the picture. */
+  /** Those that were there know another direction as up, and glide on. */
+  private newControls(): OrbitControls {
+    const controls = new OrbitControls(this.camera, this.canvas);
+    controls.enableDamping = true;
+    controls.dampingFactor = 0.12;
+    return controls;
+  }
+
+  /**
+   * Looks at all of a box, from where the scene wants to be seen; while what is in another box turns about the middle of that one, as
+   * it stands now, it stays in the picture.
+   */
   fit(bounds: Box3, turning: Box3): void {
     const centre = bounds.getCenter(new Vector3());
+    const { enabled } = this.controls;
+    this.controls.dispose();
     this.camera.up.copy(this.up);
+    this.controls = this.newControls();
+    this.controls.enabled = enabled;
     this.camera.position.copy(centre).addScaledVector(this.direction, -1);
     this.camera.lookAt(centre);
     const radius = 0.5 * turning.getSize(new Vector3()).length();
@@ -49,17 +65,24 @@ export class Eye {
     this.reach(distance);
     this.controls.target.copy(centre);
     this.controls.update();
+    this.fitted = { bounds: bounds.clone(), turning: turning.clone(), position: this.camera.position.clone() };
   }
 
-  /** Goes back until all of a box is in the picture. */
-  include(bounds: Box3): void {
-    const { target } = this.controls;
-    const distance = this.camera.position.distanceTo(target);
-    const needed = Math.max(...corners(bounds).map((corner) => this.needed(corner, target, 0, FOLLOWED)));
-    if (needed <= distance) return;
-    this.camera.position.sub(target).multiplyScalar(needed / distance).add(target);
-    this.reach(needed);
+  /** Goes on as it was moved last, and draws what is about as far as what it looks at; once for each picture. */
+  update(): void {
     this.controls.update();
+    const distance = this.distance;
+    if (Math.abs(this.camera.near - NEAR * distance) > 1e-6 * this.camera.near) this.reach(distance);
+  }
+
+  private get distance(): number {
+    return this.camera.position.distanceTo(this.controls.target);
+  }
+
+  /** Goes so many times as far from what it looks at. */
+  goAway(factor: number): void {
+    const { target } = this.controls;
+    this.camera.position.sub(target).multiplyScalar(factor).add(target);
   }
 
   /** From how far a ball about a point is in the picture, seen as now with a target in its middle, were it farther from that by a factor. */
@@ -67,12 +90,18 @@ export class Eye {
     this.camera.updateMatrixWorld();
     const [right, up, back] = [0, 1, 2].map((axis) => new Vector3().setFromMatrixColumn(this.camera.matrixWorld, axis));
     const offset = point.clone().sub(target);
+    const from = (slope: number, aside: number) => (factor * Math.abs(aside) + radius * Math.hypot(1, slope)) / slope;
+    const slopes = this.slopes();
+    const aside = from(slopes.aside, offset.dot(right!));
+    const above = from(slopes.above, offset.dot(up!));
+    return offset.dot(back!) + Math.max(aside, above);
+  }
+
+  /** Of the rays to the sides of the picture, and to its upper border from the middle above its foot. */
+  private slopes(): { aside: number; above: number } {
     const { width, height } = this.size;
     const slope = Math.tan(0.5 * this.camera.fov * (Math.PI / 180));
-    const from = (slope: number, aside: number) => (factor * Math.abs(aside) + radius * Math.hypot(1, slope)) / slope;
-    const aside = from((slope * width) / height, offset.dot(right!));
-    const above = from((slope * (height - this.foot)) / height, offset.dot(up!));
-    return offset.dot(back!) + Math.max(aside, above);
+    return { aside: (slope * width) / height, above: (slope * (height - this.foot)) / height };
   }
 
   /** Draws what is about as far. */
@@ -86,7 +115,11 @@ export class Eye {
   shift(way: Vector3): void {
     this.camera.position.add(way);
     this.controls.target.add(way);
-    this.controls.update();
+  }
+
+  /** Looks at a point from where it looked at another one. */
+  lookAt(point: Vector3): void {
+    this.shift(point.clone().sub(this.controls.target));
   }
 
   /** Turns about what is looked at, to the right and up, or comes nearer. */
@@ -101,7 +134,7 @@ export class Eye {
     offset.applyAxisAngle(across.applyAxisAngle(this.camera.up, -KEY_TURN * right), wanted - polar);
     offset.multiplyScalar(1 + KEY_SHARE * away);
     this.camera.position.copy(target).add(offset);
-    this.controls.update();
+    this.camera.lookAt(target);
   }
 
   /** Towards the eye, unit. */
@@ -148,19 +181,24 @@ export class Eye {
 
   /** Metres that a pixel is wide where the eye looks. */
   metresPerPixel(height: number): number {
-    const distance = this.camera.position.distanceTo(this.controls.target);
-    return (2 * distance * Math.tan(0.5 * this.camera.fov * (Math.PI / 180))) / Math.max(height, 1);
+    return (2 * this.distance * Math.tan(0.5 * this.camera.fov * (Math.PI / 180))) / Math.max(height, 1);
   }
 
-  /** What is looked at stands in the middle above the foot of the picture, however the view turns: the lens is shifted. */
-  resize(width: number, height: number): void {
+  /**
+   * What is looked at stands in the middle above the foot of the picture, where a legend of a height may stand [px], however the view
+   * turns: the lens is shifted. A view that nobody has moved is fitted anew, of another the narrower side shows what it has shown.
+   */
+  resize(width: number, height: number, legend: number): void {
+    const narrower = () => Math.min(...Object.values(this.slopes()));
+    const before = narrower();
     this.size = { width, height };
+    this.foot = Math.min(Math.max(FOOT, legend), FOOT_SHARE * height);
     this.camera.setViewOffset(width, height, 0, 0.5 * this.foot, width, height);
-  }
-
-  /** Height of what stands at the foot of the picture [px]. */
-  private get foot(): number {
-    return Math.min(FOOT, FOOT_SHARE * this.size.height);
+    // the controls round as they hold still
+    const { fitted } = this;
+    const isMoved = fitted === null || fitted.position.distanceTo(this.camera.position) > 1e-6 * this.distance;
+    if (isMoved) this.goAway(before / narrower());
+    else this.fit(fitted.bounds, fitted.turning);
   }
 }
 

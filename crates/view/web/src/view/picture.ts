@@ -72,6 +72,8 @@ const GROUND_EVEN = 0xdcd8d4;
 const LEAST_BALL = 2.5;
 /** A shape is looked at beside the bodies where both together are at most as many times as large as they are. */
 const WITH_SHAPE = 2;
+/** What is followed is come nearer to when it is smaller than this part of what the distance is of. */
+const MUCH_SMALLER = 0.6;
 /** By how much of what is too much the range of colours shrinks with each frame. */
 const SHRINKING = 0.02;
 
@@ -113,8 +115,10 @@ export class Picture {
   private last: Frame | null = null;
   /** What is looked at: the camera stays while it is the same. */
   private subject = "";
-  /** Where the middle of all bodies was when the view last went along with them; null while it stays. */
-  private followed: Vector3 | null = null;
+  /** How much of the foot of the picture a legend takes [px]. */
+  private legend = 0;
+  /** Where the middle of all bodies was when the view last went along with them, and the size that its distance is of; null while it stays. */
+  private followed: { middle: Vector3; size: number } | null = null;
   /** Whether what is in the picture is no longer as it was drawn. */
   private isStale = true;
   /** From where it was drawn. */
@@ -209,8 +213,12 @@ export class Picture {
     // begun anew, or shown again after the connection was lost, it is seen from where a person went
     this.isFitted = subject === this.subject;
     this.subject = subject;
-    if (this.isFitted) this.applyCut();
-    else this.look();
+    if (!this.isFitted) this.look();
+    else {
+      this.applyCut();
+      // where the view went after the bodies is not where a person went
+      if (this.followed) this.fit();
+    }
   }
 
   /** The cells of a body have come. */
@@ -340,21 +348,25 @@ export class Picture {
 
   /** Whether the view goes along with the bodies. */
   follow(isWanted: boolean): void {
-    if (isWanted !== (this.followed !== null)) this.followed = isWanted ? this.middle : null;
+    if (isWanted === (this.followed !== null)) return;
+    const bounds = this.boundsNow();
+    this.followed = isWanted ? followedIn(bounds) : null;
+    // they may have gone far already
+    if (this.followed && !bounds.isEmpty()) this.eye.lookAt(this.followed.middle);
   }
 
+  /** Goes where the bodies go, and as much farther away as they grow, from where a person went; nearer where they are much smaller. */
   private goAlong(): void {
+    if (!this.followed) return;
     const bounds = this.boundsNow();
     // what is gone is waited for where it was
-    if (!this.followed || bounds.isEmpty()) return;
-    const middle = bounds.getCenter(new Vector3());
-    this.eye.shift(middle.clone().sub(this.followed));
-    this.eye.include(bounds);
-    this.followed = middle;
-  }
-
-  private get middle(): Vector3 {
-    return this.boundsNow().getCenter(new Vector3());
+    if (bounds.isEmpty()) return;
+    const { middle, size } = this.followed;
+    const now = followedIn(bounds);
+    this.eye.shift(now.middle.clone().sub(middle));
+    const fitting = Math.max(now.size, Math.min(size, now.size / MUCH_SMALLER));
+    if (size > 0) this.eye.goAway(fitting / size);
+    this.followed = { middle: now.middle, size: fitting };
   }
 
   /** Begins to look at what is there. */
@@ -374,7 +386,7 @@ export class Picture {
       if (diagonal(bounds.clone().union(shape)) <= most) all.union(shape);
     }
     this.eye.fit(all, bounds);
-    if (this.followed) this.followed = this.middle;
+    if (this.followed) this.followed = followedIn(bounds);
     // balls are to be seen from there
     this.repaint();
   }
@@ -396,18 +408,25 @@ export class Picture {
 
   private boundsOfEach(): Box3[] {
     const point = new Vector3();
-    const skins = this.skins.map(({ mesh }) => mesh.geometry);
-    const ofSkins = skins.map((geometry) => geometry.getAttribute("position")?.array.slice(0, drawnNumbers(geometry)) ?? []);
-    return [...this.bodies.map((body) => body.positions), ...ofSkins].map((positions, index) => {
+    const boundsOf = (positions: ArrayLike<number>, end: number): Box3 => {
       const bounds = new Box3();
-      for (let i = 0; i < positions.length; i += 3) bounds.expandByPoint(point.fromArray(positions, i));
-      return bounds.isEmpty() ? bounds : bounds.expandByScalar(this.bodies[index]?.loose?.reach ?? 0);
+      for (let i = 0; i < end; i += 3) bounds.expandByPoint(point.set(positions[i]!, positions[i + 1]!, positions[i + 2]!));
+      return bounds;
+    };
+    const ofBodies = this.bodies.map(({ positions, loose }) => {
+      const bounds = boundsOf(positions, positions.length);
+      return bounds.isEmpty() ? bounds : bounds.expandByScalar(loose?.reach ?? 0);
     });
+    const ofSkins = this.skins.map(({ mesh: { geometry } }) => {
+      const positions = geometry.getAttribute("position")?.array;
+      return positions ? boundsOf(positions, drawnNumbers(geometry)) : new Box3();
+    });
+    return [...ofBodies, ...ofSkins];
   }
 
   /** Draws what is not as it was drawn last: a machine that draws by software has the rest of its time for what comes. */
   draw(): void {
-    this.eye.controls.update();
+    this.eye.update();
     const { camera } = this.eye;
     camera.updateMatrixWorld();
     const { view, projection } = this.drawnFrom;
@@ -541,8 +560,21 @@ export class Picture {
     const { pixels } = this.quality.now;
     this.renderer.setPixelRatio(pixels < 1 ? pixels : Math.min(devicePixelRatio, pixels));
     this.renderer.setSize(width, height);
-    this.eye.resize(width, height);
+    this.eye.resize(width, height, this.legend);
+    // a drawing of another size is empty until it is drawn on, and would be seen so
+    if (this.subject !== "") this.renderer.render(this.scene, this.eye.camera);
   }
+
+  /** How much of the foot of the picture a legend takes [px]. */
+  setLegend(height: number): void {
+    if (height === this.legend) return;
+    this.legend = height;
+    this.resize();
+  }
+}
+
+function followedIn(bounds: Box3): { middle: Vector3; size: number } {
+  return { middle: bounds.getCenter(new Vector3()), size: bounds.isEmpty() ? 0 : diagonal(bounds) };
 }
 
 function diagonal(bounds: Box3): number {
