@@ -104,9 +104,8 @@ fn filled(
     }
     if shape.sign() == Sign::WindingNumber {
         notes.extend(shape.diagnosis().messages());
-        let parts = "parts of it lie within each other or overlap";
-        let why = if shape.diagnosis().is_simple() { parts } else { "the surface is not simple" };
-        notes.push(format!("{why}: its inside is where it winds around more than half"));
+        notes
+            .push("the surface is not simple: its inside is where it winds around more than half".to_owned());
     }
     let (mesh, size) = options.cells_of(&shape, &[])?;
     let lost = lost::of_surface(&mended, &shape, &size, &mesh);

@@ -46,8 +46,7 @@ impl SurfaceShape {
         let diagnosis = diagnose(&surface);
         let bounds = BoundingBox::of(surface.triangles.iter().flatten().map(|p| surface.points[*p as usize]));
         let bounds = bounds.grown(1e-9 * bounds.diagonal());
-        let is_simple = diagnosis.is_simple() && winds_once(&surface);
-        let exact = if is_simple { SignedDistance::new(surface.clone()).ok() } else { None };
+        let exact = if diagnosis.is_simple() { SignedDistance::new(surface.clone()).ok() } else { None };
         let distance = exact.map_or_else(|| wound(surface, diagnosis.is_closed()), Distance::Exact);
         Ok(Self { distance, bounds, diagnosis })
     }
@@ -87,41 +86,6 @@ impl SurfaceShape {
 const GRID: usize = 24;
 /// How far from a whole number a winding number is still one: dipoles are off by 0.02, and small holes by their share of the sphere.
 const WHOLE: f64 = 0.15;
-
-/// Places on triangles at which it is asked how often the surface winds around what lies before them, at least.
-const SAMPLES: usize = 256;
-/// A place on a triangle is as much nearer to its middle than to the edges: before an edge that is concave other triangles are.
-const INWARD: f64 = 0.9;
-
-/// Whether what lies before its triangles is outside of all of it: parts within each other that face the same way, and parts
-/// that overlap where no triangles cross, have normals that tell nothing.
-fn winds_once(surface: &TriangleSurface) -> bool {
-    let winding = WindingNumber::new(surface);
-    let outside = |triangle: usize, place: usize| {
-        let [a, b, c] = surface.corners(triangle as u32);
-        let normal = (b - a).cross(c - a);
-        // a thousandth of its size before it
-        let offset = normal * (1e-3 / normal.length().sqrt());
-        let [u, v] = spread(place).map(|part| INWARD * part + (1.0 - INWARD) / 3.0);
-        winding.at(a + (b - a) * u + (c - a) * v + offset).round()
-    };
-    let first = outside(0, 0);
-    let count = surface.triangles.len();
-    let places = SAMPLES.div_ceil(count);
-    let mut looked_at = (0..count)
-        .step_by(count.div_ceil(SAMPLES))
-        .flat_map(|triangle| (0..places).map(move |k| (triangle, k)));
-    // a surface that faces inward has the outside behind it
-    (first == 0.0 || first == -1.0) && looked_at.all(|(triangle, place)| outside(triangle, place) == first)
-}
-
-/// Places on a triangle, as parts of two of its sides: the first is its middle, each of the others far from those before
-/// (Roberts 2018, by multiples of powers of the plastic number).
-fn spread(place: usize) -> [f64; 2] {
-    let [u, v] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3]
-        .map(|part| (1.0 / 3.0 + part * place as f64).fract());
-    if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }
-}
 
 fn wound(surface: TriangleSurface, is_closed: bool) -> Distance {
     let boxes: Vec<Aabb> =

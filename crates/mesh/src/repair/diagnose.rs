@@ -7,6 +7,7 @@ use souple_table::in_number;
 use super::crossing::{Crossings, crossings};
 use super::is_flat;
 use super::weld::equal_points;
+use super::within::winds_once;
 use crate::TriangleSurface;
 use crate::sets::Sets;
 
@@ -34,6 +35,9 @@ pub struct Diagnosis {
     pub crossings: Crossings,
     /// Parts that share no point.
     pub component_count: usize,
+    /// Whether triangles face what is inside, where none pass through each other: parts lie within each other, overlap or cross where
+    /// edges meet, or some face inward.
+    pub overlaps: bool,
     /// Whether the surface is closed and its enclosed volume negative.
     pub is_inside_out: bool,
 }
@@ -76,14 +80,16 @@ pub fn diagnose(surface: &TriangleSurface) -> Diagnosis {
     let faulty: HashSet<u32> = faulty.copied().collect();
     diagnosis.pinched_points = surface.pinched_points();
     diagnosis.pinched_points.retain(|point| !faulty.contains(point));
+    // of others it is known already that normals do not tell inside from outside
+    diagnosis.overlaps = !surface.triangles.is_empty() && diagnosis.is_simple() && !winds_once(surface);
     diagnosis
 }
 
 impl Diagnosis {
-    /// Closed, oriented, without crossings: normals alone tell inside from outside.
+    /// Closed, oriented, without crossings and overlaps: normals alone tell inside from outside.
     pub fn is_simple(&self) -> bool {
         let crosses = !self.crossings.pairs.is_empty() || self.crossings.is_cut_off;
-        self.is_closed() && self.flat_triangles.is_empty() && !crosses
+        self.is_closed() && self.flat_triangles.is_empty() && !crosses && !self.overlaps
     }
 
     /// Whether every edge has two triangles of opposite direction.
@@ -164,6 +170,10 @@ impl Diagnosis {
             } else {
                 format!("after the first {MOST_CROSSINGS} such pairs it was not looked for more")
             });
+        }
+        if self.overlaps {
+            messages.push("some triangles face what is inside: parts lie within each other, overlap, cross where edges meet, or face inward"
+                    .to_owned());
         }
         if self.component_count > 1 {
             messages.push(format!("the surface has {} parts that share no point", self.component_count));

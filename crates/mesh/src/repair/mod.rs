@@ -11,6 +11,7 @@ mod flat;
 mod holes;
 mod orient;
 mod weld;
+mod within;
 
 use souple_math::Vec3;
 use souple_table::{four_digits, in_number};

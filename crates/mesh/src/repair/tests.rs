@@ -339,6 +339,52 @@ fn slits_are_closed_without_flat_triangles() {
     }
 }
 
+/// Two surfaces as one.
+fn both(a: &TriangleSurface, b: &TriangleSurface) -> TriangleSurface {
+    let shift = a.points.len() as u32;
+    let moved = b.triangles.iter().map(|corners| corners.map(|point| point + shift));
+    TriangleSurface::new(
+        a.points.iter().chain(&b.points).copied().collect(),
+        a.triangles.iter().copied().chain(moved).collect(),
+    )
+    .unwrap()
+}
+
+/// Boxes that overlap where no triangle passes through another, and walls that cross where their diagonals do, are told; a hollow and
+/// boxes apart are in order.
+#[test]
+fn overlaps_without_crossings_are_found() {
+    let cube = unit_cube(1.0);
+    let moved = |scale: f64, shift: Vec3| {
+        let mut moved = cube.clone();
+        moved.points.iter_mut().for_each(|point| *point = *point * scale + shift);
+        moved
+    };
+    let mut hollow = moved(0.5, Vec3::new(0.25, 0.25, 0.25));
+    hollow.triangles.iter_mut().for_each(|corners| corners.swap(0, 1));
+    // over a quadrilateral whose sides cross
+    let mut bow = cube.clone();
+    for point in &mut bow.points {
+        point.x = if point.y > 0.5 { 1.0 - point.x } else { point.x };
+    }
+    for (surface, overlaps) in [
+        (both(&cube, &moved(1.0, Vec3::X * 0.5)), true),
+        (both(&cube, &moved(0.5, Vec3::new(0.25, 0.25, 0.25))), true),
+        (bow, true),
+        (both(&cube, &hollow), false),
+        (both(&cube, &moved(1.0, Vec3::X * 1.5)), false),
+    ] {
+        let diagnosis = diagnose(&surface);
+        assert!(diagnosis.crossings.pairs.is_empty(), "{:?}", diagnosis.crossings);
+        assert_eq!(
+            (diagnosis.overlaps, diagnosis.is_simple()),
+            (overlaps, !overlaps),
+            "{:?}",
+            diagnosis.messages()
+        );
+    }
+}
+
 /// Closed parts that touch at a point or along an edge stay several surfaces, as indexed triangles and as triangles with corners of
 /// their own; a second repair has nothing to do.
 #[test]
