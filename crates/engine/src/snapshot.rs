@@ -113,7 +113,7 @@ impl Model {
                 return Err(SnapshotError::Unreadable {
                     field: format!("fields[{index}]"),
                     found: format!("{values} values and {indices} indices"),
-                    reader: format!("field `{}`", field.name()),
+                    reader: format!("{} `{}`", field.kind(), field.name()),
                 });
             }
         }

@@ -21,6 +21,11 @@ use crate::tool::Toolbox;
 pub trait Field: Send + Sync {
     fn name(&self) -> &str;
 
+    /// What it is, for people.
+    fn kind(&self) -> &'static str {
+        "field"
+    }
+
     /// Whether it can go on from a field read from a file, by default one of the sizes of `current`: an index beyond
     /// its grid would be a panic.
     fn accepts(&self, field: &FieldState, current: &FieldState) -> bool {
@@ -438,7 +443,10 @@ impl World {
             let step =
                 FieldStep { start, timestep: self.model.period, interruption: &self.workspace.interruption };
             let stepped = field.step(rows, &step, state, scratch);
-            stepped.map_err(|error| WorldError { place: format!("field `{}`", field.name()), error })?;
+            stepped.map_err(|error| WorldError {
+                place: format!("{} `{}`", field.kind(), field.name()),
+                error,
+            })?;
         }
         Ok(())
     }

@@ -28,6 +28,10 @@ impl Field for SkinField {
         &self.0.name
     }
 
+    fn kind(&self) -> &'static str {
+        "skin"
+    }
+
     /// Its blocks come and go: a state fits when its keys ascend and each has its values, within the band.
     fn accepts(&self, field: &FieldState, _: &FieldState) -> bool {
         let Some(words) = field.indices.get(HEAD_INDICES..) else { return false };

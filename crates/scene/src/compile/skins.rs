@@ -149,6 +149,11 @@ fn first_state(
             [bounds.low, bounds.high]
         }
     };
+    let size = (high - low).to_array();
+    // one that has no size is nowhere inside
+    if size.iter().all(|side| *side < spec.voxel) && size.iter().any(|side| *side > 0.0) {
+        return Err(SkinError::Coarse { voxel: spec.voxel, size });
+    }
     let begun = skin.begin(low, high, &PlacedTarget { target, scratch: &placed }, &mut skin.new_scratch());
     begun.map_err(|error| match (error, target.most(&placed)) {
         (SkinError::Empty { .. }, Some(most)) if most <= target.iso => {
