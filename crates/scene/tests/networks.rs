@@ -132,3 +132,18 @@ fn unstable_networks_are_warned_of() {
     let said = scene(&format!("{together}[[networks.n.links]]\n{SPRING}\nchain = true\n")).unwrap().warnings;
     assert!(said[0].contains("masses 0 and 1") && said[0].contains("no direction"), "{said:?}");
 }
+
+/// Masses that are near each other from the start on store energy before the first step: `½ k (threshold − d)²` for each pair of
+/// neighbours of a lattice.
+#[test]
+fn crowds_have_their_energy_from_the_start_on() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/skin_drop/scene.toml");
+    let scene = souple_scene::read_file(&path, &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let energies = scene.model.start(scene.state).energy().by_force;
+    let stored: f64 =
+        energies.iter().filter(|(name, _)| name.contains("crowds")).map(|(_, e)| e.stored).sum();
+    let pairs = f64::from(11 * 4 * 4 + 2 * 12 * 3 * 4);
+    let expected = pairs * 0.5 * 8.0 * 0.002_f64.powi(2);
+    // differences of places that are a hundred times as far from the origin as neighbours overlap
+    assert!((stored / expected - 1.0).abs() < 1e-10, "{stored} J, not {expected} J");
+}

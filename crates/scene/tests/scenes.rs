@@ -459,3 +459,32 @@ fn gravity_may_vary() {
     // backward Euler sums g at the ends of steps: h Σ 10 i h = 10 h² 55
     assert!((speed - 10.0 * 1e-4 * 55.0).abs() < 1e-9, "{speed}");
 }
+
+/// A ball that hangs on nothing but soft springs and is pressed from all sides is in equilibrium from the first step on: what is left
+/// is rounding of forces that balance, and no reason to refuse a step.
+#[test]
+fn balanced_bodies_stay_in_equilibrium() {
+    let text = r#"
+        format = 1
+        [world]
+        period = "1 ms"
+        [systems.main]
+        stepper = "quasi_static"
+        [bodies.ball]
+        mesh = { generate = "sphere", radius = 0.1, cells = 4, element = "hex8" }
+        material = { name = "ogden", mu = [20e3], alpha = [2], bulk_modulus = "100 kPa", density = 1000 }
+        damping = { viscosity = 100 }
+        [[bodies.ball.springs]]
+        region = { all = true }
+        stiffness = 0.001
+        [[bodies.ball.loads]]
+        region = "surface"
+        pressure = "20 kPa"
+        "#;
+    let scene = souple_scene::read_text("ball", text, std::path::Path::new("."), &[]);
+    let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+    let mut world = scene.model.start(scene.state);
+    for step in 1..=70 {
+        world.step().unwrap_or_else(|error| panic!("step {step}: {error}"));
+    }
+}

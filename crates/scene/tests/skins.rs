@@ -80,14 +80,14 @@ fn starts_beside_the_target_are_told() {
     assert_eq!(told("[3, 0, 0]", "term = \"speed\", formula = \"0.01*abs(g)\""), 0);
 }
 
-/// Voxels that are larger than the target show nothing of it, and are refused with a size that would.
+/// Voxels that are larger than what a skin begins as show nothing of it, and are refused with a size that would.
 #[test]
 fn voxels_larger_than_the_target_are_refused() {
     let text = balloon("[0, 0, 0]", "0.5 - sqrt(x^2 + y^2 + z^2)", "[-0.6, -0.6, -0.6]", "[0.6, 0.6, 0.6]");
     let text = text.replace("voxel = 0.1", "voxel = 10");
     let refused = read_text("skins.toml", &text, Path::new("."), &[]).err().expect("it is read").to_string();
     assert!(
-        refused.contains("voxels of 10 m do not show its target, which measures [1.2, 1.2, 1.2] m"),
+        refused.contains("voxels of 10 m do not show what it begins as, in a box of [1.2, 1.2, 1.2] m"),
         "{refused}"
     );
 }

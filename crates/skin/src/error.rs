@@ -28,7 +28,7 @@ pub enum SkinError {
     )]
     BeyondDomain { place: [f64; 3] },
     #[error(
-        "voxels of {voxel} m do not show its target, which measures {size:?} m; expected voxels smaller than it, such as {} m",
+        "voxels of {voxel} m do not show what it begins as, in a box of {size:?} m; expected voxels smaller than it, such as {} m",
         0.1 * size.iter().fold(0.0_f64, |most, side| most.max(*side))
     )]
     Coarse { voxel: f64, size: [f64; 3] },

@@ -149,12 +149,26 @@ impl<'a> Grid<'a> {
             ]
         };
         let [x, y, z] = [along(0), along(1), along(2)];
+        // most stand in one block
+        let low = nearest.map(|c| c - 1);
+        let edge = EDGE as i64;
+        let in_block = low.map(|c| c.rem_euclid(edge) as usize);
+        let one_block =
+            in_block.iter().all(|c| c + 2 < EDGE).then(|| self.find(key_of(low.map(|c| c.div_euclid(edge)))));
+        let value_at = |steps: [usize; 3]| match one_block {
+            Some(Found::Kept(index)) => {
+                let [x, y, z] = [0, 1, 2].map(|axis| in_block[axis] + steps[axis]);
+                f64::from(self.block(index as usize)[node_of(x, y, z)])
+            }
+            Some(Found::Inside) => BAND,
+            Some(Found::Outside) => -BAND,
+            None => self.node([0, 1, 2].map(|axis| low[axis] + steps[axis] as i64)),
+        };
         // sums over all 27 nodes by how often they are derived along each axis
         let mut sums = [[[0.0; 3]; 3]; 3];
         for number in 0..27 {
             let [i, j, k] = [number % 3, number / 3 % 3, number / 9];
-            let steps = [i, j, k].map(|step| step as i64 - 1);
-            let value = self.node([0, 1, 2].map(|axis| nearest[axis] + steps[axis]));
+            let value = value_at([i, j, k]);
             for (dx, dy, dz) in [
                 (0, 0, 0),
                 (1, 0, 0),

@@ -6,7 +6,7 @@
 //! upwind slopes (Godunov). Tension takes the curvature of the level through each node, by central differences: all levels
 //! of the band then shrink as they would by themselves, so the surface feels no edge of the band, to second order.
 //!
-//! Speed, tension and relaxation act on the same values at once, so their limits are one budget: the shortest wave across
+//! Speed, tension and relaxation act on the same values at once, so their limits are one budget, beside that of waves: the shortest wave across
 //! a cell changes by `√3 (c + ρ) + 4 τ` of what would turn it over, with `c` voxels moved, the share `ρ` relaxed and
 //! `τ = β Δt/voxel²` ((5, 6) of the source ask for each alone).
 //!
@@ -149,7 +149,7 @@ pub fn longest_step(speed: f64, tension: f64) -> f64 {
 /// The most that can be relaxed in a sub-step of a speed [voxels] and a tension.
 pub fn relaxable(speed: f64, tension: f64) -> f64 {
     let by_budget = (1.0 - taken(speed, tension)) / 3.0_f64.sqrt();
-    // what relaxes moves levels too
+    // what relaxes moves levels too, where waves are kept from growing
     let by_waves = if speed > f64::from(SLOW) { WAVES - speed } else { f64::INFINITY };
     by_budget.min(by_waves).max(0.0)
 }
@@ -394,8 +394,8 @@ fn move_row(
         drifts[i] = if moves_alike { speeds[i] - pull } else { speeds[i] };
     }
     if is_fast {
-        // f_t = (a − ρS) |∇f| + ρS, so f_tt = (a − ρS)² n·∇∇f n  (Lax & Wendroff): nothing of a distance, but it keeps waves
-        // from growing
+        // f_tt = a² n·∇∇f n  (Lax & Wendroff): nothing of a distance, but it keeps waves from growing; with what relaxes, where all
+        // move alike, f_t = (a − ρS) |∇f| + ρS
         let bends = bend_row(f, at);
         for i in 0..EDGE {
             let bend = bends[i].clamp(-2.0 * SMOOTH, 2.0 * SMOOTH);

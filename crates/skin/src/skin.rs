@@ -115,6 +115,8 @@ pub struct SkinScratch {
     pub(crate) area_vectors: Vec<Vec3>,
     pub(crate) reaction: ReactionScratch,
     pub(crate) target: Option<TargetScratch>,
+    /// When the target was placed last [s].
+    placed_at: f64,
 }
 
 impl SkinScratch {
@@ -159,6 +161,7 @@ impl Skin {
             area_vectors: Vec::new(),
             reaction: ReactionScratch::default(),
             target: self.target.as_ref().map(Target::new_scratch),
+            placed_at: 0.0,
         }
     }
 
@@ -241,6 +244,7 @@ impl Skin {
         let start = end.time - timestep;
         if let (Some(target), Some(placed)) = (&self.target, &mut scratch.target) {
             target.place(end, placed).map_err(SkinError::Target)?;
+            scratch.placed_at = end.time;
         }
         self.find_surface(field, scratch);
         field.indices[WORK] = 0;
@@ -390,7 +394,7 @@ impl Skin {
             let placed = self.target.as_ref().zip(scratch.target.as_ref());
             let part = placed.and_then(|(target, placed)| target.broken_part(point, placed));
             let part = part.map(|part| format!("parts[{part}] of ")).unwrap_or_default();
-            let part = format!("at t = {time} s {part}");
+            let part = format!("at t = {} s {part}", scratch.placed_at);
             return SkinError::TargetNotANumber { value: excess, place, part };
         }
         let at = SurfacePoints { points: &[point], excess: &[excess] };

@@ -128,15 +128,18 @@ impl ImplicitProblem<'_, '_> {
         Ok(solved)
     }
 
-    /// What a body that hangs on nothing began with may be rounding already, and no scale: what has not converged is judged by the
-    /// forces that balance each other.
+    /// What a body that hangs on nothing began with may be rounding already, and no scale: what was balanced from the beginning on, by
+    /// the forces that balance each other, has converged.
     fn judge_by_loads(&mut self, solved: newton::Report) -> newton::Report {
         self.place(None);
         let residual = self.evaluate();
         let SystemWorkspace { scratches, rows, .. } = &mut *self.ws;
         let forces = self.step.system.largest_force(rows, self.state, &self.step.around, scratches);
-        self.scale = self.scale.max(SHARE_OF_LOADS * forces);
-        let is_balanced = self.scale.is_finite() && residual <= self.settings.tolerance * self.scale;
+        let loads = SHARE_OF_LOADS * forces;
+        let is_balanced = loads.is_finite() && self.scale.max(residual) <= self.settings.tolerance * loads;
+        if is_balanced {
+            self.scale = loads;
+        }
         newton::Report {
             residual,
             stop: if is_balanced { newton::Stop::Converged } else { solved.stop },

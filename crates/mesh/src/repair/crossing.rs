@@ -14,7 +14,7 @@ const ROUND: usize = 8;
 /// Most neighbours that are looked at for the triangles of a batch: as of a tip at which thirty thousand meet.
 const MOST_LOOKS: usize = 32_768 * BATCH;
 /// Most neighbours of all triangles: some ten seconds. Surfaces as they are have some fifteen to a triangle, whatever their size.
-const MOST_LOOKS_OF_ALL: usize = 400_000_000;
+const MOST_LOOKS_OF_ALL: usize = 200_000_000;
 const MOST_LOOKS_OF_EACH: usize = 64;
 
 /// Pairs of triangles that pass through each other.

@@ -172,8 +172,8 @@ impl Diagnosis {
             });
         }
         if self.overlaps {
-            messages.push("some triangles face what is inside: parts lie within each other, overlap, cross where edges meet, or face inward"
-                    .to_owned());
+            let faults = "parts lie within each other, overlap, cross where edges meet, or face inward";
+            messages.push(format!("some triangles face what is inside: {faults}"));
         }
         if self.component_count > 1 {
             messages.push(format!("the surface has {} parts that share no point", self.component_count));

@@ -371,7 +371,10 @@ fn overlaps_without_crossings_are_found() {
         (both(&cube, &moved(1.0, Vec3::X * 0.5)), true),
         (both(&cube, &moved(0.5, Vec3::new(0.25, 0.25, 0.25))), true),
         (bow, true),
+        // few triangles within many
+        (both(&unit_cube(12.0), &moved(0.1, Vec3::new(0.41, 0.42, 0.43))), true),
         (both(&cube, &hollow), false),
+        (both(&cube, &moved(1.0, Vec3::X * 1.0005)), false),
         (both(&cube, &moved(1.0, Vec3::X * 1.5)), false),
     ] {
         let diagnosis = diagnose(&surface);

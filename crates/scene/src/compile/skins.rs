@@ -83,8 +83,8 @@ fn build(draft: &Draft, spec: &SkinSpec, told: &Told) -> Option<(Skin, FieldStat
     let field = started.map_err(refuse).ok()?;
     if misses_target(draft, &skin, start.as_ref()) {
         told.borrow_mut().push(format!(
-            "skin `{}` starts beside its target, which it does not reach: where a target is not, attraction draws a skin together \
-             until it is gone; a `start` that meets the target would come to it",
+            "skin `{}` starts beside its target, which it does not meet at t = 0: until the target comes to it, attraction draws it \
+             together, and it may be gone before; expected a `start` that meets the target",
             spec.name
         ));
     }
@@ -93,19 +93,18 @@ fn build(draft: &Draft, spec: &SkinSpec, told: &Told) -> Option<(Skin, FieldStat
 
 /// Whether a skin is drawn to a target that is nowhere near where it starts.
 fn misses_target(draft: &Draft, skin: &Skin, start: Option<&Target>) -> bool {
-    let Some((start, target)) = start.zip(skin.target.as_ref()) else { return false };
+    let is_drawn = skin.terms.iter().any(|term| term.draws_to_target());
+    let Some((start, target)) = start.zip(skin.target.as_ref()).filter(|_| is_drawn) else { return false };
     let rows = Start::of(draft);
     let bounds = |target: &Target| {
         let mut placed = target.new_scratch();
         target.place(&Moment { time: 0.0, rows: &rows }, &mut placed).ok()?;
         target.bounds(&placed)
     };
-    let is_drawn = skin.terms.iter().any(|term| term.draws_to_target());
-    let apart = bounds(start).zip(bounds(target)).is_some_and(|(start, target)| {
+    bounds(start).zip(bounds(target)).is_some_and(|(start, target)| {
         let gap = (start.low - target.high).max_components(target.low - start.high);
         gap.to_array().into_iter().any(|gap| gap > 0.0)
-    });
-    is_drawn && apart
+    })
 }
 
 /// What the skin of a body does to it; the outer `None` where that was refused.

@@ -191,14 +191,15 @@ export class Eye {
   resize(width: number, height: number, legend: number): void {
     const narrower = () => Math.min(...Object.values(this.slopes()));
     const before = narrower();
+    const isOther = width !== this.size.width || height !== this.size.height;
     this.size = { width, height };
     this.foot = Math.min(Math.max(FOOT, legend), FOOT_SHARE * height);
     this.camera.setViewOffset(width, height, 0, 0.5 * this.foot, width, height);
     // the controls round as they hold still
     const { fitted } = this;
     const isMoved = fitted === null || fitted.position.distanceTo(this.camera.position) > 1e-6 * this.distance;
-    if (isMoved) this.goAway(before / narrower());
-    else this.fit(fitted.bounds, fitted.turning);
+    if (!isMoved) this.fit(fitted.bounds, fitted.turning);
+    else if (isOther) this.goAway(before / narrower());
   }
 }
 

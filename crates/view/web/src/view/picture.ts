@@ -216,8 +216,7 @@ export class Picture {
     if (!this.isFitted) this.look();
     else {
       this.applyCut();
-      // where the view went after the bodies is not where a person went
-      if (this.followed) this.fit();
+      this.goAlong();
     }
   }
 
