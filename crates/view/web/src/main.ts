@@ -97,7 +97,7 @@ class Page {
     element("button", { click: () => this.picture.fit() }, "Show it"),
   );
 
-  private readonly reading = element("p", { class: "sight reading", hidden: true }, "The other scene is being read …");
+  private readonly reading = element("p", { class: "reading", hidden: true }, "The other scene is being read …");
 
   constructor() {
     const say = (text: string, weight: Weight = "error") => this.notes.say(weight, text);
