@@ -253,10 +253,7 @@ impl System {
         around: &Surroundings,
         scratches: &mut [Scratch],
     ) -> Option<StepError> {
-        let mut alone = vec![Vec3::ZERO; rows.positions.len()];
-        self.forces.iter().enumerate().find_map(|(index, force)| {
-            alone.fill(Vec3::ZERO);
-            force.add_force(&self.view(index, rows, state, around), &mut scratches[index], &mut alone);
+        self.find_force(rows, state, around, scratches, |force, alone| {
             let row = alone.iter().position(|f| !f.is_finite())?;
             let (force, value) = (force.name().to_owned(), alone[row].to_array());
             Some(StepError::ForceNotFinite { force, row, value, time: rows.time })
@@ -271,13 +268,34 @@ impl System {
         around: &Surroundings,
         scratches: &mut [Scratch],
     ) -> f64 {
+        let mut largest = 0.0_f64;
+        self.find_force(rows, state, around, scratches, |_, alone| -> Option<()> {
+            largest = largest.max(souple_solve::reduce::norm(alone));
+            None
+        });
+        largest
+    }
+
+    /// What is found first by a look at each force alone, at the placed rows.
+    fn find_force<T>(
+        &self,
+        rows: &Rows,
+        state: &SystemState,
+        around: &Surroundings,
+        scratches: &mut [Scratch],
+        mut look: impl FnMut(&dyn Force, &[Vec3]) -> Option<T>,
+    ) -> Option<T> {
         let mut alone = vec![Vec3::ZERO; rows.positions.len()];
-        let norms = self.forces.iter().enumerate().map(|(index, force)| {
+        self.forces.iter().enumerate().find_map(|(index, force)| {
             alone.fill(Vec3::ZERO);
             force.add_force(&self.view(index, rows, state, around), &mut scratches[index], &mut alone);
-            souple_solve::reduce::norm(&alone)
-        });
-        norms.fold(0.0, f64::max)
+            look(force.as_ref(), &alone)
+        })
+    }
+
+    /// Whether any force acts on pairs that come and go.
+    pub fn has_pairs(&self) -> bool {
+        self.forces.iter().any(|force| force.declaration().changing_pattern)
     }
 
     /// `(a ∂f/∂x + b ∂f/∂v) δ` summed over forces, for row displacements `delta`.

@@ -232,7 +232,7 @@ impl Tangent {
     }
 
     fn update_patterns(&mut self, system: &System, pairs: &[Pair]) {
-        let changes = system.forces.iter().any(|force| force.declaration().changing_pattern);
+        let changes = system.has_pairs();
         let coupling = if changes { pairs } else { &[] };
         let keys = || coupling.iter().map(Pair::key);
         if self.pattern_pairs.as_ref().is_some_and(|known| known.iter().copied().eq(keys())) {

@@ -376,7 +376,7 @@ impl World {
         let ws = &mut self.workspace.systems[index];
         let timestep = self.model.timestep(index);
         let (clock, before) = (Instant::now(), ws.stages.total());
-        let has_pairs = system.forces.iter().any(|force| force.declaration().changing_pattern);
+        let has_pairs = system.has_pairs();
         for step in 0..system.steps_per_period {
             ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
             let time = start + f64::from(step) * timestep;
@@ -408,7 +408,7 @@ impl World {
         let State { systems, driven, fields, .. } = state;
         let around = Surroundings { driven, fields, load: 1.0 };
         for ((system, state), ws) in self.model.systems.iter().zip(systems).zip(&mut self.workspace.systems) {
-            if system.forces.iter().any(|force| force.declaration().changing_pattern) {
+            if system.has_pairs() {
                 system.update_pairs(ws, state, &around);
             }
         }

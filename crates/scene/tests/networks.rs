@@ -137,7 +137,7 @@ fn unstable_networks_are_warned_of() {
 /// neighbours of a lattice.
 #[test]
 fn crowds_have_their_energy_from_the_start_on() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/skin_drop/scene.toml");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/skin_drop/scene.toml");
     let scene = souple_scene::read_file(&path, &[]).unwrap_or_else(|errors| panic!("{errors}"));
     let energies = scene.model.start(scene.state).energy().by_force;
     let stored: f64 =
