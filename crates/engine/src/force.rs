@@ -280,6 +280,11 @@ pub trait Force: Send + Sync {
         self.cell_field(cell, at.positions)
     }
 
+    /// Volume at rest of cell number `cell` [m³], of a force whose cells change their law.
+    fn rest_volume(&self, _cell: usize) -> Option<f64> {
+        None
+    }
+
     /// The number of the law that cell number `cell` has, of a force whose cells change theirs.
     fn adapted_law(&self, cell: usize, at: &Configuration) -> Option<f64> {
         self.adapted(cell, at).map(|adapted| adapted.law)

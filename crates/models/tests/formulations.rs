@@ -17,9 +17,13 @@ use souple_solve::{BlockMatrix, LinearOperator, PatternBuilder};
 use souple_table::{Value, Values};
 
 fn bar(element: &str) -> Mesh {
+    bar_of(element, [4.0, 2.0, 2.0])
+}
+
+fn bar_of(element: &str, cells: [f64; 3]) -> Mesh {
     let values = Values::new()
         .with("size", Value::Vector([1.0, 0.4, 0.3]))
-        .with("cells", Value::Vector([4.0, 2.0, 2.0]))
+        .with("cells", Value::Vector(cells))
         .with("element", Value::Text(element));
     souple_mesh::generate("bar", values).unwrap()
 }
@@ -169,6 +173,39 @@ fn grouped_constants_are_the_law() {
             let grouped = build("grouped_constants", mesh, material).unwrap();
             let samples = build("samples", mesh, material).unwrap();
             assert_same(&name, samples.as_ref(), grouped.as_ref(), &bent(mesh));
+        }
+    }
+}
+
+/// One stiffness for all cells of one shape is the law at the samples, on every element with more than one: where the whole bar is
+/// regular, and where half of it is crooked and has cells of its own.
+#[test]
+fn shared_stiffness_is_the_law() {
+    let hooke = "k/2*tr(eps)^2 + mu*dot(eps, eps)";
+    for element in ["hex8", "prism6", "pyramid5", "tet10", "hex20", "prism15", "pyramid13"] {
+        // more than eight blocks of each shape, and a last block that is not full
+        let regular = bar_of(element, [5.0, 5.0, 4.0]);
+        let mut half = regular.clone();
+        for p in half.points.iter_mut().filter(|p| p.x > 0.9) {
+            p.y += 0.01 * (9.0 * p.z).sin();
+        }
+        // away from the origin, where arms are rounded otherwise; and with points a hundred-millionth off, which no rounding makes: cells
+        // of their own
+        let mut far = regular.clone();
+        far.points.iter_mut().for_each(|p| *p += Vec3::new(10.0, -20.0, 10.0));
+        let mut nearly = regular.clone();
+        nearly.points.iter_mut().for_each(|p| p.y += 1e-8 * (9.0 * p.z).sin());
+        for mesh in [&regular, &half, &far, &nearly] {
+            for (law, material) in [("linear", material("linear")), ("text", text(hooke))] {
+                let name = format!("{law} on {element}");
+                let shared = build("shared_stiffness", mesh, &material).unwrap();
+                let samples = build("samples", mesh, &material).unwrap();
+                assert_same(&name, samples.as_ref(), shared.as_ref(), &bent(mesh));
+                // at rest there is nothing but what arms of 0.1 m may differ by, sixteen roundings of 20 m: 7e-13 of strain beside a tenth
+                let (at_rest, loaded) =
+                    (answers(shared.as_ref(), &mesh.points), answers(shared.as_ref(), &bent(mesh)));
+                assert!(norm(&at_rest.force) <= 1e-11 * norm(&loaded.force), "{name}");
+            }
         }
     }
 }

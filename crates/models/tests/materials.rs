@@ -237,6 +237,22 @@ fn rest_is_linear_elasticity() {
     });
 }
 
+/// A law that says that it is linear has one tangent everywhere and `P = ∂P/∂F : (F - I)`, and a law that has says so.
+#[test]
+fn linear_laws_say_so() {
+    for_every_law!(|material, L| {
+        let parameters = material.parameters_of::<L>();
+        let rest = L::at(&parameters, &Mat3::IDENTITY);
+        let mut worst: f64 = 0.0;
+        for F in examples() {
+            let linear = L::stress_differential(&parameters, &rest, &(F - Mat3::IDENTITY));
+            let scale = stiffness::<L>(&parameters, &F) * (1.0 + F.dot(&F));
+            worst = worst.max((L::stress(&parameters, &F) - linear).largest_entry() / scale);
+        }
+        assert_eq!(worst <= 1e-13, L::LINEAR, "{:?}: {worst:e}", material.law);
+    });
+}
+
 /// A rotation of the body changes no energy and turns the stress: `Ψ(QF) = Ψ(F)`, `P(QF) = Q P(F)`. A law that
 /// says it is not objective shows it.
 #[test]

@@ -138,6 +138,12 @@ impl EnergyLaw {
         self.graph.reachable(&[self.energy]).iter().any(is_spectral)
     }
 
+    /// Whether its stress is linear in `F - I`: the stiffness is the same at every `F`, and [`Self::compile`] takes no law with stress at
+    /// rest.
+    pub fn is_linear(&self) -> bool {
+        !self.graph.depends(&[self.differential], &[self.deformation])[self.differential.index()]
+    }
+
     /// The number among the addends of the energy.
     pub fn offset(&self) -> Option<Expr> {
         self.addends().find(|term| self.graph.value(*term).is_some())

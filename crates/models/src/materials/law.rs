@@ -17,6 +17,8 @@ pub trait Law: Copy + Send + Sync + 'static {
 
     /// Whether a rotation of the body leaves its energy as it is: `Ψ(QF) = Ψ(F)`.
     const OBJECTIVE: bool = true;
+    /// Whether `P` is linear in `F - I`, without stress at rest: cells of one shape then share one stiffness.
+    const LINEAR: bool = false;
 
     fn at<R: Real>(parameters: &Self::Parameters<R>, F: &Mat3<R>) -> Self::Point<R>;
 

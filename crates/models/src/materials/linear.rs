@@ -38,6 +38,7 @@ impl Law for Linear {
     type Point<R: Real> = ();
 
     const OBJECTIVE: bool = false;
+    const LINEAR: bool = true;
 
     #[inline(always)]
     fn at<R: Real>(_: &Lame<R>, _: &Mat3<R>) {}

@@ -91,6 +91,21 @@ pub enum MaterialLaw {
 }
 
 impl MaterialLaw {
+    /// Whether its stress is linear in `F - I`.
+    pub fn is_linear(&self) -> bool {
+        struct IsLinear;
+        impl LawVisitor for IsLinear {
+            type Output = bool;
+            fn visit<L: Law>(self, _: L) -> bool {
+                L::LINEAR
+            }
+        }
+        match self {
+            Self::Known(law) => law.visit(IsLinear),
+            Self::Text(law) => law.law().is_linear(),
+        }
+    }
+
     /// Whether a rotation of the body leaves its energy as it is.
     pub fn is_objective(&self) -> bool {
         struct IsObjective;

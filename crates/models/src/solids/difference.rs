@@ -153,6 +153,10 @@ impl Force for DifferencedForce {
         self.inner.cell_field_at(cell, at)
     }
 
+    fn rest_volume(&self, cell: usize) -> Option<f64> {
+        self.inner.rest_volume(cell)
+    }
+
     fn adapted_law(&self, cell: usize, at: &Configuration) -> Option<f64> {
         self.inner.adapted_law(cell, at)
     }

@@ -71,11 +71,13 @@ impl<K: Send + Sync> Elements<K> {
     pub fn new(description: &SolidDescription, sorting: &impl Sorting<Kernel = K>) -> Result<Self, FlatCell> {
         let SolidDescription { mesh, first_row, quadrature, section, .. } = description;
         let rows = *first_row..*first_row + mesh.points.len();
-        let mut found = Vec::new();
+        let mut found: Vec<(ElementKind, &_, Vec<u32>)> = Vec::new();
         for (index, cell) in mesh.cells().enumerate() {
-            let key = (cell.kind, sorting.law_of(index));
-            if !found.contains(&key) {
-                found.push(key);
+            let law = sorting.law_of(index);
+            let known = found.iter_mut().find(|(kind, of_kind, _)| *kind == cell.kind && *of_kind == law);
+            match known {
+                Some((_, _, cells)) => cells.push(index as u32),
+                None => found.push((cell.kind, law, vec![index as u32])),
             }
         }
         let mut elements = Self {
@@ -85,11 +87,7 @@ impl<K: Send + Sync> Elements<K> {
             gather: Gather::default(),
             rows: rows.clone(),
         };
-        for (kind, law) in found {
-            let belongs = |(index, cell): (usize, souple_mesh::Cell)| {
-                (cell.kind == kind && sorting.law_of(index) == law).then_some(index as u32)
-            };
-            let cells: Vec<u32> = mesh.cells().enumerate().filter_map(belongs).collect();
+        for (kind, law, cells) in found {
             let body = layout::Body {
                 mesh,
                 first_row: *first_row,
@@ -232,7 +230,8 @@ impl<K: Send + Sync> Elements<K> {
     }
 }
 
-fn reference_gradients(kind: ElementKind, rule: &QuadratureRule) -> Vec<Vec3> {
+/// `∂N_a/∂ξ`, sample after sample.
+pub fn reference_gradients(kind: ElementKind, rule: &QuadratureRule) -> Vec<Vec3> {
     rule.points
         .iter()
         .flat_map(|point| kind.shape_gradients(point.position).iter().copied().collect::<Vec<_>>())

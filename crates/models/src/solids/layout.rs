@@ -14,6 +14,10 @@ pub const SAMPLE_LEN: usize = 10;
 /// Samples a chunk holds at most, so that its data stay in the first-level cache.
 const SAMPLES_PER_CHUNK: usize = 256;
 
+/// Blocks of lanes that a chunk has at least, whatever their samples: what it does beside its samples, and lanes that are left empty where
+/// its elements have two laws, count for little then.
+const LEAST_BLOCKS: usize = 4;
+
 /// Eight numbers side by side, on their own line of the cache: a load that straddles two costs double.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
@@ -213,7 +217,7 @@ pub fn chunks<'p>(
     parameters_of: &dyn Fn(u32) -> &'p [f64],
     first_partial: usize,
 ) -> Result<Vec<Chunk>, FlatCell> {
-    let per_chunk = (SAMPLES_PER_CHUNK / body.rule.points.len() / LANES).max(1) * LANES;
+    let per_chunk = (SAMPLES_PER_CHUNK / body.rule.points.len() / LANES).max(LEAST_BLOCKS) * LANES;
     // compact chunks share few nodes with others: fewer partial sums, positions that stay in cache
     let order = {
         let centres: Vec<Vec3> = cells.iter().map(|cell| body.centre(*cell)).collect();

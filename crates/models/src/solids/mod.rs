@@ -21,10 +21,12 @@ pub(crate) mod sample_law;
 mod section;
 mod section_kernel;
 mod staged;
+mod stiffness;
 mod viscosity;
 mod viscous_kernel;
 
 use std::any::Any;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -48,6 +50,7 @@ use row_law::{RowLaw, row_law};
 use sample_law::{Compiled, SampleLaw, Taped};
 use section_kernel::SectionKernel;
 use staged::Staged;
+use stiffness::{Shapes, Stiffness};
 
 pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
 pub use difference::DifferencedForce;
@@ -136,19 +139,85 @@ impl LawVisitor for MakeKernel<'_> {
     }
 }
 
-/// Elements by law, with the law's numbers.
+/// Cells with the same kernel: of one law, and of one shape and material where one matrix serves them all.
+struct Class<'a> {
+    law: &'a MaterialLaw,
+    shape: Option<u32>,
+    stiffness: Option<Arc<Stiffness>>,
+}
+
+impl PartialEq for Class<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        (self.law, self.shape) == (other.law, other.shape)
+    }
+}
+
+/// Elements by law and by shape, with the law's numbers.
 struct ByLaw<'a> {
+    classes: Vec<Class<'a>>,
+    class_of_cell: Vec<u32>,
     materials: &'a [Material],
     material_of_cell: &'a [u16],
     section: Section,
 }
 
-impl Sorting for ByLaw<'_> {
-    type Law = MaterialLaw;
+impl<'a> ByLaw<'a> {
+    /// # Errors
+    /// A cell with a stiffness is flat or inverted at rest.
+    fn new(description: &SolidDescription<'a>, shapes: &Shapes) -> Result<Self, FlatCell> {
+        let SolidDescription { mesh, first_row, materials, material_of_cell, quadrature, section, .. } =
+            description;
+        let mut sorting = Self {
+            classes: Vec::new(),
+            class_of_cell: Vec::with_capacity(mesh.cell_count()),
+            materials,
+            material_of_cell,
+            section: *section,
+        };
+        // cells of one shape have one material
+        let mut known: HashMap<(u16, Option<u32>), u32> = HashMap::new();
+        for (index, (cell, material)) in mesh.cells().zip(*material_of_cell).enumerate() {
+            let shape = shapes.of_cell(index);
+            let next = sorting.classes.len() as u32;
+            let class = *known.entry((*material, shape)).or_insert(next);
+            sorting.class_of_cell.push(class);
+            if class < next {
+                continue;
+            }
+            let law = &materials[usize::from(*material)].law;
+            let stiffness = if shape.is_some() && law.is_linear() {
+                let rule = quadrature.rule(cell.kind);
+                let body = layout::Body { mesh, first_row: *first_row, rule, measure: section.measure() };
+                let (kernel, numbers) =
+                    (sorting.of_samples(cell.kind, rule, law), sorting.parameters_of(index));
+                Some(Arc::new(Stiffness::new(&body, index as u32, numbers, kernel.as_ref())?))
+            } else {
+                None
+            };
+            sorting.classes.push(Class { law, shape, stiffness });
+        }
+        Ok(sorting)
+    }
+
+    /// The kernel that evaluates a law at every sample.
+    fn of_samples(&self, kind: ElementKind, rule: &QuadratureRule, law: &MaterialLaw) -> Box<dyn Kernel> {
+        if self.section != Section::Solid {
+            let (law, nodes) = (row_law(law), kind.node_count());
+            return Box::new(SectionKernel { law, section: self.section, nodes });
+        }
+        match law {
+            MaterialLaw::Known(law) => law.visit(MakeKernel(kind, rule)),
+            MaterialLaw::Text(law) => staged(kind, rule, Box::new(Taped(Arc::clone(law)))),
+        }
+    }
+}
+
+impl<'a> Sorting for ByLaw<'a> {
+    type Law = Class<'a>;
     type Kernel = Box<dyn Kernel>;
 
-    fn law_of(&self, cell: usize) -> &MaterialLaw {
-        &self.materials[self.material_of_cell[cell] as usize].law
+    fn law_of(&self, cell: usize) -> &Class<'a> {
+        &self.classes[self.class_of_cell[cell] as usize]
     }
 
     fn parameters_of(&self, cell: usize) -> &[f64] {
@@ -161,14 +230,10 @@ impl Sorting for ByLaw<'_> {
         &material.parameters[..count]
     }
 
-    fn kernel(&self, kind: ElementKind, rule: &QuadratureRule, law: &MaterialLaw) -> Box<dyn Kernel> {
-        if self.section != Section::Solid {
-            let (law, nodes) = (row_law(law), kind.node_count());
-            return Box::new(SectionKernel { law, section: self.section, nodes });
-        }
-        match law {
-            MaterialLaw::Known(law) => law.visit(MakeKernel(kind, rule)),
-            MaterialLaw::Text(law) => staged(kind, rule, Box::new(Taped(Arc::clone(law)))),
+    fn kernel(&self, kind: ElementKind, rule: &QuadratureRule, class: &Class) -> Box<dyn Kernel> {
+        match &class.stiffness {
+            Some(stiffness) => stiffness::kernel(Arc::clone(stiffness)),
+            None => self.of_samples(kind, rule, class.law),
         }
     }
 
@@ -178,11 +243,25 @@ impl Sorting for ByLaw<'_> {
 }
 
 impl SolidForce {
+    /// The fastest that is exact: cells of linear laws by their stiffness where many have one shape, others by samples.
+    ///
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        let SolidDescription { materials, material_of_cell, section, .. } = description;
-        Self::sorted_by(description, &ByLaw { materials, material_of_cell, section: *section })
+        Self::of_shapes(description, &Shapes::of_linear(description))
+    }
+
+    /// Every cell by its samples.
+    ///
+    /// # Errors
+    /// A cell is flat or inverted at rest.
+    pub fn of_samples(description: &SolidDescription) -> Result<Self, FlatCell> {
+        Self::of_shapes(description, &Shapes::default())
+    }
+
+    /// With a batch for each shape, of all laws.
+    fn of_shapes(description: &SolidDescription, shapes: &Shapes) -> Result<Self, FlatCell> {
+        Self::sorted_by(description, &ByLaw::new(description, shapes)?)
     }
 
     /// With the kernels of another formulation.

@@ -2,8 +2,9 @@
 
 use souple_engine::CellField;
 use souple_math::{Mat3, Vec3};
-use souple_mesh::{ElementKind, Order};
+use souple_mesh::Order;
 
+use super::geometry::{AnyElement, Geometry};
 use super::layout::LANES;
 use super::section::Completed;
 use super::{Section, SolidForce};
@@ -27,10 +28,10 @@ impl SolidForce {
             current_volume: 0.0,
         };
         let mut current_volume = 0.0;
-        let points = &self.quadrature().rule(kind).points;
-        for (sample, point) in points.iter().enumerate() {
-            let (inverse, volume) = chunk.sample_of(slot, sample, points.len());
-            let gradient = self.gradient(kind, &now, point.position) * inverse;
+        let samples = self.quadrature().rule(kind).points.len();
+        for (sample, reference) in batch.reference.chunks_exact(now.len()).enumerate() {
+            let (inverse, volume) = chunk.sample_of(slot, sample, samples);
+            let gradient = AnyElement::gradient(&now, reference) * inverse;
             let (F, is_slack) = self.completed(cell, gradient);
             sum.deformation += F * volume;
             sum.volume += volume;
@@ -67,11 +68,11 @@ impl SolidForce {
         })
     }
 
-    /// `∂x/∂ξ`, zero along what is across the cell.
-    fn gradient(&self, kind: ElementKind, now: &[Vec3], xi: Vec3) -> Mat3 {
-        let mut columns = kind.jacobian(now, xi).columns;
-        columns[self.section.dimension()..].fill(Vec3::ZERO);
-        Mat3 { columns }
+    /// Volume of a cell at rest [m³].
+    pub(super) fn rest_volume_of(&self, cell: usize) -> Option<f64> {
+        let (batch, chunk, slot) = self.place(cell)?;
+        let samples = self.quadrature().rule(batch.kind).points.len();
+        Some((0..samples).map(|sample| chunk.sample_of(slot, sample, samples).1).sum())
     }
 
     /// The deformation gradient with what the section says of the directions across, of bars in their own frame; and whether

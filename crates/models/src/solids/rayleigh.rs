@@ -9,6 +9,7 @@ use souple_solve::BlockMatrix;
 
 use super::elements::Elements;
 use super::kernel::Kernel;
+use super::stiffness::Shapes;
 use super::{ByLaw, FlatCell, SolidDescription, SolidScratch};
 use crate::materials::{AnyLaw, Material, MaterialLaw, Parameters};
 
@@ -27,16 +28,15 @@ impl RayleighDamping {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription, seconds: f64) -> Result<Self, FlatCell> {
-        let linear = |material: &Material| {
+        let linearised = |material: &Material| {
             let mut of_rest = material.clone();
             of_rest.law = MaterialLaw::Known(AnyLaw::Linear);
             material.small_strain.pack(|i, number| of_rest.parameters[i] = number);
             of_rest
         };
-        let materials: Vec<Material> = description.materials.iter().map(linear).collect();
-        let SolidDescription { material_of_cell, section, .. } = *description;
-        let sorting = ByLaw { materials: &materials, material_of_cell, section };
-        let elements = Elements::new(description, &sorting)?;
+        let materials: Vec<Material> = description.materials.iter().map(linearised).collect();
+        let linear = SolidDescription { materials: &materials, ..description.clone() };
+        let elements = Elements::new(&linear, &ByLaw::new(&linear, &Shapes::of_linear(&linear))?)?;
         Ok(Self { name: description.name.clone(), elements, seconds })
     }
 

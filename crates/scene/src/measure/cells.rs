@@ -16,6 +16,15 @@ pub fn measure(quantity: CellQuantity, part: &CellPart, world: &World) -> (Vec<f
 
 /// The value of one cell and its rest volume.
 fn value(quantity: CellQuantity, solid: &dyn Force, cell: usize, at: &Configuration) -> Option<(f64, f64)> {
+    // what needs no stress
+    let of_law = match quantity {
+        CellQuantity::Law => solid.adapted_law(cell, at),
+        CellQuantity::Excess => solid.adapted(cell, at).map(|adapted| adapted.excess),
+        _ => None,
+    };
+    if let Some(of_law) = of_law {
+        return Some((of_law, solid.rest_volume(cell)?));
+    }
     let field = solid.cell_field_at(cell, at)?;
     // eigenvalues fall; those of FᵀF are the squares of the stretches
     let principal_stress = || eigen_symmetric(&field.cauchy).values;
@@ -31,8 +40,7 @@ fn value(quantity: CellQuantity, solid: &dyn Force, cell: usize, at: &Configurat
         CellQuantity::StrainEnergy => field.energy_density * field.volume,
         CellQuantity::StrainEnergyDensity => field.energy_density,
         CellQuantity::Volume => field.current_volume,
-        CellQuantity::Law => solid.adapted_law(cell, at)?,
-        CellQuantity::Excess => solid.adapted(cell, at)?.excess,
+        CellQuantity::Law | CellQuantity::Excess => return None,
         CellQuantity::VolumeRatio => field.current_volume / field.volume,
     };
     Some((value, field.volume))

@@ -9,6 +9,9 @@ use crate::solids::geometry::{AnyElement, Geometry};
 use crate::solids::group::{Group, for_each_group};
 use crate::solids::layout::{Chunk, LANES};
 
+/// Nodes of a hexahedron, and of all smaller elements of first order.
+const FEW_NODES: usize = 8;
+
 /// The cells of a chunk, at rest and as they stand.
 pub struct Measured<'a> {
     pub kind: ElementKind,
@@ -24,18 +27,24 @@ impl Measured<'_> {
     /// Raises `excess` of each cell of the chunk, in its order, to a criterion over its threshold where that is more. What has
     /// no number any more is over any.
     pub fn raise(&self, criterion: Criterion, threshold: f64, excess: &mut [f64]) {
-        Arch::new().dispatch(Raise { of: self, criterion, threshold, excess });
+        // arrays for all nodes that an element may have take longer to clear than a hexahedron to measure
+        if self.kind.node_count() <= FEW_NODES {
+            Arch::new().dispatch(Raise::<FEW_NODES> { of: self, criterion, threshold, excess });
+        } else {
+            Arch::new().dispatch(Raise::<MAX_NODES> { of: self, criterion, threshold, excess });
+        }
     }
 }
 
-struct Raise<'a> {
+/// Of elements of at most `N` nodes.
+struct Raise<'a, const N: usize> {
     of: &'a Measured<'a>,
     criterion: Criterion,
     threshold: f64,
     excess: &'a mut [f64],
 }
 
-impl WithSimd for Raise<'_> {
+impl<const N: usize> WithSimd for Raise<'_, N> {
     type Output = ();
 
     #[inline(always)]
@@ -44,7 +53,7 @@ impl WithSimd for Raise<'_> {
         let Measured { kind, chunk, reference, rest, now } = *of;
         let (nodes, blocks) = (kind.node_count(), chunk.block_count());
         let samples = reference.len() / nodes;
-        for_each_group!(simd, chunk, nodes, samples, 0..blocks, MAX_NODES, |group| {
+        for_each_group!(simd, chunk, nodes, samples, 0..blocks, N, |group| {
             let x = group.gather(now);
             let measured = match criterion {
                 Criterion::Volume => volume(&group, &x, reference),
@@ -65,9 +74,9 @@ impl WithSimd for Raise<'_> {
 
 // |Σ ω det F / Σ ω - 1|
 #[inline(always)]
-fn volume<S: Simd>(
-    group: &Group<'_, S, MAX_NODES>,
-    x: &[Vec3<Lanes<S>>; MAX_NODES],
+fn volume<S: Simd, const N: usize>(
+    group: &Group<'_, S, N>,
+    x: &[Vec3<Lanes<S>>; N],
     reference: &[Vec3],
 ) -> Lanes<S> {
     let nodes = group.nodes;
@@ -82,20 +91,30 @@ fn volume<S: Simd>(
     (now / rest - 1.0).abs()
 }
 
+// the longest and the shortest by squares, and one root of each
 #[inline(always)]
 fn length<R: Real>(kind: ElementKind, rest: &[Vec3<R>], now: &[Vec3<R>]) -> R {
-    let mut most = rest[0].x.zero();
+    let like = rest[0].x;
+    let (mut longest, mut shortest, mut sum) = (like.one(), like.one(), like.zero());
     for [a, b] in kind.edges() {
         let (a, b) = (usize::from(*a), usize::from(*b));
-        let (length, at_rest) = ((now[b] - now[a]).length(), (rest[b] - rest[a]).length());
-        most = most.max((length / at_rest - 1.0).abs());
+        let square = (now[b] - now[a]).length_sq() / (rest[b] - rest[a]).length_sq();
+        longest = longest.max(square);
+        shortest = shortest.min(square);
+        sum += square;
     }
-    most
+    (longest.sqrt() - 1.0).max(like.one() - shortest.sqrt()) + no_number(sum)
+}
+
+/// Zero, or no number where `sum` is none: comparisons lose it.
+#[inline(always)]
+fn no_number<R: Real>(sum: R) -> R {
+    sum * 0.0
 }
 
 #[inline(always)]
 fn shape<R: Real>(kind: ElementKind, rest: &[Vec3<R>], now: &[Vec3<R>]) -> R {
-    let mut most = rest[0].x.zero();
+    let (mut most, mut sum) = (rest[0].x.zero(), rest[0].x.zero());
     for face in kind.faces() {
         let corners = &face.nodes[..face.kind.corner_count()];
         for at in 0..corners.len() {
@@ -106,7 +125,8 @@ fn shape<R: Real>(kind: ElementKind, rest: &[Vec3<R>], now: &[Vec3<R>]) -> R {
             );
             let growth = shape_factor([now[a], now[b], now[c]]) / shape_factor([rest[a], rest[b], rest[c]]);
             most = most.max(growth - 1.0);
+            sum += growth;
         }
     }
-    most
+    most + no_number(sum)
 }

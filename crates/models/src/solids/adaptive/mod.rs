@@ -31,6 +31,7 @@ use super::elements::Batch;
 use super::kernel::Kernel;
 use super::layout::{Chunk, LANES};
 use super::parallel;
+use super::stiffness::Shapes;
 use super::{FlatCell, Section, SolidDescription, SolidForce};
 use crate::materials::Material;
 
@@ -87,15 +88,18 @@ impl AdaptiveForce {
         adaptation: Adaptation,
     ) -> Result<Self, FlatCell> {
         let material_of_cell = vec![0; description.mesh.cell_count()];
-        let solid = |law: &Material| {
-            SolidForce::new(&SolidDescription {
-                materials: std::slice::from_ref(law),
-                material_of_cell: &material_of_cell,
-                section: Section::Solid,
-                ..description.clone()
-            })
+        let under = |law| SolidDescription {
+            materials: std::slice::from_ref(law),
+            material_of_cell: &material_of_cell,
+            section: Section::Solid,
+            ..description.clone()
         };
         let [first, second] = &laws;
+        // chunks hold the same cells under either law
+        let is_shared = |law: &&Material| law.law.is_linear();
+        let linear = laws.iter().find(is_shared).unwrap_or(first);
+        let shapes = Shapes::of_linear(&under(linear));
+        let solid = |law| SolidForce::of_shapes(&under(law), &shapes);
         let (solids, mesh) = ([solid(first)?, solid(second)?], description.mesh.clone());
         let chunks = || solids[0].elements.chunks().map(|(_, chunk)| chunk);
         let at_rest = |row: &u32| Padded::from(mesh.points[*row as usize - description.first_row]);
@@ -151,7 +155,7 @@ impl AdaptiveForce {
         if over.is_nan() { f64::INFINITY } else { over }
     }
 
-    /// [`Self::excess`] of every cell, chunk after chunk.
+    /// [`Self::excess`] of every cell, chunk after chunk; nothing of chunks whose cells keep the second law for good.
     fn excesses(&self, laws: &[f64], positions: &[Vec3], excesses: &mut Vec<f64>) {
         excesses.clear();
         excesses.resize(self.mesh.cell_count(), 0.0);
@@ -159,6 +163,9 @@ impl AdaptiveForce {
         let chunks = 0..elements.chunk_count();
         parallel::fill(chunks, parallel::LIGHT, excesses, &first_cell, &|number, excess| {
             let (batch, chunk) = elements.chunk(number);
+            if self.adaptation.back == 0.0 && chunk.cells.iter().all(|cell| laws[*cell as usize] != 0.0) {
+                return;
+            }
             let (kind, reference, rest) = (batch.kind, &batch.reference, &self.rest[number]);
             chunk.with_own_rows([positions], |[now]| {
                 let measured = Measured { kind, chunk, reference, rest, now };
@@ -381,6 +388,10 @@ impl Force for AdaptiveForce {
     fn cell_field_at(&self, cell: usize, at: &Configuration) -> Option<CellField> {
         let law = self.laws(at.memory).get(cell)?;
         self.solids[usize::from(*law != 0.0)].cell_field(cell, at.positions)
+    }
+
+    fn rest_volume(&self, cell: usize) -> Option<f64> {
+        self.solids[0].rest_volume_of(cell)
     }
 
     fn adapted_law(&self, cell: usize, at: &Configuration) -> Option<f64> {

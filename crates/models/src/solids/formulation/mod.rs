@@ -1,7 +1,7 @@
 //! Ways to evaluate the forces of a solid, side by side: what the others are held against.
 //!
-//! Bodies take forces sample by sample unless their scene says otherwise ([`crate::solids::SolidForce`]); that is exact for
-//! every law on every element. The formulations here are those of the literature: exact ones that arrange the same
+//! Bodies take forces sample by sample, and of linear laws by a stiffness that elements of one shape share, unless their scene
+//! says otherwise ([`crate::solids::SolidForce`]); that is exact for every law on every element. The formulations here are those of the literature: exact ones that arrange the same
 //! numbers otherwise, and approximations that were made for speed. `souple bench formal` prints time and error of all.
 
 mod cells;
@@ -30,9 +30,16 @@ pub static FORMULATIONS: Table<BuildFormulation> = Table {
     entries: &[
         &Entry {
             name: "samples",
-            summary: "stress and tangent of the law at every sample of every element: exact for all laws, and what bodies do \
-                      where nothing is said",
+            summary: "stress and tangent of the law at every sample of every element: exact for all laws",
             source: "Bonet & Wood 2008, Nonlinear Continuum Mechanics for Finite Element Analysis, §9",
+            parameters: &[],
+            build: |description, _| Ok(Box::new(SolidForce::of_samples(description)?)),
+        },
+        &Entry {
+            name: "shared_stiffness",
+            summary: "one stiffness for all elements of a linear law that have the same shape and material, samples elsewhere: \
+                      exact, and what bodies do where nothing is said",
+            source: "Hughes 2000, The Finite Element Method, §3.3",
             parameters: &[],
             build: |description, _| Ok(Box::new(SolidForce::new(description)?)),
         },
