@@ -64,7 +64,10 @@ impl Cut {
         let mut cut = Self::NONE;
         for letter in name.chars() {
             let axis = Axis::ALL.into_iter().find(|axis| axis.letter() == letter.to_ascii_uppercase())?;
-            cut.axes[axis as usize] = true;
+            // a letter twice is a slip
+            if std::mem::replace(&mut cut.axes[axis as usize], true) {
+                return None;
+            }
         }
         (cut != Self::NONE).then_some(cut)
     }

@@ -1,7 +1,14 @@
 //! The derivation as a program for the computer algebra system Maxima, step by step as in Faure 2014, §3.4.1: shape
-//! functions, Jacobian, deformation, energy density, energy of the element, forces, differential, export.
+//! functions, Jacobian, deformation, energy density, integration, grouped constants, forces, differential, export.
 //!
 //! What the program here derives itself it also writes down in the language of another, so that both can be compared.
+//!
+//! Where the source differentiates an energy spelled out in displacements, `F` and the stress have names at every sample here,
+//! and forces follow by the chain rule, `f_n = -Σ_q ω_q P_q : ∂F_q/∂U_n`: second derivatives then take kilobytes in the place of
+//! megabytes. Principal stretches `s` and the vectors of `F = Σ s_k u_k v_kᵀ` have names and slopes too,
+//!
+//! `∂s_k = u_k·∂F v_k`, `∂u_k = Σ_{l≠k} (s_k u_l·∂F v_k + s_l u_k·∂F v_l)/(s_k² - s_l²) u_l`, and `v_k` alike with `s_k`, `s_l` in
+//! each other's places, for stretches that differ (Papadopoulo & Lourakis 2000).
 
 use std::fmt::Write as _;
 
@@ -9,7 +16,7 @@ use super::text::Text;
 use super::{Binding, Style, Written, write};
 use crate::Function;
 use crate::element::{ElementData, RestMap};
-use crate::graph::{Comparison, Expr, Node};
+use crate::graph::{Comparison, Expr, Node, STRETCHES};
 use crate::law::{EnergyLaw, LawParameter};
 
 /// Expressions of a law as Maxima reads them.
@@ -24,12 +31,14 @@ const TAKEN: &[&str] = &[
     "cofactor_of",
     "deformation",
     "diff",
+    "displacements",
     "determinant",
     "do",
     "domain",
     "dot_of",
     "else",
     "elseif",
+    "entry",
     "false",
     "float",
     "for",
@@ -42,6 +51,8 @@ const TAKEN: &[&str] = &[
     "in",
     "invert",
     "j",
+    "k",
+    "l",
     "labels",
     "lambda",
     "linel",
@@ -55,6 +66,8 @@ const TAKEN: &[&str] = &[
     "rules",
     "simp",
     "step",
+    "steps",
+    "stretches",
     "stringout",
     "subst",
     "then",
@@ -63,11 +76,12 @@ const TAKEN: &[&str] = &[
     "true",
     "unless",
     "values",
+    "variations",
     "while",
 ];
 
 /// How names begin that the program gives to its steps.
-const OWN: &[&str] = &["law_", "choose_", "part", "int", "dF", "dV"];
+const OWN: &[&str] = &["law_", "choose_", "part", "int", "dF", "dS", "dV", "decomposition"];
 
 /// A name of a law in the program: where it could be another's there, with `law_` in front. No two names become the same.
 pub fn maxima_name(name: &str) -> String {
@@ -134,6 +148,19 @@ impl Style for Maxima {
             Node::Determinant(_) => call("determinant"),
             Node::Cofactor(_) => call("cofactor_of"),
             Node::Outer(..) => call("outer_of"),
+            // of the deformation gradient alone: the one that the energy is a function of
+            Node::Decompose(_) => Written::atom("stretches".to_owned()),
+            Node::Pack(list) => {
+                let entry = |i: usize| operands[i].text.as_str();
+                let row = |i: usize| match list.len() {
+                    3 => format!("[{}]", entry(i)),
+                    _ => format!("[{}, {}, {}]", entry(i), entry(i + 3), entry(i + 6)),
+                };
+                Written::atom(format!("matrix({}, {}, {})", row(0), row(1), row(2)))
+            }
+            Node::Entry(_, index) if *index >= STRETCHES => {
+                Written::atom(format!("{}[{}]", operands[0].text, index - STRETCHES + 1))
+            }
             Node::Entry(_, index) if *index < 9 => Written {
                 text: format!("({})[{}, {}]", operands[0].text, index % 3 + 1, index / 3 + 1),
                 binding: Binding::Atom,
@@ -175,25 +202,54 @@ cofactor_of(a) := transpose(adjoint(a))$
 outer_of(a, b) := a . transpose(b)$
 ";
 
+/// Stretches and their vectors, by the names that they have at a sample, and their slopes along the entries of `F` there. Numbers come
+/// from the characteristic polynomial: `v` from the largest column of the cofactors of `FᵀF - s²`, `u = F v / s`; where two are equal these
+/// have no value, and neither have the slopes, which the program says.
+const DECOMPOSITION: &str = "stretch(k, q) := concat(Stretch, k, \"_\", q)$
+vector(letter, k, q) := genmatrix(lambda([i, j], concat(letter, i, k, \"_\", q)), 3, 1)$
+declare_stretches(q, F) := for k thru 3 do for i thru 3 do for j thru 3 do if not numberp(F[i, j]) then block(
+  [uk: vector(Left, k, q), vk: vector(Right, k, q), du: zeromatrix(3, 1), dv: zeromatrix(3, 1)],
+  apply('gradef, [stretch(k, q), F[i, j], uk[i, 1]*vk[j, 1]]),
+  for l thru 3 do if l # k then block(
+    [ul: vector(Left, l, q), vl: vector(Right, l, q), sk: stretch(k, q), sl: stretch(l, q)],
+    du: du + (sk*ul[i, 1]*vk[j, 1] + sl*uk[i, 1]*vl[j, 1])/(sk^2 - sl^2)*ul,
+    dv: dv + (sl*ul[i, 1]*vk[j, 1] + sk*uk[i, 1]*vl[j, 1])/(sk^2 - sl^2)*vl),
+  for a thru 3 do (
+    apply('gradef, [uk[a, 1], F[i, j], du[a, 1]]),
+    apply('gradef, [vk[a, 1], F[i, j], dv[a, 1]])))$
+decomposed(q, F) := block([C: transpose(F) . F, mean, off, radius, angle, square, N, column, most, w],
+  if determinant(F) <= 0 then error(\"sample\", q, \"is flat or inside out: its stretches are not these roots\"),
+  mean: trace_of(C)/3, off: C - mean*ident(3), radius: sqrt(dot_of(off, off)/6),
+  if float(radius) < 1e-7*float(mean) then error(\"all stretches of sample\", q, \"are equal: slopes of their vectors have no value\"),
+  if float(1 - abs(determinant(off)/(2*radius^3))) < 1e-12 then
+    error(\"two stretches of sample\", q, \"are equal: slopes of their vectors have no value\"),
+  angle: acos(max(-1, min(1, determinant(off)/(2*radius^3))))/3,
+  for k thru 3 do (
+    square: float(mean + 2*radius*cos(angle + 2*%pi*(k - 1)/3)), N: adjoint(C - square*ident(3)), most: 0,
+    for j thru 3 do (w: col(N, j), if dot_of(w, w) > most then (column: w, most: dot_of(w, w))),
+    stretch(k, q) :: sqrt(square), w: column/sqrt(most),
+    for i thru 3 do vector(Right, k, q)[i, 1] :: w[i, 1],
+    w: F . w/sqrt(square),
+    for i thru 3 do vector(Left, k, q)[i, 1] :: w[i, 1]),
+  done)$
+";
+
 /// The program; `association` is the name of law, element and cut, uncut.
-///
-/// Laws in principal stretches: `None`. Roots of the characteristic polynomial could be written; of Ogden's law on a triangle the
-/// second derivatives of what comes of them took Maxima half a minute and more than 5 MB, which nobody reads.
-pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> Option<String> {
+pub fn maxima(element: &ElementData, law: &EnergyLaw, association: &str) -> String {
     let terms = law.terms();
-    let is_beyond = |expr: &Expr| matches!(law.graph.node(*expr), Node::Decompose(_) | Node::Pack(_));
-    if law.graph.reachable(&terms).iter().any(is_beyond) {
-        return None;
-    }
     let mut text = format!("/* {association}: batch this file with Maxima */\n{HELPERS}");
+    if law.uses_stretches() {
+        text += "/* of principal stretches: for numbers at which they differ; at equal ones, as at rest, take numbers beside them */\n";
+        text += DECOMPOSITION;
+    }
     for (_, name, _) in CHOICES {
         let _ = writeln!(text, "gradef({name}(c, v, w), 0, {name}(c, 1, 0), {name}(c, 0, 1))$");
     }
     put_deformation(&mut text, element);
     put_energy(&mut text, law, &terms);
-    put_integral(&mut text, element, terms.len());
+    put_samples(&mut text, element, law, terms.len());
     put_forces(&mut text, element, association);
-    Some(text)
+    text
 }
 
 /// Letters of the axes of an element.
@@ -259,32 +315,50 @@ fn put_energy(text: &mut String, law: &EnergyLaw, terms: &[Expr]) {
         let parts: Vec<&str> = parts.iter().map(|part| part.trim_end_matches('$')).collect();
         let names: Vec<&str> = parts.iter().filter_map(|part| part.split(':').next()).collect();
         let lines: Vec<&str> = parts.iter().copied().chain(roots.iter().map(String::as_str)).collect();
-        let _ = writeln!(text, "W{term}(F) := block([{}],\n  {})$", names.join(", "), lines.join(",\n  "));
+        let _ = writeln!(
+            text,
+            "W{term}(F, stretches) := block([{}],\n  {})$",
+            names.join(", "),
+            lines.join(",\n  ")
+        );
     }
 }
 
-/// Steps 5 and 6: the energy of the element, sample by sample, with names for what the rest shape alone decides.
-///
-/// Entries of the inverse map and weights are named before anything is differentiated: the derivatives, which know them by name,
-/// are ten times shorter than with the quotients spelled out, and Maxima has them in seconds instead of minutes.
-fn put_integral(text: &mut String, element: &ElementData, terms: usize) {
+/// Steps 5 and 6: what the rest shape alone decides, and the energy of the element, sample by sample, in the entries of `F` there.
+fn put_samples(text: &mut String, element: &ElementData, law: &EnergyLaw, terms: usize) {
     let _ = writeln!(
         text,
-        "\n/* 6. what holds no U or V is named D0, D1, ...; before 5, so that the energy knows it by name */"
+        "\n/* 6. what holds no U or V is named D0, D1, ...; before 5, which knows it by name */"
     );
     for (q, sample) in element.samples.iter().enumerate() {
         let at: Vec<String> =
             (0..element.dimension).map(|k| format!("R{k} = {:e}", sample.position[k])).collect();
         let at = at.join(", ");
         let _ = writeln!(text, "JT_{q}: subst([{at}], JT)$");
-        let _ = writeln!(text, "F_{q}: deformation(matrixmap(grouped, invert(JT_{q})) . subst([{at}], DU))$");
+        let _ =
+            writeln!(text, "FU_{q}: deformation(matrixmap(grouped, invert(JT_{q})) . subst([{at}], DU))$");
         let _ = writeln!(text, "dV_{q}: grouped({:e}*determinant(JT_{q}))$", sample.weight);
     }
-    let _ = writeln!(text, "\n/* 5. energy of the element, by samples */");
+    let _ = writeln!(
+        text,
+        "\n/* 5. energy of the element, by samples; entries of F that move are named F11_0, ..., and what they are is kept in steps */\n\
+         steps: []$\n\
+         named(letter, q, FU, value) := genmatrix(lambda([i, j], if numberp(FU[i, j]) then value[i, j] else block(\n  \
+         [name: concat(letter, i, j, \"_\", q)], steps: endcons(name = value[i, j], steps), name)), 3, 3)$"
+    );
     let mut addends = Vec::new();
     for q in 0..element.samples.len() {
+        let _ = writeln!(text, "F_{q}: named(F, {q}, FU_{q}, FU_{q})$");
+        let stretches = if law.uses_stretches() {
+            let _ = writeln!(text, "declare_stretches({q}, F_{q})$");
+            let step = format!("decomposition_{q} = funmake(decomposed, [{q}, F_{q}])");
+            let _ = writeln!(text, "steps: endcons({step}, steps)$");
+            format!("[stretch(1, {q}), stretch(2, {q}), stretch(3, {q})]")
+        } else {
+            "[]".to_owned()
+        };
         for term in 0..terms {
-            let _ = writeln!(text, "intW{term}_{q}: W{term}(F_{q})*dV_{q}$");
+            let _ = writeln!(text, "intW{term}_{q}: W{term}(F_{q}, {stretches})*dV_{q}$");
             addends.push(format!("intW{term}_{q}"));
         }
     }
@@ -294,21 +368,54 @@ fn put_integral(text: &mut String, element: &ElementData, terms: usize) {
 /// Steps 7 to 9: forces, their differential, and both as files.
 fn put_forces(text: &mut String, element: &ElementData, association: &str) {
     let axes = axes_of(element);
+    let samples = element.samples.len();
     let unknowns: Vec<String> = (0..element.node_count)
         .flat_map(|node| axes.iter().map(move |axis| format!("{node}{axis}")))
         .collect();
-    let _ = writeln!(text, "\n/* 7. forces */");
-    for unknown in &unknowns {
-        let _ = writeln!(text, "F{unknown}: -diff(WE, U{unknown})$");
-    }
-    let _ = writeln!(text, "\n/* 8. their differential along V */");
-    for unknown in &unknowns {
+    let list = |letter: &str| {
+        let names: Vec<String> = unknowns.iter().map(|unknown| format!("{letter}{unknown}")).collect();
+        names.join(", ")
+    };
+    // Σ over samples of the entries' products with their slopes
+    let by_chain = |letter: &str, unknown: &str| {
         let terms: Vec<String> =
-            unknowns.iter().map(|other| format!("diff(F{unknown}, U{other})*V{other}")).collect();
-        let _ = writeln!(text, "dF{unknown}: {}$", terms.join(" + "));
+            (0..samples).map(|q| format!("dot_of({letter}_{q}, diff(FU_{q}, U{unknown}))")).collect();
+        format!("-({})", terms.join(" + "))
+    };
+    let _ = writeln!(
+        text,
+        "\n/* 7. stress times volume at the samples, S = dWE/dF, and forces by the chain rule */\n\
+         slopes(F) := genmatrix(lambda([i, j], if numberp(F[i, j]) then 0 else diff(WE, F[i, j])), 3, 3)$"
+    );
+    for q in 0..samples {
+        let _ = writeln!(text, "P_{q}: slopes(F_{q})$\nS_{q}: named(S, {q}, FU_{q}, P_{q})$");
     }
-    let _ = writeln!(text, "\n/* 9. one file for each expression, and one for the constants */");
-    let _ = writeln!(text, "stringout(\"ECR_{association}0.mac\", constants)$");
+    for unknown in &unknowns {
+        let _ = writeln!(text, "F{unknown}: {}$", by_chain("S", unknown));
+    }
+    let _ = writeln!(
+        text,
+        "\n/* 8. their differential along V */\n\
+         displacements: [{}]$\nvariations: [{}]$\n\
+         varied(a) := genmatrix(lambda([i, j], sum(diff(a[i, j], displacements[n])*variations[n], n, 1, {})), 3, 3)$\n\
+         along(a, F, dF) := genmatrix(lambda([i, j], block([sum: 0], for k thru 3 do for l thru 3 do\n  \
+         if not numberp(F[k, l]) then sum: sum + diff(a[i, j], F[k, l])*dF[k, l], sum)), 3, 3)$",
+        list("U"),
+        list("V"),
+        unknowns.len()
+    );
+    for q in 0..samples {
+        let _ = writeln!(text, "dF_{q}: named(dF, {q}, FU_{q}, varied(FU_{q}))$");
+        let _ = writeln!(text, "dS_{q}: named(dS, {q}, FU_{q}, along(P_{q}, F_{q}, dF_{q}))$");
+    }
+    for unknown in &unknowns {
+        let _ = writeln!(text, "dF{unknown}: {}$", by_chain("dS", unknown));
+    }
+    let _ = writeln!(
+        text,
+        "\n/* 9. one file for each expression, one for the constants, and one for the steps between */\n\
+         stringout(\"ECR_{association}0.mac\", constants)$\nstringout(\"steps_{association}0.mac\", steps)$"
+    );
     for unknown in &unknowns {
         for prefix in ["F", "dF"] {
             let _ = writeln!(text, "stringout(\"{prefix}{association}0_{unknown}.mac\", {prefix}{unknown})$");
@@ -317,7 +424,7 @@ fn put_forces(text: &mut String, element: &ElementData, association: &str) {
     let _ = writeln!(
         text,
         "\n/* for whoever puts numbers in, `mu: 1$ P0x: 0$ ... numbers()$ F0x: ev(F0x);` */\n\
-         numbers() := for entry in constants do lhs(entry) :: ev(rhs(entry))$"
+         numbers() := for entry in append(constants, steps) do lhs(entry) :: ev(rhs(entry))$"
     );
     for (_, name, sign) in CHOICES {
         let _ = writeln!(text, "{name}(c, v, w) := if c {sign} 0 then v else w$");

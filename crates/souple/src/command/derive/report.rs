@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 use souple_formal::element::{Axis, Cut, Derived, ElementData, ElementExpressions};
 use souple_formal::emit::{ElementCode, Latex, write};
-use souple_formal::graph::Operations;
+use souple_formal::graph::{Operations, WithoutFormula};
 use souple_formal::law::EnergyLaw;
 use souple_mesh::ElementKind;
 use souple_models::derive::{
@@ -152,17 +152,32 @@ impl<'a> Report<'a> {
         }
     }
 
-    pub fn to_text(&self, derived: &mut Derived, [compiled, total]: [f64; 2]) -> String {
+    /// Law and element, and what both make of each other in tensors.
+    fn derivation(&self, cut: Cut) -> String {
         let mut text = String::new();
         for step in Step::all(self.law) {
             let _ = writeln!(text, "{}", step.to_text());
         }
         let samples = counted(self.element.samples.len() as u64, "sample");
-        let _ = writeln!(text, "on {}, {samples}, expressions cut: {}", self.kind, derived.cut.name());
+        let _ = writeln!(text, "on {}, {samples}, expressions cut: {}", self.kind, cut.name());
         for (node, shape) in self.element.shapes.iter().enumerate() {
             let _ = writeln!(text, "  N_{node} = {}", polynomial(shape));
         }
-        let _ = writeln!(text, "  F = I + U_xi X_xi^-1, f_n = -sum w det(X_xi) P X_xi^-T dN_n/dxi\n");
+        text + "  F = I + U_xi X_xi^-1, f_n = -sum w det(X_xi) P X_xi^-T dN_n/dxi\n\n"
+    }
+
+    /// Of a law in principal stretches, which has tensors alone: there is nothing to write out and to count.
+    pub fn without_code(&self, cut: Cut) -> String {
+        let [forces, differential] = self.steps.map(|operations| operations.total());
+        self.derivation(cut)
+            + &format!(
+                "  in tensors, as bodies run them: forces {forces}, differential {differential} operations\n  \
+                 {WithoutFormula}: no constants are grouped, and no code is written but with `--emit maxima`\n"
+            )
+    }
+
+    pub fn to_text(&self, derived: &mut Derived, [compiled, total]: [f64; 2]) -> String {
+        let mut text = self.derivation(derived.cut);
         let _ = writeln!(
             text,
             "  {:<14} {:>9} {:>9} {:>12} {:>12} {:>10} {:>12}",

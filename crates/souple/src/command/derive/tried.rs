@@ -14,6 +14,12 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let laws: Vec<&str> = WRITTEN_LAWS.iter().map(|law| law.name).collect();
     let kinds: Vec<&str> =
         ElementKind::ALL.iter().filter(|kind| kind.dimension() > 1).map(|kind| kind.name()).collect();
+    if let Some(text) =
+        arguments.law.as_deref().filter(|law| law.contains(|letter: char| !is_of_name(letter)))
+    {
+        let message = "`--check` tries laws by name; a text is tried against rotations and differences where it is read";
+        return Err(Refusal::request("law", text, format!("one of {}", laws.join(", ")), message));
+    }
     known("law", arguments.law.as_deref(), &laws)?;
     known("element", arguments.element.as_deref(), &kinds)?;
     let is_wanted =
@@ -70,6 +76,10 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
 fn line(battery: &Battery) -> String {
     let numbers = battery.named().map(|(name, number)| format!("{name} {number:.1e}"));
     numbers.join(", ")
+}
+
+fn is_of_name(letter: char) -> bool {
+    letter.is_ascii_alphanumeric() || letter == '_'
 }
 
 fn known(what: &str, wanted: Option<&str>, names: &[&str]) -> Result<(), Refusal> {
