@@ -151,7 +151,10 @@ fn reason(law: &EnergyLaw, values: &Evaluation, expr: Expr, bad: f64) -> String 
     }
 }
 
-/// The stress is zero at rest and has no corner there; remembers the stiffness.
+/// Energy a ten-millionth from rest, over the stiffness, at most: a smooth one is of the size of the square.
+const JUMP_AT_REST: f64 = 1e-6;
+
+/// The stress is zero at rest and neither it nor the energy jumps there; remembers the stiffness.
 fn slope_at_rest(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
     let rest = law.stress_at(&identity());
     if !rest.is_finite() {
@@ -202,7 +205,9 @@ fn slope_at_rest(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
             let (near, far) = (shifted(sign * 1e-7, &direction), shifted(sign * 2e-7, &direction));
             // a smooth stress halves with the distance; one that jumps stays
             let jumps = size(&near) > 0.75 * size(&far) && size(&near) > 1e-3 * scale * 1e-3;
-            if jumps || !near.is_finite() {
+            // what jumps to a constant has no stress on either side
+            let rises = law.energy_at(&(identity() + direction * (sign * 1e-7))).abs() > JUMP_AT_REST * scale;
+            if jumps || rises || !near.is_finite() {
                 return Err(corner(law, read));
             }
         }

@@ -146,6 +146,7 @@ fn bad_laws_are_told_where_and_why() {
         ("mu*abs(J - 1)", "abs(J - 1)", "corner"),
         ("mu*sqrt(I1 - 3)", "sqrt(I1 - 3)", "corner"),
         ("mu*max(J - 1, 0)", "max(J - 1, 0)", "corner"),
+        ("if(J > 1, mu*(J - 1)^2, mu) + mu*dot(E, E)", "if(J > 1, mu*(J - 1)^2, mu)", "corner"),
         ("mu/(J - 1)", "mu/(J - 1)", "division by zero"),
         ("mu*ln(J - 1)", "ln(J - 1)", "ln of 0"),
         ("mu*(l1 - 1)^2", "l1", "order of the principal stretches"),
