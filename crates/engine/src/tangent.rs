@@ -109,8 +109,13 @@ impl Tangent {
         let kinematics = &system.kinematics;
         let mut blocks = self.blocks.take().unwrap_or_else(|| unreachable!("patterns were just made"));
         blocks.set_zero();
-        let position_map = |row: u32| kinematics.position_map(row, at.q);
-        let velocity_map = |row: u32| at.velocity_map(row);
+        // each serves as many pairs as rows are coupled with its own
+        let free_rows = 0..kinematics.free_row_count() as u32;
+        let position_maps: Vec<Mat3> =
+            free_rows.clone().map(|row| kinematics.position_map(row, at.q)).collect();
+        let velocity_maps: Vec<Mat3> = free_rows.map(|row| at.velocity_map(row)).collect();
+        let position_map = |row: u32| position_maps[row as usize];
+        let velocity_map = |row: u32| velocity_maps[row as usize];
         // -Tᵀ ∂f/∂x T
         transform_rows(kinematics, &rows, &mut blocks, &position_map, &position_map);
         if at.rates.has_velocity() && system.forces.iter().any(|force| force.declaration().velocity_terms) {
@@ -400,12 +405,27 @@ fn transform_rows(
     left_map: &dyn Fn(u32) -> Mat3,
     right_map: &dyn Fn(u32) -> Mat3,
 ) {
-    let pattern = rows.pattern().clone();
+    let (pattern, of_blocks) = (rows.pattern().clone(), blocks.pattern().clone());
+    let free_rows = kinematics.free_row_count();
     for a in 0..pattern.block_count() {
+        let is_free = a < free_rows;
+        let left = if is_free { left_map(a as u32) } else { Mat3::IDENTITY };
+        // columns of free rows ascend, and so do the columns of their blocks: no place is looked for twice
+        let mut places = if is_free { of_blocks.slots(kinematics.block_of(a as u32) as usize) } else { 0..0 };
         for slot in pattern.slots(a) {
             let (b, value) = (pattern.columns()[slot] as usize, rows.values()[slot]);
             // derived rows that no force acts on would be expanded for nothing
             if value == Mat3::ZERO {
+                continue;
+            }
+            if is_free && b < free_rows {
+                let column = kinematics.block_of(b as u32);
+                while places.start < places.end && of_blocks.columns()[places.start] < column {
+                    places.start += 1;
+                }
+                if places.start < places.end && of_blocks.columns()[places.start] == column {
+                    blocks.add_at(places.start, &left.transpose_mul(&(value * right_map(b as u32))));
+                }
                 continue;
             }
             let product = |left: &Mat3, right: &Mat3| left.transpose_mul(&(value * *right));
