@@ -39,6 +39,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("patch", include_str!("../../../scenes/patch/scene.toml")),
     ("plate", include_str!("../../../scenes/plate/scene.toml")),
     ("pressed_pad", include_str!("../../../scenes/pressed_pad/scene.toml")),
+    ("pulled_pad", include_str!("../../../scenes/pulled_pad/scene.toml")),
     ("pumped_block", include_str!("../../../scenes/pumped_block/scene.toml")),
     ("rheometer", include_str!("../../../scenes/rheometer/scene.toml")),
     ("rubber_as_text", include_str!("../../../scenes/rubber_as_text/scene.toml")),

@@ -1,7 +1,7 @@
 //! EXP-35: bodies whose elements change their law at several thresholds, time of a step beside the deviation of what they do.
 //!
-//! The source's pair, Hooke's and St. Venant–Kirchhoff's laws, at equilibrium; and Hooke's law with Ogden's, which costs ten
-//! times as much, in explicit steps.
+//! The source's pair, Hooke's and St. Venant–Kirchhoff's laws, at equilibrium, and in explicit steps with the 27 samples of a
+//! hexahedron that the second takes; and Hooke's law with Ogden's, which costs ten times as much.
 
 use super::timing::{Held, Timed, Timing, as_it_is, scene, with_threads};
 use super::{Effort, Figure, value_of};
@@ -70,9 +70,31 @@ const PRESSED: Adapting = Adapting {
     saving: Some("length_10"),
 };
 
+const PULLED: Adapting = Adapting {
+    name: "pulled",
+    scene: "pulled_pad",
+    periods: 500,
+    probe: "pull",
+    adapt: |criterion| {
+        format!(
+            "bodies.pad.adapt={{ material = {{ name = \"st_venant_kirchhoff\", youngs_modulus = 1e5, poissons_ratio = 0.3, density = 1000 }}, back = 0, {criterion} }}"
+        )
+    },
+    variants: &[
+        ("all_first", "edge_length = 1e9"),
+        ("length_20", "edge_length = 0.2"),
+        ("length_14", "edge_length = 0.14"),
+        ("length_12", "edge_length = 0.12"),
+        ("length_10", "edge_length = 0.1"),
+        ("length_6", "edge_length = 0.06"),
+        ("all_second", "edge_length = 1e-9"),
+    ],
+    saving: Some("length_14"),
+};
+
 pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
-    for body in [BENT, PRESSED] {
+    for body in [BENT, PRESSED, PULLED] {
         figures.extend(body.figures(name, effort)?);
     }
     Ok(figures)

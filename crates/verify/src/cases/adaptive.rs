@@ -67,6 +67,18 @@ const PAD: Case = Case {
     mutation: "bodies.pad.adapt.edge_length=1e9",
 };
 
+/// Force on what pulls the pad under St. Venant–Kirchhoff's law alone at equilibrium, 27 samples: `equilibria.py`.
+const PULL_OF_SECOND: f64 = 7_550.055_621_121;
+
+const PULLED: Case = Case {
+    scene: "pulled_pad",
+    reading: Reading::component("pull", 1).after(2000),
+    reference: PULL_OF_SECOND,
+    source: "the pad at equilibrium under St. Venant-Kirchhoff's law alone by an independent program; the specification asks for a deviation of at most 5 %",
+    // under Hooke's law alone it is off by 38 %
+    ..PAD
+};
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "exp35_pressed_everywhere",
@@ -89,6 +101,39 @@ pub(super) const CASES: &[Case] = &[
         what: "the same by 15 %, in a quarter of the time",
         settings: &["bodies.pad.adapt.edge_length=0.15"],
         ..PAD
+    },
+    Case {
+        id: "exp35_pulled_everywhere",
+        what: "force on the pull where every element soon has St. Venant-Kirchhoff's law",
+        settings: &["bodies.pad.adapt.edge_length=1e-9"],
+        // mass damping of 5/s: e^-8.75 of a swing of a thousand newtons is 0.16 N
+        tolerance: Tolerance::Absolute(0.16),
+        source: "the pad at equilibrium under St. Venant-Kirchhoff's law alone by an independent program",
+        mutation: r#"bodies.pad.quadrature="default""#,
+        ..PULLED
+    },
+    Case {
+        id: "exp35_pulled_12",
+        what: "the same where those have it whose edges change by 12 %; in about half the time (`souple bench adaptive`)",
+        ..PULLED
+    },
+    Case {
+        id: "exp35_pulled_falls",
+        what: "how the deviation of this force falls with the threshold, changes of length of 12 % and of 6 %",
+        refinement: Some(Refinement {
+            size_of: "threshold",
+            runs: &[
+                Variant { size: 0.12, settings: &["bodies.pad.adapt.edge_length=0.12"] },
+                Variant { size: 0.06, settings: &["bodies.pad.adapt.edge_length=0.06"] },
+            ],
+            limit: Limit::Known(PULL_OF_SECOND),
+        }),
+        // at least in proportion to the threshold
+        reference: 3.0,
+        tolerance: Tolerance::Absolute(2.0),
+        source: "specification, EXP-35: a lower threshold, a smaller deviation",
+        mutation: "bodies.pad.adapt.material.youngs_modulus=1.1e5",
+        ..PULLED
     },
     Case {
         id: "adapted_everywhere",

@@ -1,8 +1,8 @@
 """Equilibria by a program of its own, for the rows of `souple verify` that name it.
 
-Hexahedra of eight nodes and eight Gauss points under Hooke's, St. Venant-Kirchhoff's and Ogden's laws, by Newton's method;
-numpy and scipy alone. `python3 equilibria.py` takes a minute and prints the tip of the bent bar (`adaptive_bar`), the force on
-the press of the pad (`pressed_pad`), the waist of the stretched cube and the free face of the hanging one.
+Hexahedra of eight nodes and eight Gauss points, or 27, under Hooke's, St. Venant-Kirchhoff's and Ogden's laws, by Newton's method;
+numpy and scipy alone. `python3 equilibria.py` takes a minute and prints the tip of the bent bar (`adaptive_bar`), the forces on
+the pressed and the pulled pad (`pressed_pad`, `pulled_pad`), the waist of the stretched cube and the free face of the hanging one.
 """
 
 import itertools
@@ -12,7 +12,13 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 CORNERS = np.array([[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], float)
-GAUSS = np.array(list(itertools.product([-1, 1], repeat=3))) / np.sqrt(3)
+
+
+def gauss(count):
+    """Samples of a hexahedron and their weights, `count` along each axis."""
+    points, weights = np.polynomial.legendre.leggauss(count)
+    along = itertools.product(range(count), repeat=3)
+    return zip(*[(points[list(at)], np.prod(weights[list(at)])) for at in along])
 
 
 def grid(size, cells):
@@ -26,16 +32,17 @@ def grid(size, cells):
     return points, np.array(hexes)
 
 
-def gradients(points, hexes):
-    """Gradients of shape functions at the samples (cell, sample, node, axis) and weights; all cells are one box."""
+def gradients(points, hexes, count):
+    """Gradients of shape functions at the samples (sample, node, axis) and weights; all cells are one box."""
     edge = points[hexes[0, 6]] - points[hexes[0, 0]]
-    g = np.zeros((8, 8, 3))
-    for q, xi in enumerate(GAUSS):
+    samples, weights = gauss(count)
+    g = np.zeros((len(samples), 8, 3))
+    for q, xi in enumerate(samples):
         for a, corner in enumerate(CORNERS):
             factors = (1 + corner * xi) / 2
             for d in range(3):
                 g[q, a, d] = corner[d] / 2 * np.prod(np.delete(factors, d)) * 2 / edge[d]
-    return g, np.prod(edge) / 8
+    return g, np.array(weights) * np.prod(edge) / 8
 
 
 def hooke(F, mu, lam):
@@ -73,8 +80,8 @@ def tangent(stress, F):
     return out
 
 
-def equilibrium(points, hexes, stress, load, held, values, start, tolerance=1e-11):
-    g, weight = gradients(points, hexes)
+def equilibrium(points, hexes, stress, load, held, values, start, samples=2, tolerance=1e-11):
+    g, weight = gradients(points, hexes, samples)
     dofs = (3 * hexes[:, :, None] + np.arange(3)).reshape(len(hexes), 24)
     rows, columns = np.repeat(dofs, 24, axis=1).ravel(), np.tile(dofs, (1, 24)).ravel()
     u = start.copy()
@@ -82,12 +89,12 @@ def equilibrium(points, hexes, stress, load, held, values, start, tolerance=1e-1
     u[held] = values
     for _ in range(60):
         F = np.einsum("cai,qaj->cqij", u.reshape(-1, 3)[hexes], g) + np.eye(3)
-        forces = np.einsum("cqij,qaj->cai", stress(F), g) * weight
+        forces = np.einsum("q,cqij,qaj->cai", weight, stress(F), g, optimize=True)
         internal = np.bincount(dofs.ravel(), forces.ravel(), minlength=u.size)
         residual = load - internal
         if np.abs(residual[free]).max() < tolerance * np.abs(internal).max():
             return u, internal
-        blocks = np.einsum("cqijkl,qaj,qbl->caibk", tangent(stress, F), g, g, optimize=True) * weight
+        blocks = np.einsum("q,cqijkl,qaj,qbl->caibk", weight, tangent(stress, F), g, g, optimize=True)
         K = coo_matrix((blocks.ravel(), (rows, columns)), shape=(u.size, u.size)).tocsr()
         u[free] += spsolve(K[free][:, free], residual[free])
     raise RuntimeError(f"no equilibrium: {np.abs(residual[free]).max()}")
@@ -131,6 +138,12 @@ def pad():
     mu, lam = lame(1e5, 0.3)
     u, internal = equilibrium(points, hexes, lambda F: hooke(F, mu, lam), np.zeros_like(u), held, values, u)
     print(f"force on the press, Hooke: {internal[pressed].sum():.9f} N")
+    u = np.zeros(3 * len(points))
+    for height in np.linspace(0.03, 0.12, 4):
+        values[np.isin(held, pressed)] = height
+        law = lambda F: venant(F, mu, lam)
+        u, internal = equilibrium(points, hexes, law, np.zeros_like(u), held, values, u, samples=3)
+    print(f"force on the pull, St. Venant-Kirchhoff: {internal[pressed].sum():.9f} N")
 
 
 def cube():
