@@ -71,7 +71,7 @@ const ORDER: Case = Case {
     reference: 2.0,
     tolerance: Tolerance::Absolute(0.25),
     source: "specification, EXP-27 (b): order two for every element",
-    // in a body that cannot contract across elements lock, and the limit is another
+    // matter that contracts across has another limit
     mutation: "bodies.bar.material.poissons_ratio=0.3",
     ..BEAM
 };
