@@ -10,10 +10,10 @@ use souple_formal::tape::BATCH;
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
 
-use super::kernel::{Blocks, Gradients, PAIR_LEN, RATES_LEN, Spread};
-use super::layout::{Chunk, GRADIENT_LEN, chunks};
+use super::kernel::{Blocks, Gradients, MAP_LEN, PAIR_LEN, RATES_LEN, Spread};
+use super::layout::{Body, Chunk, FrameMap, chunks};
 use super::matrix::{Pairs, Slots};
-use super::{Carried, ROWS_OF_FRAME, Sample, tangents};
+use super::{Carried, Frame, ROWS_OF_FRAME, Sample, tangents};
 use crate::materials::Material;
 use crate::solids::layout::{LANES, LaneBlock};
 use crate::solids::sample_law::{Answer, ROWS, Run, SampleLaw, TANGENT_LEN};
@@ -32,6 +32,8 @@ pub enum TangentKind {
 /// What a body of frames is made of.
 pub struct FramesDescription<'a> {
     pub name: String,
+    /// At rest.
+    pub frames: &'a [Frame],
     /// Row of each frame's origin; its axes follow.
     pub row_of_frame: &'a [u32],
     pub samples: &'a [Sample],
@@ -85,9 +87,10 @@ struct Memory {
     stress: Vec<LaneBlock>,
     tangents: Vec<LaneBlock>,
     rates: Vec<f64>,
+    gradients: Vec<LaneBlock>,
     sums: Vec<LaneBlock>,
-    /// Rows of a chunk's own frames.
-    own: [Vec<Vec3>; 2],
+    /// Maps of a chunk's own frames.
+    own: [Vec<FrameMap>; 2],
 }
 
 thread_local! {
@@ -99,8 +102,16 @@ const MATRIX_LEN: usize = 9 * BATCH;
 
 impl FramesForce {
     pub fn new(description: FramesDescription) -> Self {
-        let FramesDescription { name, row_of_frame, samples, carried, materials, material_of_cell, .. } =
-            description;
+        let FramesDescription {
+            name,
+            frames,
+            row_of_frame,
+            samples,
+            carried,
+            materials,
+            material_of_cell,
+            ..
+        } = description;
         let material_of =
             |sample: u32| &materials[material_of_cell[samples[sample as usize].cell as usize] as usize];
         // materials of one law share its loops, with numbers of their own
@@ -129,7 +140,7 @@ impl FramesForce {
             let members: Vec<u32> = (0..samples.len() as u32).filter(is_of).collect();
             let parameters_of = |sample: u32| &material_of(sample).parameters[..count];
             force.laws.push(law);
-            force.chunks.extend(chunks((samples, carried), &members, &parameters_of));
+            force.chunks.extend(chunks(&Body { frames, samples, carried }, &members, &parameters_of));
             force.law_of_chunk.resize(force.chunks.len(), index);
         }
         let (mut first_frame, mut first_pair) = (0, 0);
@@ -231,7 +242,7 @@ impl Work<'_> {
     fn gather(&mut self, which: usize, values: &[Vec3]) {
         let own = &mut self.memory.own[which];
         own.clear();
-        own.extend(self.force.rows_of(self.chunk).map(|row| values[row]));
+        own.extend(self.chunk.maps_of(self.force.rows_of(self.chunk).map(|row| values[row])));
     }
 
     fn spread(mut self, answer: Answer, [positions, delta]: [&[Vec3]; 2], scale: f64, partials: &mut [Vec3]) {
@@ -247,31 +258,26 @@ impl Work<'_> {
         let memory = lanes_of(memory, places.memory_len);
         law.prepare(answer, memory);
         sums.clear();
-        sums.resize(chunk.frames.len() * GRADIENT_LEN, LaneBlock::default());
+        sums.resize(chunk.frames.len() * MAP_LEN, LaneBlock::default());
         for run in runs(chunk) {
             let arch = Arch::new();
             if wants_material {
                 second_stress(law, chunk, &run, &own[0], stress);
             }
-            arch.dispatch(Gradients {
-                chunk,
-                run: &run,
-                values: &own[0],
-                out: &mut memory[places.deformation..],
-            });
             if varies {
-                arch.dispatch(Gradients {
-                    chunk,
-                    run: &run,
-                    values: &own[1],
-                    out: &mut memory[places.variation..],
-                });
+                let fields = [&own[0][..], &own[1]];
+                let starts = [places.deformation, places.variation];
+                arch.dispatch(Gradients { chunk, run: &run, fields, out: &mut *memory, starts });
+            } else {
+                let starts = [places.deformation];
+                arch.dispatch(Gradients { chunk, run: &run, fields: [&own[0]], out: &mut *memory, starts });
             }
             law.answer(answer, &run, memory);
             if wants_material {
                 // the law may have overwritten what it was given
                 let mut variation = [0.0; MATRIX_LEN];
-                arch.dispatch(Gradients { chunk, run: &run, values: &own[1], out: &mut variation });
+                let out = &mut variation;
+                arch.dispatch(Gradients { chunk, run: &run, fields: [&own[1]], out, starts: [0] });
                 let second: &[f64] = bytemuck::cast_slice(stress);
                 let result = &mut memory[places.result..];
                 tangents::subtract_from_differential(second, &variation, result, run.lane_count());
@@ -279,9 +285,12 @@ impl Work<'_> {
             let stresses = &memory[places.result..];
             arch.dispatch(Spread { chunk, run: &run, stresses, scale, sums });
         }
-        for (partial, sums) in partials.iter_mut().zip(sums.chunks_exact(3)) {
-            let total = |lanes: &LaneBlock| lanes.0.iter().sum::<f64>();
-            *partial = Vec3::new(total(&sums[0]), total(&sums[1]), total(&sums[2]));
+        let total = |lanes: &LaneBlock| lanes.0.iter().sum::<f64>();
+        let vector = |lanes: &[LaneBlock]| Vec3::new(total(&lanes[0]), total(&lanes[1]), total(&lanes[2]));
+        let of_frames = partials.chunks_exact_mut(ROWS_OF_FRAME).zip(sums.chunks_exact(MAP_LEN));
+        for (own, (partials, sums)) in of_frames.enumerate() {
+            let turn = Mat3::from_columns(vector(&sums[3..]), vector(&sums[6..]), vector(&sums[9..]));
+            partials.copy_from_slice(&chunk.forces_of(own, &FrameMap { origin: vector(sums), turn }));
         }
     }
 
@@ -294,8 +303,8 @@ impl Work<'_> {
         law.prepare(Answer::Energy, memory);
         let mut sum = 0.0;
         for run in runs(chunk) {
-            let out = &mut memory[places.deformation..];
-            Arch::new().dispatch(Gradients { chunk, run: &run, values: &own[0], out });
+            let (out, starts) = (&mut *memory, [places.deformation]);
+            Arch::new().dispatch(Gradients { chunk, run: &run, fields: [&own[0]], out, starts });
             law.answer(Answer::Energy, &run, memory);
             for block in run.rows() {
                 let densities = &memory[places.result + run.lane_of(block)..];
@@ -315,7 +324,7 @@ impl Work<'_> {
         let wants_material = self.force.tangent == TangentKind::Material;
         let (law, chunk) = (self.force.law(self.number), self.chunk);
         let places = law.places(Answer::Differential);
-        let Memory { law: memory, stress, tangents, rates, own, .. } = &mut *self.memory;
+        let Memory { law: memory, stress, tangents, rates, gradients, own, .. } = &mut *self.memory;
         let memory = lanes_of(memory, places.memory_len);
         law.prepare(Answer::Differential, memory);
         let tangents = lanes_of(tangents, TANGENT_LEN * BATCH);
@@ -326,28 +335,30 @@ impl Work<'_> {
             if wants_material {
                 second_stress(law, chunk, &run, &own[0], stress);
             }
-            arch.dispatch(Gradients {
-                chunk,
-                run: &run,
-                values: &own[0],
-                out: &mut memory[places.deformation..],
-            });
+            let (out, starts) = (&mut *memory, [places.deformation]);
+            arch.dispatch(Gradients { chunk, run: &run, fields: [&own[0]], out, starts });
             law.tangents(&run, memory, tangents);
             if wants_material {
                 tangents::subtract_from_tangents(bytemuck::cast_slice(stress), tangents, run.lane_count());
             }
-            arch.dispatch(Blocks { chunk, run: &run, tangents, scale, rates, sums });
+            arch.dispatch(Blocks { chunk, run: &run, tangents, scale, rates, gradients, sums });
         }
     }
 }
 
 /// Writes `S = F⁻¹ P` of a run to the head of `stress`.
-fn second_stress(law: &dyn SampleLaw, chunk: &Chunk, run: &Run, own: &[Vec3], stress: &mut Vec<LaneBlock>) {
+fn second_stress(
+    law: &dyn SampleLaw,
+    chunk: &Chunk,
+    run: &Run,
+    own: &[FrameMap],
+    stress: &mut Vec<LaneBlock>,
+) {
     let places = law.places(Answer::Stress);
     let memory = lanes_of(stress, places.memory_len.max(MATRIX_LEN));
     law.prepare(Answer::Stress, memory);
     let mut deformation = [0.0; MATRIX_LEN];
-    Arch::new().dispatch(Gradients { chunk, run, values: own, out: &mut deformation });
+    Arch::new().dispatch(Gradients { chunk, run, fields: [own], out: &mut deformation, starts: [0] });
     for entry in 0..9 {
         let lanes = entry * BATCH..entry * BATCH + run.lane_count();
         memory[places.deformation..][lanes.clone()].copy_from_slice(&deformation[lanes]);

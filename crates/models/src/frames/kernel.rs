@@ -1,6 +1,9 @@
 //! The loops over samples of frames: gradients, the spreading of stresses, products of gradients with tangents.
 //!
-//! With the gradient `h_a` of row `a`: `F = Σ_a q_a ⊗ h_a`, the row feels `-V P h_a`, and between rows `a` and `b` stands
+//! A frame takes a material point from `X` to `o + B X`, with `B = Σ_k a_k ⊗ A_k` of its axes and `o = x - B X_0` of its origin, so
+//! that `F = Σ (o + B X) ⊗ ∇w + w B`; of a stress `P` the map feels `-V P ∇w` and `-V (P ∇w ⊗ X + w P)`.
+//!
+//! With the gradient `h_a` of row `a` it is `F = Σ_a q_a ⊗ h_a`, and between rows `a` and `b` stands
 //! `K_ab[i,k] = V Σ_JL h_a[J] ∂P_iJ/∂F_kL h_b[L]`.
 
 use pulp::{Simd, WithSimd};
@@ -8,7 +11,8 @@ use souple_formal::tape::BATCH;
 use souple_math::{Lanes, Mat3, Real, Vec3};
 
 use super::ROWS_OF_FRAME;
-use super::layout::{Chunk, GRADIENT_LEN};
+use super::layout::{Chunk, FrameMap, GRADIENT_LEN};
+use crate::solids::geometry::accumulate;
 use crate::solids::layout::{LANES, LaneBlock};
 use crate::solids::sample_law::{Run, load_matrix, store_matrix};
 
@@ -21,52 +25,95 @@ pub const PAIR_LEN: usize = LINES * LINE;
 /// Numbers of the rates of a frame at eight samples: `[sample][J][i]` lines.
 pub const RATES_LEN: usize = LANES * 9 * LINE;
 
-/// Writes `Σ values ⊗ gradient` of every sample of a run; `values` are those of the chunk's own frames' rows.
-pub struct Gradients<'a> {
+/// Writes `Σ (o + B P) ⊗ ∇w + w B` of every sample of a run, for `N` fields at once: maps `P -> o + B P` of the chunk's own frames.
+pub struct Gradients<'a, const N: usize> {
     pub chunk: &'a Chunk,
     pub run: &'a Run<'a>,
-    pub values: &'a [Vec3],
+    pub fields: [&'a [FrameMap]; N],
+    /// All in one memory; where each field's starts.
     pub out: &'a mut [f64],
+    pub starts: [usize; N],
 }
 
-impl WithSimd for Gradients<'_> {
+impl<const N: usize> WithSimd for Gradients<'_, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { chunk, run, values, out } = self;
+        let Self { chunk, run, fields, out, starts } = self;
         for block in run.rows() {
             let mut lane = 0;
             while lane < LANES {
-                let mut F = Mat3::zero(Lanes::constant(simd, 0.0));
+                let P = load_vector(simd, chunk.points(block), lane);
+                let mut gradients = [Mat3::zero(Lanes::constant(simd, 0.0)); N];
                 for member in chunk.members(block) {
-                    let frame = ROWS_OF_FRAME * chunk.members[member] as usize;
-                    let rows = &values[frame..frame + ROWS_OF_FRAME];
-                    for (row, h) in rows.iter().zip(chunk.gradient(member).chunks_exact(3)) {
-                        let [x, y, z] = row.to_array().map(|number| Lanes::constant(simd, number));
+                    let share = chunk.share(member);
+                    let weight = Lanes::load(simd, &share[0].0[lane..]);
+                    let slope = load_vector(simd, &share[1..], lane);
+                    for field in 0..N {
+                        let map = &fields[field][chunk.members[member] as usize];
+                        let (at, turn) = carried(simd, map, P);
+                        let F = &mut gradients[field];
+                        accumulate(&mut F.columns[0], at, slope.x);
+                        accumulate(&mut F.columns[1], at, slope.y);
+                        accumulate(&mut F.columns[2], at, slope.z);
                         for J in 0..3 {
-                            let h = Lanes::load(simd, &h[J].0[lane..]);
-                            let column = &mut F.columns[J];
-                            column.x = x.mul_add(h, column.x);
-                            column.y = y.mul_add(h, column.y);
-                            column.z = z.mul_add(h, column.z);
+                            accumulate(&mut F.columns[J], turn.columns[J], weight);
                         }
                     }
                 }
-                store_matrix(&F, &mut out[run.lane_of(block) + lane..]);
+                for field in 0..N {
+                    store_matrix(&gradients[field], &mut out[starts[field] + run.lane_of(block) + lane..]);
+                }
                 lane += S::F64_LANES;
             }
         }
     }
 }
 
-/// Adds `scale V P h` of a run's samples to the sums of rows, eight samples side by side.
+#[inline(always)]
+fn load_vector<S: Simd>(simd: S, blocks: &[LaneBlock], lane: usize) -> Vec3<Lanes<S>> {
+    Vec3::new(
+        Lanes::load(simd, &blocks[0].0[lane..]),
+        Lanes::load(simd, &blocks[1].0[lane..]),
+        Lanes::load(simd, &blocks[2].0[lane..]),
+    )
+}
+
+/// `o + B P`, and `B`.
+#[inline(always)]
+fn carried<S: Simd>(simd: S, map: &FrameMap, P: Vec3<Lanes<S>>) -> (Vec3<Lanes<S>>, Mat3<Lanes<S>>) {
+    let mut turn = Mat3::zero(Lanes::constant(simd, 0.0));
+    let mut at = constant(simd, map.origin);
+    for J in 0..3 {
+        turn.columns[J] = constant(simd, map.turn.columns[J]);
+    }
+    accumulate(&mut at, turn.columns[0], P.x);
+    accumulate(&mut at, turn.columns[1], P.y);
+    accumulate(&mut at, turn.columns[2], P.z);
+    (at, turn)
+}
+
+#[inline(always)]
+fn constant<S: Simd>(simd: S, vector: Vec3) -> Vec3<Lanes<S>> {
+    Vec3::new(
+        Lanes::constant(simd, vector.x),
+        Lanes::constant(simd, vector.y),
+        Lanes::constant(simd, vector.z),
+    )
+}
+
+/// Numbers of a frame's sums: the force on its map's origin, then by columns what is on its turn.
+pub const MAP_LEN: usize = 12;
+
+/// Adds `scale V (P ∇w, P ∇w ⊗ X + w P)`, with the stress `P` at the sample `X`, to the sums of frames, eight samples side by side: the
+/// transpose of [`Gradients`].
 pub struct Spread<'a> {
     pub chunk: &'a Chunk,
     pub run: &'a Run<'a>,
     pub stresses: &'a [f64],
     pub scale: f64,
-    /// Of each of the chunk's own frames: row by row three components.
+    /// Of each of the chunk's own frames [`MAP_LEN`].
     pub sums: &'a mut [LaneBlock],
 }
 
@@ -80,26 +127,34 @@ impl WithSimd for Spread<'_> {
             let mut lane = 0;
             while lane < LANES {
                 let volume = Lanes::load(simd, &chunk.samples.volumes(block)[lane..]);
-                let P = load_matrix(simd, &stresses[run.lane_of(block) + lane..]).scaled(volume * scale);
+                let stress = load_matrix(simd, &stresses[run.lane_of(block) + lane..]).scaled(volume * scale);
+                let X = load_vector(simd, chunk.points(block), lane);
                 for member in chunk.members(block) {
-                    let frame = GRADIENT_LEN * chunk.members[member] as usize;
-                    let sums = &mut sums[frame..frame + GRADIENT_LEN];
-                    for (sums, h) in sums.chunks_exact_mut(3).zip(chunk.gradient(member).chunks_exact(3)) {
-                        let h = Vec3::new(
-                            Lanes::load(simd, &h[0].0[lane..]),
-                            Lanes::load(simd, &h[1].0[lane..]),
-                            Lanes::load(simd, &h[2].0[lane..]),
-                        );
-                        let f = (P * h).to_array();
-                        for i in 0..3 {
-                            let sum = &mut sums[i].0[lane..];
-                            (Lanes::load(simd, sum) + f[i]).store(sum);
-                        }
+                    let share = chunk.share(member);
+                    let weight = Lanes::load(simd, &share[0].0[lane..]);
+                    let force = stress * load_vector(simd, &share[1..], lane);
+                    let first = MAP_LEN * chunk.members[member] as usize;
+                    let sums = &mut sums[first..first + MAP_LEN];
+                    add(simd, force, &mut sums[..3], lane);
+                    let arms = [X.x, X.y, X.z];
+                    for J in 0..3 {
+                        let mut on_turn = force * arms[J];
+                        accumulate(&mut on_turn, stress.columns[J], weight);
+                        add(simd, on_turn, &mut sums[3 * (J + 1)..3 * (J + 2)], lane);
                     }
                 }
                 lane += S::F64_LANES;
             }
         }
+    }
+}
+
+#[inline(always)]
+fn add<S: Simd>(simd: S, vector: Vec3<Lanes<S>>, sums: &mut [LaneBlock], lane: usize) {
+    let numbers = vector.to_array();
+    for i in 0..3 {
+        let sum = &mut sums[i].0[lane..];
+        (Lanes::load(simd, sum) + numbers[i]).store(sum);
     }
 }
 
@@ -111,6 +166,8 @@ pub struct Blocks<'a> {
     pub scale: f64,
     /// Scratch for one frame, [`RATES_LEN`].
     pub rates: &'a mut [f64],
+    /// Scratch for the gradients of a block's members.
+    pub gradients: &'a mut Vec<LaneBlock>,
     pub sums: &'a mut [f64],
 }
 
@@ -119,18 +176,23 @@ impl WithSimd for Blocks<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { chunk, run, tangents, scale, rates, sums } = self;
+        let Self { chunk, run, tangents, scale, rates, gradients, sums } = self;
         for block in run.rows() {
             let members = chunk.members(block);
+            gradients.resize(members.len() * GRADIENT_LEN, LaneBlock::default());
+            for (member, out) in members.clone().zip(gradients.chunks_exact_mut(GRADIENT_LEN)) {
+                chunk.gradients_into(block, member, out);
+            }
             let places = &chunk.places[chunk.place_starts[block] as usize..];
             let count = members.len();
-            for (b, second) in members.clone().enumerate() {
-                fill_rates(simd, chunk, (block, second), &tangents[run.lane_of(block)..], scale, rates);
+            for (b, second) in gradients.chunks_exact(GRADIENT_LEN).enumerate() {
+                let volumes = chunk.samples.volumes(block);
+                fill_rates(simd, (volumes, second), &tangents[run.lane_of(block)..], scale, rates);
                 // pairs are listed line by line: (a, b) is the (b - a)-th of line a
                 let mut line = 0;
-                for (a, first) in members.clone().take(b + 1).enumerate() {
+                for (a, first) in gradients.chunks_exact(GRADIENT_LEN).take(b + 1).enumerate() {
                     let pair = places[line + b - a] as usize * PAIR_LEN;
-                    add_products(simd, chunk.gradient(first), rates, &mut sums[pair..pair + PAIR_LEN]);
+                    add_products(simd, first, rates, &mut sums[pair..pair + PAIR_LEN]);
                     line += count - a;
                 }
             }
@@ -142,8 +204,7 @@ impl WithSimd for Blocks<'_> {
 #[inline(always)]
 fn fill_rates<S: Simd>(
     simd: S,
-    chunk: &Chunk,
-    (block, member): (usize, usize),
+    (volumes, gradient): (&[f64; LANES], &[LaneBlock]),
     tangents: &[f64],
     scale: f64,
     rates: &mut [f64],
@@ -151,8 +212,8 @@ fn fill_rates<S: Simd>(
     let rates = &mut rates[..RATES_LEN];
     let mut lane = 0;
     while lane < LANES {
-        let weight = Lanes::load(simd, &chunk.samples.volumes(block)[lane..]) * scale;
-        for (b, h) in chunk.gradient(member).chunks_exact(3).enumerate() {
+        let weight = Lanes::load(simd, &volumes[lane..]) * scale;
+        for (b, h) in gradient.chunks_exact(3).enumerate() {
             let h = [0, 1, 2].map(|L: usize| Lanes::load(simd, &h[L].0[lane..]) * weight);
             for k in 0..3 {
                 for entry in 0..9 {

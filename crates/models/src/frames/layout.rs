@@ -1,17 +1,22 @@
 //! How samples of frames lie in memory: chunks of neighbouring samples, eight side by side, each eight with the frames
 //! that reach any of them.
 //!
-//! Eight neighbours share most of their frames, so the rows of a frame are read once for eight samples; a frame that
-//! does not reach one of them has nothing to say there. Order of samples and sums depends on the body alone.
+//! Eight neighbours share most of their frames, so a frame is read once for eight samples; a frame that does not reach one of them
+//! has nothing to say there. Large bodies wait for memory, so what is kept of a frame at a sample is its weight and the gradient of
+//! that, four numbers: the twelve of the gradients of its rows follow from these and from where sample and frame are at rest. Order of
+//! samples and sums depends on the body alone.
 
+use souple_math::{Mat3, Vec3};
 use souple_mesh::recursive_bisection;
 
-use super::{Carried, ROWS_OF_FRAME, Sample};
+use super::{Carried, Frame, ROWS_OF_FRAME, Sample};
 use crate::solids::layout::{Chunk as SampleChunk, LANES, LaneBlock};
 
 /// Samples of a chunk: as many as runs of a law take a few times over, few enough to share most of their frames.
 const SAMPLES_PER_CHUNK: usize = 256;
-/// Numbers of a frame at a sample: the gradient of each of its rows.
+/// Numbers of a frame at a sample: its weight, and the gradient of that.
+pub const SHARE_LEN: usize = 4;
+/// Numbers of a frame at a sample, written out: the gradient of each of its rows.
 pub const GRADIENT_LEN: usize = 3 * ROWS_OF_FRAME;
 
 /// Neighbouring samples of one law.
@@ -25,8 +30,13 @@ pub struct Chunk {
     pub starts: Vec<u32>,
     /// The chunk's own frame of each (block, frame).
     pub members: Vec<u16>,
-    /// Of each member: row by row three components of its gradient.
-    gradients: Vec<LaneBlock>,
+    /// Of each member: its weight, and three components of the gradient of that.
+    shares: Vec<LaneBlock>,
+    /// Of each block: where its samples are at rest [m], counted from the middle of the chunk, so that bodies far from the origin
+    /// lose no digits.
+    points: Vec<LaneBlock>,
+    /// Own frames at rest, origins counted likewise.
+    rest: Vec<Frame>,
     /// Pairs `i ≤ j` of own frames that share a block.
     pub pairs: Vec<[u16; 2]>,
     /// Of each block's pairs `(a, b)`, `a ≤ b`, of members: the chunk's pair.
@@ -37,43 +47,96 @@ pub struct Chunk {
     pub first_pair: usize,
 }
 
+/// Where a frame takes a material point: from `P` to `origin + turn P`. As a field of forces, the force at `P = 0` and `Σ f ⊗ P`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameMap {
+    pub origin: Vec3,
+    pub turn: Mat3,
+}
+
 impl Chunk {
     pub fn members(&self, block: usize) -> std::ops::Range<usize> {
         self.starts[block] as usize..self.starts[block + 1] as usize
     }
 
     #[inline(always)]
-    pub fn gradient(&self, member: usize) -> &[LaneBlock] {
-        &self.gradients[member * GRADIENT_LEN..(member + 1) * GRADIENT_LEN]
+    pub fn share(&self, member: usize) -> &[LaneBlock] {
+        &self.shares[member * SHARE_LEN..(member + 1) * SHARE_LEN]
+    }
+
+    #[inline(always)]
+    pub fn points(&self, block: usize) -> &[LaneBlock] {
+        &self.points[3 * block..3 * (block + 1)]
+    }
+
+    /// Maps of own frames from their rows, four a frame.
+    pub fn maps_of<'a>(
+        &'a self,
+        rows: impl Iterator<Item = Vec3> + 'a,
+    ) -> impl Iterator<Item = FrameMap> + 'a {
+        let mut rows = rows;
+        self.rest.iter().map(move |Frame { origin, axes }| {
+            let mut row = || rows.next().unwrap_or(Vec3::ZERO);
+            let (now, mut turn) = (row(), Mat3::ZERO);
+            for axis in axes.columns {
+                turn += row().outer(axis);
+            }
+            FrameMap { origin: now - turn * *origin, turn }
+        })
+    }
+
+    /// Forces on the rows of own frame number `own` from those on its map: the transpose of [`Chunk::maps_of`].
+    pub fn forces_of(&self, own: usize, on_map: &FrameMap) -> [Vec3; ROWS_OF_FRAME] {
+        let (Frame { origin, axes }, FrameMap { origin: force, turn }) = (&self.rest[own], on_map);
+        let about_origin = *turn - force.outer(*origin);
+        let [x, y, z] = axes.columns.map(|axis| about_origin * axis);
+        [*force, x, y, z]
+    }
+
+    /// Writes the gradients of the rows of a member: `∇w` of its origin, `l_k ∇w + w A_k` of its axis `k`.
+    pub fn gradients_into(&self, block: usize, member: usize, out: &mut [LaneBlock]) {
+        let Frame { origin, axes } = &self.rest[self.members[member] as usize];
+        let (share, points) = (self.share(member), self.points(block));
+        out[..3].copy_from_slice(&share[1..]);
+        for (axis, out) in axes.columns.iter().zip(out[3..].chunks_exact_mut(3)) {
+            for lane in 0..LANES {
+                let point = Vec3::new(points[0].0[lane], points[1].0[lane], points[2].0[lane]);
+                let local = axis.dot(point - *origin);
+                for J in 0..3 {
+                    out[J].0[lane] = share[1 + J].0[lane] * local + share[0].0[lane] * axis[J];
+                }
+            }
+        }
     }
 
     pub fn bytes(&self) -> usize {
         self.samples.bytes()
-            + size_of::<LaneBlock>() * self.gradients.len()
+            + size_of::<LaneBlock>() * (self.shares.len() + self.points.len())
+            + size_of::<Frame>() * self.rest.len()
             + 4 * (self.frames.len() + self.starts.len() + self.places.len() + self.place_starts.len())
             + 2 * (self.members.len() + 2 * self.pairs.len())
     }
 }
 
 /// Lays out the samples named in `members`, all of one law, into chunks; `parameters_of` gives the numbers of each.
-pub fn chunks<'p>(
-    (samples, carried): (&[Sample], &[Carried]),
-    members: &[u32],
-    parameters_of: &dyn Fn(u32) -> &'p [f64],
-) -> Vec<Chunk> {
-    let places: Vec<_> = members.iter().map(|sample| samples[*sample as usize].position).collect();
+pub fn chunks<'p>(body: &Body, members: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f64]) -> Vec<Chunk> {
+    let places: Vec<_> = members.iter().map(|sample| body.samples[*sample as usize].position).collect();
     // halves of halves: eight neighbours in the order are neighbours in space
     let order = recursive_bisection(&places, LANES);
     let order: Vec<u32> = order.iter().map(|index| members[*index as usize]).collect();
-    order.chunks(SAMPLES_PER_CHUNK).map(|order| lay_out(samples, carried, order, parameters_of)).collect()
+    order.chunks(SAMPLES_PER_CHUNK).map(|order| lay_out(body, order, parameters_of)).collect()
 }
 
-fn lay_out<'p>(
-    samples: &[Sample],
-    carried: &[Carried],
-    order: &[u32],
-    parameters_of: &dyn Fn(u32) -> &'p [f64],
-) -> Chunk {
+/// Whose samples are laid out.
+pub struct Body<'a> {
+    pub frames: &'a [Frame],
+    pub samples: &'a [Sample],
+    /// What frames have to say at each sample.
+    pub carried: &'a [Carried],
+}
+
+fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f64]) -> Chunk {
+    let Body { frames: rest, samples, carried } = body;
     let block_count = order.len().div_ceil(LANES);
     let at = |block: usize, lane: usize| order.get(block * LANES + lane);
     let sample = |block: usize, lane: usize| match at(block, lane) {
@@ -87,13 +150,22 @@ fn lay_out<'p>(
         frames.dedup();
         frames
     };
+    let place = |index: &u32| samples[*index as usize].position;
+    let centre = order.iter().map(place).sum::<Vec3>() * (1.0 / order.len() as f64);
+    let frames = frames_of(order);
+    let from_centre = |frame: &u32| {
+        let Frame { origin, axes } = rest[*frame as usize];
+        Frame { origin: origin - centre, axes }
+    };
     let mut chunk = Chunk {
         samples: SampleChunk::of_samples(block_count, sample),
         block_count,
-        frames: frames_of(order),
+        rest: frames.iter().map(from_centre).collect(),
+        frames,
         starts: vec![0],
         members: Vec::new(),
-        gradients: Vec::new(),
+        shares: Vec::new(),
+        points: vec![LaneBlock::default(); 3 * block_count],
         pairs: Vec::new(),
         places: Vec::new(),
         place_starts: vec![0],
@@ -101,24 +173,32 @@ fn lay_out<'p>(
         first_pair: 0,
     };
     let own = |chunk: &Chunk, frame: u32| chunk.frames.partition_point(|known| *known < frame) as u16;
-    for indices in order.chunks(LANES) {
+    for (block, indices) in order.chunks(LANES).enumerate() {
+        // lanes past the last sample stand where it stands, without volume
+        let at = |lane: usize| indices[lane.min(indices.len() - 1)];
+        for lane in 0..LANES {
+            let point = place(&at(lane)) - centre;
+            for axis in 0..3 {
+                chunk.points[3 * block + axis].0[lane] = point[axis];
+            }
+        }
         for frame in frames_of(indices) {
             chunk.members.push(own(&chunk, frame));
-            let first = chunk.gradients.len();
-            chunk.gradients.resize(first + GRADIENT_LEN, LaneBlock::default());
-            // lanes past the last sample stand where it stands, without volume
+            let first = chunk.shares.len();
+            chunk.shares.resize(first + SHARE_LEN, LaneBlock::default());
             for lane in 0..LANES {
-                let point = &carried[indices[lane.min(indices.len() - 1)] as usize];
+                let point = &carried[at(lane) as usize];
                 let Ok(place) = point.frames.binary_search(&frame) else { continue };
-                for (row, (_, gradient)) in point.rows[place].iter().enumerate() {
-                    for axis in 0..3 {
-                        chunk.gradients[first + 3 * row + axis].0[lane] = gradient[axis];
-                    }
+                let (weight, gradient) = point.rows[place][0];
+                chunk.shares[first].0[lane] = weight;
+                for axis in 0..3 {
+                    chunk.shares[first + 1 + axis].0[lane] = gradient[axis];
                 }
             }
         }
         chunk.starts.push(chunk.members.len() as u32);
     }
+    chunk.shares.shrink_to_fit();
     number_pairs(&mut chunk);
     chunk
 }

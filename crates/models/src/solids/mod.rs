@@ -6,7 +6,7 @@ mod difference;
 mod eight_samples;
 mod elements;
 mod formulation;
-mod geometry;
+pub(crate) mod geometry;
 mod group;
 mod kernel;
 pub(crate) mod layout;

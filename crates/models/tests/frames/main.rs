@@ -86,6 +86,7 @@ impl Body {
             (0..mesh.cell_count()).map(|cell| (cell * materials.len() / mesh.cell_count()) as u16).collect();
         FramesForce::new(FramesDescription {
             name: "body".into(),
+            frames: &self.frames,
             row_of_frame: &self.rows,
             samples: &self.samples,
             carried: &self.carried,

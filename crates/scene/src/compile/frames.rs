@@ -87,6 +87,7 @@ impl PlacedFrames {
     ) -> Box<dyn Force> {
         Box::new(FramesForce::new(FramesDescription {
             name: solid_name(&body.spec.name),
+            frames: &self.frames,
             row_of_frame: &self.rows,
             samples: &self.samples,
             carried: &self.carried,
