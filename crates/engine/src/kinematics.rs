@@ -218,6 +218,11 @@ impl Kinematics {
         self.runs.iter().any(|run| run.kind != UnknownKind::Point)
     }
 
+    /// Whether every unknown is a frame.
+    pub fn has_frames_alone(&self) -> bool {
+        self.has_frames() && self.runs.iter().all(|run| run.kind != UnknownKind::Point || run.count == 0)
+    }
+
     pub fn has_rigid_frames(&self) -> bool {
         self.runs.iter().any(|run| run.kind == UnknownKind::RigidFrame)
     }
@@ -312,9 +317,10 @@ impl Kinematics {
         self.derive_rows(rows);
     }
 
-    fn free_velocities_into(&self, q: &[Vec3], v: &[Vec3], rows: &mut [Vec3]) {
+    /// [`Kinematics::velocities_into`] of the free rows alone.
+    pub fn free_velocities_into(&self, q: &[Vec3], v: &[Vec3], rows: &mut [Vec3]) {
         if !self.has_frames() {
-            reduce::copy(rows, v);
+            reduce::copy(&mut rows[..v.len()], v);
             return;
         }
         for (row, &(block, carrier)) in self.carriers.iter().enumerate() {
@@ -333,6 +339,14 @@ impl Kinematics {
                 *row = weighted(self.forward.of(first + at), free);
             }
         });
+    }
+
+    /// [`Kinematics::derive_rows`] of these alone.
+    pub fn derive_some_rows(&self, which: &[u32], rows: &mut [Vec3]) {
+        let free = self.carriers.len();
+        for row in which {
+            rows[*row as usize] = weighted(self.forward.of(*row as usize - free), &rows[..free]);
+        }
     }
 
     /// Generalised forces `Tᵀ f` on velocity blocks; `rows` is consumed as scratch.

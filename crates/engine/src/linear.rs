@@ -7,13 +7,17 @@
 use std::sync::Arc;
 
 use souple_math::Vec3;
-use souple_solve::krylov::Stop;
+use souple_solve::krylov::{Settings, Stop, conjugate_gradient};
 use souple_solve::precondition::{BlockRole, Geometry};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, SolveError, reduce, solvers};
 use souple_table::{Parameter, Range, Value, Values};
 
+use crate::force::Scratch;
+use crate::implicit::Rates;
 use crate::kinematics::{Kinematics, UnknownKind};
+use crate::reference_factor::ReferenceFactor;
 use crate::steppers::StepError;
+use crate::system::{Surroundings, System};
 
 /// A linear system that could not be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -101,8 +105,11 @@ const METHODS: [(&str, Method); 5] = [
 const AUTOMATIC: &str = "auto";
 /// All that needs no more of a matrix than its diagonal blocks.
 const WITHOUT_MATRIX: &str = "block_jacobi";
+/// Not of the solvers' table: it needs the model ([`ReferenceFactor`]).
+const REFERENCE_FACTOR: &str = "reference_factor";
 /// `lagged_factor` is not among them: it would carry factors of earlier steps into later bits.
-const PRECONDITIONERS: &[&str] = &[AUTOMATIC, "rigid_modes", "incomplete_cholesky", WITHOUT_MATRIX];
+const PRECONDITIONERS: &[&str] =
+    &[AUTOMATIC, "rigid_modes", "incomplete_cholesky", WITHOUT_MATRIX, REFERENCE_FACTOR];
 
 pub const SOLVER: Parameter = Parameter::choice(
     "solver",
@@ -114,7 +121,8 @@ pub const SOLVER: Parameter = Parameter::choice(
 pub const PRECONDITIONER: Parameter = Parameter::choice(
     "preconditioner",
     PRECONDITIONERS,
-    "what makes the iterations few; `auto`: the cheaper the more inertia outweighs stiffness",
+    "what makes the iterations few; `auto`: the cheaper the more inertia outweighs stiffness; `reference_factor`: the factor of where \
+     all stood first, turned with frames and points, and products without a matrix",
 )
 .or(Value::Text(AUTOMATIC));
 
@@ -155,9 +163,15 @@ impl SolverSettings {
         }
     }
 
+    /// The preconditioner of the solvers' table.
+    fn of_table(&self) -> &'static str {
+        if self.preconditioner == REFERENCE_FACTOR { AUTOMATIC } else { self.preconditioner }
+    }
+
     /// The preconditioner that takes the place of the chosen one where no matrix is stored; `None` where it stays.
     pub fn preconditioner_instead(&self) -> Option<&'static str> {
-        let stays = !self.matrix_free || [AUTOMATIC, WITHOUT_MATRIX].contains(&self.preconditioner);
+        let without_matrix = [AUTOMATIC, WITHOUT_MATRIX, REFERENCE_FACTOR];
+        let stays = !self.matrix_free || without_matrix.contains(&self.preconditioner);
         (!stays).then_some(WITHOUT_MATRIX)
     }
 }
@@ -173,6 +187,9 @@ const STAGNATED_AT_MOST: f64 = 100.0;
 /// Iterations on a matrix that is not symmetric, where another can be taken: GMRES until it starts over. Of a definite
 /// matrix with friction the preconditioned iteration takes some tens, and one that takes more loses these few.
 const PATIENCE: usize = 60;
+/// Iterations with the factor of the reference configuration that cost more than a matrix and a factor of its own: products of one
+/// iteration take a tenth to a thirtieth of an assembly, as measured on bars of frames.
+const WORTH_A_MATRIX: usize = 100;
 
 /// What comes of a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -192,6 +209,25 @@ pub enum Indefinite {
     Solve,
     /// An error, and soon where the matrix is not symmetric: whoever asks has another matrix to take.
     Refuse,
+}
+
+impl Use {
+    /// The residual at which rounding may end a solve to `tolerance`.
+    fn stagnated_at_most(self, tolerance: f64) -> f64 {
+        match self {
+            Self::Direction => STAGNATED_BUT_JUDGED,
+            Self::Answer => STAGNATED_AT_MOST * tolerance,
+        }
+    }
+}
+
+/// What is asked of [`LinearSolver::solve_by_reference`].
+#[derive(Clone, Copy, Debug)]
+pub struct ByReference {
+    pub indefinite: Indefinite,
+    pub used_as: Use,
+    /// As [`LinearSystem::tolerance`].
+    pub tolerance: f64,
 }
 
 /// A linear system and what is known of it.
@@ -220,10 +256,7 @@ pub struct LinearSystem<'a> {
 impl LinearSystem<'_> {
     /// The residual at which rounding may end a solve to `tolerance` or the system's own.
     fn stagnated_at_most(&self, tolerance: f64) -> f64 {
-        match self.used_as {
-            Use::Direction => STAGNATED_BUT_JUDGED,
-            Use::Answer => STAGNATED_AT_MOST * tolerance.max(self.tolerance),
-        }
+        self.used_as.stagnated_at_most(tolerance.max(self.tolerance))
     }
 }
 
@@ -246,9 +279,20 @@ struct Made {
     solver: Box<dyn solvers::LinearSolver>,
 }
 
+/// What became of the factor of a reference configuration.
+enum Reference {
+    Made(Box<ReferenceFactor>),
+    /// It has none: the matrix is not positive definite there.
+    None {
+        reference: Vec<f64>,
+        rates: Rates,
+    },
+}
+
 /// A solver with its structures and buffers.
 pub struct LinearSolver {
     settings: SolverSettings,
+    reference: Option<Reference>,
     symmetric: Option<Made>,
     general: Option<Made>,
     mass: Option<Made>,
@@ -258,7 +302,7 @@ pub struct LinearSolver {
 
 impl LinearSolver {
     pub fn new(settings: SolverSettings) -> Self {
-        Self { settings, symmetric: None, general: None, mass: None, diagonal: Vec::new() }
+        Self { settings, reference: None, symmetric: None, general: None, mass: None, diagonal: Vec::new() }
     }
 
     pub fn is_matrix_free(&self) -> bool {
@@ -270,10 +314,98 @@ impl LinearSolver {
         matches!(self.settings.method, Method::Cg | Method::Direct)
     }
 
+    /// Whether symmetric systems are to be solved by products and the factor of the reference configuration. Where the choice is free
+    /// it is taken for frames that meet nothing, whose matrix is dear, in linearised steps.
+    pub fn takes_reference_factor(&self, system: &System, used_as: Use) -> bool {
+        let by_choice = || {
+            !self.settings.matrix_free
+                && self.settings.method == Method::Auto
+                && used_as == Use::Answer
+                && !system.has_pairs()
+                && system.kinematics.has_frames_alone()
+        };
+        match self.settings.preconditioner {
+            REFERENCE_FACTOR => matches!(self.settings.method, Method::Auto | Method::Cg),
+            AUTOMATIC => by_choice(),
+            _ => false,
+        }
+    }
+
+    /// The factor of a reference configuration, made if it is not there; `None` where it has none.
+    pub fn reference_factor(
+        &mut self,
+        system: &System,
+        reference: &[f64],
+        rates: Rates,
+        around: &Surroundings,
+        scratches: &mut [Scratch],
+    ) -> Option<&mut ReferenceFactor> {
+        let is_of = |kept: &Reference| match kept {
+            Reference::Made(factor) => factor.is_of(reference, rates),
+            Reference::None { reference: known, rates: of } => known == reference && *of == rates,
+        };
+        if !self.reference.as_ref().is_some_and(is_of) {
+            self.reference = None;
+            let made = ReferenceFactor::new(system, reference, rates, around, scratches);
+            self.reference = Some(made.map_or_else(
+                |_| Reference::None { reference: reference.to_vec(), rates },
+                |factor| Reference::Made(Box::new(factor)),
+            ));
+        }
+        match self.reference.as_mut() {
+            Some(Reference::Made(factor)) => Some(factor),
+            _ => None,
+        }
+    }
+
+    /// The model has changed: what was made of it is no longer.
+    pub fn forget_reference(&mut self) {
+        self.reference = None;
+    }
+
+    /// Solves `A x = b`, symmetric and known by its products, with the factor of the reference configuration as it has turned; `None`
+    /// where the matrix itself is needed.
+    pub fn solve_by_reference(
+        &mut self,
+        operator: &dyn LinearOperator,
+        wanted: &ByReference,
+        b: &[Vec3],
+        x: &mut [Vec3],
+    ) -> Option<Solved> {
+        let Some(Reference::Made(factor)) = self.reference.as_mut() else { return None };
+        let settings = Settings {
+            tolerance: wanted.tolerance.max(self.settings.tolerance),
+            max_iterations: self.settings.max_iterations.min(WORTH_A_MATRIX),
+        };
+        let mut workspace = std::mem::take(&mut factor.workspace);
+        x.fill(Vec3::ZERO);
+        let report = conjugate_gradient(operator, &**factor, b, x, &settings, &mut workspace);
+        factor.workspace = workspace;
+        let stagnated_at_most = wanted.used_as.stagnated_at_most(settings.tolerance);
+        let solved = Solved {
+            iterations: report.iterations as u32,
+            residual: report.relative_residual,
+            ..Solved::default()
+        };
+        let counts = match report.stop {
+            Stop::Converged => true,
+            Stop::Stagnated => report.relative_residual <= stagnated_at_most,
+            Stop::Indefinite { .. } => wanted.indefinite == Indefinite::Descend && reduce::dot(x, b) > 0.0,
+            _ => false,
+        };
+        counts.then_some(solved)
+    }
+
     /// Bytes of factors and preconditioners.
     pub fn bytes(&self) -> usize {
         let made = [&self.symmetric, &self.general, &self.mass].into_iter().flatten();
+        let reference = match &self.reference {
+            Some(Reference::Made(factor)) => factor.bytes(),
+            Some(Reference::None { reference, .. }) => 8 * reference.capacity(),
+            None => 0,
+        };
         made.map(|made| made.solver.bytes() + 8 * made.reference.len()).sum::<usize>()
+            + reference
             + 8 * self.diagonal.len()
     }
 
@@ -342,9 +474,9 @@ impl LinearSolver {
     ) -> Result<Solved, SolveError> {
         let choice = match (system.operator, self.settings.method) {
             (Some(_), _) => ("cg", WITHOUT_MATRIX),
-            (None, Method::Cg) => ("cg", self.settings.preconditioner),
+            (None, Method::Cg) => ("cg", self.settings.of_table()),
             (None, Method::Direct) => ("direct", AUTOMATIC),
-            (None, _) => ("auto", self.settings.preconditioner),
+            (None, _) => ("auto", self.settings.of_table()),
         };
         let made = prepare(
             &mut self.symmetric,

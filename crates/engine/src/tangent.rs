@@ -13,7 +13,8 @@ use std::time::Instant;
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
 
-use crate::force::{Configuration, Force, Scratch, TangentWeights};
+use crate::force::{Configuration, Declaration, Force, Scratch, TangentWeights};
+use crate::frame_mass::FrameMass;
 use crate::implicit::Rates;
 use crate::kinematics::Kinematics;
 use crate::state::{Pair, SystemState};
@@ -36,6 +37,8 @@ pub struct Tangent {
     unbalanced: Vec<Vec3>,
     /// The matrix with symmetric stand-ins of what is not symmetric, for points alone.
     symmetric: Option<BlockMatrix>,
+    /// Forces that remember anything, couple what they meet, or have no symmetric tangent are left out.
+    is_of_lasting: bool,
 }
 
 /// Which tangent is assembled of forces whose tangent is symmetric.
@@ -80,6 +83,11 @@ impl Linearisation<'_> {
 }
 
 impl Tangent {
+    /// Of the forces alone whose tangent follows from where the rows are, and is symmetric.
+    pub fn of_lasting_forces() -> Self {
+        Self { is_of_lasting: true, ..Self::default() }
+    }
+
     /// The matrix at a linearisation, constrained directions replaced by the identity scaled like the rest.
     pub fn assemble(&mut self, at: &Linearisation, scratches: &mut [Scratch]) -> &mut BlockMatrix {
         self.assemble_with(Curvature::Exact, at, scratches).0
@@ -99,7 +107,7 @@ impl Tangent {
         rows.set_zero();
         let weights =
             TangentWeights { position: -1.0, velocity: if trivial { -at.rates.velocity } else { 0.0 } };
-        let mut turned = add_row_blocks(curvature, at, weights, scratches, &mut rows);
+        let mut turned = self.add_row_blocks(curvature, at, weights, scratches, &mut rows);
         if trivial {
             // A = a b M - ∂f/∂x - a ∂f/∂v
             add_mass(system, at.rates.inertia(), &mut rows);
@@ -124,7 +132,7 @@ impl Tangent {
                 self.row_velocities.take().unwrap_or_else(|| BlockMatrix::zeros(rows.pattern().clone()));
             damping.set_zero();
             let weights = TangentWeights { position: 0.0, velocity: -1.0 };
-            turned |= add_row_blocks(curvature, at, weights, scratches, &mut damping);
+            turned |= self.add_row_blocks(curvature, at, weights, scratches, &mut damping);
             transform_rows(kinematics, &damping, &mut blocks, &position_map, &velocity_map);
             self.row_velocities = Some(damping);
         }
@@ -219,7 +227,7 @@ impl Tangent {
             BlockMatrix::zeros(Arc::new(pattern.unwrap_or_else(|error| panic!("too many points: {error}"))))
         });
         diagonal.set_zero();
-        add_row_blocks(
+        self.add_row_blocks(
             Curvature::Exact,
             at,
             TangentWeights { position: -1.0, velocity: -at.rates.velocity },
@@ -229,6 +237,28 @@ impl Tangent {
         add_mass(system, at.rates.inertia(), &mut diagonal);
         constrain(system, &mut diagonal);
         self.diagonal.insert(diagonal)
+    }
+
+    /// Whether anything was turned round to be definite.
+    fn add_row_blocks(
+        &self,
+        curvature: Curvature,
+        at: &Linearisation,
+        weights: TangentWeights,
+        scratches: &mut [Scratch],
+        matrix: &mut BlockMatrix,
+    ) -> bool {
+        let mut turned = false;
+        for (index, force) in at.system.forces.iter().enumerate() {
+            let Declaration { changing_pattern, symmetric_tangent, .. } = force.declaration();
+            let is_lasting = force.memory_len() == 0 && !changing_pattern && symmetric_tangent;
+            if self.is_of_lasting && !is_lasting {
+                continue;
+            }
+            let view = at.system.view(index, at.rows, at.state, &at.around);
+            turned |= add_blocks_of(force.as_ref(), curvature, &view, weights, &mut scratches[index], matrix);
+        }
+        turned
     }
 
     /// Forces have come or gone: what is coupled is asked for again.
@@ -326,22 +356,6 @@ impl Tangent {
 fn rows_with_blocks(system: &System) -> impl Iterator<Item = usize> {
     let free = system.kinematics.free_row_count();
     (0..system.kinematics.row_count()).filter(move |row| *row < free || system.mass.diagonal[*row] != 0.0)
-}
-
-/// Whether anything was turned round to be definite.
-fn add_row_blocks(
-    curvature: Curvature,
-    at: &Linearisation,
-    weights: TangentWeights,
-    scratches: &mut [Scratch],
-    matrix: &mut BlockMatrix,
-) -> bool {
-    let mut turned = false;
-    for (index, force) in at.system.forces.iter().enumerate() {
-        let view = at.system.view(index, at.rows, at.state, &at.around);
-        turned |= add_blocks_of(force.as_ref(), curvature, &view, weights, &mut scratches[index], matrix);
-    }
-    turned
 }
 
 fn add_blocks_of(
@@ -455,32 +469,54 @@ pub fn add_congruent(
 /// The matrix of [`Tangent::assemble`], known by its products alone.
 pub struct TangentOperator<'a> {
     at: &'a Linearisation<'a>,
+    part: Part,
     buffers: Mutex<(&'a mut [Scratch], &'a mut OperatorBuffers)>,
 }
 
-/// Vectors of [`TangentOperator`], kept between steps; those over rows only where rows are more than points.
+/// What of a matrix products are with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Whole,
+    /// `(A + Aᵀ)/2` where turning frames are all that breaks symmetry.
+    Symmetric,
+}
+
+/// Vectors and maps of [`TangentOperator`], kept between steps; only where rows are more than points.
 pub struct OperatorBuffers {
     free: Vec<Vec3>,
     row_positions: Vec<Vec3>,
     row_velocities: Vec<Vec3>,
     row_force: Vec<Vec3>,
     row_inertia: Vec<Vec3>,
+    /// `D` of every free row.
+    velocity_maps: Vec<Mat3>,
+    /// `∂(Tᵀ) g` of every block.
+    geometric: Vec<Mat3>,
+    /// Derived rows that forces of no pairs or masses look at; the others are there to be seen.
+    derived: Vec<u32>,
+    mass: FrameMass,
     /// Wall seconds that products have taken since they were asked for last.
     seconds: f64,
 }
 
 impl OperatorBuffers {
     pub fn new(system: &System) -> Self {
-        let rows = || {
-            let count = if system.kinematics.is_trivial() { 0 } else { system.kinematics.row_count() };
-            vec![Vec3::ZERO; count]
-        };
+        let trivial = system.kinematics.is_trivial();
+        let rows = || vec![Vec3::ZERO; if trivial { 0 } else { system.kinematics.row_count() }];
         Self {
             free: vec![Vec3::ZERO; system.kinematics.block_count()],
             row_positions: rows(),
             row_velocities: rows(),
             row_force: rows(),
             row_inertia: rows(),
+            velocity_maps: Vec::new(),
+            geometric: Vec::new(),
+            derived: if trivial { Vec::new() } else { derived_rows_at_work(system) },
+            mass: if trivial {
+                FrameMass::default()
+            } else {
+                FrameMass::new(&system.mass, &system.kinematics)
+            },
             seconds: 0.0,
         }
     }
@@ -494,17 +530,74 @@ impl OperatorBuffers {
     pub fn bytes(&self) -> usize {
         let Self { free, row_positions, row_velocities, row_force, row_inertia, .. } = self;
         let buffers = [free, row_positions, row_velocities, row_force, row_inertia];
-        buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum()
+        let maps = [&self.velocity_maps, &self.geometric];
+        buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
+            + maps.into_iter().map(|maps| size_of::<Mat3>() * maps.capacity()).sum::<usize>()
+            + 4 * self.derived.capacity()
+            + self.mass.bytes()
     }
+
+    /// What all products at a linearisation have in common.
+    fn prepare(&mut self, at: &Linearisation, part: Part) {
+        let kinematics = &at.system.kinematics;
+        if kinematics.is_trivial() {
+            return;
+        }
+        self.velocity_maps.clear();
+        if at.rates.has_velocity() {
+            let free_rows = 0..kinematics.free_row_count() as u32;
+            self.velocity_maps.extend(free_rows.map(|row| at.velocity_map(row)));
+        }
+        self.geometric.clear();
+        if kinematics.has_rigid_frames() {
+            self.geometric.resize(kinematics.block_count(), Mat3::ZERO);
+            self.row_force.copy_from_slice(at.unbalanced);
+            kinematics.return_forces(&mut self.row_force);
+            for (row, g) in self.row_force[..kinematics.free_row_count()].iter().enumerate() {
+                if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
+                    self.geometric[block as usize] += match part {
+                        Part::Whole => geometric,
+                        Part::Symmetric => geometric.symmetric_part(),
+                    };
+                }
+            }
+        }
+    }
+
+    /// Fills derived rows that are looked at.
+    fn derive(at: &Linearisation, derived: &[u32], rows: &mut [Vec3]) {
+        let kinematics = &at.system.kinematics;
+        if at.system.has_pairs() && !at.state.pairs.is_empty() {
+            kinematics.derive_rows(rows);
+        } else {
+            kinematics.derive_some_rows(derived, rows);
+        }
+    }
+}
+
+/// Derived rows with a mass, and those that forces couple whatever the pairs.
+fn derived_rows_at_work(system: &System) -> Vec<u32> {
+    let free = system.kinematics.free_row_count() as u32;
+    let mut rows: Vec<u32> = rows_with_blocks(system).map(|row| row as u32).collect();
+    for force in &system.forces {
+        force.visit_cliques(&[], &mut |clique| rows.extend(clique.iter().filter(|row| **row >= free)));
+    }
+    rows.extend(system.mass.couplings.iter().flat_map(|&(a, b, _)| [a, b]));
+    rows.retain(|row| *row >= free);
+    rows.sort_unstable();
+    rows.dedup();
+    rows
 }
 
 impl<'a> TangentOperator<'a> {
     pub fn new(
         at: &'a Linearisation<'a>,
+        part: Part,
         scratches: &'a mut [Scratch],
         buffers: &'a mut OperatorBuffers,
     ) -> Self {
-        Self { at, buffers: Mutex::new((scratches, buffers)) }
+        buffers.prepare(at, part);
+        Self { at, part, buffers: Mutex::new((scratches, buffers)) }
     }
 
     /// `out = A δ` before constraints are imposed.
@@ -528,42 +621,56 @@ impl<'a> TangentOperator<'a> {
         if kinematics.is_trivial() {
             return self.product_of_points(delta, out, scratches);
         }
-        let OperatorBuffers { row_positions, row_velocities, row_force, row_inertia, .. } = buffers;
+        let OperatorBuffers { row_positions, row_velocities, row_force, row_inertia, velocity_maps, .. } =
+            buffers;
         // δx = T δ,  δẋ = D δ
-        kinematics.velocities_into(at.q, delta, row_positions);
-        row_velocities.fill(Vec3::ZERO);
-        if at.rates.has_velocity() {
-            for (row, velocity) in row_velocities[..kinematics.free_row_count()].iter_mut().enumerate() {
-                *velocity = at.velocity_map(row as u32) * delta[kinematics.block_of(row as u32) as usize];
-            }
-            kinematics.derive_rows(row_velocities);
+        kinematics.free_velocities_into(at.q, delta, row_positions);
+        OperatorBuffers::derive(at, &buffers.derived, row_positions);
+        for (row, (velocity, map)) in row_velocities.iter_mut().zip(&*velocity_maps).enumerate() {
+            *velocity = *map * delta[kinematics.block_of(row as u32) as usize];
         }
-        // b M δẋ - ∂f/∂x δx - ∂f/∂v δẋ
+        if at.rates.has_velocity() {
+            OperatorBuffers::derive(at, &buffers.derived, row_velocities);
+        }
+        // Tᵀ (b M δẋ - ∂f/∂x δx - ∂f/∂v δẋ), or of what is not symmetric half and of its transpose Dᵀ (b M δx - ∂f/∂v δx) half
         row_force.fill(Vec3::ZERO);
         row_inertia.fill(Vec3::ZERO);
+        let is_halved = self.part == Part::Symmetric && at.rates.has_velocity();
+        let share = if is_halved { 0.5 } else { 1.0 };
         if at.rates.has_inertia() {
-            let rate = at.rates.acceleration;
-            system.mass.add_product(row_velocities, row_inertia);
-            row_force.iter_mut().zip(row_inertia.iter()).for_each(|(f, inertia)| *f += *inertia * rate);
+            let rate = share * at.rates.acceleration;
+            buffers.mass.add_scaled_product(rate, row_velocities, row_force);
+            if is_halved {
+                buffers.mass.add_scaled_product(rate, row_positions, row_inertia);
+            }
         }
         for (index, force) in system.forces.iter().enumerate() {
             let view = at.system.view(index, at.rows, at.state, &at.around);
             let position = TangentWeights { position: -1.0, velocity: 0.0 };
             force.add_differential(&view, position, row_positions, &mut scratches[index], row_force);
             if at.rates.has_velocity() && force.declaration().velocity_terms {
-                let velocity = TangentWeights { position: 0.0, velocity: -1.0 };
+                let velocity = TangentWeights { position: 0.0, velocity: -share };
                 force.add_differential(&view, velocity, row_velocities, &mut scratches[index], row_force);
+                if is_halved {
+                    force.add_differential(
+                        &view,
+                        velocity,
+                        row_positions,
+                        &mut scratches[index],
+                        row_inertia,
+                    );
+                }
             }
         }
         kinematics.forces_into(at.q, row_force, out);
-        if kinematics.has_rigid_frames() {
-            row_force.copy_from_slice(at.unbalanced);
-            kinematics.return_forces(row_force);
-            for (row, g) in row_force[..kinematics.free_row_count()].iter().enumerate() {
-                if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
-                    out[block as usize] += geometric * delta[block as usize];
-                }
+        if is_halved {
+            kinematics.return_forces(row_inertia);
+            for (row, (map, force)) in velocity_maps.iter().zip(&*row_inertia).enumerate() {
+                out[kinematics.block_of(row as u32) as usize] += map.transpose_apply(*force);
             }
+        }
+        for ((out, geometric), delta) in out.iter_mut().zip(&buffers.geometric).zip(delta) {
+            *out += *geometric * *delta;
         }
     }
 }

@@ -266,6 +266,9 @@ impl World {
         let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
         self.fit_workspace();
+        if !matches!(edit, Edit::MoveHand { .. }) {
+            self.workspace.systems.iter_mut().for_each(|ws| ws.linear.forget_reference());
+        }
         let period = self.state.period;
         match (self.log.last_mut(), &edit) {
             // of the places that a hand passes within a period the last one counts
@@ -299,6 +302,7 @@ impl World {
         for (system, ws) in self.model.systems.iter().zip(&mut self.workspace.systems) {
             if ws.scratches.len() != system.forces.len() {
                 ws.tangent.forget_patterns();
+                ws.implicit = None;
             }
             ws.scratches.truncate(system.forces.len());
             let first_new = ws.scratches.len();

@@ -19,11 +19,11 @@ use souple_solve::reduce::norm;
 
 use crate::force::TangentWeights;
 use crate::kinematics::UnknownKind;
-use crate::linear::{Indefinite, LinearError, LinearSystem, Solved, Use};
+use crate::linear::{ByReference, Indefinite, LinearError, LinearSystem, Solved, Use};
 use crate::state::SystemState;
 use crate::steppers::{StepError, StepReport};
 use crate::system::{Rows, Surroundings, System, SystemWorkspace};
-use crate::tangent::{Assembled, Curvature, Linearisation, OperatorBuffers, TangentOperator};
+use crate::tangent::{Assembled, Curvature, Linearisation, OperatorBuffers, Part, TangentOperator};
 
 pub use history::Lent;
 pub(crate) use history::{accepts, carried, carry};
@@ -77,6 +77,11 @@ pub struct ImplicitBuffers {
     q: Vec<Vec3>,
     q_trial: Vec<Vec3>,
     v_trial: Vec<Vec3>,
+    /// Turns of frames by themselves, and what inertia is where they lead, over rows and over blocks; for one linearised solve with rigid
+    /// frames, empty elsewhere.
+    turns: Vec<Vec3>,
+    inertia: Vec<Vec3>,
+    inertia_residual: Vec<Vec3>,
     /// Empty where no force has velocity terms.
     at_offset: Vec<Vec3>,
     damping: Vec<Vec3>,
@@ -106,6 +111,9 @@ impl ImplicitBuffers {
             q: Vec::new(),
             q_trial: free_rows(),
             v_trial: blocks(),
+            turns: Vec::new(),
+            inertia: Vec::new(),
+            inertia_residual: Vec::new(),
             at_offset: Vec::new(),
             damping: Vec::new(),
             block_positions: Vec::new(),
@@ -136,6 +144,9 @@ impl ImplicitBuffers {
             &self.q,
             &self.q_trial,
             &self.v_trial,
+            &self.turns,
+            &self.inertia,
+            &self.inertia_residual,
             &self.at_offset,
             &self.damping,
             &self.block_positions,
@@ -219,24 +230,33 @@ impl ImplicitStep<'_> {
     /// `g = b M (ẋ - p) - f` over rows and `-Tᵀ g` without constrained components at `(q_trial, v_trial)`;
     /// returns the norm of the latter.
     fn evaluate(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) -> f64 {
-        let system = self.system;
-        system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        self.place_inertia(ws, buffers);
+        self.add_forces(state, ws, buffers);
+        self.contract(ws, buffers);
+        norm(&buffers.residual)
+    }
+
+    /// `g -= f` at the placed rows.
+    fn add_forces(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
         let clock = Instant::now();
-        system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
+        self.system.sum_row_forces(&ws.rows, state, &self.around, &mut ws.scratches, &mut ws.row_force);
         ws.stages.forces += clock.elapsed().as_secs_f64();
+        for (g, f) in buffers.unbalanced.iter_mut().zip(&ws.row_force) {
+            *g -= *f;
+        }
+    }
+
+    /// `g = b M (ẋ - p)` with the velocities of the placed rows.
+    fn place_inertia(&self, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
         buffers.unbalanced.fill(Vec3::ZERO);
         if self.rates.has_inertia() {
             let coasting = buffers.row_coasting();
             for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(coasting) {
                 *change = (*now - *before) * self.rates.acceleration;
             }
-            system.mass.add_product(&ws.row_scratch, &mut buffers.unbalanced);
+            self.system.mass.add_product(&ws.row_scratch, &mut buffers.unbalanced);
         }
-        for (g, f) in buffers.unbalanced.iter_mut().zip(&ws.row_force) {
-            *g -= *f;
-        }
-        self.contract(ws, buffers);
-        norm(&buffers.residual)
     }
 
     /// `-Tᵀ g` without constrained components.
@@ -319,7 +339,8 @@ impl ImplicitStep<'_> {
             buffers;
         let clock = Instant::now();
         let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
-        TangentOperator::new(&at, scratches, operator).apply_unconstrained(prescribed, direction);
+        TangentOperator::new(&at, Part::Whole, scratches, operator)
+            .apply_unconstrained(prescribed, direction);
         // it counts as assembly
         operator.take_seconds();
         for (rhs, lift) in rhs.iter_mut().zip(direction.iter()) {
@@ -358,6 +379,13 @@ impl ImplicitStep<'_> {
         wanted: Wanted,
     ) -> Attempt {
         let system = self.system;
+        if curvature == Curvature::Exact
+            && ws.linear.takes_reference_factor(system, wanted.used_as)
+            && self.is_symmetric_over_rows()
+            && let Some(attempt) = self.attempt_by_reference(state, ws, buffers, wanted)
+        {
+            return attempt;
+        }
         let SystemWorkspace { scratches, rows, tangent, linear, stages, .. } = ws;
         let ImplicitBuffers {
             unbalanced, direction, rhs, q_trial, v_trial, operator, block_positions, ..
@@ -394,7 +422,7 @@ impl ImplicitStep<'_> {
             .map(|block| (matrix.diagonal_block(block).trace() / 3.0 * positions[block].length()).powi(2));
         let rounding = f64::EPSILON * weighted.sum::<f64>().sqrt();
         let clock = Instant::now();
-        let products = is_matrix_free.then(|| TangentOperator::new(&at, scratches, operator));
+        let products = is_matrix_free.then(|| TangentOperator::new(&at, Part::Whole, scratches, operator));
         let linear_system = LinearSystem {
             matrix,
             operator: products.as_ref().map(|operator| operator as _),
@@ -416,6 +444,44 @@ impl ImplicitStep<'_> {
         Attempt { solved: solved.map(|solved| Solved { made_definite: turned, ..solved }), rounding }
     }
 
+    /// `direction = A⁻¹ rhs` by products and the factor of the reference configuration; `None` where that does not do. Of turning frames
+    /// the symmetric part counts.
+    fn attempt_by_reference(
+        &self,
+        state: &SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+        wanted: Wanted,
+    ) -> Option<Attempt> {
+        let system = self.system;
+        let SystemWorkspace { scratches, rows, linear, stages, .. } = ws;
+        let ImplicitBuffers {
+            unbalanced, direction, rhs, q_trial, v_trial, operator, block_positions, ..
+        } = buffers;
+        let clock = Instant::now();
+        let reference = history::reference(&system.kinematics, &state.history);
+        let factor = linear.reference_factor(system, reference, self.rates, &self.around, scratches)?;
+        factor.follow(&system.kinematics, q_trial);
+        system.block_positions_into(&rows.positions, block_positions);
+        let weighted = factor.diagonal().iter().zip(&*block_positions);
+        let rounding = f64::EPSILON * weighted.map(|(d, x)| (d * x.length()).powi(2)).sum::<f64>().sqrt();
+        stages.assembly += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
+        let products = TangentOperator::new(&at, Part::Symmetric, scratches, operator);
+        let Wanted { indefinite, used_as, tolerance, .. } = wanted;
+        let solved = linear.solve_by_reference(
+            &products,
+            &ByReference { indefinite, used_as, tolerance },
+            rhs,
+            direction,
+        );
+        stages.solve += clock.elapsed().as_secs_f64();
+        drop(products);
+        stages.products += operator.take_seconds();
+        solved.map(|solved| Attempt { solved: Ok(solved), rounding })
+    }
+
     /// Whether the tangent is symmetric: rigid frames turn on the way, and one-way rows take what they do not give.
     fn is_symmetric(&self) -> bool {
         !self.system.kinematics.has_rigid_frames() && self.is_symmetric_over_rows()
@@ -432,8 +498,13 @@ impl ImplicitStep<'_> {
             && self.system.forces.iter().all(|force| force.declaration().symmetric_tangent)
     }
 
-    /// One linearisation about the start, with rigid frames turned on as they coast, for backward Euler `(M - h B - h² K) Δv = h (f + h K v)`, the forces' velocity
+    /// One linearisation about the start, for backward Euler `(M - h B - h² K) Δv = h (f + h K v)`, the forces' velocity
     /// terms taken about the velocity of the start.
+    ///
+    /// Rigid frames are taken to where they turn by themselves, and the solve is for what they turn beside that: inertia is about
+    /// there, since about the start it would leave out `ω × (ω × a)`, of which `1/h` times the square of the step's turn is
+    /// left however short the step. Forces are about the start all the same, `f + K δ` along the way there: frames that are
+    /// turned and not moved strain what is between them, and a tangent of strained matter need not be definite.
     ///
     /// # Errors
     /// The linear solve failed.
@@ -449,10 +520,21 @@ impl ImplicitStep<'_> {
         self.place_coasting(buffers);
         buffers.q_trial.copy_from_slice(q);
         buffers.v_trial.copy_from_slice(&buffers.velocity_offset);
-        self.coast_turns(buffers);
-        self.evaluate(state, ws, buffers);
+        let turns = self.coast_turns(buffers);
+        if turns {
+            self.place_inertia_where_turns_lead(ws, buffers);
+        }
+        self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        if !turns {
+            self.place_inertia(ws, buffers);
+        }
+        self.add_forces(state, ws, buffers);
         if self.system.forces.iter().any(|force| force.declaration().velocity_terms) {
             self.shift_to_start_velocity(state, ws, buffers);
+        }
+        self.contract(ws, buffers);
+        if turns {
+            self.add_forces_along_turns(state, ws, buffers);
         }
         let is_led = self.prescribed_into(q, &mut buffers.prescribed) > 0.0;
         let constrained = if is_led { Constrained::Led } else { Constrained::Still };
@@ -460,9 +542,8 @@ impl ImplicitStep<'_> {
         let indefinite = if is_matrix_free { Indefinite::Solve } else { Indefinite::Refuse };
         let wanted = Wanted { constrained, indefinite, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
-        q.copy_from_slice(&buffers.q_trial);
-        self.hold_back(state, q, ws, buffers);
-        self.system.kinematics.retract(q, &buffers.direction);
+        let fraction = self.hold_back(state, q, ws, buffers);
+        self.go(q, fraction, buffers);
         Ok(StepReport {
             newton_iterations: 1,
             linear_iterations: u64::from(solved.iterations),
@@ -472,49 +553,61 @@ impl ImplicitStep<'_> {
         })
     }
 
-    /// Halves the direction of a linearised solve until the step's potential, less the work of forces that have none, is no higher
-    /// at its end than where it begins, at `q`. That of a linear system never is; of one that is bent so much that the solve knows
-    /// nothing of its end, it may be by any amount. Constrained components go where they are led. What is shortened stays
-    /// behind where inertia leads, so that momentum is lost with the energy.
+    /// Moves `q` by the fraction of a linearised solve, along the turns of frames first; constrained components go where they are led.
+    fn go(&self, q: &mut [Vec3], fraction: f64, buffers: &mut ImplicitBuffers) {
+        let ImplicitBuffers { direction, prescribed, turns, rhs, .. } = buffers;
+        let kinematics = &self.system.kinematics;
+        if !turns.is_empty() {
+            kinematics.retract_scaled(q, turns, fraction);
+        }
+        // the right-hand side has served
+        for ((part, whole), led) in rhs.iter_mut().zip(direction.iter()).zip(prescribed.iter()) {
+            *part = *led + (*whole - *led) * fraction;
+        }
+        kinematics.retract(q, rhs);
+    }
+
+    /// The fraction of a linearised solve, 1 or halves of it, at which the step's potential, less the work of forces that have none, is
+    /// no higher than where it begins, at `q`. That of a linear system never is at 1; of one that is bent so much that the solve knows
+    /// nothing of its end, it may be by any amount. What is shortened stays behind where inertia leads, so that momentum is lost with
+    /// the energy.
     fn hold_back(
         &self,
         state: &SystemState,
         q: &[Vec3],
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
-    ) {
-        let whole = std::mem::take(&mut buffers.direction);
-        // the right-hand side has served
-        let mut direction = std::mem::take(&mut buffers.rhs);
-        let mut place = |fraction: f64, ws: &mut SystemWorkspace, direction: &mut [Vec3]| {
-            for ((part, whole), led) in direction.iter_mut().zip(&whole).zip(&buffers.prescribed) {
-                *part = *led + (*whole - *led) * fraction;
-            }
+    ) -> f64 {
+        let place = |fraction: f64, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers| {
+            let mut at = std::mem::take(&mut buffers.q_trial);
+            at.copy_from_slice(q);
+            self.go(&mut at, fraction, buffers);
+            buffers.q_trial = at;
             let ImplicitBuffers { q_trial, v_trial, q_start, velocity_offset, .. } = &mut *buffers;
-            q_trial.copy_from_slice(q);
-            self.system.kinematics.retract(q_trial, direction);
             self.velocity_into(q_trial, q_start, velocity_offset, v_trial);
             self.system.place_rows(q_trial, v_trial, self.end, &mut ws.rows);
             self.merit(state, ws, buffers)
         };
-        let start = place(0.0, ws, &mut direction);
+        let start = place(0.0, ws, buffers);
         let mut fraction = 1.0;
-        let mut end = place(fraction, ws, &mut direction);
+        let mut end = place(fraction, ws, buffers);
         let allowed = start + POTENTIAL_ROUNDING * start.abs();
         // what is no number is no less
         let is_higher = |end: f64, work: f64| end.is_nan() || end - work > allowed;
         if is_higher(end, 0.0) {
-            place(0.0, ws, &mut direction);
-            let work = self.work_without_potential(state, q, ws, &whole);
+            place(0.0, ws, buffers);
+            let turns = buffers.turns.iter().copied().chain(std::iter::repeat(Vec3::ZERO));
+            let way: Vec<Vec3> = buffers.direction.iter().zip(turns).map(|(way, turn)| *way + turn).collect();
+            let work = self.work_without_potential(state, q, ws, &way);
             for _ in 0..MAX_HALVINGS {
-                end = place(fraction, ws, &mut direction);
+                end = place(fraction, ws, buffers);
                 if !is_higher(end, fraction * work) {
                     break;
                 }
                 fraction *= 0.5;
             }
         }
-        (buffers.rhs, buffers.direction) = (whole, direction);
+        fraction
     }
 
     /// What forces without a potential do on the way along a direction, as they are at the placed rows [J].
@@ -539,24 +632,67 @@ impl ImplicitStep<'_> {
         on_blocks.iter().zip(direction).map(|(force, way)| force.dot(*way)).sum()
     }
 
-    /// Turns rigid frames on as they coast: the one solve is then about there. About where they start it would leave out
-    /// `ω × (ω × a)`, of which `1/h` times the square of the step's turn is left however short the step.
-    fn coast_turns(&self, buffers: &mut ImplicitBuffers) {
+    /// How rigid frames turn by themselves, in `turns`, and the velocity that this is, in `v_trial`; whether there are any.
+    fn coast_turns(&self, buffers: &mut ImplicitBuffers) -> bool {
         let kinematics = &self.system.kinematics;
+        let ImplicitBuffers { coasting, velocity_offset, turns, v_trial, .. } = buffers;
         if !(self.rates.has_inertia() && kinematics.has_rigid_frames()) {
-            return;
+            turns.clear();
+            return false;
         }
-        let ImplicitBuffers { coasting, velocity_offset, direction, q_trial, v_trial, .. } = buffers;
-        direction.fill(Vec3::ZERO);
+        turns.clear();
+        turns.resize(coasting.len(), Vec3::ZERO);
         for (_, blocks) in kinematics.unknowns().filter(|(kind, _)| *kind == UnknownKind::RigidFrame) {
             let turn = blocks.start + 1;
-            direction[turn] = (coasting[turn] - velocity_offset[turn]) * (1.0 / self.rates.velocity);
+            turns[turn] = (coasting[turn] - velocity_offset[turn]) * (1.0 / self.rates.velocity);
         }
-        self.system.project_free(direction);
-        kinematics.retract(q_trial, direction);
-        for (velocity, moved) in v_trial.iter_mut().zip(direction.iter()) {
+        self.system.project_free(turns);
+        for (velocity, moved) in v_trial.iter_mut().zip(turns.iter()) {
             *velocity += *moved * self.rates.velocity;
         }
+        true
+    }
+
+    /// `inertia = b M (ẋ - p)` where the turns lead and `inertia_residual` from there, with nothing of it in `g`.
+    fn place_inertia_where_turns_lead(&self, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
+        let mut start = std::mem::take(&mut buffers.inertia_residual);
+        start.clone_from(&buffers.q_trial);
+        self.system.kinematics.retract(&mut buffers.q_trial, &buffers.turns);
+        self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        self.place_inertia(ws, buffers);
+        self.contract(ws, buffers);
+        buffers.q_trial.copy_from_slice(&start);
+        start.clone_from(&buffers.residual);
+        buffers.inertia_residual = start;
+        buffers.inertia.clone_from(&buffers.unbalanced);
+        buffers.unbalanced.fill(Vec3::ZERO);
+    }
+
+    /// The residual with forces `f + K δ` along the turns `δ` of frames, and with the inertia that was placed where these lead, from
+    /// that of the forces alone.
+    fn add_forces_along_turns(
+        &self,
+        state: &SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+    ) {
+        let SystemWorkspace { scratches, rows, .. } = ws;
+        let ImplicitBuffers { unbalanced, inertia, direction, turns, q_trial, v_trial, operator, .. } =
+            &mut *buffers;
+        let at = Linearisation {
+            rates: Rates::STATIC,
+            ..self.linearisation(state, rows, (q_trial, v_trial), unbalanced)
+        };
+        TangentOperator::new(&at, Part::Whole, scratches, operator).apply_unconstrained(turns, direction);
+        operator.take_seconds();
+        for (row, inertia) in unbalanced.iter_mut().zip(inertia.iter()) {
+            *row += *inertia;
+        }
+        let parts = buffers.direction.iter().zip(&buffers.inertia_residual);
+        for (residual, (along, inertia)) in buffers.residual.iter_mut().zip(parts) {
+            *residual += *inertia - *along;
+        }
+        self.system.project_free(&mut buffers.residual);
     }
 
     /// Replaces `f(q, v₀)` in the residual by `f(q, v) - B (v - v₀)`: exact for forces linear in velocity, and
@@ -585,7 +721,6 @@ impl ImplicitStep<'_> {
         }
         ws.row_scratch = change;
         buffers.damping = damping;
-        self.contract(ws, buffers);
     }
 }
 
