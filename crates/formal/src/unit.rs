@@ -214,9 +214,7 @@ fn suggestion(symbol: &str) -> Option<String> {
         usual.map(|(prefix, _)| format!("{prefix}{}", entry.symbol))
     });
     let all: Vec<String> = plain.chain(prefixed).collect();
-    let same_letters = all.iter().find(|known| known.to_lowercase() == lower);
-    let nearest = || souple_table::nearest(symbol, all.iter().map(String::as_str));
-    same_letters.map(String::as_str).or_else(nearest).map(str::to_owned)
+    souple_table::nearest(symbol, all.iter().map(String::as_str)).map(str::to_owned)
 }
 
 /// Longest text of a quantity or unit [bytes].

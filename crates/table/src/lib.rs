@@ -71,14 +71,19 @@ impl<B> Table<B> {
     }
 }
 
-/// The candidate with the fewest edits to `name`, if a third of its letters or fewer differ.
+/// The candidate with the fewest edits to `name`, if a third of its letters or fewer differ and two or more stay as they are, or if
+/// only capitals make the difference: of one letter every other one is a single edit away.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    candidates
-        .into_iter()
-        .map(|candidate| (edit_distance(name, candidate), candidate))
-        .filter(|(distance, candidate)| 3 * distance <= candidate.chars().count().max(3) + 2)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
+    let edits = |candidate: &str| {
+        if candidate.to_lowercase() == name.to_lowercase() {
+            return Some(0);
+        }
+        let (own, other) = (name.chars().count(), candidate.chars().count());
+        let distance = edit_distance(name, candidate);
+        (3 * distance <= other.max(3) + 2 && distance + 2 <= own.max(other)).then_some(distance)
+    };
+    let near = candidates.into_iter().filter_map(|candidate| Some((edits(candidate)?, candidate)));
+    near.min_by_key(|(distance, _)| *distance).map(|(_, candidate)| candidate)
 }
 
 /// Insertions, deletions, substitutions and swaps of neighbours between two words.
@@ -115,5 +120,19 @@ mod tests {
         assert_eq!(nearest("neo_hokean", names), Some("neo_hookean"));
         assert_eq!(nearest("lienar", names), Some("linear"));
         assert_eq!(nearest("zebra", names), None);
+    }
+
+    /// Where nothing is alike nothing is offered, however short the words are.
+    #[test]
+    fn short_names_are_near_where_letters_stay() {
+        let names = ["F", "J", "I1", "I1_bar", "mu", "K"];
+        for unlike in ["a", "m", "q", "nu", "I9", "x1"] {
+            assert_eq!(nearest(unlike, names), None, "{unlike}");
+        }
+        for (written, meant) in [("k", "K"), ("MU", "mu"), ("f", "F"), ("I_1", "I1"), ("I1bar", "I1_bar")] {
+            assert_eq!(nearest(written, names), Some(meant));
+        }
+        // what differs in capitals alone is nearest
+        assert_eq!(nearest("Lambda", ["lambda1", "lambda", "lamda"]), Some("lambda"));
     }
 }

@@ -134,7 +134,9 @@ fn refused(text: &LawText) -> LawError {
 fn bad_laws_are_told_where_and_why() {
     let cases: &[(&str, &str, &str)] = &[
         ("mu/2*(I1 - 3", "", "wanted"),
-        ("mu/2*(I1 - 3) + nu", "nu", "did you mean `mu`"),
+        ("mu/2*(I1 - 3) + nu", "nu", "there is no `nu`; there are the parameters"),
+        ("mu/2*(I1bar - 3)", "I1bar", "did you mean `I1_bar`"),
+        ("MU/2*(I1 - 3)", "MU", "did you mean `mu`"),
         ("mu/2*(I1 - 3) - mu*lnn(J)", "lnn", "did you mean `ln`"),
         ("mu/2*(I1 - 3) + J - 1", "J", "pure number"),
         ("I1 - 3", "I1 - 3", "energy per volume"),
