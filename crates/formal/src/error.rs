@@ -41,7 +41,7 @@ pub enum ParseError {
     UnknownFunction { name: String, nearest: Option<String>, known: Vec<String>, span: Span },
     #[error("`{name}` at {span} is a function; write `{usage}`")]
     WithoutArguments { name: String, usage: &'static str, span: Span },
-    #[error("`{name}` at {span} is no function; write `{name} * (…)` for a product")]
+    #[error("`{name}` at {span} is no function; for a product a `*` is missing, as in `{name} * (…)`")]
     NotAFunction { name: String, span: Span },
     #[error("`{name}` at {span} was given {found} argument(s); write `{usage}`")]
     WrongArgumentCount { name: String, found: usize, usage: &'static str, span: Span },

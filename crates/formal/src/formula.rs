@@ -153,7 +153,11 @@ mod tests {
             ("1 + foo", 4..7, "there is no `foo` (at byte 4); there are: x, y, t, pi, e".to_owned()),
             ("sine(x)", 0..4, "there is no function `sine` (at byte 0) (did you mean `sin`?)".to_owned()),
             ("2 * sin", 4..7, "`sin` at byte 4 is a function; write `sin(x)`".to_owned()),
-            ("x (y)", 0..1, "`x` at byte 0 is no function; write `x * (…)` for a product".to_owned()),
+            (
+                "x (y)",
+                0..1,
+                "`x` at byte 0 is no function; for a product a `*` is missing, as in `x * (…)`".to_owned(),
+            ),
             ("atan2(y)", 0..5, "`atan2` at byte 0 was given 1 argument(s); write".to_owned()),
             ("max()", 0..3, "`max` at byte 0 was given 0 argument(s); write".to_owned()),
             ("x > 0", 0..5, format!("{truth} stands at byte 0, where a number is wanted")),

@@ -25,10 +25,7 @@ impl Expression {
         match parser.token {
             Token::End => Ok(parser.expression),
             Token::Symbol(Symbol::ParenthesisClose) => Err(parser.unexpected("`(` before it, or the end")),
-            Token::Number(_) | Token::Word | Token::Symbol(Symbol::ParenthesisOpen | Symbol::BracketOpen) => {
-                Err(parser.unexpected("an operator such as `*`, or the end"))
-            }
-            Token::Symbol(_) => Err(parser.unexpected("an operator or the end")),
+            _ => Err(parser.unfinished(" or the end")),
         }
     }
 }
@@ -67,8 +64,20 @@ impl Parser<'_> {
         ParseError::Unexpected { read, expected: expected.to_owned(), span: self.span }
     }
 
-    fn expect(&mut self, symbol: Symbol, expected: &str) -> Result<Span, ParseError> {
-        if self.token == Token::Symbol(symbol) { self.advance() } else { Err(self.unexpected(expected)) }
+    /// Behind an operand stands neither an operator nor one of `ends`.
+    fn unfinished(&self, ends: &str) -> ParseError {
+        let begins_operand = matches!(
+            self.token,
+            Token::Number(_) | Token::Word | Token::Symbol(Symbol::ParenthesisOpen | Symbol::BracketOpen)
+        );
+        // books write products without a sign
+        let product = if begins_operand { " (is a `*` missing?)" } else { "" };
+        self.unexpected(&format!("an operator{product}{ends}"))
+    }
+
+    /// The closing bracket behind an operand; `ends` are the words for what could stand there.
+    fn close(&mut self, symbol: Symbol, ends: &str) -> Result<Span, ParseError> {
+        if self.token == Token::Symbol(symbol) { self.advance() } else { Err(self.unfinished(ends)) }
     }
 
     /// A formula whose operators bind at least as strongly as `weakest`.
@@ -148,12 +157,12 @@ impl Parser<'_> {
             Token::Symbol(Symbol::ParenthesisOpen) => {
                 let open = self.advance()?;
                 let (inside, _) = self.operand_of(0)?;
-                let close = self.expect(Symbol::ParenthesisClose, "an operator or `)`")?;
+                let close = self.close(Symbol::ParenthesisClose, " or `)`")?;
                 Ok((inside, open.to(close)))
             }
             Token::Symbol(Symbol::BracketOpen) => {
                 let open = self.advance()?;
-                let (components, close) = self.list(Symbol::BracketClose, "an operator, `,` or `]`")?;
+                let (components, close) = self.list(Symbol::BracketClose, ", `,` or `]`")?;
                 let span = open.to(close);
                 Ok((self.expression.push(NodeKind::Vector(components), span), span))
             }
@@ -175,13 +184,13 @@ impl Parser<'_> {
             return Ok((self.expression.push(NodeKind::Name(name), name_span), name_span));
         }
         self.advance()?;
-        let (arguments, close) = self.list(Symbol::ParenthesisClose, "an operator, `,` or `)`")?;
+        let (arguments, close) = self.list(Symbol::ParenthesisClose, ", `,` or `)`")?;
         let span = name_span.to(close);
         Ok((self.expression.push(NodeKind::Call { name, arguments }, span), span))
     }
 
     /// Formulas between commas up to `close`, which may follow at once.
-    fn list(&mut self, close: Symbol, expected: &str) -> Result<(Vec<NodeId>, Span), ParseError> {
+    fn list(&mut self, close: Symbol, ends: &str) -> Result<(Vec<NodeId>, Span), ParseError> {
         let mut items = Vec::new();
         if self.token == Token::Symbol(close) {
             return Ok((items, self.advance()?));
@@ -189,7 +198,7 @@ impl Parser<'_> {
         loop {
             items.push(self.operand_of(0)?.0);
             if self.token != Token::Symbol(Symbol::Comma) {
-                return Ok((items, self.expect(close, expected)?));
+                return Ok((items, self.close(close, ends)?));
             }
             self.advance()?;
         }
@@ -253,7 +262,18 @@ mod tests {
         let cases = [
             ("", 0, "an empty text was read at byte 0, where a number, a name, `(` or a sign is wanted"),
             ("1 +", 3, "the end was read at byte 3, where a number, a name, `(` or a sign is wanted"),
-            ("2 x", 2, "`x` was read at byte 2, where an operator such as `*`, or the end is wanted"),
+            ("2 x", 2, "`x` was read at byte 2, where an operator (is a `*` missing?) or the end is wanted"),
+            (
+                "(a)(b)",
+                3,
+                "`(` was read at byte 3, where an operator (is a `*` missing?) or the end is wanted",
+            ),
+            ("(2 x)", 3, "`x` was read at byte 3, where an operator (is a `*` missing?) or `)` is wanted"),
+            (
+                "f(a b)",
+                4,
+                "`b` was read at byte 4, where an operator (is a `*` missing?), `,` or `)` is wanted",
+            ),
             ("(1 + 2", 6, "the end was read at byte 6, where an operator or `)` is wanted"),
             ("1)", 1, "`)` was read at byte 1, where `(` before it, or the end is wanted"),
             ("f(1, )", 5, "`)` was read at byte 5, where a number, a name, `(` or a sign is wanted"),
