@@ -24,6 +24,11 @@ impl Span {
         Self::new(self.start, other.end)
     }
 
+    /// Whether `other` lies within it.
+    pub fn contains(self, other: Self) -> bool {
+        self.start <= other.start && other.end <= self.end
+    }
+
     /// The characters covered, or nothing where the span does not belong to `text`.
     pub fn of(self, text: &str) -> &str {
         text.get(self.start..self.end).unwrap_or_default()

@@ -7,9 +7,9 @@ use super::value::{
     wrong_shape,
 };
 use super::vocabulary::{LAW_FUNCTIONS, Word};
-use crate::Span;
 use crate::function::{FUNCTIONS, Function, FunctionEntry};
 use crate::graph::{Comparison, Expr, Shape};
+use crate::{ParseError, Span};
 
 impl Reader<'_> {
     pub(super) fn call(
@@ -29,6 +29,10 @@ impl Reader<'_> {
                 .collect();
             let nearest = souple_table::nearest(name, known.iter().copied()).map(str::to_owned);
             let here = Span::new(span.start, span.start + name.len());
+            if self.is_value(name) {
+                let problem = ParseError::NotAFunction { name: short(name), span: here };
+                return Err(Fault::Here(here, LawProblem::Syntax(problem)));
+            }
             return Err(Fault::Here(here, LawProblem::UnknownFunction { name: short(name), nearest, known }));
         };
         if !entry.arguments.accepts(arguments.len()) {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::law::Word;
-use crate::{ParseError, Span};
+use crate::{Dimension, ParseError, Span};
 
 /// What is wrong with a law, and where.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,8 @@ pub struct LawError {
 pub enum LawProblem {
     #[error("{0}")]
     Syntax(#[from] ParseError),
+    #[error("`{read}` is no sign of this language; `{meant}` is written `{written_here}`")]
+    SignOfBooks { read: &'static str, meant: &'static str, written_here: &'static str },
     #[error("a law of {nodes} parts is too large; at most {limit} are accepted")]
     TooLarge { nodes: usize, limit: usize },
     #[error(
@@ -29,7 +31,7 @@ pub enum LawProblem {
     LongDerivatives { parts: usize, limit: usize },
     #[error("there is no `{name}`{}; there are the parameters and definitions of this law{}, and {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .own, Word::list())]
     UnknownName { name: String, nearest: Option<String>, own: String },
-    #[error("there is no function `{name}`{}; there are {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .known.join(", "))]
+    #[error("there is no function `{name}`{}; there are {}", .nearest.as_ref().map_or_else(|| format!("; for a product write `{name} * (…)`"), |near| format!(" (did you mean `{near}`?)")), .known.join(", "))]
     UnknownFunction { name: String, nearest: Option<String>, known: Vec<&'static str> },
     #[error("`{name}` has a meaning in every law ({meaning}); choose another name")]
     ReservedName { name: String, meaning: String },
@@ -43,8 +45,8 @@ pub enum LawProblem {
     WrongShape { found: String, wanted: String },
     #[error("`{name}` was given {found} argument(s); write `{usage}`")]
     WrongArgumentCount { name: String, found: usize, usage: String },
-    #[error("this is {found}, where {wanted} is wanted")]
-    WrongUnit { found: String, wanted: String },
+    #[error("{0}")]
+    WrongUnit(UnitClash),
     #[error("the parameter must be a finite number or a direction [x, y, z] that is not zero")]
     BadParameter,
     #[error("at rest (F = I) this has no finite value: {reason}")]
@@ -67,6 +69,84 @@ pub enum LawProblem {
     OrderOfStretches,
     #[error("the energy does not change with the deformation: no F, C, E, eps, J, I1, … is in it")]
     NoDeformation,
+}
+
+/// Units where others are wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitClash {
+    /// What has them, as written.
+    pub written: String,
+    /// Powers of kilogram, metre and second.
+    pub found: [f64; 3],
+    pub wanted: WantedUnits,
+    /// The parameters in it, also by way of definitions, with the dimensions they were given; one of them is to blame.
+    pub parameters: Vec<(String, Option<Dimension>)>,
+}
+
+/// Which units are wanted, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WantedUnits {
+    /// Of a term of the energy.
+    EnergyDensity,
+    /// Of an argument or an exponent.
+    Pure,
+    /// Of the base of a power whose exponent is no plain number.
+    PureBase,
+    /// The same as those of what stands at that place, as written there.
+    Like { units: [f64; 3], beside: Span, written: String },
+}
+
+impl UnitClash {
+    pub(super) fn new(found: [f64; 3], wanted: WantedUnits) -> Self {
+        Self { written: String::new(), found, wanted, parameters: Vec::new() }
+    }
+}
+
+/// Energy per volume of the rest shape.
+pub(super) const ENERGY_DENSITY: Dimension = Dimension::new(1, -1, -2);
+
+pub(super) fn describe_units(units: [f64; 3]) -> String {
+    if units.iter().all(|power| power.fract() == 0.0 && power.abs() < 100.0) {
+        return Dimension::new(units[0] as i8, units[1] as i8, units[2] as i8).describe();
+    }
+    let [mass, length, time] = units;
+    format!("a quantity in [kg^{mass} m^{length} s^{time}]")
+}
+
+/// Parameters that are named in a message about units.
+const PARAMETERS_TOLD: usize = 4;
+
+impl fmt::Display for UnitClash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` is {}, where ", self.written, describe_units(self.found))?;
+        match &self.wanted {
+            WantedUnits::EnergyDensity => {
+                write!(f, "an energy per volume is wanted, which is {}", ENERGY_DENSITY.describe())?;
+            }
+            WantedUnits::Pure => f.write_str("a pure number is wanted")?,
+            WantedUnits::PureBase => {
+                f.write_str("a pure number is wanted under an exponent that is not a plain number")?;
+            }
+            WantedUnits::Like { units, written, .. } => {
+                write!(f, "{} is wanted, as `{written}` beside it is", describe_units(*units))?;
+            }
+        }
+        let of = |dimension: Option<Dimension>| match dimension {
+            None => "given without unit".to_owned(),
+            Some(dimension) => dimension.describe(),
+        };
+        match self.parameters.as_slice() {
+            [] => f.write_str("; no parameter is in it"),
+            [(name, dimension)] => write!(f, "; the parameter in it, `{name}`, is {}", of(*dimension)),
+            several => {
+                let told = several.iter().take(PARAMETERS_TOLD);
+                let told: Vec<String> =
+                    told.map(|(name, dimension)| format!("`{name}` is {}", of(*dimension))).collect();
+                let more = if several.len() > told.len() { ", …" } else { "" };
+                write!(f, "; of the parameters in it {}{more}", told.join(", "))
+            }
+        }
+    }
 }
 
 impl fmt::Display for LawError {

@@ -13,7 +13,7 @@ mod read;
 mod value;
 mod vocabulary;
 
-pub use error::{LawError, LawProblem};
+pub use error::{LawError, LawProblem, UnitClash, WantedUnits};
 pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};
 
 use crate::Dimension;

@@ -1,10 +1,10 @@
 //! Operators of the law language, by the shapes and units of what they stand between.
 
-use super::LawProblem;
+use super::WantedUnits;
 use super::read::Reader;
 use super::value::{
-    Fault, Kind, PURE, Value, combine, common_units, describe, describe_units, pure, scalar, tensor, truth,
-    wrong_shape,
+    Fault, Kind, PURE, Value, combine, common_units, describe, pure, scalar, tensor, truth, wrong_shape,
+    wrong_unit,
 };
 use crate::graph::{Comparison, Expr, Shape};
 use crate::{BinaryOperator, Span};
@@ -113,11 +113,7 @@ impl Reader<'_> {
             let units = match (base.0.units, number) {
                 (Some(units), Some(number)) => Some(units.map(|power| power * number)),
                 (Some(units), None) if units != [0.0; 3] => {
-                    let wanted = "a pure number under an exponent that is not a plain number".to_owned();
-                    return Err(Fault::Here(
-                        base.1,
-                        LawProblem::WrongUnit { found: describe_units(units), wanted },
-                    ));
+                    return wrong_unit(base.1, units, WantedUnits::PureBase);
                 }
                 (units, _) => units,
             };

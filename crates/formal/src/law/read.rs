@@ -2,14 +2,17 @@
 
 use std::collections::HashMap;
 
+use super::error::ENERGY_DENSITY;
 use super::value::{
-    Fault, Kind, PURE, Value, common_units, describe, describe_units, scalar, tensor, truth, wrong_shape,
+    Fault, Kind, PURE, Units, Value, common_units, describe, scalar, tensor, truth, wrong_shape,
 };
-use super::vocabulary::{self, LAW_FUNCTIONS, QUANTITIES, Word};
-use super::{LawError, LawParameter, LawProblem, LawText};
+use super::vocabulary::{self, LAW_FUNCTIONS, QUANTITIES, SIGNS_OF_BOOKS, Word};
+use super::{LawError, LawParameter, LawProblem, LawText, UnitClash, WantedUnits};
 use crate::function::CONSTANTS;
 use crate::graph::{Expr, Graph, Shape};
-use crate::{Dimension, Expression, FunctionEntry, NodeKind, Span, UnaryOperator};
+use crate::{
+    BinaryOperator, Dimension, Expression, FunctionEntry, NodeId, NodeKind, ParseError, Span, UnaryOperator,
+};
 
 /// Parts of a law at most: derivatives of long products grow with the square.
 const LARGEST: usize = 4000;
@@ -45,18 +48,11 @@ pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
     let mut reader = Reader::new(text);
     // the earliest expression, so that everything that varies with it comes later
     reader.graph.symbol(super::DEFORMATION, Shape::Matrix);
-    let (energy, span) = reader.part("energy", &text.energy)?;
+    let (energy, span) = reader.part("energy", &text.energy, units_of(ENERGY_DENSITY))?;
     let fail = |problem| LawError::new("energy", Some(span), problem);
     if energy.kind != Kind::Tensor(Shape::Scalar) {
         let wanted = "a number, the energy density".to_owned();
         return Err(fail(LawProblem::WrongShape { found: describe(energy.kind), wanted }));
-    }
-    let pressure = Dimension::new(1, -1, -2);
-    if let Some(units) = energy.units
-        && units != [1.0, -1.0, -2.0]
-    {
-        let wanted = format!("an energy per volume, which is {}", pressure.describe());
-        return Err(fail(LawProblem::WrongUnit { found: describe_units(units), wanted }));
     }
     let uses_small_strain = reader.uses_small_strain;
     // definitions that the energy does not use are read too, so that faults in them are told
@@ -82,8 +78,7 @@ pub(super) struct Numbers {
 }
 
 pub(super) fn read_formula(formula: &str) -> Result<Numbers, LawError> {
-    let expression = Expression::parse(formula)
-        .map_err(|error| LawError::new("formula", Some(error.span()), LawProblem::Syntax(error)))?;
+    let expression = parsed("formula", formula)?;
     let mut names: Vec<String> = Vec::new();
     for node in expression.nodes() {
         if let NodeKind::Name(name) = &node.kind
@@ -95,7 +90,7 @@ pub(super) fn read_formula(formula: &str) -> Result<Numbers, LawError> {
     let number = |name: &String| (name.clone(), LawParameter::Number { value: 0.0, dimension: None });
     let text = LawText { parameters: names.iter().map(number).collect(), ..LawText::default() };
     let mut reader = Reader::new(&text);
-    let (value, span) = reader.part("formula", formula)?;
+    let (value, span) = reader.part("formula", formula, None)?;
     if value.kind != Kind::Tensor(Shape::Scalar) {
         let problem = LawProblem::WrongShape { found: describe(value.kind), wanted: "a number".to_owned() };
         return Err(LawError::new("formula", Some(span), problem));
@@ -107,6 +102,40 @@ pub(super) fn read_formula(formula: &str) -> Result<Numbers, LawError> {
     });
     let symbols = symbols.collect();
     Ok(Numbers { graph, value: value.expr, symbols })
+}
+
+/// The syntax of one text of a law; signs that tensors have in books are answered with how they are written here.
+fn parsed(part: &str, text: &str) -> Result<Expression, LawError> {
+    Expression::parse(text).map_err(|error| {
+        let span = error.span();
+        let sign = SIGNS_OF_BOOKS.iter().find(|[read, ..]| *read == span.of(text));
+        let problem = match sign {
+            Some(&[read, meant, written_here]) if matches!(error, ParseError::Unexpected { .. }) => {
+                LawProblem::SignOfBooks { read, meant, written_here }
+            }
+            _ => LawProblem::Syntax(error),
+        };
+        LawError::new(part, Some(span), problem)
+    })
+}
+
+fn units_of(dimension: Dimension) -> Units {
+    Some([dimension.mass, dimension.length, dimension.time].map(f64::from))
+}
+
+/// The addends of a formula, from left to right.
+fn addends(expression: &Expression) -> Vec<NodeId> {
+    let (mut open, mut found) = (vec![expression.root()], Vec::new());
+    while let Some(id) = open.pop() {
+        match expression.node(id).kind {
+            NodeKind::Unary { operator: UnaryOperator::Negate, operand } => open.push(operand),
+            NodeKind::Binary { operator: BinaryOperator::Add | BinaryOperator::Subtract, left, right } => {
+                open.extend([right, left]);
+            }
+            _ => found.push(id),
+        }
+    }
+    found
 }
 
 fn check_names(text: &LawText) -> Result<(), LawError> {
@@ -161,11 +190,10 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads one text; the place is that of the whole.
-    fn part(&mut self, part: &str, text: &str) -> Result<(Value, Span), LawError> {
+    /// Reads one text, whose terms must have the units `wanted`, if any are; the place is that of the whole.
+    fn part(&mut self, part: &str, text: &str, wanted: Units) -> Result<(Value, Span), LawError> {
         let fail = |span, problem| LawError::new(part, Some(span), problem);
-        let expression =
-            Expression::parse(text).map_err(|error| fail(error.span(), LawProblem::Syntax(error)))?;
+        let expression = parsed(part, text)?;
         self.nodes += expression.nodes().len();
         if self.nodes > LARGEST {
             let problem = LawProblem::TooLarge { nodes: self.nodes, limit: LARGEST };
@@ -179,6 +207,12 @@ impl<'a> Reader<'a> {
                 .map(|operand| (values[operand.index()], expression.node(operand).span))
                 .collect();
             let value = self.node(&node.kind, node.span, &operands).map_err(|error| match error {
+                Fault::Here(span, LawProblem::WrongUnit(clash)) => {
+                    // of two terms of the energy the one that is none is wrong, whichever stands first
+                    let misfit = misfit(&expression, &values, wanted, node.span);
+                    let (span, clash) = misfit.unwrap_or((span, clash));
+                    fail(span, LawProblem::WrongUnit(self.told(clash, span, &expression, text)))
+                }
                 Fault::Here(span, problem) => fail(span, problem),
                 Fault::Elsewhere(error) => error,
             })?;
@@ -190,7 +224,55 @@ impl<'a> Reader<'a> {
             values.push(value);
         }
         let root = expression.root();
-        Ok((values[root.index()], expression.node(root).span))
+        let (value, span) = (values[root.index()], expression.node(root).span);
+        if value.kind == Kind::Tensor(Shape::Scalar)
+            && let Some((term, clash)) = misfit(&expression, &values, wanted, span)
+        {
+            // terms that agree are wrong together
+            let is_alike = |id: &NodeId| values[id.index()].units == Some(clash.found);
+            let span = if addends(&expression).iter().all(is_alike) { span } else { term };
+            return Err(fail(span, LawProblem::WrongUnit(self.told(clash, span, &expression, text))));
+        }
+        Ok((value, span))
+    }
+
+    /// The clash at a place of a text with what is written there, and with the parameters that are in it.
+    fn told(&self, mut clash: UnitClash, span: Span, expression: &Expression, text: &str) -> UnitClash {
+        clash.written = excerpt(span.of(text));
+        if let WantedUnits::Like { beside, written, .. } = &mut clash.wanted {
+            *written = excerpt(beside.of(text));
+        }
+        let mut seen = Vec::new();
+        self.gather_names(expression, span, &mut seen);
+        let is_seen = |(name, parameter): &(String, LawParameter)| match parameter {
+            LawParameter::Number { dimension, .. } if seen.contains(name) => Some((short(name), *dimension)),
+            _ => None,
+        };
+        clash.parameters = self.text.parameters.iter().filter_map(is_seen).collect();
+        clash
+    }
+
+    /// The names at a place of a text, and those of the definitions among them.
+    fn gather_names(&self, expression: &Expression, span: Span, seen: &mut Vec<String>) {
+        for node in expression.nodes() {
+            let NodeKind::Name(name) = &node.kind else { continue };
+            if !span.contains(node.span) || seen.contains(name) {
+                continue;
+            }
+            seen.push(name.clone());
+            let definition = self.text.definitions.iter().find(|(known, _)| known == name);
+            if let Some(Ok(inner)) = definition.map(|(_, text)| Expression::parse(text)) {
+                self.gather_names(&inner, inner.node(inner.root()).span, seen);
+            }
+        }
+    }
+
+    /// Whether a name stands for a value.
+    pub(super) fn is_value(&self, name: &str) -> bool {
+        let given = self.text.parameters.iter().map(|(name, _)| name);
+        given.chain(self.text.definitions.iter().map(|(name, _)| name)).any(|known| known == name)
+            || CONSTANTS.iter().any(|(constant, _)| *constant == name)
+            || vocabulary::is_quantity(name)
     }
 
     /// The value of a definition, read when it is first needed.
@@ -207,7 +289,7 @@ impl<'a> Reader<'a> {
             return Err(Fault::Here(span, LawProblem::Recursion { cycle }));
         }
         self.open.push(name.to_owned());
-        let (value, _) = self.part(name, text)?;
+        let (value, _) = self.part(name, text, None)?;
         self.open.pop();
         self.defined.insert(name.to_owned(), value);
         Ok(Some(value))
@@ -256,9 +338,7 @@ impl<'a> Reader<'a> {
             self.used.push(name.to_owned());
             let shape = parameter.shape();
             let units = match parameter {
-                LawParameter::Number { dimension, .. } => {
-                    dimension.map(|d| [f64::from(d.mass), f64::from(d.length), f64::from(d.time)])
-                }
+                LawParameter::Number { dimension, .. } => dimension.and_then(units_of),
                 LawParameter::Direction(_) => PURE,
             };
             return Ok(Value { expr: self.graph.symbol(name, shape), kind: Kind::Tensor(shape), units });
@@ -292,6 +372,27 @@ impl<'a> Reader<'a> {
         let own = if own.is_empty() { " (none)".to_owned() } else { format!(" ({})", own.join(", ")) };
         Err(Fault::Here(span, LawProblem::UnknownName { name: short(name), nearest, own }))
     }
+}
+
+/// Of the terms at a place, as far as they have been read, the first that has other units than those wanted.
+fn misfit(
+    expression: &Expression,
+    values: &[Value],
+    wanted: Units,
+    place: Span,
+) -> Option<(Span, UnitClash)> {
+    let wanted = wanted?;
+    addends(expression).into_iter().find_map(|id| {
+        let (span, found) = (expression.node(id).span, values.get(id.index())?.units?);
+        let is_wrong = place.contains(span) && found != wanted;
+        is_wrong.then(|| (span, UnitClash::new(found, WantedUnits::EnergyDensity)))
+    })
+}
+
+/// What is written at a place, or its beginning.
+fn excerpt(written: &str) -> String {
+    let beginning = short(written);
+    if beginning.len() < written.len() { beginning + "…" } else { beginning }
 }
 
 /// The beginning of a name, so that a message about a long one stays readable.

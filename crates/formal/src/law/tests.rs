@@ -160,6 +160,16 @@ fn bad_laws_are_told_where_and_why() {
         ("mu*I4(C)", "C", "a vector"),
         ("mu*dot(C)", "dot(C)", "dot(A, B)"),
         ("mu*J > mu", "mu*J > mu", "truth value"),
+        ("mu*(E:E)", ":", "`A:B` is written `dot(A, B)`"),
+        ("mu*tr(E')", "'", "`A'` is written `transpose(A)`"),
+        ("mu*tr(Fᵀ*F)", "ᵀ", "`Aᵀ` is written `transpose(A)`"),
+        ("mu (J - 1)^2", "mu", "a `*` is missing, as in `mu * (…)`"),
+        ("mu*J (J - 1)", "J", "a `*` is missing, as in `J * (…)`"),
+        ("mu*F12(J - 1)", "F12", "a `*` is missing, as in `F12 * (…)`"),
+        ("mu/2 (I1 - 3)", "(", "(is a `*` missing?)"),
+        ("mu*(J-1)(J-1)", "(", "(is a `*` missing?)"),
+        ("mu J", "J", "(is a `*` missing?)"),
+        ("kappa (J - 1)", "kappa", "for a product write `kappa * (…)`"),
     ];
     for (energy, marked, message) in cases {
         let error = refused(&text(energy, &[("mu", 2.0)]));
@@ -169,6 +179,81 @@ fn bad_laws_are_told_where_and_why() {
         assert!(marked.is_empty() || place == *marked, "{energy}: marked `{place}`: {said}");
         assert_eq!(error.part, "energy");
     }
+}
+
+/// What is wrong in units is the term that is no energy density, whichever stands first, with the parameters in it.
+#[test]
+fn units_are_told_with_their_term_and_parameters() {
+    let dimension = |mass, length, time| Some(Dimension::new(mass, length, time));
+    let told = |energy: &str, definitions: &[(&str, &str)]| {
+        let mut text = text(energy, &[("mu", 2.0)]);
+        text.parameters.extend([
+            number("K", 3.0, dimension(0, 1, 0)),
+            number("b", 4.0, None),
+            number("share", 0.5, Some(Dimension::PURE)),
+        ]);
+        text.definitions =
+            definitions.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect();
+        let error = refused(&text);
+        let of_part =
+            definitions.iter().find(|(name, _)| *name == error.part).map_or(energy, |(_, text)| text);
+        let place = error.span.map_or("", |span| span.of(of_part));
+        (error.part.clone(), place.to_owned(), error.problem.to_string())
+    };
+    let density = "where an energy per volume is wanted, which is a pressure [kg/(m s²)]";
+    for (energy, marked, message) in [
+        (
+            "mu/2*(I1 - 3) + K*(J - 1)^2",
+            "K*(J - 1)^2",
+            format!("`K*(J - 1)^2` is a length [m], {density}; the parameter in it, `K`, is a length [m]"),
+        ),
+        // what stands first is no measure
+        (
+            "K*(J - 1)^2 - mu*ln(J)",
+            "K*(J - 1)^2",
+            format!("`K*(J - 1)^2` is a length [m], {density}; the parameter in it, `K`, is a length [m]"),
+        ),
+        (
+            "b*(J - 1) - -(K*J + mu*K*J)",
+            "K*J",
+            format!("`K*J` is a length [m], {density}; the parameter in it, `K`, is a length [m]"),
+        ),
+        (
+            "b*(J - 1) + share*(J - 1)^2",
+            "share*(J - 1)^2",
+            format!("`share*(J - 1)^2` is a pure number, {density}; the parameter in it, `share`, is a pure number"),
+        ),
+        (
+            "mu*J + mu*K*exp(b*J)",
+            "mu*K*exp(b*J)",
+            format!(
+                "`mu*K*exp(b*J)` is a stiffness or surface tension [kg/s²], {density}; of the parameters in it `mu` is a \
+                 pressure [kg/(m s²)], `K` is a length [m], `b` is given without unit"
+            ),
+        ),
+        ("I1 - 3", "I1 - 3", format!("`I1 - 3` is a pure number, {density}; no parameter is in it")),
+        (
+            "mu*((I1 - 3) + K*(J - 1))",
+            "K*(J - 1)",
+            "`K*(J - 1)` is a length [m], where a pure number is wanted, as `I1 - 3` beside it is; the parameter in it, \
+             `K`, is a length [m]"
+                .to_owned(),
+        ),
+        (
+            "mu*exp(K*J)",
+            "K*J",
+            "`K*J` is a length [m], where a pure number is wanted; the parameter in it, `K`, is a length [m]".to_owned(),
+        ),
+    ] {
+        assert_eq!(told(energy, &[]), ("energy".to_owned(), marked.to_owned(), message));
+    }
+    // by way of definitions, and in one
+    let (part, marked, message) = told("mu*(J - 1)^2 + W", &[("W", "L*(J - 1)"), ("L", "2*K")]);
+    assert_eq!((part.as_str(), marked.as_str()), ("energy", "W"));
+    assert!(message.ends_with("the parameter in it, `K`, is a length [m]"), "{message}");
+    let (part, marked, message) = told("mu*W", &[("W", "(J - 1)^2 + K*J")]);
+    assert_eq!((part.as_str(), marked.as_str()), ("W", "K*J"));
+    assert!(message.contains("where a pure number is wanted, as `(J - 1)^2` beside it is"), "{message}");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Values of the law language while a text is read: shape and unit beside the expression, and faults with their places.
 
-use super::{LawError, LawProblem};
+use super::{LawError, LawProblem, UnitClash, WantedUnits};
+use crate::Span;
 use crate::graph::{Expr, Shape};
-use crate::{Dimension, Span};
 
 /// Powers of kilogram, metre and second; `None` where no unit was declared.
 pub(super) type Units = Option<[f64; 3]>;
@@ -90,39 +90,30 @@ pub(super) fn combine(a: Units, b: Units, sign: f64) -> Units {
     Some([a[0] + sign * b[0], a[1] + sign * b[1], a[2] + sign * b[2]])
 }
 
-pub(super) fn describe_units(units: [f64; 3]) -> String {
-    if units.iter().all(|power| power.fract() == 0.0 && power.abs() < 100.0) {
-        return Dimension::new(units[0] as i8, units[1] as i8, units[2] as i8).describe();
-    }
-    let [mass, length, time] = units;
-    format!("a quantity in [kg^{mass} m^{length} s^{time}]")
+/// Units that do not fit; what is written there is filled in by the reader, who has the text.
+pub(super) fn wrong_unit<T>(span: Span, found: [f64; 3], wanted: WantedUnits) -> Result<T, Fault> {
+    Err(Fault::Here(span, LawProblem::WrongUnit(UnitClash::new(found, wanted))))
 }
 
 /// The units that all have; what has none declared takes any.
 pub(super) fn common_units(values: &[(Value, Span)]) -> Result<Units, Fault> {
-    let mut common: Units = None;
+    let mut common: Option<([f64; 3], Span)> = None;
     for (value, span) in values {
-        match (common, value.units) {
-            (Some(wanted), Some(found)) if wanted != found => {
-                let wanted = format!("{}, as beside it", describe_units(wanted));
-                return Err(Fault::Here(
-                    *span,
-                    LawProblem::WrongUnit { found: describe_units(found), wanted },
-                ));
+        let Some(found) = value.units else { continue };
+        match common {
+            Some((units, beside)) if units != found => {
+                return wrong_unit(*span, found, WantedUnits::Like { units, beside, written: String::new() });
             }
-            (None, units) => common = units,
-            _ => {}
+            Some(_) => {}
+            None => common = Some((found, *span)),
         }
     }
-    Ok(common)
+    Ok(common.map(|(units, _)| units))
 }
 
 pub(super) fn pure((value, span): (Value, Span)) -> Result<(), Fault> {
     match value.units {
-        Some(units) if units != [0.0; 3] => {
-            let wanted = "a pure number".to_owned();
-            Err(Fault::Here(span, LawProblem::WrongUnit { found: describe_units(units), wanted }))
-        }
+        Some(units) if units != [0.0; 3] => wrong_unit(span, units, WantedUnits::Pure),
         _ => Ok(()),
     }
 }

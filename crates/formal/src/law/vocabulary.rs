@@ -52,6 +52,14 @@ pub const LAW_FUNCTIONS: &[Word] = &[
     word("log", "log(x)", "natural logarithm, as ln"),
 ];
 
+/// Signs of books, what they are read in, and how that is written here.
+pub(super) const SIGNS_OF_BOOKS: &[[&str; 3]] = &[
+    [":", "A:B", "dot(A, B)"],
+    ["⊗", "a⊗b", "outer(a, b)"],
+    ["ᵀ", "Aᵀ", "transpose(A)"],
+    ["'", "A'", "transpose(A)"],
+];
+
 impl Word {
     pub(crate) fn find(words: &'static [Self], name: &str) -> Option<&'static Self> {
         words.iter().find(|word| word.name == name)
@@ -122,6 +130,11 @@ fn entry_of(name: &str) -> Option<(&str, usize, usize)> {
         }
         _ => None,
     }
+}
+
+/// Whether laws have a quantity of that name; entries too.
+pub(crate) fn is_quantity(name: &str) -> bool {
+    Word::find(QUANTITIES, name).is_some() || entry_of(name).is_some()
 }
 
 /// What a name means in every law, where it means something.
