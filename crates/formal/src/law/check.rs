@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use souple_math::{Mat3, Vec3, eigen_symmetric, exponential};
 
 use super::read::Read;
-use super::{DEFORMATION, EnergyLaw, LawError, LawProblem, Strain};
+use super::{DEFORMATION, EnergyLaw, LawError, LawParameter, LawProblem, Strain};
 use crate::graph::{Evaluation, Expr, Node};
 use crate::{Function, Span};
 
@@ -29,8 +29,13 @@ const TURNS: [[f64; 3]; 8] = [
 ];
 
 pub(super) fn check(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
-    if law.graph.depends(&[law.energy], &[law.deformation])[law.energy.index()] {
+    let depends = |exprs: &[Expr]| {
+        let depends = law.graph.depends(exprs, &[law.deformation]);
+        exprs.iter().any(|expr| depends[expr.index()])
+    };
+    if depends(&[law.energy]) {
         value_at_rest(law, read)?;
+        resistance(law, read)?;
         slope_at_rest(law, read)?;
         values_at_turned_rest(law, read)?;
         order_of_stretches(law, read)?;
@@ -38,7 +43,8 @@ pub(super) fn check(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> {
         doubts(law);
         return Ok(());
     }
-    Err(whole(LawProblem::NoDeformation))
+    let written: Vec<Expr> = read.origins.keys().copied().collect();
+    Err(if depends(&written) { no_stress(law, read) } else { whole(LawProblem::NoDeformation) })
 }
 
 fn whole(problem: LawProblem) -> LawError {
@@ -100,6 +106,33 @@ fn entries(matrix: &Mat3) -> [f64; 9] {
 
 fn identity() -> Mat3 {
     Mat3::identity(1.0)
+}
+
+/// How much smaller and larger than moderate ones deformations are tried too.
+const SCALES: [f64; 3] = [1.0, 1e-3, 20.0];
+
+/// Some deformation makes a stress. What rounding leaves of zero is another number a millionth beside it; a stress is the same.
+fn resistance(law: &EnergyLaw, read: &Read) -> Result<(), LawError> {
+    let tried =
+        deformations().into_iter().flat_map(|F| SCALES.map(|scale| identity() + (F - identity()) * scale));
+    let resists = |F: Mat3| {
+        let here = law.stress_at(&F);
+        let is_steady = |direction: Mat3| {
+            let beside = law.stress_at(&(F + direction * 1e-6));
+            (beside - here).largest_entry() < 0.1 * here.largest_entry()
+        };
+        entries(&here).iter().any(|entry| entry.is_infinite()) || directions().into_iter().all(is_steady)
+    };
+    if tried.into_iter().any(resists) { Ok(()) } else { Err(no_stress(law, read)) }
+}
+
+fn no_stress(law: &EnergyLaw, read: &Read) -> LawError {
+    let is_zero = |(name, parameter): &(String, LawParameter)| {
+        let is_used = read.used.contains(name);
+        (is_used && parameter.numbers() == [0.0]).then(|| name.clone())
+    };
+    let zeros = law.parameters.iter().filter_map(is_zero).collect();
+    at(read, read.energy, LawProblem::NoStress { zeros })
 }
 
 /// The energy has a value at rest, which becomes zero; an offset has no physics.

@@ -69,6 +69,17 @@ pub enum LawProblem {
     OrderOfStretches,
     #[error("the energy does not change with the deformation: no F, C, E, eps, J, I1, … is in it")]
     NoDeformation,
+    #[error("no deformation that was tried, small or large, makes a stress: {}; a body of this law would resist nothing", of_zeros(.zeros))]
+    NoStress { zeros: Vec<String> },
+}
+
+/// Why all is zero.
+fn of_zeros(zeros: &[String]) -> String {
+    match zeros {
+        [] => "its terms cancel, or are multiplied by zero".to_owned(),
+        [one] => format!("the parameter `{one}` is zero"),
+        several => format!("the parameters `{}` are zero", several.join("`, `")),
+    }
 }
 
 /// Units where others are wanted.

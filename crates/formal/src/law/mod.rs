@@ -97,8 +97,8 @@ impl EnergyLaw {
     ///
     /// # Errors
     /// The part, the place and what would be accepted: syntax, unknown names, wrong units, an energy that is no number,
-    /// definitions that need each other, derivatives without end, no value or slope at rest, stress at rest, an energy that
-    /// rotations change.
+    /// definitions that need each other, derivatives without end, no value or slope at rest, stress at rest or none anywhere, an
+    /// energy that rotations change.
     pub fn compile(text: &LawText) -> Result<Self, LawError> {
         let mut read = read::read(text)?;
         read.graph.allow(Some(LARGEST_DERIVATIVES));

@@ -26,6 +26,8 @@ pub(super) struct Read {
     pub energy: Expr,
     pub uses_small_strain: bool,
     pub warnings: Vec<String>,
+    /// Parameters and definitions that are in it.
+    pub used: Vec<String>,
     /// Where expressions were first written: part of the law and place.
     pub origins: HashMap<Expr, (String, Span)>,
 }
@@ -65,8 +67,8 @@ pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
         .filter(|(_, name)| !reader.used.contains(name))
         .map(|(kind, name)| format!("the {kind} `{name}` is used nowhere"))
         .collect();
-    let Reader { graph, origins, .. } = reader;
-    Ok(Read { graph, energy: energy.expr, uses_small_strain, warnings, origins })
+    let Reader { graph, origins, used, .. } = reader;
+    Ok(Read { graph, energy: energy.expr, uses_small_strain, warnings, used, origins })
 }
 
 /// A formula of numbers.

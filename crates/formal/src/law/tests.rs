@@ -181,6 +181,56 @@ fn bad_laws_are_told_where_and_why() {
     }
 }
 
+/// A law that resists nothing is none, whether a number makes it so, its terms, or all but the rounding of them.
+#[test]
+fn laws_of_zero_are_refused() {
+    let zero = |energy: &str, mu: f64| {
+        let error = refused(&text(energy, &[("mu", mu), ("K", 0.0), ("k", 0.0)]));
+        let said = error.problem.to_string();
+        assert!(
+            said.starts_with("no deformation that was tried, small or large, makes a stress: "),
+            "{energy}: {said}"
+        );
+        assert!(said.ends_with("; a body of this law would resist nothing"), "{energy}: {said}");
+        (error.span.map_or("", |span| span.of(energy)).to_owned(), said)
+    };
+    for energy in
+        ["mu/2*(I1 - 3) - mu*log(J)", "mu*(J - 1)^2 + 0*K", "mu*dot(eps, eps)", "mu*(exp(1e6*(J - 1)^2) - 1)"]
+    {
+        let (marked, said) = zero(energy, 0.0);
+        assert!(energy.starts_with(&marked) && marked.len() > 10, "{energy}: {marked}");
+        let told = if energy.contains('K') {
+            "the parameters `mu`, `K` are zero"
+        } else {
+            "the parameter `mu` is zero"
+        };
+        assert!(said.contains(told), "{said}");
+    }
+    for (energy, marked) in [
+        ("mu*(tr(C) - I1)", "tr(C) - I1"),
+        ("mu*(det(C) - J^2)*(I1 - 3)", "det(C) - J^2"),
+        ("mu*(dot(inv(C), C) - 3)", "mu*(dot(inv(C), C) - 3)"),
+        ("mu*(l1*l2*l3 - J)*(I1 - 3)", "mu*(l1*l2*l3 - J)*(I1 - 3)"),
+        ("mu*(dot(inv(C), C) - 3)^2", "mu*(dot(inv(C), C) - 3)^2"),
+        ("mu*(J - J)*tr(E)", "J - J"),
+        ("0*mu*(J - 1)^2", "0"),
+    ] {
+        let (place, said) = zero(energy, 3e3);
+        assert!(said.contains("its terms cancel, or are multiplied by zero"), "{said}");
+        assert_eq!(place, marked);
+    }
+    // what begins far from rest, is tiny, huge or flat at rest resists
+    let far = [
+        ("mu*max(I1 - 40, 0)^2", 1.0),
+        ("mu*dot(E, E)", 1e-200),
+        ("mu*dot(E, E)", 1e200),
+        ("mu*(exp(1e8*(J - 1)^2) - 1)", 1.0),
+        ("min(mu*dot(E, E), 1e30*mu)", 1e-3),
+        ("mu*(J - 1)^8", 1.0),
+    ];
+    far.iter().for_each(|(energy, mu)| drop(law(energy, &[("mu", *mu)])));
+}
+
 /// What is wrong in units is the term that is no energy density, whichever stands first, with the parameters in it.
 #[test]
 fn units_are_told_with_their_term_and_parameters() {
