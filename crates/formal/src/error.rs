@@ -49,7 +49,7 @@ pub enum ParseError {
     WrongKind { found: Kind, wanted: Kind, span: Span },
 }
 
-fn did_you_mean(nearest: &Option<String>) -> String {
+pub(crate) fn did_you_mean(nearest: &Option<String>) -> String {
     nearest.as_ref().map(|name| format!(" (did you mean `{name}`?)")).unwrap_or_default()
 }
 

@@ -8,7 +8,7 @@ use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::ElementKind;
 use souple_models::associations::Association;
 use souple_models::derive::{MapKind, element_data, source_constant_count, source_law_name, source_name};
-use souple_models::materials::{AnyLaw, WRITTEN_LAWS, WrittenLaw};
+use souple_models::materials::{AnyLaw, WRITTEN_LAWS, WrittenLaw, is_parameter, law_text};
 use souple_table::{Value, Values};
 
 /// Principal stretches.
@@ -75,6 +75,41 @@ fn by_hand(name: &str, p: &dyn Fn(&str) -> f64, s: Stretches) -> [f64; 3] {
             decoupled(std::array::from_fn(|i| squares[i] * (p("c") + 2.0 * fibres * along[i])), J, bulk(J))
         }
         other => panic!("no closed form of `{other}`"),
+    }
+}
+
+/// A direction is a list of three numbers, which may be formulas, of any length; text is a value where it is one, and else a part
+/// of an energy.
+#[test]
+fn values_and_directions() {
+    let read =
+        |text: &str| law_text("J", &[("a".to_owned(), text.to_owned())], &[]).map(|law| law.parameters[0].1);
+    let Ok(LawParameter::Direction([x, y, z])) = read("[1, 0, sqrt(3)]") else { panic!() };
+    // a square root, a square, a sum and a quotient
+    assert!((x - 0.5).abs() < 1e-15 && y == 0.0 && (z - 0.75f64.sqrt()).abs() < 1e-15, "{x} {y} {z}");
+    for text in ["1, 0, 0", "(1, 0, 0)", "1 0 0", "[1 0 0]", "[1, 0]", "[1 mm, 0, 0]"] {
+        let error = read(text).unwrap_err();
+        assert_eq!(error.path(), ["parameters", "a"]);
+        let said = error.to_string();
+        let words = (
+            format!("`a`: `{text}` is no direction"),
+            "three numbers in brackets are accepted, as in [1, 0, 0]",
+        );
+        assert!(said.starts_with(&words.0) && said.ends_with(words.1), "{said}");
+    }
+    for value in ["10 kPa", "-2.5", "12 %", "[0.6, 0.8, 0]", "10 kpa", "1e999"] {
+        assert!(is_parameter(value), "{value}");
+    }
+    for part in [
+        "4/3*mu",
+        "I1_bar - 3",
+        "max(I4(a) - 1, 0)",
+        "(a + b)*max(a, b)",
+        "4/3*mu)",
+        "mu (J - 1)",
+        "[a, b, 0]",
+    ] {
+        assert!(!is_parameter(part), "{part}");
     }
 }
 

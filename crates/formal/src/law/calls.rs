@@ -6,7 +6,7 @@ use super::value::{
     Fault, Kind, PURE, Value, combine, common_units, describe, pure, scalar, tensor, truth, wrong_count,
     wrong_shape,
 };
-use super::vocabulary::{LAW_FUNCTIONS, Word};
+use super::vocabulary::{self, LAW_FUNCTIONS, Word};
 use crate::function::{FUNCTIONS, Function, FunctionEntry};
 use crate::graph::{Comparison, Expr, Shape};
 use crate::{ParseError, Span};
@@ -121,7 +121,7 @@ impl Reader<'_> {
         let (a, place) = arguments[0];
         let shape = match word.name {
             "log" => Shape::Scalar,
-            "outer" | "I4" | "I5" => Shape::Vector,
+            name if vocabulary::takes_directions(name) => Shape::Vector,
             "dot" => tensor(a, place)?,
             _ => Shape::Matrix,
         };
@@ -130,7 +130,11 @@ impl Reader<'_> {
         }
         for (value, place) in arguments {
             if value.kind != Kind::Tensor(shape) {
-                return wrong_shape(*place, describe(value.kind), &describe(Kind::Tensor(shape)));
+                let wanted = match shape {
+                    Shape::Vector => "a direction, a vector such as a parameter `a = [1, 0, 0]`,".to_owned(),
+                    _ => describe(Kind::Tensor(shape)),
+                };
+                return wrong_shape(*place, describe(value.kind), &wanted);
             }
         }
         let graph = &mut self.graph;

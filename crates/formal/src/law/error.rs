@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::error::did_you_mean;
+use crate::graph::Shape;
 use crate::law::Word;
 use crate::{Dimension, ParseError, Span};
 
@@ -29,10 +31,18 @@ pub enum LawProblem {
          more than {limit} operands; a shorter sum or product is accepted"
     )]
     LongDerivatives { parts: usize, limit: usize },
-    #[error("there is no `{name}`{}; there are the parameters and definitions of this law{}, and {}", .nearest.as_ref().map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default(), .own, Word::list())]
-    UnknownName { name: String, nearest: Option<String>, own: String },
-    #[error("there is no function `{name}`{}; there are {}", .nearest.as_ref().map_or_else(|| format!("; for a product write `{name} * (…)`"), |near| format!(" (did you mean `{near}`?)")), .known.join(", "))]
+    #[error("there is no `{name}`{}; there are the parameters and definitions of this law{own}, and {}{}", did_you_mean(.nearest), Word::list(), of_direction(.name, *.shape))]
+    UnknownName {
+        name: String,
+        nearest: Option<String>,
+        own: String,
+        /// What is wanted where it stands: a vector for a direction, else a number.
+        shape: Shape,
+    },
+    #[error("there is no function `{name}`{}; there are {}", or_product(.name, .nearest), .known.join(", "))]
     UnknownFunction { name: String, nearest: Option<String>, known: Vec<&'static str> },
+    #[error("`{name}` is said to vary, but is not in the formula{}; in it are {}", did_you_mean(.nearest), .known.join(", "))]
+    NotInFormula { name: String, nearest: Option<String>, known: Vec<String> },
     #[error("`{name}` has a meaning in every law ({meaning}); choose another name")]
     ReservedName { name: String, meaning: String },
     #[error("`{name}` is no name; a letter followed by letters, digits and `_` is accepted")]
@@ -71,6 +81,17 @@ pub enum LawProblem {
     NoDeformation,
     #[error("no deformation that was tried, small or large, makes a stress: {}; a body of this law would resist nothing", of_zeros(.zeros))]
     NoStress { zeros: Vec<String> },
+}
+
+fn of_direction(name: &str, shape: Shape) -> String {
+    match shape {
+        Shape::Vector => format!("; a direction is given among the parameters, as `{name} = [1, 0, 0]`"),
+        _ => String::new(),
+    }
+}
+
+fn or_product(name: &str, nearest: &Option<String>) -> String {
+    if nearest.is_some() { did_you_mean(nearest) } else { format!("; for a product write `{name} * (…)`") }
 }
 
 /// Why all is zero.

@@ -166,11 +166,20 @@ impl EnergyLaw {
 /// A formula whose constants are grouped: every name in it is a number, and those of `variables` vary.
 ///
 /// # Errors
-/// As a law's: the place and what would be accepted.
+/// As a law's: the place and what would be accepted; also a variable that is not in the formula.
 pub fn group_constants(formula: &str, variables: &[String]) -> Result<(Graph, Grouped), LawError> {
     let read::Numbers { mut graph, value: root, symbols } = read::read_formula(formula)?;
-    let variables: Vec<Expr> =
-        symbols.iter().filter(|(name, _)| variables.contains(name)).map(|(_, symbol)| *symbol).collect();
+    let symbol_of = |variable: &String| match symbols.iter().find(|(name, _)| name == variable) {
+        Some((_, symbol)) => Ok(*symbol),
+        None => {
+            let known: Vec<String> = symbols.iter().map(|(name, _)| name.clone()).collect();
+            let nearest =
+                souple_table::nearest(variable, known.iter().map(String::as_str)).map(str::to_owned);
+            let problem = LawProblem::NotInFormula { name: read::short(variable), nearest, known };
+            Err(LawError::new("varying", None, problem))
+        }
+    };
+    let variables = variables.iter().map(symbol_of).collect::<Result<Vec<Expr>, _>>()?;
     let grouped = graph.group_constants(&[root], &variables);
     Ok((graph, grouped))
 }

@@ -215,6 +215,10 @@ impl<'a> Reader<'a> {
                     let (span, clash) = misfit.unwrap_or((span, clash));
                     fail(span, LawProblem::WrongUnit(self.told(clash, span, &expression, text)))
                 }
+                Fault::Here(span, LawProblem::UnknownName { name, nearest, own, .. }) => {
+                    let shape = shape_wanted(&expression, values.len());
+                    fail(span, LawProblem::UnknownName { name, nearest, own, shape })
+                }
                 Fault::Here(span, problem) => fail(span, problem),
                 Fault::Elsewhere(error) => error,
             })?;
@@ -372,7 +376,10 @@ impl<'a> Reader<'a> {
         let known = own.iter().copied().chain(QUANTITIES.iter().map(|word| word.name));
         let nearest = souple_table::nearest(name, known).map(str::to_owned);
         let own = if own.is_empty() { " (none)".to_owned() } else { format!(" ({})", own.join(", ")) };
-        Err(Fault::Here(span, LawProblem::UnknownName { name: short(name), nearest, own }))
+        Err(Fault::Here(
+            span,
+            LawProblem::UnknownName { name: short(name), nearest, own, shape: Shape::Scalar },
+        ))
     }
 }
 
@@ -389,6 +396,18 @@ fn misfit(
         let is_wrong = place.contains(span) && found != wanted;
         is_wrong.then(|| (span, UnitClash::new(found, WantedUnits::EnergyDensity)))
     })
+}
+
+/// What the node at a position must be where it stands.
+fn shape_wanted(expression: &Expression, position: usize) -> Shape {
+    let takes = |kind: &NodeKind| match kind {
+        NodeKind::Call { name, arguments } => {
+            vocabulary::takes_directions(name) && arguments.iter().any(|id| id.index() == position)
+        }
+        _ => false,
+    };
+    let is_direction = expression.nodes()[position..].iter().any(|node| takes(&node.kind));
+    if is_direction { Shape::Vector } else { Shape::Scalar }
 }
 
 /// What is written at a place, or its beginning.

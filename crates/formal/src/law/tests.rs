@@ -157,7 +157,13 @@ fn bad_laws_are_told_where_and_why() {
         ("mu*(J - 1)^2*(2/(3 - 3))", "3 - 3", "a divisor other than zero"),
         ("mu*(C*[1, 0])", "[1, 0]", "three numbers"),
         ("mu*tr(J)", "J", "3x3 tensor"),
-        ("mu*I4(C)", "C", "a vector"),
+        (
+            "mu*I4(C)",
+            "C",
+            "this is a 3x3 tensor, where a direction, a vector such as a parameter `a = [1, 0, 0]`,",
+        ),
+        ("mu*(I4(mu) - 1)^2", "mu", "this is a number, where a direction, a vector such as a parameter"),
+        ("mu*(I5(fibre) - 1)^2", "fibre", "is given among the parameters, as `fibre = [1, 0, 0]`"),
         ("mu*dot(C)", "dot(C)", "dot(A, B)"),
         ("mu*J > mu", "mu*J > mu", "truth value"),
         ("mu*(E:E)", ":", "`A:B` is written `dot(A, B)`"),
@@ -357,6 +363,10 @@ fn constants_of_a_formula() {
     assert_eq!(written(&grouped.varying), ["U0x_*D_0 + U0y_*D_1"]);
     let error = group_constants("a +* b", &[]).unwrap_err();
     assert_eq!(error.span, Some(Span::new(3, 4)));
+    let error = group_constants("Alpha*x + b", &["x", "alpha"].map(str::to_owned)).unwrap_err();
+    let said =
+        "`alpha` is said to vary, but is not in the formula (did you mean `Alpha`?); in it are Alpha, x, b";
+    assert_eq!((error.part.as_str(), error.problem.to_string().as_str()), ("varying", said));
 }
 
 /// Laws that are flat at rest are laws.

@@ -132,6 +132,11 @@ fn entry_of(name: &str) -> Option<(&str, usize, usize)> {
     }
 }
 
+/// Whether the arguments of a function are directions.
+pub(crate) fn takes_directions(name: &str) -> bool {
+    matches!(name, "outer" | "I4" | "I5")
+}
+
 /// Whether laws have a quantity of that name; entries too.
 pub(crate) fn is_quantity(name: &str) -> bool {
     Word::find(QUANTITIES, name).is_some() || entry_of(name).is_some()

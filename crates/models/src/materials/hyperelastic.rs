@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use souple_formal::law::{EnergyLaw, LawError, LawParameter, LawText};
 use souple_formal::tape::Tape;
-use souple_formal::{Expression, NodeKind, UnaryOperator, parse_quantity};
+use souple_formal::{Expression, Formula, parse_quantity};
 use souple_table::{Entry, Parameter, Value};
 
 use super::{Build, DENSITY, Lame, Material, MaterialLaw, PARAMETERS_MAX};
@@ -98,45 +98,56 @@ pub fn law_text(
 ) -> Result<LawText, MaterialError> {
     let mut read = Vec::with_capacity(parameters.len());
     for (name, text) in parameters {
-        let parameter = match direction(text) {
-            Some(direction) => LawParameter::Direction(direction),
-            None => {
-                let quantity = parse_quantity(text).map_err(|error| MaterialError {
-                    path: vec!["parameters".to_owned(), name.clone()],
-                    message: format!("`{name}`: {error}"),
-                })?;
-                // a bare number is taken in the unit that is wanted
-                let bare = text.trim().parse::<f64>().is_ok();
-                LawParameter::Number {
-                    value: quantity.value,
-                    dimension: (!bare).then_some(quantity.dimension),
-                }
-            }
+        let fail = |error: String| MaterialError {
+            path: vec!["parameters".to_owned(), name.clone()],
+            message: format!("`{name}`: {error}"),
+        };
+        let parameter = if is_list(text) {
+            LawParameter::Direction(direction(text).map_err(fail)?)
+        } else {
+            let quantity = parse_quantity(text).map_err(|error| fail(error.to_string()))?;
+            // a bare number is taken in the unit that is wanted
+            let bare = text.trim().parse::<f64>().is_ok();
+            LawParameter::Number { value: quantity.value, dimension: (!bare).then_some(quantity.dimension) }
         };
         read.push((name.clone(), parameter));
     }
     Ok(LawText { energy: energy.to_owned(), definitions: definitions.to_vec(), parameters: read })
 }
 
+/// Whether a text is the value of a parameter: a number, a quantity or a direction, and else a part of an energy.
+pub fn is_parameter(text: &str) -> bool {
+    if is_list(text) {
+        return direction(text).is_ok();
+    }
+    match (parse_quantity(text), Expression::parse(text)) {
+        (Ok(_), _) => true,
+        (Err(_), Ok(_)) => false,
+        // what went on for longer is what was meant: `10 kpa` is no part of an energy
+        (Err(unit), Err(formula)) => unit.span().start >= formula.span().start,
+    }
+}
+
+/// Whether a text is meant for a direction, in brackets or without.
+fn is_list(text: &str) -> bool {
+    let pieces: Vec<&str> = text.split([',', ' ']).filter(|piece| !piece.is_empty()).collect();
+    let are_three = pieces.len() == 3 && pieces.iter().all(|piece| piece.parse::<f64>().is_ok());
+    let text = text.trim_start();
+    are_three || text.starts_with('[') || (text.starts_with('(') && text.contains(','))
+}
+
 /// `[x, y, z]`, made one long.
-fn direction(text: &str) -> Option<[f64; 3]> {
-    let expression = Expression::parse(text).ok()?;
-    let NodeKind::Vector(components) = &expression.node(expression.root()).kind else { return None };
-    let number = |id| match &expression.node(id).kind {
-        NodeKind::Number(number) => Some(*number),
-        NodeKind::Unary { operator: UnaryOperator::Negate, operand } => {
-            match expression.node(*operand).kind {
-                NodeKind::Number(number) => Some(-number),
-                _ => None,
-            }
-        }
-        _ => None,
-    };
-    let [x, y, z] = <[_; 3]>::try_from(components.as_slice()).ok()?;
-    let vector = [number(x)?, number(y)?, number(z)?];
+fn direction(text: &str) -> Result<[f64; 3], String> {
+    let wanted = "three numbers in brackets are accepted, as in [1, 0, 0]";
+    if !text.trim_start().starts_with('[') {
+        return Err(format!("`{text}` is no direction; {wanted}"));
+    }
+    let components = Formula::compile_vector::<3>(text, &[])
+        .map_err(|error| format!("`{text}` is no direction: {error}; {wanted}"))?;
+    let vector = components.map(|component| component.evaluate(&[]));
     let length = vector.iter().map(|number| number * number).sum::<f64>().sqrt();
     // the zero vector goes on, to be refused with its name
-    Some(if length > 0.0 { vector.map(|number| number / length) } else { vector })
+    Ok(if length > 0.0 { vector.map(|number| number / length) } else { vector })
 }
 
 /// Laws compiled last, the latest first. A scene is read, built and, while it is shown, built again.

@@ -112,6 +112,12 @@ impl WrittenLaw {
         WRITTEN_LAWS.iter().find(|law| law.name == name)
     }
 
+    /// All of it in one text, `energy; name = part; name = value`, as `souple derive --law` reads it.
+    pub fn written(&self) -> String {
+        let named = self.definitions.iter().chain(self.parameters);
+        named.fold(self.energy.to_owned(), |text, (name, value)| format!("{text}; {name} = {value}"))
+    }
+
     /// The law with its values.
     ///
     /// # Errors

@@ -26,7 +26,7 @@ use souple_formal::law::Strain;
 use souple_math::Mat3;
 use souple_table::{Entry, Parameter, Range, Table, Values};
 
-pub use hyperelastic::{MaterialError, TextLaw, law_text};
+pub use hyperelastic::{MaterialError, TextLaw, is_parameter, law_text};
 pub use law::{Lame, Law, Parameters};
 pub use library::{WRITTEN_LAWS, WrittenLaw};
 
