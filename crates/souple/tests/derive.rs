@@ -105,6 +105,49 @@ fn the_derivation_is_written_as_a_program() {
     assert!(refused.stderr.contains("principal stretches"), "{refused:#?}");
 }
 
+/// The text of a law, as it is listed and described, is read as it stands and is the law of that name.
+#[test]
+fn laws_are_read_as_they_are_printed() {
+    let derived = |law: &str| {
+        let told = souple(["derive", "--law", law, "--element", "tet4"]).ends(0).stdout;
+        let end = told.find("\non tet4").expect("the element");
+        told[..end].to_owned()
+    };
+    let list = souple(["list", "laws"]).ends(0).stdout;
+    for law in souple(["list", "laws", "--json"]).ends(0).json().as_array().expect("laws") {
+        let (name, text) = (law["name"].as_str().expect("a name"), law["text"].as_str().expect("a text"));
+        assert!(
+            list.lines().any(|line| line.starts_with(name) && line.ends_with(&format!(": {text}"))),
+            "{list}"
+        );
+        let page = souple(["describe", name]).ends(0).stdout;
+        assert!(page.contains(&format!("\n  as text: {text}\n")), "{page}");
+        assert_eq!(derived(text), derived(name), "{name}");
+    }
+    // numbers by themselves, in quotes, and beside the text
+    let whole = derived("c*x; x = (J - 1)^2; c = 2 kPa");
+    assert_eq!(derived("c*x; c = \"2 kPa\"; x = (J - 1)^2;"), whole);
+    let apart = ["--define", "x=(J - 1)^2", "--parameter", "c=2 kPa"];
+    let call = ["derive", "--law", "c*x", "--element", "tet4"];
+    assert!(souple(call.iter().chain(&apart)).ends(0).stdout.starts_with(&whole));
+}
+
+/// A formula is grouped as text and as LaTeX, with the parts that its constants share.
+#[test]
+fn formulas_are_grouped() {
+    let formula = "sin(a + b + c)*(a + b + c)*x + p*y";
+    let call = ["derive", "--group", formula, "--varying", "x", "--varying", "y"];
+    let told = souple(call).ends(0).stdout;
+    assert_eq!(told, "t0 = a + b + c\nD_0 = t0*sin(t0)\nD_1 = p\nx*D_0 + y*D_1\n");
+    let latex = souple(call.iter().chain(&["--emit", "latex"])).ends(0).stdout;
+    for line in ["t_{0} = a + b + c\n", "D_{0} = t_{0}\\,\\sin\\left(t_{0}\\right)\n"] {
+        assert!(latex.contains(line), "{latex}");
+    }
+    let document = souple(call.iter().chain(&["--json"])).ends(0).json();
+    assert_eq!(document["parts"], serde_json::json!(["t0 = a + b + c"]));
+    assert_eq!(document["constants"]["D_0"], "t0*sin(t0)");
+}
+
 /// `describe` prints energy, stress and tangent of every law, and the rules of every element.
 #[test]
 fn laws_and_elements_are_described() {

@@ -23,6 +23,16 @@ fn meshes_are_told_in_sentences() {
     }
 }
 
+/// The call that derives a text.
+fn derived(text: &str) -> [&str; 5] {
+    ["derive", "--law", text, "--element", "tet4"]
+}
+
+/// The call that groups a formula.
+fn grouped<'a>(formula: &'a str, more: &[&'a str; 2]) -> [&'a str; 5] {
+    ["derive", "--group", formula, more[0], more[1]]
+}
+
 /// Every wrong word of a command is answered with what would be right.
 #[test]
 fn wrong_words_are_answered() {
@@ -41,10 +51,65 @@ fn wrong_words_are_answered() {
             &["    m/2*(I1-3)\n    ^", "--parameter m="],
         ),
         (&["derive", "--law", "neo_hokean", "--element", "tet4"], &["did you mean `neo_hookean`?"]),
+        // laws as text: the term, the sign, the direction, the number that is to blame, with its place
+        (
+            &derived("mu/2*(I1 - 3) + K*(J - 1)^2; mu = 1 kPa; K = 3 m"),
+            &[
+                "    mu/2*(I1 - 3) + K*(J - 1)^2\n                    ^^^^^^^^^^^\n",
+                "`K*(J - 1)^2` is a length [m]",
+                "the parameter in it, `K`, is a length [m]",
+            ],
+        ),
+        (&derived("mu*(E:E); mu = 1 kPa"), &["    mu*(E:E)\n         ^\n", "`A:B` is written `dot(A, B)`"]),
+        (
+            &derived("mu (J - 1)^2; mu = 1 kPa"),
+            &["    mu (J - 1)^2\n    ^^\n", "a `*` is missing, as in `mu * (…)`"],
+        ),
+        (
+            &derived("mu*(J - 1)^2; mu = 0 kPa"),
+            &["    mu*(J - 1)^2\n    ^^^^^^^^^^^^\n", "the parameter `mu` is zero"],
+        ),
+        (&derived("c*(J - 1)^2; c = 10 kpa"), &["`c`: there is no unit `kpa` (did you mean `kPa`?)"]),
+        (&derived("c*(J - 1)^2; d = 4/3*c); c = 1"), &["    4/3*c)\n         ^\n"]),
+        (&derived("c*(J - 1)^2; c"), &["`c`: there is no `=`"]),
+        (
+            &derived("c*(I4(a) - 1)^2; c = 1 kPa"),
+            &[
+                "    c*(I4(a) - 1)^2\n          ^\n",
+                "as by `--parameter a=\"[1, 0, 0]\"`",
+                "among the parameters, as `a = [",
+            ],
+        ),
+        (
+            &derived("c*(I4(a) - 1)^2; c = 1 kPa; a = 2"),
+            &["          ^\n", "a direction, a vector such as a parameter"],
+        ),
+        (
+            &grouped("a*x", &["--varying", "X"]),
+            &["`X` is said to vary", "did you mean `x`?", "in it are a, x"],
+        ),
+        (
+            &grouped("a*x", &["--emit", "rust"]),
+            &["a formula is grouped as text, or as LaTeX", "`--emit latex`"],
+        ),
+        (&grouped("a*x", &["--cut", "L"]), &["'--group <FORMULA>' cannot be used with '--cut <CUT>'"]),
     ];
     for (call, words) in cases {
         let answer = souple_in(folder.path(), *call).ends(2);
         assert!(words.iter().all(|word| answer.stderr.contains(word)), "{words:?}: {answer:#?}");
+    }
+    // of one letter every other one is a single edit away
+    let unlike = souple(derived("mu*(J - 1)^2 + k*J; mu = 1 kPa")).ends(2);
+    assert!(
+        unlike.stderr.contains("there is no `k`; there are") && !unlike.stderr.contains("did you mean"),
+        "{unlike:#?}"
+    );
+    for direction in ["1, 0, 0", "(1, 0, 0)", "[1, 0]", "[x, 0, 0]"] {
+        let parameter = format!("a={direction}");
+        let call = derived("c*(I4(a) - 1)^2; c = 1 kPa");
+        let answer = souple(call.iter().copied().chain(["--parameter", &parameter])).ends(2);
+        let told = format!("`a`: `{direction}` is no direction");
+        assert!(answer.stderr.contains(&told) && answer.stderr.contains("as in [1, 0, 0]"), "{answer:#?}");
     }
     let unreadable = souple(["mesh", "quality", &text]).ends(2);
     assert!(!unreadable.stderr.contains("glb"), "glTF is only written: {unreadable:#?}");

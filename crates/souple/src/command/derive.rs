@@ -9,20 +9,21 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde_json::json;
 use souple_formal::element::Cut;
-use souple_formal::emit::{ElementCode, Text, maxima, symbol, write};
-use souple_formal::graph::Expr;
+use souple_formal::emit::{ElementCode, Latex, Style, Text, maxima, symbol, write};
+use souple_formal::graph::{Expr, Shape};
 use souple_formal::law::{EnergyLaw, LawProblem, LawText, group_constants};
 use souple_mesh::ElementKind;
 use souple_models::associations::Association;
 use souple_models::derive::{MapKind, element_data, source_law_name, usual_rule};
-use souple_models::materials::{WRITTEN_LAWS, WrittenLaw, law_text};
+use souple_models::materials::{WRITTEN_LAWS, WrittenLaw, is_parameter, law_text};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line, print_note};
 use report::Report;
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// An energy density such as "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", or the name of a law
+    /// An energy density such as "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", also with its constants and the names of its
+    /// parts behind it, as in "c*x + k*(J - 1)^2; x = I1_bar - 3; c = 5 kPa; k = 0.1 MPa"; or the name of a law
     // an energy may begin with a minus
     #[arg(long, required_unless_present_any = ["list", "check", "group"], allow_hyphen_values = true)]
     law: Option<String>,
@@ -43,7 +44,13 @@ pub struct Arguments {
     #[arg(long, requires = "check")]
     fault: Option<f64>,
     /// Groups the constants of a formula, such as "(a - b)*x + p*(a - b)*y", in the place of a law on an element
-    #[arg(long, value_name = "FORMULA", allow_hyphen_values = true, conflicts_with_all = ["law", "element"])]
+    // what is about laws and elements would change nothing
+    #[arg(
+        long,
+        value_name = "FORMULA",
+        allow_hyphen_values = true,
+        conflicts_with_all = ["law", "element", "list", "check", "out", "parameters", "definitions", "rule", "map", "cut"]
+    )]
     group: Option<String>,
     /// A name that varies in the formula; may be repeated
     #[arg(long, value_name = "NAME", requires = "group")]
@@ -54,7 +61,8 @@ pub struct Arguments {
     /// Writes the expressions of every fragment there, one file for each node and axis
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// A material constant of a law given as text, such as mu="1 MPa" or a="[1, 0, 0]"; may be repeated
+    /// A material constant of a law given as text, such as mu="1 MPa", or a direction such as a="[1, 0, 0]" for fibres; may be
+    /// repeated
     #[arg(long = "parameter", value_name = "NAME=VALUE")]
     parameters: Vec<String>,
     /// A name for a part of the energy; may be repeated
@@ -106,9 +114,12 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         let definition = text.definitions.iter().find(|(name, _)| *name == error.part);
         let written = definition.map_or(text.energy.as_str(), |(_, text)| text.as_str());
         let expected = match &*error.problem {
-            LawProblem::UnknownName { name, .. } => format!(
-                "a hyperelastic law whose constants are given, as by `--parameter {name}=\"10 kPa\"` or `--define {name}=TEXT`"
-            ),
+            LawProblem::UnknownName { name, shape, .. } => {
+                let example = if *shape == Shape::Vector { "[1, 0, 0]" } else { "10 kPa" };
+                format!(
+                    "a hyperelastic law whose constants are given, as by `--parameter {name}=\"{example}\"` or `--define {name}=TEXT`"
+                )
+            }
             _ => "a hyperelastic law".to_owned(),
         };
         Refusal::request("law", text.energy.clone(), expected, error.explained(written))
@@ -195,19 +206,31 @@ const TEXT: &str = "text";
 
 /// Prints a formula with its constants taken out.
 fn group(formula: &str, arguments: &Arguments) -> Result<End, Refusal> {
+    let style: &dyn Style = match arguments.emit {
+        Emit::Stats => &Text,
+        Emit::Latex => &Latex,
+        Emit::Rust | Emit::Wgsl | Emit::Maxima => {
+            let message = "code is written of a law on an element; a formula is grouped as text, or as LaTeX";
+            let asked = arguments.emit.to_possible_value().map(|value| value.get_name().to_owned());
+            let expected = "`--group` without `--emit`, or with `--emit latex`";
+            return Err(Refusal::request("emit", asked.unwrap_or_default(), expected, message));
+        }
+    };
     let (graph, grouped) = group_constants(formula, &arguments.varying).map_err(|error| {
         Refusal::request("formula", formula, "a formula of numbers", error.explained(formula))
     })?;
     let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = grouped.constants.iter().copied().unzip();
-    let written = |roots: &[Expr]| write(&graph, roots, &Text).1;
-    let names: Vec<String> = symbols.iter().map(|constant| symbol(&graph, *constant, &Text)).collect();
-    let (definitions, varying) = (written(&definitions), written(&grouped.varying).concat());
+    let roots: Vec<Expr> = definitions.into_iter().chain(grouped.varying).collect();
+    let (parts, mut written) = write(&graph, &roots, style);
+    let varying = written.split_off(symbols.len()).concat();
+    let names = symbols.iter().map(|constant| symbol(&graph, *constant, style));
     if arguments.json {
         let constants: serde_json::Map<String, serde_json::Value> =
-            names.into_iter().zip(definitions.into_iter().map(Into::into)).collect();
-        print_json(&json!({ "constants": constants, "varying": varying }));
+            names.zip(written.into_iter().map(Into::into)).collect();
+        print_json(&json!({ "parts": parts, "constants": constants, "varying": varying }));
     } else {
-        names.iter().zip(&definitions).for_each(|(name, text)| print_line(format_args!("{name} = {text}")));
+        parts.iter().for_each(print_line);
+        names.zip(&written).for_each(|(name, text)| print_line(style.definition(&name, text)));
         print_line(varying);
     }
     Ok(End::Done)
@@ -242,21 +265,18 @@ fn list(arguments: &Arguments) -> End {
 
 /// The law of that name, or the text.
 fn law_of(wanted: &str, arguments: &Arguments) -> Result<(String, LawText), Refusal> {
-    let pairs = |list: &[String]| -> Result<Vec<(String, String)>, Refusal> {
-        list.iter()
-            .map(|text| {
-                let pair = text.split_once('=').ok_or_else(|| {
-                    Refusal::request("parameter", text, "NAME=VALUE", format!("`{text}`: there is no `=`"))
-                })?;
-                Ok((pair.0.trim().to_owned(), pair.1.trim().to_owned()))
-            })
-            .collect()
+    let pair = |text: &str| -> Result<(String, String), Refusal> {
+        let (name, value) = text.split_once('=').ok_or_else(|| {
+            Refusal::request("parameter", text, "NAME=VALUE", format!("`{text}`: there is no `=`"))
+        })?;
+        Ok((name.trim().to_owned(), value.trim().trim_matches('"').to_owned()))
     };
-    let (parameters, definitions) = (pairs(&arguments.parameters)?, pairs(&arguments.definitions)?);
+    let pairs = |list: &[String]| list.iter().map(|text| pair(text)).collect::<Result<Vec<_>, _>>();
+    let (mut parameters, mut definitions) = (pairs(&arguments.parameters)?, pairs(&arguments.definitions)?);
     if let Some(law) = WrittenLaw::find(wanted) {
         if let Some((given, _)) = parameters.iter().chain(&definitions).next() {
             let message = format!("`{wanted}` has its own numbers; `{given}` would change nothing");
-            let expected = format!("a law as text, such as \"{}\"", law.energy);
+            let expected = format!("a law as text, such as \"{}\"", law.written());
             return Err(Refusal::request("parameter", given, expected, message));
         }
         let text = law.text().map_err(|error| Refusal::work("law", error.to_string()))?;
@@ -270,7 +290,15 @@ fn law_of(wanted: &str, arguments: &Arguments) -> Result<(String, LawText), Refu
             format!("an energy density, or a law that `souple list laws` prints: {}", names.join(", "));
         return Err(Refusal::request("unknown_law", wanted, expected, message));
     }
-    let text = law_text(wanted, &parameters, &definitions)
-        .map_err(|error| Refusal::request("parameter", "", "a quantity or direction", error.to_string()))?;
+    let mut parts = wanted.split(';');
+    let energy = parts.next().unwrap_or_default().trim();
+    for part in parts.map(str::trim).filter(|part| !part.is_empty()) {
+        let named = pair(part)?;
+        if is_parameter(&named.1) { parameters.push(named) } else { definitions.push(named) }
+    }
+    let text = law_text(energy, &parameters, &definitions).map_err(|error| {
+        let expected = "a quantity such as \"10 kPa\", or a direction such as \"[1, 0, 0]\"";
+        Refusal::request("parameter", "", expected, error.to_string())
+    })?;
     Ok((TEXT.to_owned(), text))
 }

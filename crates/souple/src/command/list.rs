@@ -36,6 +36,8 @@ struct Page {
     summary: String,
     source: &'static str,
     parameters: &'static [Parameter],
+    /// A law as `souple derive --law` reads it.
+    text: Option<String>,
 }
 
 fn pages_of<B>(table: &'static Table<B>) -> Vec<Page> {
@@ -45,6 +47,7 @@ fn pages_of<B>(table: &'static Table<B>) -> Vec<Page> {
         summary: entry.summary.to_owned(),
         source: entry.source,
         parameters: entry.parameters,
+        text: None,
     };
     table.entries.iter().map(page).collect()
 }
@@ -63,6 +66,7 @@ fn functions() -> Vec<Page> {
         summary,
         source: "",
         parameters: &[],
+        text: None,
     };
     let functions = souple_formal::FUNCTIONS
         .iter()
@@ -74,13 +78,13 @@ fn functions() -> Vec<Page> {
 
 /// Laws as text, for `souple derive` and for scenes to begin with.
 fn laws() -> Vec<Page> {
-    let page = |law: &WrittenLaw| {
-        let constants: Vec<String> =
-            law.parameters.iter().map(|(name, value)| format!("{name} = \"{value}\"")).collect();
-        let definitions = law.definitions.iter().map(|(name, text)| format!("{name} = {text}"));
-        let with: Vec<String> = definitions.chain(constants).collect();
-        let summary = format!("{}: {}; {}", law.summary, law.energy, with.join(", "));
-        Page { kind: "law", name: law.name.to_owned(), summary, source: law.source, parameters: &[] }
+    let page = |law: &WrittenLaw| Page {
+        kind: "law",
+        name: law.name.to_owned(),
+        summary: law.summary.to_owned(),
+        source: law.source,
+        parameters: &[],
+        text: Some(law.written()),
     };
     WRITTEN_LAWS.iter().map(page).collect()
 }
@@ -96,6 +100,7 @@ fn units() -> Vec<Page> {
         },
         source: "",
         parameters: &[],
+        text: None,
     };
     souple_formal::units().map(page).collect()
 }
@@ -160,7 +165,8 @@ pub fn list(arguments: &ListArguments) -> Result<End, Refusal> {
     }
     let width = pages.iter().map(|page| page.name.chars().count()).max().unwrap_or(0);
     for page in pages {
-        print_line(format_args!("{:width$}  {}", page.name, page.summary));
+        let text = page.text.as_ref().map(|text| format!(": {text}")).unwrap_or_default();
+        print_line(format_args!("{:width$}  {}{text}", page.name, page.summary));
     }
     Ok(End::Done)
 }
@@ -205,6 +211,9 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
     for page in found {
         print_line(format_args!("{} ({})", page.name, page.kind));
         print_line(format_args!("  {}", page.summary));
+        if let Some(text) = &page.text {
+            print_line(format_args!("  as text: {text}"));
+        }
         if let Some(moduli) = moduli_of(page) {
             print_line(format_args!(
                 "  at small strain: lambda = {} Pa, mu = {} Pa; E = {} Pa, nu = {:.6}",
@@ -272,11 +281,15 @@ fn to_json(page: &Page) -> Value {
             })
         })
         .collect();
-    json!({
+    let mut document = json!({
         "kind": page.kind,
         "name": page.name,
         "summary": page.summary,
         "source": page.source,
         "parameters": parameters,
-    })
+    });
+    if let Some(text) = &page.text {
+        document["text"] = json!(text);
+    }
+    document
 }
