@@ -56,7 +56,7 @@ pub enum LawProblem {
     #[error("`{name}` was given {found} argument(s); write `{usage}`")]
     WrongArgumentCount { name: String, found: usize, usage: String },
     #[error("{0}")]
-    WrongUnit(UnitClash),
+    WrongUnit(Box<UnitClash>),
     #[error("the parameter must be a finite number or a direction [x, y, z] that is not zero")]
     BadParameter,
     #[error("at rest (F = I) this has no finite value: {reason}")]
@@ -129,8 +129,9 @@ pub enum WantedUnits {
 }
 
 impl UnitClash {
-    pub(super) fn new(found: [f64; 3], wanted: WantedUnits) -> Self {
-        Self { written: String::new(), found, wanted, parameters: Vec::new() }
+    /// In a box: errors are small beside what is read.
+    pub(super) fn boxed(found: [f64; 3], wanted: WantedUnits) -> Box<Self> {
+        Box::new(Self { written: String::new(), found, wanted, parameters: Vec::new() })
     }
 }
 

@@ -243,7 +243,13 @@ impl<'a> Reader<'a> {
     }
 
     /// The clash at a place of a text with what is written there, and with the parameters that are in it.
-    fn told(&self, mut clash: UnitClash, span: Span, expression: &Expression, text: &str) -> UnitClash {
+    fn told(
+        &self,
+        mut clash: Box<UnitClash>,
+        span: Span,
+        expression: &Expression,
+        text: &str,
+    ) -> Box<UnitClash> {
         clash.written = excerpt(span.of(text));
         if let WantedUnits::Like { beside, written, .. } = &mut clash.wanted {
             *written = excerpt(beside.of(text));
@@ -389,12 +395,12 @@ fn misfit(
     values: &[Value],
     wanted: Units,
     place: Span,
-) -> Option<(Span, UnitClash)> {
+) -> Option<(Span, Box<UnitClash>)> {
     let wanted = wanted?;
     addends(expression).into_iter().find_map(|id| {
         let (span, found) = (expression.node(id).span, values.get(id.index())?.units?);
         let is_wrong = place.contains(span) && found != wanted;
-        is_wrong.then(|| (span, UnitClash::new(found, WantedUnits::EnergyDensity)))
+        is_wrong.then(|| (span, UnitClash::boxed(found, WantedUnits::EnergyDensity)))
     })
 }
 

@@ -92,7 +92,7 @@ pub(super) fn combine(a: Units, b: Units, sign: f64) -> Units {
 
 /// Units that do not fit; what is written there is filled in by the reader, who has the text.
 pub(super) fn wrong_unit<T>(span: Span, found: [f64; 3], wanted: WantedUnits) -> Result<T, Fault> {
-    Err(Fault::Here(span, LawProblem::WrongUnit(UnitClash::new(found, wanted))))
+    Err(Fault::Here(span, LawProblem::WrongUnit(UnitClash::boxed(found, wanted))))
 }
 
 /// The units that all have; what has none declared takes any.
