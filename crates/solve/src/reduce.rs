@@ -5,6 +5,7 @@
 
 use std::ops::{Add, Range};
 
+use pulp::{Arch, Simd, WithSimd};
 use souple_math::Vec3;
 
 /// Blocks per chunk; part of the meaning of a sum, hence a constant.
@@ -124,19 +125,7 @@ pub fn for_each_chunk<T: Send>(y: &mut [T], leaf: &(impl Fn(usize, &mut [T]) + S
     });
 }
 
-/// Overwrites two vectors of the same length chunk by chunk.
-pub fn for_each_chunk_pair(
-    y: &mut [Vec3],
-    z: &mut [Vec3],
-    leaf: &(impl Fn(usize, &mut [Vec3], &mut [Vec3]) + Sync),
-) {
-    sum_mut_pair(0, y, z, &|first, y: &mut [Vec3], z: &mut [Vec3]| {
-        leaf(first, y, z);
-        Nothing
-    });
-}
-
-/// [`for_each_chunk_pair`] for products of rows of a matrix, see [`sum_rows`].
+/// Overwrites two vectors of the same length chunk by chunk: products of rows of a matrix, see [`sum_rows`].
 pub fn for_each_rows_pair(
     y: &mut [Vec3],
     z: &mut [Vec3],
@@ -166,20 +155,103 @@ pub fn copy(to: &mut [Vec3], from: &[Vec3]) {
 
 /// Whether all entries are finite.
 pub fn all_finite(a: &[Vec3]) -> bool {
-    // 0 x is zero, or not a number where x is not finite; sums need no branches
-    let zeros = |range: Range<usize>| {
-        let numbers: &[f64] = bytemuck::cast_slice(&a[range]);
-        let quads = numbers.chunks_exact(4);
-        let rest: f64 = quads.remainder().iter().map(|number| number * 0.0).sum();
-        let mut partial = [0.0; 4];
-        for quad in quads {
-            for lane in 0..4 {
-                partial[lane] += quad[lane] * 0.0;
+    sum(0..a.len(), &|range| Arch::new().dispatch(Zeros(bytemuck::cast_slice(&a[range])))) == 0.0
+}
+
+/// `Σ 0 x`: zero, or not a number where an `x` is not finite; sums need no branches.
+struct Zeros<'a>(&'a [f64]);
+
+impl WithSimd for Zeros<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let (lanes, rest) = S::as_simd_f64s(self.0);
+        let zero = simd.splat_f64s(0.0);
+        let mut sums = [zero; 4];
+        for four in lanes.chunks(4) {
+            for (sum, x) in sums.iter_mut().zip(four) {
+                *sum = simd.mul_add_e_f64s(*x, zero, *sum);
             }
         }
-        partial[0] + partial[1] + partial[2] + partial[3] + rest
-    };
-    sum(0..a.len(), &zeros) == 0.0
+        let [a, b, c, d] = sums;
+        let rest: f64 = rest.iter().map(|x| x * 0.0).sum();
+        simd.reduce_sum_f64s(simd.add_f64s(simd.add_f64s(a, b), simd.add_f64s(c, d))) + rest
+    }
+}
+
+/// Points that are kicked and drift: `v' = v + h f/m`, `q' = q + h v'`.
+pub struct KickAndDrift<'a> {
+    pub q: &'a mut [Vec3],
+    pub v: &'a mut [Vec3],
+    pub forces: &'a [Vec3],
+    pub masses: &'a [f64],
+    pub timestep: f64,
+}
+
+impl KickAndDrift<'_> {
+    /// All of them, in one pass.
+    ///
+    /// # Panics
+    /// If the vectors are not of one length.
+    pub fn run(self) {
+        let length = self.q.len();
+        let Some(middle) = middle(length) else { return Arch::new().dispatch(self) };
+        let Self { q, v, forces, masses, timestep } = self;
+        let (q, q_tail) = q.split_at_mut(middle);
+        let (v, v_tail) = v.split_at_mut(middle);
+        let ((forces, forces_tail), (masses, masses_tail)) =
+            (forces.split_at(middle), masses.split_at(middle));
+        let head = Self { q, v, forces, masses, timestep };
+        let tail = Self { q: q_tail, v: v_tail, forces: forces_tail, masses: masses_tail, timestep };
+        both(length >= PARALLEL_FROM, || head.run(), || tail.run());
+    }
+}
+
+impl WithSimd for KickAndDrift<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { q, v, forces, masses, timestep } = self;
+        assert!([v.len(), forces.len(), masses.len()] == [q.len(); 3]);
+        let (q, q_rest) = S::as_mut_simd_f64s(bytemuck::cast_slice_mut(q));
+        let (v, v_rest) = S::as_mut_simd_f64s(bytemuck::cast_slice_mut(v));
+        let (forces, forces_rest) = S::as_simd_f64s(bytemuck::cast_slice(forces));
+        let h = simd.splat_f64s(timestep);
+        // no fused products: the same bits as kick and drift one after the other
+        let kicked = |v: S::f64s, f: S::f64s, inverse: S::f64s| {
+            simd.add_f64s(v, simd.mul_f64s(simd.mul_f64s(f, inverse), h))
+        };
+        let drifted = |q: S::f64s, v: S::f64s| simd.add_f64s(q, simd.mul_f64s(v, h));
+        let points = q.iter_mut().zip(v).zip(forces);
+        let first = masses.first().copied().unwrap_or(1.0);
+        // all are looked at, several at a time
+        let differing = masses.iter().fold(0_u64, |count, mass| count + u64::from(*mass != first));
+        if differing == 0 {
+            let inverse = simd.splat_f64s(1.0 / first);
+            for ((q, v), f) in points {
+                *v = kicked(*v, *f, inverse);
+                *q = drifted(*q, *v);
+            }
+        } else {
+            // 1/m three times over
+            let mut inverses = [0.0; 3 * CHUNK];
+            let inverses = &mut inverses[..3 * masses.len()];
+            for (three, mass) in inverses.chunks_exact_mut(3).zip(masses) {
+                three.fill(1.0 / mass);
+            }
+            for (((q, v), f), inverse) in points.zip(S::as_simd_f64s(inverses).0) {
+                *v = kicked(*v, *f, *inverse);
+                *q = drifted(*q, *v);
+            }
+        }
+        let done = 3 * masses.len() - q_rest.len();
+        for i in 0..q_rest.len() {
+            v_rest[i] += forces_rest[i] * (1.0 / masses[(done + i) / 3]) * timestep;
+            q_rest[i] += v_rest[i] * timestep;
+        }
+    }
 }
 
 /// `a · b`.
@@ -232,6 +304,25 @@ mod tests {
             let plain: f64 = a.iter().zip(&b).map(|(a, b)| a.x * b.x + a.y * b.y + a.z * b.z).sum();
             let terms = 3.0 * count as f64;
             assert!((dot(&a, &b) - plain).abs() <= terms * terms * f64::EPSILON);
+        }
+    }
+
+    /// Points move as by a kick and a drift one after the other, to the last bit, whether their masses are the same or not.
+    #[test]
+    fn kick_and_drift_are_one_after_the_other() {
+        for count in [0, 1, 5, CHUNK, 2 * CHUNK + 7, 17 * CHUNK + 1] {
+            for spread in [0.0, 0.3] {
+                let masses: Vec<f64> = (0..count).map(|i| 0.7 + spread * (i as f64).sin()).collect();
+                let (mut q, mut v, forces) = (wave(count, 0.1), wave(count, 0.5), wave(count, 0.9));
+                let (mut expected_q, mut expected_v) = (q.clone(), v.clone());
+                for i in 0..count {
+                    expected_v[i] += forces[i] * (1.0 / masses[i]) * 0.01;
+                    expected_q[i] += expected_v[i] * 0.01;
+                }
+                let (forces, masses) = (&forces[..], &masses[..]);
+                KickAndDrift { q: &mut q, v: &mut v, forces, masses, timestep: 0.01 }.run();
+                assert!(q == expected_q && v == expected_v, "{count}");
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 //! share with Störmer–Verlet.
 
 use souple_math::Vec3;
-use souple_solve::reduce;
+use souple_solve::reduce::{self, KickAndDrift};
 
 use crate::inertia::{accelerations_at, sum_placed_forces, take_along};
 use crate::state::SystemState;
@@ -112,13 +112,7 @@ fn step_points(
     summed?;
     system.project_free(&mut ws.row_force);
     let (forces, masses) = (&ws.row_force, &system.mass.diagonal);
-    reduce::for_each_chunk_pair(&mut next.q, &mut next.v, &|first, q: &mut [Vec3], v: &mut [Vec3]| {
-        let loads = forces[first..].iter().zip(&masses[first..]);
-        for ((q, v), (f, mass)) in q.iter_mut().zip(v).zip(loads) {
-            *v += *f * (1.0 / mass) * timestep;
-            *q += *v * timestep;
-        }
-    });
+    KickAndDrift { q: &mut next.q, v: &mut next.v, forces, masses, timestep }.run();
     system.impose_constraints(&mut next.q, &mut next.v, step.end(), around.load);
     Ok(StepReport::default())
 }
