@@ -1,9 +1,10 @@
-//! Vectors of three as they lie in long arrays: gathered into lanes as differences, and lanes added back to both ends.
+//! Vectors of three, and pairs of numbers, as they lie in long arrays: gathered into lanes as differences, and lanes added
+//! back to both ends.
 
 use pulp::Simd;
 
 #[cfg(target_arch = "x86_64")]
-use crate::padded::four_wide;
+use crate::padded::{four_or_eight_wide, four_wide};
 use crate::{Lanes, Vec3};
 
 impl<S: Simd> Vec3<Lanes<S>> {
@@ -131,6 +132,71 @@ impl<S: Simd> Vec3<Lanes<S>> {
     }
 }
 
+impl<S: Simd> Lanes<S> {
+    /// `values[to[lane]] - values[from[lane]]` side by side: first numbers, then second ones.
+    ///
+    /// # Safety
+    /// There are `S::F64_LANES` indices in both lists, each below the length of `values`.
+    #[inline(always)]
+    pub unsafe fn gather_differences(simd: S, values: &[[f64; 2]], to: &[u32], from: &[u32]) -> [Self; 2] {
+        debug_assert!(to[..S::F64_LANES].iter().all(|index| (*index as usize) < values.len()));
+        debug_assert!(from[..S::F64_LANES].iter().all(|index| (*index as usize) < values.len()));
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = four_or_eight_wide(&simd) {
+            // SAFETY: promised by the caller for every lane
+            let pair = |lane: usize| unsafe {
+                let of = |indices: &[u32]| *values.get_unchecked(*indices.get_unchecked(lane) as usize);
+                v3.sse2._mm_sub_pd(bytemuck::cast(of(to)), bytemuck::cast(of(from)))
+            };
+            // (a.0 b.0 c.0 d.0) and (a.1 b.1 c.1 d.1) of four lanes
+            let four = |first: usize| -> [[f64; 4]; 2] {
+                let ac = v3.avx._mm256_set_m128d(pair(first + 2), pair(first));
+                let bd = v3.avx._mm256_set_m128d(pair(first + 3), pair(first + 1));
+                [
+                    bytemuck::cast(v3.avx._mm256_unpacklo_pd(ac, bd)),
+                    bytemuck::cast(v3.avx._mm256_unpackhi_pd(ac, bd)),
+                ]
+            };
+            if S::F64_LANES == 4 {
+                return four(0).map(|numbers| Self::load(simd, &numbers));
+            }
+            let ([a, c], [b, d]) = (four(0), four(4));
+            let eight = |low: [f64; 4], high: [f64; 4]| -> [f64; 8] { bytemuck::cast([low, high]) };
+            return [Self::load(simd, &eight(a, b)), Self::load(simd, &eight(c, d))];
+        }
+        // SAFETY: promised by the caller for every lane
+        let value = |lane: usize| unsafe {
+            let of = |indices: &[u32]| *values.get_unchecked(*indices.get_unchecked(lane) as usize);
+            let ([a, b], [c, d]) = (of(to), of(from));
+            [a - c, b - d]
+        };
+        let mut out = [Self::constant(simd, 0.0); 2];
+        for lane in 0..S::F64_LANES {
+            let value = value(lane);
+            out[0].as_mut_slice()[lane] = value[0];
+            out[1].as_mut_slice()[lane] = value[1];
+        }
+        out
+    }
+
+    /// `sums[to[lane]] += self`, `sums[from[lane]] -= self`, lane after lane.
+    ///
+    /// # Safety
+    /// There are `S::F64_LANES` indices in both lists, each below the length of `sums`.
+    #[inline(always)]
+    pub unsafe fn scatter_pair(self, sums: &mut [f64], to: &[u32], from: &[u32]) {
+        debug_assert!(to[..S::F64_LANES].iter().all(|index| (*index as usize) < sums.len()));
+        debug_assert!(from[..S::F64_LANES].iter().all(|index| (*index as usize) < sums.len()));
+        for (lane, number) in self.as_slice().iter().enumerate() {
+            // SAFETY: promised by the caller
+            unsafe {
+                *sums.get_unchecked_mut(*to.get_unchecked(lane) as usize) += number;
+                *sums.get_unchecked_mut(*from.get_unchecked(lane) as usize) -= number;
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use pulp::{Arch, WithSimd};
@@ -167,6 +233,14 @@ mod tests {
                 // SAFETY: as above
                 unsafe { difference.scatter_pair(simd, &mut sums, &to, &from) };
                 assert_eq!(sums, expected);
+                let pairs: Vec<[f64; 2]> = values.iter().map(|value| [value.x, value.y]).collect();
+                // SAFETY: as above
+                let [x, y] = unsafe { Lanes::gather_differences(simd, &pairs, &to, &from) };
+                assert_eq!((x.as_slice(), y.as_slice()), (difference.x.as_slice(), difference.y.as_slice()));
+                let mut sums = vec![0.0; COUNT];
+                // SAFETY: as above
+                unsafe { y.scatter_pair(&mut sums, &to, &from) };
+                assert!(sums.iter().zip(&expected).all(|(sum, expected)| *sum == expected.y));
             }
         }
     }

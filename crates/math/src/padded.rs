@@ -32,6 +32,14 @@ pub(crate) fn four_wide<S: Simd>(simd: &S) -> Option<&pulp::x86::V3> {
     (simd as &dyn Any).downcast_ref()
 }
 
+/// The instructions of four lanes, which processors of eight have too.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub(crate) fn four_or_eight_wide<S: Simd>(simd: &S) -> Option<&pulp::x86::V3> {
+    let eight = (simd as &dyn Any).downcast_ref::<pulp::x86::V4>();
+    eight.map(|eight| &**eight).or_else(|| four_wide(simd))
+}
+
 /// Asks the processor for the line of the cache where `value` begins. No effect but on time.
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {

@@ -5,7 +5,7 @@ use souple_engine::steppers::TABLE;
 use souple_engine::{Kinematics, Mass, Model, State, System, UnknownKind};
 use souple_math::Vec3;
 use souple_models::network::laws::LINKS;
-use souple_models::network::{Account, LinkDescription, Links, Making};
+use souple_models::network::{Account, LinkDescription, Links, Making, Span};
 use souple_table::{Value, Values};
 
 /// CPU seconds of this thread, where the system tells.
@@ -35,6 +35,7 @@ fn main() {
             name: "lattice".into(),
             law,
             ends: &ends,
+            span: Span::Distance,
             rest_lengths: &vec![1.0; ends.len()],
             lengths: &vec![1.0; ends.len()],
             timestep,

@@ -7,10 +7,10 @@ use souple_engine::{
     Configuration, Force, Kinematics, Mass, Model, State, System, TangentWeights, UnknownKind, World,
 };
 use souple_math::Vec3;
-use souple_models::network::laws::Piecewise;
+use souple_models::network::laws::{Piecewise, SpringDamper};
 use souple_models::network::{
     Account, Crowd, CrowdDescription, Friction, Hook, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel,
-    Links, Making, Phase, Reach,
+    Links, Making, Phase, Reach, Span,
 };
 use souple_table::{Value, Values};
 
@@ -58,11 +58,16 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
 }
 
 fn links(law: Box<dyn LinkKernel>, ends: &[[u32; 2]], rest: f64, account: Account) -> Links {
+    links_of(law, ends, Span::Distance, rest, account)
+}
+
+fn links_of(law: Box<dyn LinkKernel>, ends: &[[u32; 2]], span: Span, rest: f64, account: Account) -> Links {
     let lengths = vec![rest; ends.len()];
     Links::new(LinkDescription {
         name: "links".into(),
         law,
         ends,
+        span,
         rest_lengths: &lengths,
         lengths: &lengths,
         timestep: TE,
@@ -149,12 +154,17 @@ fn battery_of_every_law() {
     }
 }
 
-/// Lanes, stretches and what crosses them make the forces of the links one by one.
+/// Distances in space, along an axis of the grid and along one that leans.
+fn spans() -> [Span; 3] {
+    [Span::Distance, Span::Along(Vec3::Z), Span::Along(Vec3::new(0.1, -0.2, 1.0).try_normalised().unwrap())]
+}
+
+/// Lanes, stretches and what crosses them make the forces of the links one by one, in space and along an axis.
 #[test]
 fn forces_are_those_of_single_links() {
     let (positions, velocities, ends) = lattice(27);
-    for entry in LINKS.entries {
-        let force = links(law(entry), &ends, 1.0, Account::None);
+    for (entry, span) in LINKS.entries.iter().flat_map(|entry| spans().map(|span| (entry, span))) {
+        let force = links_of(law(entry), &ends, span, 1.0, Account::None);
         let memory = memory_of(&force);
         let at = at(&positions, &velocities, &memory);
         let mut found = vec![Vec3::ZERO; positions.len()];
@@ -163,7 +173,14 @@ fn forces_are_those_of_single_links() {
         let mut largest: f64 = 0.0;
         for (link, [a, b]) in ends.iter().map(|ends| ends.map(|end| end as usize)).enumerate() {
             let d = positions[a] - positions[b];
-            let push = d * (force.stance(link, &at).push / d.length());
+            let stance = force.stance(link, &at);
+            let push = match span {
+                Span::Distance => d * (stance.push / d.length()),
+                Span::Along(axis) => {
+                    assert!((stance.length - d.dot(axis)).abs() < 1e-14);
+                    axis * stance.push
+                }
+            };
             largest = largest.max(push.length());
             expected[a] += push;
             expected[b] -= push;
@@ -181,9 +198,9 @@ fn forces_are_those_of_single_links() {
 fn same_bits_for_any_thread_count() {
     let (positions, velocities, ends) = lattice(30);
     let plastic = LINKS.entries.iter().find(|entry| entry.name == "elasto_plastic").unwrap();
-    let step = |threads: usize| {
+    let step = |threads: usize, span: Span| {
         with_threads(threads, || {
-            let force = links(law(plastic), &ends, 1.0, Account::Heat);
+            let force = links_of(law(plastic), &ends, span, 1.0, Account::Heat);
             let mut memory = memory_of(&force);
             let before = memory.clone();
             let at = at(&positions, &velocities, &before);
@@ -193,17 +210,23 @@ fn same_bits_for_any_thread_count() {
             (out, memory)
         })
     };
-    let one = step(1);
-    assert!(one == step(2) && one == step(5));
-    assert!(one.1 != memory_of(&links(law(plastic), &ends, 1.0, Account::Heat)), "some links yield");
+    for span in spans() {
+        let one = step(1, span);
+        assert!(one == step(2, span) && one == step(5, span));
+        let fresh = memory_of(&links_of(law(plastic), &ends, span, 1.0, Account::Heat));
+        assert!(one.1 != fresh, "some links yield");
+    }
 }
 
-/// Differentials are differences of forces, damping included, and blocks agree with them.
+/// Differentials are differences of forces, damping included.
 #[test]
 fn differentials_are_differences() {
     let (positions, velocities, ends) = lattice(3);
-    for entry in LINKS.entries {
-        let force = links(law(entry), &ends, 1.0, Account::None);
+    for (entry, span) in LINKS.entries.iter().flat_map(|entry| spans().map(|span| (entry, span))) {
+        // along an axis those that lie about along it: laws of cohesion have no slope at length zero
+        let upward = ends.iter().filter(|[a, b]| b - a == 9).map(|[a, b]| [*b, *a]);
+        let ends = if span == Span::Distance { ends.clone() } else { upward.collect() };
+        let force = links_of(law(entry), &ends, span, 1.0, Account::None);
         let memory = memory_of(&force);
         let mut scratch = force.new_scratch();
         let delta: Vec<Vec3> = (0..positions.len())
@@ -260,6 +283,57 @@ fn characteristics_by_tests_and_by_absolute_values() {
     }
     let error = Piecewise::new(&[1.0, 1.0], &[0.0; 3], 0.0, 0.0).unwrap_err().to_string();
     assert!(error.contains("thresholds") && error.contains("greater"), "{error}");
+}
+
+/// Along an axis the force is `-K (u_a - u_b) - Z (u_a - u_b - before)` of the displacements along it and nothing else: nothing
+/// is felt of what happens across, an energy is there, and the tangent by places is `-K a aᵀ`. What is shorter than nothing is a
+/// negative length.
+#[test]
+fn links_along_an_axis_are_one_dimensional() {
+    let axis = Vec3::new(0.6, 0.0, 0.8);
+    let spring_damper = SpringDamper { stiffness: 1000.0, damping: 300.0 };
+    let force = links_of(Box::new(InLanes(spring_damper)), &[[0, 1]], Span::Along(axis), 0.0, Account::Heat);
+    let memory = memory_of(&force);
+    let across = Vec3::new(0.8, 5.0, -0.6);
+    for apart in [0.01, -0.02] {
+        let positions = [axis * apart + across, across * -3.0];
+        let velocities = [axis * 2.0 + across, across * 7.0];
+        let at = at(&positions, &velocities, &memory);
+        let (mut out, mut scratch) = (vec![Vec3::ZERO; 2], force.new_scratch());
+        force.add_force(&at, &mut scratch, &mut out);
+        let expected = axis * (-1000.0 * apart - 300.0 * 2.0 * TE);
+        assert!((out[0] - expected).length() < 1e-11 && out[1] == -out[0], "{out:?}");
+        assert!((force.energy(&at, &mut scratch).stored - 500.0 * apart * apart).abs() < 1e-12);
+        let (mut change, weights) = (vec![Vec3::ZERO; 2], TangentWeights { position: 1.0, velocity: 0.0 });
+        force.add_differential(&at, weights, &[across + axis, Vec3::ZERO], &mut scratch, &mut change);
+        assert!((change[0] + axis * 1000.0).length() < 1e-9, "{change:?}");
+        let mut next = memory.clone();
+        force.advance_memory(&at, TE, &mut next, &mut []);
+        // Z (D - D^r)²
+        assert!((next[0] - 300.0 * (2.0 * TE).powi(2)).abs() < 1e-12);
+    }
+    assert!(!force.declaration().internal && force.declaration().symmetric_tangent);
+}
+
+/// Lanes without a link give nothing along an axis either, whatever the law does at `D = 0`: a ball of radius 1 pushes there.
+#[test]
+fn empty_lanes_give_nothing_along_an_axis() {
+    for count in [1, 5, 8, 13, 64, 67, 131] {
+        let ends: Vec<[u32; 2]> = (0..count).map(|i| [i, i + 1]).collect();
+        let ball = LINKS.find("ball").unwrap();
+        let force = links_of(law(ball), &ends, Span::Along(Vec3::X), 0.0, Account::Heat);
+        // all in reach, so that every mass between two others is pushed by both
+        let positions: Vec<Vec3> = (0..=count).map(|i| Vec3::new(-0.37 * f64::from(i), 0.0, 0.0)).collect();
+        let still = vec![Vec3::ZERO; positions.len()];
+        let mut out = still.clone();
+        let memory = memory_of(&force);
+        let at = at(&positions, &still, &memory);
+        force.add_force(&at, &mut force.new_scratch(), &mut out);
+        let push = force.stance(0, &at).push;
+        assert!(push > 100.0 && (out[0].x - push).abs() < 1e-9 && out[count as usize].x < -100.0);
+        let inner = &out[1..count as usize];
+        assert!(inner.iter().all(|force| force.length() < 1e-9), "{count} links: {inner:?}");
+    }
 }
 
 /// A chain of masses between fixed ends, along x, stepped by `t_simulation`.

@@ -12,6 +12,7 @@ use super::kernel::{LinkKernel, Moving};
 use super::law::Reach;
 use super::layout::{Ends, LANES, Layout, Part};
 use super::pair_tangent::{add_change, add_pair_blocks};
+use super::span::{Known, OnAxis, Place, Projected, Span, axis_of};
 use super::written::WRITTEN_MEMORY;
 use crate::solids::parallel;
 
@@ -21,6 +22,8 @@ pub struct LinkDescription<'a> {
     pub name: String,
     pub law: Box<dyn LinkKernel>,
     pub ends: &'a [Ends],
+    /// How far they are apart.
+    pub span: Span,
     /// [m]
     pub rest_lengths: &'a [f64],
     /// At the start [m].
@@ -38,7 +41,7 @@ pub enum Account {
     Heat,
 }
 
-/// Links of one law: `F1 = φ(D, D^r, memory) u = -F2` with `u = (P1 - P2)/D`.
+/// Links of one law: `F1 = φ(D, D^r, memory) u = -F2` with `u = (P1 - P2)/D`, or with a given `u` ([`Span::Along`]).
 ///
 /// `D^r` is taken from `X - h v`: a pair that turns without changing its length feels no damping. Its memory is, for
 /// each part, the heat given off and the numbers of its links.
@@ -47,6 +50,7 @@ pub struct Links {
     name: String,
     law: Box<dyn LinkKernel>,
     layout: Layout,
+    span: Span,
     timestep: f64,
     account: Account,
     /// Part of each link and its slot there.
@@ -74,12 +78,22 @@ struct Standing {
     directions: Option<[Vec3; 2]>,
 }
 
-/// Forces of links across stretches.
-struct Across(Vec<Vec3>);
+/// Buffers of a sum of forces.
+#[derive(Default)]
+struct Sums {
+    /// Forces of links across stretches, `[block][lane]`.
+    across: Vec<Vec3>,
+    /// Of links along an axis: places of rows.
+    places: Vec<Place>,
+    /// The same: sums on rows.
+    pushes: Vec<f64>,
+    /// The same: across stretches, `[block][lane]`.
+    pushes_across: Vec<f64>,
+}
 
 impl Links {
     pub fn new(description: LinkDescription) -> Self {
-        let LinkDescription { name, law, ends, rest_lengths, lengths, timestep, account } = description;
+        let LinkDescription { name, law, ends, span, rest_lengths, lengths, timestep, account } = description;
         let layout = Layout::new(ends, rest_lengths);
         let mut place_of = vec![(0, 0); ends.len()];
         for (number, part) in layout.parts.iter().enumerate() {
@@ -88,7 +102,7 @@ impl Links {
             }
         }
         let lengths = if law.memory_len() > 0 { lengths.to_vec() } else { Vec::new() };
-        Self { name, law, layout, timestep, account, place_of, lengths }
+        Self { name, law, layout, span, timestep, account, place_of, lengths }
     }
 
     pub fn link_count(&self) -> usize {
@@ -106,6 +120,18 @@ impl Links {
 
     fn moving<'a>(&self, at: &Configuration<'a>) -> Moving<'a> {
         Moving { positions: at.positions, velocities: at.velocities, time: at.time, timestep: self.timestep }
+    }
+
+    /// The rows as they stand along an axis; `places` is scratch.
+    fn on_axis<'a>(&self, at: &Configuration, axis: Vec3, places: &'a mut Vec<Place>) -> OnAxis<Known<'a>> {
+        let (moving, rows) = (self.moving(at), self.layout.rows());
+        places.resize(rows.len(), [0.0; 2]);
+        self.layout.for_each_stretch(places, |own, places| {
+            let (positions, velocities) = (&moving.positions[own.clone()], &moving.velocities[own]);
+            let moving = Moving { positions, velocities, ..moving };
+            Projected { moving, axis }.places_into(places);
+        });
+        OnAxis { places: Known { places, first_row: rows.start }, time: at.time }
     }
 
     fn remembers(&self) -> bool {
@@ -132,10 +158,12 @@ impl Links {
         let d = at.positions[a] - at.positions[b];
         let e = d - (at.velocities[a] - at.velocities[b]) * self.timestep;
         let (block, lane) = part.place(slot);
-        let reach = Reach { length: d.length(), before: e.length(), rest: part.rest(block)[lane] };
-        let directions = match (d.try_normalised(), e.try_normalised()) {
-            (Some(n), Some(m)) => Some([n, m]),
-            (n, m) => n.or(m).map(|n| [n, n]),
+        let (length, before) = (self.span.length(d), self.span.length(e));
+        let reach = Reach { length, before, rest: part.rest(block)[lane] };
+        let directions = match (self.span, d.try_normalised(), e.try_normalised()) {
+            (Span::Along(axis), ..) => Some([axis, axis]),
+            (_, Some(n), Some(m)) => Some([n, m]),
+            (_, n, m) => n.or(m).map(|n| [n, n]),
         };
         Standing { rows, reach, directions }
     }
@@ -169,7 +197,8 @@ impl Links {
                 let push = self.law.respond(&reach, at.time, &numbers).push;
                 let [mut now, before] = self.law.slopes(&reach, at.time, &numbers);
                 // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
-                let mut across = if reach.length > 0.0 { push / reach.length } else { 0.0 };
+                let turns = self.span == Span::Distance && reach.length > 0.0;
+                let mut across = if turns { push / reach.length } else { 0.0 };
                 if curvature == Curvature::Definite && (now > 0.0 || across > 0.0) {
                     (now, across) = (-now.abs(), -across.abs());
                     turned = true;
@@ -180,6 +209,19 @@ impl Links {
             }
         }
         turned
+    }
+}
+
+/// `out += a push` row by row.
+fn add_along(axis: Vec3, pushes: &[f64], out: &mut [Vec3]) {
+    if let Some(only) = axis_of(axis) {
+        for (sum, push) in out.iter_mut().zip(pushes) {
+            sum[only] += push;
+        }
+        return;
+    }
+    for (sum, push) in out.iter_mut().zip(pushes) {
+        *sum += axis * *push;
     }
 }
 
@@ -194,7 +236,9 @@ impl Force for Links {
             conservative,
             velocity_terms: !conservative,
             // the line of a damper turns with its ends
-            symmetric_tangent: conservative,
+            symmetric_tangent: conservative || self.span != Span::Distance,
+            // forces along an axis have a torque
+            internal: self.span == Span::Distance,
             ..Declaration::ELASTIC
         }
     }
@@ -228,7 +272,7 @@ impl Force for Links {
     }
 
     fn new_scratch(&self) -> Scratch {
-        Box::new(Across(Vec::new()))
+        Box::new(Sums::default())
     }
 
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
@@ -248,17 +292,33 @@ impl Force for Links {
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
-        let Across(across) =
+        let Sums { across, places, pushes, pushes_across } =
             scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"));
-        let moving = self.moving(at);
+        let (moving, rows, law) = (self.moving(at), self.layout.rows(), &self.law);
+        let memory = |number: usize| self.of_part(number, at.memory);
+        let out = &mut out[rows.clone()];
+        let Span::Along(axis) = self.span else {
+            self.layout.add_sums(
+                across,
+                out,
+                |number, part, sums| law.add_forces(part, moving, memory(number), sums),
+                |number, part, forces| law.forces(part, moving, memory(number), forces),
+            );
+            return;
+        };
+        let on_axis = self.on_axis(at, axis, places);
+        pushes.clear();
+        pushes.resize(rows.len(), 0.0);
         self.layout.add_sums(
-            across,
-            out,
-            |number, part, sums| {
-                self.law.add_forces(part, moving, self.of_part(number, at.memory), sums);
-            },
-            |number, part, forces| self.law.forces(part, moving, self.of_part(number, at.memory), forces),
+            pushes_across,
+            pushes,
+            |number, part, sums| law.add_pushes(part, on_axis, memory(number), sums),
+            |number, part, pushes| law.pushes(part, on_axis, memory(number), pushes),
         );
+        self.layout.for_each_stretch(out, |own, out| {
+            let pushes = &pushes[own.start - rows.start..own.end - rows.start];
+            add_along(axis, pushes, out);
+        });
     }
 
     fn add_differential(
@@ -313,7 +373,13 @@ impl Force for Links {
         let moving = self.moving(at);
         self.layout.advance(self.law.memory_len(), memory, |part, own| {
             let (heat, numbers) = own.split_at_mut(1);
-            heat[0] += self.law.advance(part, moving, numbers);
+            heat[0] += match self.span {
+                Span::Distance => self.law.advance(part, moving, numbers),
+                Span::Along(axis) => {
+                    let on_axis = OnAxis { places: Projected { moving, axis }, time: at.time };
+                    self.law.advance_along(part, on_axis, numbers)
+                }
+            };
         });
     }
 
@@ -332,7 +398,11 @@ impl Force for Links {
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
-        scratch.downcast_ref().map_or(0, |Across(across)| size_of::<Vec3>() * across.capacity())
+        scratch.downcast_ref().map_or(0, |Sums { across, places, pushes, pushes_across }| {
+            size_of::<Vec3>() * across.capacity()
+                + size_of::<Place>() * places.capacity()
+                + 8 * (pushes.capacity() + pushes_across.capacity())
+        })
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -8,10 +8,7 @@ use souple_math::{Dual, Lanes, Real, Vec3};
 
 use super::law::{LinkLaw, MEMORY, Reach, Response};
 use super::layout::{LANES, Part};
-
-/// A link shorter than this has no direction of its own: it keeps that of the step before, and without one gives no force
-/// [m].
-const SHORTEST: f64 = 1e-150;
+use super::span::{Between, Known, OnAxis, Projected};
 
 /// All rows as they move; memories beside them are of a part's links, `[block][number][lane]`.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +46,12 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn forces(&self, part: &Part, moving: Moving, memory: &[f64], out: &mut [Vec3]);
     /// Moves `memory` of a part's links on by a step; gives the heat of that [J].
     fn advance(&self, part: &Part, moving: Moving, memory: &mut [f64]) -> f64;
+    /// `sums[row] += f·a` over the rows of a part, along an axis `a`.
+    fn add_pushes(&self, part: &Part, on_axis: OnAxis<Known>, memory: &[f64], sums: &mut [f64]);
+    /// [`LinkKernel::forces`] along an axis.
+    fn pushes(&self, part: &Part, on_axis: OnAxis<Known>, memory: &[f64], out: &mut [f64]);
+    /// [`LinkKernel::advance`] along an axis.
+    fn advance_along(&self, part: &Part, on_axis: OnAxis<Projected>, memory: &mut [f64]) -> f64;
     /// Force and energy of one link.
     fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response;
     /// `∂φ/∂D` and `∂φ/∂D^r` of one link [N/m].
@@ -97,15 +100,27 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
     }
 
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]) {
-        Arch::new().dispatch(Forces::<L, true> { law: &self.0, part, moving, memory, out: sums });
+        Arch::new().dispatch(Forces::<_, _, true> { law: &self.0, part, rows: moving, memory, out: sums });
     }
 
     fn forces(&self, part: &Part, moving: Moving, memory: &[f64], out: &mut [Vec3]) {
-        Arch::new().dispatch(Forces::<L, false> { law: &self.0, part, moving, memory, out });
+        Arch::new().dispatch(Forces::<_, _, false> { law: &self.0, part, rows: moving, memory, out });
     }
 
     fn advance(&self, part: &Part, moving: Moving, memory: &mut [f64]) -> f64 {
-        Arch::new().dispatch(Advance { law: &self.0, part, moving, memory })
+        Arch::new().dispatch(Advance { law: &self.0, part, rows: moving, memory })
+    }
+
+    fn add_pushes(&self, part: &Part, on_axis: OnAxis<Known>, memory: &[f64], sums: &mut [f64]) {
+        Arch::new().dispatch(Forces::<_, _, true> { law: &self.0, part, rows: on_axis, memory, out: sums });
+    }
+
+    fn pushes(&self, part: &Part, on_axis: OnAxis<Known>, memory: &[f64], out: &mut [f64]) {
+        Arch::new().dispatch(Forces::<_, _, false> { law: &self.0, part, rows: on_axis, memory, out });
+    }
+
+    fn advance_along(&self, part: &Part, on_axis: OnAxis<Projected>, memory: &mut [f64]) -> f64 {
+        Arch::new().dispatch(Advance { law: &self.0, part, rows: on_axis, memory })
     }
 
     fn respond(&self, reach: &Reach, _: f64, memory: &[f64]) -> Response {
@@ -125,34 +140,25 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
 }
 
 /// A register's worth of links: lanes `lane .. lane + S::F64_LANES` of a block.
-struct Group<'a, S: Simd> {
-    simd: S,
+pub(super) struct Group<'a, S: Simd> {
+    pub simd: S,
     part: &'a Part,
     block: usize,
     lane: usize,
 }
 
 /// How the links of a group stand.
-struct Stance<S: Simd> {
-    reach: Reach<Lanes<S>>,
-    /// `P1 - P2`, or that of the step before where the ends coincide [m].
-    along: Vec3<Lanes<S>>,
-    /// Its length [m].
-    length: Lanes<S>,
-}
-
-impl<S: Simd> Stance<S> {
-    /// `number`, or zero where there is no direction, nor for lanes without a link.
-    #[inline(always)]
-    fn directed(&self, number: Lanes<S>) -> Lanes<S> {
-        self.length.select_less(number.splat(SHORTEST), number.zero(), number)
-    }
+pub(super) struct Stance<S: Simd, A> {
+    pub reach: Reach<Lanes<S>>,
+    /// What pushes are along, of this size: `P1 - P2`, or that of the step before where the ends coincide [m].
+    pub along: A,
+    pub size: Lanes<S>,
 }
 
 impl<'a, S: Simd> Group<'a, S> {
     /// Places of first or second ends among the rows of the part: below `row_count` (`Part::new`).
     #[inline(always)]
-    fn ends(&self, end: usize) -> &'a [u32] {
+    pub fn ends(&self, end: usize) -> &'a [u32] {
         let ends = self.part.ends(self.block);
         &ends[end * LANES + self.lane..end * LANES + self.lane + S::F64_LANES]
     }
@@ -162,28 +168,24 @@ impl<'a, S: Simd> Group<'a, S> {
         Lanes::load(self.simd, &numbers[self.lane..self.lane + S::F64_LANES])
     }
 
-    /// `positions` and `velocities` are those of the part's rows.
+    /// Rest lengths [m].
     #[inline(always)]
-    fn stance(&self, positions: &[Vec3], velocities: &[Vec3], timestep: f64) -> Stance<S> {
-        let (to, from) = (self.ends(0), self.ends(1));
-        // SAFETY: ends are below the length of the part's rows (`Part::new`), which these are (`Part::rows_of`)
-        let d = unsafe { Vec3::gather_difference(self.simd, positions, to, from) };
-        // SAFETY: as above
-        let w = unsafe { Vec3::gather_difference(self.simd, velocities, to, from) };
-        let h = Lanes::constant(self.simd, -timestep);
-        // where the ends were: X - h v
-        let e = Vec3::new(w.x.mul_add(h, d.x), w.y.mul_add(h, d.y), w.z.mul_add(h, d.z));
-        let length = d.z.mul_add(d.z, d.y.mul_add(d.y, d.x * d.x)).sqrt();
-        let before = e.z.mul_add(e.z, e.y.mul_add(e.y, e.x * e.x)).sqrt();
-        let rest = self.load(self.part.rest(self.block));
-        let shortest = length.splat(SHORTEST);
-        let along = Vec3::new(
-            length.select_less(shortest, e.x, d.x),
-            length.select_less(shortest, e.y, d.y),
-            length.select_less(shortest, e.z, d.z),
-        );
-        let known = length.select_less(shortest, before, length);
-        Stance { reach: Reach { length, before, rest }, along, length: known }
+    pub fn rest(&self) -> Lanes<S> {
+        self.load(self.part.rest(self.block))
+    }
+
+    /// One in lanes with a link, zero in the others.
+    #[inline(always)]
+    pub fn present(&self) -> Lanes<S> {
+        let mut present = Lanes::constant(self.simd, 1.0);
+        if self.block >= self.part.full_blocks() {
+            for (lane, one) in present.as_mut_slice().iter_mut().enumerate() {
+                if self.ends(0)[lane] == self.ends(1)[lane] {
+                    *one = 0.0;
+                }
+            }
+        }
+        present
     }
 
     /// The group's numbers of a memory `[number][lane]` of its block.
@@ -198,41 +200,41 @@ impl<'a, S: Simd> Group<'a, S> {
 }
 
 /// Adds forces to both ends (`ADDS`), or writes those on first ends link by link.
-struct Forces<'a, L, const ADDS: bool> {
+struct Forces<'a, L, B: Between, const ADDS: bool> {
     law: &'a L,
     part: &'a Part,
-    moving: Moving<'a>,
+    rows: B,
     memory: &'a [f64],
-    out: &'a mut [Vec3],
+    out: &'a mut [B::Load],
 }
 
-impl<L: LinkLaw, const ADDS: bool> WithSimd for Forces<'_, L, ADDS> {
+impl<L: LinkLaw, B: Between, const ADDS: bool> WithSimd for Forces<'_, L, B, ADDS> {
     type Output = ();
 
     // F1 = φ u = -F2
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { law, part, moving, memory, out } = self;
-        let (positions, velocities) = (part.rows_of(moving.positions), part.rows_of(moving.velocities));
+        let Self { law, part, rows, memory, out } = self;
+        let rows = rows.of_part(part);
         let len = law.memory_len();
         if ADDS {
-            assert!(out.len() == positions.len(), "a sum for each row of the part");
+            assert!(out.len() == rows.row_count(), "a sum for each row of the part");
         }
         for block in 0..part.block_count() {
             let numbers = &memory[block * len * LANES..(block + 1) * len * LANES];
             let mut lane = 0;
             while lane < LANES {
                 let group = Group { simd, part, block, lane };
-                let stance = group.stance(positions, velocities, moving.timestep);
+                let stance = rows.stance(&group);
                 let mut memory = group.memory(numbers, len);
                 let push = law.respond(&stance.reach, &mut memory).push;
-                let force = stance.along * stance.directed(push / stance.length);
+                let loads = B::loads(&stance, push);
                 if ADDS {
-                    // SAFETY: ends are below the length of the part's rows (`Part::new`), as many as sums
-                    unsafe { force.scatter_pair(simd, out, group.ends(0), group.ends(1)) };
+                    // SAFETY: there are as many sums as rows
+                    unsafe { B::scatter(&group, loads, out) };
                 } else {
-                    let own = &mut out[block * LANES + lane..block * LANES + lane + S::F64_LANES];
-                    force.unpack(simd, |lane, force| own[lane] = force);
+                    let first = block * LANES + lane;
+                    B::unpack(&group, loads, &mut out[first..first + S::F64_LANES]);
                 }
                 lane += S::F64_LANES;
             }
@@ -240,20 +242,20 @@ impl<L: LinkLaw, const ADDS: bool> WithSimd for Forces<'_, L, ADDS> {
     }
 }
 
-struct Advance<'a, L> {
+struct Advance<'a, L, B: Between> {
     law: &'a L,
     part: &'a Part,
-    moving: Moving<'a>,
+    rows: B,
     memory: &'a mut [f64],
 }
 
-impl<L: LinkLaw> WithSimd for Advance<'_, L> {
+impl<L: LinkLaw, B: Between> WithSimd for Advance<'_, L, B> {
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Self { law, part, moving, memory } = self;
-        let (positions, velocities) = (part.rows_of(moving.positions), part.rows_of(moving.velocities));
+        let Self { law, part, rows, memory } = self;
+        let rows = rows.of_part(part);
         let len = law.memory_len();
         let mut heat = [0.0; LANES];
         for block in 0..part.block_count() {
@@ -261,7 +263,7 @@ impl<L: LinkLaw> WithSimd for Advance<'_, L> {
             let mut lane = 0;
             while lane < LANES {
                 let group = Group { simd, part, block, lane };
-                let stance = group.stance(positions, velocities, moving.timestep);
+                let stance = rows.stance(&group);
                 let mut memory = group.memory(numbers, len);
                 let response = law.respond(&stance.reach, &mut memory);
                 for i in 0..len {

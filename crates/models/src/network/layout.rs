@@ -4,7 +4,7 @@
 //! forces into a buffer, from which each stretch then takes its own in order. Neither order depends on the number of
 //! threads. Within a part, links follow their lower ends, so that a regular network is read once from end to end.
 
-use std::ops::Range;
+use std::ops::{AddAssign, Range, SubAssign};
 
 use souple_math::Vec3;
 
@@ -89,6 +89,21 @@ impl Part {
         self.links.len().div_ceil(LANES)
     }
 
+    /// Blocks, from the first on, that have a link in every lane.
+    #[inline(always)]
+    pub fn full_blocks(&self) -> usize {
+        let blocks = self.block_count();
+        let tile = BLOCKS_PER_TILE * (blocks.saturating_sub(1) / BLOCKS_PER_TILE);
+        // in the last tile lanes are filled one after the other
+        let in_last_lane = (self.links.len() - LANES * tile).saturating_sub((LANES - 1) * (blocks - tile));
+        tile + in_last_lane
+    }
+
+    /// Rows that the part reads.
+    pub fn row_count(&self) -> usize {
+        self.row_count
+    }
+
     /// Block and lane of the part's `slot`-th link.
     pub fn place(&self, slot: usize) -> (usize, usize) {
         let (tile, inside) = (slot / (BLOCKS_PER_TILE * LANES), slot % (BLOCKS_PER_TILE * LANES));
@@ -98,8 +113,13 @@ impl Part {
 
     /// Rows of the ends of the part's `slot`-th link.
     pub fn ends_of(&self, slot: usize) -> Ends {
+        self.places_of(slot).map(|place| (place + self.first_row) as u32)
+    }
+
+    /// The same, counted from the first row of the part.
+    pub fn places_of(&self, slot: usize) -> [usize; 2] {
         let (block, lane) = self.place(slot);
-        [0, 1].map(|end| self.ends[(2 * block + end) * LANES + lane] + self.first_row as u32)
+        [0, 1].map(|end| self.ends[(2 * block + end) * LANES + lane] as usize)
     }
 
     /// Ends of a block's links, `[end][lane]`: below the length of what [`Self::rows_of`] gives.
@@ -185,31 +205,50 @@ impl Layout {
         self.parts.last().map_or(0, |part| part.first_block + part.block_count())
     }
 
-    /// Sums forces of links on rows: `within(number, part, sums on its rows)` adds those of a stretch, `across(number, part,
-    /// forces on first ends)` writes those of links across, `[block][lane]`; `buffer` is scratch.
-    pub fn add_sums(
+    /// Rows from the first to the last that links join.
+    pub fn rows(&self) -> Range<usize> {
+        self.stretches[0]..self.stretches[self.stretch_count()]
+    }
+
+    /// Runs `work(rows, their own)` on the rows of each stretch.
+    pub fn for_each_stretch<T: Send>(&self, own: &mut [T], work: impl Fn(Range<usize>, &mut [T]) + Sync) {
+        let start_of = |number: usize| self.stretches[number] - self.stretches[0];
+        parallel::fill(0..self.stretch_count(), GRAIN, own, &start_of, &|number, own| {
+            work(self.stretches[number]..self.stretches[number + 1], own);
+        });
+    }
+
+    /// Sums loads of links on [`Layout::rows`]: `within(number, part, sums on its rows)` adds those of a stretch,
+    /// `across(number, part, loads on first ends)` writes those of links across, `[block][lane]`; `buffer` is scratch.
+    pub fn add_sums<T>(
         &self,
-        buffer: &mut Vec<Vec3>,
-        out: &mut [Vec3],
-        within: impl Fn(usize, &Part, &mut [Vec3]) + Sync,
-        across: impl Fn(usize, &Part, &mut [Vec3]) + Sync,
-    ) {
+        buffer: &mut Vec<T>,
+        out: &mut [T],
+        within: impl Fn(usize, &Part, &mut [T]) + Sync,
+        across: impl Fn(usize, &Part, &mut [T]) + Sync,
+    ) where
+        T: Copy + Default + AddAssign + SubAssign + Send + Sync,
+    {
         let stretches = self.stretch_count();
         let block =
             |number: usize| self.parts.get(number).map_or(self.block_count(), |part| part.first_block);
         let start_of = |number: usize| LANES * (block(number) - block(stretches));
-        buffer.resize(start_of(self.parts.len()), Vec3::ZERO);
-        parallel::fill(stretches..self.parts.len(), parallel::LIGHT, buffer, &start_of, &|number, forces| {
-            across(number, &self.parts[number], forces);
+        buffer.resize(start_of(self.parts.len()), T::default());
+        parallel::fill(stretches..self.parts.len(), parallel::LIGHT, buffer, &start_of, &|number, loads| {
+            across(number, &self.parts[number], loads);
         });
-        let (buffer, out) = (&*buffer, &mut out[self.stretches[0]..self.stretches[stretches]]);
+        let buffer = &*buffer;
         let start_of = |number: usize| self.stretches[number] - self.stretches[0];
         parallel::fill(0..stretches, GRAIN, out, &start_of, &|number, sums| {
             within(number, &self.parts[number], sums);
             let takes = self.take_starts[number] as usize..self.take_starts[number + 1] as usize;
             for Take { slot, row } in &self.takes[takes] {
-                let force = buffer[(slot >> 1) as usize];
-                sums[*row as usize] += if slot & 1 == 0 { force } else { -force };
+                let (load, sum) = (buffer[(slot >> 1) as usize], &mut sums[*row as usize]);
+                if slot & 1 == 0 {
+                    *sum += load;
+                } else {
+                    *sum -= load;
+                }
             }
         });
     }

@@ -12,6 +12,7 @@ pub mod laws;
 mod layout;
 mod pair_tangent;
 mod rheology;
+mod span;
 pub mod written;
 
 pub use crowd::{Crowd, CrowdDescription, PAIR_MEMORY};
@@ -21,3 +22,4 @@ pub use kernel::{InLanes, LinkKernel};
 pub use law::{BuildLink, LinkEntry, LinkError, LinkLaw, Making, Reach, Response};
 pub use laws::LINKS;
 pub use layout::Ends;
+pub use span::Span;

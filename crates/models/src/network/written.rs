@@ -9,6 +9,7 @@ use souple_math::Vec3;
 use super::kernel::{LinkKernel, Moving};
 use super::law::{LinkError, Reach, Response};
 use super::layout::{LANES, Part};
+use super::span::{Between, Known, OnAxis, Projected};
 
 /// Most numbers that a written law remembers of a link.
 pub const WRITTEN_MEMORY: usize = 16;
@@ -36,27 +37,53 @@ pub trait WrittenLaw: Debug + Send + Sync + 'static {
 pub struct OneByOne<L>(pub L);
 
 impl<L: WrittenLaw> OneByOne<L> {
-    /// Force on the first end of the part's `slot`-th link, and what its law says; `memory` is the part's, `numbers` become
-    /// the link's of the next step.
-    fn act(
+    /// What acts on the first end of the part's `slot`-th link, and what its law says; rows and `memory` are the part's,
+    /// `numbers` become the link's of the next step.
+    fn act<B: Between>(
         &self,
         part: &Part,
-        moving: Moving,
+        rows: B,
         slot: usize,
         memory: &[f64],
         numbers: &mut [f64; WRITTEN_MEMORY],
-    ) -> (Vec3, Response) {
+    ) -> (B::Load, Response) {
         let (len, (block, lane)) = (self.0.memory_len(), part.place(slot));
-        let [a, b] = part.ends_of(slot).map(|row| row as usize);
-        let d = moving.positions[a] - moving.positions[b];
-        let e = d - (moving.velocities[a] - moving.velocities[b]) * moving.timestep;
-        let reach = Reach { length: d.length(), before: e.length(), rest: part.rest(block)[lane] };
+        let (length, before, direction) = rows.one(part.places_of(slot));
+        let reach = Reach { length, before, rest: part.rest(block)[lane] };
         for i in 0..len {
             numbers[i] = memory[(block * len + i) * LANES + lane];
         }
-        let response = self.0.respond(&reach, moving.time, &mut numbers[..len]);
-        let direction = d.try_normalised().or(e.try_normalised()).unwrap_or(Vec3::ZERO);
-        (direction * response.push, response)
+        let response = self.0.respond(&reach, rows.time(), &mut numbers[..len]);
+        (B::scaled(direction, response.push), response)
+    }
+
+    fn add<B: Between>(&self, part: &Part, rows: B, memory: &[f64], sums: &mut [B::Load]) {
+        let (rows, mut numbers) = (rows.of_part(part), [0.0; WRITTEN_MEMORY]);
+        for slot in 0..part.links.len() {
+            let (load, _) = self.act(part, rows, slot, memory, &mut numbers);
+            B::add_to(sums, part.places_of(slot), load);
+        }
+    }
+
+    fn write<B: Between>(&self, part: &Part, rows: B, memory: &[f64], out: &mut [B::Load]) {
+        let (rows, mut numbers) = (rows.of_part(part), [0.0; WRITTEN_MEMORY]);
+        for slot in 0..part.links.len() {
+            let (block, lane) = part.place(slot);
+            out[block * LANES + lane] = self.act(part, rows, slot, memory, &mut numbers).0;
+        }
+    }
+
+    fn move_on<B: Between>(&self, part: &Part, rows: B, memory: &mut [f64]) -> f64 {
+        let (rows, len, mut numbers) = (rows.of_part(part), self.0.memory_len(), [0.0; WRITTEN_MEMORY]);
+        let mut heat = 0.0;
+        for slot in 0..part.links.len() {
+            let (block, lane) = part.place(slot);
+            heat += self.act(part, rows, slot, memory, &mut numbers).1.heat;
+            for i in 0..len {
+                memory[(block * len + i) * LANES + lane] = numbers[i];
+            }
+        }
+        heat
     }
 }
 
@@ -82,34 +109,27 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
     }
 
     fn add_forces(&self, part: &Part, moving: Moving, memory: &[f64], sums: &mut [Vec3]) {
-        let mut numbers = [0.0; WRITTEN_MEMORY];
-        for slot in 0..part.links.len() {
-            let (force, _) = self.act(part, moving, slot, memory, &mut numbers);
-            let [a, b] = part.ends_of(slot).map(|row| row as usize - part.first_row);
-            sums[a] += force;
-            sums[b] -= force;
-        }
+        self.add(part, moving, memory, sums);
     }
 
     fn forces(&self, part: &Part, moving: Moving, memory: &[f64], out: &mut [Vec3]) {
-        let mut numbers = [0.0; WRITTEN_MEMORY];
-        for slot in 0..part.links.len() {
-            let (block, lane) = part.place(slot);
-            out[block * LANES + lane] = self.act(part, moving, slot, memory, &mut numbers).0;
-        }
+        self.write(part, moving, memory, out);
     }
 
     fn advance(&self, part: &Part, moving: Moving, memory: &mut [f64]) -> f64 {
-        let (len, mut numbers) = (self.0.memory_len(), [0.0; WRITTEN_MEMORY]);
-        let mut heat = 0.0;
-        for slot in 0..part.links.len() {
-            let (block, lane) = part.place(slot);
-            heat += self.act(part, moving, slot, memory, &mut numbers).1.heat;
-            for i in 0..len {
-                memory[(block * len + i) * LANES + lane] = numbers[i];
-            }
-        }
-        heat
+        self.move_on(part, moving, memory)
+    }
+
+    fn add_pushes(&self, part: &Part, on_axis: OnAxis<Known>, memory: &[f64], sums: &mut [f64]) {
+        self.add(part, on_axis, memory, sums);
+    }
+
+    fn pushes(&self, part: &Part, on_axis: OnAxis<Known>, memory: &[f64], out: &mut [f64]) {
+        self.write(part, on_axis, memory, out);
+    }
+
+    fn advance_along(&self, part: &Part, on_axis: OnAxis<Projected>, memory: &mut [f64]) -> f64 {
+        self.move_on(part, on_axis, memory)
     }
 
     fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response {

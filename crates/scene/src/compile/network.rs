@@ -12,12 +12,12 @@ use souple_math::Vec3;
 use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
 use souple_models::network::{
     Account, BuildLink, Crowd, CrowdDescription, Friction, LinkDescription, LinkKernel, Links, Making,
-    PAIR_MEMORY,
+    PAIR_MEMORY, Span,
 };
 
 use super::bodies::Placed;
 use super::shape::Shape;
-use super::{Draft, memory};
+use super::{Draft, memory, start};
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::spec::Spec;
@@ -37,9 +37,9 @@ pub struct PlacedLinks {
 
 /// Masses as points, links as edges, groups of masses as groups; `None` where something was refused.
 pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Vec<PlacedLinks>)> {
-    let starts =
+    let places =
         network.masses.iter().flat_map(|group| (0..group.places.count()).map(|i| group.places.place(i)));
-    let points: Vec<Vec3> = starts.map(|place| body.placement.place(place)).collect();
+    let points: Vec<Vec3> = places.map(|place| body.placement.place(place)).collect();
     if let Some(point) = points.iter().position(|point| !point.is_finite()) {
         let message = format!("mass {point} starts at no finite place");
         draft.log.add(Code::NotFinite, &body.site, message, "finite numbers");
@@ -49,6 +49,7 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
         draft.log.add(Code::EmptyRegion, &body.site, "the network has no masses", "at least one");
         return None;
     }
+    let starts = start::places(body.start.as_ref(), &points);
     let mut room = memory::links_that_fit();
     let links: Vec<PlacedLinks> = network
         .links
@@ -56,9 +57,14 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
         .filter_map(|table| {
             let ends = ends::of_table(table, network, &points, room, draft.log)?;
             room -= ends.len();
-            let length = |[a, b]: &[u32; 2]| (points[*a as usize] - points[*b as usize]).length();
-            let lengths: Vec<f64> = ends.iter().map(length).collect();
-            let rest_lengths = lengths.iter().map(|length| table.rest_length.unwrap_or(*length)).collect();
+            let lengths_at = |points: &[Vec3]| -> Vec<f64> {
+                let apart = |[a, b]: [u32; 2]| points[a as usize] - points[b as usize];
+                ends.iter().map(|ends| table.span.length(apart(*ends))).collect()
+            };
+            let (lengths, mut rest_lengths) = (lengths_at(&starts), lengths_at(&points));
+            if let Some(length) = table.rest_length {
+                rest_lengths.fill(length);
+            }
             Some(PlacedLinks { rest_lengths, lengths, ends })
         })
         .collect();
@@ -88,8 +94,8 @@ fn coincident(
     let tables = network.links.iter().zip(links);
     tables
         .filter_map(|(table, links)| {
-            let ends =
-                links.ends.iter().find(|[a, b]| points[*a as usize] == points[*b as usize])?;
+            let meets = |[a, b]: &&[u32; 2]| points[*a as usize] == points[*b as usize];
+            let ends = links.ends.iter().find(|ends| table.span == Span::Distance && meets(ends))?;
             let [a, b] = ends;
             let place = draft.place(&table.site);
             Some(format!(
@@ -137,6 +143,7 @@ pub fn add_forces(
             name: format!("{}.links[{index}]", body.spec.name),
             law,
             ends: &ends,
+            span: table.span,
             rest_lengths: &links.rest_lengths,
             lengths: &links.lengths,
             timestep,

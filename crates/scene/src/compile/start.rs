@@ -7,6 +7,7 @@ use souple_math::Vec3;
 use super::Draft;
 use super::bodies::Placed;
 use crate::diagnostic::Code;
+use crate::spec::start::StartSpec;
 
 /// Displaces the points of a body and adds to their velocities, as its `start` says.
 pub fn apply(draft: &Draft, body: &Placed, state: &mut SystemState) {
@@ -24,6 +25,12 @@ pub fn apply(draft: &Draft, body: &Placed, state: &mut SystemState) {
             field[row] += value;
         }
     }
+}
+
+/// Where points start that rest at `points`; what is not finite there is reported by [`apply`].
+pub fn places(start: Option<&StartSpec>, points: &[Vec3]) -> Vec<Vec3> {
+    let displacement = start.and_then(|start| start.displacement.as_ref());
+    points.iter().map(|x| displacement.map_or(*x, |formulas| *x + at(formulas, *x))).collect()
 }
 
 fn at(formulas: &[Formula; 3], x: Vec3) -> Vec3 {

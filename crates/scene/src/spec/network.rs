@@ -3,7 +3,7 @@
 use std::iter::repeat_n;
 
 use souple_math::Vec3;
-use souple_models::network::{BuildLink, LINKS};
+use souple_models::network::{BuildLink, LINKS, Span};
 use souple_models::solids::Quadrature;
 use souple_table::{Range, Value};
 
@@ -11,6 +11,7 @@ use super::body::{Body, Damping, MassKind, Placement, ROTATION, TangentKind};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
 use super::region::{Region, RegionKind};
 use super::skin::BODY_SKIN;
+use super::start::{START, StartSpec};
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -84,7 +85,12 @@ static LINK_TABLE: Keys = Keys::new(
             "rest_length",
             "m",
             Range::NOT_NEGATIVE,
-            "of each; how long it is at the start where left out",
+            "of each; how long it is where its ends rest where left out",
+        ),
+        Key::vector(
+            "along",
+            "",
+            "the axis that `D` is counted along, with its sign, and forces act along; the line between the ends where left out",
         ),
     ],
 );
@@ -132,6 +138,11 @@ pub(crate) static NETWORK: Keys = Keys::new(
         Key::vector("velocity", "m/s", "at the start").or(Value::Vector([0.0; 3])),
         Key::vector("angular_velocity", "rad/s", "at the start, about the mean of the masses' places")
             .or(Value::Vector([0.0; 3])),
+        Key::new(
+            "start",
+            Shape::Table(&START),
+            "how its masses stand and move at the start, by where they rest",
+        ),
         Key::new("system", Shape::Text, "the system it steps in"),
         Key::new("pins", Shape::Tables(&PIN), "masses that are held or led"),
         Key::new("loads", Shape::Tables(&LOAD), "forces on masses"),
@@ -182,6 +193,7 @@ pub struct LinkTable {
     pub join: Option<Join>,
     /// [m]
     pub rest_length: Option<f64>,
+    pub span: Span,
     pub site: Site,
 }
 
@@ -253,7 +265,7 @@ impl Network {
             placement: Placement::read(reader),
             velocity: reader.vector("velocity"),
             angular_velocity: reader.vector("angular_velocity"),
-            start: None,
+            start: reader.table("start").map(|table| StartSpec::read(&table)),
             system: reader.text("system"),
             pins,
             loads: reader.tables("loads").iter().map(Load::read).collect(),
@@ -439,11 +451,16 @@ impl LinkTable {
                 None
             }
         };
+        let axis = reader.maybe_vector("along").map(Vec3::try_normalised);
+        if axis == Some(None) {
+            refuse("along", "an axis of no length", "a vector that is not zero, such as [0, 0, 1]");
+        }
         Self {
             law: reader.entry("law", &LINKS),
             of,
             join,
             rest_length: reader.maybe_number("rest_length"),
+            span: axis.flatten().map_or(Span::Distance, Span::Along),
             site: reader.site(),
         }
     }
