@@ -1,4 +1,4 @@
-//! Files in and out: meshes with fields, series for ParaView, tables, pictures, plots.
+//! Files in and out: meshes with fields, series for ParaView, tables, pictures, plots, sounds.
 //!
 //! [`read_mesh`] and [`write_mesh`] go by the table [`FORMATS`]. Readers answer a faulty file with a [`Fault`]
 //! that names the place, what was read and what would be accepted; writers write beside and rename.
@@ -26,6 +26,7 @@ mod stl;
 mod testing;
 mod tetgen;
 mod vtk;
+mod wav;
 
 pub use beside::write_file;
 pub use csv::{Column, csv_cell, write_csv};
@@ -39,3 +40,4 @@ pub use format::{
 pub use holds::{Digits, HeldFields, HeldGroups, Holds, Shapes};
 pub use particles::{ParticleRow, read_particle_bytes, read_particles};
 pub use vtk::{Series, SeriesPart, read_series, read_series_bytes};
+pub use wav::{MOST_RATE, SampleFormat, write_wav};

@@ -9,10 +9,12 @@ use std::time::Instant;
 use souple_engine::{Command, World};
 use souple_scene::spec::expect::Expect;
 use souple_scene::spec::picture::PictureView;
+use souple_scene::spec::sound::Sound;
 
 use crate::expect::Span;
 use crate::frames::Frames;
 use crate::output::{OutputError, OutputFolder};
+use crate::sound::Rendered;
 use crate::{
     Change, Control, Options, Outcome, Progress, Report, RunError, Session, Status, Stepped, Trace, Verdict,
 };
@@ -30,6 +32,7 @@ pub(crate) struct Course {
 /// What of a scene is looked at when its run is over.
 pub(crate) struct Aims {
     pub expects: Vec<Expect>,
+    pub sounds: Vec<Sound>,
     /// End of the scene [s].
     pub scene_end: f64,
     pub view: PictureView,
@@ -161,6 +164,10 @@ impl Course {
         let period = session.world.model().period;
         let measured = (session.first_step as f64 * period, session.world.time());
         let span = Span { scene_end: aims.scene_end, period, status, measured };
+        // nothing is heard where nothing is written
+        let sounds = aims.sounds.iter().filter(|_| folder.is_some());
+        let (sounds, said): (Vec<_>, Vec<_>) = sounds.map(|sound| Rendered::new(sound, traces)).unzip();
+        session.warnings.extend(said.into_iter().flatten());
         let mut report = Report {
             probes: traces.iter().map(Trace::summary).collect(),
             expectations: aims.expects.iter().map(|expect| Verdict::of(expect, traces, &span)).collect(),
@@ -171,6 +178,7 @@ impl Course {
         let written = [
             report::write_report(folder, &report),
             report::write_tables(folder, &report, traces),
+            sounds.iter().flatten().try_for_each(|sound| sound.write(folder)),
             picture::write_plots(folder, traces),
             drawable.map_or(Ok(()), |moment| {
                 picture::write_last(folder, &report.title, aims.view, session, &moment)

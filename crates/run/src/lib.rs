@@ -1,4 +1,4 @@
-//! Runs of scenes: steps, probes, reports, frames, recordings, snapshots.
+//! Runs of scenes: steps, probes, reports, frames, sounds, recordings, snapshots.
 //!
 //! [`run`] steps a scene to its end, with what a run leaves on disk; `souple run`, the validation cases and the
 //! benchmarks all go through it, so that each of their numbers can be had again from the command line.
@@ -21,12 +21,14 @@ mod report;
 mod session;
 pub mod show;
 mod snapshot_file;
+mod sound;
 mod trace;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use souple_engine::{Interruption, World};
+use souple_scene::spec::sound::Sound;
 use souple_scene::{BodyInfo, Scene, SkinInfo};
 use souple_table::readable;
 
@@ -152,14 +154,19 @@ pub fn run(
     watch: &mut dyn FnMut(&Progress) -> Control,
 ) -> Result<Outcome, RunError> {
     let (duration, frame_count) = (scene.run.duration, options.frames.unwrap_or(scene.run.frames));
-    let aims = course::Aims { expects: scene.expects.clone(), scene_end: duration, view: scene.picture };
+    let aims = course::Aims {
+        expects: scene.expects.clone(),
+        sounds: scene.sounds.clone(),
+        scene_end: duration,
+        view: scene.picture,
+    };
     let mut session = Session::start(scene, options)?;
     let (first_step, period) = (session.first_step, session.world.model().period);
     let periods = duration::periods_of(options, duration, period, session.world.state())?;
     let steps = periods.count;
     session.warnings.extend(periods.warning);
     session.forecast();
-    let folder = output_folder(options, &session, first_step)?;
+    let folder = output_folder(options, &session, &aims.sounds, first_step)?;
     let traces: Vec<Trace> = session.probes.iter().map(Trace::new).collect();
     let frames = frames::Frames::open(folder.as_ref(), &session, frame_count, steps)?;
     Ok(course::Course { session, folder, frames, traces }.run(steps, options, &aims, watch))
@@ -178,6 +185,7 @@ fn snapshot_period(name: &str) -> Option<u64> {
 fn output_folder(
     options: &Options,
     session: &Session,
+    sounds: &[Sound],
     first_step: u64,
 ) -> Result<Option<OutputFolder>, RunError> {
     let Some(out) = &options.out else { return Ok(None) };
@@ -195,6 +203,7 @@ fn output_folder(
         _ => {
             name == picture::PICTURE
                 || report::NAMES.contains(&name)
+                || sounds.iter().any(|sound| sound::sound_name(&sound.name) == name)
                 || probes.iter().any(|probe| picture::plot_names(&probe.name).iter().any(|plot| plot == name))
                 || (options.snapshot_every.is_some() && snapshot_period(name).is_some())
         }

@@ -26,6 +26,7 @@ use crate::spec::Spec;
 use crate::spec::body::Body;
 use crate::spec::expect::Expect;
 use crate::spec::picture::PictureView;
+use crate::spec::sound::Sound;
 use crate::spec::world::RunSpec;
 use crate::{overrides, parameters};
 
@@ -41,6 +42,8 @@ pub struct Scene {
     pub skins: Vec<SkinInfo>,
     pub hands: Vec<HandInfo>,
     pub probes: Vec<ProbeInfo>,
+    /// What is listened to.
+    pub sounds: Vec<Sound>,
     pub expects: Vec<Expect>,
     /// Values that may be set while it runs.
     pub adjustables: Vec<Adjustable>,

@@ -147,3 +147,54 @@ fn crowds_have_their_energy_from_the_start_on() {
     // differences of places that are a hundred times as far from the origin as neighbours overlap
     assert!((stored / expected - 1.0).abs() < 1e-10, "{stored} J, not {expected} J");
 }
+
+/// Along an axis rest lengths are what the masses are apart along it where they rest, with their sign; the start is displaced
+/// from there, and an axis has any length but none.
+#[test]
+fn links_along_an_axis() {
+    let text = format!(
+        "{TWO}[networks.n]\nstart = {{ displacement = [0, 0, \"0.25 * x\"] }}\n\
+         [[networks.n.links]]\n{SPRING}\nchain = true\nalong = [0, 0, 4]\naccount = 1\n"
+    );
+    refused(&text, &["account"]);
+    let mut world = {
+        let Scene { model, state, .. } = scene(&text.replace("account = 1\n", "")).unwrap();
+        model.start(state)
+    };
+    // 100 N/m stretched by 0.25 m
+    assert!((world.energy().total() - 3.125).abs() < 1e-14);
+    refused(
+        &linked(&format!("{SPRING}\nchain = true\nalong = [0, 0, 0]")),
+        &["an axis of no length", "[0, 0, 1]"],
+    );
+}
+
+/// The rate of a sound is that of the periods where it is a whole number; what cannot be heard is refused in words.
+#[test]
+fn sounds_are_probes_at_a_rate() {
+    let probes = "[probes.one]\nbody = \"n\"\nregion = \"a\"\nquantity = \"velocity\"\ncomponent = \"x\"\n\
+                  [probes.all]\nbody = \"n\"\nquantity = \"velocity\"\n";
+    let with = |period: &str, sound: &str| {
+        let text = format!("{HEAD}{TWO}{probes}[sounds.s]\n{sound}\n");
+        let text = text.replace("period = \"10 ms\"", &format!("period = {period}"));
+        read_text("net.toml", &text, Path::new("."), &[]).map_err(|faults| faults.to_string())
+    };
+    let sound = |period: &str, every: u32| {
+        with(period, &format!("probes = [\"one\", \"one\"]\nevery = {every}")).unwrap().sounds[0].clone()
+    };
+    assert_eq!(sound("\"10 ms\"", 1).rate, 100);
+    // 88.2 kHz, rounded to ten digits, and every second of them
+    assert_eq!((sound("1.133786848e-5", 1).rate, sound("1.133786848e-5", 2).rate), (88_200, 44_100));
+    let refused = |period: &str, text: &str, words: &[&str]| {
+        let message = with(period, text).err().expect("the sound is refused");
+        assert!(words.iter().all(|word| message.contains(word)), "{words:?} not in:\n{message}");
+    };
+    refused("\"3 ms\"", "probes = [\"one\"]", &["sounds.s", "0.003 s", "a whole number from 1 to 192000"]);
+    refused("1e-6", "probes = [\"one\"]", &["1000000 samples", "`every` above 1"]);
+    assert_eq!(sound("1e-6", 8).rate, 125_000);
+    refused("1", "probes = [\"all\"]", &["gives a vector", "a `component`"]);
+    refused("1", "probes = [\"onne\"]", &["no probe `onne`", "one"]);
+    refused("1", "probes = [\"one\", \"one\", \"one\"]", &["a sound of 3 probes", "left and right"]);
+    refused("1", "probes = [\"one\"]\ngain = 0", &["gain"]);
+    refused("1", "probes = [\"one\"]\nsamples = \"mp3\"", &["int16", "float32"]);
+}

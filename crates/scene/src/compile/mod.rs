@@ -163,6 +163,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         model,
         state,
         probes,
+        sounds: spec.sounds.clone(),
         expects: spec.expects.clone(),
         adjustables: spec.adjustables(),
         run: spec.run,

@@ -17,6 +17,7 @@ pub mod quantity;
 pub mod region;
 mod rules;
 pub mod skin;
+pub mod sound;
 pub mod start;
 pub mod world;
 
@@ -40,6 +41,7 @@ use network::{NETWORK, Network};
 use picture::{PICTURE, PictureSpec, PictureView};
 use probe::{PROBE, Probe};
 use skin::{SKIN, SkinSpec};
+use sound::{SOUND, Sound};
 use world::{DEFAULT_SYSTEM, PERIODS_MAX, RUN, RunSpec, SYSTEM, SystemSpec, WORLD, WorldSpec};
 
 /// The version of the format that this crate reads.
@@ -67,6 +69,7 @@ pub(crate) static SCENE: Keys = Keys::new(
         Key::new("skins", Shape::Named(&SKIN), "surfaces with behaviour of their own"),
         Key::new("hands", Shape::Named(&HAND), "people at devices that press on bodies and feel them"),
         Key::new("probes", Shape::Named(&PROBE), "what is measured"),
+        Key::new("sounds", Shape::Named(&SOUND), "probes that are listened to"),
         Key::new("expect", Shape::Tables(&EXPECT), "what the probes must read"),
         Key::new("run", Shape::Table(&RUN), "what a run does unless told otherwise"),
         Key::new("picture", Shape::Table(&PICTURE), "from where pictures are seen"),
@@ -90,6 +93,7 @@ pub struct Spec {
     pub skins: Vec<SkinSpec>,
     pub hands: Vec<HandSpec>,
     pub probes: Vec<Probe>,
+    pub sounds: Vec<Sound>,
     pub expects: Vec<Expect>,
     pub run: RunSpec,
     pub picture: PictureSpec,
@@ -120,11 +124,17 @@ impl Spec {
         if !reader.has("systems") {
             systems.push(SystemSpec::default_system(Site { path: "systems".to_owned(), ..reader.site() }));
         }
+        let world = reader.table("world").map_or(empty.world, |world| WorldSpec::read(&world));
+        let sounds = reader
+            .named("sounds")
+            .into_iter()
+            .map(|(name, sound)| Sound::read(name, &sound, &probes, world.period))
+            .collect();
         let mut spec = Self {
             title: reader.text("title"),
             description: reader.text("description"),
             shows: reader.texts("shows"),
-            world: reader.table("world").map_or(empty.world, |world| WorldSpec::read(&world)),
+            world,
             bodies: bodies(&reader),
             shapes: reader
                 .named("shapes")
@@ -146,6 +156,7 @@ impl Spec {
                 .collect(),
             systems,
             probes,
+            sounds,
             expects,
         };
         spec.choose_systems();
@@ -178,6 +189,7 @@ impl Spec {
             skins: Vec::new(),
             hands: Vec::new(),
             probes: Vec::new(),
+            sounds: Vec::new(),
             expects: Vec::new(),
             run: RunSpec::default(),
             picture: PictureSpec::default(),
@@ -251,11 +263,12 @@ impl Spec {
         }
     }
 
-    /// Bodies and probes give their names to files, which must stay in the folder of a run.
+    /// Bodies, probes and sounds give their names to files, which must stay in the folder of a run.
     fn check_file_names(&self, log: &Log) {
         let bodies = self.bodies.iter().map(|body| ("body", &body.name, &body.site));
         let probes = self.probes.iter().map(|probe| ("probe", &probe.name, &probe.site));
-        for (kind, name, site) in bodies.chain(probes) {
+        let sounds = self.sounds.iter().map(|sound| ("sound", &sound.name, &sound.site));
+        for (kind, name, site) in bodies.chain(probes).chain(sounds) {
             if let Some(why) = unfit_for_files(name) {
                 let message = format!("the {kind} `{}` cannot name a file: {why}", quoted(name));
                 let expected = format!(
@@ -289,7 +302,7 @@ impl Spec {
     }
 }
 
-/// Longest name of a body or probe [bytes]: file systems take 255, with what is put behind it.
+/// Longest name of a body, probe or sound [bytes]: file systems take 255, with what is put behind it.
 const LONGEST_NAME: usize = 100;
 /// Characters that some file system does not take.
 const NOT_IN_FILE_NAMES: [char; 9] = ['/', '\\', ':', '*', '?', '"', '<', '>', '|'];
