@@ -155,6 +155,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| links::springs_lattice("springs_lattice_1m", 70, None, effort),
     },
     Bench {
+        name: "string_audio",
+        what: "a string of 1,000 masses and 2,001 links along an axis at 44.1 kHz, one thread [x real time]",
+        run: |effort| links::string_audio("string_audio", effort),
+    },
+    Bench {
         name: "adaptive_saving",
         what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
         run: levels::adaptive_saving,

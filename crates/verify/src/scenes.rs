@@ -10,6 +10,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("carousel", include_str!("../../../scenes/carousel/scene.toml")),
     ("clay_sticks_again", include_str!("../../../scenes/clay_sticks_again/scene.toml")),
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
+    ("drum", include_str!("../../../scenes/drum/scene.toml")),
     ("fascia", include_str!("../../../scenes/fascia/scene.toml")),
     ("frames_cantilever", include_str!("../../../scenes/frames_cantilever/scene.toml")),
     ("frames_spinning", include_str!("../../../scenes/frames_spinning/scene.toml")),
@@ -67,6 +68,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("sphere_under_tension", include_str!("../../../scenes/sphere_under_tension/scene.toml")),
     ("spinning_cube", include_str!("../../../scenes/spinning_cube/scene.toml")),
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),
+    ("string", include_str!("../../../scenes/string/scene.toml")),
     ("surgical", include_str!("../../../scenes/surgical/scene.toml")),
     ("tearing_sheet", include_str!("../../../scenes/tearing_sheet/scene.toml")),
     ("thick_sphere", include_str!("../../../scenes/thick_sphere/scene.toml")),
@@ -75,7 +77,9 @@ pub const SCENES: &[(&str, &str)] = &[
     ("tumour", include_str!("../../../scenes/tumour/scene.toml")),
     ("twisted_bar", include_str!("../../../scenes/twisted_bar/scene.toml")),
     ("two_materials", include_str!("../../../scenes/two_materials/scene.toml")),
+    ("vibrating_modes", include_str!("../../../scenes/vibrating_modes/scene.toml")),
     ("wall_cube", include_str!("../../../scenes/wall_cube/scene.toml")),
+    ("weight_on_string", include_str!("../../../scenes/weight_on_string/scene.toml")),
 ];
 
 /// The text of a scene.

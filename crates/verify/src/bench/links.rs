@@ -1,4 +1,5 @@
-//! Networks: links that a core updates in a second, and what of the memory's bandwidth that takes.
+//! Networks: links that a core updates in a second, what of the memory's bandwidth that takes, and how fast a string
+//! sounds.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -64,6 +65,45 @@ pub fn springs_lattice(
         figures.push(own.gigabytes_per_second(&format!("{name}_bandwidth"), moved, &bandwidth));
     }
     Ok(figures)
+}
+
+/// A thousand masses between two that are held, each linked to the next and the one after that: 2,001 links along an axis.
+const LONG_STRING: [&str; 4] = [
+    "networks.string.masses.ends.positions=[[0, 0, 0], [1.001, 0, 0]]",
+    "networks.string.masses.string.line={ from = [0.001, 0, 0], to = [1, 0, 0], count = 1000 }",
+    "networks.string.masses.string.drag=0",
+    r#"networks.string.links=[{ law = { name = "spring_damper", stiffness = 6000, damping = 1e-3 }, along = [0, 0, 1], reach = 0.00201 }]"#,
+];
+
+/// How much faster it must be than it sounds.
+const REAL_TIMES: f64 = 3.0;
+
+/// `A cos(ω (n + ½) Te)/cos(ω Te/2)` of the lowest mode of ten masses where `vibrating_modes` measures it, `n = 1000` [m].
+const LOWEST_MODE: f64 = 0.000_607_595_779_866_530_6;
+
+/// How much faster a string is computed than it sounds.
+pub fn string_audio(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let modes = scene("vibrating_modes", &[])?;
+    let settings = LONG_STRING.map(str::to_owned).to_vec();
+    let timing = Timing {
+        scene: "string",
+        settings: &settings,
+        prepare: as_it_is,
+        warm_up: 100,
+        samples: effort.choose(5, 20),
+        // a tenth of a second of sound
+        steps_per_sample: 4410,
+    };
+    let error = (value_of(modes, 1000, "line", 0)? / LOWEST_MODE - 1.0).abs();
+    let held = |baseline| Held {
+        error,
+        error_of: "the lowest mode of ten masses after 1000 steps".to_owned(),
+        baseline: Some(baseline),
+    };
+    let period = scene("string", &settings)?.model.period;
+    let timed = super::timing::with_threads(1, || timing.sample(1))??;
+    let step = timed.microseconds_per_step(&format!("{name}_step"), &held(1e6 * period / REAL_TIMES));
+    Ok(vec![timed.times_real_time(name, period, &held(REAL_TIMES)), step])
 }
 
 /// `a = b + s c` over arrays far larger than the caches [GB/s].

@@ -124,6 +124,15 @@ impl Timed {
         self.of_seconds(name, |seconds| 1e-9 * bytes as f64 / seconds, held, ("GB/s", true))
     }
 
+    /// Of steps that simulate so much each [s].
+    pub fn times_real_time(&self, name: &str, timestep: f64, held: &Held) -> Figure {
+        self.of_seconds(name, |seconds| timestep / seconds, held, ("x real time", true))
+    }
+
+    pub fn microseconds_per_step(&self, name: &str, held: &Held) -> Figure {
+        self.of_seconds(name, |seconds| 1e6 * seconds, held, ("us/step", false))
+    }
+
     pub fn milliseconds_per_step(&self, name: &str, held: &Held) -> Figure {
         self.of_seconds(name, |seconds| 1e3 * seconds, held, ("ms/step", false))
     }

@@ -1,4 +1,5 @@
-//! Masses and links: the recurrence of a mass, oscillators step by step, momenta, friction, multitudes.
+//! Masses and links: the recurrence of a mass, oscillators step by step, momenta, friction, multitudes, modes of lines and
+//! surfaces.
 
 use crate::{Case, Reading, Statistic, Tolerance};
 
@@ -18,6 +19,16 @@ pub(super) const OSCILLATOR: Case = Case {
 };
 
 const UNDAMPED: &str = "networks.oscillator.links[0].law.damping=0";
+
+const MODE: Case = Case {
+    scene: "vibrating_modes",
+    reading: Reading::last("line").after(1000),
+    // of the amplitude, 1 mm (EXP-49)
+    tolerance: Tolerance::Absolute(1e-16),
+    source: "EXP-49: q_n = A cos(ω (n + 1/2) Te)/cos(ω Te/2) from rest, ω Te = 2 asin(√(K/M) sin(p π/22))",
+    mutation: "networks.line.links[0].law.stiffness=536870914",
+    ..OSCILLATOR
+};
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -198,6 +209,65 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(0.03),
         source: "EXP-36: peak force = bonds x k_a (S2 - S)",
         mutation: "networks.clay.crowds[0].law.cohesion=1100",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "line_mode_1",
+        capabilities: &["JIM-12", "JIM-91"],
+        what: "displacement of the third of ten masses of a line in its lowest mode after 1000 steps",
+        reference: 0.000_607_595_779_866_530_6,
+        ..MODE
+    },
+    Case {
+        id: "line_mode_3",
+        capabilities: &["JIM-12", "JIM-91"],
+        what: "the same in the third mode",
+        settings: &["parameters.p=3"],
+        reference: 0.000_536_081_331_711_372_8,
+        ..MODE
+    },
+    Case {
+        id: "line_mode_10",
+        capabilities: &["JIM-12", "JIM-91"],
+        what: "the same in the highest mode",
+        settings: &["parameters.p=10"],
+        reference: 0.000_854_953_245_712_771_5,
+        mutation: "networks.line.links[0].along=[0.01, 0, 1]",
+        ..MODE
+    },
+    Case {
+        id: "surface_mode_2_1",
+        capabilities: &["JIM-12", "JIM-91"],
+        what: "displacement of a mass of a surface of four by five in mode (2, 1) after 1000 steps",
+        reading: Reading::last("surface").after(1000),
+        reference: 0.000_662_473_273_848_366_1,
+        source: "ω Te = 2 asin(√(K/M (sin²(p π/10) + sin²(q π/12)))): the line's, in two directions",
+        mutation: "networks.surface.links[0].law.stiffness=268435457",
+        ..MODE
+    },
+    Case {
+        id: "string_bears_weight",
+        capabilities: &["JIM-91"],
+        what: "how far a weight that hangs by a spring in space on a line of masses along an axis draws it down",
+        scene: "weight_on_string",
+        reading: Reading::last("string"),
+        // (W j (N - j)/N + m g j (N - j)/2)/K
+        reference: -1.839_375e-3,
+        tolerance: Tolerance::Relative(1e-12),
+        source: "K (2 u_i - u_{i-1} - u_{i+1}) = f_i",
+        mutation: "networks.string.links[1].along=[0, 0.1, 1]",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "weight_on_string",
+        capabilities: &["JIM-91"],
+        what: "the weight itself: that, and the elongation W/k of its spring",
+        scene: "weight_on_string",
+        reading: Reading::last("weight"),
+        reference: -3.801_375e-3,
+        tolerance: Tolerance::Relative(1e-12),
+        source: "equilibrium of the same",
+        mutation: "networks.string.links[1].law.stiffness=501",
         ..OSCILLATOR
     },
 ];
