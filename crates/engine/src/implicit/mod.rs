@@ -468,16 +468,11 @@ impl ImplicitStep<'_> {
         stages.assembly += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
-        let products = TangentOperator::new(&at, Part::Symmetric, scratches, operator);
         let Wanted { indefinite, used_as, tolerance, .. } = wanted;
-        let solved = linear.solve_by_reference(
-            &products,
-            &ByReference { indefinite, used_as, tolerance },
-            rhs,
-            direction,
-        );
+        let asked = ByReference { indefinite, used_as, tolerance };
+        let products = TangentOperator::new(&at, Part::Symmetric, scratches, operator);
+        let solved = linear.solve_by_reference(&products, &asked, rhs, direction);
         stages.solve += clock.elapsed().as_secs_f64();
-        drop(products);
         stages.products += operator.take_seconds();
         solved.map(|solved| Attempt { solved: Ok(solved), rounding })
     }
