@@ -161,3 +161,29 @@ fn laws_and_elements_are_described() {
     let page = souple(["describe", "pyramid5"]).ends(0).stdout;
     assert!(page.contains("gauss_5 (degree 2)"), "{page}");
 }
+
+/// Options that would change nothing, numbers out of range, and arguments that are no text are answered as wrong requests.
+#[test]
+fn what_would_change_nothing_is_refused() {
+    for call in [
+        &["derive", "--check", "--emit", "rust"][..],
+        &["derive", "--check", "--out", "somewhere"],
+        &["derive", "--check", "--cut", "all"],
+        &["derive", "--list", "--emit", "rust"],
+        &["derive", "--check", "--law", "linear", "--element", "tri3", "--step", "0"],
+        &["derive", "--check", "--law", "linear", "--element", "tri3", "--step", "nan"],
+        &["derive", "--check", "--law", "linear", "--element", "tri3", "--fault", "inf"],
+    ] {
+        souple(call).ends(2);
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        let no_text = std::ffi::OsStr::from_bytes(b"c\xff");
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_souple"));
+        let ended =
+            command.args(["derive", "--element", "tet4", "--law"]).arg(no_text).output().expect("run");
+        assert_eq!(ended.status.code(), Some(2), "{ended:?}");
+        assert!(!String::from_utf8_lossy(&ended.stderr).contains("panicked"), "{ended:?}");
+    }
+}

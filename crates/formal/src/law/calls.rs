@@ -8,7 +8,7 @@ use super::value::{
 };
 use super::vocabulary::{self, LAW_FUNCTIONS, Word};
 use crate::function::{FUNCTIONS, Function, FunctionEntry};
-use crate::graph::{Comparison, Expr, Shape};
+use crate::graph::{Comparison, Expr, Node, Shape};
 use crate::{ParseError, Span};
 
 impl Reader<'_> {
@@ -167,7 +167,14 @@ impl Reader<'_> {
                     let transposed = graph.transpose(deformation);
                     image = graph.apply(transposed, image);
                 }
-                (graph.dot(image, image), scaled(2.0))
+                let stretch = graph.dot(image, image);
+                if matches!(graph.node(a.expr), Node::Symbol(_)) {
+                    // directions among the parameters have the length one
+                    (stretch, scaled(2.0))
+                } else {
+                    let length_sq = graph.dot(a.expr, a.expr);
+                    (graph.divide(stretch, length_sq), PURE)
+                }
             }
         };
         Ok(Value { expr, kind: Kind::Tensor(self.graph.shape(expr)), units })

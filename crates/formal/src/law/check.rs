@@ -412,6 +412,61 @@ fn doubts(law: &mut EnergyLaw) {
         doubts.push("an element can be crushed flat at little cost");
     }
     law.warnings.extend(doubts.into_iter().map(str::to_owned));
+    law.warnings.extend(jump(law));
+}
+
+/// Stretches along which jumps are looked for, and how finely.
+const STRETCHES: [f64; 2] = [0.2, 3.0];
+const LOOKS: usize = 96;
+/// Halvings that leave two neighbouring numbers of that range.
+const TO_NEIGHBOURS: usize = 52;
+/// A change between neighbours that is no rounding, next to the energies at both.
+const JUMP: f64 = 1e-6;
+
+/// Where an energy that is made of pieces is not continuous, pulled along x or in all directions.
+fn jump(law: &EnergyLaw) -> Option<String> {
+    let is_of_pieces = |expr: &Expr| match law.graph.node(*expr) {
+        Node::Compare(..) => true,
+        Node::Function(function, _) => {
+            matches!(function, Function::Floor | Function::Ceil | Function::Sign | Function::Step)
+        }
+        _ => false,
+    };
+    if !law.graph.reachable(&[law.energy]).iter().any(is_of_pieces) {
+        return None;
+    }
+    let pulled = |s: f64| Vec3::new(s, 1.0, 1.0);
+    let swollen = |s: f64| Vec3::new(s, s, s);
+    let ways: [(&str, &dyn Fn(f64) -> Vec3); 2] =
+        [("pulled along x", &pulled), ("stretched in all directions", &swollen)];
+    ways.into_iter().find_map(|(way, stretches)| {
+        let energy = |s: f64| {
+            let Vec3 { x, y, z } = stretches(s);
+            law.energy_at(&Mat3::from_columns(Vec3::X * x, Vec3::Y * y, Vec3::Z * z))
+        };
+        let place = |look: usize| {
+            STRETCHES[0] + (STRETCHES[1] - STRETCHES[0]) * look as f64 / (LOOKS - 1) as f64
+        };
+        (1..LOOKS).find_map(|look| {
+            let (mut low, mut high) = (place(look - 1), place(look));
+            let (mut below, mut above) = (energy(low), energy(high));
+            for _ in 0..TO_NEIGHBOURS {
+                let middle = 0.5 * (low + high);
+                let between = energy(middle);
+                if (between - below).abs() > (above - between).abs() {
+                    (high, above) = (middle, between);
+                } else {
+                    (low, below) = (middle, between);
+                }
+            }
+            let change = (above - below).abs();
+            (change > JUMP * above.abs().max(below.abs())).then(|| {
+                format!(
+                    "the energy jumps by {change:.3e} J/m³ where a cube is {way} to {high:.4} of its length: what passes there gains or loses it"
+                )
+            })
+        })
+    })
 }
 
 /// A third of the mean stress per relative change of volume at rest, times three [Pa].

@@ -460,3 +460,36 @@ fn stress_ends_where_the_energy_does() {
     let mut law = law("mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2", &[("mu", 3.0), ("lambda", 5.0)]);
     assert_eq!(law.guarded_stress(), law.stress);
 }
+
+/// Energies that jump are told, with the place; pieces that meet are not.
+#[test]
+fn jumps_are_told() {
+    let warned = |energy: &str| {
+        let law = EnergyLaw::compile(&text(energy, &[("mu", 2.0)])).expect(energy);
+        law.warnings.iter().find(|warning| warning.contains("jumps")).cloned()
+    };
+    for (energy, said) in [
+        ("mu*dot(E, E) + mu*step(1.02, J)", "by 2.000e0 J/m³ where a cube is pulled along x to 1.0200"),
+        ("mu*dot(E, E)*if(J < 1.3, 1, 2)", "pulled along x to 1.3000"),
+        ("mu*dot(E, E)*(1 + floor(J))", "jumps by"),
+    ] {
+        let warning = warned(energy).unwrap_or_else(|| panic!("{energy}"));
+        assert!(warning.contains(said), "{energy}: {warning}");
+    }
+    for energy in ["mu*dot(E, E) + mu*max(J - 1.2, 0)^2", "mu*dot(E, E)*if(J < 1.3, 1, 1)", "mu*dot(E, E)"] {
+        assert_eq!(warned(energy), None, "{energy}");
+    }
+}
+
+/// Directions that are written out count as of length one, as those among the parameters do.
+#[test]
+fn directions_of_any_length_are_one() {
+    let F = Mat3::from_columns(Vec3::new(1.2, 0.1, 0.0), Vec3::new(0.0, 0.9, 0.2), Vec3::new(0.3, 0.0, 1.1));
+    let energies = ["[1, 0, 0]", "[1/2, 0, 0]", "[7, 0, 0]", "2*[0.5, 0, 0]"].map(|direction| {
+        let energy = format!("mu*(I4({direction}) - 1)^2 + mu*(I5({direction}) - 1)^2");
+        EnergyLaw::compile(&text(&energy, &[("mu", 2.0)])).expect(direction).energy_at(&F)
+    });
+    for energy in energies {
+        assert!((energy - energies[0]).abs() < 1e-14 * energies[0].abs(), "{energies:?}");
+    }
+}

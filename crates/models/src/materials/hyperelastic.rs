@@ -145,9 +145,15 @@ fn direction(text: &str) -> Result<[f64; 3], String> {
     let components = Formula::compile_vector::<3>(text, &[])
         .map_err(|error| format!("`{text}` is no direction: {error}; {wanted}"))?;
     let vector = components.map(|component| component.evaluate(&[]));
+    let largest = vector.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
+    // what is zero or no number goes on, to be refused with its name
+    if !(largest > 0.0 && largest.is_finite()) {
+        return Ok(vector);
+    }
+    // squares of the smallest and largest numbers there are would be none
+    let vector = vector.map(|number| number / largest);
     let length = vector.iter().map(|number| number * number).sum::<f64>().sqrt();
-    // the zero vector goes on, to be refused with its name
-    Ok(if length > 0.0 { vector.map(|number| number / length) } else { vector })
+    Ok(vector.map(|number| number / length))
 }
 
 /// Laws compiled last, the latest first. A scene is read, built and, while it is shown, built again.

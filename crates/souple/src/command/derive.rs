@@ -31,11 +31,15 @@ pub struct Arguments {
     #[arg(long, required_unless_present_any = ["list", "check", "group"])]
     element: Option<String>,
     /// Lists what can be derived: every law on every element under every rule, in every cut
-    #[arg(long)]
+    // what would change nothing is refused, here and below
+    #[arg(
+        long,
+        conflicts_with_all = ["law", "element", "check", "emit", "out", "parameters", "definitions", "rule", "map", "cut"]
+    )]
     list: bool,
     /// Tries the derived expressions, of every law on every element under every rule where none is named: forces against
     /// energies, differentials against forces, symmetry, rigid motion, sums, and the law at the samples
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["emit", "out", "parameters", "definitions", "map", "cut"])]
     check: bool,
     /// Step of the differences that expressions are tried with, of a cell of size one
     #[arg(long, requires = "check")]

@@ -290,7 +290,7 @@ fn exit_code(ended: Result<End, Refusal>, as_json: bool) -> ExitCode {
 
 /// Help and version go out as they are; wrong arguments are a wrong request.
 pub fn refuse_arguments(error: &clap::Error) -> ExitCode {
-    let wants_json = std::env::args().any(|argument| argument == "--json");
+    let wants_json = std::env::args_os().any(|argument| argument == "--json");
     if !error.use_stderr() {
         match error.kind() {
             clap::error::ErrorKind::DisplayVersion if wants_json => {

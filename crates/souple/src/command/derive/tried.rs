@@ -9,6 +9,24 @@ use souple_models::materials::WRITTEN_LAWS;
 use super::Arguments;
 use crate::command::{End, Refusal, did_you_mean, print_json, print_line};
 
+/// Differences by longer steps tell nothing of a cell of size one.
+const LARGEST_STEP: f64 = 0.1;
+
+fn within(
+    name: &str,
+    given: Option<f64>,
+    is_fit: impl Fn(f64) -> bool,
+    accepted: &str,
+) -> Result<(), Refusal> {
+    match given.filter(|number| !is_fit(*number)) {
+        Some(number) => {
+            let message = format!("`--{name} {number}` cannot be");
+            Err(Refusal::request(name, number.to_string(), accepted, message))
+        }
+        None => Ok(()),
+    }
+}
+
 /// Tries all that is named, one line for each, and prints the worst of all.
 pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let laws: Vec<&str> = WRITTEN_LAWS.iter().map(|law| law.name).collect();
@@ -24,6 +42,8 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     known("element", arguments.element.as_deref(), &kinds)?;
     let is_wanted =
         |wanted: &Option<String>, name: &str| wanted.as_deref().is_none_or(|wanted| wanted == name);
+    within("step", arguments.step, |step| step > 0.0 && step <= LARGEST_STEP, "above 0, at most 0.1")?;
+    within("fault", arguments.fault, f64::is_finite, "a finite number")?;
     let usual = Trying::default();
     let trying =
         Trying { step: arguments.step.unwrap_or(usual.step), fault: arguments.fault.unwrap_or(usual.fault) };
