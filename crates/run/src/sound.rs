@@ -45,7 +45,9 @@ impl Rendered<'_> {
             channels.push(low_passed(&trace.values, sound.every));
         }
         let loudest = channels.iter().flatten().fold(0.0, |most: f64, sample| most.max(sample.abs()));
-        let gain = sound.gain.unwrap_or(if loudest > 0.0 { LOUDEST / loudest } else { 1.0 });
+        // of the smallest numbers there are it would be infinite
+        let loudest_gain = Some(LOUDEST / loudest).filter(|gain| gain.is_finite());
+        let gain = sound.gain.or(loudest_gain).unwrap_or(1.0);
         for sample in channels.iter_mut().flatten() {
             *sample *= gain;
         }

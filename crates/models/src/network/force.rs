@@ -199,8 +199,10 @@ impl Links {
                 // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
                 let turns = self.span == Span::Distance && reach.length > 0.0;
                 let mut across = if turns { push / reach.length } else { 0.0 };
-                if curvature == Curvature::Definite && (now > 0.0 || across > 0.0) {
-                    (now, across) = (-now.abs(), -across.abs());
+                // of laws with symmetric tangents n = m where φ depends on D^r
+                let along = now + before;
+                if curvature == Curvature::Definite && (along > 0.0 || across > 0.0) {
+                    (now, across) = (-along.abs() - before, -across.abs());
                     turned = true;
                 }
                 let position = n.outer(n) * (now - across) + Mat3::IDENTITY * across + n.outer(m) * before;

@@ -29,7 +29,7 @@ pub struct Reach<R = f64> {
 /// What a law makes of a link in a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Response<R = f64> {
-    /// Force on the first end along `(P1 - P2)/D`, positive when it pushes the ends apart [N].
+    /// Force on the first end along `(P1 - P2)/|P1 - P2|`, or along the axis of the links, positive when it pushes the ends apart [N].
     pub push: R,
     /// Stored in the link [J].
     pub stored: R,

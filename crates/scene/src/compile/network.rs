@@ -63,7 +63,8 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
             };
             let (lengths, mut rest_lengths) = (lengths_at(&starts), lengths_at(&points));
             if let Some(length) = table.rest_length {
-                rest_lengths.fill(length);
+                // along an axis lengths have a sign
+                rest_lengths.iter_mut().for_each(|rest| *rest = length.copysign(*rest));
             }
             Some(PlacedLinks { rest_lengths, lengths, ends })
         })

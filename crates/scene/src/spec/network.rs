@@ -78,7 +78,7 @@ static LINK_TABLE: Keys = Keys::new(
         ),
         Key::new("chain", Shape::Boolean, "each mass of a group with the next"),
         Key::new("all", Shape::Boolean, "every pair"),
-        Key::number("reach", "m", Range::POSITIVE, "every pair that is at most so far apart at the start"),
+        Key::number("reach", "m", Range::POSITIVE, "every pair that is at most so far apart at rest"),
         Key::new("from", Shape::Integers, "first ends: numbers within the first group"),
         Key::new("to", Shape::Integers, "second ends: numbers within the last group"),
         Key::number(
