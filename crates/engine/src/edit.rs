@@ -73,6 +73,14 @@ pub enum EditError {
 }
 
 impl Edit {
+    /// Whether forces, their tangents or constraints are others afterwards, and not only where things are or go.
+    pub fn changes_forces(&self) -> bool {
+        !matches!(
+            self,
+            Self::MoveHand { .. } | Self::Lead { .. } | Self::SetVelocity { .. } | Self::Push { .. }
+        )
+    }
+
     fn system(&self) -> usize {
         match self {
             Self::SetParameter { system, .. }

@@ -171,6 +171,11 @@ pub trait Force: Send + Sync {
         0
     }
 
+    /// Whether its tangent follows from its memory too, and not from rows alone; false where that is an account of energy.
+    fn tangent_reads_memory(&self) -> bool {
+        self.memory_len() > 0
+    }
+
     fn initial_memory(&self, memory: &mut [f64]) {
         memory.fill(0.0);
     }

@@ -22,6 +22,7 @@ pub struct FrameMass {
     tiles: Vec<Tile>,
     /// What is not between rows of two frames.
     rest: Mass,
+    free_rows: usize,
     rows: Vec<Row>,
     products: Vec<Row>,
 }
@@ -71,7 +72,8 @@ impl FrameMass {
         }
         let tiles =
             tiles.into_iter().map(|([first, second], masses)| Tile { first, second, masses }).collect();
-        Self { tiles, rest, rows: Vec::new(), products: Vec::new() }
+        let free_rows = kinematics.free_row_count();
+        Self { tiles, rest, free_rows, rows: Vec::new(), products: Vec::new() }
     }
 
     /// `out += scale M x`.
@@ -80,11 +82,11 @@ impl FrameMass {
         if self.tiles.is_empty() {
             return;
         }
-        let Self { tiles, rows, products, .. } = self;
+        let Self { tiles, rows, products, free_rows, .. } = self;
         rows.clear();
-        rows.extend(x.iter().map(|x| [x.x, x.y, x.z, 0.0]));
+        rows.extend(x[..*free_rows].iter().map(|x| [x.x, x.y, x.z, 0.0]));
         products.clear();
-        products.resize(x.len(), [0.0; 4]);
+        products.resize(*free_rows, [0.0; 4]);
         Arch::new().dispatch(Products { tiles, rows, products });
         for (out, product) in out.iter_mut().zip(products) {
             *out += Vec3::new(product[0], product[1], product[2]) * scale;

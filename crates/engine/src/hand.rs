@@ -167,6 +167,11 @@ impl Force for Hand {
         1
     }
 
+    // heat; where the hand is led to is not in the tangent either
+    fn tangent_reads_memory(&self) -> bool {
+        false
+    }
+
     // E = Σ share k/2 |place + offset - x|²
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
         let stretch_sq = |held: &Held| {

@@ -18,6 +18,7 @@ use crate::kinematics::{Kinematics, UnknownKind};
 use crate::reference_factor::ReferenceFactor;
 use crate::steppers::StepError;
 use crate::system::{Surroundings, System};
+use crate::tangent::is_lasting;
 
 /// A linear system that could not be solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -121,8 +122,8 @@ pub const SOLVER: Parameter = Parameter::choice(
 pub const PRECONDITIONER: Parameter = Parameter::choice(
     "preconditioner",
     PRECONDITIONERS,
-    "what makes the iterations few; `auto`: the cheaper the more inertia outweighs stiffness; `reference_factor`: the factor of where \
-     all stood first, turned with frames and points, and products without a matrix",
+    "what makes the iterations few; `auto`: the cheaper the more inertia outweighs stiffness; `reference_factor`, for `auto` and `cg`: the \
+     factor of where all stood first, turned with frames and points, and products without a matrix",
 )
 .or(Value::Text(AUTOMATIC));
 
@@ -143,7 +144,7 @@ pub const MAX_ITERATIONS: Parameter = Parameter::integer(
 
 pub const MATRIX_FREE: Parameter = Parameter::boolean(
     "matrix_free",
-    "tangent products element by element, without a stored matrix: least memory (block Jacobi only)",
+    "tangent products element by element, without a stored matrix: least memory (block Jacobi or `reference_factor`)",
 )
 .or(Value::Boolean(false));
 
@@ -315,14 +316,14 @@ impl LinearSolver {
     }
 
     /// Whether symmetric systems are to be solved by products and the factor of the reference configuration. Where the choice is free
-    /// it is taken for frames that meet nothing, whose matrix is dear, in linearised steps.
+    /// it is taken for frames, whose matrix is dear, in linearised steps, if all forces are in that factor: contact is not.
     pub fn takes_reference_factor(&self, system: &System, used_as: Use) -> bool {
         let by_choice = || {
             !self.settings.matrix_free
                 && self.settings.method == Method::Auto
                 && used_as == Use::Answer
-                && !system.has_pairs()
                 && system.kinematics.has_frames_alone()
+                && system.forces.iter().all(|force| is_lasting(force.as_ref()))
         };
         match self.settings.preconditioner {
             REFERENCE_FACTOR => matches!(self.settings.method, Method::Auto | Method::Cg),
@@ -505,8 +506,8 @@ impl LinearSolver {
             Some(_) => AUTOMATIC,
             None => WITHOUT_MATRIX,
         };
-        let is_free = self.settings.preconditioner == AUTOMATIC || !is_stored;
-        let preconditioner = if is_free { automatic } else { self.settings.preconditioner };
+        let given = self.settings.of_table();
+        let preconditioner = if given == AUTOMATIC || !is_stored { automatic } else { given };
         let is_small = system.matrix.pattern().block_count() < LU_BELOW;
         let patience = match system.indefinite {
             Indefinite::Refuse if !system.symmetric => PATIENCE.min(self.settings.max_iterations),

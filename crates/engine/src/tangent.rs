@@ -83,7 +83,7 @@ impl Linearisation<'_> {
 }
 
 impl Tangent {
-    /// Of the forces alone whose tangent follows from where the rows are, and is symmetric.
+    /// Of the forces alone that are [`is_lasting`].
     pub fn of_lasting_forces() -> Self {
         Self { is_of_lasting: true, ..Self::default() }
     }
@@ -250,9 +250,7 @@ impl Tangent {
     ) -> bool {
         let mut turned = false;
         for (index, force) in at.system.forces.iter().enumerate() {
-            let Declaration { changing_pattern, symmetric_tangent, .. } = force.declaration();
-            let is_lasting = force.memory_len() == 0 && !changing_pattern && symmetric_tangent;
-            if self.is_of_lasting && !is_lasting {
+            if self.is_of_lasting && !is_lasting(force.as_ref()) {
                 continue;
             }
             let view = at.system.view(index, at.rows, at.state, &at.around);
@@ -356,6 +354,12 @@ impl Tangent {
 fn rows_with_blocks(system: &System) -> impl Iterator<Item = usize> {
     let free = system.kinematics.free_row_count();
     (0..system.kinematics.row_count()).filter(move |row| *row < free || system.mass.diagonal[*row] != 0.0)
+}
+
+/// Whether the tangent of a force follows from where the rows are, whatever was before, and is symmetric.
+pub fn is_lasting(force: &dyn Force) -> bool {
+    let Declaration { changing_pattern, symmetric_tangent, .. } = force.declaration();
+    !force.tangent_reads_memory() && !changing_pattern && symmetric_tangent
 }
 
 fn add_blocks_of(
@@ -494,7 +498,8 @@ pub struct OperatorBuffers {
     geometric: Vec<Mat3>,
     /// Derived rows that forces of no pairs or masses look at; the others are there to be seen.
     derived: Vec<u32>,
-    mass: FrameMass,
+    /// Made by the first product, with `derived`.
+    mass: Option<FrameMass>,
     /// Wall seconds that products have taken since they were asked for last.
     seconds: f64,
 }
@@ -511,12 +516,8 @@ impl OperatorBuffers {
             row_inertia: rows(),
             velocity_maps: Vec::new(),
             geometric: Vec::new(),
-            derived: if trivial { Vec::new() } else { derived_rows_at_work(system) },
-            mass: if trivial {
-                FrameMass::default()
-            } else {
-                FrameMass::new(&system.mass, &system.kinematics)
-            },
+            derived: Vec::new(),
+            mass: None,
             seconds: 0.0,
         }
     }
@@ -534,7 +535,7 @@ impl OperatorBuffers {
         buffers.into_iter().map(|buffer| size_of::<Vec3>() * buffer.capacity()).sum::<usize>()
             + maps.into_iter().map(|maps| size_of::<Mat3>() * maps.capacity()).sum::<usize>()
             + 4 * self.derived.capacity()
-            + self.mass.bytes()
+            + self.mass.as_ref().map_or(0, FrameMass::bytes)
     }
 
     /// What all products at a linearisation have in common.
@@ -543,6 +544,13 @@ impl OperatorBuffers {
         if kinematics.is_trivial() {
             return;
         }
+        if self.mass.is_none() {
+            self.derived = derived_rows_at_work(at.system);
+            self.mass = Some(FrameMass::new(&at.system.mass, kinematics));
+        }
+        // derived rows that are not looked at keep nothing of solves before
+        self.row_positions.fill(Vec3::ZERO);
+        self.row_velocities.fill(Vec3::ZERO);
         self.velocity_maps.clear();
         if at.rates.has_velocity() {
             let free_rows = 0..kinematics.free_row_count() as u32;
@@ -637,11 +645,11 @@ impl<'a> TangentOperator<'a> {
         row_inertia.fill(Vec3::ZERO);
         let is_halved = self.part == Part::Symmetric && at.rates.has_velocity();
         let share = if is_halved { 0.5 } else { 1.0 };
-        if at.rates.has_inertia() {
+        if let Some(mass) = buffers.mass.as_mut().filter(|_| at.rates.has_inertia()) {
             let rate = share * at.rates.acceleration;
-            buffers.mass.add_scaled_product(rate, row_velocities, row_force);
+            mass.add_scaled_product(rate, row_velocities, row_force);
             if is_halved {
-                buffers.mass.add_scaled_product(rate, row_positions, row_inertia);
+                mass.add_scaled_product(rate, row_positions, row_inertia);
             }
         }
         for (index, force) in system.forces.iter().enumerate() {

@@ -266,8 +266,8 @@ impl World {
         let edit = edit.resolved(&self.model, &self.state);
         self.model.apply(&mut self.state, &edit)?;
         self.fit_workspace();
-        if !matches!(edit, Edit::MoveHand { .. }) {
-            self.workspace.systems.iter_mut().for_each(|ws| ws.linear.forget_reference());
+        if edit.changes_forces() {
+            self.forget_couplings();
         }
         let period = self.state.period;
         match (self.log.last_mut(), &edit) {
@@ -292,18 +292,23 @@ impl World {
             self.model.apply(&mut self.state, &command.edit)?;
         }
         self.fit_workspace();
+        self.forget_couplings();
         self.log = log;
         Ok(self.resume(state)?)
     }
 
-    /// A scratch for each force, and matrices of what they couple. Only hands and tools come and go, after all other
-    /// forces, and theirs hold nothing.
+    /// What was made of the forces as they were: a hand that takes hold anew leaves as many as there were.
+    fn forget_couplings(&mut self) {
+        for ws in &mut self.workspace.systems {
+            ws.tangent.forget_patterns();
+            ws.implicit = None;
+            ws.linear.forget_reference();
+        }
+    }
+
+    /// A scratch for each force. Only hands and tools come and go, after all other forces, and theirs hold nothing.
     fn fit_workspace(&mut self) {
         for (system, ws) in self.model.systems.iter().zip(&mut self.workspace.systems) {
-            if ws.scratches.len() != system.forces.len() {
-                ws.tangent.forget_patterns();
-                ws.implicit = None;
-            }
             ws.scratches.truncate(system.forces.len());
             let first_new = ws.scratches.len();
             ws.scratches.extend(system.forces[first_new..].iter().map(|force| force.new_scratch()));

@@ -470,7 +470,8 @@ impl ImplicitStep<'_> {
         let at = self.linearisation(state, rows, (q_trial, v_trial), unbalanced);
         let Wanted { indefinite, used_as, tolerance, .. } = wanted;
         let asked = ByReference { indefinite, used_as, tolerance };
-        let products = TangentOperator::new(&at, Part::Symmetric, scratches, operator);
+        let part = if system.kinematics.has_rigid_frames() { Part::Symmetric } else { Part::Whole };
+        let products = TangentOperator::new(&at, part, scratches, operator);
         let solved = linear.solve_by_reference(&products, &asked, rhs, direction);
         stages.solve += clock.elapsed().as_secs_f64();
         stages.products += operator.take_seconds();

@@ -139,6 +139,11 @@ impl Force for Attachments {
         1
     }
 
+    // it is an account of heat
+    fn tangent_reads_memory(&self) -> bool {
+        false
+    }
+
     // E = Σ k/2 (l - L)²
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
         let stretch = |link: &Link| (Stretch::of(link, at).d.length() - link.rest_length).powi(2);

@@ -53,6 +53,11 @@ impl Force for Drag {
         1
     }
 
+    // it is an account of heat
+    fn tangent_reads_memory(&self) -> bool {
+        false
+    }
+
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
         Energy { stored: 0.0, dissipated: at.memory[0] }
     }
@@ -147,6 +152,11 @@ impl Force for MassDamping {
 
     fn memory_len(&self) -> usize {
         1
+    }
+
+    // it is an account of heat
+    fn tangent_reads_memory(&self) -> bool {
+        false
     }
 
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {

@@ -74,6 +74,11 @@ impl Force for GroundSprings {
         1
     }
 
+    // it is an account of heat
+    fn tangent_reads_memory(&self) -> bool {
+        false
+    }
+
     // E = Σ share k/2 |x - anchor|²
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
         let stretch = |s: &GroundSpring| s.share * (at.positions[s.row as usize] - s.anchor).length_sq();

@@ -69,6 +69,11 @@ impl Force for RayleighDamping {
         1
     }
 
+    // it is an account of heat
+    fn tangent_reads_memory(&self) -> bool {
+        false
+    }
+
     fn new_scratch(&self) -> Scratch {
         SolidScratch::boxed()
     }

@@ -109,6 +109,11 @@ impl Force for Viscosity {
         1
     }
 
+    // it is an account of heat
+    fn tangent_reads_memory(&self) -> bool {
+        false
+    }
+
     fn new_scratch(&self) -> Scratch {
         Box::new(ViscousScratch {
             partials: Vec::new(),
