@@ -213,7 +213,7 @@ fn one_solve_a_step_is_stable_and_the_same_by_all_solvers() {
 }
 
 /// The factor of where frames stood first is turned with them: a bar that has spun round needs no more iterations than one that begins
-/// to, a few, where incomplete factors of the matrix itself need some ten.
+/// to, a few, where the diagonal of the matrix itself serves for more.
 #[test]
 fn the_reference_factor_turns_with_frames() {
     for kind in ["rigid", "affine"] {
@@ -234,8 +234,8 @@ fn the_reference_factor_turns_with_frames() {
             assert!(turned > std::f64::consts::PI, "{kind}: {turned} rad");
             most
         };
-        let (turned, incomplete) = (most_of("reference_factor"), most_of("incomplete_cholesky"));
-        assert!(turned <= 7 && incomplete > turned, "{kind}: {turned} and {incomplete}");
+        let (turned, jacobi) = (most_of("reference_factor"), most_of("block_jacobi"));
+        assert!(turned <= 7 && jacobi > 2 * turned, "{kind}: {turned} and {jacobi}");
     }
 }
 
@@ -302,7 +302,8 @@ fn the_reference_factor_is_left_where_it_does_not_serve() {
     for solver in ["auto", "cg", "gmres", "bicgstab", "direct"] {
         let stepper =
             format!("newton = \"one\", preconditioner = \"reference_factor\", solver = \"{solver}\"");
-        let floor = "shapes.floor.shape={ name = \"plane\", point = [0, -0.01, 0], normal = [0, 1, 0] }";
+        let floor =
+            "shapes={ floor = { shape = { name = \"plane\", point = [0, -0.01, 0], normal = [0, 1, 0] } } }";
         let contact =
             "contacts=[{ body = \"bar\", shape = \"floor\", stiffness = \"1 kN/m\", friction = 0.4 }]";
         let mut bar = rigid_bar(&stepper, &[floor, contact]);

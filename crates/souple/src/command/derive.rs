@@ -32,10 +32,7 @@ pub struct Arguments {
     element: Option<String>,
     /// Lists what can be derived: every law on every element under every rule, in every cut
     // what would change nothing is refused, here and below
-    #[arg(
-        long,
-        conflicts_with_all = ["law", "element", "check", "emit", "out", "parameters", "definitions", "rule", "map", "cut"]
-    )]
+    #[arg(long, conflicts_with_all = ["check", "emit", "out", "parameters", "definitions", "map", "cut"])]
     list: bool,
     /// Tries the derived expressions, of every law on every element under every rule where none is named: forces against
     /// energies, differentials against forces, symmetry, rigid motion, sums, and the law at the samples
