@@ -49,7 +49,7 @@ impl ReferenceFactor {
         let row = || vec![Vec3::ZERO; kinematics.row_count()];
         let mut rows = Rows { positions: row(), velocities: row(), time: 0.0 };
         system.place_rows(&reference, &at_rest, 0.0, &mut rows);
-        // forces that remember anything, or couple what they meet, are not asked: nothing of a later state may come in
+        // forces whose tangent reads memory or couples what they meet are not asked: nothing of a later state may come in
         let driven = vec![0.0; around.driven.len()];
         let memory: usize = system.forces.iter().map(|force| force.memory_len()).sum();
         let at = Linearisation {

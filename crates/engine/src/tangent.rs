@@ -37,7 +37,7 @@ pub struct Tangent {
     unbalanced: Vec<Vec3>,
     /// The matrix with symmetric stand-ins of what is not symmetric, for points alone.
     symmetric: Option<BlockMatrix>,
-    /// Forces that remember anything, couple what they meet, or have no symmetric tangent are left out.
+    /// Forces that are not [`is_lasting`] are left out.
     is_of_lasting: bool,
 }
 
