@@ -4,6 +4,7 @@
 //! the three together. A [`Force`] is a term in a list; unknowns, rows and samples are in [`kinematics`].
 
 pub mod constraint;
+mod control;
 pub mod coupling;
 pub mod edit;
 pub mod force;
@@ -30,6 +31,7 @@ pub mod tool;
 pub mod world;
 
 pub use constraint::{Constraint, Motion};
+pub use control::{CONTROL_LEN, Control};
 pub use edit::{Command, Edit, EditError};
 pub use force::{
     Adapted, CellField, Configuration, ContactPoint, Declaration, Editable, Energy, Force, LinkShown,

@@ -211,12 +211,19 @@ impl State {
 
     /// Copies `other` into the buffers at hand: no allocation while shapes stay.
     pub fn copy_from(&mut self, other: &Self) {
+        self.copy_what_stays(other, |_| false);
+    }
+
+    /// The same without configuration and velocity of the systems that are `overwritten`.
+    pub(crate) fn copy_what_stays(&mut self, other: &Self, overwritten: impl Fn(usize) -> bool) {
         self.period = other.period;
         self.systems.resize_with(other.systems.len(), SystemState::default);
-        for (mine, other) in self.systems.iter_mut().zip(&other.systems) {
+        for (index, (mine, other)) in self.systems.iter_mut().zip(&other.systems).enumerate() {
             for (mine, other) in [(&mut mine.q, &other.q), (&mut mine.v, &other.v)] {
                 mine.resize(other.len(), Vec3::ZERO);
-                reduce::copy(mine, other);
+                if !overwritten(index) {
+                    reduce::copy(mine, other);
+                }
             }
             mine.memory.clone_from(&other.memory);
             mine.pairs.clone_from(&other.pairs);
@@ -238,7 +245,15 @@ impl State {
 
     /// The first entry that is not finite; allocates nothing where all are.
     pub fn first_not_finite(&self) -> Option<Place> {
+        self.first_not_finite_but(|_| false)
+    }
+
+    /// The same where configuration and velocity of some systems are known to be finite.
+    pub(crate) fn first_not_finite_but(&self, known: impl Fn(usize) -> bool) -> Option<Place> {
         self.each_field().find_map(|(name, field)| {
+            if matches!(name, FieldName::System(index, "q" | "v") if known(index)) {
+                return None;
+            }
             let not_finite = |number: &f64| !number.is_finite();
             let at = match field {
                 FieldRef::Numbers(values) => values.iter().position(not_finite),

@@ -40,6 +40,13 @@ pub struct Surroundings<'a> {
 pub struct SystemWorkspace {
     pub scratches: Vec<Scratch>,
     pub rows: Rows,
+    /// Said before a step: rows are of the very state that is stepped, whose configuration and velocity are not copied
+    /// (see [`crate::steppers::Stepper::reads_rows`]). Who steps takes it back.
+    pub rows_are_the_state: bool,
+    /// Said by a step that has looked: configuration and velocity are finite.
+    pub state_is_finite: bool,
+    /// The rows are those of the committed state.
+    pub(crate) rows_are_committed: bool,
     pub row_force: Vec<Vec3>,
     pub row_scratch: Vec<Vec3>,
     /// Buffers for steppers in the size of the velocity; who takes one gives it that size.
@@ -186,6 +193,9 @@ impl System {
         SystemWorkspace {
             scratches: self.forces.iter().map(|force| force.new_scratch()).collect(),
             rows: Rows { positions: zeros(rows), velocities: zeros(rows), time: 0.0 },
+            rows_are_the_state: false,
+            state_is_finite: false,
+            rows_are_committed: false,
             row_force: zeros(rows),
             row_scratch: zeros(rows),
             blocks: Default::default(),

@@ -6,6 +6,7 @@ use std::time::Instant;
 use souple_math::Vec3;
 
 use crate::constraint::Constraint;
+use crate::control::Control;
 use crate::coupling::CouplingSpring;
 use crate::edit::{Command, Edit, EditError};
 use crate::force::{Configuration, Force, Scratch};
@@ -92,6 +93,8 @@ pub struct Model {
     pub period: f64,
     pub systems: Vec<System>,
     pub couplings: Vec<CouplingSpring>,
+    /// What drives parameters of forces, in this order.
+    pub controls: Vec<Box<dyn Control>>,
     pub fields: Vec<Box<dyn Field>>,
     /// What makes the tools that a hand may take; none where bodies can only be held.
     pub toolbox: Option<Arc<dyn Toolbox>>,
@@ -139,6 +142,8 @@ pub struct EnergyReport {
     /// What the exchange between systems has made so far, by the name of the coupling spring; negative: lost
     /// (see [`crate::coupling`]).
     pub made_by_coupling: Vec<(String, f64)>,
+    /// What controls have made so far by what they changed, by their names; negative: taken away (see [`crate::Control`]).
+    pub made_by_control: Vec<(String, f64)>,
 }
 
 impl EnergyReport {
@@ -349,7 +354,9 @@ impl World {
     pub fn step(&mut self) -> Result<(), WorldError> {
         let start = self.time();
         let mut next = std::mem::take(&mut self.workspace.next);
-        next.copy_from(&self.state);
+        self.choose_what_reads_rows(start);
+        let systems = &self.workspace.systems;
+        next.copy_what_stays(&self.state, |index| systems[index].rows_are_the_state);
         let stepped = self.step_into(start, &mut next);
         match stepped {
             Ok(report) => {
@@ -363,15 +370,31 @@ impl World {
         stepped.map(|_| ())
     }
 
+    /// Systems whose next step reads the committed rows in the place of a copy of the state.
+    fn choose_what_reads_rows(&mut self, start: f64) {
+        for ((system, state), ws) in
+            self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems)
+        {
+            ws.state_is_finite = false;
+            ws.rows_are_the_state = !system.has_pairs() && system.stepper.reads_rows(system, state);
+            if ws.rows_are_the_state && !ws.rows_are_committed {
+                system.place_rows(&state.q, &state.v, start, &mut ws.rows);
+            }
+            ws.rows_are_committed = false;
+        }
+    }
+
     fn step_into(&mut self, start: f64, next: &mut State) -> Result<StepReport, WorldError> {
         let mut report = StepReport::default();
         self.publish_slow_points(start, next);
+        self.drive(start, next);
         for index in 0..self.model.systems.len() {
             report.merge(&self.step_system(index, start, next)?);
         }
         self.exchange_impulses(next);
         self.step_fields(start, next)?;
-        if let Some(field) = next.first_not_finite() {
+        let systems = &self.workspace.systems;
+        if let Some(field) = next.first_not_finite_but(|index| systems[index].state_is_finite) {
             let error = StepError::StateNotFinite { field, time: start + self.model.period };
             return Err(WorldError { place: "the world".to_owned(), error });
         }
@@ -386,6 +409,7 @@ impl World {
         let timestep = self.model.timestep(index);
         let (clock, before) = (Instant::now(), ws.stages.total());
         let has_pairs = system.has_pairs();
+        let reads_rows = ws.rows_are_the_state;
         for step in 0..system.steps_per_period {
             ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
             let time = start + f64::from(step) * timestep;
@@ -397,6 +421,7 @@ impl World {
                 system.update_pairs(ws, state, &around);
                 ws.stages.pairs += clock.elapsed().as_secs_f64();
             }
+            ws.rows_are_the_state = reads_rows;
             let stepped =
                 system.stepper.step(&Step { system, around: &around, start: time, timestep }, state, ws);
             let place = || format!("system `{}`", system.name);
@@ -405,7 +430,12 @@ impl World {
         let state = &next.systems[index];
         // the very time that a resumed world has here, not `start + period`
         let end = (next.period + 1) as f64 * self.model.period;
-        system.place_rows(&state.q, &state.v, end, &mut ws.rows);
+        if reads_rows {
+            ws.rows.time = end;
+        } else {
+            system.place_rows(&state.q, &state.v, end, &mut ws.rows);
+        }
+        ws.rows_are_committed = true;
         // what no stage has claimed
         let claimed = ws.stages.total() - before;
         ws.stages.advance += (clock.elapsed().as_secs_f64() - claimed).max(0.0);
@@ -430,6 +460,37 @@ impl World {
             let fast =
                 self.workspace.systems[coupling.fast_system].rows.positions[coupling.fast_row as usize];
             coupling.start_period(next, start, fast, rows.positions[row], rows.velocities[row]);
+        }
+    }
+
+    /// Gives controls their values of this period, and keeps account of the energy that this makes.
+    fn drive(&mut self, start: f64, next: &mut State) {
+        for control in &self.model.controls {
+            let slot = control.driven();
+            let rows = CommittedRows { systems: &self.model.systems, workspaces: &self.workspace.systems };
+            let before = next.driven[slot];
+            let value = control.value(start, self.model.period, rows, before);
+            if value == before {
+                continue;
+            }
+            let system = &self.model.systems[control.system()];
+            let (ws, state) =
+                (&mut self.workspace.systems[control.system()], &self.state.systems[control.system()]);
+            let mut stored = |driven: &[f64]| -> f64 {
+                let around = Surroundings { driven, fields: &self.state.fields, load: 1.0 };
+                let is_driven = |force: &&str| control.forces().iter().any(|name| name == force);
+                let forces = system.forces.iter().enumerate();
+                forces
+                    .filter(|(_, force)| is_driven(&force.name()))
+                    .map(|(index, force)| {
+                        let at = system.view(index, &ws.rows, state, &around);
+                        force.energy(&at, &mut ws.scratches[index]).stored
+                    })
+                    .sum()
+            };
+            let held = stored(&next.driven);
+            next.driven[slot] = value;
+            next.driven[slot + 1] += stored(&next.driven) - held;
         }
     }
 
@@ -466,6 +527,7 @@ impl World {
             self.model.systems.iter().zip(&self.state.systems).zip(&mut self.workspace.systems)
         {
             system.place_rows(&state.q, &state.v, time, &mut ws.rows);
+            ws.rows_are_committed = true;
         }
     }
 
@@ -488,6 +550,9 @@ impl World {
             let made =
                 if self.state.period == 0 { 0.0 } else { coupling.energy_made(&self.state, fast, time) };
             report.made_by_coupling.push((coupling.name.clone(), made));
+        }
+        for control in &self.model.controls {
+            report.made_by_control.push((control.name().to_owned(), self.state.driven[control.driven() + 1]));
         }
         report
     }
@@ -529,11 +594,9 @@ impl World {
         read: impl FnOnce(&System, &crate::SystemState, &Surroundings, &mut SystemWorkspace) -> T,
     ) -> T {
         let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
-        read(
-            &self.model.systems[index],
-            &self.state.systems[index],
-            &around,
-            &mut self.workspace.systems[index],
-        )
+        let ws = &mut self.workspace.systems[index];
+        // who reads may place them elsewhere
+        ws.rows_are_committed = false;
+        read(&self.model.systems[index], &self.state.systems[index], &around, ws)
     }
 }

@@ -184,55 +184,72 @@ impl WithSimd for Zeros<'_> {
 pub struct KickAndDrift<'a> {
     pub q: &'a mut [Vec3],
     pub v: &'a mut [Vec3],
+    /// Where the new ones are written as well.
+    pub copies: [&'a mut [Vec3]; 2],
     pub forces: &'a [Vec3],
     pub masses: &'a [f64],
     pub timestep: f64,
 }
 
 impl KickAndDrift<'_> {
-    /// All of them, in one pass.
+    /// All of them, in one pass. Returns whether all are finite.
     ///
     /// # Panics
     /// If the vectors are not of one length.
-    pub fn run(self) {
+    pub fn run(self) -> bool {
+        self.zeros() == 0.0
+    }
+
+    /// `Σ 0 x` over the new ones, see [`Zeros`].
+    fn zeros(self) -> f64 {
         let length = self.q.len();
         let Some(middle) = middle(length) else { return Arch::new().dispatch(self) };
-        let Self { q, v, forces, masses, timestep } = self;
+        let Self { q, v, copies: [to_q, to_v], forces, masses, timestep } = self;
         let (q, q_tail) = q.split_at_mut(middle);
         let (v, v_tail) = v.split_at_mut(middle);
+        let (to_q, to_q_tail) = to_q.split_at_mut(middle);
+        let (to_v, to_v_tail) = to_v.split_at_mut(middle);
         let ((forces, forces_tail), (masses, masses_tail)) =
             (forces.split_at(middle), masses.split_at(middle));
-        let head = Self { q, v, forces, masses, timestep };
-        let tail = Self { q: q_tail, v: v_tail, forces: forces_tail, masses: masses_tail, timestep };
-        both(length >= PARALLEL_FROM, || head.run(), || tail.run());
+        let head = Self { q, v, copies: [to_q, to_v], forces, masses, timestep };
+        let copies = [to_q_tail, to_v_tail];
+        let tail = Self { q: q_tail, v: v_tail, copies, forces: forces_tail, masses: masses_tail, timestep };
+        let (a, b) = both(length >= PARALLEL_FROM, || head.zeros(), || tail.zeros());
+        a + b
     }
 }
 
 impl WithSimd for KickAndDrift<'_> {
-    type Output = ();
+    type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { q, v, forces, masses, timestep } = self;
-        assert!([v.len(), forces.len(), masses.len()] == [q.len(); 3]);
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Self { q, v, copies: [to_q, to_v], forces, masses, timestep } = self;
+        assert!([v.len(), to_q.len(), to_v.len(), forces.len(), masses.len()] == [q.len(); 5]);
         let (q, q_rest) = S::as_mut_simd_f64s(bytemuck::cast_slice_mut(q));
         let (v, v_rest) = S::as_mut_simd_f64s(bytemuck::cast_slice_mut(v));
+        let (to_q, to_q_rest) = S::as_mut_simd_f64s(bytemuck::cast_slice_mut(to_q));
+        let (to_v, to_v_rest) = S::as_mut_simd_f64s(bytemuck::cast_slice_mut(to_v));
         let (forces, forces_rest) = S::as_simd_f64s(bytemuck::cast_slice(forces));
-        let h = simd.splat_f64s(timestep);
+        let (h, zero) = (simd.splat_f64s(timestep), simd.splat_f64s(0.0));
         // no fused products: the same bits as kick and drift one after the other
         let kicked = |v: S::f64s, f: S::f64s, inverse: S::f64s| {
             simd.add_f64s(v, simd.mul_f64s(simd.mul_f64s(f, inverse), h))
         };
         let drifted = |q: S::f64s, v: S::f64s| simd.add_f64s(q, simd.mul_f64s(v, h));
-        let points = q.iter_mut().zip(v).zip(forces);
+        // a velocity that is not finite makes a position that is none
+        let mut zeros = zero;
+        let points = q.iter_mut().zip(v).zip(to_q.iter_mut().zip(to_v)).zip(forces);
         let first = masses.first().copied().unwrap_or(1.0);
         // all are looked at, several at a time
         let differing = masses.iter().fold(0_u64, |count, mass| count + u64::from(*mass != first));
         if differing == 0 {
             let inverse = simd.splat_f64s(1.0 / first);
-            for ((q, v), f) in points {
+            for (((q, v), (to_q, to_v)), f) in points {
                 *v = kicked(*v, *f, inverse);
                 *q = drifted(*q, *v);
+                (*to_q, *to_v) = (*q, *v);
+                zeros = simd.mul_add_e_f64s(*q, zero, zeros);
             }
         } else {
             // 1/m three times over
@@ -241,16 +258,22 @@ impl WithSimd for KickAndDrift<'_> {
             for (three, mass) in inverses.chunks_exact_mut(3).zip(masses) {
                 three.fill(1.0 / mass);
             }
-            for (((q, v), f), inverse) in points.zip(S::as_simd_f64s(inverses).0) {
+            for ((((q, v), (to_q, to_v)), f), inverse) in points.zip(S::as_simd_f64s(inverses).0) {
                 *v = kicked(*v, *f, *inverse);
                 *q = drifted(*q, *v);
+                (*to_q, *to_v) = (*q, *v);
+                zeros = simd.mul_add_e_f64s(*q, zero, zeros);
             }
         }
         let done = 3 * masses.len() - q_rest.len();
+        let mut rest = 0.0;
         for i in 0..q_rest.len() {
             v_rest[i] += forces_rest[i] * (1.0 / masses[(done + i) / 3]) * timestep;
             q_rest[i] += v_rest[i] * timestep;
+            (to_q_rest[i], to_v_rest[i]) = (q_rest[i], v_rest[i]);
+            rest += q_rest[i] * 0.0;
         }
+        simd.reduce_sum_f64s(zeros) + rest
     }
 }
 
@@ -320,8 +343,29 @@ mod tests {
                     expected_q[i] += expected_v[i] * 0.01;
                 }
                 let (forces, masses) = (&forces[..], &masses[..]);
-                KickAndDrift { q: &mut q, v: &mut v, forces, masses, timestep: 0.01 }.run();
+                let (mut to_q, mut to_v) = (vec![Vec3::ZERO; count], vec![Vec3::ZERO; count]);
+                let copies = [&mut to_q[..], &mut to_v[..]];
+                let all = KickAndDrift { q: &mut q, v: &mut v, copies, forces, masses, timestep: 0.01 };
+                assert!(all.run());
                 assert!(q == expected_q && v == expected_v, "{count}");
+                assert!(to_q == q && to_v == v, "{count}");
+            }
+        }
+    }
+
+    /// A point that is kicked to no finite place is told, wherever it stands.
+    #[test]
+    fn points_that_are_lost_are_told() {
+        let count = CHUNK + 5;
+        for at in [0, 7, CHUNK, count - 1] {
+            for bad in [f64::NAN, f64::INFINITY, f64::MAX] {
+                let (mut q, mut v, mut forces) = (wave(count, 0.1), wave(count, 0.5), wave(count, 0.9));
+                forces[at].z = bad;
+                let (mut to_q, mut to_v, masses) = (q.clone(), v.clone(), vec![1e-3; count]);
+                let copies = [&mut to_q[..], &mut to_v[..]];
+                let (forces, masses) = (&forces[..], &masses[..]);
+                let all = KickAndDrift { q: &mut q, v: &mut v, copies, forces, masses, timestep: 0.01 };
+                assert!(!all.run(), "{bad} at {at}");
             }
         }
     }

@@ -6,7 +6,7 @@ use souple_solve::reduce::{self, KickAndDrift};
 
 use crate::inertia::{accelerations_at, sum_placed_forces, take_along};
 use crate::state::SystemState;
-use crate::system::SystemWorkspace;
+use crate::system::{System, SystemWorkspace};
 
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
@@ -60,8 +60,7 @@ impl OneForce {
         let Step { system, around, start, timestep } = *step;
         let first = self.before * timestep;
         let rest = timestep - first;
-        let are_points = system.kinematics.is_trivial() && system.mass.is_lumped();
-        if first == 0.0 && matches!(self.drifts, Drifts::AfterKick) && are_points {
+        if first == 0.0 && matches!(self.drifts, Drifts::AfterKick) && steps_points(system) {
             return step_points(step, next, ws);
         }
         if first > 0.0 {
@@ -90,30 +89,40 @@ impl OneForce {
     }
 }
 
+/// Whether [`step_points`] makes the steps of a system.
+pub(super) fn steps_points(system: &System) -> bool {
+    system.kinematics.is_trivial() && system.mass.is_lumped()
+}
+
 /// `v' = v + h f(q, v)/m`, `q' = q + h v'` of points with lumped masses: the same bits as the stages one by one, in one
-/// pass over the points, whose vectors serve as rows without being copied.
+/// pass over the points. Their vectors serve as rows, where they stand before the step where the world says so and after it
+/// always; what is not finite is seen on the way.
 fn step_points(
     step: &Step,
     next: &mut SystemState,
     ws: &mut SystemWorkspace,
 ) -> Result<StepReport, StepError> {
     let Step { system, around, start, timestep } = *step;
-    let swap = |next: &mut SystemState, ws: &mut SystemWorkspace| {
-        std::mem::swap(&mut next.q, &mut ws.rows.positions);
-        std::mem::swap(&mut next.v, &mut ws.rows.velocities);
-    };
-    swap(next, ws);
-    ws.rows.time = start;
-    let summed = sum_placed_forces(system, around, next, ws);
-    if summed.is_ok() {
-        system.advance_memory(ws, next, around, timestep);
+    if !std::mem::take(&mut ws.rows_are_the_state) {
+        system.place_rows(&next.q, &next.v, start, &mut ws.rows);
     }
-    swap(next, ws);
-    summed?;
+    ws.rows.time = start;
+    sum_placed_forces(system, around, next, ws)?;
+    system.advance_memory(ws, next, around, timestep);
     system.project_free(&mut ws.row_force);
-    let (forces, masses) = (&ws.row_force, &system.mass.diagonal);
-    KickAndDrift { q: &mut next.q, v: &mut next.v, forces, masses, timestep }.run();
-    system.impose_constraints(&mut next.q, &mut next.v, step.end(), around.load);
+    let (forces, masses, rows) = (&ws.row_force, &system.mass.diagonal, &mut ws.rows);
+    let (q, v) = (&mut rows.positions, &mut rows.velocities);
+    let copies = [&mut next.q[..], &mut next.v[..]];
+    let moved = KickAndDrift { q, v, copies, forces, masses, timestep };
+    ws.state_is_finite =
+        moved.run() && system.constraints.iter().all(|constraint| constraint.motion.is_none());
+    // rows are the state, constrained points too
+    let (q, v) = (&mut ws.rows.positions, &mut ws.rows.velocities);
+    system.impose_constraints(q, v, step.end(), around.load);
+    for constraint in &system.constraints {
+        let block = constraint.block as usize;
+        (next.q[block], next.v[block]) = (q[block], v[block]);
+    }
     Ok(StepReport::default())
 }
 
@@ -150,6 +159,10 @@ impl Stepper for SymplecticEuler {
 
     fn stability(&self) -> Stability {
         Stability::Limited(2.0)
+    }
+
+    fn reads_rows(&self, system: &System, _: &SystemState) -> bool {
+        steps_points(system)
     }
 
     // v' = v + h a(q, v),  q' = q + h v'

@@ -147,6 +147,12 @@ impl Step<'_> {
 
 /// A way to step.
 pub trait Stepper: Send + Sync {
+    /// Whether the next step overwrites configuration and velocity from rows that are placed already
+    /// ([`SystemWorkspace::rows_are_the_state`]), and leaves the rows as they stand after it: neither needs to be copied then.
+    fn reads_rows(&self, _system: &System, _state: &SystemState) -> bool {
+        false
+    }
+
     /// Its name in the table.
     fn name(&self) -> &'static str;
 

@@ -7,7 +7,7 @@ use crate::inertia::accelerations_at;
 use crate::state::SystemState;
 use crate::system::{System, SystemWorkspace};
 
-use super::explicit::{Drifts, OneForce, kick};
+use super::explicit::{Drifts, OneForce, kick, steps_points};
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
 
 /// `X' = 2 X - X_before + h² F/m` with `F` of `X` and `X_before` alone: what an input does is seen one step later.
@@ -56,6 +56,11 @@ impl Stepper for TSimulation {
     /// One number once the first step is made.
     fn accepts_history(&self, _system: &System, history: &[f64]) -> bool {
         history.len() <= usize::from(self.start == Start::Trajectory)
+    }
+
+    // before its first step a trajectory changes the velocity
+    fn reads_rows(&self, system: &System, state: &SystemState) -> bool {
+        steps_points(system) && (self.start == Start::Momentum || !state.history.is_empty())
     }
 
     // V' = V + h F(X, X - h V)/m,  X' = X + h V'
