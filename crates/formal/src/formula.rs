@@ -132,6 +132,11 @@ impl Condition {
         &self.text
     }
 
+    /// Whether the variable at `position` can change what it says.
+    pub fn depends_on(&self, position: usize) -> bool {
+        self.program.reads(position)
+    }
+
     /// Whether the condition holds for the values of the variables; panics like [`Formula::evaluate`].
     pub fn holds(&self, values: &[f64]) -> bool {
         self.program.run::<f64>(|position| values[position]) != 0.0

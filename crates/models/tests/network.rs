@@ -24,6 +24,10 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
     let numbers = text(&[("k", "1 kN/m"), ("c", "3")]);
     let states = text(&[("free", "0"), ("touching", "k * (1 - D) - c * V")]);
     let transitions = text(&[("free -> touching", "D < 1"), ("touching -> free", "D > 1")]);
+    let words = text(&[
+        ("free", "CHK, 0; INF, D, 1 -> touching"),
+        ("touching", "CHK, 1000; CHZ, 3; SUP, D, 1 -> free"),
+    ]);
     let mut values = Values::new();
     for parameter in entry.parameters {
         let value = match parameter.name {
@@ -34,6 +38,8 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
             "compression" => Value::Number(30.0),
             "threshold" | "distance" => Value::Number(1.0),
             "depth" => Value::Number(0.3),
+            "error" => Value::Number(5.0),
+            "deepest" => Value::Number(0.5),
             "peak" => Value::Number(1.1),
             "range" => Value::Number(1.5),
             "cohesion" => Value::Number(700.0),
@@ -46,6 +52,7 @@ fn law(entry: &LinkEntry) -> Box<dyn LinkKernel> {
             "fluid_viscosity" => Value::Number(50.0),
             "network" => Value::Text("spring(k) - (damper(c) | spring(2 * k))"),
             "push" => Value::Text("-k * (D - L0) - c * V"),
+            "states" if entry.name == "conditional" => Value::Texts(&words),
             "states" => Value::Texts(&states),
             "transitions" => Value::Texts(&transitions),
             "parameters" => Value::Texts(&numbers),
@@ -497,6 +504,11 @@ fn automata_are_checked() {
         (refused(&two, &[("a -> b", "D +")], &[]), ["transitions", "a -> b"]),
         (refused(&two, &[("a -> b", "D > 1")], &[("b", "K = 1")]), ["sets `K`", "remembered are L0"]),
         (refused(&[("a", "x")], &[], &[]), ["states.a", "x"]),
+        (refused(&two, &[("a -> b", "1 > 2")], &[]), ["states.a", "to `b` that never fires"]),
+        (
+            refused(&two, &[("a -> b", "D > 1"), ("a -> a", "1 < 2")], &[]),
+            ["to `b` that never fires", "the last that holds wins"],
+        ),
     ];
     for (message, words) in cases {
         for word in words {

@@ -3,7 +3,7 @@
 use std::any::Any;
 
 use souple_engine::{
-    Configuration, Curvature, Declaration, Energy, Force, LinkShown, Pair, Scratch, TangentWeights,
+    Configuration, Curvature, Declaration, Energy, Force, LinkShown, LinkState, Pair, Scratch, TangentWeights,
 };
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
@@ -41,6 +41,18 @@ pub enum Account {
     Heat,
 }
 
+/// What controls drive of links: places among the driven parameters of State.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wiring {
+    /// How much of the links acts, from 0, parted, to 1.
+    pub gain: Option<usize>,
+    /// Registers of the law and where their values are.
+    pub registers: Vec<(usize, usize)>,
+}
+
+/// Most registers of one law that are driven.
+pub const REGISTERS: usize = 8;
+
 /// Links of one law: `F1 = φ(D, D^r, memory) u = -F2` with `u = (P1 - P2)/D`, or with a given `u` ([`Span::Along`]).
 ///
 /// `D^r` is taken from `X - h v`: a pair that turns without changing its length feels no damping. Its memory is, for
@@ -57,6 +69,7 @@ pub struct Links {
     place_of: Vec<(u32, u32)>,
     /// At the start [m]; of links that remember.
     lengths: Vec<f64>,
+    wiring: Wiring,
 }
 
 /// What one link does.
@@ -89,6 +102,8 @@ struct Sums {
     pushes: Vec<f64>,
     /// The same: across stretches, `[block][lane]`.
     pushes_across: Vec<f64>,
+    /// Of links of which a part acts: their forces on rows as though the whole did.
+    whole: Vec<Vec3>,
 }
 
 impl Links {
@@ -102,11 +117,41 @@ impl Links {
             }
         }
         let lengths = if law.memory_len() > 0 { lengths.to_vec() } else { Vec::new() };
-        Self { name, law, layout, span, timestep, account, place_of, lengths }
+        Self { name, law, layout, span, timestep, account, place_of, lengths, wiring: Wiring::default() }
+    }
+
+    /// The same with parameters driven, at most [`REGISTERS`] of the law.
+    #[must_use]
+    pub fn wired(mut self, wiring: Wiring) -> Self {
+        self.wiring = wiring;
+        self
+    }
+
+    /// Lends the law as it is driven.
+    fn acting(&self, driven: &[f64], act: &mut dyn FnMut(&dyn LinkKernel)) {
+        if self.wiring.registers.is_empty() {
+            return act(&*self.law);
+        }
+        let mut values = [(0, 0.0); REGISTERS];
+        let count = self.wiring.registers.len().min(REGISTERS);
+        for (value, (register, slot)) in values.iter_mut().zip(&self.wiring.registers) {
+            *value = (*register, driven[*slot]);
+        }
+        self.law.driven(&values[..count], self.timestep, act);
+    }
+
+    /// How much of the links acts.
+    fn gain(&self, driven: &[f64]) -> f64 {
+        self.wiring.gain.map_or(1.0, |slot| driven[slot])
     }
 
     pub fn link_count(&self) -> usize {
         self.place_of.len()
+    }
+
+    /// Numbers that each link remembers.
+    pub fn remembered_len(&self) -> usize {
+        self.law.memory_len()
     }
 
     /// What a link takes of the bound `4M` on its masses (see [`super::LinkLaw::stiffest`]) [N/m].
@@ -174,8 +219,13 @@ impl Links {
         let part = &self.layout.parts[number as usize];
         let memory = self.remembered(part, slot as usize, self.of_part(number as usize, at.memory));
         let reach = self.standing(part, slot as usize, at).reach;
-        let response = self.law.respond(&reach, at.time, &memory);
-        LinkStance { length: reach.length, push: response.push, stored: response.stored }
+        let (mut stance, gain) =
+            (LinkStance { length: reach.length, push: 0.0, stored: 0.0 }, self.gain(at.driven));
+        self.acting(at.driven, &mut |law| {
+            let response = law.respond(&reach, at.time, &memory);
+            (stance.push, stance.stored) = (gain * response.push, gain * response.stored);
+        });
+        stance
     }
 
     /// Calls `visit(rows, a ∂f1/∂d + b ∂f1/∂w)` for every link, with `d = P1 - P2` and its rate `w`. Returns whether it turned
@@ -188,14 +238,34 @@ impl Links {
         mut visit: impl FnMut([u32; 2], Mat3),
     ) -> bool {
         let mut turned = false;
+        let gain = self.gain(at.driven);
+        if gain != 0.0 {
+            self.acting(at.driven, &mut |law| {
+                let weights =
+                    TangentWeights { position: gain * weights.position, velocity: gain * weights.velocity };
+                turned = self.visit_tangents_of(law, at, curvature, weights, &mut visit);
+            });
+        }
+        turned
+    }
+
+    fn visit_tangents_of(
+        &self,
+        law: &dyn LinkKernel,
+        at: &Configuration,
+        curvature: Curvature,
+        weights: TangentWeights,
+        visit: &mut impl FnMut([u32; 2], Mat3),
+    ) -> bool {
+        let mut turned = false;
         for (number, part) in self.layout.parts.iter().enumerate() {
             let memory = self.of_part(number, at.memory);
             for slot in 0..part.links.len() {
                 let Standing { rows, reach, directions } = self.standing(part, slot, at);
                 let Some([n, m]) = directions else { continue };
                 let numbers = self.remembered(part, slot, memory);
-                let push = self.law.respond(&reach, at.time, &numbers).push;
-                let [mut now, before] = self.law.slopes(&reach, at.time, &numbers);
+                let push = law.respond(&reach, at.time, &numbers).push;
+                let [mut now, before] = law.slopes(&reach, at.time, &numbers);
                 // φ'(D) n nᵀ + φ/D (I - n nᵀ) + φ'(D^r) n mᵀ,  ∂D^r/∂w = -h m
                 let turns = self.span == Span::Distance && reach.length > 0.0;
                 let mut across = if turns { push / reach.length } else { 0.0 };
@@ -211,6 +281,37 @@ impl Links {
             }
         }
         turned
+    }
+}
+
+impl Links {
+    /// Adds the forces of links of a law on the rows that they join.
+    fn sum(&self, law: &dyn LinkKernel, at: &Configuration, sums: &mut Sums, out: &mut [Vec3]) {
+        let Sums { across, places, pushes, pushes_across, .. } = sums;
+        let (moving, rows) = (self.moving(at), self.layout.rows());
+        let memory = |number: usize| self.of_part(number, at.memory);
+        let Span::Along(axis) = self.span else {
+            self.layout.add_sums(
+                across,
+                out,
+                |number, part, sums| law.add_forces(part, moving, memory(number), sums),
+                |number, part, forces| law.forces(part, moving, memory(number), forces),
+            );
+            return;
+        };
+        let on_axis = self.on_axis(at, axis, places);
+        pushes.clear();
+        pushes.resize(rows.len(), 0.0);
+        self.layout.add_sums(
+            pushes_across,
+            pushes,
+            |number, part, sums| law.add_pushes(part, on_axis, memory(number), sums),
+            |number, part, pushes| law.pushes(part, on_axis, memory(number), pushes),
+        );
+        self.layout.for_each_stretch(out, |own, out| {
+            let pushes = &pushes[own.start - rows.start..own.end - rows.start];
+            add_along(axis, pushes, out);
+        });
     }
 }
 
@@ -278,49 +379,42 @@ impl Force for Links {
     }
 
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let stored = |number: usize| {
-            let (part, memory) = (&self.layout.parts[number], self.of_part(number, at.memory));
-            let of = |slot| {
-                let numbers = self.remembered(part, slot, memory);
-                self.law.respond(&self.standing(part, slot, at).reach, at.time, &numbers).stored
-            };
-            (0..part.links.len()).map(of).sum()
-        };
         let len = self.law.memory_len();
         let heat = |number: usize| at.memory[self.layout.memory_range(number, len).start];
         let parts = 0..self.layout.parts.len();
         let dissipated = if self.remembers() { parts.clone().map(heat).sum() } else { 0.0 };
-        Energy { stored: parallel::sum(parts, &stored), dissipated }
+        let (mut stored, gain) = (0.0, self.gain(at.driven));
+        self.acting(at.driven, &mut |law| {
+            let of_part = |number: usize| {
+                let (part, memory) = (&self.layout.parts[number], self.of_part(number, at.memory));
+                let of = |slot| {
+                    let numbers = self.remembered(part, slot, memory);
+                    law.respond(&self.standing(part, slot, at).reach, at.time, &numbers).stored
+                };
+                (0..part.links.len()).map(of).sum()
+            };
+            stored = gain * parallel::sum(parts.clone(), &of_part);
+        });
+        Energy { stored, dissipated }
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
-        let Sums { across, places, pushes, pushes_across } =
+        let sums: &mut Sums =
             scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"));
-        let (moving, rows, law) = (self.moving(at), self.layout.rows(), &self.law);
-        let memory = |number: usize| self.of_part(number, at.memory);
+        let (gain, rows) = (self.gain(at.driven), self.layout.rows());
         let out = &mut out[rows.clone()];
-        let Span::Along(axis) = self.span else {
-            self.layout.add_sums(
-                across,
-                out,
-                |number, part, sums| law.add_forces(part, moving, memory(number), sums),
-                |number, part, forces| law.forces(part, moving, memory(number), forces),
-            );
-            return;
-        };
-        let on_axis = self.on_axis(at, axis, places);
-        pushes.clear();
-        pushes.resize(rows.len(), 0.0);
-        self.layout.add_sums(
-            pushes_across,
-            pushes,
-            |number, part, sums| law.add_pushes(part, on_axis, memory(number), sums),
-            |number, part, pushes| law.pushes(part, on_axis, memory(number), pushes),
-        );
-        self.layout.for_each_stretch(out, |own, out| {
-            let pushes = &pushes[own.start - rows.start..own.end - rows.start];
-            add_along(axis, pushes, out);
-        });
+        if gain == 1.0 {
+            self.acting(at.driven, &mut |law| self.sum(law, at, sums, out));
+        } else if gain != 0.0 {
+            let mut whole = std::mem::take(&mut sums.whole);
+            whole.clear();
+            whole.resize(rows.len(), Vec3::ZERO);
+            self.acting(at.driven, &mut |law| self.sum(law, at, sums, &mut whole));
+            for (out, force) in out.iter_mut().zip(&whole) {
+                *out += *force * gain;
+            }
+            sums.whole = whole;
+        }
     }
 
     fn add_differential(
@@ -369,30 +463,39 @@ impl Force for Links {
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
-        if !self.remembers() {
+        let gain = self.gain(at.driven);
+        // what is parted remembers what it was
+        if !self.remembers() || gain == 0.0 {
             return;
         }
         let moving = self.moving(at);
-        self.layout.advance(self.law.memory_len(), memory, |part, own| {
-            let (heat, numbers) = own.split_at_mut(1);
-            heat[0] += match self.span {
-                Span::Distance => self.law.advance(part, moving, numbers),
-                Span::Along(axis) => {
-                    let on_axis = OnAxis { places: Projected { moving, axis }, time: at.time };
-                    self.law.advance_along(part, on_axis, numbers)
-                }
-            };
+        self.acting(at.driven, &mut |law| {
+            self.layout.advance(self.law.memory_len(), memory, |part, own| {
+                let (heat, numbers) = own.split_at_mut(1);
+                heat[0] += gain
+                    * match self.span {
+                        Span::Distance => law.advance(part, moving, numbers),
+                        Span::Along(axis) => {
+                            let on_axis = OnAxis { places: Projected { moving, axis }, time: at.time };
+                            law.advance_along(part, on_axis, numbers)
+                        }
+                    };
+            });
         });
     }
 
     fn visit_links(&self, at: &Configuration, visit: &mut dyn FnMut(&LinkShown)) {
-        for (number, slot) in &self.place_of {
-            let (part, slot) = (&self.layout.parts[*number as usize], *slot as usize);
-            let memory = self.remembered(part, slot, self.of_part(*number as usize, at.memory));
-            let Standing { rows, reach, .. } = self.standing(part, slot, at);
-            let push = self.law.respond(&reach, at.time, &memory).push;
-            visit(&LinkShown { ends: rows, state: self.law.state(&reach, &memory), push });
-        }
+        let gain = self.gain(at.driven);
+        self.acting(at.driven, &mut |law| {
+            for (number, slot) in &self.place_of {
+                let (part, slot) = (&self.layout.parts[*number as usize], *slot as usize);
+                let memory = self.remembered(part, slot, self.of_part(*number as usize, at.memory));
+                let Standing { rows, reach, .. } = self.standing(part, slot, at);
+                let push = gain * law.respond(&reach, at.time, &memory).push;
+                let state = if gain == 0.0 { LinkState::Apart } else { law.state(&reach, &memory) };
+                visit(&LinkShown { ends: rows, state, push });
+            }
+        });
     }
 
     fn bytes(&self) -> usize {
@@ -400,8 +503,8 @@ impl Force for Links {
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
-        scratch.downcast_ref().map_or(0, |Sums { across, places, pushes, pushes_across }| {
-            size_of::<Vec3>() * across.capacity()
+        scratch.downcast_ref().map_or(0, |Sums { across, places, pushes, pushes_across, whole }| {
+            size_of::<Vec3>() * (across.capacity() + whole.capacity())
                 + size_of::<Place>() * places.capacity()
                 + 8 * (pushes.capacity() + pushes_across.capacity())
         })

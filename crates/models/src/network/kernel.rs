@@ -56,6 +56,10 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response;
     /// `∂φ/∂D` and `∂φ/∂D^r` of one link [N/m].
     fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2];
+    /// Names of the parameters that a control may drive.
+    fn registers(&self) -> Vec<&str>;
+    /// Lends the law with other values in registers, for a step of so many seconds; without any, itself.
+    fn driven(&self, values: &[(usize, f64)], timestep: f64, act: &mut dyn FnMut(&dyn LinkKernel));
 }
 
 /// [`LinkKernel`] of a law in lanes.
@@ -136,6 +140,22 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
             };
             self.0.respond(&reach, &mut self.numbers(memory, Dual::constant)).push.derivative
         })
+    }
+
+    fn registers(&self) -> Vec<&str> {
+        self.0.registers().to_vec()
+    }
+
+    fn driven(&self, values: &[(usize, f64)], timestep: f64, act: &mut dyn FnMut(&dyn LinkKernel)) {
+        let mut law: Option<L> = None;
+        for (register, value) in values {
+            let changed = law.as_ref().unwrap_or(&self.0).with_register(*register, *value, timestep);
+            law = changed.or(law);
+        }
+        match law {
+            Some(law) => act(&InLanes(law)),
+            None => act(self),
+        }
     }
 }
 

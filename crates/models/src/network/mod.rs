@@ -12,14 +12,16 @@ pub mod laws;
 mod layout;
 mod pair_tangent;
 mod rheology;
+mod sample;
 mod span;
 pub mod written;
 
 pub use crowd::{Crowd, CrowdDescription, PAIR_MEMORY};
-pub use force::{Account, LinkDescription, LinkStance, Links};
+pub use force::{Account, LinkDescription, LinkStance, Links, REGISTERS, Wiring};
 pub use friction::{Friction, Grip, Hook, Phase};
 pub use kernel::{InLanes, LinkKernel};
 pub use law::{BuildLink, LinkEntry, LinkError, LinkLaw, Making, Reach, Response};
 pub use laws::LINKS;
 pub use layout::Ends;
+pub use sample::state_dimension;
 pub use span::Span;

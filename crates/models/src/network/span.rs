@@ -37,12 +37,14 @@ impl Span {
 /// Rows of a part as links between them read them.
 pub(super) trait Between: Copy {
     /// What links add to a row.
-    type Load: Copy;
+    type Load: Copy + Default;
     /// The same of a group's first ends, side by side.
     type Loads<S: Simd>: Copy;
 
     /// `D` and `D^r` of a link between two rows [m], and what a push of 1 N does to the first.
     fn one(self, ends: [usize; 2]) -> (f64, f64, Self::Load);
+    /// Whether two rows are so far apart for certain, without a square root: `D >= distance`.
+    fn are_beyond(self, ends: [usize; 2], distance: f64) -> bool;
     fn scaled(load: Self::Load, push: f64) -> Self::Load;
     fn add_to(sums: &mut [Self::Load], ends: [usize; 2], load: Self::Load);
 
@@ -67,6 +69,11 @@ impl Between for Moving<'_> {
         let d = self.positions[a] - self.positions[b];
         let e = d - (self.velocities[a] - self.velocities[b]) * self.timestep;
         (d.length(), e.length(), d.try_normalised().or(e.try_normalised()).unwrap_or(Vec3::ZERO))
+    }
+
+    fn are_beyond(self, [a, b]: [usize; 2], distance: f64) -> bool {
+        // a little more, so that the root of what is rounded is no less
+        (self.positions[a] - self.positions[b]).length_sq() > distance * distance * (1.0 + 4.0 * f64::EPSILON)
     }
 
     fn scaled(direction: Vec3, push: f64) -> Vec3 {
@@ -260,6 +267,10 @@ impl<P: Places> Between for OnAxis<P> {
     fn one(self, ends: [usize; 2]) -> (f64, f64, f64) {
         let [[a, b], [c, d]] = ends.map(|row| self.places.place(row));
         (a - c, b - d, 1.0)
+    }
+
+    fn are_beyond(self, [a, b]: [usize; 2], distance: f64) -> bool {
+        self.places.place(a)[0] - self.places.place(b)[0] >= distance
     }
 
     fn scaled(direction: f64, push: f64) -> f64 {

@@ -30,6 +30,22 @@ pub trait WrittenLaw: Debug + Send + Sync + 'static {
     fn state(&self, _memory: &[f64]) -> LinkState {
         LinkState::In(0)
     }
+    /// The distance [m] beyond which a link that remembers this does nothing and remembers the same: there its length is not
+    /// computed, and with it no square root.
+    fn idle_from(&self, _memory: &[f64]) -> Option<f64> {
+        None
+    }
+    /// Names of the parameters that a control may drive.
+    fn registers(&self) -> Vec<&str> {
+        Vec::new()
+    }
+    /// The same law with another value in a register; nothing is allocated.
+    fn with_register(&self, _register: usize, _value: f64, _timestep: f64) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
 }
 
 /// [`LinkKernel`] of a written law.
@@ -48,11 +64,17 @@ impl<L: WrittenLaw> OneByOne<L> {
         numbers: &mut [f64; WRITTEN_MEMORY],
     ) -> (B::Load, Response) {
         let (len, (block, lane)) = (self.0.memory_len(), part.place(slot));
-        let (length, before, direction) = rows.one(part.places_of(slot));
-        let reach = Reach { length, before, rest: part.rest(block)[lane] };
+        let ends = part.places_of(slot);
         for i in 0..len {
             numbers[i] = memory[(block * len + i) * LANES + lane];
         }
+        if let Some(idle) = self.0.idle_from(&numbers[..len])
+            && rows.are_beyond(ends, idle)
+        {
+            return (B::Load::default(), Response { push: 0.0, stored: 0.0, heat: 0.0 });
+        }
+        let (length, before, direction) = rows.one(ends);
+        let reach = Reach { length, before, rest: part.rest(block)[lane] };
         let response = self.0.respond(&reach, rows.time(), &mut numbers[..len]);
         (B::scaled(direction, response.push), response)
     }
@@ -141,6 +163,22 @@ impl<L: WrittenLaw> LinkKernel for OneByOne<L> {
 
     fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2] {
         self.0.slopes(reach, time, &memory[..self.0.memory_len()])
+    }
+
+    fn registers(&self) -> Vec<&str> {
+        self.0.registers()
+    }
+
+    fn driven(&self, values: &[(usize, f64)], timestep: f64, act: &mut dyn FnMut(&dyn LinkKernel)) {
+        let mut law: Option<L> = None;
+        for (register, value) in values {
+            let changed = law.as_ref().unwrap_or(&self.0).with_register(*register, *value, timestep);
+            law = changed.or(law);
+        }
+        match law {
+            Some(law) => act(&OneByOne(law)),
+            None => act(self),
+        }
     }
 }
 

@@ -32,14 +32,20 @@ struct State {
     transitions: Vec<(Condition, usize)>,
     /// Remembered numbers that are set on entry.
     settings: Vec<(usize, Formula)>,
+    /// `D` from which on nothing happens in this state: no push, and no condition that holds [m].
+    idle_from: Option<f64>,
 }
 
 impl State {
+    /// Never any force.
+    fn is_slack(&self) -> bool {
+        let is_constant = !(0..self.push.variables().len()).any(|variable| self.push.depends_on(variable));
+        is_constant && self.push.evaluate(&[0.0; ARGUMENTS]) == 0.0
+    }
+
     /// Without force, for good.
     fn is_end(&self) -> bool {
-        let is_constant = !(0..self.push.variables().len()).any(|variable| self.push.depends_on(variable));
-        let zeros = [0.0; ARGUMENTS];
-        self.transitions.is_empty() && is_constant && self.push.evaluate(&zeros) == 0.0
+        self.transitions.is_empty() && self.is_slack()
     }
 }
 
@@ -99,6 +105,10 @@ impl WrittenLaw for FiniteState {
         } else {
             LinkState::In(u8::try_from(number).unwrap_or(u8::MAX))
         }
+    }
+
+    fn idle_from(&self, memory: &[f64]) -> Option<f64> {
+        self.states[memory[STATE] as usize].idle_from
     }
 
     fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response {
@@ -186,7 +196,7 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
     let state_names: Vec<&str> = texts("states").iter().map(|(name, _)| name.as_str()).collect();
     for (name, push) in texts("states") {
         let push = formula(&format!("states.{name}"), push, &variables)?;
-        states.push(State { push, transitions: Vec::new(), settings: Vec::new() });
+        states.push(State { push, transitions: Vec::new(), settings: Vec::new(), idle_from: None });
     }
     if states.is_empty() {
         return Err(text("states", "is empty: a link is in one state at least"));
@@ -226,9 +236,68 @@ fn read(making: &Making) -> Result<FiniteState, LinkError> {
             states[state].settings.push((number, formula(&place, value.trim(), &variables)?));
         }
     }
+    let unknowns = VARIABLES.len() + remembered.len();
+    for (state, name) in states.iter_mut().zip(&state_names) {
+        check_that_all_fire(state, &format!("states.{name}"), &state_names, &constants, unknowns)?;
+        if state.is_slack() {
+            let bound = |(condition, _): &(Condition, usize)| {
+                bound_below(condition, &variables, &constants, unknowns)
+            };
+            let bounds: Option<Vec<f64>> = state.transitions.iter().map(bound).collect();
+            state.idle_from = bounds.map(|bounds| bounds.into_iter().fold(0.0, f64::max));
+        }
+    }
     let mut starts = vec![formula("L0", "L0", &variables)?];
     for (name, start) in texts("memory") {
         starts.push(formula(&format!("memory.{name}"), start, &variables)?);
     }
     Ok(FiniteState { states, starts, constants, timestep: making.timestep })
+}
+
+/// Arguments of which only the parameters are known.
+fn known(constants: &[f64], unknowns: usize) -> Arguments<f64> {
+    Arguments::new(0.0, std::iter::repeat_n(0.0, unknowns).chain(constants.iter().copied()))
+}
+
+/// The number that a condition `D < number` asks lengths to stay below.
+fn bound_below(condition: &Condition, variables: &[&str], constants: &[f64], unknowns: usize) -> Option<f64> {
+    let (left, right) = condition.text().split_once('<')?;
+    let bound = Formula::compile(right.trim_start_matches('='), variables).ok()?;
+    let is_known = !(0..unknowns).any(|variable| bound.depends_on(variable));
+    // one that holds at the bound itself holds below all that is beyond
+    (left.trim() == "D" && is_known).then(|| bound.evaluate(known(constants, unknowns).as_slice()))
+}
+
+/// Conditions that can never hold, and those that a later one always outdoes.
+fn check_that_all_fire(
+    state: &State,
+    place: &str,
+    names: &[&str],
+    constants: &[f64],
+    unknowns: usize,
+) -> Result<(), LinkError> {
+    let never = |to: usize, why: String| {
+        Err(text(place, format!("has a transition to `{}` that never fires: {why}", names[to])))
+    };
+    // whether a condition that nothing changes holds
+    let settled = |condition: &Condition| {
+        let is_known = !(0..unknowns).any(|variable| condition.depends_on(variable));
+        is_known.then(|| condition.holds(known(constants, unknowns).as_slice()))
+    };
+    for (at, (condition, to)) in state.transitions.iter().enumerate() {
+        let said = condition.text();
+        if settled(condition) == Some(false) {
+            return never(*to, format!("`{said}` does not hold, whatever happens"));
+        }
+        for (later, _) in &state.transitions[at + 1..] {
+            if settled(later) == Some(true) || later.text().trim() == said.trim() {
+                let later = later.text();
+                return never(
+                    *to,
+                    format!("`{later}` after it holds whenever it does, and the last that holds wins"),
+                );
+            }
+        }
+    }
+    Ok(())
 }

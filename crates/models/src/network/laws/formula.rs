@@ -1,5 +1,7 @@
 //! A law as a formula: whatever a scene writes.
 
+use std::sync::Arc;
+
 use souple_formal::Formula;
 use souple_math::Dual;
 use souple_table::{Parameter, Value};
@@ -11,12 +13,12 @@ use crate::network::written::{Arguments, OneByOne, WrittenLaw, constants, formul
 const VARIABLES: [&str; 5] = ["D", "D_before", "V", "L0", "t"];
 
 /// `φ` as a formula, or an energy whose negative slope it is.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Written {
-    formula: Formula,
+    formula: Arc<Formula>,
     kind: Kind,
-    /// Values of the parameters.
-    constants: Vec<f64>,
+    /// Values of the parameters, in place: a law that is driven is copied in every step.
+    constants: Arguments<f64>,
     timestep: f64,
 }
 
@@ -32,7 +34,7 @@ impl Written {
         let (length, past) = (Dual::new(reach.length, now), Dual::new(reach.before, before));
         let speed = (length - past) * (1.0 / self.timestep);
         let variables = [length, past, speed, Dual::constant(reach.rest), Dual::constant(time)];
-        let constants = self.constants.iter().map(|value| Dual::constant(*value));
+        let constants = self.constants.as_slice().iter().map(|value| Dual::constant(*value));
         Arguments::new(Dual::constant(0.0), variables.into_iter().chain(constants))
     }
 
@@ -81,6 +83,16 @@ impl WrittenLaw for Written {
         }
     }
 
+    fn registers(&self) -> Vec<&str> {
+        self.formula.variables()[VARIABLES.len()..].iter().map(String::as_str).collect()
+    }
+
+    fn with_register(&self, register: usize, value: f64, _: f64) -> Option<Self> {
+        let mut law = self.clone();
+        *law.constants.as_mut_slice().get_mut(register)? = value;
+        Some(law)
+    }
+
     fn stiffest(&self, rest: f64) -> f64 {
         let [now, before] = self.slopes(&Reach { length: rest, before: rest, rest }, 0.0, &[]);
         (before - now).max(0.0)
@@ -115,6 +127,7 @@ pub const ENTRY: LinkEntry = LinkEntry {
                 "depends on D_before or V: an energy is of D alone, dampers belong to a `push`".to_owned();
             return Err(LinkError::Text { place: "energy".to_owned(), what });
         }
+        let (formula, constants) = (Arc::new(formula), Arguments::new(0.0, constants));
         Ok(Box::new(OneByOne(Written { formula, kind, constants, timestep: making.timestep })))
     },
 };

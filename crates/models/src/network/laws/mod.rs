@@ -1,5 +1,6 @@
 //! The laws of links: one file each and one line in [`LINKS`].
 
+mod conditional;
 mod elasto_plastic;
 mod finite_state;
 mod flowing;
@@ -24,12 +25,14 @@ pub const LINKS: Table<BuildLink> = Table {
         &spring_damper::SPRING_DAMPER,
         &spring_damper::SPRING,
         &spring_damper::DAMPER,
+        &spring_damper::TUNED_SPRING,
         &piecewise::PIECEWISE_LINEAR,
         &piecewise::COHESION,
         &lennard_jones::ENTRY,
         &stops::BALL,
         &stops::BUBBLE,
         &stops::EXPONENTIAL_STOP,
+        &stops::EXPONENTIAL_PIECES,
         &elasto_plastic::ENTRY,
         &flowing::MAXWELL,
         &flowing::BINGHAM,
@@ -37,5 +40,6 @@ pub const LINKS: Table<BuildLink> = Table {
         &rheological::ENTRY,
         &formula::ENTRY,
         &finite_state::ENTRY,
+        &conditional::ENTRY,
     ],
 };

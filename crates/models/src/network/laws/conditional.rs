@@ -1,0 +1,629 @@
+//! The conditional link in the words of its source: a spring and damper whose numbers change with a finite automaton.
+//!
+//! `F1 = -K L - Z dV` with `L = D - L0` and `dV = D - D^r`. At step `n` the transitions of the present state are looked at
+//! on the variables of that step; the last one met wins, one at most is made, its entry dispositions are carried out, and
+//! the force is that of the new state. `finite_state` does the same with formulas.
+
+use souple_engine::LinkState;
+use souple_formal::{Formula, parse_quantity};
+use souple_table::{Parameter, Range, Value};
+
+use crate::network::law::{LinkEntry, LinkError, Making, Reach, Response};
+use crate::network::written::{OneByOne, WrittenLaw};
+
+/// Numbers that a link remembers: the state, `K`, `Z`, `L0`, and `dV` of the step before.
+const STATE: usize = 0;
+const STIFFNESS: usize = 1;
+const DAMPING: usize = 2;
+const LENGTH: usize = 3;
+const MOVED: usize = 4;
+const MEMORY: usize = 5;
+
+#[derive(Debug)]
+struct Conditional {
+    states: Vec<State>,
+    stiffness: f64,
+    /// `z/Te` [N/m].
+    damping: f64,
+    /// What `CDX` stands for, of `t`.
+    external: Option<Formula>,
+    /// Whether a condition compares `dV` with that of the step before.
+    watches_moved: bool,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    entries: Vec<Disposition>,
+    /// `LN`: elongation is nothing.
+    without_elongation: bool,
+    /// `VN`: velocity is nothing.
+    without_velocity: bool,
+    transitions: Vec<Transition>,
+    /// `D` from which on nothing happens in this state: no force, and no condition that holds [m].
+    idle_from: Option<f64>,
+}
+
+/// What happens on entry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Disposition {
+    /// `L0=D`
+    RestHere,
+    /// `CHK, k` [N/m]
+    Stiffness(f64),
+    /// `CHZ, z`, as `z/Te` [N/m]
+    Damping(f64),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Transition {
+    condition: Condition,
+    to: usize,
+}
+
+/// When a transition is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Condition {
+    Grows(Variable),
+    Shrinks(Variable),
+    ChangesSign(Variable),
+    Above(Variable, f64),
+    Below(Variable, f64),
+    /// `CDX`: an operator, or another part of the object.
+    External,
+    Always,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Variable {
+    /// `D`
+    Length,
+    /// `L`
+    Elongation,
+    /// `dV`
+    Moved,
+}
+
+/// Variables now and a step before.
+#[derive(Clone, Copy, Debug)]
+struct Watched {
+    length: [f64; 2],
+    elongation: [f64; 2],
+    moved: [f64; 2],
+}
+
+impl Watched {
+    fn of(reach: &Reach, memory: &[f64]) -> Self {
+        let (now, before) = (reach.length, reach.before);
+        Self {
+            length: [now, before],
+            elongation: [now - memory[LENGTH], before - memory[LENGTH]],
+            moved: [now - before, memory[MOVED]],
+        }
+    }
+
+    fn value(&self, variable: Variable) -> [f64; 2] {
+        match variable {
+            Variable::Length => self.length,
+            Variable::Elongation => self.elongation,
+            Variable::Moved => self.moved,
+        }
+    }
+}
+
+impl Conditional {
+    fn holds(&self, condition: Condition, watched: &Watched, time: f64) -> bool {
+        match condition {
+            Condition::Grows(variable) => {
+                let [now, before] = watched.value(variable);
+                now > before
+            }
+            Condition::Shrinks(variable) => {
+                let [now, before] = watched.value(variable);
+                now < before
+            }
+            Condition::ChangesSign(variable) => {
+                let [now, before] = watched.value(variable);
+                // a sign that it had: from rest nothing has changed yet
+                now * before < 0.0 || (now == 0.0 && before != 0.0)
+            }
+            Condition::Above(variable, bound) => watched.value(variable)[0] > bound,
+            Condition::Below(variable, bound) => watched.value(variable)[0] < bound,
+            Condition::External => self.external.as_ref().is_some_and(|cdx| cdx.evaluate(&[time]) > 0.0),
+            Condition::Always => true,
+        }
+    }
+
+    /// Makes the transition of a step.
+    fn switch(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> &State {
+        let state = &self.states[memory[STATE] as usize];
+        let watched = Watched::of(reach, memory);
+        let met = |transition: &&Transition| self.holds(transition.condition, &watched, time);
+        let Some(Transition { to, .. }) = state.transitions.iter().rev().find(met) else { return state };
+        memory[STATE] = *to as f64;
+        let entered = &self.states[*to];
+        for entry in &entered.entries {
+            match entry {
+                Disposition::RestHere => memory[LENGTH] = reach.length,
+                Disposition::Stiffness(stiffness) => memory[STIFFNESS] = *stiffness,
+                Disposition::Damping(damping) => memory[DAMPING] = *damping,
+            }
+        }
+        entered
+    }
+
+    /// `-K` and `-Z` as they act.
+    fn act(state: &State, memory: &[f64]) -> [f64; 2] {
+        [
+            if state.without_elongation { 0.0 } else { memory[STIFFNESS] },
+            if state.without_velocity { 0.0 } else { memory[DAMPING] },
+        ]
+    }
+}
+
+impl WrittenLaw for Conditional {
+    fn memory_len(&self) -> usize {
+        MEMORY
+    }
+
+    fn begin(&self, rest: f64, _: f64, memory: &mut [f64]) {
+        memory[..MEMORY].copy_from_slice(&[0.0, self.stiffness, self.damping, rest, 0.0]);
+    }
+
+    fn is_conservative(&self) -> bool {
+        false
+    }
+
+    fn idle_from(&self, memory: &[f64]) -> Option<f64> {
+        let state = &self.states[memory[STATE] as usize];
+        let is_slack = Self::act(state, memory) == [0.0, 0.0] && !self.watches_moved;
+        state.idle_from.filter(|_| is_slack)
+    }
+
+    fn state(&self, memory: &[f64]) -> LinkState {
+        let state = &self.states[memory[STATE] as usize];
+        let is_slack = Self::act(state, memory) == [0.0, 0.0];
+        // without force and without a way out
+        if is_slack && state.transitions.is_empty() {
+            LinkState::Apart
+        } else {
+            LinkState::In(u8::try_from(memory[STATE] as usize).unwrap_or(u8::MAX))
+        }
+    }
+
+    // φ = -K L - Z dV
+    fn respond(&self, reach: &Reach, time: f64, memory: &mut [f64]) -> Response {
+        let state = self.switch(reach, time, memory);
+        let [stiffness, damping] = Self::act(state, memory);
+        let (elongation, moved) = (reach.length - memory[LENGTH], reach.length - reach.before);
+        memory[MOVED] = if self.watches_moved { moved } else { 0.0 };
+        Response {
+            push: -stiffness * elongation - damping * moved,
+            stored: 0.5 * stiffness * elongation * elongation,
+            heat: damping * moved * moved,
+        }
+    }
+
+    fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2] {
+        let mut numbers = [0.0; MEMORY];
+        numbers.copy_from_slice(&memory[..MEMORY]);
+        let state = self.switch(reach, time, &mut numbers);
+        let [stiffness, damping] = Self::act(state, &numbers);
+        [-stiffness - damping, damping]
+    }
+
+    // the stiffest and the most damped that any way through the states leads to
+    fn stiffest(&self, _: f64) -> f64 {
+        let entries = || self.states.iter().flat_map(|state| &state.entries);
+        let of = |start: f64, number: fn(&Disposition) -> Option<f64>| {
+            entries().filter_map(number).fold(start, f64::max)
+        };
+        let stiffness = of(self.stiffness, |entry| match entry {
+            Disposition::Stiffness(stiffness) => Some(*stiffness),
+            _ => None,
+        });
+        let damping = of(self.damping, |entry| match entry {
+            Disposition::Damping(damping) => Some(*damping),
+            _ => None,
+        });
+        stiffness + 2.0 * damping
+    }
+}
+
+pub const ENTRY: LinkEntry = LinkEntry {
+    name: "conditional",
+    summary: "a spring and damper whose numbers change with a finite automaton, in the words of its source: AUG, DIM, CHS, \
+              SUP, INF, CDX; L0=D, CHK, CHZ; LN, VN",
+    source: "Jimenez 1993, P2-I.3.3",
+    parameters: &[
+        Parameter::number("stiffness", "N/m", Range::NOT_NEGATIVE, "K at the start").or(Value::Number(0.0)),
+        Parameter::number("damping", "N s/m", Range::NOT_NEGATIVE, "z at the start").or(Value::Number(0.0)),
+        Parameter::texts(
+            "states",
+            "what each state does, the first is that of the start: \"CHK, 100 N/m; INF, D, 1 mm -> other\"",
+        ),
+        Parameter::texts("parameters", "numbers that states may name").or(Value::Texts(&[])),
+        Parameter::text("external", "CDX: a formula of t, met while it is above 0").or(Value::Text("")),
+    ],
+    build: |making| Ok(Box::new(OneByOne(read(making)?))),
+};
+
+fn refuse<T>(place: &str, what: impl Into<String>) -> Result<T, LinkError> {
+    Err(LinkError::Text { place: place.to_owned(), what: what.into() })
+}
+
+fn read(making: &Making) -> Result<Conditional, LinkError> {
+    let texts = making.values.texts("states");
+    let names: Vec<&str> = texts.iter().map(|(name, _)| name.as_str()).collect();
+    if names.is_empty() {
+        return refuse("states", "is empty: a link is in one state at least");
+    }
+    let external = match making.values.text("external") {
+        "" => None,
+        text => Some(crate::network::written::formula("external", text, &["t"])?),
+    };
+    let reader = Words {
+        names: &names,
+        parameters: making.values.texts("parameters"),
+        timestep: making.timestep,
+        has_external: external.is_some(),
+    };
+    let mut states = Vec::new();
+    for (name, text) in texts {
+        states.push(reader.state(&format!("states.{name}"), text)?);
+    }
+    let compares_moved = |transition: &Transition| {
+        use Condition::{ChangesSign, Grows, Shrinks};
+        matches!(
+            transition.condition,
+            Grows(Variable::Moved) | Shrinks(Variable::Moved) | ChangesSign(Variable::Moved)
+        )
+    };
+    let conditional = Conditional {
+        watches_moved: states.iter().flat_map(|state: &State| &state.transitions).any(compares_moved),
+        states,
+        stiffness: making.values.number("stiffness"),
+        damping: making.values.number("damping") / making.timestep,
+        external,
+    };
+    check(&conditional, &names)?;
+    Ok(conditional)
+}
+
+/// States that nothing leads to, and transitions that never fire.
+fn check(link: &Conditional, names: &[&str]) -> Result<(), LinkError> {
+    let mut reached = vec![false; names.len()];
+    let mut to_look_at = vec![0];
+    while let Some(state) = to_look_at.pop() {
+        if std::mem::replace(&mut reached[state], true) {
+            continue;
+        }
+        to_look_at.extend(link.states[state].transitions.iter().map(|transition| transition.to));
+    }
+    if let Some(lost) = reached.iter().position(|reached| !reached) {
+        return refuse(
+            &format!("states.{}", names[lost]),
+            "is never entered: no transition leads there from the first",
+        );
+    }
+    for (state, name) in link.states.iter().zip(names) {
+        let place = format!("states.{name}");
+        let always = |transition: &Transition| transition.condition == Condition::Always;
+        if let Some(at) = state.transitions.iter().rposition(always).filter(|at| *at > 0) {
+            let to = names[state.transitions[at - 1].to];
+            return refuse(
+                &place,
+                format!(
+                    "has a transition to `{to}` that never fires: `ANY` after it is always met, and the last one met wins"
+                ),
+            );
+        }
+        for (at, Transition { condition, to }) in state.transitions.iter().enumerate() {
+            let later = &state.transitions[at + 1..];
+            let is_covered = later.iter().any(|other| covers(other.condition, *condition));
+            if is_covered {
+                let to = names[*to];
+                return refuse(
+                    &place,
+                    format!(
+                        "has a transition to `{to}` that never fires: one after it is met whenever this is, and the last one met wins"
+                    ),
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether a condition is met whenever the other is.
+fn covers(one: Condition, other: Condition) -> bool {
+    match (one, other) {
+        (Condition::Above(a, low), Condition::Above(b, high)) => a == b && low <= high,
+        (Condition::Below(a, high), Condition::Below(b, low)) => a == b && high >= low,
+        _ => one == other,
+    }
+}
+
+/// What words mean.
+struct Words<'a> {
+    names: &'a [&'a str],
+    parameters: &'a [(String, String)],
+    timestep: f64,
+    has_external: bool,
+}
+
+impl Words<'_> {
+    fn state(&self, place: &str, text: &str) -> Result<State, LinkError> {
+        let mut state = State::default();
+        for words in text.split(';').map(str::trim).filter(|words| !words.is_empty()) {
+            match words.split_once("->") {
+                Some((condition, to)) => {
+                    let to = to.trim();
+                    let Some(to) = self.names.iter().position(|name| *name == to) else {
+                        return refuse(
+                            place,
+                            format!("leads to the state `{to}`; there are {}", self.names.join(", ")),
+                        );
+                    };
+                    let condition = self.condition(place, condition.trim())?;
+                    state.transitions.push(Transition { condition, to });
+                }
+                None => self.disposition(place, words, &mut state)?,
+            }
+        }
+        // nothing holds from the greatest bound on where all conditions ask for short links
+        let bound = |transition: &Transition| match transition.condition {
+            Condition::Below(Variable::Length, bound) => Some(bound),
+            _ => None,
+        };
+        let bounds: Option<Vec<f64>> = state.transitions.iter().map(bound).collect();
+        state.idle_from = bounds.map(|bounds| bounds.into_iter().fold(0.0, f64::max));
+        Ok(state)
+    }
+
+    fn disposition(&self, place: &str, words: &str, state: &mut State) -> Result<(), LinkError> {
+        let parts: Vec<&str> = words.split(',').map(str::trim).collect();
+        match parts[..] {
+            ["LN"] => state.without_elongation = true,
+            ["VN"] => state.without_velocity = true,
+            ["CHK", number] => {
+                state.entries.push(Disposition::Stiffness(self.positive(place, words, number)?));
+            }
+            ["CHZ", number] => {
+                let damping = self.positive(place, words, number)? / self.timestep;
+                state.entries.push(Disposition::Damping(damping));
+            }
+            [words] if words.replace(' ', "") == "L0=D" => state.entries.push(Disposition::RestHere),
+            _ => {
+                let what = format!(
+                    "says `{words}`: write `L0=D`, `CHK, k`, `CHZ, z`, `LN`, `VN`, or a condition with `-> state`"
+                );
+                return refuse(place, what);
+            }
+        }
+        Ok(())
+    }
+
+    fn condition(&self, place: &str, words: &str) -> Result<Condition, LinkError> {
+        let parts: Vec<&str> = words.split(',').map(str::trim).collect();
+        Ok(match parts[..] {
+            ["AUG", variable] => Condition::Grows(self.variable(place, variable)?),
+            ["DIM", variable] => Condition::Shrinks(self.variable(place, variable)?),
+            ["CHS", variable] => Condition::ChangesSign(self.variable(place, variable)?),
+            ["SUP", variable, bound] => {
+                Condition::Above(self.variable(place, variable)?, self.bound(place, words, variable, bound)?)
+            }
+            ["INF", variable, bound] => {
+                Condition::Below(self.variable(place, variable)?, self.bound(place, words, variable, bound)?)
+            }
+            ["CDX"] if self.has_external => Condition::External,
+            ["CDX"] => {
+                return refuse(
+                    place,
+                    "asks for `CDX`, and there is no `external`: the condition never holds",
+                );
+            }
+            ["ANY"] => Condition::Always,
+            _ => {
+                let what = format!(
+                    "has the condition `{words}`: write `AUG, var`, `DIM, var`, `CHS, var`, `SUP, var, number`, \
+                     `INF, var, number`, `CDX` or `ANY`"
+                );
+                return refuse(place, what);
+            }
+        })
+    }
+
+    fn variable(&self, place: &str, name: &str) -> Result<Variable, LinkError> {
+        match name {
+            "D" => Ok(Variable::Length),
+            "L" => Ok(Variable::Elongation),
+            "dV" => Ok(Variable::Moved),
+            "X1" | "X2" => refuse(
+                place,
+                format!("asks for `{name}`, a place: links know how far their ends are apart, D, L and dV"),
+            ),
+            _ => refuse(place, format!("asks for `{name}`; variables are D, L and dV")),
+        }
+    }
+
+    /// A bound of a variable; velocities are given in m/s, and are lengths of a step within.
+    fn bound(&self, place: &str, words: &str, variable: &str, number: &str) -> Result<f64, LinkError> {
+        let number = self.number(place, words, number)?;
+        Ok(if variable == "dV" { number * self.timestep } else { number })
+    }
+
+    fn positive(&self, place: &str, words: &str, number: &str) -> Result<f64, LinkError> {
+        let value = self.number(place, words, number)?;
+        if value < 0.0 { refuse(place, format!("says `{words}`: a number of at least 0")) } else { Ok(value) }
+    }
+
+    /// A number in SI units, a quantity or the name of a parameter.
+    fn number(&self, place: &str, words: &str, text: &str) -> Result<f64, LinkError> {
+        let named = self.parameters.iter().find(|(name, _)| name == text).map(|(_, value)| value.as_str());
+        let text = named.unwrap_or(text);
+        let value = match parse_quantity(text) {
+            Ok(quantity) => quantity.value,
+            Err(_) => crate::network::written::formula(place, text, &[])?.evaluate(&[]),
+        };
+        if value.is_finite() { Ok(value) } else { refuse(place, format!("says `{words}`: a finite number")) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use souple_table::Values;
+
+    use super::*;
+
+    const TE: f64 = 1e-3;
+
+    fn link(states: &[(&str, &str)], more: Values) -> Result<Conditional, String> {
+        let texts: Vec<(String, String)> =
+            states.iter().map(|(name, text)| ((*name).to_owned(), (*text).to_owned())).collect();
+        let values =
+            ENTRY.values(more.with("states", Value::Texts(&texts))).map_err(|error| error.to_string())?;
+        read(&Making { values: &values, timestep: TE }).map_err(|error| error.to_string())
+    }
+
+    /// States and pushes along a course of lengths, the first of which is that of rest.
+    fn course(link: &Conditional, lengths: &[f64]) -> (Vec<usize>, Vec<f64>) {
+        let mut memory = [0.0; MEMORY];
+        link.begin(lengths[0], lengths[0], &mut memory);
+        let steps = lengths.iter().zip([&lengths[0]].into_iter().chain(lengths)).enumerate();
+        steps
+            .map(|(n, (now, before))| {
+                let reach = Reach { length: *now, before: *before, rest: lengths[0] };
+                let push = link.respond(&reach, n as f64 * TE, &mut memory).push;
+                (memory[STATE] as usize, push)
+            })
+            .unzip()
+    }
+
+    fn stiff(k: f64) -> Values {
+        Values::new().with("stiffness", Value::Number(k))
+    }
+
+    /// The eight recipes of the source go through the states that their names promise.
+    #[test]
+    fn eight_recipes() {
+        let states = |link: &Conditional, lengths: &[f64]| course(link, lengths).0;
+        // a stop at 1: pushes inside only
+        let stop = link(
+            &[("away", "CHK, 0; CHZ, 0; INF, D, 1 -> in"), ("in", "L0=D; CHK, 100; SUP, D, 1 -> away")],
+            Values::new(),
+        )
+        .unwrap();
+        let (seen, pushes) = course(&stop, &[1.5, 1.2, 0.9, 0.8, 1.1]);
+        assert_eq!(seen, [0, 0, 1, 1, 0]);
+        assert!((pushes[3] - 10.0).abs() < 1e-12 && pushes[1] == 0.0 && pushes[4] == 0.0, "{pushes:?}");
+        // fracture
+        let torn =
+            link(&[("whole", "SUP, L, 0.1 -> torn"), ("torn", "CHK, 0; CHZ, 0")], stiff(50.0)).unwrap();
+        let (seen, pushes) = course(&torn, &[1.0, 1.05, 1.2, 1.0]);
+        assert_eq!(seen, [0, 0, 1, 1]);
+        assert!((pushes[1] + 50.0 * 0.05).abs() < 1e-12 && pushes[2..] == [0.0, 0.0]);
+        // glue takes the length at which it met
+        let glue =
+            link(&[("free", "INF, D, 0.5 -> held"), ("held", "L0=D; CHK, 20")], Values::new()).unwrap();
+        let (seen, pushes) = course(&glue, &[1.0, 0.6, 0.4, 0.7]);
+        assert_eq!(seen, [0, 0, 1, 1]);
+        assert!(pushes[2] == 0.0 && (pushes[3] + 20.0 * 0.3).abs() < 1e-12);
+        // breaks and sticks again
+        let again = link(
+            &[("free", "CHK, 0; INF, D, 0.5 -> held"), ("held", "L0=D; CHK, 20; SUP, L, 0.2 -> free")],
+            Values::new(),
+        )
+        .unwrap();
+        assert_eq!(states(&again, &[1.0, 0.4, 0.5, 0.7, 0.6, 0.3]), [0, 1, 1, 0, 0, 1]);
+        // a plectrum lets go, and takes hold when the string has swung through
+        let plectrum = link(
+            &[("held", "CHK, 30; SUP, L, 0.1 -> gone"), ("gone", "CHK, 0; CHS, L -> held")],
+            stiff(30.0),
+        )
+        .unwrap();
+        assert_eq!(states(&plectrum, &[1.0, 1.05, 1.2, 1.1, 0.9, 0.95]), [0, 0, 1, 1, 0, 0]);
+        // plasticity by steps
+        let steps =
+            link(&[("firm", "SUP, L, 0.1 -> slip"), ("slip", "L0=D; ANY -> firm")], stiff(10.0)).unwrap();
+        assert_eq!(states(&steps, &[1.0, 1.2, 1.25, 1.4, 1.4]), [0, 1, 0, 1, 0]);
+        // a grip on command
+        let grip = link(
+            &[("open", "CHK, 0; CDX -> shut"), ("shut", "L0=D; CHK, 40")],
+            Values::new().with("external", Value::Text("if(t > 1.5e-3, 1, 0)")),
+        )
+        .unwrap();
+        assert_eq!(states(&grip, &[1.0, 1.0, 1.0, 1.1]), [0, 0, 1, 1]);
+        // a damper that works one way
+        let one_way = link(
+            &[("brakes", "DIM, D -> free"), ("free", "VN; AUG, D -> brakes")],
+            Values::new().with("damping", Value::Number(2.0)),
+        )
+        .unwrap();
+        let (seen, pushes) = course(&one_way, &[1.0, 1.1, 1.0, 0.9, 1.0]);
+        assert_eq!(seen, [0, 0, 1, 1, 0]);
+        assert!(pushes[1] < 0.0 && pushes[2..4] == [0.0, 0.0] && pushes[4] < 0.0);
+    }
+
+    /// Of several conditions that hold, the last one written wins; velocities are given in m/s.
+    #[test]
+    fn last_condition_met_wins() {
+        let both =
+            link(&[("a", "SUP, D, 1 -> b; SUP, dV, 50 m/s -> c"), ("b", ""), ("c", "")], Values::new())
+                .unwrap();
+        assert_eq!(course(&both, &[0.9, 1.2]).0, [0, 2]);
+        assert_eq!(course(&both, &[0.99, 1.02]).0, [0, 1]);
+    }
+
+    #[test]
+    fn wrong_words_are_refused() {
+        let refused = |states: &[(&str, &str)], words: &[&str]| {
+            let message = link(states, Values::new()).expect_err("refused");
+            for word in words {
+                assert!(message.contains(word), "`{word}` is not in: {message}");
+            }
+        };
+        refused(&[("a", "SUP, D, 1 -> b")], &["states.a", "leads to the state `b`", "there are a"]);
+        refused(&[("a", "ANY -> b"), ("b", ""), ("c", "ANY -> a")], &["states.c", "never entered"]);
+        refused(
+            &[("a", "INF, D, 1 -> b; ANY -> a"), ("b", "")],
+            &["to `b` that never fires", "`ANY` after it"],
+        );
+        refused(
+            &[("a", "SUP, D, 2 -> b; SUP, D, 1 -> c"), ("b", ""), ("c", "")],
+            &["to `b` that never fires"],
+        );
+        refused(&[("a", "CDX -> a")], &["no `external`", "never holds"]);
+        refused(&[("a", "SUP, X1, 1 -> a")], &["`X1`, a place"]);
+        refused(&[("a", "SUB, D, 1 -> a")], &["`SUB, D, 1`", "AUG, var"]);
+        refused(&[("a", "CHK, -1")], &["`CHK, -1`", "at least 0"]);
+        refused(&[("a", "CHK, k")], &["k"]);
+        refused(&[("a", "L0=3")], &["`L0=3`", "L0=D"]);
+        refused(&[], &["states"]);
+    }
+
+    /// In a state that waits for its ends to meet nothing happens from the bound on.
+    #[test]
+    fn idle_states_are_known() {
+        let stop = link(
+            &[
+                ("away", "CHK, 0; INF, D, 1 -> in; INF, D, 2 -> far"),
+                ("in", "CHK, 100; SUP, D, 1 -> away"),
+                ("far", ""),
+            ],
+            Values::new(),
+        );
+        // what is covered is refused
+        assert!(stop.is_err());
+        let stop = link(
+            &[("away", "CHK, 0; INF, D, 1 -> in"), ("in", "L0=D; CHK, 100; SUP, D, 1 -> away")],
+            Values::new(),
+        )
+        .unwrap();
+        let mut memory = [0.0; MEMORY];
+        stop.begin(1.5, 1.5, &mut memory);
+        assert_eq!(stop.idle_from(&memory), Some(1.0));
+        memory[STATE] = 1.0;
+        memory[STIFFNESS] = 100.0;
+        assert_eq!(stop.idle_from(&memory), None);
+    }
+}
