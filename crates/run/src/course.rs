@@ -14,7 +14,7 @@ use souple_scene::spec::sound::Sound;
 use crate::expect::Span;
 use crate::frames::Frames;
 use crate::output::{OutputError, OutputFolder};
-use crate::sound::Rendered;
+use crate::sound::{Rendered, Rounding};
 use crate::{
     Change, Control, Options, Outcome, Progress, Report, RunError, Session, Status, Stepped, Trace, Verdict,
 };
@@ -166,10 +166,15 @@ impl Course {
         let span = Span { scene_end: aims.scene_end, period, status, measured };
         // nothing is heard where nothing is written
         let sounds = aims.sounds.iter().filter(|_| folder.is_some());
-        let (sounds, said): (Vec<_>, Vec<_>) = sounds.map(|sound| Rendered::new(sound, traces)).unzip();
+        let places = session.bodies.iter().flat_map(|body| &body.mesh.points);
+        let size = places.fold(0.0, |size: f64, place| size.max(place.length()));
+        let rounding = Rounding { size, period };
+        let (sounds, said): (Vec<_>, Vec<_>) =
+            sounds.map(|sound| Rendered::new(sound, traces, rounding)).unzip();
         session.warnings.extend(said.into_iter().flatten());
         let mut report = Report {
             probes: traces.iter().map(Trace::summary).collect(),
+            sounds: sounds.iter().flatten().map(|sound| sound.summary().clone()).collect(),
             expectations: aims.expects.iter().map(|expect| Verdict::of(expect, traces, &span)).collect(),
             ..session.report(status)
         };

@@ -11,6 +11,7 @@ use crate::expect::summary;
 use crate::failure::Failure;
 use crate::machine::{binary, instruction_set};
 use crate::output::{OutputError, OutputFolder};
+use crate::sound::SoundSummary;
 use crate::trace::{Summary, write_csv};
 use crate::{Trace, Verdict};
 
@@ -66,6 +67,8 @@ pub struct Report {
     /// Bytes of forces, matrices and factors.
     pub solver_bytes: usize,
     pub probes: Vec<Summary>,
+    /// Those that were written.
+    pub sounds: Vec<SoundSummary>,
     pub hashes: Vec<(u64, String)>,
     pub expectations: Vec<Verdict>,
     /// Why the run ended early, where it failed.
@@ -137,6 +140,7 @@ impl Report {
                 "largest_newton_residual": self.solver.newton_residual,
             },
             "probes": probes,
+            "sounds": self.sounds.iter().map(SoundSummary::to_json).collect::<serde_json::Map<_, _>>(),
             "hashes": hashes,
             "expectations": self.expectations.iter().map(Verdict::to_json).collect::<Vec<_>>(),
             "error": self.failure.as_ref().map(Failure::to_json),
@@ -191,11 +195,14 @@ fn energy_to_json(energy: &EnergyReport) -> Value {
     }
     let couplings: serde_json::Map<String, Value> =
         couplings.into_iter().map(|(name, made)| (name.to_owned(), json!({"made": made}))).collect();
+    let controls: serde_json::Map<String, Value> =
+        energy.made_by_control.iter().map(|(name, made)| (name.clone(), json!({"made": made}))).collect();
     json!({
         "total": energy.total(),
         "kinetic": energy.kinetic,
         "forces": by_force,
         "couplings": couplings,
+        "controls": controls,
     })
 }
 

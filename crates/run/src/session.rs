@@ -314,6 +314,7 @@ impl Session {
             peak_bytes: peak_bytes(),
             solver_bytes: self.world.bytes(),
             probes: Vec::new(),
+            sounds: Vec::new(),
             hashes: hashes.into_iter().map(|hashed| (hashed.period, hashed.fingerprint.hash)).collect(),
             expectations: Vec::new(),
             failure: self.failure.clone(),

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use serde_json::{Value, json};
 use souple_io::{IoError, SampleFormat, write_wav};
 use souple_scene::spec::sound::{Samples, Sound};
 
@@ -27,12 +28,69 @@ pub struct Rendered<'a> {
     sound: &'a Sound,
     /// Full scale is one.
     channels: Vec<Vec<f64>>,
+    summary: SoundSummary,
+}
+
+/// What a report tells of a sound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SoundSummary {
+    pub name: String,
+    /// [1/s]
+    pub rate: u32,
+    pub channels: usize,
+    /// Of each channel.
+    pub samples: usize,
+    /// Of full scale for one SI unit of the probes.
+    pub gain: f64,
+    /// Of full scale.
+    pub loudest: f64,
+}
+
+impl SoundSummary {
+    pub fn to_json(&self) -> (String, Value) {
+        let of = json!({
+            "file": sound_name(&self.name),
+            "rate": self.rate,
+            "channels": self.channels,
+            "samples": self.samples,
+            "seconds": self.samples as f64 / f64::from(self.rate),
+            "gain": self.gain,
+            "loudest": self.loudest,
+        });
+        (self.name.clone(), of)
+    }
+}
+
+/// What probes read of a world that rests: rounding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounding {
+    /// How far from the origin things are, at most [m].
+    pub size: f64,
+    /// Of the world [s].
+    pub period: f64,
+}
+
+impl Rounding {
+    /// What may be mere rounding of a number in this unit; zero where nobody can tell.
+    fn of(&self, unit: &str) -> f64 {
+        // a few roundings of places, and what they are in a period
+        let of_places = 64.0 * f64::EPSILON * self.size;
+        match unit {
+            "m" => of_places,
+            "m/s" => of_places / self.period,
+            _ => 0.0,
+        }
+    }
 }
 
 impl Rendered<'_> {
     /// Samples of a sound, and what is to be said of them; none where a probe reads what is no number.
-    pub fn new<'a>(sound: &'a Sound, traces: &[Trace]) -> (Option<Rendered<'a>>, Option<String>) {
-        let mut channels = Vec::new();
+    pub fn new<'a>(
+        sound: &'a Sound,
+        traces: &[Trace],
+        rounding: Rounding,
+    ) -> (Option<Rendered<'a>>, Option<String>) {
+        let (mut channels, mut floor) = (Vec::new(), 0.0_f64);
         for name in &sound.probes {
             let Some(trace) = traces.iter().find(|trace| trace.name == *name) else { return (None, None) };
             if let Some(at) = trace.values.iter().position(|value| !value.is_finite()) {
@@ -42,17 +100,37 @@ impl Rendered<'_> {
                 );
                 return (None, Some(said));
             }
+            floor = floor.max(rounding.of(trace.unit));
             channels.push(low_passed(&trace.values, sound.every));
         }
         let loudest = channels.iter().flatten().fold(0.0, |most: f64, sample| most.max(sample.abs()));
         // of the smallest numbers there are it would be infinite
-        let loudest_gain = Some(LOUDEST / loudest).filter(|gain| gain.is_finite());
+        let loudest_gain = Some(LOUDEST / loudest).filter(|gain| gain.is_finite() && loudest > floor);
         let gain = sound.gain.or(loudest_gain).unwrap_or(1.0);
         for sample in channels.iter_mut().flatten() {
             *sample *= gain;
         }
-        let said = remark(sound, &channels, loudest * gain);
-        (Some(Rendered { sound, channels }), said)
+        let said = if sound.gain.is_none() && loudest > 0.0 && loudest <= floor {
+            Some(format!(
+                "sound `{}` is silent: its probes read at most {loudest:.1e}, which is what rounding makes; a `gain` makes it heard",
+                sound.name
+            ))
+        } else {
+            remark(sound, &channels, loudest * gain)
+        };
+        let summary = SoundSummary {
+            name: sound.name.clone(),
+            rate: sound.rate,
+            channels: channels.len(),
+            samples: channels.first().map_or(0, Vec::len),
+            gain,
+            loudest: loudest * gain,
+        };
+        (Some(Rendered { sound, channels, summary }), said)
+    }
+
+    pub fn summary(&self) -> &SoundSummary {
+        &self.summary
     }
 
     /// # Errors
