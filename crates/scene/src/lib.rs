@@ -12,6 +12,7 @@ mod include;
 pub mod inputs;
 mod keys;
 mod measure;
+mod modules;
 mod overrides;
 mod parameters;
 mod reader;
@@ -22,8 +23,10 @@ pub mod spec;
 mod values;
 
 pub use adjust::Adjustable;
+pub use compile::{LawInfo, NetworkInfo};
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{Measurement, ProbeInfo};
+pub use modules::MODULES;
 pub use scene::{
     BodyInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec, read_text,
 };

@@ -13,17 +13,17 @@ use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node, Table};
 
 /// Parameters within parameters, at most.
-const DEEPEST: usize = 32;
+pub(crate) const DEEPEST: usize = 32;
 /// Bytes and values that all uses of parameters put in together, at most: a few parameters that each name the one
 /// before twice would otherwise grow without bound.
 const LARGEST: usize = 1 << 20;
 
-/// Puts the parameters of a document in and takes their table out.
-pub fn substitute(document: &mut Table, log: &Log) {
+/// Puts the parameters of a document in and takes their table out, which it gives.
+pub fn substitute(document: &mut Table, log: &Log) -> Table {
     let Some(entry) = document.remove("parameters") else {
         let none = Table::default();
-        Substitution::new(&none, log).table(document, "");
-        return;
+        put_in(document, &none, "", log);
+        return none;
     };
     let Content::Table(parameters) = entry.node.content else {
         let site = Site { place: entry.node.place, path: "parameters".to_owned() };
@@ -33,9 +33,21 @@ pub fn substitute(document: &mut Table, log: &Log) {
             format!("this is {}", entry.node.content.kind()),
             "a table of named values",
         );
-        return;
+        return Table::default();
     };
-    Substitution::new(&parameters, log).table(document, "");
+    put_in(document, &parameters, "", log);
+    parameters
+}
+
+/// Puts parameters into a table that stands at `path`.
+pub fn put_in(table: &mut Table, parameters: &Table, path: &str, log: &Log) {
+    Substitution::new(parameters, log).table(table, path);
+}
+
+/// Parameters of which those in `over` take the place of others of their name.
+pub fn overlaid(parameters: &Table, over: &Table) -> Table {
+    let kept = parameters.entries.iter().filter(|entry| over.get(&entry.key).is_none());
+    Table { entries: kept.chain(&over.entries).cloned().collect() }
 }
 
 struct Substitution<'a> {
@@ -192,7 +204,7 @@ impl<'a> Substitution<'a> {
 }
 
 /// Bytes of texts and number of values in a node.
-fn size(node: &Node) -> usize {
+pub(crate) fn size(node: &Node) -> usize {
     match &node.content {
         Content::Text(text) => 1 + text.len(),
         Content::List(items) => 1 + items.iter().map(size).sum::<usize>(),

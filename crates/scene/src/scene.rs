@@ -15,7 +15,7 @@ use souple_skin::target::Moment;
 use souple_skin::{Polygons, Skin, SkinError};
 
 use crate::adjust::Adjustable;
-use crate::compile::{Placed, compile};
+use crate::compile::{NetworkInfo, Placed, compile};
 use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
@@ -28,7 +28,7 @@ use crate::spec::expect::Expect;
 use crate::spec::picture::PictureView;
 use crate::spec::sound::Sound;
 use crate::spec::world::RunSpec;
-use crate::{overrides, parameters};
+use crate::{modules, overrides, parameters};
 
 /// A model and its first state, with what is measured and expected.
 pub struct Scene {
@@ -39,6 +39,8 @@ pub struct Scene {
     pub model: Model,
     pub state: State,
     pub bodies: Vec<BodyInfo>,
+    /// What networks are made of.
+    pub networks: Vec<NetworkInfo>,
     pub skins: Vec<SkinInfo>,
     pub hands: Vec<HandInfo>,
     pub probes: Vec<ProbeInfo>,
@@ -306,7 +308,9 @@ fn specify(mut document: Table, overrides: &[String], sources: &mut Sources, log
         return None;
     }
     overrides::apply(&mut document, overrides, sources, log);
-    parameters::substitute(&mut document, log);
+    let modules = document.remove("modules");
+    let parameters = parameters::substitute(&mut document, log);
+    modules::expand(&mut document, modules, &parameters, sources, log);
     Some(Spec::read(document, 0, log))
 }
 

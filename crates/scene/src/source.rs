@@ -19,6 +19,8 @@ pub struct Source {
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     texts: Vec<Source>,
+    /// How many of them, the last, are of the catalogue and not of the scene.
+    of_catalogue: usize,
     files: RefCell<Vec<InputFile>>,
     library: Library,
 }
@@ -50,6 +52,12 @@ impl Sources {
     pub fn add(&mut self, source: Source) -> usize {
         self.texts.push(source);
         self.texts.len() - 1
+    }
+
+    /// Adds a text that every copy of this program has; after all others.
+    pub(crate) fn add_of_catalogue(&mut self, source: Source) -> usize {
+        self.of_catalogue += 1;
+        self.add(source)
     }
 
     pub fn get(&self, index: usize) -> &Source {
@@ -98,8 +106,8 @@ impl Sources {
 
     /// What was read; texts of settings stand apart.
     pub(crate) fn into_inputs(self, settings: &[String]) -> Inputs {
-        // settings were read last
-        let count = self.texts.len() - settings.len();
+        // settings were read last, but for the catalogue
+        let count = self.texts.len() - settings.len() - self.of_catalogue;
         let texts = self.texts.into_iter().take(count).filter(|source| !source.text.is_empty());
         let texts = texts.map(|Source { name, folder, text }| InputText { name, folder, text }).collect();
         Inputs { texts, files: self.files.into_inner(), settings: settings.to_vec() }

@@ -198,3 +198,25 @@ fn sounds_are_probes_at_a_rate() {
     refused("1", "probes = [\"one\"]\ngain = 0", &["gain"]);
     refused("1", "probes = [\"one\"]\nsamples = \"mp3\"", &["int16", "float32"]);
 }
+
+/// What a network is made of is told: masses, links by law, the numbers that they remember, and both spaces of parameters.
+#[test]
+fn networks_are_told() {
+    let text = format!(
+        "{TWO}[networks.n.masses.nail]\npositions = [[0, 1, 0]]\nmass = 1\nfixed = true\n\
+         [[networks.n.links]]\nlaw = {{ name = \"spring_damper\", stiffness = 100, damping = 0.5 }}\nof = [\"a\"]\nchain = true\n\
+         [[networks.n.links]]\nlaw = {{ name = \"maxwell\", stiffness = 10, viscosity = 2 }}\nof = [\"a\", \"nail\"]\nall = true\n"
+    );
+    let told = scene(&text).unwrap().networks;
+    let [network] = &told[..] else { panic!("one network") };
+    assert_eq!((network.masses, network.fixed, network.link_count(), network.memory()), (3, 1, 3, 2));
+    assert_eq!(network.lightest, Some(2.0));
+    assert!(network.category().contains("functional"));
+    let spring = &network.laws[0];
+    // K + 2 z/Te
+    assert!((spring.stiffest.unwrap() - 200.0).abs() < 1e-12);
+    let (name, unit, physical, algorithmic) = spring.parameters[1];
+    assert_eq!((name, unit, physical), ("damping", "N s/m", 0.5));
+    assert!((algorithmic - 50.0).abs() < 1e-12);
+    assert_eq!(network.laws[1].remembers, 1);
+}

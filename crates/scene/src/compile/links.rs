@@ -194,14 +194,16 @@ pub fn couple(draft: &mut Draft) {
                 // couplings must say theirs
                 stiffness: link.stiffness.unwrap_or(f64::NAN),
                 damping: link.damping,
-                driven: springs.len() * DRIVEN_LEN,
+                // behind what controls keep
+                driven: draft.state.driven.len() + springs.len() * DRIVEN_LEN,
             });
         }
     }
     draft.joints.extend(joints);
     let period = draft.spec.world.period;
     draft.warnings.extend(forecasts(&springs, period));
-    draft.state.driven = vec![0.0; springs.len() * DRIVEN_LEN];
+    let driven = draft.state.driven.len() + springs.len() * DRIVEN_LEN;
+    draft.state.driven.resize(driven, 0.0);
     for spring in springs {
         draft.systems[spring.fast_system].forces.push(spring.fast_end());
         draft.systems[spring.slow_system].forces.push(spring.slow_end());

@@ -25,6 +25,7 @@ mod start;
 pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;
 pub(crate) use frames::hold_name;
+pub use network::{LawInfo, NetworkInfo};
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -117,6 +118,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         let system = bodies::system(&draft, index, system)?;
         draft.systems.push(system);
     }
+    network::add_controls(&mut draft);
     boundary::add_loads(&mut draft);
     pins::add(&mut draft);
     skins::add(&mut draft);
@@ -147,6 +149,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     depth::warn(&mut draft);
+    let networks = network::networks(&draft);
     let Draft { bodies, systems, mut model, state, warnings, skins, hands, .. } = draft;
     model.systems = systems;
     let bodies = bodies.into_iter().map(|body| {
@@ -158,6 +161,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         description: spec.description.clone(),
         shows: spec.shows.clone(),
         bodies: bodies.collect(),
+        networks,
         skins,
         hands,
         model,

@@ -1,8 +1,12 @@
 //! Networks become points with masses, and links of one law one force each.
 
+mod controls;
 mod ends;
+mod summary;
 
+pub use controls::add as add_controls;
 pub use ends::size;
+pub use summary::{LawInfo, NetworkInfo, networks};
 
 use std::ops::Range;
 
@@ -22,11 +26,13 @@ use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::spec::Spec;
 use crate::spec::body::Body;
-use crate::spec::network::{CrowdSpec, MassGroup, Network};
+use crate::spec::network::{CrowdSpec, LinkTable, MassGroup, Network};
 use crate::spec::world::SystemSpec;
 
-/// Which masses the links of a table join, and how long they are at rest.
+/// Which masses links of one law join, and how long they are at rest.
 pub struct PlacedLinks {
+    /// The table that says their law; those of other parts that say the same are in it.
+    pub table: usize,
     /// Numbers of the network's masses.
     pub ends: Vec<[u32; 2]>,
     /// [m]
@@ -37,8 +43,7 @@ pub struct PlacedLinks {
 
 /// Masses as points, links as edges, groups of masses as groups; `None` where something was refused.
 pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Vec<PlacedLinks>)> {
-    let places =
-        network.masses.iter().flat_map(|group| (0..group.places.count()).map(|i| group.places.place(i)));
+    let places = network.masses.iter().flat_map(|group| (0..group.places.count()).map(|i| group.place(i)));
     let points: Vec<Vec3> = places.map(|place| body.placement.place(place)).collect();
     if let Some(point) = points.iter().position(|point| !point.is_finite()) {
         let message = format!("mass {point} starts at no finite place");
@@ -54,7 +59,8 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
     let links: Vec<PlacedLinks> = network
         .links
         .iter()
-        .filter_map(|table| {
+        .enumerate()
+        .filter_map(|(index, table)| {
             let ends = ends::of_table(table, network, &points, room, draft.log)?;
             room -= ends.len();
             let lengths_at = |points: &[Vec3]| -> Vec<f64> {
@@ -66,22 +72,48 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
                 // along an axis lengths have a sign
                 rest_lengths.iter_mut().for_each(|rest| *rest = length.copysign(*rest));
             }
-            Some(PlacedLinks { rest_lengths, lengths, ends })
+            Some(PlacedLinks { table: index, rest_lengths, lengths, ends })
         })
         .collect();
     if links.len() < network.links.len() {
         return None;
     }
     let warnings = coincident(body, network, &links, &points, draft);
+    let links = together(network, links);
     let nodes = links.iter().flat_map(|links| links.ends.iter().flatten().copied()).collect();
     let mut mesh = Mesh::new(points, ElementKind::Edge2, nodes);
     mesh.blocks.retain(|block: &CellBlock| !block.is_empty());
-    for name in network.masses.iter().map(|group| &group.name) {
+    let presented = network.presented.iter().map(|(name, _)| name);
+    for name in network.masses.iter().map(|group| &group.name).chain(presented) {
         let points = network.numbers_of(name).into_iter().flatten().collect();
         mesh.groups.insert(name.clone(), Group { points, ..Group::default() });
     }
     let point_numbers = (0..mesh.points.len() as u32).collect();
     Some((Shape { mesh, point_numbers, warnings }, links))
+}
+
+/// Puts links of one law that are of parts together: a module placed a thousand times is one force.
+fn together(network: &Network, links: Vec<PlacedLinks>) -> Vec<PlacedLinks> {
+    let is_same = |a: &LinkTable, b: &LinkTable| {
+        let law = a.law.as_ref().zip(b.law.as_ref());
+        let is_same_law = law.is_some_and(|(a, b)| a.entry.name == b.entry.name && a.values == b.values);
+        // what a control may drive stays by itself
+        let are_driven = !a.name.is_empty() || !b.name.is_empty();
+        a.is_of_part && b.is_of_part && !are_driven && a.span == b.span && is_same_law
+    };
+    let mut all: Vec<PlacedLinks> = Vec::new();
+    for more in links {
+        let table = &network.links[more.table];
+        match all.iter_mut().find(|known| is_same(&network.links[known.table], table)) {
+            Some(known) => {
+                known.ends.extend(more.ends);
+                known.rest_lengths.extend(more.rest_lengths);
+                known.lengths.extend(more.lengths);
+            }
+            None => all.push(more),
+        }
+    }
+    all
 }
 
 /// Links that have no direction at the start: only another force can part their ends.
@@ -137,10 +169,12 @@ pub fn add_forces(
 ) {
     let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
     let first = body.rows.start as u32;
-    for (index, (table, links)) in network.links.iter().zip(&body.links).enumerate() {
+    for (index, links) in body.links.iter().enumerate() {
+        let table = &network.links[links.table];
         let Some(law) = law(table.law.as_ref(), timestep, draft) else { continue };
         let ends: Vec<[u32; 2]> = links.ends.iter().map(|ends| ends.map(|end| first + end)).collect();
-        forces.push(Box::new(Links::new(LinkDescription {
+        let wiring = controls::wiring(draft, body, network, &table.name, law.as_ref());
+        let links = Links::new(LinkDescription {
             name: format!("{}.links[{index}]", body.spec.name),
             law,
             ends: &ends,
@@ -149,7 +183,8 @@ pub fn add_forces(
             lengths: &links.lengths,
             timestep,
             account: if network.keeps_account { Account::Heat } else { Account::None },
-        })));
+        });
+        forces.push(Box::new(links.wired(wiring)));
     }
     for (index, crowd) in network.crowds.iter().enumerate() {
         let name = format!("{}.crowds[{index}]", body.spec.name);
@@ -227,8 +262,14 @@ pub fn radii(body: &Placed, spec: &Spec) -> Vec<f64> {
         let chosen = crowd.law.as_ref()?;
         (chosen.entry.build)(&Making { values: &chosen.values, timestep }).ok()?.rest_distance()
     };
-    let is_in =
-        |crowd: &CrowdSpec, group: &str| crowd.of.is_empty() || crowd.of.iter().any(|name| name == group);
+    let holds = |name: &String, group: &Range<u32>| {
+        let numbers = network.numbers_of(name).unwrap_or(0..0);
+        numbers.start <= group.start && group.end <= numbers.end
+    };
+    let is_in = |crowd: &CrowdSpec, group: &str| {
+        let group = network.numbers_of(group).unwrap_or(0..0);
+        crowd.of.is_empty() || crowd.of.iter().any(|name| holds(name, &group))
+    };
     // those of one group among themselves tell more than those with another
     let radius = |group: &MassGroup| {
         let of = |crowd: &&CrowdSpec| is_in(crowd, &group.name);

@@ -221,6 +221,15 @@ impl Placement {
         souple_math::exponential(self.rotation) * (point - self.centre) + self.centre + self.translation
     }
 
+    /// Where a direction goes.
+    pub fn turn(&self, direction: Vec3) -> Vec3 {
+        if self.rotation == Vec3::ZERO {
+            direction
+        } else {
+            souple_math::exponential(self.rotation) * direction
+        }
+    }
+
     pub(crate) fn read(reader: &Reader) -> Self {
         let written = reader.written(&["translate", "rotate"]);
         let site = written.first().map_or_else(|| reader.site(), |key| reader.site_of(key));

@@ -4,6 +4,7 @@ pub mod adapt;
 pub mod body;
 pub mod boundary;
 pub mod contact;
+pub mod control;
 pub mod expect;
 pub mod frames;
 pub mod hand;
@@ -11,6 +12,7 @@ pub mod interaction;
 pub mod levels;
 pub mod mesh;
 pub mod network;
+pub mod parts;
 pub mod picture;
 pub mod probe;
 pub mod quantity;
@@ -19,6 +21,7 @@ mod rules;
 pub mod skin;
 pub mod sound;
 pub mod start;
+pub mod units;
 pub mod world;
 
 use souple_formal::Formula;
@@ -38,6 +41,7 @@ use expect::{EXPECT, Expect};
 use hand::{HAND, HandSpec};
 use interaction::{ATTACHMENT, COUPLING, Link};
 use network::{NETWORK, Network};
+use parts::MODULE;
 use picture::{PICTURE, PictureSpec, PictureView};
 use probe::{PROBE, Probe};
 use skin::{SKIN, SkinSpec};
@@ -62,6 +66,11 @@ pub(crate) static SCENE: Keys = Keys::new(
         Key::new("systems", Shape::Named(&SYSTEM), "how bodies step; `main` where left out"),
         Key::new("bodies", Shape::Named(&BODY), "soft solids"),
         Key::new("networks", Shape::Named(&NETWORK), "masses and what acts between them"),
+        Key::new(
+            "modules",
+            Shape::Named(&MODULE),
+            "parts of networks that are written once and placed often",
+        ),
         Key::new("shapes", Shape::Named(&SHAPE), "things of fixed shape that bodies touch"),
         Key::new("contacts", Shape::Tables(&CONTACT), "who touches whom"),
         Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
@@ -160,6 +169,7 @@ impl Spec {
             expects,
         };
         spec.choose_systems();
+        spec.make_physical();
         spec.check_names(log);
         spec.check_file_names(log);
         spec.check_times(log);

@@ -9,9 +9,12 @@ use souple_table::{Range, Value};
 
 use super::body::{Body, Damping, MassKind, Placement, ROTATION, TangentKind};
 use super::boundary::{LOAD, Load, PIN, Pin, SPRING, Spring};
+use super::control::{CONTROL, ControlSpec};
+use super::parts::{Assembly, CONNECTIONS_KEY, PART, PARTS_SUMMARY, PORTS_KEY, Standing, numbers_of};
 use super::region::{Region, RegionKind};
 use super::skin::BODY_SKIN;
 use super::start::{START, StartSpec};
+use super::units::Space;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -20,7 +23,7 @@ const LINK: EntryShape =
     EntryShape { tag: "name", kind: "link", outlines: || outlines(&LINKS), instead: &[] };
 
 /// Masses of a network, at most.
-const MASSES_MAX: f64 = 1e8;
+pub(super) const MASSES_MAX: f64 = 1e8;
 
 /// Places of a lattice that a condition is asked about, at most: those where it holds are kept one by one.
 const ASKED_MAX: f64 = 1e7;
@@ -32,6 +35,18 @@ static LINE: Keys = Keys::new(
         Key::vector("from", "m", "the first").required(),
         Key::vector("to", "m", "the last").required(),
         Key::integer("count", Range::closed(2.0, MASSES_MAX), "how many, both ends included").required(),
+    ],
+);
+
+static RING: Keys = Keys::new(
+    "mass_ring",
+    "masses at equal distances on a circle, the first where the axis turns x, or y where it is x, to",
+    &[
+        Key::vector("centre", "m", "of the circle").or(Value::Vector([0.0; 3])),
+        Key::number("radius", "m", Range::POSITIVE, "of the circle").required(),
+        Key::vector("axis", "", "the circle is counted counterclockwise seen against it")
+            .or(Value::Vector([0.0, 0.0, 1.0])),
+        Key::integer("count", Range::closed(1.0, MASSES_MAX), "how many").required(),
     ],
 );
 
@@ -50,12 +65,13 @@ static LATTICE: Keys = Keys::new(
     ],
 );
 
-static MASSES: Keys = Keys::new(
+pub(super) static MASSES: Keys = Keys::new(
     "mass_group",
     "masses of one kind, a group of the network's points",
     &[
         Key::new("positions", Shape::Vectors, "where they start, one by one").in_unit("m"),
         Key::new("line", Shape::Table(&LINE), "they start on a line"),
+        Key::new("ring", Shape::Table(&RING), "they start on a circle"),
         Key::new("lattice", Shape::Table(&LATTICE), "they start on a lattice"),
         Key::number("mass", "kg", Range::POSITIVE, "of each").required(),
         Key::new("fixed", Shape::Boolean, "they stay where they are, whatever pulls")
@@ -66,18 +82,21 @@ static MASSES: Keys = Keys::new(
     ],
 );
 
-static LINK_TABLE: Keys = Keys::new(
+pub(super) static LINK_TABLE: Keys = Keys::new(
     "links",
-    "links of one law: all that `chain`, `all`, `reach`, or `from` and `to` say, which is one of them",
+    "links of one law: all that `chain`, `loop`, `all`, `paired`, `reach`, or `from` and `to` say, which is one of them",
     &[
         Key::new("law", Shape::Entry(LINK), "what they do").required(),
+        Key::new("name", Shape::Text, "what controls call them"),
         Key::new(
             "of",
             Shape::Texts,
-            "the group, or the two, whose masses they join; all masses where left out",
+            "the group, or the two, whose masses they join; all masses where left out; a part or a port stands for its masses",
         ),
         Key::new("chain", Shape::Boolean, "each mass of a group with the next"),
+        Key::new("loop", Shape::Boolean, "the same, and the last with the first"),
         Key::new("all", Shape::Boolean, "every pair"),
+        Key::new("paired", Shape::Boolean, "each mass of a group with that of its number in the other"),
         Key::number("reach", "m", Range::POSITIVE, "every pair that is at most so far apart at rest"),
         Key::new("from", Shape::Integers, "first ends: numbers within the first group"),
         Key::new("to", Shape::Integers, "second ends: numbers within the last group"),
@@ -108,7 +127,7 @@ static FRICTION: Keys = Keys::new(
     ],
 );
 
-static CROWD: Keys = Keys::new(
+pub(super) static CROWD: Keys = Keys::new(
     "crowd",
     "a law between all masses that are near each other at any time",
     &[
@@ -116,7 +135,7 @@ static CROWD: Keys = Keys::new(
         Key::new(
             "of",
             Shape::Texts,
-            "the group, or the two, that act on each other; all masses where left out",
+            "the group, or the two, that act on each other; all masses where left out; a part or a port stands for its masses",
         ),
         Key::number("range", "m", Range::POSITIVE, "no force beyond; that of the law where left out"),
         Key::new("friction", Shape::Table(&FRICTION), "what holds them across"),
@@ -127,10 +146,19 @@ pub(crate) static NETWORK: Keys = Keys::new(
     "network",
     "masses and what acts between them; names what bodies name, for pins, probes and contacts",
     &[
-        Key::new("masses", Shape::Named(&MASSES), "groups of masses, in the order of their numbers")
-            .required(),
+        Key::new("masses", Shape::Named(&MASSES), "groups of masses, in the order of their numbers"),
         Key::new("links", Shape::Tables(&LINK_TABLE), "what acts between masses"),
         Key::new("crowds", Shape::Tables(&CROWD), "what acts between masses wherever they come near"),
+        Key::new("modules", Shape::Named(&PART), PARTS_SUMMARY),
+        PORTS_KEY,
+        CONNECTIONS_KEY,
+        Key::new("controls", Shape::Named(&CONTROL), "what drives links and their parameters"),
+        Key::new(
+            "space",
+            Shape::Choice(&["physical", "algorithmic"]),
+            "that its masses, drags, group velocities and laws are written in: `algorithmic` counts time in steps",
+        )
+        .or(Value::Text("physical")),
         Key::new("account", Shape::Boolean, "links without memory keep account of the heat they give off")
             .or(Value::Boolean(false)),
         Key::new("rotate", Shape::Table(&ROTATION), "turns the start, before it is translated"),
@@ -156,6 +184,11 @@ pub struct Network {
     pub masses: Vec<MassGroup>,
     pub links: Vec<LinkTable>,
     pub crowds: Vec<CrowdSpec>,
+    /// Numbers of the masses of parts and ports.
+    pub presented: Vec<(String, std::ops::Range<u32>)>,
+    pub controls: Vec<ControlSpec>,
+    /// Of its masses and laws as they are written; they are physical from then on.
+    pub space: Space,
     /// Links without memory keep account of the heat they give off.
     pub keeps_account: bool,
 }
@@ -164,6 +197,8 @@ pub struct Network {
 pub struct MassGroup {
     pub name: String,
     pub places: Places,
+    /// What moves them of the parts they are in, innermost first.
+    pub placements: Vec<Placement>,
     /// Of each [kg].
     pub mass: f64,
     pub is_fixed: bool,
@@ -181,12 +216,16 @@ pub enum Places {
     Listed(Vec<Vec3>),
     /// At equal distances on a line, both ends included.
     Line { from: Vec3, to: Vec3, count: u64 },
+    /// At equal distances on a circle.
+    Ring { centre: Vec3, first: Vec3, axis: Vec3, count: u64 },
     /// x counts fastest, then y.
     Lattice { origin: Vec3, spacing: f64, counts: [u64; 3] },
 }
 
 /// Links of one law.
 pub struct LinkTable {
+    /// What controls call them, with the part that they are of; empty where nothing drives them.
+    pub name: String,
     pub law: Option<Chosen<BuildLink>>,
     /// Names of groups: none, one or two.
     pub of: Vec<String>,
@@ -194,6 +233,8 @@ pub struct LinkTable {
     /// [m]
     pub rest_length: Option<f64>,
     pub span: Span,
+    /// It is of a module: links of its law, wherever the module is placed, are computed together.
+    pub is_of_part: bool,
     pub site: Site,
 }
 
@@ -225,7 +266,9 @@ pub struct FrictionSpec {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Join {
     Chain,
+    Loop,
     All,
+    Paired,
     /// At most so far apart at the start [m].
     Reach(f64),
     /// First and second ends.
@@ -235,17 +278,20 @@ pub enum Join {
 impl Network {
     /// A network as a body: its masses are points, its links are cells.
     pub(crate) fn body(name: String, reader: &Reader) -> Body {
+        let Assembly { masses, links, crowds, presented } = Assembly::read(reader);
         let network = Self {
-            masses: reader
-                .named("masses")
+            masses,
+            links,
+            crowds,
+            presented,
+            controls: reader
+                .named("controls")
                 .into_iter()
-                .map(|(name, group)| MassGroup::read(name, &group))
+                .map(|(name, control)| ControlSpec::read(name, &control))
                 .collect(),
-            links: reader.tables("links").iter().map(LinkTable::read).collect(),
-            crowds: reader.tables("crowds").iter().map(CrowdSpec::read).collect(),
+            space: if reader.choice("space") == "algorithmic" { Space::Algorithmic } else { Space::Physical },
             keeps_account: reader.boolean("account"),
         };
-        network.check_groups(reader);
         network.check_count(reader);
         let held = network.masses.iter().filter(|group| group.is_fixed).map(MassGroup::pin);
         let pins = held.chain(reader.tables("pins").iter().map(Pin::read)).collect();
@@ -289,11 +335,9 @@ impl Network {
         self.masses.iter().flat_map(move |group| repeat_n(of(group), group.places.count() as usize))
     }
 
-    /// The numbers of a group's masses.
+    /// The numbers of the masses of a group, a part or a port.
     pub fn numbers_of(&self, name: &str) -> Option<std::ops::Range<u32>> {
-        let index = self.masses.iter().position(|group| group.name == name)?;
-        let first = self.masses[..index].iter().map(|group| group.places.count() as u32).sum();
-        Some(first..first + self.masses[index].places.count() as u32)
+        numbers_of(&self.masses, &self.presented, name)
     }
 
     fn check_count(&self, reader: &Reader) {
@@ -302,19 +346,6 @@ impl Network {
             let message = format!("the network has {count} masses");
             let expected = format!("at most {MASSES_MAX:.0e} masses in all groups together");
             reader.log().add(Code::TooLarge, &reader.site_of("masses"), message, expected);
-        }
-    }
-
-    fn check_groups(&self, reader: &Reader) {
-        let known: Vec<&str> = self.masses.iter().map(|group| group.name.as_str()).collect();
-        let links = self.links.iter().map(|links| (&links.of, &links.site));
-        let crowds = self.crowds.iter().map(|crowd| (&crowd.of, &crowd.site));
-        for (of, site) in links.chain(crowds) {
-            for name in of.iter().filter(|name| !known.contains(&name.as_str())) {
-                let hint = crate::keys::did_you_mean(name, known.iter().copied());
-                let message = format!("there is no group of masses `{name}`{hint}");
-                reader.log().add(Code::UnknownName, site, message, format!("one of {}", known.join(", ")));
-            }
         }
     }
 }
@@ -333,21 +364,42 @@ impl MassGroup {
         }
     }
 
-    fn read(name: String, reader: &Reader) -> Self {
-        let written = reader.written(&["positions", "line", "lattice"]);
+    /// Where one of them starts [m].
+    pub fn place(&self, index: u64) -> Vec3 {
+        self.placements.iter().fold(self.places.place(index), |place, placement| placement.place(place))
+    }
+
+    /// The same masses in parts that stand so, innermost first.
+    pub(super) fn standing(mut self, standing: &[Standing]) -> Self {
+        self.placements = standing.iter().map(|standing| standing.placement.clone()).collect();
+        let moved =
+            |velocity: Vec3, standing: &Standing| standing.placement.turn(velocity) + standing.velocity;
+        self.velocity = standing.iter().fold(self.velocity, moved);
+        self
+    }
+
+    pub(super) fn read(name: String, reader: &Reader) -> Self {
+        let written = reader.written(&["positions", "line", "ring", "lattice"]);
         let places = match written[..] {
             ["positions"] => Some(Places::Listed(reader.vectors("positions"))),
             ["line"] => reader.table("line").map(|line| Places::on_line(&line)),
+            ["ring"] => reader.table("ring").and_then(|ring| Places::on_ring(&ring)),
             ["lattice"] => reader.table("lattice").and_then(|lattice| Places::on_lattice(&lattice)),
             _ => {
                 let message = format!("masses start in one way, these say {}", written.len());
-                reader.log().add(Code::WrongType, &reader.site(), message, "one of positions, line, lattice");
+                reader.log().add(
+                    Code::WrongType,
+                    &reader.site(),
+                    message,
+                    "one of positions, line, ring, lattice",
+                );
                 None
             }
         };
         Self {
             name,
             places: places.unwrap_or(Places::Listed(Vec::new())),
+            placements: Vec::new(),
             mass: reader.number("mass"),
             is_fixed: reader.boolean("fixed"),
             velocity: reader.vector("velocity"),
@@ -361,6 +413,19 @@ impl Places {
     fn on_line(reader: &Reader) -> Self {
         let count = reader.maybe_integer("count").unwrap_or(2) as u64;
         Self::Line { from: reader.vector("from"), to: reader.vector("to"), count }
+    }
+
+    fn on_ring(reader: &Reader) -> Option<Self> {
+        let Some(axis) = reader.vector("axis").try_normalised() else {
+            let message = "an axis of no length";
+            reader.log().add(Code::Conflict, &reader.site_of("axis"), message, "a vector that is not zero");
+            return None;
+        };
+        // across the axis, towards x where it is not x itself
+        let towards = if axis.x.abs() < 0.999 { Vec3::X } else { Vec3::Y };
+        let first = (towards - axis * towards.dot(axis)).try_normalised()? * reader.number("radius");
+        let count = reader.maybe_integer("count").unwrap_or(1) as u64;
+        Some(Self::Ring { centre: reader.vector("centre"), first, axis, count })
     }
 
     fn on_lattice(reader: &Reader) -> Option<Self> {
@@ -394,7 +459,7 @@ impl Places {
     pub fn count(&self) -> u64 {
         match self {
             Self::Listed(places) => places.len() as u64,
-            Self::Line { count, .. } => *count,
+            Self::Line { count, .. } | Self::Ring { count, .. } => *count,
             Self::Lattice { counts: [x, y, z], .. } => x * y * z,
         }
     }
@@ -404,6 +469,10 @@ impl Places {
         match self {
             Self::Listed(places) => places[index as usize],
             Self::Line { from, to, count } => *from + (*to - *from) * (index as f64 / (count - 1) as f64),
+            Self::Ring { centre, first, axis, count } => {
+                let angle = std::f64::consts::TAU * index as f64 / *count as f64;
+                *centre + *first * angle.cos() + axis.cross(*first) * angle.sin()
+            }
             Self::Lattice { origin, spacing, counts: [x, y, _] } => {
                 let steps = [index % x, index / x % y, index / (x * y)];
                 *origin + Vec3::from_array(steps.map(|step| step as f64)) * *spacing
@@ -413,7 +482,7 @@ impl Places {
 }
 
 impl LinkTable {
-    fn read(reader: &Reader) -> Self {
+    pub(super) fn read(reader: &Reader) -> Self {
         let of = reader.texts("of");
         let refuse = |key: &str, message: &str, expected: &str| {
             reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
@@ -421,17 +490,23 @@ impl LinkTable {
         if of.len() > 2 {
             refuse("of", "a link has two ends", "one group or two");
         }
-        let written = reader.written(&["chain", "all", "reach", "from", "to"]);
+        let written = reader.written(&["chain", "loop", "all", "paired", "reach", "from", "to"]);
         let join = match written[..] {
-            ["chain"] if of.len() == 2 => {
-                refuse("chain", "a chain is of one group", "one group in `of`");
+            [key @ ("chain" | "loop")] if of.len() == 2 => {
+                refuse(key, "a chain is of one group", "one group in `of`");
                 None
             }
-            [key @ ("chain" | "all")] if !reader.boolean(key) => {
+            ["paired"] if of.len() != 2 => {
+                refuse("paired", "pairs are of two groups", "two groups in `of`");
+                None
+            }
+            [key @ ("chain" | "loop" | "all" | "paired")] if !reader.boolean(key) => {
                 refuse(key, &format!("`{key} = false` joins nothing"), "true, or another way to join");
                 None
             }
             ["chain"] => Some(Join::Chain),
+            ["loop"] => Some(Join::Loop),
+            ["paired"] => Some(Join::Paired),
             ["all"] => Some(Join::All),
             ["reach"] => reader.maybe_number("reach").map(Join::Reach),
             ["from", "to"] => {
@@ -447,7 +522,7 @@ impl LinkTable {
             }
             _ => {
                 let message = format!("links join masses in one way, these say {}", written.join(" and "));
-                refuse("law", &message, "one of chain, all, reach, or from and to");
+                refuse("law", &message, "one of chain, loop, all, paired, reach, or from and to");
                 None
             }
         };
@@ -456,18 +531,20 @@ impl LinkTable {
             refuse("along", "an axis of no length", "a vector that is not zero, such as [0, 0, 1]");
         }
         Self {
+            name: reader.text("name"),
             law: reader.entry("law", &LINKS),
             of,
             join,
             rest_length: reader.maybe_number("rest_length"),
             span: axis.flatten().map_or(Span::Distance, Span::Along),
+            is_of_part: false,
             site: reader.site(),
         }
     }
 }
 
 impl CrowdSpec {
-    fn read(reader: &Reader) -> Self {
+    pub(super) fn read(reader: &Reader) -> Self {
         let of = reader.texts("of");
         if of.len() > 2 {
             reader.log().add(

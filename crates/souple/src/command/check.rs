@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use serde_json::{Map, Value, json};
 use souple_engine::{World, WorldError};
-use souple_scene::SkinInfo;
+use souple_math::Vec3;
+use souple_scene::{LawInfo, NetworkInfo, SkinInfo};
 use souple_skin::Cost;
 
 use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path};
@@ -27,6 +28,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
     let (title, bodies, probes) = (scene.title.clone(), scene.bodies.clone(), scene.probes);
     let known_skins = scene.skins.clone();
+    let networks = scene.networks.clone();
     let mut warnings = scene.warnings.clone();
     let duration = scene.run.duration;
     let period = scene.model.period;
@@ -48,6 +50,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         });
         systems.push(forecast);
     }
+    let network_costs: Vec<Vec<f64>> = networks.iter().map(|network| costs_of(network, &mut world)).collect();
     warnings.extend(souple_run::forecast_warnings(&mut world));
     let counts = souple_run::counts(&world, &bodies);
     let periods = souple_run::periods_in(duration, period)?;
@@ -87,6 +90,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "errors": errors,
         "counts": counts,
         "systems": systems,
+        "networks": networks.iter().zip(&network_costs).map(|(n, costs)| (n.name.clone(), network_to_json(n, costs))).collect::<Map<_, _>>(),
         "skins": costs.iter().map(|(name, cost)| ((*name).to_owned(), skin_to_json(cost))).collect::<Map<_, _>>(),
         "probes": probes.len(),
         "steps": steps,
@@ -129,6 +133,9 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
             system["stepper"].as_str().unwrap_or_default(),
             system["timestep_seconds"].as_f64().unwrap_or_default(),
         ));
+    }
+    for (network, costs) in networks.iter().zip(&network_costs) {
+        print_network(network, costs);
     }
     for (name, cost) in &costs {
         print_line(format_args!(
@@ -226,4 +233,87 @@ fn first_step_refused(arguments: &Arguments, error: &WorldError) -> Value {
 
 fn end_of(errors: &[Value]) -> End {
     if errors.is_empty() { End::Done } else { End::Failed }
+}
+
+/// Seconds that the forces of a network take in a step, law by law: the fastest of a few evaluations as it stands.
+fn costs_of(network: &NetworkInfo, world: &mut World) -> Vec<f64> {
+    const TRIALS: usize = 5;
+    world.with_system(network.system, |system, state, around, ws| {
+        let mut forces = vec![Vec3::ZERO; ws.rows.positions.len()];
+        let cost = |law: &LawInfo| {
+            let Some(index) = system.forces.iter().position(|force| force.name() == law.force) else {
+                return 0.0;
+            };
+            let at = system.view(index, &ws.rows, state, around);
+            let mut scratch = system.forces[index].new_scratch();
+            let mut trial = || {
+                let clock = Instant::now();
+                system.forces[index].add_force(&at, &mut scratch, &mut forces);
+                clock.elapsed().as_secs_f64()
+            };
+            (0..TRIALS).map(|_| trial()).fold(f64::INFINITY, f64::min)
+        };
+        network.laws.iter().map(cost).collect()
+    })
+}
+
+fn network_to_json(network: &NetworkInfo, costs: &[f64]) -> Value {
+    let laws = network.laws.iter().zip(costs).map(|(law, seconds)| {
+        let parameters = law.parameters.iter().map(|(name, unit, physical, algorithmic)| {
+            ((*name).to_owned(), json!({ "unit": unit, "physical": physical, "algorithmic": algorithmic }))
+        });
+        json!({
+            "force": law.force,
+            "law": law.law,
+            "links": law.links,
+            "state_dimension": law.remembers,
+            "stiffest": law.stiffest,
+            "parameters": parameters.collect::<Map<_, _>>(),
+            "seconds_per_step": seconds,
+        })
+    });
+    json!({
+        "masses": network.masses,
+        "fixed": network.fixed,
+        "links": network.link_count(),
+        "numbers_remembered": network.memory(),
+        "category": network.category(),
+        "timestep_seconds": network.timestep,
+        "lightest": network.lightest,
+        "lightest_algorithmic": network.lightest.map(|mass| mass / network.timestep.powi(2)),
+        "laws": laws.collect::<Vec<_>>(),
+    })
+}
+
+fn print_network(network: &NetworkInfo, costs: &[f64]) {
+    print_line(format_args!(
+        "  network {}: {} ({} fixed), {} that remember {}; {}",
+        network.name,
+        souple_table::in_number(network.masses, "mass", "masses"),
+        network.fixed,
+        souple_table::counted(network.link_count() as u64, "link"),
+        souple_table::counted(network.memory() as u64, "number"),
+        network.category(),
+    ));
+    if let Some(mass) = network.lightest {
+        let algorithmic = mass / network.timestep.powi(2);
+        print_line(format_args!("    lightest mass m = {mass:.4e} kg, M = m/Te² = {algorithmic:.4e} N/m"));
+    }
+    for (law, seconds) in network.laws.iter().zip(costs) {
+        let links = if law.links > 0 { format!("{} links, ", law.links) } else { String::new() };
+        let stiffest = law.stiffest.map(|h| format!("takes {h:.4e} N/m of 4M, ")).unwrap_or_default();
+        print_line(format_args!(
+            "    {} ({}): {links}{stiffest}{} in the state of each, {:.2} µs a step",
+            law.force,
+            law.law,
+            souple_table::counted(law.remembers as u64, "number"),
+            1e6 * seconds,
+        ));
+        let is_other = |(_, _, physical, algorithmic): &&(_, _, f64, f64)| physical != algorithmic;
+        for (name, unit, physical, algorithmic) in law.parameters.iter().filter(is_other) {
+            print_line(format_args!(
+                "      {name} = {physical:.4e} {unit}, {algorithmic:.4e} with a step as the unit of time"
+            ));
+        }
+    }
 }

@@ -12,7 +12,7 @@ use super::{End, Refusal, did_you_mean, print_json, print_line};
 
 #[derive(clap::Args)]
 pub struct ListArguments {
-    /// materials, laws, elements, sections, links, placements, weights, points, steppers, solvers, preconditioners,
+    /// materials, laws, elements, sections, links, modules, placements, weights, points, steppers, solvers, preconditioners,
     /// generators, bodies, shapes, skin_parts, skin_terms, skin_warps, devices, formats, quantities, functions, units, colour_maps, colour_scales
     ///
     /// The kinds themselves if left out.
@@ -114,6 +114,7 @@ fn tables() -> Vec<(&'static str, Vec<Page>)> {
         ("sections", pages_of(&souple_models::solids::SECTIONS)),
         ("formulations", pages_of(&souple_models::solids::FORMULATIONS)),
         ("links", pages_of(&souple_models::network::LINKS)),
+        ("modules", pages_of(&souple_scene::MODULES)),
         ("placements", pages_of(&souple_models::frames::PLACEMENTS)),
         ("weights", pages_of(&souple_models::frames::WEIGHTS)),
         ("points", pages_of(&souple_models::frames::POINTS)),
@@ -226,6 +227,9 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         if !page.source.is_empty() {
             print_line(format_args!("  source: {}", page.source));
         }
+        if let Some(state) = state_of(page) {
+            print_line(format_args!("  state of each link: {state}"));
+        }
         if let Some(rules) = rules_of(page) {
             print_line(format_args!("  rules of quadrature: {rules}"));
         }
@@ -239,6 +243,16 @@ pub fn describe(arguments: &DescribeArguments) -> Result<End, Refusal> {
         }
     }
     Ok(End::Done)
+}
+
+/// How many numbers a link of a law remembers.
+fn state_of(page: &Page) -> Option<String> {
+    let entry = souple_models::network::LINKS.find(&page.name).ok().filter(|_| page.kind == "link")?;
+    Some(match souple_models::network::state_dimension(entry) {
+        Some(0) => "none, it has no memory".to_owned(),
+        Some(numbers) => souple_table::counted(numbers as u64, "number"),
+        None => "as many numbers as what is written needs".to_owned(),
+    })
 }
 
 /// The rules of quadrature of an element, with the degree of the polynomials that each integrates exactly.
@@ -290,6 +304,9 @@ fn to_json(page: &Page) -> Value {
     });
     if let Some(text) = &page.text {
         document["text"] = json!(text);
+    }
+    if let Some(entry) = souple_models::network::LINKS.find(&page.name).ok().filter(|_| page.kind == "link") {
+        document["state_dimension"] = json!(souple_models::network::state_dimension(entry));
     }
     document
 }

@@ -4,6 +4,7 @@ mod adaptive;
 mod bar;
 mod cantilever_orders;
 mod cantilevers;
+mod conditional;
 mod contact;
 mod derivations;
 mod elements;
@@ -67,6 +68,7 @@ pub const TABLES: &[&[Case]] = &[
     network::CASES,
     rheometer::CASES,
     rheology::CASES,
+    conditional::CASES,
     frames::CASES,
     levels::CASES,
     hands::CASES,

@@ -418,4 +418,38 @@ pub(super) const CASES: &[Case] = &[
         mutation: "networks.sample.links[0].law.parameters.k=1000001",
         ..PLASTIC
     },
+    Case {
+        id: "creep_kelvin_voigt",
+        capabilities: &["JIM-49", "JIM-56", "JIM-99"],
+        what: "creep: a spring beside a damper under 10 N, half a second after they are hung on it",
+        settings: &[
+            TE,
+            r#"networks.sample.links[0].law={ name = "spring_damper", stiffness = 1000, damping = 100 }"#,
+            "networks.sample.pins=[]",
+            r#"networks.sample.loads=[{ region = "lead", force = [-10, 0, 0] }]"#,
+        ],
+        reading: Reading::component("stretch", 0).after(150),
+        reference: -0.009_955_557_160_285_941,
+        tolerance: Tolerance::Relative(1e-11),
+        source: "V' = V + Te (F - k q - z V)/m, q' = q + Te V' from rest; 10 N/(1000 N/m) in the end",
+        mutation: "networks.sample.links[0].law.damping=101",
+        ..PLASTIC
+    },
+    Case {
+        id: "creep_maxwell",
+        capabilities: &["JIM-52", "JIM-56", "JIM-99"],
+        what: "flow: Maxwell's link under 10 N runs at Q/z = 0.1 m/s in the end, here after three seconds",
+        settings: &[
+            TE,
+            r#"networks.sample.links[0].law={ name = "maxwell", stiffness = 1000, viscosity = 100 }"#,
+            "networks.sample.pins=[]",
+            r#"networks.sample.loads=[{ region = "lead", force = [-10, 0, 0] }]"#,
+        ],
+        reading: Reading::component("stretch", 0).after(900),
+        reference: -0.309_333_333_835_613_07,
+        tolerance: Tolerance::Relative(1e-11),
+        source: "f' = A (D - D^r) + B f and V' = V + Te (F - f)/m from rest",
+        mutation: "networks.sample.links[0].law.viscosity=100.1",
+        ..PLASTIC
+    },
 ];

@@ -28,6 +28,8 @@ pub fn size(network: &Network) -> MeshSize {
         let (first, last) = groups(&table.of, network)?;
         Some(match table.join.as_ref()? {
             Join::Chain => first.len().saturating_sub(1) as u64,
+            Join::Loop => first.len() as u64,
+            Join::Paired => first.len().min(last.len()) as u64,
             Join::All => pair_count(&first, &last),
             Join::Reach(_) => 0,
             Join::Ends(from, _) => from.len() as u64,
@@ -51,6 +53,21 @@ pub fn of_table(
     };
     let mut ends: Vec<[u32; 2]> = match table.join.as_ref()? {
         Join::Chain => first.clone().zip(first.skip(1)).map(|(a, b)| [a, b]).collect(),
+        Join::Loop if first.len() < 3 => {
+            let message = format!("a loop of {} masses", first.len());
+            log.add(Code::Conflict, &table.site, message, "at least three masses, or a chain");
+            return None;
+        }
+        Join::Loop => {
+            let next = first.clone().cycle().skip(1);
+            first.zip(next).map(|(a, b)| [a, b]).collect()
+        }
+        Join::Paired if first.len() != last.len() || first == last => {
+            let message = format!("groups of {} and {} masses are no pairs", first.len(), last.len());
+            log.add(Code::Conflict, &table.site, message, "two groups of as many masses");
+            return None;
+        }
+        Join::Paired => first.zip(last).map(|(a, b)| [a, b]).collect(),
         Join::All => {
             let count = pair_count(&first, &last);
             if count > most as u64 {

@@ -1,0 +1,117 @@
+//! What a network is made of, for those who ask what it costs: masses, laws, memories, and its numbers in the algorithmic space.
+
+use souple_models::network::Links;
+use souple_table::Value;
+
+use super::super::Draft;
+use crate::spec::units::from_algorithmic;
+
+/// What a network is made of.
+#[derive(Clone, Debug)]
+pub struct NetworkInfo {
+    pub name: String,
+    /// Index of its system.
+    pub system: usize,
+    /// `Te` [s].
+    pub timestep: f64,
+    pub masses: usize,
+    pub fixed: usize,
+    /// Mass of the lightest that moves [kg]; none where all are fixed.
+    pub lightest: Option<f64>,
+    pub laws: Vec<LawInfo>,
+}
+
+/// Links of one law.
+#[derive(Clone, Debug)]
+pub struct LawInfo {
+    /// Name of their force.
+    pub force: String,
+    pub law: &'static str,
+    /// Links; 0 of crowds, whose pairs come and go.
+    pub links: usize,
+    /// Numbers that each remembers: the dimension of its state.
+    pub remembers: usize,
+    /// What a link takes of the bound `4M`: `K + 2Z` of a spring and damper [N/m]; none of crowds.
+    pub stiffest: Option<f64>,
+    /// Name, unit, and the number in SI units and in the algorithmic space.
+    pub parameters: Vec<(&'static str, &'static str, f64, f64)>,
+}
+
+impl NetworkInfo {
+    pub fn link_count(&self) -> usize {
+        self.laws.iter().map(|law| law.links).sum()
+    }
+
+    /// Numbers that all links remember.
+    pub fn memory(&self) -> usize {
+        self.laws.iter().map(|law| law.links * law.remembers).sum()
+    }
+
+    /// Where it stands between multitudes of points under simple laws and few points under laws that do much.
+    pub fn category(&self) -> &'static str {
+        let is_complex = self.laws.iter().any(|law| law.remembers > 0);
+        match (self.masses > 100, is_complex) {
+            (true, false) => "a multitude under simple laws",
+            (true, true) => "a multitude under laws with memory",
+            (false, false) => "few masses under simple laws",
+            (false, true) => "few masses under laws with memory: a functional model",
+        }
+    }
+}
+
+/// Of every network of a scene.
+pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
+    let networks = draft.bodies.iter().filter_map(|body| Some((body, body.spec.network.as_ref()?)));
+    networks
+        .map(|(body, network)| {
+            let system = &draft.systems[body.system];
+            let steps = draft.spec.systems[body.system].steps_per_period;
+            let timestep = draft.spec.world.period / f64::from(steps);
+            let parameters = |law: &crate::reader::Chosen<souple_models::network::BuildLink>| {
+                let of = |parameter: &souple_table::Parameter| match law.values.get(parameter.name) {
+                    Some(Value::Number(number)) => {
+                        let algorithmic = number / from_algorithmic(parameter.unit, timestep);
+                        Some((parameter.name, parameter.unit, number, algorithmic))
+                    }
+                    _ => None,
+                };
+                law.entry.parameters.iter().filter_map(of).collect::<Vec<_>>()
+            };
+            let links = body.links.iter().enumerate().filter_map(|(index, links)| {
+                let law = network.links[links.table].law.as_ref()?;
+                let force = format!("{}.links[{index}]", body.spec.name);
+                let of = system.forces.iter().find(|known| known.name() == force)?;
+                let of = of.as_any().downcast_ref::<Links>()?;
+                Some(LawInfo {
+                    law: law.entry.name,
+                    links: links.ends.len(),
+                    remembers: of.remembered_len(),
+                    stiffest: Some(of.stiffest()),
+                    parameters: parameters(law),
+                    force,
+                })
+            });
+            let crowds = network.crowds.iter().enumerate().filter_map(|(index, crowd)| {
+                let law = crowd.law.as_ref()?;
+                Some(LawInfo {
+                    force: format!("{}.crowds[{index}]", body.spec.name),
+                    law: law.entry.name,
+                    links: 0,
+                    remembers: 0,
+                    stiffest: None,
+                    parameters: parameters(law),
+                })
+            });
+            let moving = network.masses.iter().filter(|group| !group.is_fixed && group.places.count() > 0);
+            NetworkInfo {
+                name: body.spec.name.clone(),
+                system: body.system,
+                timestep,
+                masses: body.mesh.points.len(),
+                fixed: network.of_each(|group| group.is_fixed).filter(|fixed| *fixed).count(),
+                lightest: moving.map(|group| group.mass).reduce(f64::min),
+                laws: links.chain(crowds).collect(),
+            }
+        })
+        .collect()
+}

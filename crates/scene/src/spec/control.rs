@@ -1,0 +1,155 @@
+//! Controls of a network: modules that make and break connections, and modules that turn a parameter.
+
+use souple_formal::{Condition, Formula, ParseError};
+use souple_table::{Range, Value};
+
+use crate::diagnostic::{Code, Site};
+use crate::keys::{Key, Keys, Shape};
+use crate::reader::Reader;
+
+/// What controls may refer to, before their inputs.
+pub const VARIABLES: [&str; 2] = ["t", "previous"];
+/// Inputs of a control, at most.
+pub const INPUTS: usize = 14;
+
+static INPUT: Keys = Keys::new(
+    "control_input",
+    "what a control reads of masses, where they are at the start of a period",
+    &[
+        Key::new("of", Shape::Text, "a group, a part or a port: their mean").required(),
+        Key::new(
+            "quantity",
+            Shape::Choice(&["position", "velocity", "speed", "distance"]),
+            "of the mean; `distance` [m] is that from the mean of `to`, `speed` [m/s] how fast the mean is",
+        )
+        .required(),
+        Key::new("to", Shape::Text, "of distances: the other group"),
+        Key::new("component", Shape::Choice(&["x", "y", "z"]), "of positions and velocities"),
+    ],
+);
+
+pub(super) static CONTROL: Keys = Keys::new(
+    "control",
+    "what makes and breaks links, or turns a parameter of their law, while the world runs: `connects`, or `parameter` and `value`",
+    &[
+        Key::new("links", Shape::Text, "the `name` of the tables of links").required(),
+        Key::new(
+            "connects",
+            Shape::Text,
+            "a condition on t, previous (1 while connected) and the inputs: the links act while it holds",
+        ),
+        Key::number(
+            "ramp",
+            "s",
+            Range::NOT_NEGATIVE,
+            "of `connects`: how long it takes from nothing to the whole",
+        )
+        .or(Value::Number(0.0)),
+        Key::new("parameter", Shape::Text, "what is turned"),
+        Key::new("value", Shape::Text, "its value, in its SI unit: a formula of t, previous and the inputs"),
+        Key::new("inputs", Shape::Named(&INPUT), "what it reads, by the names that it uses"),
+    ],
+);
+
+/// A control as it is written.
+pub struct ControlSpec {
+    pub name: String,
+    /// Name of the tables of links.
+    pub links: String,
+    pub drives: Option<Drives>,
+    pub inputs: Vec<InputSpec>,
+    pub site: Site,
+}
+
+/// What a control does.
+pub enum Drives {
+    Connection {
+        holds: Condition,
+        /// [s]
+        ramp: f64,
+    },
+    Parameter {
+        name: String,
+        value: Formula,
+    },
+}
+
+/// What a control reads.
+pub struct InputSpec {
+    pub of: String,
+    pub to: String,
+    pub quantity: &'static str,
+    /// Of x, y, z.
+    pub component: Option<usize>,
+    pub site: Site,
+}
+
+impl ControlSpec {
+    pub(super) fn read(name: String, reader: &Reader) -> Self {
+        let inputs = reader.named("inputs");
+        let names: Vec<&str> = inputs.iter().map(|(name, _)| name.as_str()).collect();
+        let refuse = |key: &str, message: String, expected: &str| {
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+        };
+        if names.len() > INPUTS {
+            refuse("inputs", format!("{} inputs", names.len()), &format!("at most {INPUTS}"));
+        }
+        for taken in names.iter().filter(|name| VARIABLES.contains(name)) {
+            refuse("inputs", format!("`{taken}` is what controls know already"), "another name");
+        }
+        let variables: Vec<&str> = VARIABLES.iter().chain(&names).copied().collect();
+        let wrong = |key: &str, error: &ParseError| {
+            let expected = format!("a formula of {}", variables.join(", "));
+            reader.log().add(Code::BadFormula, &reader.site_of(key), error.to_string(), expected);
+        };
+        let drives = match reader.written(&["connects", "parameter", "value"])[..] {
+            ["connects"] => Condition::compile(&reader.text("connects"), &variables)
+                .map(|holds| Drives::Connection { holds, ramp: reader.number("ramp") })
+                .map_err(|error| wrong("connects", &error))
+                .ok(),
+            ["parameter", "value"] => Formula::compile(&reader.text("value"), &variables)
+                .map(|value| Drives::Parameter { name: reader.text("parameter"), value })
+                .map_err(|error| wrong("value", &error))
+                .ok(),
+            _ => {
+                refuse(
+                    "links",
+                    format!("control `{name}` does not say what it does"),
+                    "connects, or parameter and value",
+                );
+                None
+            }
+        };
+        let inputs = inputs.iter().map(|(name, input)| InputSpec::read(name, input)).collect();
+        Self { name, links: reader.text("links"), drives, inputs, site: reader.site() }
+    }
+}
+
+impl InputSpec {
+    fn read(name: &str, reader: &Reader) -> Self {
+        let quantity = reader.choice("quantity");
+        let component = reader.has("component").then(|| match reader.choice("component") {
+            "x" => 0,
+            "y" => 1,
+            _ => 2,
+        });
+        let (of, to) = (reader.text("of"), reader.text("to"));
+        let refuse = |key: &str, message: String, expected: &str| {
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+        };
+        match (quantity, component, to.is_empty()) {
+            ("position" | "velocity", None, _) => {
+                refuse(
+                    "quantity",
+                    format!("input `{name}` is a vector"),
+                    "component = \"x\", \"y\" or \"z\"",
+                );
+            }
+            ("distance", _, true) => {
+                refuse("quantity", format!("input `{name}` is a distance from nothing"), "to = \"a group\"");
+            }
+            _ => {}
+        }
+        Self { of, to, quantity, component, site: reader.site() }
+    }
+}

@@ -1,0 +1,160 @@
+//! Controls: links are made and broken and parameters turned while the world runs, and account is kept of what that makes.
+
+use std::path::Path;
+
+use souple_engine::World;
+use souple_scene::{Scene, read_text};
+
+const HEAD: &str = "format = 1\n[world]\nperiod = \"1 ms\"\n[systems.main]\nstepper = \"t_simulation\"\n";
+
+fn scene(text: &str) -> Result<Scene, String> {
+    read_text("net.toml", &format!("{HEAD}{text}"), Path::new("."), &[]).map_err(|faults| faults.to_string())
+}
+
+fn refused(text: &str, words: &[&str]) {
+    let message = scene(text).err().expect("the scene is refused");
+    for word in words {
+        assert!(message.contains(word), "`{word}` is not in:\n{message}");
+    }
+}
+
+/// A mass of 1 kg 10 cm to the right of where its spring is at rest.
+fn pulled(law: &str, controls: &str) -> String {
+    format!(
+        "[networks.n.masses.nail]\npositions = [[0, 0, 0]]\nmass = 1\nfixed = true\n\
+         [networks.n.masses.bob]\npositions = [[1.1, 0, 0]]\nmass = 1\n\
+         [[networks.n.links]]\nname = \"band\"\nlaw = {law}\nof = [\"bob\", \"nail\"]\nall = true\nrest_length = 1\n{controls}"
+    )
+}
+
+fn world(text: &str) -> World {
+    let scene = scene(text).unwrap_or_else(|message| panic!("{message}"));
+    scene.model.start(scene.state)
+}
+
+const SPRING: &str = "{ name = \"spring\", stiffness = 100 }";
+
+/// A link that is cut gives no force from the next period on, and what it held is told as taken away; made again, as given.
+#[test]
+fn links_are_made_and_broken() {
+    let control = "[networks.n.controls.cut]\nlinks = \"band\"\nconnects = \"t < 9.5e-3 or t > 19.5e-3\"\n";
+    let mut world = world(&pulled(SPRING, control));
+    (0..10).for_each(|_| world.step().unwrap());
+    let speed = world.state().systems[0].v[1].x;
+    assert!(speed < -0.09, "{speed}");
+    let before = world.energy();
+    (0..10).for_each(|_| world.step().unwrap());
+    assert_eq!(world.state().systems[0].v[1].x, speed);
+    let (cut, name) = (world.energy().made_by_control[0].1, world.energy().made_by_control[0].0.clone());
+    assert_eq!(name, "n.cut");
+    let held = before.by_force.iter().find(|(name, _)| name == "n.links[0]").unwrap().1.stored;
+    assert!((cut + held).abs() < 1e-15 && held > 0.4, "{cut} J, not {} J", -held);
+    // as it is put in again it is shorter
+    world.step().unwrap();
+    let again = world.energy().made_by_control[0].1 - cut;
+    assert!(again > 0.0 && again < held, "{again} J");
+    // kinetic and stored energy change by no more than that
+    let total = |energy: &souple_engine::EnergyReport| energy.total() - energy.made_by_control[0].1;
+    let drift = (total(&world.energy()) - total(&before)).abs();
+    assert!(drift < 1e-3 * held, "{drift} J");
+}
+
+/// A connection that is made over a time acts by as much of it as has passed.
+#[test]
+fn ramps_make_links_slowly() {
+    let control = "[networks.n.controls.make]\nlinks = \"band\"\nconnects = \"t < 0\"\nramp = \"4 ms\"\n";
+    let mut world = world(&pulled(SPRING, control));
+    let mut last = 0.0;
+    for gain in [0.75, 0.5, 0.25, 0.0, 0.0] {
+        world.step().unwrap();
+        let v = world.state().systems[0].v[1].x;
+        // the bob has hardly moved
+        assert!(
+            ((v - last) / (-gain * 100.0 * 0.1 * 1e-3) - 1.0).abs() < 1e-3 || gain == 0.0,
+            "{gain}: {v} {last}"
+        );
+        assert!(gain != 0.0 || v == last);
+        last = v;
+    }
+}
+
+/// Registers of a law follow their formulas; what reads masses reads them at the start of the period, and `previous` makes memory.
+#[test]
+fn parameters_are_driven() {
+    let push = |law: &str, control: &str| {
+        let mut world = world(&pulled(law, control));
+        world.step().unwrap();
+        world.state().systems[0].v[1].x / 1e-3
+    };
+    let near = |measured: f64, expected: f64| {
+        assert!((measured - expected).abs() < 1e-9, "{measured}, not {expected}")
+    };
+    let turned = |parameter: &str, value: &str| {
+        format!(
+            "[networks.n.controls.turn]\nlinks = \"band\"\nparameter = \"{parameter}\"\nvalue = \"{value}\"\n"
+        )
+    };
+    near(push(SPRING, &turned("stiffness", "200 + t")), -20.0);
+    let tuned = "{ name = \"tuned_spring\", stiffness = 100 }";
+    near(push(tuned, &turned("length", "0.9")), -20.0);
+    near(push(tuned, ""), -10.0);
+    let written = "{ name = \"formula\", push = \"-k*(D - L0)\", parameters = { k = 5 } }";
+    near(push(written, &turned("k", "7")), -0.7);
+    near(push(written, ""), -0.5);
+    let reads = format!(
+        "{}inputs.x = {{ of = \"bob\", quantity = \"position\", component = \"x\" }}\n",
+        turned("stiffness", "100 * x")
+    );
+    near(push(SPRING, &reads), -11.0);
+    let apart = format!(
+        "{}inputs.d = {{ of = \"bob\", to = \"nail\", quantity = \"distance\" }}\n",
+        turned("stiffness", "100 * d")
+    );
+    near(push(SPRING, &apart), -11.0);
+    // a latch: once the bob is fast the band is gone for good
+    let latch = "[networks.n.controls.latch]\nlinks = \"band\"\nconnects = \"previous > 0 and v < 0.05\"\n\
+                 inputs.v = { of = \"bob\", quantity = \"speed\" }\n";
+    let mut world = world(&pulled(SPRING, latch));
+    (0..200).for_each(|_| world.step().unwrap());
+    let v = world.state().systems[0].v[1].x;
+    assert!(v < -0.05 && v > -0.062, "{v}");
+}
+
+/// The same bits from a snapshot on: what controls remember is State.
+#[test]
+fn driven_parameters_are_state() {
+    let control = "[networks.n.controls.latch]\nlinks = \"band\"\nconnects = \"previous > 0 and v < 0.05\"\n\
+                   inputs.v = { of = \"bob\", quantity = \"speed\" }\n";
+    let mut one = world(&pulled(SPRING, control));
+    (0..20).for_each(|_| one.step().unwrap());
+    let mut two = world(&pulled(SPRING, control));
+    two.resume(one.state().clone()).unwrap();
+    (0..20).for_each(|_| {
+        one.step().unwrap();
+        two.step().unwrap();
+    });
+    assert_eq!(one.state().systems[0].q, two.state().systems[0].q);
+    assert_eq!(one.state().driven, two.state().driven);
+}
+
+#[test]
+fn wrong_controls_are_refused() {
+    let with = |control: &str| pulled(SPRING, &format!("[networks.n.controls.c]\n{control}\n"));
+    refused(&with("links = \"bond\"\nconnects = \"t < 1\""), &["no links `bond`", "band"]);
+    refused(&with("links = \"band\""), &["does not say what it does"]);
+    refused(&with("links = \"band\"\nconnects = \"t <\""), &["connects"]);
+    refused(
+        &with("links = \"band\"\nparameter = \"mass\"\nvalue = \"1\""),
+        &["no `mass` that can be driven", "stiffness, damping"],
+    );
+    refused(
+        &with("links = \"band\"\nconnects = \"x > 0\"\ninputs.x = { of = \"bob\", quantity = \"position\" }"),
+        &["`x` is a vector", "component"],
+    );
+    refused(
+        &with("links = \"band\"\nconnects = \"x > 0\"\ninputs.x = { of = \"bib\", quantity = \"speed\" }"),
+        &["no group of masses `bib`"],
+    );
+    let twice = "[networks.n.controls.c]\nlinks = \"band\"\nconnects = \"t < 1\"\n[networks.n.controls.d]\nlinks = \"band\"\nconnects = \"t < 2\"\n";
+    refused(&pulled(SPRING, twice), &["two controls connect the links `band`"]);
+}
