@@ -2,6 +2,7 @@
 
 mod figure;
 mod fit;
+mod overlay;
 mod sheet;
 
 use std::cell::OnceCell;
@@ -39,11 +40,14 @@ pub struct Arguments {
     #[arg(long, value_name = "WIDTH,HEIGHT", value_parser = pixels, allow_hyphen_values = true)]
     size: Option<[usize; 2]>,
     /// Moment to show, as `0.5` or `500 ms`, to the nearest frame; the last by default
-    #[arg(long, conflicts_with = "sheet", value_parser = seconds)]
+    #[arg(long, conflicts_with_all = ["sheet", "overlay"], value_parser = seconds)]
     time: Option<f64>,
     /// Several moments in one picture
     #[arg(long, value_name = "COUNT", value_parser = whole::<1, 100>)]
     sheet: Option<u64>,
+    /// Several moments over each other, the earlier the fainter: a chronogram
+    #[arg(long, value_name = "COUNT", conflicts_with = "sheet", value_parser = whole::<2, 100>)]
+    overlay: Option<u64>,
     /// Most frames of a film; 60 if left out
     #[arg(long, value_parser = whole::<1, 4096>)]
     frames: Option<u64>,
@@ -243,6 +247,13 @@ impl From<ShowError> for Refusal {
     }
 }
 
+impl Arguments {
+    /// How many moments one picture shows.
+    fn moments(&self) -> Option<u64> {
+        self.sheet.or(self.overlay)
+    }
+}
+
 pub fn render(arguments: &Arguments) -> Result<End, Refusal> {
     use_threads(arguments.threads)?;
     let kind = kind_of(&arguments.out)?;
@@ -289,10 +300,10 @@ fn draw(
 ) -> Result<Option<usize>, Refusal> {
     let out = arguments.out.as_path();
     let chosen = reel.chosen(match kind {
-        Kind::Picture => arguments.sheet.unwrap_or(1),
+        Kind::Picture => arguments.moments().unwrap_or(1),
         _ => arguments.frames.unwrap_or(FRAMES),
     } as usize);
-    let asked = if kind == Kind::Picture { arguments.sheet } else { arguments.frames };
+    let asked = if kind == Kind::Picture { arguments.moments() } else { arguments.frames };
     notes.extend(
         asked
             .filter(|asked| chosen.len() < *asked as usize)
@@ -312,7 +323,7 @@ fn draw(
             }
             animation.write_glb(out)?;
         }
-        Kind::Picture if arguments.sheet.is_some() => {
+        Kind::Picture if arguments.moments().is_some() => {
             let show = reel.show(&chosen)?;
             let figure = in_colours(arguments, figure, show.moments.first(), notes);
             let Some(image) = sheet_of(arguments, &show, figure, notes)? else { return Ok(None) };
@@ -381,17 +392,28 @@ fn sheet_of(
     let backdrop = if arguments.white { Backdrop::White } else { Backdrop::Plain };
     let legend = figure.legend.map(|_| LegendPlace::Apart);
     let whole = arguments.size.map(|_| figure.size);
-    let size = sheet::about(show.moments.len(), whole);
-    let letters = sheet::LETTERS;
+    let is_overlay = arguments.overlay.is_some();
+    let cells = if is_overlay { 1 } else { show.moments.len() };
+    let size = sheet::about(cells, whole);
+    let letters = if is_overlay { figure.letters } else { sheet::LETTERS };
     let figure = Figure { title: Some(String::new()), backdrop, legend, size, letters, ..figure };
     let (mut pictures, of_all) = figure.pictures(show)?;
     notes.extend(of_all);
     let common = sheet::Common::taken(&mut pictures);
-    let sheet = Sheet::new(&pictures, whole, (&title, figure.theme), common)?;
+    if is_overlay {
+        // each would say its own time
+        pictures.iter_mut().for_each(|picture| picture.subtitle.clear());
+    }
+    let cells = &pictures[..cells.min(pictures.len())];
+    let sheet = Sheet::new(cells, whole, (&title, figure.theme), common)?;
     pictures.iter_mut().for_each(|picture| picture.size = sheet.cell);
     let mut left_out = pictures.first().map(Picture::left_out).unwrap_or_default();
     let meter = Meter::new("pictures", arguments.quiet);
-    let Some(images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
+    let Some(mut images) = images(&pictures, (&meter, 0, pictures.len()))? else { return Ok(None) };
+    if is_overlay {
+        let background = pictures.first().map_or([255; 3], Picture::background);
+        images = overlay::overlaid(&images, background).into_iter().collect();
+    }
     let (image, of_sheet) = sheet.of(&pictures, &images);
     left_out.extend(of_sheet);
     notes.extend(no_room(&left_out));
@@ -473,7 +495,7 @@ fn reel(
     let stage = Stage::of(&scene);
     let folder = scratch.path()?.join("run");
     let wanted = match kind {
-        Kind::Picture => arguments.sheet.unwrap_or(if arguments.time.is_some() { 200 } else { 1 }),
+        Kind::Picture => arguments.moments().unwrap_or(if arguments.time.is_some() { 200 } else { 1 }),
         _ => arguments.frames.unwrap_or(FRAMES),
     };
     // the start is shown beside the frames that are written on the way

@@ -71,7 +71,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
         let message = format!("cells cannot shrink by {} of their size", arguments.shrink);
         return Err(Refusal::request("shrink", arguments.shrink.to_string(), "0 to less than 1", message));
     }
-    let is_one = kind == Kind::Picture && arguments.sheet.is_none();
+    let is_one = kind == Kind::Picture && arguments.moments().is_none();
     let samples = arguments.samples.unwrap_or(if is_one { 3 } else { 2 });
     let cut = arguments.cut.map(|[x, y, z, d]| {
         let normal = Vec3::new(x, y, z);

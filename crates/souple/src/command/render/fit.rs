@@ -56,6 +56,7 @@ const DRAWN: &[Kind] = &[Kind::Picture, Kind::Gif, Kind::AnimatedPng, Kind::Film
 const OPTIONS: &[Limited] = &[
     limited("time", PICTURE, |given| given.time.is_some()),
     limited("sheet", PICTURE, |given| given.sheet.is_some()),
+    limited("overlay", PICTURE, |given| given.overlay.is_some()),
     limited("compact", PICTURE, |given| given.compact),
     limited("frames", MOVING, |given| given.frames.is_some()),
     limited("per-second", FILM, |given| given.per_second.is_some()),
