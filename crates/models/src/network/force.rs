@@ -492,7 +492,10 @@ impl Force for Links {
                 let memory = self.remembered(part, slot, self.of_part(*number as usize, at.memory));
                 let Standing { rows, reach, .. } = self.standing(part, slot, at);
                 let push = gain * law.respond(&reach, at.time, &memory).push;
-                let state = if gain == 0.0 { LinkState::Apart } else { law.state(&reach, &memory) };
+                // a stop along an axis is a plane: the mass that stands for it is not what is touched
+                let is_plane = self.span != Span::Distance && law.range().is_finite();
+                let state =
+                    if gain == 0.0 || is_plane { LinkState::Apart } else { law.state(&reach, &memory) };
                 visit(&LinkShown { ends: rows, state, push });
             }
         });

@@ -121,23 +121,25 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "words_one_way_damper",
-        what: "a damper that works one way: z 2 m/s as it is pulled",
+        what: "a damper that works one way, pulled at 0.5 m/s: z 0.5 m/s",
         settings: &[
             r#"networks.sample.links[0].law={ name = "conditional", damping = 100, states = { brakes = "DIM, D -> free", free = "VN; AUG, D -> brakes" } }"#,
+            "networks.sample.pins[0].motion={ times = [0, 1], offsets = [[0, 0, 0], [-0.5, 0, 0]] }",
         ],
-        reading: PULL.after(16),
-        reference: 200.0,
+        reading: PULL.after(50),
+        reference: 50.0,
         source: "specification §2.7: one-way damper",
-        mutation: "networks.sample.links[0].law.states.free=VN",
+        mutation: "networks.sample.links[0].law.states.brakes=VN; DIM, D -> free",
         ..WORDS
     },
     Case {
         id: "words_one_way_damper_back",
-        what: "the same gives nothing on the way back",
+        what: "the same pushed together gives nothing",
         settings: &[
             r#"networks.sample.links[0].law={ name = "conditional", damping = 100, states = { brakes = "DIM, D -> free", free = "VN; AUG, D -> brakes" } }"#,
+            "networks.sample.pins[0].motion={ times = [0, 1], offsets = [[0, 0, 0], [0.5, 0, 0]] }",
         ],
-        reading: PULL.after(8),
+        reading: PULL.after(50),
         reference: 0.0,
         source: "specification §2.7: one-way damper",
         mutation: "networks.sample.links[0].law.states.free=AUG, D -> brakes",
