@@ -244,9 +244,9 @@ pub trait Force: Send + Sync {
     /// Pairs that may interact at this configuration, in any order; each comes with its initial state.
     fn find_pairs(&self, _at: &Configuration, _scratch: &mut Scratch, _found: &mut Vec<Pair>) {}
 
-    /// Whether pairs found at the rows `searched` may miss what touches at the rows `now`: the list is then searched
-    /// again, in explicit steps before the force, in implicit ones between solves, never while one iterates.
-    fn pairs_are_stale(&self, _searched: &[Vec3], _now: &[Vec3]) -> bool {
+    /// Whether pairs found at the rows `searched` may miss what touches now: the list is then searched again, in explicit
+    /// steps before the force, in implicit ones between solves, never while one iterates. The scratch is that of the search.
+    fn pairs_are_stale(&self, _searched: &[Vec3], _now: &Configuration, _scratch: &Scratch) -> bool {
         false
     }
 

@@ -364,10 +364,12 @@ impl System {
         state: &mut SystemState,
         around: &Surroundings,
     ) -> bool {
-        let stale = |force: &dyn Force| {
-            force.declaration().changing_pattern && force.pairs_are_stale(&ws.searched, &ws.rows.positions)
+        let stale = |(index, force): (usize, &Box<dyn Force>)| {
+            let at = self.view(index, &ws.rows, state, around);
+            let scratch = &ws.scratches[index];
+            force.declaration().changing_pattern && force.pairs_are_stale(&ws.searched, &at, scratch)
         };
-        let is_stale = self.forces.iter().any(|force| stale(force.as_ref()));
+        let is_stale = self.forces.iter().enumerate().any(stale);
         if is_stale {
             self.update_pairs(ws, state, around);
         }

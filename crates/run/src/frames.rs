@@ -6,7 +6,7 @@ use souple_engine::{Adapted, Force, Model, World};
 use souple_io::{Facets, Field, Output, Precision, Series, write_mesh};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, Mesh};
-use souple_scene::{BodyInfo, SkinInfo};
+use souple_scene::{BodyInfo, DressInfo, SkinInfo};
 
 use crate::Session;
 use crate::output::{FRAMES, OutputError, OutputFolder};
@@ -17,6 +17,7 @@ pub struct Frames {
     folder: PathBuf,
     bodies: Vec<Series>,
     skins: Vec<Series>,
+    dresses: Vec<Series>,
     /// Steps between frames.
     every: u64,
     last_written: Option<u64>,
@@ -32,16 +33,18 @@ impl Frames {
         count: u64,
         steps: u64,
     ) -> Result<Self, OutputError> {
-        let (mut bodies, mut skins) = (Vec::new(), Vec::new());
+        let (mut bodies, mut skins, mut dresses) = (Vec::new(), Vec::new(), Vec::new());
         let mut path = PathBuf::new();
         if let Some(folder) = folder.filter(|_| count > 0) {
             path = folder.frames()?;
             bodies = session.bodies.iter().map(|body| Series::new(&path, &body.name)).collect();
             let name = |skin| name_of_skin(skin, &session.bodies);
             skins = session.skins.iter().map(|skin| Series::new(&path, name(skin))).collect();
+            let worn = session.bodies.iter().filter_map(|body| body.dress.as_ref());
+            dresses = worn.map(|dress| Series::new(&path, worn_by(&dress.body))).collect();
         }
         let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };
-        Ok(Self { folder: path, bodies, skins, every, last_written: None, step: 0, drawable: None })
+        Ok(Self { folder: path, bodies, skins, dresses, every, last_written: None, step: 0, drawable: None })
     }
 
     /// The frame of a step, if one is due.
@@ -104,6 +107,19 @@ impl Frames {
             };
             push(folder, series, moment.time, &output)?;
         }
+        let worn = session.bodies.iter().filter_map(|body| body.dress.as_ref());
+        for (series, dress) in self.dresses.iter_mut().zip(worn) {
+            let (mesh, fields) = mesh_of_dress(dress, &session.world);
+            let output = Output {
+                mesh: &mesh,
+                positions: None,
+                point_fields: &fields,
+                cell_fields: &[],
+                facets: Facets::LeftOut,
+                precision: precision_for(&mesh.points),
+            };
+            push(folder, series, moment.time, &output)?;
+        }
         if moment.is_drawable() {
             self.drawable = Some(moment);
         }
@@ -142,6 +158,22 @@ pub fn mesh_of_skin(skin: &SkinInfo, world: &World) -> (Mesh, Vec<Vec3>) {
     let mut mesh = Mesh { points: surface.points, ..Mesh::default() };
     surface.triangles.iter().for_each(|corners| mesh.push_cell(ElementKind::Tri3, corners));
     (mesh, normals)
+}
+
+/// A display surface as it stands: its triangles, displacements, levels and normals.
+pub fn mesh_of_dress(info: &DressInfo, world: &World) -> (Mesh, Vec<Field>) {
+    let mut mesh = Mesh { points: info.points(world), ..Mesh::default() };
+    let triangles = info.dress.triangles();
+    triangles.iter().for_each(|corners| mesh.push_cell(ElementKind::Tri3, corners));
+    let normals = souple_mesh::vertex_normals(&mesh.points, triangles);
+    let moved = mesh.points.iter().zip(info.dress.rest()).map(|(x, rest)| *x - *rest);
+    let displacements: Vec<Vec3> = moved.collect();
+    let fields = vec![
+        Field::new("displacement", 3, flat(&displacements)),
+        Field::new("level", 1, info.levels(world)),
+        normal_field(&normals),
+    ];
+    (mesh, fields)
 }
 
 /// What a skin's points have and no body's do.

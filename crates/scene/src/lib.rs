@@ -28,7 +28,8 @@ pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{Measurement, ProbeInfo};
 pub use modules::MODULES;
 pub use scene::{
-    BodyInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec, read_text,
+    BodyInfo, DressInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec,
+    read_text,
 };
 pub use schema::schema;
 pub use spec::Spec;

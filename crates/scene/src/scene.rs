@@ -6,11 +6,12 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use souple_engine::{Census, InHand, Levels, Model, State, World};
+use souple_engine::{Census, FieldState, InHand, Levels, Model, State, World};
 use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::Carried;
+use souple_models::multiresolution::Dress;
 use souple_skin::target::Moment;
 use souple_skin::{Polygons, Skin, SkinError};
 
@@ -76,6 +77,8 @@ pub struct BodyInfo {
     pub laws: LawsInfo,
     /// What carries it, where that is not its points.
     pub frames: Option<FramesInfo>,
+    /// The surface that is shown in the place of its own.
+    pub dress: Option<DressInfo>,
     /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
     /// where no body is a network.
     pub radii: Vec<f64>,
@@ -119,6 +122,36 @@ pub struct FramesInfo {
     pub shown: usize,
     /// Of each point of the mesh: the weight of the frame that is shown.
     pub influence: Vec<f64>,
+}
+
+/// A display surface of a body with levels, and where it is in the state.
+#[derive(Clone, Debug)]
+pub struct DressInfo {
+    pub body: String,
+    /// Index of its field.
+    pub field: usize,
+    pub dress: Arc<Dress>,
+}
+
+impl DressInfo {
+    fn state<'a>(&self, world: &'a World) -> &'a FieldState {
+        &world.state().fields[self.field]
+    }
+
+    /// Where its nodes are [m].
+    pub fn points(&self, world: &World) -> Vec<Vec3> {
+        self.dress.points(self.state(world)).collect()
+    }
+
+    /// Of each node, the level that it hangs on.
+    pub fn levels(&self, world: &World) -> Vec<f64> {
+        self.dress.levels(self.state(world)).map(|level| level as f64).collect()
+    }
+
+    /// The most that a node has jumped in a period because levels changed [m].
+    pub fn greatest_jump(&self, world: &World) -> f64 {
+        self.dress.greatest_jump(self.state(world))
+    }
 }
 
 /// A skin and where it is in the state.
@@ -249,7 +282,7 @@ impl BodyInfo {
                 rows: frames.rows,
             }
         });
-        Self { name: spec.name.clone(), system, rows, mesh, surface, force, laws, frames, radii }
+        Self { name: spec.name.clone(), system, rows, mesh, surface, force, laws, frames, dress: None, radii }
     }
 }
 

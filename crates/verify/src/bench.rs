@@ -15,6 +15,7 @@ mod skins;
 mod startup;
 mod stretched;
 mod timing;
+mod tools;
 mod view;
 
 use std::fmt;
@@ -163,6 +164,11 @@ pub const BENCHES: &[Bench] = &[
         name: "adaptive_saving",
         what: "active points of the poked organ, all fine over adaptive, with errors of force and surface",
         run: levels::adaptive_saving,
+    },
+    Bench {
+        name: "tool_detection_10k",
+        what: "one search for what a tool touches, among ten thousand triangles that move [ms]",
+        run: tools::detection,
     },
     Bench {
         name: "haptic_period_99_9",

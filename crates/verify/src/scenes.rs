@@ -12,6 +12,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
     ("drum", include_str!("../../../scenes/drum/scene.toml")),
     ("fascia", include_str!("../../../scenes/fascia/scene.toml")),
+    ("fast_tool", include_str!("../../../scenes/fast_tool/scene.toml")),
     ("frames_cantilever", include_str!("../../../scenes/frames_cantilever/scene.toml")),
     ("frames_spinning", include_str!("../../../scenes/frames_spinning/scene.toml")),
     ("half_turn", include_str!("../../../scenes/half_turn/scene.toml")),

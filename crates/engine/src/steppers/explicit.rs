@@ -1,5 +1,5 @@
-//! Methods that evaluate the force once a step, somewhere along a drift: two Euler methods, and the frame they
-//! share with Störmer–Verlet.
+//! Methods that evaluate the force once a step, somewhere along a drift: two Euler methods, that of Newton and Cotes, and
+//! the frame they share with Störmer–Verlet.
 
 use souple_math::Vec3;
 use souple_solve::reduce::{self, KickAndDrift};
@@ -20,6 +20,19 @@ pub struct ExplicitEuler;
 /// `h ω = 2`: `½ m v² + ½ k q² - ½ h k q v` of a linear oscillator is kept exactly.
 #[derive(Debug)]
 pub struct SymplecticEuler;
+
+/// `v' = v + h a(q, v)`, `q' = q + h v + h²/2 a`: exact under constant acceleration, and first order all the same; for
+/// comparison. The amplitude of an oscillation grows by `1 + (h ω)²/4` a step, half as fast as that of explicit Euler.
+#[derive(Debug)]
+pub struct NewtonCotes;
+
+pub(super) const NEWTON_COTES: StepperEntry = StepperEntry {
+    name: "newton_cotes",
+    summary: "first order, exact under constant acceleration; gains energy at any step, for comparison only",
+    source: "Debunne 2000, app. B §3, with the half that its (B.8) lacks",
+    parameters: &[],
+    build: |_| Box::new(NewtonCotes),
+};
 
 pub(super) const EXPLICIT_EULER: StepperEntry = StepperEntry {
     name: "explicit_euler",
@@ -48,6 +61,8 @@ pub(super) struct OneForce {
 pub(super) enum Drifts {
     BeforeKick,
     AfterKick,
+    /// Half of it before, half after.
+    Mean,
 }
 
 impl OneForce {
@@ -73,13 +88,18 @@ impl OneForce {
         let evaluated = accelerations_at(system, around, start + first, next, ws, &mut acceleration);
         let stepped = evaluated.and_then(|mut report| {
             system.advance_memory(ws, next, around, timestep);
-            if let Drifts::BeforeKick = self.drifts {
-                system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
+            let [early, late] = match self.drifts {
+                Drifts::BeforeKick => [rest, 0.0],
+                Drifts::AfterKick => [0.0, rest],
+                Drifts::Mean => [0.5 * rest; 2],
+            };
+            if early > 0.0 {
+                system.kinematics.retract_scaled(&mut next.q, &next.v, early);
             }
             kick(&mut next.v, &acceleration, timestep);
             report.merge(&take_along(system, (start, step.end()), &next.q, &mut next.v, ws)?);
-            if let Drifts::AfterKick = self.drifts {
-                system.kinematics.retract_scaled(&mut next.q, &next.v, rest);
+            if late > 0.0 {
+                system.kinematics.retract_scaled(&mut next.q, &next.v, late);
             }
             system.impose_constraints(&mut next.q, &mut next.v, step.end(), around.load);
             Ok(report)
@@ -148,6 +168,27 @@ impl Stepper for ExplicitEuler {
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
         let method = OneForce { before: 0.0, drifts: Drifts::BeforeKick };
+        method.step(step, next, ws)
+    }
+}
+
+impl Stepper for NewtonCotes {
+    fn name(&self) -> &'static str {
+        NEWTON_COTES.name
+    }
+
+    fn stability(&self) -> Stability {
+        Stability::Growing { factor: 0.25, power: 1 }
+    }
+
+    // v' = v + h a(q, v),  q' = q + h/2 (v + v')
+    fn step(
+        &self,
+        step: &Step,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+    ) -> Result<StepReport, StepError> {
+        let method = OneForce { before: 0.0, drifts: Drifts::Mean };
         method.step(step, next, ws)
     }
 }

@@ -21,7 +21,7 @@ use crate::system::{Surroundings, System, SystemWorkspace};
 
 pub use backward_euler::BackwardEuler;
 pub use bdf2::Bdf2;
-pub use explicit::{ExplicitEuler, SymplecticEuler};
+pub use explicit::{ExplicitEuler, NewtonCotes, SymplecticEuler};
 pub use implicit_formula::NewtonMode;
 pub use newmark::Newmark;
 pub use position_verlet::PositionVerlet;
@@ -209,6 +209,7 @@ pub const TABLE: Table<BuildStepper> = Table {
     entries: &[
         &explicit::EXPLICIT_EULER,
         &explicit::SYMPLECTIC_EULER,
+        &explicit::NEWTON_COTES,
         &position_verlet::ENTRY,
         &t_simulation::ENTRY,
         &runge_kutta::RK2,

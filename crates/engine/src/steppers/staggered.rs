@@ -6,7 +6,7 @@ use souple_math::Vec3;
 use souple_table::{Parameter, Range as Allowed, Value};
 
 use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Push};
-use crate::state::SystemState;
+use crate::state::{SystemState, pairs_of};
 use crate::system::{System, SystemWorkspace};
 
 use super::{Stability, Step, StepError, StepReport, Stepper, StepperEntry};
@@ -103,10 +103,11 @@ impl StaggeredBuffers {
         self.is_watched.clear();
         self.is_watched.resize(state.q.len(), false);
         self.couples.clear();
-        for force in &system.forces {
-            let mut couples = false;
+        for (index, force) in system.forces.iter().enumerate() {
+            // what comes and goes within a step is looked at in every tick, also where nothing touches just now
+            let mut couples = force.declaration().changing_pattern;
             if force.levels().is_none() {
-                force.visit_cliques(&state.pairs, &mut |rows| {
+                force.visit_cliques(&state.pairs[pairs_of(&state.pairs, index)], &mut |rows| {
                     couples = true;
                     rows.iter().for_each(|row| self.is_watched[*row as usize] = true);
                 });

@@ -1,11 +1,12 @@
 //! Contact: bodies against shapes, and body against body, by penalty with Coulomb friction.
 //!
-//! [`law`] says what force two things exert that touch; [`shape`] says where shapes are; [`ShapeContact`] and
-//! [`SurfaceContact`] find what touches and hand the forces to rows.
+//! [`law`] says what force two things exert that touch; [`shape`] says where shapes are; [`ShapeContact`] (points),
+//! [`ToolContact`] (triangles) and [`SurfaceContact`] find what touches and hand the forces to rows.
 
 mod burden;
 mod carrier;
 pub mod law;
+mod leading;
 #[cfg(test)]
 mod pair_tests;
 pub mod shape;
@@ -13,6 +14,9 @@ mod shape_contact;
 mod surface_contact;
 #[cfg(test)]
 mod tests;
+mod tool_contact;
+#[cfg(test)]
+mod tool_tests;
 mod toolbox;
 
 pub use carrier::{Carrier, Pressed};
@@ -20,4 +24,5 @@ pub use law::{ContactForce, ContactLaw, penalty_stiffness};
 pub use shape::{Nearest, Outline, SHAPES, Shape, ShapeError};
 pub use shape_contact::{ContactPoint, ShapeContact, Touch};
 pub use surface_contact::{ContactSurface, SurfaceContact, SurfaceContactError, SurfaceTouch};
+pub use tool_contact::{ToolContact, ToolSurface, ToolTouch};
 pub use toolbox::ShapeToolbox;

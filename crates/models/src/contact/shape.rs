@@ -5,6 +5,7 @@
 mod capsule;
 mod closed_surface;
 mod cuboid;
+mod jaws;
 mod plane;
 mod sphere;
 
@@ -19,6 +20,7 @@ use souple_table::{Entry, Parameter, Table, Value, Values};
 pub use capsule::Capsule;
 pub use closed_surface::ClosedSurface;
 pub use cuboid::Cuboid;
+pub use jaws::Jaws;
 pub use plane::Plane;
 pub use sphere::Sphere;
 
@@ -54,6 +56,11 @@ pub trait Shape: Send + Sync + Debug {
     /// A point and the normal of a shape that is a half-space, for drawing it as a ground.
     fn as_plane(&self) -> Option<(Vec3, Vec3)> {
         None
+    }
+
+    /// The rounded parts that a tool is made of; none of a shape that is no tool.
+    fn parts(&self) -> &[Capsule] {
+        &[]
     }
 
     /// The surface of a bounded shape, for drawing it.
@@ -98,7 +105,14 @@ pub type ShapeEntry = Entry<BuildShape>;
 
 pub const SHAPES: Table<BuildShape> = Table {
     kind: "shape",
-    entries: &[&plane::ENTRY, &sphere::ENTRY, &capsule::ENTRY, &cuboid::ENTRY, &closed_surface::ENTRY],
+    entries: &[
+        &plane::ENTRY,
+        &sphere::ENTRY,
+        &capsule::ENTRY,
+        &jaws::ENTRY,
+        &cuboid::ENTRY,
+        &closed_surface::ENTRY,
+    ],
 };
 
 /// Whether bodies are kept outside or inside.

@@ -8,9 +8,7 @@
 //! returns exactly, one step late, and no point is tied to rows that are others at every moment, see `burden`.
 
 use std::any::Any;
-use std::sync::Arc;
 
-use souple_engine::obstacle::Form;
 use souple_engine::tangent::add_block;
 use souple_engine::{
     Configuration, Declaration, Editable, Energy, Force, InHand, Obstacle, Pair, ParameterError, Scratch,
@@ -24,7 +22,8 @@ use crate::loads::{LoadError, finite, not_negative};
 use super::burden::{self, Push};
 use super::carrier::{Carrier, Pressed};
 use super::law::Approach;
-use super::{ContactForce, ContactLaw, Nearest, Outline, Shape};
+use super::leading::Leading;
+use super::{ContactForce, ContactLaw, Nearest, Shape};
 use crate::loads::{Pose, RigidMotion};
 
 /// A point of the body's surface.
@@ -47,15 +46,6 @@ pub struct ShapeContact {
     shape_name: String,
     leading: Leading,
     law: ContactLaw,
-}
-
-/// Who moves the shape.
-#[derive(Debug)]
-enum Leading {
-    /// A motion that is known beforehand.
-    Motion(RigidMotion),
-    /// Something that gives way.
-    Carrier(Box<dyn Carrier>),
 }
 
 /// One point that touches.
@@ -130,10 +120,7 @@ impl ShapeContact {
 
     /// Where the shape is.
     fn pose(&self, at: &Configuration) -> Pose {
-        match &self.leading {
-            Leading::Motion(motion) => motion.pose(at.time),
-            Leading::Carrier(carrier) => carrier.pose(&at.memory[self.burdens().end..]),
-        }
+        self.leading.pose(at.time, &at.memory[self.burdens().end..])
     }
 
     /// What the points do to the shape, were it there.
@@ -295,23 +282,12 @@ impl Force for ShapeContact {
     }
 
     fn memory_len(&self) -> usize {
-        let carrier = match &self.leading {
-            Leading::Motion(_) => 0,
-            Leading::Carrier(carrier) => carrier.memory_len(),
-        };
-        self.burdens().end + carrier
+        self.burdens().end + self.leading.memory_len()
     }
 
     fn initial_memory(&self, memory: &mut [f64]) {
         memory.fill(0.0);
-        let pose = match &self.leading {
-            Leading::Motion(motion) => motion.pose(0.0),
-            Leading::Carrier(carrier) => {
-                let own = &mut memory[self.burdens().end..];
-                carrier.initial_memory(own);
-                carrier.pose(own)
-            }
-        };
+        let pose = self.leading.begin(&mut memory[self.burdens().end..]);
         for (index, point) in self.points.iter().enumerate() {
             remember(memory, index, pose.to_shape(point.start), Vec3::ZERO);
         }
@@ -422,18 +398,14 @@ impl Force for ShapeContact {
 
     fn editable(&self) -> Vec<Editable> {
         let mut all = self.law.editable();
-        if let Leading::Carrier(carrier) = &self.leading {
-            all.extend(carrier.editable());
-        }
+        all.extend(self.leading.editable());
         all
     }
 
     fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), ParameterError> {
-        match &mut self.leading {
-            Leading::Carrier(carrier) if carrier.editable().iter().any(|own| own.name == name) => {
-                carrier.set_parameter(&self.name, name, value)
-            }
-            _ => self.law.set_parameter(&self.name, name, value),
+        match self.leading.owner_of(name) {
+            Some(carrier) => carrier.set_parameter(&self.name, name, value),
+            None => self.law.set_parameter(&self.name, name, value),
         }
     }
 
@@ -454,34 +426,15 @@ impl Force for ShapeContact {
     }
 
     fn lead(&mut self, place: Vec3) {
-        match &mut self.leading {
-            Leading::Motion(motion) => *motion = RigidMotion::at(place),
-            Leading::Carrier(carrier) => carrier.lead(place),
-        }
+        self.leading.lead(place);
     }
 
     fn in_hand(&self, at: &Configuration) -> Option<InHand> {
-        match &self.leading {
-            Leading::Motion(_) => None,
-            Leading::Carrier(carrier) => Some(carrier.in_hand(&at.memory[self.burdens().end..])),
-        }
+        self.leading.in_hand(&at.memory[self.burdens().end..])
     }
 
     fn obstacle(&self) -> Option<Obstacle> {
-        let motion = match &self.leading {
-            Leading::Motion(motion) => motion.clone(),
-            Leading::Carrier(carrier) => {
-                RigidMotion { translation: carrier.planned(), ..RigidMotion::default() }
-            }
-        };
-        let form = match (self.shape.as_plane(), self.shape.outline()) {
-            (Some((point, normal)), _) => Form::Plane { point, normal },
-            (None, Some(Outline { surface, bodies })) => {
-                Form::Surface { points: surface.points, triangles: surface.triangles, bodies }
-            }
-            (None, None) => return None,
-        };
-        Some(Obstacle { name: self.shape_name.clone(), form, motion: Arc::new(motion) })
+        self.leading.obstacle(self.shape.as_ref(), &self.shape_name)
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -409,7 +409,8 @@ impl Force for SurfaceContact {
 
     /// A point that was out of reach comes to touch only if it or a corner has moved by half the reach, apart from
     /// what all move together.
-    fn pairs_are_stale(&self, searched: &[Vec3], now: &[Vec3]) -> bool {
+    fn pairs_are_stale(&self, searched: &[Vec3], at: &Configuration, _scratch: &Scratch) -> bool {
+        let now = at.positions;
         let rows = || self.sides.iter().flat_map(|side| &side.rows).map(|row| *row as usize);
         let count = (self.sides[0].rows.len() + self.sides[1].rows.len()) as f64;
         let common = rows().map(|row| now[row] - searched[row]).sum::<Vec3>() * (1.0 / count);

@@ -57,7 +57,7 @@ fn shape_contacts_agree_with_energies_and_derivatives() {
     type Make = fn() -> Box<dyn Shape>;
     let shapes: [(&str, Make); 5] = [
         ("plane", || Box::new(Plane { point: Vec3::ZERO, normal: Vec3::new(0.6, 0.8, 0.0) })),
-        ("sphere", || Box::new(Sphere { centre: Vec3::new(0.1, 0.0, 0.2), radius: 1.0 })),
+        ("sphere", || Box::new(Sphere::new(Vec3::new(0.1, 0.0, 0.2), 1.0))),
         ("capsule", || Box::new(Capsule { from: Vec3::new(-0.5, 0.0, 0.0), to: Vec3::X, radius: 0.6 })),
         ("box", || {
             // turned by nearly a quarter, its sides exchanged for that: the same places are inside and outside, at an angle

@@ -9,10 +9,12 @@
 //! - `roles`: who is active, and what the others follow;
 //! - `matter`: what each tetrahedron stands for;
 //! - `criterion`, `adapt`: when points come and go;
-//! - `lists`, `elastic`: what a step goes through.
+//! - `lists`, `elastic`: what a step goes through;
+//! - `dress`: the surface that is shown.
 
 mod adapt;
 mod criterion;
+mod dress;
 mod elastic;
 mod links;
 mod lists;
@@ -23,7 +25,7 @@ mod stepping;
 use std::any::Any;
 use std::ops::Range;
 
-use souple_engine::levels::{Census, Kinematic, Levels};
+use souple_engine::levels::{Census, Division, Kinematic, Levels};
 use souple_engine::state::Pair;
 use souple_engine::{
     CellField, Configuration, Declaration, Editable, Energy, Force, ParameterError, Scratch, TangentWeights,
@@ -42,6 +44,7 @@ use matter::Matter;
 use souple_engine::levels::Followers;
 
 pub use criterion::{Criterion, Measure};
+pub use dress::{Dress, DressLevel, Worn};
 pub use links::{Hierarchy, LevelsError, MOST};
 pub use roles::Role;
 
@@ -146,6 +149,14 @@ impl LevelsForce {
     /// The shortest interval that some point needs, whichever level is at work [s].
     pub fn shortest_interval(&self) -> f64 {
         self.shortest_interval
+    }
+
+    /// Stresses that a step so divided evaluates with the coarsest mesh alone at work: no budget comes to less.
+    pub fn least_evaluations(&self, division: &Division) -> usize {
+        let mut work = Work::new(self);
+        work.refresh(self, &vec![0.0; self.memory_len()]);
+        work.divide(self, division);
+        work.evaluations(division)
     }
 
     /// The masses of the points of the finest mesh [kg].

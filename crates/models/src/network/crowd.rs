@@ -266,7 +266,8 @@ impl Force for Crowd {
         }
     }
 
-    fn pairs_are_stale(&self, searched: &[Vec3], now: &[Vec3]) -> bool {
+    fn pairs_are_stale(&self, searched: &[Vec3], at: &Configuration, _scratch: &Scratch) -> bool {
+        let now = at.positions;
         let rows = || self.0.first.clone().chain(self.0.second.clone()).map(|row| row as usize);
         rows().any(|row| searched[row] != now[row])
     }

@@ -18,7 +18,7 @@ use souple_io::picture::ColourMap;
 use souple_io::{Field, IoError};
 use souple_math::Vec3;
 use souple_mesh::{BoundingBox, Mesh};
-use souple_scene::{BodyInfo, SkinInfo};
+use souple_scene::{BodyInfo, DressInfo, SkinInfo};
 
 use crate::Session;
 
@@ -171,8 +171,21 @@ impl Moment {
                 frames: Vec::new(),
             }
         };
+        let dress = |info: &DressInfo| {
+            let (mesh, point_fields) = crate::frames::mesh_of_dress(info, world);
+            BodyMoment {
+                name: crate::frames::worn_by(&info.body),
+                positions: mesh.points.clone(),
+                mesh: Arc::new(mesh),
+                point_fields,
+                cell_fields: Vec::new(),
+                frames: Vec::new(),
+            }
+        };
         let bodies = session.bodies.iter().enumerate().map(body);
-        Self { time: world.time(), bodies: bodies.chain(session.skins.iter().map(skin)).collect() }
+        let skins = session.skins.iter().map(skin);
+        let dresses = session.bodies.iter().filter_map(|body| body.dress.as_ref()).map(dress);
+        Self { time: world.time(), bodies: bodies.chain(skins).chain(dresses).collect() }
     }
 
     /// Whether a body wears one of the skins.

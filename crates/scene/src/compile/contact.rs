@@ -7,7 +7,8 @@ use souple_math::Vec3;
 use souple_mesh::TriangleSurface;
 use souple_models::contact::shape::BuildShape;
 use souple_models::contact::{
-    ContactLaw, ContactPoint, ContactSurface, Shape, ShapeContact, SurfaceContact, penalty_stiffness,
+    ContactLaw, ContactPoint, ContactSurface, Shape, ShapeContact, SurfaceContact, ToolContact, ToolSurface,
+    penalty_stiffness,
 };
 use souple_models::loads::RigidMotion;
 use souple_skin::BAND;
@@ -20,7 +21,7 @@ use super::skin_shape::SkinShape;
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
 use crate::scene::SkinInfo;
-use crate::spec::contact::{Against, Contact, ShapeSpec};
+use crate::spec::contact::{Against, Contact, Detect, ShapeSpec};
 
 /// A body's points that touch, with the areas around them.
 pub(super) struct Touching {
@@ -52,7 +53,7 @@ pub fn add(draft: &mut Draft) {
                 .and_then(|shape| against_shape(draft, contact, shape, touching, body))
                 .map(|(force, held)| {
                     joints.extend(held);
-                    Box::new(force) as _
+                    force
                 }),
             Some(Against::Body(name)) => draft
                 .body(name)
@@ -191,7 +192,7 @@ fn against_shape(
     shape: &ShapeSpec,
     touching: Touching,
     body: &Placed,
-) -> Option<(ShapeContact, Vec<Joint>)> {
+) -> Option<(Box<dyn Force>, Vec<Joint>)> {
     let built = built(draft, shape.shape.as_ref()?)?;
     let led = |spec| motion(draft.log, spec, &shape.site);
     let motion = RigidMotion {
@@ -213,13 +214,76 @@ fn against_shape(
     }
     let law = law(contact, modulus_of(draft, contact, body, &touching)?, touching.mean_area);
     let joints = touching_joints(body, &touching.points, built.as_ref(), &motion, &law);
-    match ShapeContact::new(contact.name.clone(), touching.points, built, motion, law) {
-        Ok(force) => Some((force.against(&shape.name), joints)),
+    let force: Result<Box<dyn Force>, _> =
+        match tool_surface(draft, contact, body, &touching, built.as_ref())? {
+            Some((surface, numbers)) => {
+                ToolContact::new(contact.name.clone(), surface, built, motion, stiff(contact, law), numbers)
+                    .map(|force| Box::new(force.against(&shape.name)) as _)
+            }
+            None => ShapeContact::new(contact.name.clone(), touching.points, built, motion, law)
+                .map(|force| Box::new(force.against(&shape.name)) as _),
+        };
+    match force {
+        Ok(force) => Some((force, joints)),
         Err(error) => {
             draft.log.add(Code::OutOfRange, &contact.site, error.to_string(), "finite numbers");
             None
         }
     }
+}
+
+/// How much stiffer triangles are than the material behind them, where a scene does not tell: a tool sinks in by about so
+/// much less than the body gives way.
+const STIFFER: f64 = 20.0;
+
+/// The law of triangles.
+pub(super) fn stiff(contact: &Contact, law: ContactLaw) -> ContactLaw {
+    if contact.stiffness.is_some() {
+        return law;
+    }
+    let tangential_stiffness = contact.tangential_stiffness.unwrap_or(STIFFER * law.stiffness);
+    ContactLaw { stiffness: STIFFER * law.stiffness, tangential_stiffness, ..law }
+}
+
+/// The triangles of a body that a tool touches, with the reach [m] and the time [s] between searches, where a contact looks at
+/// triangles. `None` where they were refused.
+#[allow(clippy::type_complexity)]
+pub(super) fn tool_surface(
+    draft: &Draft,
+    contact: &Contact,
+    body: &Placed,
+    touching: &Touching,
+    shape: &dyn Shape,
+) -> Option<Option<(ToolSurface, [f64; 2])>> {
+    if contact.detect == Detect::Points {
+        return Some(None);
+    }
+    let refuse = |message: String, expected: &str| {
+        draft.log.add(Code::Conflict, &contact.site, message, expected);
+        None
+    };
+    if body.spec.network.is_some() {
+        let message = format!("masses of network `{}` have no triangles between them", contact.body);
+        return refuse(message, "`detect = \"points\"`");
+    }
+    if shape.parts().is_empty() {
+        let message = "triangles are touched by tools of rounded parts".to_owned();
+        return refuse(message, "a sphere, a capsule or jaws that are not hollow, or `detect = \"points\"`");
+    }
+    let mut surface = body.mesh.boundary_surface();
+    let first = body.rows.start as u32;
+    let rows: Vec<u32> = surface.mesh_points.iter().map(|point| first + point).collect();
+    let chosen: std::collections::BTreeSet<u32> = touching.points.iter().map(|point| point.row).collect();
+    let is_chosen = |corners: &[u32; 3]| corners.iter().all(|point| chosen.contains(&rows[*point as usize]));
+    surface.triangles.retain(is_chosen);
+    if surface.triangles.is_empty() {
+        let message = "no triangle of the surface has all its corners in the region".to_owned();
+        return refuse(message, "a larger region");
+    }
+    let system = draft.spec.systems.get(body.system)?;
+    let horizon = draft.spec.world.period / f64::from(system.steps_per_period);
+    let reach = mean_edge(&surface);
+    Some(Some((ToolSurface { surface, rows }, [reach, horizon])))
 }
 
 /// Points of a body against a skin: what presses on it comes to those that lead it, as far as they step in the same system.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use souple_engine::{Force, Motion};
 use souple_haptics::{HandCarrier, Rest};
 use souple_math::Vec3;
-use souple_models::contact::ShapeContact;
+use souple_models::contact::{ShapeContact, ToolContact};
 use souple_models::loads::RigidMotion;
 
 use super::Draft;
-use super::contact::{built, law, modulus_of, touching};
+use super::contact::{built, law, modulus_of, stiff, tool_surface, touching};
 use super::motion::motion;
 use crate::diagnostic::Code;
 use crate::scene::HandInfo;
@@ -17,16 +17,16 @@ use crate::spec::hand::HandSpec;
 
 /// All hands.
 pub fn add(draft: &mut Draft) {
-    let made: Vec<(HandInfo, ShapeContact)> =
+    let made: Vec<(HandInfo, Box<dyn Force>)> =
         draft.spec.hands.iter().filter_map(|hand| hand_of(draft, hand)).collect();
     for (info, force) in made {
-        draft.systems[info.system].forces.push(Box::new(force) as Box<dyn Force>);
+        draft.systems[info.system].forces.push(force);
         draft.hands.push(info);
     }
 }
 
 /// `None` where it was refused.
-fn hand_of(draft: &Draft, hand: &HandSpec) -> Option<(HandInfo, ShapeContact)> {
+fn hand_of(draft: &Draft, hand: &HandSpec) -> Option<(HandInfo, Box<dyn Force>)> {
     let body = draft.body(&hand.touch.body)?;
     let touching = touching(draft, body, &hand.touch)?;
     let shape = built(draft, hand.tool.as_ref()?)?;
@@ -45,7 +45,16 @@ fn hand_of(draft: &Draft, hand: &HandSpec) -> Option<(HandInfo, ShapeContact)> {
     let rest = Rest { port: hand.port, mass: hand.mass, period: draft.spec.world.period };
     let carrier = Box::new(HandCarrier::new(rest, device.arm().cloned()));
     let force = hand.touch.name.clone();
-    match ShapeContact::carried(force.clone(), touching.points, shape, carrier, law) {
+    let made: Result<Box<dyn Force>, _> =
+        match tool_surface(draft, &hand.touch, body, &touching, shape.as_ref())? {
+            Some((surface, numbers)) => {
+                ToolContact::carried(force.clone(), surface, shape, carrier, stiff(&hand.touch, law), numbers)
+                    .map(|contact| Box::new(contact) as _)
+            }
+            None => ShapeContact::carried(force.clone(), touching.points, shape, carrier, law)
+                .map(|contact| Box::new(contact) as _),
+        };
+    match made {
         Ok(contact) => {
             let info = HandInfo {
                 name: hand.name.clone(),

@@ -1,16 +1,20 @@
 //! Bodies of several meshes: the coarser ones are made or read, and get rows behind those of the body's own mesh.
 
+use std::sync::Arc;
+
 use souple_engine::Force;
+use souple_engine::levels::{Division, Filter};
 use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_mesh::coarsen::{coarser, mean_edge};
-use souple_models::multiresolution::{Coupling, LevelsDescription, LevelsForce};
+use souple_models::multiresolution::{Coupling, Dress, DressLevel, LevelsDescription, LevelsForce, Worn};
 use souple_models::solids::Section;
 use souple_table::Value;
 
 use super::bodies::{BodyMaterials, Placed, solid_name};
 use super::{Draft, shape};
 use crate::diagnostic::Code;
+use crate::scene::DressInfo;
 use crate::spec::body::{Body, MassKind};
 use crate::spec::levels::LevelsSpec;
 use crate::spec::world::SystemSpec;
@@ -146,6 +150,67 @@ fn check_steps(draft: &Draft, system: &SystemSpec, spec: &LevelsSpec, force: &Le
         let message = "semi-implicit points brake all motion, and this coupling keeps its momentum";
         draft.log.add(Code::Conflict, stepper.site_of("semi_implicit"), message, "`coupling = \"one_way\"`");
     }
+}
+
+/// Says where a budget is below what the coarsest mesh needs: that is at work all the same, and nothing is ever refined.
+pub fn warn_of_budgets(draft: &mut Draft) {
+    let doubt = |body: &Placed| {
+        let spec = body.spec.levels.as_ref()?;
+        let (budget, system) = (spec.budget?, draft.spec.systems.get(body.system)?);
+        let stepper = system.stepper.as_ref()?;
+        let Some(Value::Integer(halvings)) = stepper.values.get("halvings") else { return None };
+        let forces = &draft.systems.get(body.system)?.forces;
+        let name = solid_name(&body.spec.name);
+        let force = forces.iter().find(|force| force.name() == name)?;
+        let force = force.as_any().downcast_ref::<LevelsForce>()?;
+        let division = Division {
+            timestep: draft.spec.world.period / f64::from(system.steps_per_period),
+            halvings: *halvings as u32,
+            filter: Filter::None,
+        };
+        let least = force.least_evaluations(&division);
+        (budget < least as f64).then(|| {
+            format!(
+                "{}: a step of body `{}` evaluates {least} stresses with the coarsest mesh alone, and its budget is {budget}: it \
+                 stays at that, nothing is refined, and against the clock the world may come late; a coarser mesh (`count`, \
+                 `ratio`) or fewer `halvings` would need less",
+                draft.place(&spec.site),
+                body.spec.name
+            )
+        })
+    };
+    let doubts: Vec<String> = draft.bodies.iter().filter_map(doubt).collect();
+    draft.warnings.extend(doubts);
+}
+
+/// What bodies with levels wear: fields of the world, each with its first state.
+pub fn add_dresses(draft: &mut Draft) {
+    let made: Vec<(String, Dress)> =
+        draft.bodies.iter().filter_map(|body| Some((body.spec.name.clone(), dress(draft, body)?))).collect();
+    for (body, dress) in made {
+        // all meshes stand at rest before a motion of the start moves them as one
+        let info = DressInfo { body, field: draft.model.fields.len(), dress: Arc::new(dress) };
+        draft.state.fields.push(info.dress.start());
+        draft.model.fields.push(Box::new(Worn(Arc::clone(&info.dress))));
+        draft.dresses.push(info);
+    }
+}
+
+fn dress(draft: &Draft, body: &Placed) -> Option<Dress> {
+    let (levels, spec) = (body.levels.as_ref()?, body.spec.levels.as_ref()?);
+    let spec = spec.dress.as_ref()?;
+    let surface = match &spec.mesh {
+        Some(mesh) => shape::build_of(body.spec, mesh, draft)?.mesh.boundary_surface(),
+        None => body.mesh.boundary_surface(),
+    };
+    let level = |placed: &Placed| DressLevel {
+        surface: placed.mesh.boundary_surface(),
+        rows: placed.rows.start as u32..placed.rows.end as u32,
+    };
+    let all: Vec<DressLevel> = levels.coarser.iter().chain([body]).map(level).collect();
+    let force = solid_name(&body.spec.name);
+    let of = draft.systems[body.system].forces.iter().position(|candidate| candidate.name() == force)?;
+    Some(Dress::new(format!("{}.dress", body.spec.name), [body.system, of], surface, &all, spec.blend))
 }
 
 /// Rest positions and start velocities of the coarser points: `v + ω × (x - c)` as those of the body.

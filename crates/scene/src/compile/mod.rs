@@ -37,7 +37,7 @@ use souple_models::contact::ShapeToolbox;
 use crate::diagnostic::{Code, Log, Site};
 use crate::inputs::Inputs;
 use crate::measure::ProbeInfo;
-use crate::scene::{BodyInfo, HandInfo, Scene, SkinInfo};
+use crate::scene::{BodyInfo, DressInfo, HandInfo, Scene, SkinInfo};
 use crate::source::Sources;
 use crate::spec::Spec;
 use crate::spec::world::SystemSpec;
@@ -59,6 +59,7 @@ pub(crate) struct Draft<'a> {
     /// What hinders rigid motions besides pins.
     pub joints: Vec<Joint>,
     pub skins: Vec<SkinInfo>,
+    pub dresses: Vec<DressInfo>,
     pub hands: Vec<HandInfo>,
 }
 
@@ -106,6 +107,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         warnings: Vec::new(),
         joints: Vec::new(),
         skins: Vec::new(),
+        dresses: Vec::new(),
         hands: Vec::new(),
     };
     bodies::place(&mut draft)?;
@@ -122,6 +124,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     boundary::add_loads(&mut draft);
     pins::add(&mut draft);
     skins::add(&mut draft);
+    levels::add_dresses(&mut draft);
     contact::add(&mut draft);
     hands::add(&mut draft);
     links::attach(&mut draft);
@@ -130,6 +133,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     pins::warn_of_idle(&mut draft);
     network::warn_of_steps(&mut draft);
     doubts::warn(&mut draft);
+    levels::warn_of_budgets(&mut draft);
     freedom::check(&mut draft);
     let probes: Vec<ProbeInfo> =
         spec.probes.iter().filter_map(|probe| ProbeInfo::compile(probe, &draft)).collect();
@@ -150,11 +154,12 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     }
     depth::warn(&mut draft);
     let networks = network::networks(&draft);
-    let Draft { bodies, systems, mut model, state, warnings, skins, hands, .. } = draft;
+    let Draft { bodies, systems, mut model, state, warnings, skins, hands, dresses, .. } = draft;
     model.systems = systems;
     let bodies = bodies.into_iter().map(|body| {
         let radii = network::radii(&body, spec);
-        BodyInfo::new(body, radii)
+        let dress = dresses.iter().find(|dress| dress.body == body.spec.name).cloned();
+        BodyInfo { dress, ..BodyInfo::new(body, radii) }
     });
     Some(Scene {
         title: title(spec, sources),

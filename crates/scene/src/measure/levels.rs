@@ -11,6 +11,7 @@ pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f6
     let counts = match quantity {
         LevelsQuantity::Active => census.active,
         LevelsQuantity::Ghosts => census.ghosts,
+        LevelsQuantity::Jump => return part.dress.as_ref().map_or(0.0, |dress| dress.greatest_jump(world)),
     };
     match part.level {
         Some(level) => counts[level] as f64,

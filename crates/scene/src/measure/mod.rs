@@ -16,7 +16,7 @@ use souple_math::Vec3;
 
 use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
-use crate::scene::{HandInfo, SkinInfo};
+use crate::scene::{DressInfo, HandInfo, SkinInfo};
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
     BodyQuantity, CellQuantity, HandQuantity, LevelsQuantity, Momentum, PointQuantity, Rank, Reduction,
@@ -87,6 +87,8 @@ struct LevelsPart {
     force: String,
     /// Only this one.
     level: Option<usize>,
+    /// What it wears.
+    dress: Option<DressInfo>,
 }
 
 /// What a probe reads.
@@ -276,7 +278,13 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
         draft.log.add(Code::Conflict, &probe.site, message, "a body with `levels`, and one of them");
         return None;
     }
-    Some(LevelsPart { system: body.system, force: solid_name(&body.spec.name), level: probe.level })
+    let dress = draft.dresses.iter().find(|dress| dress.body == body.spec.name).cloned();
+    if probe.quantity.build.subject == Subject::Levels(LevelsQuantity::Jump) && dress.is_none() {
+        let message = format!("body `{}` wears no dress", body.spec.name);
+        draft.log.add(Code::Conflict, &probe.site, message, "a body whose `levels` have a `dress`");
+        return None;
+    }
+    Some(LevelsPart { system: body.system, force: solid_name(&body.spec.name), level: probe.level, dress })
 }
 
 /// The cells that a probe is of.

@@ -40,6 +40,27 @@ pub(super) const THICKNESS: Key =
     Key::number("thickness", "m", Range::NOT_NEGATIVE, "distance at which touching starts")
         .or(Value::Number(0.0));
 
+pub(super) const DETECT: Key = Key::new(
+    "detect",
+    Shape::Choice(&DETECTIONS),
+    "the body's surface points, or its triangles: between these no tool is too thin, and through them none too fast; of a sphere, a capsule or jaws",
+)
+.or(Value::Text(DETECTIONS[0]));
+const DETECTIONS: [&str; 2] = ["points", "triangles"];
+
+/// What of a body's surface is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detect {
+    Points,
+    Triangles,
+}
+
+impl Detect {
+    pub(super) fn named(name: &str) -> Self {
+        if name == DETECTIONS[1] { Self::Triangles } else { Self::Points }
+    }
+}
+
 pub(crate) static CONTACT: Keys = Keys::new(
     "contact",
     "points of a body against a shape or a skin, or the surfaces of two bodies",
@@ -54,8 +75,9 @@ pub(crate) static CONTACT: Keys = Keys::new(
             "stiffness",
             "N/m",
             Range::POSITIVE,
-            "of a point of mean area, or of each mass of a network; where left out, that of the body's material behind it",
+            "of a point of mean area, or of each mass of a network; where left out, that of the body's material behind it; of a triangle of mean area, twenty times that of the material",
         ),
+        DETECT,
         FRICTION,
         DAMPING,
         TANGENTIAL_STIFFNESS,
@@ -90,6 +112,7 @@ pub struct Contact {
     pub against: Option<Against>,
     pub region: Option<Region>,
     pub stiffness: Option<f64>,
+    pub detect: Detect,
     pub friction: f64,
     pub damping: f64,
     pub tangential_stiffness: Option<f64>,
@@ -131,6 +154,7 @@ impl Contact {
             against,
             region: Region::read(reader, "region"),
             stiffness: reader.maybe_number("stiffness"),
+            detect: Detect::named(reader.choice("detect")),
             friction: reader.number("friction"),
             damping: reader.number("damping"),
             tangential_stiffness: reader.maybe_number("tangential_stiffness"),

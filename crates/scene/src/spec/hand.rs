@@ -6,7 +6,7 @@ use souple_models::contact::shape::BuildShape;
 use souple_table::{Range, Value};
 
 use super::boundary::{MOTION, MotionSpec};
-use super::contact::{Contact, DAMPING, FRICTION, TANGENTIAL_STIFFNESS, THICKNESS};
+use super::contact::{Contact, DAMPING, DETECT, Detect, FRICTION, TANGENTIAL_STIFFNESS, THICKNESS};
 use super::region::Region;
 use crate::diagnostic::Site;
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
@@ -25,8 +25,9 @@ static TOUCH: Keys = Keys::new(
             "stiffness",
             "N/m",
             Range::POSITIVE,
-            "of a point of mean area; where left out, that of the body's material behind it",
+            "of a point of mean area; where left out, that of the body's material behind it; of a triangle, twenty times that",
         ),
+        DETECT,
         FRICTION,
         DAMPING,
         TANGENTIAL_STIFFNESS,
@@ -119,6 +120,7 @@ impl HandSpec {
                 against: None,
                 region: Region::read(reader, "region"),
                 stiffness: maybe("stiffness"),
+                detect: touch.as_ref().map_or(Detect::Points, |touch| Detect::named(touch.choice("detect"))),
                 friction: number("friction"),
                 damping: number("damping"),
                 tangential_stiffness: maybe("tangential_stiffness"),

@@ -15,6 +15,16 @@ static COARSER: Keys = Keys::new(
     &[Key::new("mesh", Shape::Entry(MESH), "its shape at rest, of tetrahedra").required()],
 );
 
+static DRESS: Keys = Keys::new(
+    "dress",
+    "a surface that is shown in the place of the body's own, and follows whichever mesh is at work",
+    &[
+        Key::new("mesh", Shape::Entry(MESH), "whose boundary it is; the body's own where left out"),
+        Key::number("blend", "s", Range::NOT_NEGATIVE, "in which what would jump as levels change fades")
+            .or(Value::Number(0.12)),
+    ],
+);
+
 pub(crate) static LEVELS: Keys = Keys::new(
     "levels",
     "coarser meshes of the body, one of which is at work wherever its own mesh need not be",
@@ -54,6 +64,7 @@ pub(crate) static LEVELS: Keys = Keys::new(
             Shape::Formula(&PLACE_VARIABLES),
             "the level at a place, counted from 0, the coarsest, in the place of a criterion",
         ),
+        Key::new("dress", Shape::Table(&DRESS), "the surface that is shown"),
         Key::number("budget", "", Range::POSITIVE, "stresses that a step may evaluate; without it, any number"),
     ],
 );
@@ -67,7 +78,16 @@ pub struct LevelsSpec {
     pub criterion: Criterion,
     pub fixed: Option<Formula>,
     pub budget: Option<f64>,
+    pub dress: Option<DressSpec>,
     pub site: Site,
+}
+
+/// A display surface as specified.
+pub struct DressSpec {
+    /// Whose boundary it is, where not the body's own.
+    pub mesh: Option<MeshSpec>,
+    /// [s]
+    pub blend: f64,
 }
 
 impl LevelsSpec {
@@ -106,6 +126,10 @@ impl LevelsSpec {
             criterion,
             fixed: reader.maybe_formula("fixed"),
             budget: reader.maybe_number("budget"),
+            dress: reader.table("dress").map(|dress| DressSpec {
+                mesh: dress.has("mesh").then(|| MeshSpec::read(&dress)).flatten(),
+                blend: dress.number("blend"),
+            }),
             site: reader.site(),
         }
     }

@@ -68,6 +68,7 @@ pub enum HandQuantity {
 pub enum LevelsQuantity {
     Active,
     Ghosts,
+    Jump,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,8 +202,8 @@ const fn skin(unit: &'static str, quantity: SkinQuantity) -> Quantity {
     Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Skin(quantity))
 }
 
-const fn levels(quantity: LevelsQuantity) -> Quantity {
-    Quantity::of("", Rank::Number, Reduction::Sum, Subject::Levels(quantity))
+const fn levels(unit: &'static str, quantity: LevelsQuantity) -> Quantity {
+    Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Levels(quantity))
 }
 
 const fn hand(unit: &'static str, rank: Rank, quantity: HandQuantity) -> Quantity {
@@ -417,13 +418,19 @@ const ENTRIES: &[&QuantityEntry] = &[
         "levels.active",
         "points that move by themselves, of all levels or of the key `level`",
         LEVELS,
-        levels(LevelsQuantity::Active),
+        levels("", LevelsQuantity::Active),
     ),
     &entry(
         "levels.ghosts",
         "points that follow because active ones see them, of all levels or of the key `level`",
         LEVELS,
-        levels(LevelsQuantity::Ghosts),
+        levels("", LevelsQuantity::Ghosts),
+    ),
+    &entry(
+        "levels.jump",
+        "the most that a node of its `dress` has jumped from one period to the next so far, because levels changed",
+        LEVELS,
+        levels("m", LevelsQuantity::Jump),
     ),
     &entry(
         "hand.position",

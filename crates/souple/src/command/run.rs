@@ -224,18 +224,18 @@ fn parse_duration(text: &str) -> Result<f64, Refusal> {
 }
 
 /// The scene of a program called without arguments, as it is in the repository.
-const DEFAULT_SCENE: &str = include_str!("../../../../scenes/liver/scene.toml");
+const DEFAULT_SCENE: &str = include_str!("../../../../scenes/surgical/scene.toml");
 
 /// Greets, runs the default scene headless, and says what to try next.
 pub fn run_default_scene() -> Result<End, Refusal> {
     print_line(
-        "Souple, a simulator of soft things. The default scene runs now: a liver hangs from its ligaments and is poked.",
+        "Souple, a simulator of soft things. The default scene runs now: a liver of three meshes hangs from its ligament and is poked.",
     );
-    let scene = souple_scene::read_text("liver", DEFAULT_SCENE, Path::new("."), &[])?;
-    let out = PathBuf::from("out").join("liver");
+    let scene = souple_scene::read_text("surgical", DEFAULT_SCENE, Path::new("."), &[])?;
+    let out = PathBuf::from("out").join("surgical");
     let options = Options {
         out: Some(out.clone()),
-        scene_name: "liver".to_owned(),
+        scene_name: "surgical".to_owned(),
         interruption: interruption::heed(),
         ..Options::default()
     };

@@ -30,7 +30,7 @@ pub struct Arguments {
 const PORT: u16 = 7878;
 const LOOPBACK: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 /// The scene of `souple view` alone, as it is in the repository.
-const DEFAULT_SCENE: &str = include_str!("../../../../scenes/liver/scene.toml");
+const DEFAULT_SCENE: &str = include_str!("../../../../scenes/surgical/scene.toml");
 /// Where other scenes are looked for, from the current folder.
 const SCENES: &str = "scenes";
 
@@ -58,7 +58,7 @@ pub fn view_default_scene() -> Result<End, Refusal> {
     let viewer = viewer.map_err(refuse)?;
     print_line(viewer.address());
     print_note(
-        "Souple, a simulator of soft things. Open this address in a browser: a liver hangs from its ligaments; pull it.\n\
+        "Souple, a simulator of soft things. Open this address in a browser: a liver of three meshes hangs from its ligament; pull it, or push a tool on it.\n\
          Ctrl-C ends. Try next:\n  \
          souple list materials\n  \
          souple check scenes/cantilever\n  \
@@ -93,13 +93,13 @@ fn read(arguments: &Arguments) -> Result<(Scene, String), Refusal> {
         return Ok((read_scene(path, &arguments.settings)?, scene_path(path).display().to_string()));
     }
     // where the repository is at hand, under the name that other commands take
-    let file = Path::new(SCENES).join("liver/scene.toml");
+    let file = Path::new(SCENES).join("surgical/scene.toml");
     if file.is_file() {
         let name = file.display().to_string();
         return Ok((read_scene(&name, &arguments.settings)?, name));
     }
-    let scene = souple_scene::read_text("liver", DEFAULT_SCENE, Path::new("."), &arguments.settings)?;
-    Ok((scene, "liver".to_owned()))
+    let scene = souple_scene::read_text("surgical", DEFAULT_SCENE, Path::new("."), &arguments.settings)?;
+    Ok((scene, "surgical".to_owned()))
 }
 
 fn refuse(error: ViewError) -> Refusal {

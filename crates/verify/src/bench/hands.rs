@@ -53,6 +53,17 @@ pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
             by_processor: None,
         }
     };
+    // what the budget keeps below the whole time of the world, also while the hand presses
+    let worst = |name: &str, kept: &Kept| {
+        let mut loads = kept.run.world.loads.clone();
+        loads.sort_by(f64::total_cmp);
+        let at = ((loads.len() as f64 * 0.99) as usize).min(loads.len().saturating_sub(1));
+        Figure {
+            value: loads.get(at).copied().unwrap_or(0.0),
+            unit: "time of computing / time of the world, 99 % of periods below",
+            ..load(name, kept)
+        }
+    };
     Ok(vec![
         Figure {
             name: "haptic_period_99_9".to_owned(),
@@ -69,6 +80,7 @@ pub fn period(effort: Effort) -> Result<Vec<Figure>, String> {
             by_processor: None,
         },
         load("haptic_load_liver", &liver),
+        worst("haptic_load_liver_99", &liver),
         load("haptic_load_block_30k", &block),
     ])
 }

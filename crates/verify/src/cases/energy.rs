@@ -20,6 +20,7 @@ use crate::{Case, Limit, Reading, Refinement, Statistic, Tolerance, Variant};
 
 const EXPLICIT_EULER: &str = r#"systems.main.stepper="explicit_euler""#;
 const SYMPLECTIC_EULER: &str = r#"systems.main.stepper="symplectic_euler""#;
+const NEWTON_COTES: &str = r#"systems.main.stepper="newton_cotes""#;
 const RK2: &str = r#"systems.main.stepper="rk2""#;
 const RK4: &str = r#"systems.main.stepper="rk4""#;
 const BACKWARD_EULER: &str =
@@ -131,6 +132,18 @@ pub(super) const CASES: &[Case] = &[
         // powers of the matrix of (q, v, a)
         reference: 0.048_095_516_170_437_11,
         tolerance: Tolerance::Relative(1e-10),
+        ..BLOCK
+    },
+    Case {
+        id: "energy_newton_cotes",
+        capabilities: &["DEB-34"],
+        what: "energy of the block after 100 steps of 8 ms under Newton and Cotes: grown, where modified Euler keeps it",
+        settings: &[NEWTON_COTES, r#"world.period="8 ms""#],
+        // powers of the matrix of (q, v)
+        reference: 0.140_818_030_731_289_5,
+        tolerance: Tolerance::Relative(1e-10),
+        source: "V-34; v' = v - h k q, q' = q + h v - h² k/2 q",
+        mutation: r#"systems.main.stepper="symplectic_euler""#,
         ..BLOCK
     },
     Case {

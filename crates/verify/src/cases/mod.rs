@@ -32,6 +32,7 @@ mod skins;
 mod soft_cube;
 mod stepper_orders;
 mod thick_sphere;
+mod tools;
 mod traction;
 mod wall_cube;
 
@@ -72,6 +73,7 @@ pub const TABLES: &[&[Case]] = &[
     frames::CASES,
     levels::CASES,
     hands::CASES,
+    tools::CASES,
     skins::CASES,
 ];
 

@@ -12,6 +12,7 @@ use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
 
 const EXPLICIT_EULER: &str = r#"systems.main.stepper="explicit_euler""#;
 const SYMPLECTIC_EULER: &str = r#"systems.main.stepper="symplectic_euler""#;
+const NEWTON_COTES: &str = r#"systems.main.stepper="newton_cotes""#;
 const VERLET: &str = r#"systems.main.stepper="verlet""#;
 const RK2: &str = r#"systems.main.stepper="rk2""#;
 const RK4: &str = r#"systems.main.stepper="rk4""#;
@@ -81,6 +82,13 @@ pub(super) const CASES: &[Case] = &[
         id: "order_block_explicit_euler",
         what: "order of explicit Euler, block on springs",
         settings: &[EXPLICIT_EULER],
+        ..BLOCK
+    },
+    Case {
+        id: "order_block_newton_cotes",
+        capabilities: &["DEB-34"],
+        what: "order of Newton and Cotes, block on springs",
+        settings: &[NEWTON_COTES],
         ..BLOCK
     },
     Case {

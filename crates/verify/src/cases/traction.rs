@@ -27,9 +27,45 @@ const SIDE: Case = Case {
     ..PULL
 };
 
+// V-37: volume is kept by λ alone. With μ = 7 kPa, ν = λ / (2 (λ + μ)), and what the bar narrows by is -ν 0.05 x 0.2 m: its volume
+// grows by (1 - 2 ν) of its strain
+const KEPT: Case = Case {
+    capabilities: &["DEB-49"],
+    source: "V-37: uniaxial stress, change of volume over strain 1 - 2 ν",
+    tolerance: Tolerance::Absolute(1e-9),
+    ..SIDE
+};
+
 const ST_VENANT_KIRCHHOFF: &[&str] = &[r#"bodies.bar.material.name="st_venant_kirchhoff""#];
 
 pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "volume_lambda_0",
+        what: "how much the stretched bar narrows, λ = 0: not at all",
+        settings: &[r#"bodies.bar.material.youngs_modulus="14 kPa""#, "bodies.bar.material.poissons_ratio=0"],
+        reference: 0.0,
+        ..KEPT
+    },
+    Case {
+        id: "volume_lambda_50k",
+        what: "the same, λ = 50 kPa, μ = 7 kPa",
+        settings: &[
+            "bodies.bar.material.youngs_modulus=20140.350877192983",
+            "bodies.bar.material.poissons_ratio=0.43859649122807015",
+        ],
+        reference: -0.438_596_491_228_070_15e-2,
+        ..KEPT
+    },
+    Case {
+        id: "volume_lambda_500k",
+        what: "the same, λ = 500 kPa: hardly any volume is lost or won",
+        settings: &[
+            "bodies.bar.material.youngs_modulus=20903.353057199211",
+            "bodies.bar.material.poissons_ratio=0.49309664694280081",
+        ],
+        reference: -0.493_096_646_942_800_81e-2,
+        ..KEPT
+    },
     Case {
         id: "traction_hooke_1mpa",
         what: "pull of the stretched bar, Hooke's law, E = 1 MPa, hex8",

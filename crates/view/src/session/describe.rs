@@ -66,7 +66,8 @@ impl Stage {
     fn to_json(&self) -> Value {
         let Session { title, bodies, skins, probes, warnings, world, .. } = self.session();
         let view = self.view();
-        let is_worn = |body: &BodyInfo| skins.iter().any(|skin| skin.name == body.name);
+        let is_worn =
+            |body: &BodyInfo| body.dress.is_some() || skins.iter().any(|skin| skin.name == body.name);
         let body = |(body, shown): (&BodyInfo, &super::Shown)| {
             json!({
                 "name": body.name,
@@ -85,6 +86,11 @@ impl Stage {
             let worn_by = bodies.iter().position(|body| body.name == skin.name);
             json!({"name": skin.name, "worn_by": worn_by})
         };
+        let dress = |(index, body): (usize, &BodyInfo)| {
+            body.dress.as_ref().map(|_| json!({"name": body.name, "worn_by": index}))
+        };
+        let skins = skins.iter().map(skin).chain(bodies.iter().enumerate().filter_map(dress));
+        let skins: Vec<Value> = skins.collect();
         let probe = |probe: &ProbeInfo| {
             json!({
                 "name": probe.name, "unit": probe.unit, "quantity": probe.quantity,
@@ -102,7 +108,7 @@ impl Stage {
             "up": view.up.to_array(),
             "direction": view.direction.to_array(),
             "bodies": bodies.iter().zip(self.shown()).map(body).collect::<Vec<_>>(),
-            "skins": skins.iter().map(skin).collect::<Vec<_>>(),
+            "skins": skins,
             "obstacles": self.obstacles().iter().map(obstacle_to_json).collect::<Vec<_>>(),
             "probes": probes.iter().map(probe).collect::<Vec<_>>(),
             "fields": FIELDS.entries.iter().map(|field| self.field_to_json(field)).collect::<Vec<_>>(),

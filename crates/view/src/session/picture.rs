@@ -4,7 +4,7 @@ use souple_engine::World;
 use souple_engine::obstacle::{Form, Obstacle};
 use souple_math::{Mat3, Vec3};
 use souple_run::Session;
-use souple_scene::{BodyInfo, SkinInfo};
+use souple_scene::{BodyInfo, DressInfo, SkinInfo};
 
 use super::Shown;
 use super::stage::Stage;
@@ -47,7 +47,12 @@ impl Stage {
             hands: self.hands().shown(world),
             poses: obstacles.map(|obstacle| pose(obstacle, time)).collect(),
             bodies,
-            skins: session.skins.iter().map(|skin| of_skin(world, skin)).collect(),
+            skins: session
+                .skins
+                .iter()
+                .map(|skin| of_skin(world, skin))
+                .chain(session.bodies.iter().filter_map(|body| Some(of_dress(world, body.dress.as_ref()?))))
+                .collect(),
         };
         frame.encode()
     }
@@ -97,6 +102,11 @@ fn of_body<'a>(
 fn of_skin(world: &World, skin: &SkinInfo) -> FrameSkin {
     let (surface, normals) = skin.surface(world);
     FrameSkin { points: surface.points, normals, triangles: surface.triangles }
+}
+
+fn of_dress(world: &World, info: &DressInfo) -> FrameSkin {
+    let (points, triangles) = (info.points(world), info.dress.triangles().to_vec());
+    FrameSkin { normals: souple_mesh::vertex_normals(&points, &triangles), points, triangles }
 }
 
 /// How an obstacle stands at a time: the axes of its shape, and where its origin is.

@@ -38,6 +38,10 @@ impl Shape for Capsule {
         Some(rounded(point, centre, self.radius, flat, axis.any_orthogonal()))
     }
 
+    fn parts(&self) -> &[Capsule] {
+        std::slice::from_ref(self)
+    }
+
     fn outline(&self) -> Option<Outline> {
         Some(Outline::solid(rounded_surface(self.from, self.to, self.radius)))
     }

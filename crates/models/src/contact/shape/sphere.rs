@@ -3,7 +3,9 @@
 use souple_math::{Mat3, Vec3};
 use souple_table::{Parameter, Range, Value};
 
-use super::{HOLLOW, Nearest, Outline, Shape, ShapeEntry, boxed, is_beyond, rounded, rounded_surface};
+use super::{
+    Capsule, HOLLOW, Nearest, Outline, Shape, ShapeEntry, boxed, is_beyond, rounded, rounded_surface,
+};
 
 /// At the very centre the nearest point is taken along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +14,14 @@ pub struct Sphere {
     pub centre: Vec3,
     /// [m]
     pub radius: f64,
+    /// The same as a rounded part of no length.
+    part: Capsule,
+}
+
+impl Sphere {
+    pub fn new(centre: Vec3, radius: f64) -> Self {
+        Self { centre, radius, part: Capsule { from: centre, to: centre, radius } }
+    }
 }
 
 impl Shape for Sphere {
@@ -20,6 +30,10 @@ impl Shape for Sphere {
             return None;
         }
         Some(rounded(point, self.centre, self.radius, Mat3::ZERO, Vec3::Z))
+    }
+
+    fn parts(&self) -> &[Capsule] {
+        std::slice::from_ref(&self.part)
     }
 
     fn outline(&self) -> Option<Outline> {
@@ -37,8 +51,7 @@ pub(super) const ENTRY: ShapeEntry = ShapeEntry {
         HOLLOW,
     ],
     build: |values, _| {
-        let sphere =
-            Sphere { centre: Vec3::from_array(values.vector("centre")), radius: values.number("radius") };
+        let sphere = Sphere::new(Vec3::from_array(values.vector("centre")), values.number("radius"));
         Ok(boxed(sphere, values))
     },
 };
