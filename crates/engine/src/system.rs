@@ -364,12 +364,12 @@ impl System {
         state: &mut SystemState,
         around: &Surroundings,
     ) -> bool {
-        let stale = |(index, force): (usize, &Box<dyn Force>)| {
+        let stale = |(index, force): (usize, &dyn Force)| {
             let at = self.view(index, &ws.rows, state, around);
             let scratch = &ws.scratches[index];
             force.declaration().changing_pattern && force.pairs_are_stale(&ws.searched, &at, scratch)
         };
-        let is_stale = self.forces.iter().enumerate().any(stale);
+        let is_stale = self.forces.iter().map(AsRef::as_ref).enumerate().any(stale);
         if is_stale {
             self.update_pairs(ws, state, around);
         }

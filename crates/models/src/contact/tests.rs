@@ -9,7 +9,7 @@ use souple_mesh::TriangleSurface;
 use souple_table::{Value, Values};
 
 use super::law::Approach;
-use super::shape::{Capsule, ClosedSurface, Cuboid, Plane, Sphere};
+use super::shape::{Capsule, ClosedSurface, Cuboid, Jaws, Plane, Sphere};
 use super::shape_contact::{derivative, dual};
 use super::*;
 use crate::loads::battery::{Setting, assert_force, stepper, world};
@@ -55,10 +55,11 @@ fn moving() -> RigidMotion {
 #[test]
 fn shape_contacts_agree_with_energies_and_derivatives() {
     type Make = fn() -> Box<dyn Shape>;
-    let shapes: [(&str, Make); 5] = [
+    let shapes: [(&str, Make); 6] = [
         ("plane", || Box::new(Plane { point: Vec3::ZERO, normal: Vec3::new(0.6, 0.8, 0.0) })),
         ("sphere", || Box::new(Sphere::new(Vec3::new(0.1, 0.0, 0.2), 1.0))),
         ("capsule", || Box::new(Capsule { from: Vec3::new(-0.5, 0.0, 0.0), to: Vec3::X, radius: 0.6 })),
+        ("jaws", || Box::new(Jaws::new(Vec3::new(0.0, -0.8, 0.1), [Vec3::Y, Vec3::Z], 1.6, 0.5, 0.6))),
         ("box", || {
             // turned by nearly a quarter, its sides exchanged for that: the same places are inside and outside, at an angle
             let axes = exponential(Vec3::new(0.0, 0.0, 1.5));

@@ -83,13 +83,13 @@ impl Setting {
 }
 
 fn rod() -> Capsule {
-    Capsule { from: Vec3::new(-0.13, 0.02, 0.21), to: Vec3::new(0.22, 0.05, 0.12), radius: 0.1 }
+    Capsule { from: Vec3::new(-0.13, 0.02, 0.14), to: Vec3::new(0.22, 0.05, 0.07), radius: 0.1 }
 }
 
 /// The triangles that touch are those that a look at each of them finds.
 #[test]
 fn touching_triangles_are_those_of_brute_force() {
-    let jaws = Jaws::new(Vec3::new(0.0, 0.0, 0.3), [-Vec3::Z, Vec3::X], 0.25, 0.06, 1.0);
+    let jaws = Jaws::new(Vec3::new(0.0, 0.0, 0.26), [-Vec3::Z, Vec3::X], 0.25, 0.06, 1.0);
     let shapes: [Box<dyn Shape>; 3] =
         [Box::new(Sphere::new(Vec3::new(0.04, 0.07, 0.1), 0.2)), Box::new(rod()), Box::new(jaws)];
     for shape in shapes {
@@ -157,22 +157,22 @@ fn fast_tools_do_not_pass() {
         let pairs = setting.search(0.0, &[]);
         assert!(setting.force(0.0, &pairs).iter().all(|force| *force == Vec3::ZERO));
         let mut before = 0.0;
-        for time in [0.006, 0.008, 0.01] {
+        for time in [0.005, 0.0055, 0.006] {
             let force: Vec3 = setting.force(time, &pairs).into_iter().sum();
-            // the sheet is pushed on, at least by the triangle in the way with what it is behind
+            // the sheet is pushed on, at least by the triangle in the way with what it is behind; those beside it let go
             let behind = 100.0 * time - height - 0.05;
-            assert!(force.z < -200.0 * behind && force.z < before, "{time}: {force:?}");
+            assert!(force.z < -200.0 * behind, "{time}: {force:?}");
             before = force.z;
         }
         // one that is far off and fast stays known until it comes
         let early = setting.search(-0.02, &[]);
         let mut pairs = setting.search(-0.01, &early);
         pairs = setting.search(0.0, &pairs);
-        let force: Vec3 = setting.force(0.01, &pairs).into_iter().sum();
+        let force: Vec3 = setting.force(0.006, &pairs).into_iter().sum();
         assert!(force.z < 0.5 * before, "{force:?}");
         // and what it went through is still known when searched again
-        let again = setting.search(0.01, &pairs);
-        let found: Vec3 = setting.force(0.01, &again).into_iter().sum();
+        let again = setting.search(0.006, &pairs);
+        let found: Vec3 = setting.force(0.006, &again).into_iter().sum();
         assert_eq!(found, force);
     }
 }

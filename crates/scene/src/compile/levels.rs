@@ -165,7 +165,7 @@ pub fn warn_of_budgets(draft: &mut Draft) {
         let force = force.as_any().downcast_ref::<LevelsForce>()?;
         let division = Division {
             timestep: draft.spec.world.period / f64::from(system.steps_per_period),
-            halvings: *halvings as u32,
+            halvings: halvings as u32,
             filter: Filter::None,
         };
         let least = force.least_evaluations(&division);

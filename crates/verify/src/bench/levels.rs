@@ -53,7 +53,10 @@ pub fn adaptive_saving(effort: Effort) -> Result<Vec<Figure>, String> {
     // a little before the tool draws back
     let periods = effort.choose(60, 95);
     let adaptive = poke(&[], periods)?;
-    let fine = poke(&["bodies.liver.levels.fixed=\"2\"".to_owned()], periods)?;
+    // without the criterion of the scene, which levels that are fixed refuse
+    let all_fine =
+        r#"bodies.liver.levels={ count = 3, ratio = 1.8, fixed = "2", dress = { blend = "200 ms" } }"#;
+    let fine = poke(&[all_fine.to_owned()], periods)?;
     let force = distance(adaptive.force, fine.force) / distance(fine.force, [0.0; 3]);
     let surface = adaptive.surface.iter().zip(&fine.surface).map(|(a, b)| distance(*a, *b));
     let surface = surface.fold(0.0, f64::max) / fine.size;

@@ -13,7 +13,7 @@ pub fn detection(effort: Effort) -> Result<Vec<Figure>, String> {
     let settings = [
         "bodies.slab.mesh.cells=[49, 49, 1]",
         "systems.main.stepper.halvings=12",
-        "shapes.needle.motion={ formula = [0, 0, \"-0.013 + 0 * t\"] }",
+        "shapes.needle.motion={ formula = [0, 0, \"-0.0115 + 0 * t\"] }",
     ]
     .map(str::to_owned);
     let scene = scene("fast_tool", &settings)?;
