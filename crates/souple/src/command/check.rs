@@ -300,7 +300,11 @@ fn print_network(network: &NetworkInfo, costs: &[f64]) {
         print_line(format_args!("    lightest mass m = {mass:.4e} kg, M = m/Te² = {algorithmic:.4e} N/m"));
     }
     for (law, seconds) in network.laws.iter().zip(costs) {
-        let links = if law.links > 0 { format!("{} links, ", law.links) } else { String::new() };
+        let links = if law.links > 0 {
+            format!("{}, ", souple_table::counted(law.links as u64, "link"))
+        } else {
+            String::new()
+        };
         let stiffest = law.stiffest.map(|h| format!("takes {h:.4e} N/m of 4M, ")).unwrap_or_default();
         print_line(format_args!(
             "    {} ({}): {links}{stiffest}{} in the state of each, {:.2} µs a step",
