@@ -3,7 +3,8 @@
 //! A pair is a triangle and a part of the tool. It is found while the tool is still outside: all triangles near what the
 //! tool sweeps in a step make pairs, and each remembers on which side of the tool it is. So a tool that would be through the
 //! body a moment later finds the triangles that it went through still in front of it, and is pushed back, however far it
-//! came, until it has slid off at the side by more than its radius and the reach. Triangles that face away from the tool are behind the body's own matter, and touch nothing.
+//! came, until it has slid off at the side by more than its radius and the reach. Triangles that face away from the tool are
+//! behind the body's own matter, and touch nothing.
 //!
 //! A triangle is pushed where it is nearest to the part's core (a point or a segment), in proportion to its area: triangles
 //! finer or coarser make the same pressure, and a tool thinner than a triangle does not slip between its corners.
