@@ -34,11 +34,17 @@ impl Pair {
 /// Merges the pairs found now into those remembered: a pair that is still there keeps its memory, a new one
 /// starts with the memory it was found with, one that is gone is forgotten. Sorted by `(force, a, b)`.
 pub fn merge_pairs(remembered: &mut Vec<Pair>, found: &mut Vec<Pair>) {
-    found.sort_unstable_by_key(Pair::key);
-    found.dedup_by_key(|pair| pair.key());
+    // most forces find them in order
+    if !found.is_sorted_by(|a, b| a.key() < b.key()) {
+        found.sort_unstable_by_key(Pair::key);
+        found.dedup_by_key(|pair| pair.key());
+    }
+    let mut known = remembered.iter().peekable();
     for pair in found.iter_mut() {
-        if let Ok(at) = remembered.binary_search_by_key(&pair.key(), Pair::key) {
-            pair.memory = remembered[at].memory;
+        let key = pair.key();
+        while known.next_if(|known| known.key() < key).is_some() {}
+        if let Some(same) = known.next_if(|known| known.key() == key) {
+            pair.memory = same.memory;
         }
     }
     std::mem::swap(remembered, found);

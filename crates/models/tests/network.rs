@@ -10,7 +10,7 @@ use souple_math::Vec3;
 use souple_models::network::laws::{Piecewise, SpringDamper};
 use souple_models::network::{
     Account, Crowd, CrowdDescription, Friction, Hook, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel,
-    Links, Making, Phase, Reach, Span,
+    Links, Making, Phase, Reach, Slide, Span,
 };
 use souple_table::{Value, Values};
 
@@ -465,7 +465,14 @@ fn crowds_are_all_pairs() {
 /// A hook pulls back by its stiffness, tears at the static coefficient, slides at the kinetic one, and hooks again when slow.
 #[test]
 fn friction_sticks_slides_and_sticks() {
-    let friction = Friction { stiffness: 1000.0, damping: 0.0, sticking: 0.6, sliding: 0.4, slow: 1e-4 };
+    let friction = Friction {
+        stiffness: 1000.0,
+        damping: 0.0,
+        sticking: 0.6,
+        slide: Slide::Coulomb(0.4),
+        hold: 1.0,
+        slow: 1e-4,
+    };
     let (up, normal) = (Vec3::new(0.0, 0.0, 1.0), 10.0);
     let start = friction.grip(Hook::FREE, up, up, normal);
     assert_eq!((start.next.phase, start.force), (Phase::Stick, Vec3::ZERO));

@@ -1,4 +1,4 @@
-//! The frames of a run: a series of files for ParaView per body and per skin, and a skin's surface in other formats.
+//! The frames of a run: a series of files for ParaView per body, per skin and per contour, and a skin's surface in other formats.
 
 use std::path::{Path, PathBuf};
 
@@ -18,6 +18,8 @@ pub struct Frames {
     bodies: Vec<Series>,
     skins: Vec<Series>,
     dresses: Vec<Series>,
+    /// Of all bodies, one after the other.
+    contours: Vec<Series>,
     /// Steps between frames.
     every: u64,
     last_written: Option<u64>,
@@ -33,7 +35,8 @@ impl Frames {
         count: u64,
         steps: u64,
     ) -> Result<Self, OutputError> {
-        let (mut bodies, mut skins, mut dresses) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut bodies, mut skins) = (Vec::new(), Vec::new());
+        let (mut dresses, mut contours) = (Vec::new(), Vec::new());
         let mut path = PathBuf::new();
         if let Some(folder) = folder.filter(|_| count > 0) {
             path = folder.frames()?;
@@ -42,9 +45,20 @@ impl Frames {
             skins = session.skins.iter().map(|skin| Series::new(&path, name(skin))).collect();
             let worn = session.bodies.iter().filter_map(|body| body.dress.as_ref());
             dresses = worn.map(|dress| Series::new(&path, worn_by(&dress.body))).collect();
+            contours = names_of_contours(&session.bodies).map(|name| Series::new(&path, name)).collect();
         }
         let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };
-        Ok(Self { folder: path, bodies, skins, dresses, every, last_written: None, step: 0, drawable: None })
+        Ok(Self {
+            folder: path,
+            bodies,
+            skins,
+            dresses,
+            contours,
+            every,
+            last_written: None,
+            step: 0,
+            drawable: None,
+        })
     }
 
     /// The frame of a step, if one is due.
@@ -120,6 +134,18 @@ impl Frames {
             };
             push(folder, series, moment.time, &output)?;
         }
+        let own = moment.bodies.iter().rev().take(self.contours.len()).rev();
+        for (series, contour) in self.contours.iter_mut().zip(own) {
+            let output = Output {
+                mesh: &contour.mesh,
+                positions: None,
+                point_fields: &[],
+                cell_fields: &[],
+                facets: Facets::LeftOut,
+                precision: precision_for(&contour.positions),
+            };
+            push(folder, series, moment.time, &output)?;
+        }
         if moment.is_drawable() {
             self.drawable = Some(moment);
         }
@@ -150,6 +176,35 @@ pub fn worn_by(body: &str) -> String {
 pub fn name_of_skin(skin: &SkinInfo, bodies: &[BodyInfo]) -> String {
     let is_worn = bodies.iter().any(|body| body.name == skin.name);
     if is_worn { worn_by(&skin.name) } else { skin.name.clone() }
+}
+
+/// The names of the files of contours, body by body: `NETWORK.CONTOUR`.
+pub fn names_of_contours(bodies: &[BodyInfo]) -> impl Iterator<Item = String> + '_ {
+    bodies
+        .iter()
+        .flat_map(|body| body.contours.iter().map(|contour| format!("{}.{}", body.name, contour.name)))
+}
+
+/// The lines of contours as they stand, body by body.
+pub fn meshes_of_contours(bodies: &[BodyInfo], world: &World) -> Vec<Mesh> {
+    let of_body = |body: &BodyInfo| {
+        let positions = &world.rows(body.system).positions;
+        body.contours.iter().map(|contour| closed_lines(&contour.places(positions))).collect::<Vec<_>>()
+    };
+    bodies.iter().flat_map(of_body).collect()
+}
+
+fn closed_lines(lines: &[Vec<Vec3>]) -> Mesh {
+    let mut mesh = Mesh::default();
+    for line in lines {
+        let first = mesh.points.len() as u32;
+        mesh.points.extend(line);
+        let last = mesh.points.len() as u32 - 1;
+        for at in first..=last {
+            mesh.push_cell(ElementKind::Edge2, &[at, if at == last { first } else { at + 1 }]);
+        }
+    }
+    mesh
 }
 
 /// A skin's triangles as they stand, and its normals.

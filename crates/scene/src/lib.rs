@@ -25,7 +25,7 @@ mod values;
 pub use adjust::Adjustable;
 pub use compile::{LawInfo, NetworkInfo};
 pub use diagnostic::{Code, Diagnostic, Diagnostics};
-pub use measure::{Measurement, ProbeInfo};
+pub use measure::{ContourInfo, Measurement, ProbeInfo};
 pub use modules::MODULES;
 pub use scene::{
     BodyInfo, DressInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec,

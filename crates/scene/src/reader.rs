@@ -31,6 +31,14 @@ pub struct Chosen<B: 'static> {
     pub written: Vec<(&'static str, Site)>,
 }
 
+// by hand: entries are shared, whatever they build
+impl<B> Clone for Chosen<B> {
+    fn clone(&self) -> Self {
+        let Self { entry, values, site, written } = self;
+        Self { entry, values: values.clone(), site: site.clone(), written: written.clone() }
+    }
+}
+
 impl<B> Chosen<B> {
     /// Where a parameter is written, or the whole where it is not.
     pub fn site_of(&self, parameter: &str) -> &Site {

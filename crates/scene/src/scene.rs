@@ -21,7 +21,7 @@ use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
 use crate::inputs::{Inputs, Library};
-use crate::measure::ProbeInfo;
+use crate::measure::{ContourInfo, ProbeInfo};
 use crate::source::{Source, Sources};
 use crate::spec::Spec;
 use crate::spec::body::Body;
@@ -82,6 +82,8 @@ pub struct BodyInfo {
     /// Of each point of a network, the radius of a ball that others keep off [m]; zero of points without a size, and empty
     /// where no body is a network.
     pub radii: Vec<f64>,
+    /// Where the objects of a network end.
+    pub contours: Vec<ContourInfo>,
 }
 
 /// The laws of a body's cells.
@@ -264,7 +266,7 @@ impl BodyInfo {
         Some(census(world, self.system, &self.force)?.active.len())
     }
 
-    pub(crate) fn new(placed: Placed, radii: Vec<f64>) -> Self {
+    pub(crate) fn new(placed: Placed, radii: Vec<f64>, contours: Vec<ContourInfo>) -> Self {
         let Placed { spec, system, rows, mesh, frames, materials, .. } = placed;
         let laws = LawsInfo::new(spec, materials.of_cell);
         let surface = mesh.boundary_surface();
@@ -282,7 +284,8 @@ impl BodyInfo {
                 rows: frames.rows,
             }
         });
-        Self { name: spec.name.clone(), system, rows, mesh, surface, force, laws, frames, dress: None, radii }
+        let name = spec.name.clone();
+        Self { name, system, rows, mesh, surface, force, laws, frames, dress: None, radii, contours }
     }
 }
 

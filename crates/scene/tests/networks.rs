@@ -220,3 +220,49 @@ fn networks_are_told() {
     assert!((algorithmic - 50.0).abs() < 1e-12);
     assert_eq!(network.laws[1].remembers, 1);
 }
+
+/// A network of a core, flesh around it and a floor, with more keys of their object.
+fn fruit(more: &str) -> String {
+    let group = |name: &str, x: f64| {
+        format!("[networks.n.masses.{name}]\npositions = [[{x}, 0, 0], [{x}, 1, 0]]\nmass = 1\n")
+    };
+    let ball = "{ name = \"ball\", threshold = 0.5, stiffness = 10 }";
+    format!(
+        "{}{}{}[networks.n.objects.fruit]\nkernel = [\"core\"]\ndermis = [\"flesh\"]\ncentpolygon = {ball}\nmatter = {ball}\n{more}\n\
+         [[networks.n.encounters]]\nlaw = {ball}\n",
+        group("core", 0.0),
+        group("flesh", 1.0),
+        group("floor", 2.0)
+    )
+}
+
+/// Layers become crowds of their groups; things meet by their outermost layers alone, unless they may break.
+#[test]
+fn objects_become_crowds() {
+    let names = |more: &str| -> Vec<String> {
+        let scene = scene(&fruit(more)).unwrap();
+        scene.model.systems[0].forces.iter().map(|force| force.name().to_owned()).collect()
+    };
+    let within = ["n.fruit.centring", "n.fruit.matter"];
+    assert_eq!(names(""), [&within[..], &["n.encounters[0]"]].concat());
+    let all = ["n.encounters[0][0]", "n.encounters[0][1]"];
+    assert_eq!(names("breakable = true"), [&within[..], &all].concat());
+    refused(&fruit("epidermis = [\"peal\"]"), &["no group of masses `peal`", "core, flesh, floor"]);
+    refused(&fruit("epidermis = [\"core\"]"), &["`core` is in a layer already"]);
+}
+
+/// Balls fill a shape, a ring closes, and what has no end, or no room, is refused.
+#[test]
+fn shapes_are_filled_and_polygons_close() {
+    let filled = |fill: &str| format!("[networks.n.masses.a]\nfill = {fill}\nmass = 1\n");
+    let ball = "{ shape = { name = \"sphere\", radius = 1 }, spacing = 0.5 }";
+    let points = scene(&filled(ball)).unwrap().bodies[0].mesh.points.clone();
+    assert!(points.len() > 20 && points.iter().all(|point| point.length() <= 0.75 + 1e-6));
+    refused(&filled("{ shape = \"plane\", spacing = 0.5 }"), &["has no end", "box ="]);
+    refused(&filled(&ball.replace("0.5", "3")), &["no ball of this size has room"]);
+    refused(&filled("{ spacing = 0.5 }"), &["one thing is filled", "`shape`, or `mesh`"]);
+    let ring = "[networks.n.masses.a]\npolygon = { corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], count = 6 }\nmass = 1\n";
+    let text = format!("{ring}[[networks.n.links]]\n{SPRING}\nloop = true\n");
+    let body = &scene(&text).unwrap().bodies[0];
+    assert_eq!((body.mesh.points.len(), body.mesh.cell_count()), (6, 6));
+}

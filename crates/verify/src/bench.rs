@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod adaptive;
+mod balls;
 mod beams;
 mod contact;
 mod filling;
@@ -159,6 +160,16 @@ pub const BENCHES: &[Bench] = &[
         name: "string_audio",
         what: "a string of 1,000 masses and 2,001 links along an axis at 44.1 kHz, one thread [x real time]",
         run: |effort| links::string_audio("string_audio", effort),
+    },
+    Bench {
+        name: "balls_100k",
+        what: "steps of a heap of 100,000 balls with cohesion and friction [steps/s]",
+        run: |effort| balls::balls_100k("balls_100k", effort),
+    },
+    Bench {
+        name: "balls_scaling",
+        what: "the same with 1,000 to 1,000,000 balls [ns/ball and step], memory, and the exponent fitted (BEN-6)",
+        run: |effort| balls::scaling("balls_scaling", effort),
     },
     Bench {
         name: "adaptive_saving",

@@ -5,6 +5,7 @@
 mod capsule;
 mod closed_surface;
 mod cuboid;
+mod height;
 mod jaws;
 mod plane;
 mod sphere;
@@ -20,6 +21,7 @@ use souple_table::{Entry, Parameter, Table, Value, Values};
 pub use capsule::Capsule;
 pub use closed_surface::ClosedSurface;
 pub use cuboid::Cuboid;
+pub use height::Height;
 pub use jaws::Jaws;
 pub use plane::Plane;
 pub use sphere::Sphere;
@@ -111,6 +113,7 @@ pub const SHAPES: Table<BuildShape> = Table {
         &capsule::ENTRY,
         &jaws::ENTRY,
         &cuboid::ENTRY,
+        &height::ENTRY,
         &closed_surface::ENTRY,
     ],
 };

@@ -6,10 +6,12 @@
 use std::any::Any;
 use std::ops::Range;
 
+use rayon::prelude::*;
 use souple_engine::{Configuration, ContactPoint, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
 use souple_math::{Mat3, Vec3};
-use souple_solve::BlockMatrix;
+use souple_solve::{BlockMatrix, reduce};
 
+use super::crowd_grid::Grid;
 use super::friction::{Friction, Hook};
 use super::kernel::LinkKernel;
 use super::law::{Reach, Response};
@@ -56,14 +58,24 @@ struct Act {
     memory: [f64; 8],
 }
 
-/// Balls by the cell of a grid they are in.
+/// What a crowd works with.
 #[derive(Default)]
-struct Grid {
-    /// `(cell, row)`, sorted.
-    cells: Vec<([i32; 3], u32)>,
-    /// Pairs of one ball.
-    near: Vec<u32>,
+struct Work {
+    grid: Grid,
+    /// Pairs of each so many balls of the first group.
+    found: Vec<Vec<[u32; 2]>>,
+    /// On the first balls of pairs [N].
+    forces: Vec<Vec3>,
 }
+
+impl Work {
+    fn of(scratch: &mut Scratch) -> &mut Self {
+        scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
+    }
+}
+
+/// Balls of the first group whose pairs are found by one thread.
+const SEARCHED_TOGETHER: usize = 512;
 
 impl Crowd {
     pub fn new(description: CrowdDescription) -> Self {
@@ -73,7 +85,8 @@ impl Crowd {
 
     /// What a pair takes of the bound `4M` on its masses (see [`super::LinkLaw::stiffest`]) [N/m].
     pub fn stiffest(&self) -> f64 {
-        let hook = self.0.friction.map_or(0.0, |friction| friction.stiffness + 2.0 * friction.damping);
+        let hook =
+            self.0.friction.as_ref().map_or(0.0, |friction| friction.stiffness + 2.0 * friction.damping);
         self.0.law.stiffest(self.0.range).max(hook)
     }
 
@@ -144,19 +157,6 @@ impl Crowd {
     }
 }
 
-impl Grid {
-    fn cell(&self, x: Vec3, size: f64) -> [i32; 3] {
-        x.to_array().map(|x| (x / size).floor() as i32)
-    }
-
-    /// The balls of a run of cells along z, which stand side by side in the list.
-    fn run(&self, [x, y, z]: [i32; 3]) -> &[([i32; 3], u32)] {
-        let from = self.cells.partition_point(|(cell, _)| *cell < [x, y, z.saturating_sub(1)]);
-        let to = self.cells[from..].partition_point(|(cell, _)| *cell <= [x, y, z.saturating_add(1)]);
-        &self.cells[from..from + to]
-    }
-}
-
 impl Force for Crowd {
     fn name(&self) -> &str {
         &self.0.name
@@ -179,7 +179,7 @@ impl Force for Crowd {
     }
 
     fn new_scratch(&self) -> Scratch {
-        Box::new(Grid::default())
+        Box::new(Work::default())
     }
 
     fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
@@ -187,12 +187,19 @@ impl Force for Crowd {
         Energy { stored, dissipated: at.memory[0] }
     }
 
-    fn add_force(&self, at: &Configuration, _: &mut Scratch, out: &mut [Vec3]) {
-        for pair in at.pairs {
-            let Some(act) = self.act(pair, at) else { continue };
-            let force = act.axial + act.across;
-            out[pair.a as usize] += force;
-            out[pair.b as usize] -= force;
+    fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
+        let forces = &mut Work::of(scratch).forces;
+        forces.resize(at.pairs.len(), Vec3::ZERO);
+        reduce::sum_mut(0, forces, &|first, forces: &mut [Vec3]| {
+            for (force, pair) in forces.iter_mut().zip(&at.pairs[first..]) {
+                *force = self.act(pair, at).map_or(Vec3::ZERO, |act| act.axial + act.across);
+            }
+            0.0
+        });
+        // added pair by pair, in order
+        for (pair, force) in at.pairs.iter().zip(forces) {
+            out[pair.a as usize] += *force;
+            out[pair.b as usize] -= *force;
         }
     }
 
@@ -222,47 +229,56 @@ impl Force for Crowd {
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], pairs: &mut [Pair]) {
-        for (pair, next) in at.pairs.iter().zip(pairs) {
-            let Some(act) = self.act(pair, at) else {
-                next.memory[..HOOK].copy_from_slice(&Hook::FREE.numbers());
-                continue;
-            };
-            next.memory = act.memory;
-            memory[0] += act.energy.dissipated;
-        }
+        memory[0] += reduce::sum_mut(0, pairs, &|first, pairs: &mut [Pair]| {
+            let mut heat = 0.0;
+            for (pair, next) in at.pairs[first..].iter().zip(pairs) {
+                let Some(act) = self.act(pair, at) else {
+                    next.memory[..HOOK].copy_from_slice(&Hook::FREE.numbers());
+                    continue;
+                };
+                next.memory = act.memory;
+                heat += act.energy.dissipated;
+            }
+            heat
+        });
     }
 
     /// Pairs of a second body that come in the order of their rows.
     fn find_pairs(&self, at: &Configuration, scratch: &mut Scratch, found: &mut Vec<Pair>) {
-        let grid: &mut Grid =
-            scratch.downcast_mut().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"));
+        let Work { grid, found: chunks, .. } = Work::of(scratch);
         let CrowdDescription { first, second, range, law, .. } = &self.0;
-        grid.cells.clear();
-        for row in second.clone() {
-            let cell = grid.cell(at.positions[row as usize], *range);
-            grid.cells.push((cell, row));
-        }
-        grid.cells.sort_unstable();
+        grid.sort(second.clone(), at.positions, *range);
         let is_one = first == second;
+        chunks.resize_with(first.len().div_ceil(SEARCHED_TOGETHER), Vec::new);
+        let search = |(chunk, pairs): (usize, &mut Vec<[u32; 2]>)| {
+            pairs.clear();
+            let start = first.start as usize + chunk * SEARCHED_TOGETHER;
+            for a in start..(start + SEARCHED_TOGETHER).min(first.end as usize) {
+                let own = pairs.len();
+                let above = if is_one { a as u32 } else { 0 };
+                grid.visit_near(at.positions[a], |b| {
+                    if !is_one || b > above {
+                        pairs.push([a as u32, b]);
+                    }
+                });
+                pairs[own..].sort_unstable();
+            }
+        };
+        // threads are woken for many balls only
+        if chunks.len() >= 16 && rayon::current_num_threads() > 1 {
+            chunks.par_iter_mut().enumerate().for_each(search);
+        } else {
+            chunks.iter_mut().enumerate().for_each(search);
+        }
+        found.reserve(chunks.iter().map(Vec::len).sum());
+        let begins = law.memory_len() > 0;
         let mut memory = [0.0; 8];
-        for a in first.clone() {
-            let x = at.positions[a as usize];
-            let [i, j, k] = grid.cell(x, *range);
-            let mut near = std::mem::take(&mut grid.near);
-            near.clear();
-            for (di, dj) in (0..9).map(|n| (n % 3 - 1, n / 3 - 1)) {
-                let run = grid.run([i.saturating_add(di), j.saturating_add(dj), k]);
-                let is_near =
-                    |b: u32| (!is_one || b > a) && (at.positions[b as usize] - x).length_sq() < range * range;
-                near.extend(run.iter().map(|(_, b)| *b).filter(|b| is_near(*b)));
-            }
-            near.sort_unstable();
-            for b in &near {
-                let length = (at.positions[*b as usize] - x).length();
+        for [a, b] in chunks.iter().flatten() {
+            if begins {
+                let length = (at.positions[*b as usize] - at.positions[*a as usize]).length();
                 law.begin(*range, length, &mut memory[HOOK..HOOK + law.memory_len()]);
-                found.push(Pair::new(a as usize, *b as usize, memory));
             }
-            grid.near = near;
+            found.push(Pair::new(*a as usize, *b as usize, memory));
         }
     }
 

@@ -3,7 +3,10 @@
 //! A mass is a point unknown of the engine. Links of one law are one [`souple_engine::Force`]; what they remember
 //! lives in State. Laws are in [`laws`], one file and one line of its table each.
 
+pub mod contour;
 pub mod crowd;
+mod crowd_grid;
+pub mod filling;
 pub mod force;
 pub mod friction;
 pub mod kernel;
@@ -17,8 +20,9 @@ mod span;
 pub mod written;
 
 pub use crowd::{Crowd, CrowdDescription, PAIR_MEMORY};
+pub use filling::{Filling, FillingError};
 pub use force::{Account, LinkDescription, LinkStance, Links, REGISTERS, Wiring};
-pub use friction::{Friction, Grip, Hook, Phase};
+pub use friction::{Friction, Grip, Hook, Phase, Slide};
 pub use kernel::{InLanes, LinkKernel};
 pub use law::{BuildLink, LinkEntry, LinkError, LinkLaw, Making, Reach, Response};
 pub use laws::LINKS;

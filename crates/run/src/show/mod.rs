@@ -144,7 +144,7 @@ impl Moment {
         self.bodies.iter().all(BodyMoment::is_drawable)
     }
 
-    /// The present state of a session, all bodies, then all skins; meshes of bodies are those of a moment before, where
+    /// The present state of a session, all bodies, then all skins, then all contours; meshes of bodies are those of a moment before, where
     /// there is one.
     pub fn of_session(session: &Session, before: Option<&Self>) -> Self {
         let world = &session.world;
@@ -182,10 +182,20 @@ impl Moment {
                 frames: Vec::new(),
             }
         };
+        let contour = |(name, mesh): (String, Mesh)| BodyMoment {
+            name,
+            positions: mesh.points.clone(),
+            mesh: Arc::new(mesh),
+            point_fields: Vec::new(),
+            cell_fields: Vec::new(),
+            frames: Vec::new(),
+        };
+        let names = crate::frames::names_of_contours(&session.bodies);
+        let contours = names.zip(crate::frames::meshes_of_contours(&session.bodies, world)).map(contour);
         let bodies = session.bodies.iter().enumerate().map(body);
         let skins = session.skins.iter().map(skin);
         let dresses = session.bodies.iter().filter_map(|body| body.dress.as_ref()).map(dress);
-        Self { time: world.time(), bodies: bodies.chain(skins).chain(dresses).collect() }
+        Self { time: world.time(), bodies: bodies.chain(skins).chain(dresses).chain(contours).collect() }
     }
 
     /// Whether a body wears one of the skins.

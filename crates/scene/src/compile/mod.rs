@@ -92,10 +92,6 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
     if !log.is_empty() {
         return None;
     }
-    memory::check_specified(spec, sources, log);
-    if !log.is_empty() {
-        return None;
-    }
     let mut draft = Draft {
         spec,
         sources,
@@ -110,6 +106,11 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         dresses: Vec::new(),
         hands: Vec::new(),
     };
+    network::fill_all(&mut draft);
+    memory::check_specified(spec, sources, log);
+    if !log.is_empty() {
+        return None;
+    }
     bodies::place(&mut draft)?;
     memory::check_placed(spec, &draft.bodies, log);
     doubts::refuse(&draft);
@@ -153,13 +154,17 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         return None;
     }
     depth::warn(&mut draft);
+    let contours = network::contours(&draft);
+    if !log.is_empty() {
+        return None;
+    }
     let networks = network::networks(&draft);
     let Draft { bodies, systems, mut model, state, warnings, skins, hands, dresses, .. } = draft;
     model.systems = systems;
-    let bodies = bodies.into_iter().map(|body| {
+    let bodies = bodies.into_iter().zip(contours).map(|(body, contours)| {
         let radii = network::radii(&body, spec);
         let dress = dresses.iter().find(|dress| dress.body == body.spec.name).cloned();
-        BodyInfo { dress, ..BodyInfo::new(body, radii) }
+        BodyInfo { dress, ..BodyInfo::new(body, radii, contours) }
     });
     Some(Scene {
         title: title(spec, sources),

@@ -2,10 +2,12 @@
 
 mod controls;
 mod ends;
+mod fill;
 mod summary;
 
 pub use controls::add as add_controls;
 pub use ends::size;
+pub use fill::fill_all;
 pub use summary::{LawInfo, NetworkInfo, networks};
 
 use std::ops::Range;
@@ -16,17 +18,18 @@ use souple_math::Vec3;
 use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
 use souple_models::network::{
     Account, BuildLink, Crowd, CrowdDescription, Friction, LinkDescription, LinkKernel, Links, Making,
-    PAIR_MEMORY, Span,
+    PAIR_MEMORY, Slide, Span,
 };
 
 use super::bodies::Placed;
 use super::shape::Shape;
 use super::{Draft, memory, start};
 use crate::diagnostic::Code;
+use crate::measure::ContourInfo;
 use crate::reader::Chosen;
 use crate::spec::Spec;
 use crate::spec::body::Body;
-use crate::spec::network::{CrowdSpec, LinkTable, MassGroup, Network};
+use crate::spec::network::{CrowdSpec, FrictionSpec, LinkTable, MassGroup, Network};
 use crate::spec::world::SystemSpec;
 
 /// Which masses links of one law join, and how long they are at rest.
@@ -187,7 +190,7 @@ pub fn add_forces(
         forces.push(Box::new(links.wired(wiring)));
     }
     for (index, crowd) in network.crowds.iter().enumerate() {
-        let name = format!("{}.crowds[{index}]", body.spec.name);
+        let name = crowd.name.clone().unwrap_or_else(|| format!("{}.crowds[{index}]", body.spec.name));
         if let Some(crowd) = self::crowd(name, crowd, body, network, timestep, draft) {
             forces.push(Box::new(crowd));
         }
@@ -243,14 +246,44 @@ fn crowd(
         base + numbers.start..base + numbers.end
     };
     let (first, second) = (rows(first), rows(second));
-    let friction = spec.friction.map(|friction| Friction {
-        stiffness: friction.stiffness,
-        damping: friction.damping / timestep,
-        sticking: friction.sticking,
-        sliding: friction.sliding,
-        slow: friction.speed * timestep,
-    });
+    let friction = spec.friction.as_ref().map(|friction| friction_of(friction, timestep));
     Some(Crowd::new(CrowdDescription { name, law, first, second, range, friction, timestep }))
+}
+
+/// The contours of each body.
+pub fn contours(draft: &Draft) -> Vec<Vec<ContourInfo>> {
+    let of_body = |body: &Placed| {
+        let contours = body.spec.network.as_ref().map_or(&[][..], |network| &network.contours);
+        contours.iter().filter_map(|contour| ContourInfo::of(contour, body, draft)).collect()
+    };
+    draft.bodies.iter().map(of_body).collect()
+}
+
+/// Friction by displacements in a step.
+fn friction_of(spec: &FrictionSpec, timestep: f64) -> Friction {
+    let slide = match (&spec.curve, spec.fall) {
+        (Some(points), _) => {
+            Slide::Curve(points.iter().map(|[speed, coefficient]| [speed * timestep, *coefficient]).collect())
+        }
+        (None, None) if spec.growth == 0.0 => Slide::Coulomb(spec.sliding),
+        (None, fall) => Slide::Stribeck {
+            kinetic: spec.sliding,
+            // fallen at once, as far as numbers tell
+            sticking: if fall.is_some() { spec.sticking } else { spec.sliding },
+            fall: fall.unwrap_or(1.0) * timestep,
+            growth: spec.growth / timestep,
+        },
+    };
+    // B = z/(k Te + z)
+    let hold = spec.hook_viscosity.map_or(1.0, |z| z / (spec.stiffness * timestep + z));
+    Friction {
+        stiffness: spec.stiffness,
+        damping: spec.damping / timestep,
+        sticking: spec.sticking,
+        slide,
+        hold,
+        slow: spec.speed * timestep,
+    }
 }
 
 /// Half the distance at which balls of a group keep from each other, or from those of another group, for each mass [m];

@@ -37,40 +37,7 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
         None
     };
     let mut warnings = Vec::new();
-    let built = match spec {
-        MeshSpec::Generated(chosen) => (chosen.entry.build.mesh)(&chosen.values),
-        MeshSpec::Shape { shape, options } => {
-            let filled = (shape.entry.build)(&shape.values).and_then(|body| options.fill_body(&body));
-            filled.map(|filled| {
-                warnings.extend(filled.notes.into_iter().map(|note| format!("body `{}`: {note}", body.name)));
-                filled.mesh
-            })
-        }
-        MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, &mut warnings)?),
-        MeshSpec::Filled { file, scale, options, .. } => {
-            let mesh = read(draft, spec.site(), file, *scale, &mut warnings)?;
-            fill_mesh(&mesh, RepairLimits::default(), options).map(|filled| {
-                warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
-                filled.mesh
-            })
-        }
-    };
-    let mut mesh = match built {
-        Ok(mesh) => mesh,
-        Err(error @ (MeshError::TooManyCells { .. } | MeshError::Fill(FillError::TooManyPoints { .. }))) => {
-            log.add(Code::TooLarge, spec.site_of("cells"), error.to_string(), "fewer cells");
-            return None;
-        }
-        Err(MeshError::Parameter { name, value, expected }) => {
-            let message = format!("`{name}` is {value}, of which no mesh can be made");
-            log.add(Code::Mesh, spec.site_of(name), message, expected);
-            return None;
-        }
-        Err(error) => {
-            let (message, accepted) = error.in_two();
-            return refuse(message, accepted.as_deref().unwrap_or("a mesh that can be made"));
-        }
-    };
+    let mut mesh = mesh_of(spec, &body.name, draft, &mut warnings)?;
     let section = body.section();
     if mesh.cell_count() == 0 && section.dimension() == 2 {
         mesh = mesh.facets_as_cells();
@@ -136,6 +103,46 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
         }
     }
     Some(Shape { mesh, point_numbers, warnings })
+}
+
+/// A mesh as it is made or read, of the body of this name; `None` where it was refused.
+pub fn mesh_of(spec: &MeshSpec, body: &str, draft: &Draft, warnings: &mut Vec<String>) -> Option<Mesh> {
+    let (site, log) = (spec.site(), draft.log);
+    let built = match spec {
+        MeshSpec::Generated(chosen) => (chosen.entry.build.mesh)(&chosen.values),
+        MeshSpec::Shape { shape, options } => {
+            let filled = (shape.entry.build)(&shape.values).and_then(|body| options.fill_body(&body));
+            filled.map(|filled| {
+                warnings.extend(filled.notes.into_iter().map(|note| format!("body `{body}`: {note}")));
+                filled.mesh
+            })
+        }
+        MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, warnings)?),
+        MeshSpec::Filled { file, scale, options, .. } => {
+            let mesh = read(draft, spec.site(), file, *scale, warnings)?;
+            fill_mesh(&mesh, RepairLimits::default(), options).map(|filled| {
+                warnings.extend(filled.notes.into_iter().map(|note| format!("{file}: {note}")));
+                filled.mesh
+            })
+        }
+    };
+    match built {
+        Ok(mesh) => Some(mesh),
+        Err(error @ (MeshError::TooManyCells { .. } | MeshError::Fill(FillError::TooManyPoints { .. }))) => {
+            log.add(Code::TooLarge, spec.site_of("cells"), error.to_string(), "fewer cells");
+            None
+        }
+        Err(MeshError::Parameter { name, value, expected }) => {
+            let message = format!("`{name}` is {value}, of which no mesh can be made");
+            log.add(Code::Mesh, spec.site_of(name), message, expected);
+            None
+        }
+        Err(error) => {
+            let (message, accepted) = error.in_two();
+            log.add(Code::Mesh, site, message, accepted.as_deref().unwrap_or("a mesh that can be made"));
+            None
+        }
+    }
 }
 
 /// The mesh of a file; `None` where it was refused.

@@ -5,12 +5,15 @@
 mod body;
 mod cells;
 mod contact;
+mod contour;
 mod hand;
 mod levels;
+mod masses;
 mod points;
 mod reaction;
 mod skin;
 
+pub use contour::ContourInfo;
 use souple_engine::{Force, World};
 use souple_math::Vec3;
 
@@ -19,8 +22,8 @@ use crate::diagnostic::Code;
 use crate::scene::{DressInfo, HandInfo, SkinInfo};
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
-    BodyQuantity, CellQuantity, HandQuantity, LevelsQuantity, Momentum, PointQuantity, Rank, Reduction,
-    SkinQuantity, Subject, WorldQuantity,
+    BodyQuantity, CellQuantity, ContourQuantity, HandQuantity, LevelsQuantity, MassesQuantity, Momentum,
+    PointQuantity, Rank, Reduction, SkinQuantity, Subject, WorldQuantity,
 };
 
 /// A probe that knows where to read.
@@ -50,6 +53,9 @@ enum Target {
     Skin(SkinQuantity, SkinInfo),
     Levels(LevelsQuantity, LevelsPart),
     Hand(HandQuantity, HandInfo),
+    Contour(ContourQuantity, usize, [ContourInfo; 2]),
+    /// With the distance within which masses are neighbours [m].
+    Masses(MassesQuantity, Part, f64),
 }
 
 /// Points of a body.
@@ -147,6 +153,18 @@ impl ProbeInfo {
             (Subject::Points(quantity), _) => Target::Points(quantity, part(probe, draft)?),
             (Subject::Body(quantity), _) => Target::Body(quantity, matter(probe, draft)?),
             (Subject::Cells(quantity), _) => Target::Cells(quantity, cell_part(probe, draft)?),
+            (Subject::Contour(quantity), _) => {
+                let body = draft.body(probe.body.as_deref()?)?;
+                let own = contour::named(probe.contour.as_deref()?, probe, body, draft)?;
+                let from = match &probe.from {
+                    Some(from) => contour::named(from, probe, body, draft)?,
+                    None => own.clone(),
+                };
+                Target::Contour(quantity, body.system, [own, from])
+            }
+            (Subject::Masses(quantity), _) => {
+                Target::Masses(quantity, part(probe, draft)?, probe.within.unwrap_or(0.0))
+            }
             (Subject::Levels(quantity), _) => Target::Levels(quantity, levels_part(probe, draft)?),
         };
         Some(Self {
@@ -170,6 +188,12 @@ impl ProbeInfo {
         match &self.target {
             Target::World(quantity) => Measurement::Number(of_world(*quantity, world)),
             Target::Skin(quantity, skin) => Measurement::Number(skin::measure(*quantity, skin, world)),
+            Target::Contour(quantity, system, contours) => {
+                Measurement::Number(contour::measure(*quantity, &world.rows(*system).positions, contours))
+            }
+            Target::Masses(quantity, part, within) => {
+                Measurement::Number(masses::measure(*quantity, part, *within, world))
+            }
             Target::Levels(quantity, part) => Measurement::Number(levels::measure(*quantity, part, world)),
             Target::Hand(quantity, hand) => match hand::measure(*quantity, hand, world) {
                 Measurement::Vector(vector) => self.vector(vector),

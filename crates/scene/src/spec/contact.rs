@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
-const SHAPE_ENTRY: EntryShape =
+pub(super) const SHAPE_ENTRY: EntryShape =
     EntryShape { tag: "name", kind: "shape", outlines: || outlines(&SHAPES), instead: &[] };
 
 pub(crate) static SHAPE: Keys = Keys::new(

@@ -1,5 +1,12 @@
 //! Networks of masses and interactions: what stands for a body where matter is points and links.
 
+mod contours;
+mod fill;
+mod objects;
+
+pub use contours::{ContourSpec, Way};
+pub use fill::FillSpec;
+
 use std::iter::repeat_n;
 
 use souple_math::Vec3;
@@ -50,6 +57,15 @@ static RING: Keys = Keys::new(
     ],
 );
 
+static POLYGON: Keys = Keys::new(
+    "mass_polygon",
+    "masses at equal distances on a closed line from corner to corner",
+    &[
+        Key::new("corners", Shape::Vectors, "of the line, which closes by itself").in_unit("m").required(),
+        Key::integer("count", Range::closed(3.0, MASSES_MAX), "how many").required(),
+    ],
+);
+
 static LATTICE: Keys = Keys::new(
     "mass_lattice",
     "masses on a square or cubic lattice; x counts fastest, then y",
@@ -72,7 +88,9 @@ pub(super) static MASSES: Keys = Keys::new(
         Key::new("positions", Shape::Vectors, "where they start, one by one").in_unit("m"),
         Key::new("line", Shape::Table(&LINE), "they start on a line"),
         Key::new("ring", Shape::Table(&RING), "they start on a circle"),
+        Key::new("polygon", Shape::Table(&POLYGON), "they start on a closed line from corner to corner"),
         Key::new("lattice", Shape::Table(&LATTICE), "they start on a lattice"),
+        Key::new("fill", Shape::Table(&fill::FILL), "they fill a shape"),
         Key::number("mass", "kg", Range::POSITIVE, "of each").required(),
         Key::new("fixed", Shape::Boolean, "they stay where they are, whatever pulls")
             .or(Value::Boolean(false)),
@@ -124,6 +142,32 @@ static FRICTION: Keys = Keys::new(
         Key::number("stiffness", "N/m", Range::POSITIVE, "of the hook").required(),
         Key::number("damping", "N s/m", Range::NOT_NEGATIVE, "of the hook").or(Value::Number(0.0)),
         Key::number("speed", "m/s", Range::POSITIVE, "of sliding, below which it ends").required(),
+        Key::number(
+            "fall",
+            "m/s",
+            Range::POSITIVE,
+            "speed over which the coefficient falls from `static` to `kinetic` once it slides, as under a bow; at once where left out",
+        ),
+        Key::number(
+            "growth",
+            "s/m",
+            Range::NOT_NEGATIVE,
+            "of the coefficient with the speed of sliding, as of a wet film under a ski",
+        )
+        .or(Value::Number(0.0)),
+        Key::new(
+            "speeds",
+            Shape::Numbers,
+            "of sliding, growing from 0, at which `coefficients` are known: instead of `kinetic`, `fall` and `growth`",
+        )
+        .in_unit("m/s"),
+        Key::new("coefficients", Shape::Numbers, "one for each of `speeds`, straight lines between them"),
+        Key::number(
+            "hook_viscosity",
+            "N s/m",
+            Range::POSITIVE,
+            "of a damper in series with the hook, which creeps then; a spring alone where left out",
+        ),
     ],
 );
 
@@ -149,6 +193,13 @@ pub(crate) static NETWORK: Keys = Keys::new(
         Key::new("masses", Shape::Named(&MASSES), "groups of masses, in the order of their numbers"),
         Key::new("links", Shape::Tables(&LINK_TABLE), "what acts between masses"),
         Key::new("crowds", Shape::Tables(&CROWD), "what acts between masses wherever they come near"),
+        Key::new("objects", Shape::Named(&objects::OBJECT), "groups of masses as layers of things"),
+        Key::new(
+            "encounters",
+            Shape::Tables(&objects::ENCOUNTER),
+            "what objects do to each other where they meet",
+        ),
+        Key::new("contours", Shape::Named(&contours::CONTOUR), "where objects end, for probes and pictures"),
         Key::new("modules", Shape::Named(&PART), PARTS_SUMMARY),
         PORTS_KEY,
         CONNECTIONS_KEY,
@@ -189,6 +240,7 @@ pub struct Network {
     pub controls: Vec<ControlSpec>,
     /// Of its masses and laws as they are written; they are physical from then on.
     pub space: Space,
+    pub contours: Vec<ContourSpec>,
     /// Links without memory keep account of the heat they give off.
     pub keeps_account: bool,
 }
@@ -210,7 +262,6 @@ pub struct MassGroup {
 }
 
 /// Where masses start: told, not made, so that they can be counted before there is memory for them.
-#[derive(Clone, Debug, PartialEq)]
 pub enum Places {
     /// One by one [m].
     Listed(Vec<Vec3>),
@@ -220,6 +271,8 @@ pub enum Places {
     Ring { centre: Vec3, first: Vec3, axis: Vec3, count: u64 },
     /// x counts fastest, then y.
     Lattice { origin: Vec3, spacing: f64, counts: [u64; 3] },
+    /// Wherever a shape has room.
+    Filled(Box<FillSpec>),
 }
 
 /// Links of one law.
@@ -240,6 +293,8 @@ pub struct LinkTable {
 
 /// A law between all masses that are near.
 pub struct CrowdSpec {
+    /// Of the force; by its number where `None`.
+    pub name: Option<String>,
     pub law: Option<Chosen<BuildLink>>,
     /// Names of groups: none, one or two.
     pub of: Vec<String>,
@@ -250,7 +305,7 @@ pub struct CrowdSpec {
 }
 
 /// Dry friction of balls.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FrictionSpec {
     pub sticking: f64,
     pub sliding: f64,
@@ -260,6 +315,14 @@ pub struct FrictionSpec {
     pub damping: f64,
     /// [m/s]
     pub speed: f64,
+    /// [m/s]
+    pub fall: Option<f64>,
+    /// [s/m]
+    pub growth: f64,
+    /// Speeds [m/s] and coefficients.
+    pub curve: Option<Vec<[f64; 2]>>,
+    /// [N s/m]
+    pub hook_viscosity: Option<f64>,
 }
 
 /// Which masses links join.
@@ -279,7 +342,7 @@ impl Network {
     /// A network as a body: its masses are points, its links are cells.
     pub(crate) fn body(name: String, reader: &Reader) -> Body {
         let Assembly { masses, links, crowds, presented } = Assembly::read(reader);
-        let network = Self {
+        let mut network = Self {
             masses,
             links,
             crowds,
@@ -290,8 +353,17 @@ impl Network {
                 .map(|(name, control)| ControlSpec::read(name, &control))
                 .collect(),
             space: if reader.choice("space") == "algorithmic" { Space::Algorithmic } else { Space::Physical },
+            contours: reader
+                .named("contours")
+                .into_iter()
+                .filter_map(|(name, contour)| ContourSpec::read(name, &contour))
+                .collect(),
             keeps_account: reader.boolean("account"),
         };
+        let groups: Vec<&str> = network.masses.iter().map(|group| group.name.as_str()).collect();
+        let of_objects = objects::crowds(&name, &groups, reader);
+        network.crowds.extend(of_objects);
+        network.check_contours(reader);
         network.check_count(reader);
         let held = network.masses.iter().filter(|group| group.is_fixed).map(MassGroup::pin);
         let pins = held.chain(reader.tables("pins").iter().map(Pin::read)).collect();
@@ -348,6 +420,20 @@ impl Network {
             reader.log().add(Code::TooLarge, &reader.site_of("masses"), message, expected);
         }
     }
+
+    fn check_contours(&self, reader: &Reader) {
+        let known: Vec<&str> = self.masses.iter().map(|group| group.name.as_str()).collect();
+        for (contour, name) in
+            self.contours.iter().flat_map(|it| it.groups().iter().map(move |name| (it, name)))
+        {
+            if !known.contains(&name.as_str()) {
+                let hint = crate::keys::did_you_mean(name, known.iter().copied());
+                let message = format!("there is no group of masses `{name}`{hint}");
+                let expected = format!("one of {}", known.join(", "));
+                reader.log().add(Code::UnknownName, &contour.site, message, expected);
+            }
+        }
+    }
 }
 
 impl MassGroup {
@@ -379,19 +465,21 @@ impl MassGroup {
     }
 
     pub(super) fn read(name: String, reader: &Reader) -> Self {
-        let written = reader.written(&["positions", "line", "ring", "lattice"]);
+        let written = reader.written(&["positions", "line", "ring", "polygon", "lattice", "fill"]);
         let places = match written[..] {
             ["positions"] => Some(Places::Listed(reader.vectors("positions"))),
             ["line"] => reader.table("line").map(|line| Places::on_line(&line)),
             ["ring"] => reader.table("ring").and_then(|ring| Places::on_ring(&ring)),
+            ["polygon"] => reader.table("polygon").and_then(|polygon| Places::on_polygon(&polygon)),
             ["lattice"] => reader.table("lattice").and_then(|lattice| Places::on_lattice(&lattice)),
+            ["fill"] => reader.table("fill").map(|fill| Places::Filled(Box::new(FillSpec::read(&fill)))),
             _ => {
                 let message = format!("masses start in one way, these say {}", written.len());
                 reader.log().add(
                     Code::WrongType,
                     &reader.site(),
                     message,
-                    "one of positions, line, ring, lattice",
+                    "one of positions, line, ring, polygon, lattice, fill",
                 );
                 None
             }
@@ -428,6 +516,35 @@ impl Places {
         Some(Self::Ring { centre: reader.vector("centre"), first, axis, count })
     }
 
+    fn on_polygon(reader: &Reader) -> Option<Self> {
+        let (corners, count) = (reader.vectors("corners"), reader.maybe_integer("count")?);
+        let sides = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
+        let length: f64 = sides().map(|(a, b)| (b - a).length()).sum();
+        if corners.len() < 3 || !(length > 0.0 && length.is_finite()) {
+            let message = format!("a polygon of {} corners, {length} m long", corners.len());
+            reader.log().add(
+                Code::OutOfRange,
+                &reader.site_of("corners"),
+                message,
+                "three corners or more that are apart",
+            );
+            return None;
+        }
+        let step = length / count as f64;
+        let mut places = Vec::with_capacity(count as usize);
+        let mut before = 0.0;
+        for (a, b) in sides() {
+            let side = (b - a).length();
+            // the place at the end of a side is the first of the next
+            while places.len() < count as usize && places.len() as f64 * step < before + side * (1.0 - 1e-12)
+            {
+                places.push(a + (b - a) * ((places.len() as f64 * step - before) / side));
+            }
+            before += side;
+        }
+        Some(Self::Listed(places))
+    }
+
     fn on_lattice(reader: &Reader) -> Option<Self> {
         let counts = reader.vector("counts");
         let is_count = |number: f64| number >= 1.0 && number.fract() == 0.0;
@@ -461,6 +578,7 @@ impl Places {
             Self::Listed(places) => places.len() as u64,
             Self::Line { count, .. } | Self::Ring { count, .. } => *count,
             Self::Lattice { counts: [x, y, z], .. } => x * y * z,
+            Self::Filled(fill) => fill.places().len() as u64,
         }
     }
 
@@ -468,6 +586,7 @@ impl Places {
     pub fn place(&self, index: u64) -> Vec3 {
         match self {
             Self::Listed(places) => places[index as usize],
+            Self::Filled(fill) => fill.places()[index as usize],
             Self::Line { from, to, count } => *from + (*to - *from) * (index as f64 / (count - 1) as f64),
             Self::Ring { centre, first, axis, count } => {
                 let angle = std::f64::consts::TAU * index as f64 / *count as f64;
@@ -554,19 +673,50 @@ impl CrowdSpec {
                 "one group or two",
             );
         }
-        let friction = reader.table("friction").map(|table| FrictionSpec {
-            sticking: table.number("static"),
-            sliding: table.number("kinetic"),
-            stiffness: table.number("stiffness"),
-            damping: table.number("damping"),
-            speed: table.number("speed"),
-        });
+        let friction = reader.table("friction").map(|table| FrictionSpec::read(&table));
         Self {
+            name: None,
             law: reader.entry("law", &LINKS),
             of,
             range: reader.maybe_number("range"),
             friction,
             site: reader.site(),
         }
+    }
+}
+
+impl FrictionSpec {
+    fn read(reader: &Reader) -> Self {
+        Self {
+            sticking: reader.number("static"),
+            sliding: reader.number("kinetic"),
+            stiffness: reader.number("stiffness"),
+            damping: reader.number("damping"),
+            speed: reader.number("speed"),
+            fall: reader.maybe_number("fall"),
+            growth: reader.number("growth"),
+            curve: Self::curve(reader),
+            hook_viscosity: reader.maybe_number("hook_viscosity"),
+        }
+    }
+
+    /// `None` where none is written, or it was refused.
+    fn curve(reader: &Reader) -> Option<Vec<[f64; 2]>> {
+        let written = reader.written(&["speeds", "coefficients"]);
+        let [key, ..] = written[..] else { return None };
+        let (speeds, coefficients) = (reader.numbers("speeds"), reader.numbers("coefficients"));
+        let is_good = speeds.len() == coefficients.len()
+            && speeds.len() >= 2
+            && speeds[0] == 0.0
+            && speeds.is_sorted_by(|a, b| a < b)
+            && coefficients.iter().all(|coefficient| *coefficient >= 0.0);
+        let others = reader.written(&["fall", "growth"]);
+        if !is_good || !others.is_empty() {
+            let message = "a curve of sliding is no function of the speed";
+            let expected = "two speeds or more, growing from 0, as many coefficients of at least 0, and no `fall` or `growth`";
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+            return None;
+        }
+        Some(speeds.into_iter().zip(coefficients).map(|(speed, coefficient)| [speed, coefficient]).collect())
     }
 }

@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 use souple_table::Range;
 
-use super::quantity::{NAMES, QUANTITIES, QuantityEntry, Rank, Reduction, Subject};
+use super::quantity::{ContourQuantity, NAMES, QUANTITIES, QuantityEntry, Rank, Reduction, Subject};
 use super::region::Region;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
@@ -34,6 +34,9 @@ pub(crate) static PROBE: Keys = Keys::new(
             "of a body with levels: only this one, counted from 0, the coarsest",
         ),
         Key::vector("about", "m", "the place that moments are taken about"),
+        Key::new("contour", Shape::Text, "of the network, for quantities of contours"),
+        Key::new("from", Shape::Text, "the contour that `contour.apart` is counted from"),
+        Key::number("within", "m", Range::POSITIVE, "how far apart masses count as neighbours"),
     ],
 );
 
@@ -53,6 +56,11 @@ pub struct Probe {
     pub level: Option<usize>,
     /// The place that moments are taken about [m]; the centre of mass where `None`.
     pub about: Option<Vec3>,
+    pub contour: Option<String>,
+    /// Another contour.
+    pub from: Option<String>,
+    /// How far apart masses count as neighbours [m].
+    pub within: Option<f64>,
     pub site: Site,
 }
 
@@ -110,6 +118,9 @@ impl Probe {
             hand: reader.maybe_text("hand"),
             level: reader.maybe_integer("level").map(|level| level as usize),
             about: reader.maybe_vector("about"),
+            contour: reader.maybe_text("contour"),
+            from: reader.maybe_text("from"),
+            within: reader.maybe_number("within"),
             site: reader.site(),
         }
     }
@@ -165,10 +176,15 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
                 );
             }
         }
-        Subject::Levels(_) if reader.has("region") => {
+        Subject::Levels(_) | Subject::Contour(_) if reader.has("region") => {
             refuse(reader, "region", format!("`{name}` is of a whole body"), "no region");
         }
-        Subject::Points(_) | Subject::Cells(_) | Subject::Body(_) | Subject::Levels(_) => {
+        Subject::Points(_)
+        | Subject::Cells(_)
+        | Subject::Body(_)
+        | Subject::Levels(_)
+        | Subject::Masses(_)
+        | Subject::Contour(_) => {
             if !reader.has("body") {
                 refuse(
                     reader,
@@ -213,6 +229,25 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             format!("`{name}` is of no level"),
             "a quantity of levels, such as \"levels.active\"",
         );
+    }
+    let is_of_contour = matches!(quantity.subject, Subject::Contour(_));
+    let is_apart = matches!(quantity.subject, Subject::Contour(ContourQuantity::Apart));
+    for (key, wanted) in [("contour", is_of_contour), ("from", is_apart)] {
+        if wanted != reader.has(key) {
+            let message = match wanted {
+                true => format!("`{name}` is of a contour, and `{key}` names none"),
+                false => format!("`{name}` has no `{key}`"),
+            };
+            let expected = "`contour` with quantities of contours, `from` with contour.apart";
+            refuse(reader, if wanted { "quantity" } else { key }, message, expected);
+        }
+    }
+    if quantity.is_of_neighbours() != reader.has("within") {
+        let message = match reader.has("within") {
+            true => format!("`{name}` knows no neighbours"),
+            false => format!("`{name}` is of neighbours, and is not told how near they are"),
+        };
+        refuse(reader, "within", message, "within = \"…\" with masses.parts, neighbours and spacing only");
     }
     if reader.has("about") && !quantity.is_moment() {
         refuse(reader, "about", format!("`{name}` is no moment"), "a moment, such as \"torque\"");

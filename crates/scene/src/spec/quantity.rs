@@ -51,6 +51,26 @@ pub enum Subject {
     /// One value of a body with levels, or of one of its levels.
     Levels(LevelsQuantity),
     Hand(HandQuantity),
+    /// One value of the masses of a region, which count as near when they are within a distance that the probe tells.
+    Masses(MassesQuantity),
+    /// One value of a contour of a network.
+    Contour(ContourQuantity),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContourQuantity {
+    Length,
+    Area,
+    Lines,
+    Apart,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MassesQuantity {
+    Parts,
+    Neighbours,
+    Spacing,
+    Pairs,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,6 +172,14 @@ impl Quantity {
         )
     }
 
+    /// Whether it counts masses as neighbours that are within a distance.
+    pub fn is_of_neighbours(&self) -> bool {
+        matches!(
+            self.subject,
+            Subject::Masses(MassesQuantity::Parts | MassesQuantity::Neighbours | MassesQuantity::Spacing)
+        )
+    }
+
     /// Whether it is of bodies whose elements change their law.
     pub fn is_of_adaptation(&self) -> bool {
         matches!(self.subject, Subject::Cells(CellQuantity::Law | CellQuantity::Excess))
@@ -179,6 +207,8 @@ const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for ani
 const ADAPTATION: &str = "Faure 2014, §6.4";
 const LEVELS: &str = "Debunne 2000, 5 §2.3";
 const HAPTICS: &str = "Debunne 2000, 6 §3; Colgate, Stanley & Brown 1995";
+const OUTLINE: &str = "Jimenez 1993, P2-III.2.3";
+const MULTITUDE: &str = "Jimenez 1993, P2-III.2";
 const MECHANICS: &str = "balance of momentum";
 
 const fn entry(
@@ -208,6 +238,14 @@ const fn levels(unit: &'static str, quantity: LevelsQuantity) -> Quantity {
 
 const fn hand(unit: &'static str, rank: Rank, quantity: HandQuantity) -> Quantity {
     Quantity::of(unit, rank, Reduction::Sum, Subject::Hand(quantity))
+}
+
+const fn masses(unit: &'static str, quantity: MassesQuantity) -> Quantity {
+    Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Masses(quantity))
+}
+
+const fn contour(unit: &'static str, quantity: ContourQuantity) -> Quantity {
+    Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Contour(quantity))
 }
 
 const fn world(unit: &'static str, quantity: WorldQuantity) -> Quantity {
@@ -413,6 +451,49 @@ const ENTRIES: &[&QuantityEntry] = &[
         "Hausdorff's, between its surface and that of its target, to first order in the potential",
         SKIN,
         skin("m", SkinQuantity::Distance),
+    ),
+    &entry(
+        "masses.parts",
+        "parts that masses hang together in, each nearer to another than the key `within`",
+        MULTITUDE,
+        masses("", MassesQuantity::Parts),
+    ),
+    &entry(
+        "masses.neighbours",
+        "how many others a mass has nearer than the key `within`, on average",
+        MULTITUDE,
+        masses("", MassesQuantity::Neighbours),
+    ),
+    &entry(
+        "masses.spacing",
+        "mean distance of masses nearer than the key `within`",
+        MULTITUDE,
+        masses("m", MassesQuantity::Spacing),
+    ),
+    &entry(
+        "masses.pairs",
+        "pairs of masses that crowds have within their ranges: what a step costs",
+        MULTITUDE,
+        masses("", MassesQuantity::Pairs),
+    ),
+    &entry(
+        "contour.length",
+        "of all lines of the contour that the key `contour` names",
+        OUTLINE,
+        contour("m", ContourQuantity::Length),
+    ),
+    &entry(
+        "contour.area",
+        "what the contour encloses, less its holes",
+        OUTLINE,
+        contour("m^2", ContourQuantity::Area),
+    ),
+    &entry("contour.lines", "closed lines of the contour", OUTLINE, contour("", ContourQuantity::Lines)),
+    &entry(
+        "contour.apart",
+        "how far the contour is from the one that the key `from` names, at most",
+        OUTLINE,
+        contour("m", ContourQuantity::Apart),
     ),
     &entry(
         "levels.active",

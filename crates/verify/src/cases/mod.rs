@@ -19,6 +19,7 @@ mod implicit;
 mod levels;
 mod loads;
 mod long_beam;
+mod matter;
 mod mixed_models;
 mod motion;
 mod moving_frame;
@@ -70,6 +71,7 @@ pub const TABLES: &[&[Case]] = &[
     rheometer::CASES,
     rheology::CASES,
     conditional::CASES,
+    matter::CASES,
     frames::CASES,
     levels::CASES,
     hands::CASES,

@@ -27,6 +27,10 @@ fn build(name: &str, given: Values) -> Result<Box<dyn Shape>, ShapeError> {
 fn all() -> Vec<Box<dyn Shape>> {
     let mut shapes =
         vec![build("plane", Values::new().with("normal", Value::Vector([1.0, 2.0, -1.0]))).unwrap()];
+    // slopes above one half a metre about: one foot for every point that is asked about
+    let height =
+        Values::new().with("height", Value::Text("0.3 * x - 0.2 * y + 0.04 * sin(2 * x) * cos(y) - 0.4"));
+    shapes.push(build("height", height).unwrap());
     for hollow in [false, true] {
         let sizes = Values::new().with("hollow", Value::Boolean(hollow));
         let segment = sizes

@@ -1,0 +1,347 @@
+//! The contour of an object that is made of points: what others see, touch and meet (Jimenez 1993, P2-III.2.3; specification
+//! §2.13).
+//!
+//! Contours lie in a plane. Three ways lead to one: the closed line through the masses of a skin; the frontier where the
+//! sum of what all balls do to a small one that comes from outside reaches the push of a single touch; the trace of a light
+//! probe that runs along the balls, held to them by a band of attraction.
+
+use std::collections::HashMap;
+
+use souple_math::Vec3;
+
+/// A place in the plane of a contour.
+pub type Place = [f64; 2];
+
+/// Closed lines; the last place goes on to the first.
+pub type Lines = Vec<Vec<Place>>;
+
+/// Two axes that span a plane, of which contours are counted around the third.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plane {
+    pub axes: [usize; 2],
+}
+
+impl Plane {
+    /// Across an axis of space.
+    pub fn across(normal: usize) -> Self {
+        Self { axes: [[1, 2], [0, 2], [0, 1]][normal] }
+    }
+
+    pub fn place(self, point: Vec3) -> Place {
+        self.axes.map(|axis| point[axis])
+    }
+
+    /// Over the plane [m].
+    pub fn height(self, point: Vec3) -> f64 {
+        point[3 - self.axes[0] - self.axes[1]]
+    }
+
+    /// Back into space, at a height over the plane.
+    pub fn point(self, place: Place, height: f64) -> Vec3 {
+        let mut point = [height; 3];
+        for (axis, x) in self.axes.into_iter().zip(place) {
+            point[axis] = x;
+        }
+        Vec3::from_array(point)
+    }
+}
+
+fn minus(a: Place, b: Place) -> Place {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn length(a: Place) -> f64 {
+    a[0].hypot(a[1])
+}
+
+fn segments(line: &[Place]) -> impl Iterator<Item = [Place; 2]> + '_ {
+    (0..line.len()).map(|i| [line[i], line[(i + 1) % line.len()]])
+}
+
+/// Of all lines together [m].
+pub fn total_length(lines: &[Vec<Place>]) -> f64 {
+    lines.iter().flat_map(|line| segments(line)).map(|[a, b]| length(minus(b, a))).sum()
+}
+
+/// What one line encloses, positive where it runs counterclockwise [m²].
+fn signed_area(line: &[Place]) -> f64 {
+    segments(line).map(|[a, b]| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum()
+}
+
+/// What is enclosed: holes, whose lines run the other way, count off [m²].
+pub fn enclosed_area(lines: &[Vec<Place>]) -> f64 {
+    lines.iter().map(|line| signed_area(line)).sum::<f64>().abs()
+}
+
+/// How far the places of one contour are from the lines of another, at most [m].
+pub fn farthest(lines: &[Vec<Place>], other: &[Vec<Place>]) -> f64 {
+    let to_segment = |p: Place, [a, b]: [Place; 2]| {
+        let (along, from) = (minus(b, a), minus(p, a));
+        let square = along[0] * along[0] + along[1] * along[1];
+        let t = if square > 0.0 { (along[0] * from[0] + along[1] * from[1]) / square } else { 0.0 };
+        let t = t.clamp(0.0, 1.0);
+        length(minus(from, [along[0] * t, along[1] * t]))
+    };
+    let nearest = |p: Place| {
+        other
+            .iter()
+            .flat_map(|line| segments(line))
+            .map(|segment| to_segment(p, segment))
+            .fold(f64::INFINITY, f64::min)
+    };
+    lines.iter().flatten().map(|place| nearest(*place)).fold(0.0, f64::max)
+}
+
+/// Balls by the cells of a grid.
+struct Balls<'a> {
+    places: &'a [Place],
+    size: f64,
+    cells: HashMap<[i64; 2], Vec<u32>>,
+}
+
+impl<'a> Balls<'a> {
+    fn new(places: &'a [Place], size: f64) -> Self {
+        let mut cells: HashMap<[i64; 2], Vec<u32>> = HashMap::new();
+        for (number, place) in places.iter().enumerate() {
+            cells.entry(place.map(|x| (x / size).floor() as i64)).or_default().push(number as u32);
+        }
+        Self { places, size, cells }
+    }
+
+    /// Those nearer than a cell.
+    fn near(&self, place: Place) -> impl Iterator<Item = Place> + '_ {
+        let [x, y] = place.map(|x| (x / self.size).floor() as i64);
+        let cells = (0..9)
+            .filter_map(move |n| self.cells.get(&[x.saturating_add(n % 3 - 1), y.saturating_add(n / 3 - 1)]));
+        let is_near = move |ball: &Place| length(minus(place, *ball)) < self.size;
+        cells.flatten().map(|number| self.places[*number as usize]).filter(is_near)
+    }
+}
+
+/// Balls of one radius, and what comes to them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frontier {
+    /// Of the balls [m].
+    pub radius: f64,
+    /// Of what comes from outside [m].
+    pub probe: f64,
+    /// Of the grid [m].
+    pub cell: f64,
+}
+
+impl Frontier {
+    /// `Σ max(0, S - |x - P_i|)`, `S = R + R_probe`, less the `R_probe` of a single touch.
+    fn excess(&self, balls: &Balls, place: Place) -> f64 {
+        let reach = self.radius + self.probe;
+        balls.near(place).map(|ball| reach - length(minus(place, ball))).sum::<f64>() - self.probe
+    }
+
+    /// The lines where the sum is that of a single touch, by marching squares over cells near the balls.
+    pub fn lines(&self, places: &[Place]) -> Lines {
+        let balls = Balls::new(places, self.radius + self.probe);
+        let reach = ((self.radius + self.probe) / self.cell).ceil() as i64 + 1;
+        let cell_of = |place: Place| place.map(|x| (x / self.cell).floor() as i64);
+        let mut corners: HashMap<[i64; 2], f64> = HashMap::new();
+        let mut squares: Vec<[i64; 2]> = Vec::new();
+        for place in places {
+            let [x, y] = cell_of(*place);
+            squares.extend((-reach..=reach).flat_map(|j| (-reach..=reach).map(move |i| [x + i, y + j])));
+        }
+        squares.sort_unstable();
+        squares.dedup();
+        let mut value = |corner: [i64; 2]| {
+            let place = corner.map(|x| x as f64 * self.cell);
+            *corners.entry(corner).or_insert_with(|| self.excess(&balls, place))
+        };
+        // from the edge where a line enters a square to that where it leaves, inside on its left
+        let mut next: HashMap<Edge, Edge> = HashMap::new();
+        let mut starts = Vec::new();
+        for [x, y] in squares {
+            let ring = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
+            let values = ring.map(&mut value);
+            let is_in = values.map(|value| value > 0.0);
+            let edges: [Edge; 4] =
+                std::array::from_fn(|side| Edge::between(ring[side], ring[(side + 1) % 4]));
+            let leaves: Vec<usize> = (0..4).filter(|side| !is_in[*side] && is_in[(side + 1) % 4]).collect();
+            for leaving in leaves {
+                // two opposite corners are one or two by the middle
+                let middle = values.iter().sum::<f64>() > 0.0;
+                let turns = if middle { [3, 1, 2] } else { [1, 3, 2] };
+                let enters = turns
+                    .into_iter()
+                    .map(|turn| (leaving + turn) % 4)
+                    .find(|side| is_in[*side] && !is_in[(side + 1) % 4]);
+                if let Some(entering) = enters {
+                    next.insert(edges[entering], edges[leaving]);
+                    starts.push(edges[entering]);
+                }
+            }
+        }
+        // by halves: out of reach the sum is constant, and no straight line leads to where it is zero
+        let cross = |edge: Edge| {
+            let [a, b] = edge.ends();
+            let at = |share: f64| {
+                [0, 1].map(|axis: usize| (a[axis] as f64 + share * (b[axis] - a[axis]) as f64) * self.cell)
+            };
+            let is_in = |share| self.excess(&balls, at(share)) > 0.0;
+            let (mut low, mut high, first) = (0.0, 1.0, is_in(0.0));
+            for _ in 0..HALVES {
+                let middle = 0.5 * (low + high);
+                if is_in(middle) == first { low = middle } else { high = middle }
+            }
+            at(0.5 * (low + high))
+        };
+        let mut lines = Lines::new();
+        for start in starts {
+            let mut line = Vec::new();
+            let mut at = start;
+            while let Some(to) = next.remove(&at) {
+                line.push(cross(at));
+                at = to;
+            }
+            if line.len() > 2 {
+                lines.push(line);
+            }
+        }
+        lines
+    }
+}
+
+/// Of an edge of the grid, until a crossing is found.
+const HALVES: usize = 24;
+
+/// An edge of the grid: its lower corner, and whether it goes along the second axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Edge([i64; 2], bool);
+
+impl Edge {
+    fn between(a: [i64; 2], b: [i64; 2]) -> Self {
+        Self(a.min(b), a[0] == b[0])
+    }
+
+    fn ends(self) -> [[i64; 2]; 2] {
+        let Self([x, y], is_second) = self;
+        [[x, y], if is_second { [x, y + 1] } else { [x + 1, y] }]
+    }
+}
+
+/// A light mass that runs along balls: a wall at their radius, a band of attraction beyond, a speed that is kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scan {
+    /// Of the balls [m].
+    pub radius: f64,
+    /// Of the band [m].
+    pub band: f64,
+    /// Way in a step [m].
+    pub step: f64,
+}
+
+/// Ways that a probe may run, in lengths around all balls one by one.
+const ROUNDS: f64 = 2.0;
+/// Of the wall and the band: `k Te²/m`, and as much of the speed towards the balls that a step takes.
+const STIFFNESS: f64 = 0.25;
+const DAMPING: f64 = 0.9;
+
+impl Scan {
+    /// One closed trace around each part of the balls; a part whose trace does not close has none.
+    pub fn lines(&self, places: &[Place]) -> Lines {
+        let mut left: Vec<Place> = places.to_vec();
+        let mut lines = Lines::new();
+        while let Some(first) =
+            left.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])))
+        {
+            if let Some(line) = self.trace(places, [first[0] - self.radius, first[1]]) {
+                lines.push(line);
+            }
+            // those that hang together with it have been run around
+            let balls = Balls::new(&left, 2.0 * (self.radius + self.band));
+            let (mut part, mut front) = (vec![first], vec![first]);
+            while let Some(ball) = front.pop() {
+                let new: Vec<Place> = balls.near(ball).filter(|other| !part.contains(other)).collect();
+                part.extend(&new);
+                front.extend(new);
+            }
+            left.retain(|ball| !part.contains(ball));
+        }
+        lines
+    }
+
+    /// From a place left of all balls of a part, with them on its left.
+    fn trace(&self, places: &[Place], start: Place) -> Option<Vec<Place>> {
+        let balls = Balls::new(places, self.radius + self.band);
+        let most = ROUNDS * std::f64::consts::TAU * self.radius * places.len() as f64 / self.step;
+        let (mut at, mut speed) = (start, [0.0, -self.step]);
+        let mut line = vec![at];
+        while (line.len() as f64) < most + 100.0 {
+            // all walls push, the nearest ball alone attracts
+            let mut push = [0.0, 0.0];
+            let mut nearest: Option<(f64, Place)> = None;
+            for ball in balls.near(at) {
+                let away = minus(at, ball);
+                let distance = length(away);
+                let along = away.map(|x| x / distance.max(f64::MIN_POSITIVE));
+                let gap = distance - self.radius;
+                if gap < 0.0 {
+                    push = [push[0] - along[0] * gap * STIFFNESS, push[1] - along[1] * gap * STIFFNESS];
+                }
+                if nearest.is_none_or(|(known, _)| gap < known) {
+                    nearest = Some((gap, along));
+                }
+            }
+            // lost
+            let (gap, along) = nearest?;
+            if gap > 0.0 {
+                push = [push[0] - along[0] * gap * STIFFNESS, push[1] - along[1] * gap * STIFFNESS];
+            }
+            let towards = speed[0] * along[0] + speed[1] * along[1];
+            speed = [0, 1].map(|axis: usize| speed[axis] + push[axis] - DAMPING * towards * along[axis]);
+            // the speed along the balls is kept, with them on the left
+            let tangent = [-along[1], along[0]];
+            let (out, on) = (speed[0] * along[0] + speed[1] * along[1], self.step);
+            speed = [0, 1].map(|axis: usize| along[axis] * out + tangent[axis] * on);
+            at = [at[0] + speed[0], at[1] + speed[1]];
+            line.push(at);
+            let home = length(minus(at, start));
+            if line.len() > 8 && home < self.step && speed[1] < 0.0 {
+                return Some(line);
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    /// Around one ball, two that overlap and a ring: lengths, areas, holes and parts as geometry has them; the probe agrees.
+    #[test]
+    fn contours_of_known_figures() {
+        let frontier = Frontier { radius: 1.0, probe: 1e-3, cell: 0.05 };
+        let scan = Scan { radius: 1.0, band: 0.3, step: 0.02 };
+        let one = [[0.3, -0.2]];
+        for lines in [frontier.lines(&one), scan.lines(&one)] {
+            assert_eq!(lines.len(), 1);
+            // chords and crossings on straight lines between corners
+            assert!((total_length(&lines) / (2.0 * PI) - 1.0).abs() < 5e-3, "{}", total_length(&lines));
+            assert!((enclosed_area(&lines) / PI - 1.0).abs() < 5e-3, "{}", enclosed_area(&lines));
+        }
+        // two circles with centres one radius apart: 2 r² (π - acos ½ + ½ √¾)
+        let two = [[0.0, 0.0], [1.0, 0.0]];
+        let area = 2.0 * (PI - PI / 3.0 + 0.5 * 0.75_f64.sqrt());
+        let (lines, trace) = (frontier.lines(&two), scan.lines(&two));
+        assert!((enclosed_area(&lines) / area - 1.0).abs() < 1e-2, "{}", enclosed_area(&lines));
+        assert!((enclosed_area(&trace) / area - 1.0).abs() < 2e-2, "{}", enclosed_area(&trace));
+        assert!(farthest(&trace, &lines) < 0.1, "{}", farthest(&trace, &lines));
+        let apart = [[0.0, 0.0], [5.0, 0.0]];
+        assert_eq!([frontier.lines(&apart).len(), scan.lines(&apart).len()], [2, 2]);
+        let ring: Vec<Place> =
+            (0..12).map(|i| (f64::from(i) * PI / 6.0).sin_cos()).map(|(s, c)| [3.0 * c, 3.0 * s]).collect();
+        let lines = frontier.lines(&ring);
+        assert_eq!(lines.len(), 2);
+        // the hole counts off: less than the outer disc, more than the chain of discs
+        assert!(enclosed_area(&lines) < PI * 16.0 - PI * 3.0, "{}", enclosed_area(&lines));
+    }
+}

@@ -1,0 +1,61 @@
+//! Masses that fill shapes get their places.
+
+use souple_mesh::BoundingBox;
+use souple_models::contact::Shape;
+use souple_models::contact::shape::ClosedSurface;
+use souple_models::network::Filling;
+
+use super::super::{Draft, contact, shape};
+use crate::diagnostic::Code;
+use crate::spec::network::{FillSpec, Places};
+
+/// Fills what groups of masses are to fill; what cannot be goes to the log.
+pub fn fill_all(draft: &mut Draft) {
+    let groups = draft.spec.bodies.iter().filter_map(|body| Some((body, body.network.as_ref()?)));
+    let mut warnings = Vec::new();
+    for (body, group) in
+        groups.flat_map(|(body, network)| network.masses.iter().map(move |group| (body, group)))
+    {
+        let Places::Filled(fill) = &group.places else { continue };
+        let Some(shape) = shape_of(fill, &body.name, draft, &mut warnings) else { continue };
+        let outline = shape.outline().map(|outline| BoundingBox::of(outline.surface.points));
+        let asked = fill.bounds.map(|[low, high]| BoundingBox { low, high });
+        let Some(bounds) = asked.or(outline) else {
+            let message = "this shape has no end";
+            draft.log.add(Code::MissingKey, &fill.site, message, "box = [[…], […]], where balls may be");
+            continue;
+        };
+        let FillSpec { spacing, inset, depth, .. } = **fill;
+        match (Filling { spacing, inset, depth, bounds }).fill(shape.as_ref()) {
+            Ok(places) => drop(fill.places.set(places)),
+            Err(error) => {
+                draft.log.add(Code::OutOfRange, &fill.site, error.to_string(), "another `spacing`, or `box`");
+            }
+        }
+    }
+    draft.warnings.extend(warnings);
+}
+
+/// `None` where it was refused.
+fn shape_of(
+    fill: &FillSpec,
+    body: &str,
+    draft: &Draft,
+    warnings: &mut Vec<String>,
+) -> Option<Box<dyn Shape>> {
+    if let Some(chosen) = &fill.shape {
+        return contact::built(draft, chosen);
+    }
+    let mesh = shape::mesh_of(fill.mesh.as_ref()?, body, draft, warnings)?;
+    let surface = match mesh.facet_surface() {
+        Some(surface) if mesh.cell_count() == 0 => surface,
+        _ => mesh.boundary_surface(),
+    };
+    match ClosedSurface::new(surface) {
+        Ok(closed) => Some(Box::new(closed)),
+        Err(error) => {
+            draft.log.add(Code::Mesh, &fill.site, error.to_string(), "a mesh with a closed surface");
+            None
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Contours of the masses of a network: three ways to tell where an object ends.
+
+use souple_models::network::contour::{Frontier, Plane, Scan};
+use souple_table::{Range, Value};
+
+use crate::diagnostic::{Code, Site};
+use crate::keys::{Key, Keys, Shape};
+use crate::reader::Reader;
+
+pub(super) static CONTOUR: Keys = Keys::new(
+    "contour",
+    "where an object ends, in a plane: the line `through` the masses of its skin, the `frontier` of what it does to what comes, or the trace of a probe that runs along it (`scan`)",
+    &[
+        Key::new("through", Shape::Integers, "masses of a closed line, by number in the network"),
+        Key::new("skin", Shape::Text, "a group whose masses are a closed line in their order"),
+        Key::new("frontier", Shape::Texts, "groups of balls of one radius"),
+        Key::new("scan", Shape::Texts, "groups of balls of one radius"),
+        Key::number("radius", "m", Range::POSITIVE, "of the balls"),
+        Key::number(
+            "probe",
+            "m",
+            Range::POSITIVE,
+            "radius of what comes to the frontier: the larger, the more hollows it bridges; a tenth of `radius` where left out",
+        ),
+        Key::number(
+            "step",
+            "m",
+            Range::POSITIVE,
+            "of the frontier's grid, or of the scan; a tenth of `radius` where left out",
+        ),
+        Key::number(
+            "band",
+            "m",
+            Range::POSITIVE,
+            "how far balls hold the scan's probe; half of `radius` where left out",
+        ),
+        Key::new("normal", Shape::Choice(&["x", "y", "z"]), "across the plane").or(Value::Text("y")),
+    ],
+);
+
+/// Where an object ends.
+#[derive(Clone, Debug)]
+pub struct ContourSpec {
+    pub name: String,
+    pub way: Way,
+    pub plane: Plane,
+    pub site: Site,
+}
+
+/// How a contour is told.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Way {
+    /// Through masses by number.
+    Through(Vec<u32>),
+    /// Through a group in its order.
+    Skin(String),
+    Frontier(Vec<String>, Frontier),
+    Scan(Vec<String>, Scan),
+}
+
+impl ContourSpec {
+    /// `None` where it was refused.
+    pub(super) fn read(name: String, reader: &Reader) -> Option<Self> {
+        let refuse = |key: &str, message: &str, expected: &str| {
+            reader.log().add(Code::Conflict, &reader.site_of(key), message, expected);
+        };
+        let written = reader.written(&["through", "skin", "frontier", "scan"]);
+        let [way] = written[..] else {
+            let message = format!("a contour is told in one way, this one in {}", written.len());
+            reader.log().add(
+                Code::WrongType,
+                &reader.site(),
+                message,
+                "one of through, skin, frontier, scan",
+            );
+            return None;
+        };
+        let is_of_balls = matches!(way, "frontier" | "scan");
+        let radius = reader.maybe_number("radius");
+        if is_of_balls != radius.is_some() {
+            refuse(way, "balls have a `radius`, skins have none", "radius = \"…\" with `frontier` or `scan`");
+            return None;
+        }
+        let radius = radius.unwrap_or(1.0);
+        let number = |key: &str, share: f64| reader.maybe_number(key).unwrap_or(share * radius);
+        let step = number("step", 0.1);
+        let way = match way {
+            "through" => Way::Through(reader.maybe_indices("through")?),
+            "skin" => Way::Skin(reader.maybe_text("skin")?),
+            "frontier" => {
+                let frontier = Frontier { radius, probe: number("probe", 0.1), cell: step };
+                Way::Frontier(reader.texts("frontier"), frontier)
+            }
+            _ => Way::Scan(reader.texts("scan"), Scan { radius, band: number("band", 0.5), step }),
+        };
+        let normal = ["x", "y", "z"].iter().position(|axis| *axis == reader.choice("normal"));
+        Some(Self { name, way, plane: Plane::across(normal.unwrap_or(1)), site: reader.site() })
+    }
+
+    /// Groups of masses that it is of.
+    pub(super) fn groups(&self) -> &[String] {
+        match &self.way {
+            Way::Through(_) => &[],
+            Way::Skin(group) => std::slice::from_ref(group),
+            Way::Frontier(groups, _) | Way::Scan(groups, _) => groups,
+        }
+    }
+}

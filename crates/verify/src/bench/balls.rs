@@ -1,0 +1,69 @@
+//! Multitudes: steps of a heap with cohesion and friction, and how they grow with the number of balls.
+
+use super::timing::{Held, Timed, Timing, as_it_is, median, scene};
+use super::{Effort, Figure, value_of};
+
+/// Steps in a period of the world.
+const STEPS_PER_PERIOD: usize = 10;
+
+/// Steps/s that are wanted of 100,000 balls on two cores.
+const WANTED: f64 = 60.0;
+
+/// `0.5 exp(-π h/√(1 - h²))` of a collision with a damping ratio of 0.1 [m/s].
+const REBOUND: f64 = 0.364_623_807_143_835_47;
+
+/// A heap whose cone is as wide [m]: about 730 balls for each cubic metre of it.
+fn heap(radius: f64) -> Vec<String> {
+    vec![format!("parameters.radius={radius}")]
+}
+
+fn held(baseline: Option<f64>) -> Result<Held, String> {
+    let rebound = value_of(scene("network_collision", &[])?, 200, "speed", 0)?;
+    let error_of = "the speed after a collision of two such balls".to_owned();
+    Ok(Held { error: (rebound / REBOUND - 1.0).abs(), error_of, baseline })
+}
+
+fn timing(settings: &[String], samples: usize) -> Timing<'_> {
+    Timing { scene: "cohesive_heap", settings, prepare: as_it_is, warm_up: 1, samples, steps_per_sample: 1 }
+}
+
+pub fn balls_100k(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let (settings, held) = (heap(5.2), held(Some(WANTED))?);
+    let timed = timing(&settings, effort.choose(3, 10)).run()?;
+    Ok(timed
+        .into_iter()
+        .map(|timed| timed.in_parts(STEPS_PER_PERIOD).steps_per_second(name, &held))
+        .collect())
+}
+
+/// A thousand balls to a million, with all threads.
+pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let radii: &[(&str, f64)] = &[("1k", 1.2), ("10k", 2.45), ("100k", 5.2), ("1m", 11.1)];
+    let held = held(None)?;
+    let mut figures = Vec::new();
+    let mut points = Vec::new();
+    for (count, radius) in &radii[..effort.choose(3, 4)] {
+        let settings = heap(*radius);
+        let balls = scene("cohesive_heap", &settings)?.bodies[0].mesh.points.len() as f64;
+        let timed: Timed = timing(&settings, effort.choose(3, 5)).sample(rayon::current_num_threads())?;
+        let timed = timed.in_parts(STEPS_PER_PERIOD);
+        let of_ball: Vec<f64> = timed.seconds.iter().map(|seconds| 1e9 * seconds / balls).collect();
+        points.push([balls.ln(), (balls * median(of_ball.clone()).0).ln()]);
+        let figure = timed.figure(&format!("{name}_{count}"), of_ball, &held, ("ns/ball and step", false));
+        let own = timed.bytes as f64 / balls;
+        figures.push(figure);
+        figures.push(timed.figure(&format!("{name}_{count}_memory"), vec![own], &held, ("B/ball", false)));
+        if let ("1m", slope) = (*count, slope(&points)) {
+            figures.push(timed.figure(&format!("{name}_exponent"), vec![slope], &held, ("of balls", false)));
+        }
+    }
+    Ok(figures)
+}
+
+/// Of the straight line through points, by least squares.
+fn slope(points: &[[f64; 2]]) -> f64 {
+    let count = points.len() as f64;
+    let [x, y] = [0, 1].map(|axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / count);
+    let above: f64 = points.iter().map(|point| (point[0] - x) * (point[1] - y)).sum();
+    above / points.iter().map(|point| (point[0] - x).powi(2)).sum::<f64>()
+}
