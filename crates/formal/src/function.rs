@@ -95,6 +95,7 @@ pub const FUNCTIONS: &[FunctionEntry] = &[
     entry(Function::Tanh, "tanh", 1, "tanh(x)", "hyperbolic tangent"),
     entry(Function::Exp, "exp", 1, "exp(x)", "power of e"),
     entry(Function::Ln, "ln", 1, "ln(x)", "natural logarithm"),
+    entry(Function::Ln, "log", 1, "log(x)", "natural logarithm, as ln"),
     entry(Function::Log10, "log10", 1, "log10(x)", "decimal logarithm"),
     entry(Function::Sqrt, "sqrt", 1, "sqrt(x)", "square root"),
     entry(Function::Cbrt, "cbrt", 1, "cbrt(x)", "cube root, also of negative numbers"),

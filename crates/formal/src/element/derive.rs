@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::separable::Corners;
 use super::{Cut, ElementData, Fragment, RestMap};
 use crate::graph::{Expr, Graph, Grouped, Operations, Shape, WithoutFormula};
 use crate::law::EnergyLaw;
@@ -101,11 +102,13 @@ pub(super) struct Term {
 
 /// What a sample adds: expressions of numbers.
 struct AtSample {
+    /// `X_ξ⁻¹`, by columns.
+    inverse: Vec<Expr>,
     /// By term.
     energies: Vec<Expr>,
-    /// `f` by term, node and direction.
-    forces: Vec<Vec<Expr>>,
-    /// `δf` by term, then by node and direction of what varies (all of them where not cut), then by node and direction.
+    /// `-ω P` by term and column.
+    stresses: Vec<Vec<Expr>>,
+    /// `-ω δP` by term, then by node and direction of what varies (all of them where not cut), then by column.
     differentials: Vec<Vec<Vec<Expr>>>,
 }
 
@@ -116,7 +119,7 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
     let mut graph = law.graph.clone();
     let Symbols { rest, displacements, variations, parameters, directions } =
         Symbols::new(&mut graph, element, law);
-    let terms = terms(&mut graph, law);
+    let terms = terms(&mut graph, law, cut);
     let cut_variations = cut.has(super::Axis::Nodes) || cut.has(super::Axis::Dimension);
     let mut samples = Vec::with_capacity(element.samples.len());
     for sample in 0..element.samples.len() {
@@ -130,42 +133,48 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
     let of_samples = |fragment: Fragment| fragment.sample.map_or(0..counts.1, |sample| sample..sample + 1);
     let width = element.node_count * element.dimension;
     let (mut energies, mut forces, mut differentials) = (Vec::new(), Vec::new(), Vec::new());
-    let finish =
-        |graph: &mut Graph, fragment, addends: Vec<Vec<Expr>>, list: &mut Vec<ElementExpressions>| {
-            let raw: Vec<Expr> = (0..addends[0].len())
-                .map(|index| {
-                    let addends: Vec<Expr> = addends.iter().map(|addend| addend[index]).collect();
-                    graph.sum(&addends)
-                })
-                .collect();
-            let grouped = graph.group_constants(&raw, &variables);
-            list.push(ElementExpressions { fragment, raw, grouped });
-        };
+    let finish = |graph: &mut Graph, fragment, raw: Vec<Expr>, list: &mut Vec<ElementExpressions>| {
+        let mut grouped = graph.group_constants(&raw, &variables);
+        grouped.varying = graph.shared(&grouped.varying);
+        list.push(ElementExpressions { fragment, raw, grouped });
+    };
+    // what the samples of a fragment hold of stress, by its nodes
+    let to_nodes = |graph: &mut Graph, fragment, addends: &dyn Fn(&AtSample) -> Vec<Vec<Expr>>| {
+        let stresses: Vec<SampleStress> = of_samples(fragment)
+            .map(|sample| {
+                let at = &samples[sample];
+                SampleStress {
+                    sample,
+                    inverse: at.inverse.clone(),
+                    stress: entrywise_sum(graph, &addends(at)),
+                }
+            })
+            .collect();
+        nodal_forces(graph, element, &stresses)
+    };
     for fragment in Fragment::of_forces(cut, counts.0, counts.1) {
-        let pairs: Vec<(usize, usize)> =
-            of_samples(fragment).flat_map(|q| all_terms(fragment).map(move |t| (q, t))).collect();
-        let of_energy = pairs.iter().map(|(q, t)| vec![samples[*q].energies[*t]]).collect();
-        finish(&mut graph, fragment, of_energy, &mut energies);
-        let of_forces = pairs.iter().map(|(q, t)| samples[*q].forces[*t].clone()).collect();
+        let of_energy: Vec<Expr> =
+            of_samples(fragment).flat_map(|q| samples[q].energies[all_terms(fragment)].to_vec()).collect();
+        let of_energy = graph.sum(&of_energy);
+        finish(&mut graph, fragment, vec![of_energy], &mut energies);
+        let of_forces = to_nodes(&mut graph, fragment, &|at| at.stresses[all_terms(fragment)].to_vec());
         finish(&mut graph, fragment, of_forces, &mut forces);
     }
     for fragment in Fragment::of_differentials(cut, counts, (element.node_count, element.dimension)) {
-        let mut addends = Vec::new();
-        for (q, t) in of_samples(fragment).flat_map(|q| all_terms(fragment).map(move |t| (q, t))) {
-            if !cut_variations {
-                addends.push(samples[q].differentials[t][0].clone());
-                continue;
-            }
-            for varied in 0..width {
-                let (node, direction) = (varied / element.dimension, varied % element.dimension);
-                if fragment.node.is_none_or(|wanted| wanted == node)
-                    && fragment.direction.is_none_or(|wanted| wanted == direction)
-                {
-                    addends.push(samples[q].differentials[t][varied].clone());
-                }
-            }
-        }
-        finish(&mut graph, fragment, addends, &mut differentials);
+        let is_wanted = |varied: usize| {
+            let (node, direction) = (varied / element.dimension, varied % element.dimension);
+            fragment.node.is_none_or(|wanted| wanted == node)
+                && fragment.direction.is_none_or(|wanted| wanted == direction)
+        };
+        let varied: Vec<usize> =
+            if cut_variations { (0..width).filter(|varied| is_wanted(*varied)).collect() } else { vec![0] };
+        let addends = |at: &AtSample| {
+            let of_term = |term: usize| varied.iter().map(move |varied| (term, *varied));
+            let stress = |(term, varied): (usize, usize)| at.differentials[term][varied].clone();
+            all_terms(fragment).flat_map(of_term).map(stress).collect()
+        };
+        let of_differentials = to_nodes(&mut graph, fragment, &addends);
+        finish(&mut graph, fragment, of_differentials, &mut differentials);
     }
     let name = format!("{}{cut}", element.name);
     Ok(Derived {
@@ -182,24 +191,31 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
     })
 }
 
-/// The terms of the energy times `ω`. The weight is multiplied in before differentiation, so that it meets the
-/// material constants and is grouped with them.
-pub(super) fn terms(graph: &mut Graph, law: &EnergyLaw) -> Vec<Term> {
+/// The terms of the energy times `ω`, or their sum where the law is not cut. The weight is multiplied in before differentiation,
+/// so that it meets the material constants and is grouped with them.
+pub(super) fn terms(graph: &mut Graph, law: &EnergyLaw, cut: Cut) -> Vec<Term> {
     let weight = graph.own_symbol(WEIGHT);
     let seeds = HashMap::from([(law.deformation, law.variation)]);
-    let mut list = Vec::new();
+    let mut energies = Vec::new();
     for (index, term) in law.terms().into_iter().enumerate() {
         // what makes the energy zero at rest belongs to one of them
         let term = match law.offset() {
             Some(offset) if index == 0 => graph.sum(&[term, offset]),
             _ => term,
         };
-        let energy = graph.product(&[weight, term]);
+        energies.push(graph.product(&[weight, term]));
+    }
+    if !cut.has(super::Axis::Law) {
+        energies = vec![graph.sum(&energies)];
+    }
+    let of_energy = |energy: Expr| {
         let stress = graph.gradient(energy, law.deformation);
         let differential = graph.differential(stress, &seeds);
-        list.push(Term { energy, stress, differential });
-    }
-    list
+        let [stress, differential] =
+            [stress, differential].map(|derivative| graph.factored(&[derivative])[0]);
+        Term { energy, stress, differential }
+    };
+    energies.into_iter().map(of_energy).collect()
 }
 
 /// The expressions at one sample.
@@ -231,16 +247,16 @@ impl Placing<'_> {
         let symbol = self.graph.own_symbol(WEIGHT);
         let mut given = HashMap::from([(symbol, vec![weight]), (self.law.deformation, deformation)]);
         given.extend(self.directions.iter().cloned());
-        let mut at = AtSample { energies: Vec::new(), forces: Vec::new(), differentials: Vec::new() };
+        let (mut energies, mut stresses, mut differentials) = (Vec::new(), Vec::new(), Vec::new());
         let every: Vec<Option<(usize, usize)>> = if cut_variations {
             (0..displacements.len()).flat_map(|n| (0..dimension).map(move |k| Some((n, k)))).collect()
         } else {
             vec![None]
         };
         for term in terms {
-            at.energies.push(self.graph.components(term.energy, &given)?[0]);
-            let stress = self.graph.components(term.stress, &given)?;
-            at.forces.push(self.spread(&stress, &inverse));
+            energies.push(self.graph.components(term.energy, &given)?[0]);
+            let negative = self.graph.negate(term.stress);
+            stresses.push(self.graph.components(negative, &given)?);
             let mut of_term = Vec::new();
             for varied in &every {
                 let zero = self.graph.number(0.0);
@@ -254,12 +270,12 @@ impl Placing<'_> {
                     .collect();
                 let variation = self.gradient(&masked, &inverse);
                 given.insert(self.law.variation, variation);
-                let differential = self.graph.components(term.differential, &given)?;
-                of_term.push(self.spread(&differential, &inverse));
+                let negative = self.graph.negate(term.differential);
+                of_term.push(self.graph.components(negative, &given)?);
             }
-            at.differentials.push(of_term);
+            differentials.push(of_term);
         }
-        Ok(at)
+        Ok(AtSample { inverse, energies, stresses, differentials })
     }
 
     /// `X_ξ⁻¹`, by columns, and `det X_ξ`.
@@ -296,19 +312,25 @@ impl Placing<'_> {
 
     /// `Σ values_n ⊗ ∂N_n/∂ξ`, by columns.
     pub fn reference_gradient(&mut self, values: &[Vec<Expr>]) -> Vec<Expr> {
-        let gradients = &self.element.samples[self.sample].gradients;
-        (0..9)
-            .map(|index| {
-                let (row, column) = (index % 3, index / 3);
-                let terms: Vec<Expr> = values
-                    .iter()
-                    .zip(gradients)
-                    .filter(|(value, gradient)| row < value.len() && gradient[column] != 0.0)
-                    .map(|(value, gradient)| self.graph.times_number(gradient[column], value[row]))
-                    .collect();
-                self.graph.sum(&terms)
-            })
-            .collect()
+        let sample = &self.element.samples[self.sample];
+        let (dimension, corners) = (self.element.dimension, Corners::of(self.element));
+        let mut of_entry = |index: usize| {
+            let (row, column) = (index % 3, index / 3);
+            if row >= dimension || column >= dimension {
+                return self.graph.number(0.0);
+            }
+            let field: Vec<Expr> = values.iter().map(|value| value[row]).collect();
+            if let Some(corners) = &corners {
+                return corners.derivative(self.graph, &field, column, &sample.position);
+            }
+            let terms: Vec<Expr> = field
+                .iter()
+                .zip(&sample.gradients)
+                .map(|(value, gradient)| self.graph.times_number(gradient[column], *value))
+                .collect();
+            self.graph.sum(&terms)
+        };
+        (0..9).map(&mut of_entry).collect()
     }
 
     /// `∂(values)/∂X`, by columns.
@@ -324,28 +346,59 @@ impl Placing<'_> {
             })
             .collect()
     }
+}
 
-    /// `f_n = -P X_ξ⁻ᵀ ∂N_n/∂ξ`, by node and direction; the weight is in `P` already.
-    fn spread(&mut self, stress: &[Expr], inverse: &[Expr]) -> Vec<Expr> {
-        let dimension = self.element.dimension;
-        let mut in_reference = Vec::with_capacity(9);
-        for index in 0..9 {
-            let (row, column) = (index % 3, index / 3);
-            // (P X_ξ⁻ᵀ)(row, column) = Σ P(row, k) X_ξ⁻¹(column, k)
-            let products: Vec<Expr> =
-                (0..3).map(|k| self.graph.product(&[stress[3 * k + row], inverse[3 * k + column]])).collect();
-            in_reference.push(self.graph.sum(&products));
-        }
-        let gradients = &self.element.samples[self.sample].gradients;
-        let mut forces = Vec::with_capacity(self.element.node_count * dimension);
-        for gradient in gradients {
-            for row in 0..dimension {
-                let terms: Vec<Expr> = (0..dimension)
-                    .map(|a| self.graph.times_number(-gradient[a], in_reference[3 * a + row]))
-                    .collect();
-                forces.push(self.graph.sum(&terms));
+/// A stress times its weight at a sample, by columns, with `X_ξ⁻¹` there.
+pub(super) struct SampleStress {
+    pub sample: usize,
+    pub inverse: Vec<Expr>,
+    pub stress: Vec<Expr>,
+}
+
+/// `Σ_q P_q X_ξ⁻ᵀ ∂N_n/∂ξ`, by node and direction.
+pub(super) fn nodal_forces(graph: &mut Graph, element: &ElementData, stresses: &[SampleStress]) -> Vec<Expr> {
+    let dimension = element.dimension;
+    let mut addends: Vec<Vec<Expr>> = vec![Vec::new(); element.node_count * dimension];
+    if let Some(corners) = Corners::of(element) {
+        for (row, axis) in (0..dimension).flat_map(|row| (0..dimension).map(move |axis| (row, axis))) {
+            let along_axis: Vec<([f64; 3], Expr)> = stresses
+                .iter()
+                .map(|at| (element.samples[at.sample].position, at.stress[3 * axis + row]))
+                .collect();
+            let forces = corners.spread(graph, &along_axis, axis);
+            for (node, force) in forces.into_iter().enumerate() {
+                // the map of a box is the same at all samples
+                addends[node * dimension + row].push(graph.product(&[force, stresses[0].inverse[4 * axis]]));
             }
         }
-        forces
+    } else {
+        for SampleStress { sample, inverse, stress } in stresses {
+            let mut in_reference = Vec::with_capacity(9);
+            for index in 0..9 {
+                let (row, column) = (index % 3, index / 3);
+                // (P X_ξ⁻ᵀ)(row, column) = Σ P(row, k) X_ξ⁻¹(column, k)
+                let products: Vec<Expr> =
+                    (0..3).map(|k| graph.product(&[stress[3 * k + row], inverse[3 * k + column]])).collect();
+                in_reference.push(graph.sum(&products));
+            }
+            for (node, gradient) in element.samples[*sample].gradients.iter().enumerate() {
+                for row in 0..dimension {
+                    let terms = (0..dimension)
+                        .map(|axis| graph.times_number(gradient[axis], in_reference[3 * axis + row]));
+                    addends[node * dimension + row].extend(terms);
+                }
+            }
+        }
     }
+    addends.iter().map(|addends| graph.sum(addends)).collect()
+}
+
+/// Sum of lists of one length, entry by entry.
+fn entrywise_sum(graph: &mut Graph, lists: &[Vec<Expr>]) -> Vec<Expr> {
+    (0..lists[0].len())
+        .map(|index| {
+            let addends: Vec<Expr> = lists.iter().map(|list| list[index]).collect();
+            graph.sum(&addends)
+        })
+        .collect()
 }

@@ -5,7 +5,8 @@
 use std::collections::HashMap;
 
 use super::derive::{Symbols, WEIGHT, terms};
-use super::{ElementData, RestMap};
+use super::separable::is_high;
+use super::{Cut, ElementData, RestMap};
 use crate::graph::{Expr, Graph, WithoutFormula};
 use crate::law::EnergyLaw;
 
@@ -50,7 +51,7 @@ fn differential(
     law: &EnergyLaw,
 ) -> Result<Direct, WithoutFormula> {
     let dimension = shape.element.dimension;
-    let terms = terms(&mut graph, law);
+    let terms = terms(&mut graph, law, Cut::NONE);
     let mut addends: Vec<Vec<Expr>> = vec![Vec::new(); shape.element.node_count * dimension];
     for sample in &shape.element.samples {
         let gradients: Vec<Vec<Expr>> = (0..shape.element.node_count)
@@ -98,20 +99,12 @@ fn differential(
 }
 
 impl BoxShape<'_> {
-    /// Whether a node is at the high end of an axis.
-    fn is_high(&self, node: usize, axis: usize) -> bool {
-        // the shape function of a corner rises towards it
-        let shape = &self.element.shapes[node];
-        let slope = shape.iter().find(|(_, powers)| (0..4).all(|k| powers[k] == u8::from(k == axis)));
-        slope.is_some_and(|(coefficient, _)| *coefficient > 0.0)
-    }
-
     /// `∂Λ_n/∂x` at the sample `ξ` with `Λ_n = Π (x - x_other)/(x_n - x_other)`.
     fn gradient(&self, graph: &mut Graph, node: usize, xi: &[f64; 3]) -> Vec<Expr> {
         let mut factors = Vec::new();
         for axis in 0..self.element.dimension {
             let (low, high) = (self.low[axis], self.high[axis]);
-            let (own, other) = if self.is_high(node, axis) { (high, low) } else { (low, high) };
+            let (own, other) = if is_high(self.element, node, axis) { (high, low) } else { (low, high) };
             let (sum, span) = (graph.add(low, high), graph.subtract(high, low));
             let (middle, step) = (graph.times_number(0.5, sum), graph.times_number(0.5 * xi[axis], span));
             let at = graph.add(middle, step);

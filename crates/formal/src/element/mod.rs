@@ -7,6 +7,7 @@
 mod cut;
 mod derive;
 mod direct;
+mod separable;
 mod steps;
 
 pub use cut::{Axis, Cut, Fragment, Sort};

@@ -1,13 +1,14 @@
 //! What an element computes at each step, in tensors: the same forces as [`super::derive`], not spelled out.
 //!
 //! At a sample `X = X_ξ⁻¹` is grouped into nine constants and the weight with the moduli into one each, which are the eleven
-//! of the source for a tetrahedron; then `F = I + U_ξ X`, `H = -ω P(F) Xᵀ`, `f_n = H ∂N_n/∂ξ`. Spelled out, common factors of
+//! of the source for a tetrahedron; then `F = I + U_ξ X`, `H = -ω P(F) Xᵀ`, `f_n = H ∂N_n/∂ξ`; the map of a box is three
+//! numbers, which scale columns. Spelled out, common factors of
 //! `H` would be multiplied into every addend of every force: twice the operations, and constants for each product.
 
 use std::collections::HashMap;
 
-use super::derive::{Placing, Symbols, Term, WEIGHT, terms};
-use super::{Cut, ElementData, Fragment};
+use super::derive::{Placing, SampleStress, Symbols, Term, WEIGHT, nodal_forces, terms};
+use super::{Cut, ElementData, Fragment, RestMap};
 use crate::graph::{Expr, Graph, OWN, Operations, Shape};
 use crate::law::EnergyLaw;
 
@@ -47,7 +48,7 @@ struct Tensors {
     inverse: Expr,
     deformation: Expr,
     variation: Expr,
-    /// `-ω P X_ξ⁻ᵀ`, or its differential.
+    /// `-ω P X_ξ⁻ᵀ`, or its differential; without `X_ξ⁻ᵀ` where that is diagonal.
     spread: Expr,
 }
 
@@ -71,7 +72,7 @@ struct Stepping<'a> {
 pub(super) fn steps(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Steps {
     let mut graph = law.graph.clone();
     let symbols = Symbols::new(&mut graph, element, law);
-    let terms = terms(&mut graph, law);
+    let terms = terms(&mut graph, law, cut);
     let mut stepping = Stepping { graph, element, law, symbols, terms };
     let counts = (stepping.terms.len(), element.samples.len());
     let of_forces = Fragment::of_forces(cut, counts.0, counts.1);
@@ -89,25 +90,35 @@ impl Stepping<'_> {
         let samples = fragment.sample.map_or(0..self.element.samples.len(), |sample| sample..sample + 1);
         let varied = self.varied(fragment);
         let mut definitions = Vec::new();
-        let mut parts = Vec::new();
+        let (mut energies, mut stresses) = (Vec::new(), Vec::new());
         for sample in samples {
             let tensors = self.tensors(sample);
-            let weight = self.deform(sample, tensors, &varied, sort, &mut definitions);
+            let (weight, inverse) = self.deform(sample, tensors, &varied, sort, &mut definitions);
             let of_law = self.of_law(sort, fragment, weight, tensors);
             if sort == Sort::Energy {
-                parts.push(vec![of_law]);
+                energies.push(of_law);
                 continue;
             }
-            let transposed = self.graph.transpose(tensors.inverse);
-            definitions.push((tensors.spread, self.graph.multiply(of_law, transposed)));
-            parts.push(self.forces(sample, tensors.spread));
+            let graph = &mut self.graph;
+            let spread = match inverse {
+                Some(_) => of_law,
+                None => {
+                    let transposed = graph.transpose(tensors.inverse);
+                    graph.multiply(of_law, transposed)
+                }
+            };
+            definitions.push((tensors.spread, spread));
+            let stress = (0..9).map(|index| graph.entry(tensors.spread, index)).collect();
+            let one = |graph: &mut Graph| {
+                (0..9).map(|index| graph.number(f64::from(u8::from(index % 4 == 0)))).collect()
+            };
+            let inverse = inverse.unwrap_or_else(|| one(graph));
+            stresses.push(SampleStress { sample, inverse, stress });
         }
-        let outputs: Vec<Expr> = (0..parts[0].len())
-            .map(|index| {
-                let addends: Vec<Expr> = parts.iter().map(|part| part[index]).collect();
-                self.graph.sum(&addends)
-            })
-            .collect();
+        let outputs = match sort {
+            Sort::Energy => vec![self.graph.sum(&energies)],
+            Sort::Force | Sort::Differential => nodal_forces(&mut self.graph, self.element, &stresses),
+        };
         self.group(definitions, outputs)
     }
 
@@ -135,7 +146,8 @@ impl Stepping<'_> {
         }
     }
 
-    /// Defines `X_ξ⁻¹` and `F` at a sample, and `δF` where it is wanted; gives `ω`.
+    /// Defines `F` at a sample, and `δF` where it is wanted; gives `ω`, and `X_ξ⁻¹` where it is diagonal. Elsewhere that is defined
+    /// too.
     fn deform(
         &mut self,
         sample: usize,
@@ -143,23 +155,35 @@ impl Stepping<'_> {
         varied: &[Vec<Expr>],
         sort: Sort,
         definitions: &mut Vec<(Expr, Expr)>,
-    ) -> Expr {
+    ) -> (Expr, Option<Vec<Expr>>) {
         let Symbols { rest, displacements, directions, .. } = &self.symbols;
         let (element, law) = (self.element, self.law);
         let mut at = Placing { graph: &mut self.graph, element, law, sample, rest, directions };
         let (inverse, determinant) = at.rest_map();
-        let gradient = at.reference_gradient(displacements);
-        let variation = at.reference_gradient(varied);
-        let graph = &mut self.graph;
-        definitions.push((tensors.inverse, graph.pack(&inverse)));
-        let gradient = graph.pack(&gradient);
-        let (product, identity) = (graph.multiply(gradient, tensors.inverse), graph.identity());
-        definitions.push((tensors.deformation, graph.add(identity, product)));
+        let mut rates = vec![(tensors.deformation, at.reference_gradient(displacements))];
         if sort == Sort::Differential {
-            let variation = graph.pack(&variation);
-            definitions.push((tensors.variation, graph.multiply(variation, tensors.inverse)));
+            rates.push((tensors.variation, at.reference_gradient(varied)));
         }
-        graph.times_number(element.samples[sample].weight, determinant)
+        let graph = &mut self.graph;
+        let is_diagonal = matches!(element.map, RestMap::Box { .. });
+        if !is_diagonal {
+            definitions.push((tensors.inverse, graph.pack(&inverse)));
+        }
+        for (symbol, rate) in rates {
+            let gradient = if is_diagonal {
+                let entries: Vec<Expr> =
+                    (0..9).map(|i| graph.product(&[rate[i], inverse[4 * (i / 3)]])).collect();
+                graph.pack(&entries)
+            } else {
+                let rate = graph.pack(&rate);
+                graph.multiply(rate, tensors.inverse)
+            };
+            let identity = graph.identity();
+            let value = if symbol == tensors.deformation { graph.add(identity, gradient) } else { gradient };
+            definitions.push((symbol, value));
+        }
+        let weight = graph.times_number(element.samples[sample].weight, determinant);
+        (weight, is_diagonal.then_some(inverse))
     }
 
     /// `ω Ψ`, `-ω P` or `-ω δP` of the terms of a fragment.
@@ -184,24 +208,6 @@ impl Stepping<'_> {
         self.graph.substitute(sum, &at_sample)
     }
 
-    /// `H ∂N_n/∂ξ`, by node and direction.
-    fn forces(&mut self, sample: usize, spread: Expr) -> Vec<Expr> {
-        let dimension = self.element.dimension;
-        let mut forces = Vec::with_capacity(self.element.node_count * dimension);
-        for gradient in &self.element.samples[sample].gradients {
-            for row in 0..dimension {
-                let terms: Vec<Expr> = (0..dimension)
-                    .map(|a| {
-                        let entry = self.graph.entry(spread, (3 * a + row) as u8);
-                        self.graph.times_number(gradient[a], entry)
-                    })
-                    .collect();
-                forces.push(self.graph.sum(&terms));
-            }
-        }
-        forces
-    }
-
     /// Takes the constants out.
     fn group(&mut self, definitions: Vec<(Expr, Expr)>, outputs: Vec<Expr>) -> Step {
         let (symbols, tensors): (Vec<Expr>, Vec<Expr>) = definitions.into_iter().unzip();
@@ -210,6 +216,7 @@ impl Stepping<'_> {
         let variables: Vec<Expr> = variables.collect();
         let roots: Vec<Expr> = tensors.iter().chain(&outputs).copied().collect();
         let mut grouped = self.graph.group_constants(&roots, &variables);
+        grouped.varying = self.graph.shared(&grouped.varying);
         let outputs = grouped.varying.split_off(symbols.len());
         let definitions = symbols.into_iter().zip(grouped.varying).collect();
         Step { constants: grouped.constants, definitions, outputs }

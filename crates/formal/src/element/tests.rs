@@ -53,6 +53,34 @@ fn quadrilateral(map: RestMap) -> ElementData {
     ElementData { name: "Quad".into(), dimension: 2, node_count: 4, shapes, samples: samples.to_vec(), map }
 }
 
+/// Hexahedron of 2×2×2 Gauss points.
+fn hexahedron(map: RestMap) -> ElementData {
+    let corners = [-1.0, 1.0].map(|z| [[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]]);
+    let corners = corners.concat();
+    let g = 1.0 / 3f64.sqrt();
+    let gradient = |corner: &[f64; 3], at: [f64; 3]| {
+        let factor = |axis: usize| 1.0 + corner[axis] * at[axis];
+        [0, 1, 2].map(|k| 0.125 * corner[k] * factor((k + 1) % 3) * factor((k + 2) % 3))
+    };
+    let samples = corners.iter().map(|corner| {
+        let position = corner.map(|side| side * g);
+        let gradients = corners.iter().map(|corner| gradient(corner, position)).collect();
+        Sample { position, weight: 1.0, gradients }
+    });
+    let shape = |[a, b, c]: [f64; 3]| {
+        let constants = vec![(1.0, CONSTANT), (a, XI), (b, ETA), (c, ZETA)];
+        let products = vec![
+            (a * b, [1, 1, 0, 0]),
+            (b * c, [0, 1, 1, 0]),
+            (a * c, [1, 0, 1, 0]),
+            (a * b * c, [1, 1, 1, 0]),
+        ];
+        constants.into_iter().chain(products).map(|(factor, powers)| (0.125 * factor, powers)).collect()
+    };
+    let shapes = corners.iter().map(|corner| shape(*corner)).collect();
+    ElementData { name: "Hexa".into(), dimension: 3, node_count: 8, shapes, samples: samples.collect(), map }
+}
+
 /// Values of expressions for rest positions, displacements and variations without symmetry.
 fn values(graph: &Graph, roots: &[Expr], moved: Option<(usize, usize, f64)>) -> Vec<f64> {
     let unit = [[0.0, 0.0, 0.0], [1.1, 0.1, 0.0], [0.9, 1.2, 0.1], [0.05, 0.95, 1.0]];
@@ -135,6 +163,45 @@ fn forces_are_slopes() {
                 assert!((numeric - derived).abs() < 1e-7, "{}: {numeric} {derived}", element.name);
             }
         }
+    }
+}
+
+/// A box by its own map and by its nodes: the same energies, forces and differentials, by fewer operations.
+#[test]
+fn fields_of_boxes_are_those_of_their_nodes() {
+    let numbers = |symbol: &crate::graph::Symbol| -> f64 {
+        let name = symbol.name.trim_start_matches('@');
+        let corner =
+            |node: usize| [u8::from(matches!(node % 4, 1 | 2)), u8::from(node % 4 > 1), u8::from(node > 3)];
+        let (node, axis) = (name[1..name.len() - 1].parse().unwrap_or(0), name.bytes().last());
+        let axis = usize::from(axis.map_or(0, |letter| letter.saturating_sub(b'x')).min(2));
+        let wave = |phase: f64| 0.1 * (2.0 * node as f64 + 3.0 * axis as f64 + phase).sin();
+        match name.bytes().next() {
+            Some(b'P') => [1.1, 0.9, 1.3][axis] * f64::from(corner(node)[axis]),
+            Some(b'U') => wave(0.3),
+            Some(b'V') => wave(1.7),
+            _ => [5.0, 3.0][usize::from(name == "mu")],
+        }
+    };
+    for energy in [HOOKE, STVK, NEO_HOOKEAN] {
+        let both = [RestMap::Box { low: 0, high: 6 }, RestMap::Nodes].map(|map| {
+            let derived = hexahedron(map).derive(&law(energy), Cut::NONE).unwrap();
+            let lists = [&derived.energies, &derived.forces, &derived.differentials];
+            let roots: Vec<Expr> = lists.iter().flat_map(|list| list[0].raw.clone()).collect();
+            let evaluation = derived.graph.evaluate(&roots, |symbol| {
+                // leaked: a few hundred numbers for the length of a test
+                std::slice::from_ref(Box::leak(Box::new(numbers(symbol))))
+            });
+            let values: Vec<f64> = roots.iter().map(|root| evaluation.scalar(*root)).collect();
+            (values, derived.differentials[0].operations(&derived.graph).0.total())
+        });
+        let [(of_box, box_count), (of_nodes, node_count)] = both;
+        let scale = of_nodes.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        for (a, b) in of_box.iter().zip(&of_nodes) {
+            // some hundred roundings
+            assert!((a - b).abs() <= 1e-13 * scale, "{energy}: {a} {b}");
+        }
+        assert!(box_count < node_count, "{energy}: {box_count} {node_count}");
     }
 }
 

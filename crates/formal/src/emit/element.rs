@@ -83,7 +83,8 @@ impl Derived {
             constants: constants.len(),
             parameters: self.parameters.iter().map(|p| symbol(&self.graph, *p, style)).collect(),
         };
-        let bodies = [&definitions[..], &varying[..width], &varying[width..]]
+        let (forces, differentials) = varying.split_at(width);
+        let bodies = [&definitions[..], &self.graph.shared(forces), &self.graph.shared(differentials)]
             .map(|roots| write(&self.graph, roots, style));
         let text = match code {
             ElementCode::Rust => shape.rust(bodies),

@@ -53,7 +53,8 @@ impl Graph {
             Node::Sum(terms) => (0..self.shape(expr).size())
                 .map(|index| {
                     let terms: Vec<Expr> = terms.iter().map(|term| of(term)[index]).collect();
-                    self.sum(&terms)
+                    let sum = self.sum(&terms);
+                    self.with_number_in_front(sum)
                 })
                 .collect(),
             Node::Scale(factor, tensor) => {

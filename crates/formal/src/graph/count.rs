@@ -77,7 +77,12 @@ impl Graph {
             | Node::Transpose(_)
             | Node::Entry(..)
             | Node::Pack(_) => Operations::default(),
-            Node::Sum(terms) => of(len * (terms.len() - 1), 0),
+            Node::Sum(terms) => {
+                // multiples of the identity meet the diagonal alone
+                let diagonals = terms.iter().filter(|term| self.is_spherical(**term)).count();
+                let whole = terms.len() - diagonals;
+                of(len * whole.saturating_sub(1) + if whole > 0 { 3 * diagonals } else { 0 }, 0)
+            }
             Node::Product(factors) => {
                 let divisions = factors.iter().filter(|factor| self.is_reciprocal(**factor)).count();
                 let signs = factors.iter().filter(|factor| self.value(**factor) == Some(-1.0)).count();
@@ -89,6 +94,7 @@ impl Graph {
             Node::Function(Function::Abs, _) => Operations::default(),
             Node::Function(..) => Operations { functions: 1, ..Operations::default() },
             Node::Compare(..) | Node::Select(..) => Operations { comparisons: 1, ..Operations::default() },
+            Node::Scale(..) if self.is_spherical(expr) => Operations::default(),
             Node::Scale(factor, _) => of(0, if self.value(*factor) == Some(-1.0) { 0 } else { len }),
             Node::Multiply(..) => of(18, 27),
             Node::Apply(..) => of(6, 9),
@@ -111,6 +117,15 @@ impl Graph {
             Node::ComposeDifferential(_) => {
                 Operations { additions: 90, multiplications: 126, divisions: 6, functions: 0, comparisons: 3 }
             }
+        }
+    }
+
+    /// Whether a matrix is the identity or a multiple of it.
+    fn is_spherical(&self, expr: Expr) -> bool {
+        match self.node(expr) {
+            Node::Identity => true,
+            Node::Scale(_, tensor) => matches!(self.node(*tensor), Node::Identity),
+            _ => false,
         }
     }
 

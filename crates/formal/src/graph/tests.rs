@@ -136,3 +136,60 @@ fn integrals_over_the_triangle() {
     let inverse = graph.power_number(first, -1.0);
     assert_eq!(constant, Some(graph.times_number(0.5, inverse)));
 }
+
+/// Three sums that have two addends in common, one of them with the other sign, and two products: each pair is computed once, and
+/// all are worth what they were.
+#[test]
+fn pairs_are_computed_once() {
+    let mut graph = Graph::new();
+    let [a, b, c] = abc(&mut graph);
+    let (minus_a, minus_b) = (graph.negate(a), graph.negate(b));
+    let d = graph.symbol("d", Shape::Scalar);
+    let mut roots = vec![
+        graph.sum(&[a, b, c]),
+        graph.sum(&[a, b, d]),
+        graph.sum(&[minus_a, minus_b, c, d]),
+        graph.product(&[a, b, c]),
+        graph.product(&[a, b, d]),
+    ];
+    let minus = graph.number(-3.0);
+    roots.push(graph.product(&[minus, a, b]));
+    let shared = graph.shared(&roots);
+    let count = |roots: &[Expr]| {
+        let operations = graph.operations(roots, |_| false);
+        (operations.additions, operations.multiplications)
+    };
+    assert_eq!(count(&roots), (7, 6));
+    // a + b, and one more for c, d and c + d each; a b, and c, d and a number more
+    assert_eq!(count(&shared), (5, 4));
+    let values = |symbol: &Symbol| match symbol.name.as_str() {
+        "a" => &[2.0][..],
+        "b" => &[3.0][..],
+        "c" => &[5.0][..],
+        _ => &[7.0][..],
+    };
+    let all: Vec<Expr> = roots.iter().chain(&shared).copied().collect();
+    let evaluation = graph.evaluate(&all, values);
+    for (root, shared) in roots.iter().zip(&shared) {
+        assert_eq!(evaluation.scalar(*root), evaluation.scalar(*shared));
+    }
+}
+
+/// `a F + b F A + F B` is `F (a I + b A + B)`, with fewer operations and the same value; where nothing is common all stays as it is.
+#[test]
+fn common_left_factors_are_taken_out() {
+    let mut graph = Graph::new();
+    let [a, b, _] = abc(&mut graph);
+    let [F, A, B] = ["F", "A", "B"].map(|name| graph.symbol(name, Shape::Matrix));
+    let (FA, FB) = (graph.multiply(F, A), graph.multiply(F, B));
+    let addends = [graph.scale(a, F), graph.scale(b, FA), FB];
+    let sum = graph.sum(&addends);
+    let factored = graph.factored(&[sum])[0];
+    let identity = graph.identity();
+    let rest = [graph.scale(a, identity), graph.scale(b, A), B];
+    let rest = graph.sum(&rest);
+    assert_eq!(factored, graph.multiply(F, rest));
+    let BA = graph.multiply(B, A);
+    let other = graph.add(FA, BA);
+    assert_eq!(graph.factored(&[other]), [other]);
+}

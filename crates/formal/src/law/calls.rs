@@ -120,7 +120,6 @@ impl Reader<'_> {
         }
         let (a, place) = arguments[0];
         let shape = match word.name {
-            "log" => Shape::Scalar,
             name if vocabulary::takes_directions(name) => Shape::Vector,
             "dot" => tensor(a, place)?,
             _ => Shape::Matrix,
@@ -155,10 +154,6 @@ impl Reader<'_> {
             "dot" => (graph.dot(a.expr, arguments[1].0.expr), combine(a.units, arguments[1].0.units, 1.0)),
             "outer" => {
                 (graph.outer(a.expr, arguments[1].0.expr), combine(a.units, arguments[1].0.units, 1.0))
-            }
-            "log" => {
-                pure(arguments[0])?;
-                (self.graph.function(Function::Ln, a.expr), PURE)
             }
             _ => {
                 let deformation = graph.symbol(super::DEFORMATION, Shape::Matrix);

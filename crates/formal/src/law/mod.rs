@@ -111,6 +111,8 @@ impl EnergyLaw {
             return Err(check::too_long(&read));
         }
         read.graph.allow(None);
+        let [stress, differential] =
+            [stress, differential].map(|derivative| read.graph.factored(&[derivative])[0]);
         let mut law = Self {
             deformation,
             variation,

@@ -49,7 +49,6 @@ pub const LAW_FUNCTIONS: &[Word] = &[
     word("outer", "outer(a, b)", "dyad a bᵀ"),
     word("I4", "I4(a)", "square of the stretch along the direction a, a·C a"),
     word("I5", "I5(a)", "a·C² a"),
-    word("log", "log(x)", "natural logarithm, as ln"),
 ];
 
 /// Signs of books, what they are read in, and how that is written here.
