@@ -177,6 +177,7 @@ fn pairs_are_computed_once() {
 
 /// `a F + b F A + F B` is `F (a I + b A + B)`, with fewer operations and the same value; where nothing is common all stays as it is.
 #[test]
+#[allow(non_snake_case)]
 fn common_left_factors_are_taken_out() {
     let mut graph = Graph::new();
     let [a, b, _] = abc(&mut graph);

@@ -110,15 +110,32 @@ pub(super) fn read_formula(formula: &str) -> Result<Numbers, LawError> {
 fn parsed(part: &str, text: &str) -> Result<Expression, LawError> {
     Expression::parse(text).map_err(|error| {
         let span = error.span();
-        let sign = SIGNS_OF_BOOKS.iter().find(|[read, ..]| *read == span.of(text));
-        let problem = match sign {
-            Some(&[read, meant, written_here]) if matches!(error, ParseError::Unexpected { .. }) => {
-                LawProblem::SignOfBooks { read, meant, written_here }
-            }
+        let problem = match sign_of_books(span.of(text)) {
+            Some(problem) if matches!(error, ParseError::Unexpected { .. }) => problem,
             _ => LawProblem::Syntax(error),
         };
         LawError::new(part, Some(span), problem)
     })
+}
+
+/// What is said of a sign of tensors in books.
+fn sign_of_books(sign: &str) -> Option<LawProblem> {
+    let &[read, meant, written_here] = SIGNS_OF_BOOKS.iter().find(|[read, ..]| *read == sign)?;
+    Some(LawProblem::SignOfBooks { read, meant, written_here })
+}
+
+/// `T` behind `^` where nothing has that name: a transpose is meant.
+fn transpose_meant(text: &str, fault: Fault) -> Fault {
+    match &fault {
+        Fault::Here(span, LawProblem::UnknownName { name, .. }) if name == "T" => {
+            let before = text[..span.start].trim_end();
+            let power = before.len().checked_sub(1).filter(|_| before.ends_with('^'));
+            let meant =
+                power.and_then(|start| Some(Fault::Here(Span::new(start, span.end), sign_of_books("^T")?)));
+            meant.unwrap_or(fault)
+        }
+        _ => fault,
+    }
 }
 
 fn units_of(dimension: Dimension) -> Units {
@@ -208,20 +225,23 @@ impl<'a> Reader<'a> {
                 .operands()
                 .map(|operand| (values[operand.index()], expression.node(operand).span))
                 .collect();
-            let value = self.node(&node.kind, node.span, &operands).map_err(|error| match error {
-                Fault::Here(span, LawProblem::WrongUnit(clash)) => {
-                    // of two terms of the energy the one that is none is wrong, whichever stands first
-                    let misfit = misfit(&expression, &values, wanted, node.span);
-                    let (span, clash) = misfit.unwrap_or((span, clash));
-                    fail(span, LawProblem::WrongUnit(self.told(clash, span, &expression, text)))
-                }
-                Fault::Here(span, LawProblem::UnknownName { name, nearest, own, .. }) => {
-                    let shape = shape_wanted(&expression, values.len());
-                    fail(span, LawProblem::UnknownName { name, nearest, own, shape })
-                }
-                Fault::Here(span, problem) => fail(span, problem),
-                Fault::Elsewhere(error) => error,
-            })?;
+            let value =
+                self.node(&node.kind, node.span, &operands).map_err(|fault| {
+                    match transpose_meant(text, fault) {
+                        Fault::Here(span, LawProblem::WrongUnit(clash)) => {
+                            // of two terms of the energy the one that is none is wrong, whichever stands first
+                            let misfit = misfit(&expression, &values, wanted, node.span);
+                            let (span, clash) = misfit.unwrap_or((span, clash));
+                            fail(span, LawProblem::WrongUnit(self.told(clash, span, &expression, text)))
+                        }
+                        Fault::Here(span, LawProblem::UnknownName { name, nearest, own, .. }) => {
+                            let shape = shape_wanted(&expression, values.len());
+                            fail(span, LawProblem::UnknownName { name, nearest, own, shape })
+                        }
+                        Fault::Here(span, problem) => fail(span, problem),
+                        Fault::Elsewhere(error) => error,
+                    }
+                })?;
             self.origins.entry(value.expr).or_insert_with(|| (part.to_owned(), node.span));
             if self.graph.len() > LARGEST_GRAPH {
                 let problem = LawProblem::TooLarge { nodes: self.graph.len(), limit: LARGEST_GRAPH };

@@ -168,6 +168,8 @@ fn bad_laws_are_told_where_and_why() {
         ("mu*J > mu", "mu*J > mu", "truth value"),
         ("mu*(E:E)", ":", "`A:B` is written `dot(A, B)`"),
         ("mu*tr(E')", "'", "`A'` is written `transpose(A)`"),
+        ("mu*(tr(F^T*F) - 3)", "^T", "`A^T` is written `transpose(A)`"),
+        ("W = mu*(I1 - 3)", "=", "is written `c*(J - 1)^2`"),
         ("mu*tr(Fᵀ*F)", "ᵀ", "`Aᵀ` is written `transpose(A)`"),
         ("mu (J - 1)^2", "mu", "a `*` is missing, as in `mu * (…)`"),
         ("mu*J (J - 1)", "J", "a `*` is missing, as in `J * (…)`"),

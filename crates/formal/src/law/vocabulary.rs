@@ -57,6 +57,8 @@ pub(super) const SIGNS_OF_BOOKS: &[[&str; 3]] = &[
     ["⊗", "a⊗b", "outer(a, b)"],
     ["ᵀ", "Aᵀ", "transpose(A)"],
     ["'", "A'", "transpose(A)"],
+    ["^T", "A^T", "transpose(A)"],
+    ["=", "W = c*(J - 1)^2", "c*(J - 1)^2"],
 ];
 
 impl Word {
