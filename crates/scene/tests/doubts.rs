@@ -172,6 +172,23 @@ fn free_static_bodies_are_refused() {
     assert!(warnings(&floor(-1.0, 0.5))[0].contains("unless a contact holds it"));
 }
 
+/// A straight bar that turns about itself stands as it stood: held at both ends it is held, at one it has two turns left.
+#[test]
+fn turns_that_move_nothing_need_no_hold() {
+    let pinned = |region: &str| {
+        BAR.replace("\"backward_euler\"", "\"static\"")
+            .replace(
+                "\"bar\", size = [1, 0.1, 0.1], cells = [4, 1, 1], element = \"hex8\"",
+                "\"line\", from = [0, 0, 0], to = [1, 2, 3], cells = 4",
+            )
+            .replace("neo_hookean", "linear")
+            .replace("region = \"x_min\"", region)
+            + "[bodies.bar.section]\nname = \"bar\"\narea = \"1 cm^2\"\n"
+    };
+    assert!(warnings(&pinned("region = { points = [0, 4] }")).is_empty());
+    assert_refused(&pinned("region = { points = [0] }"), &["2 of 5 rigid motions", "0 shifts and 2 turns"]);
+}
+
 /// A body attached to a held one is held by it: by springs without length at three points off a line.
 #[test]
 fn attachments_hold_static_bodies() {

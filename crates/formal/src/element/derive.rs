@@ -133,11 +133,6 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
     let of_samples = |fragment: Fragment| fragment.sample.map_or(0..counts.1, |sample| sample..sample + 1);
     let width = element.node_count * element.dimension;
     let (mut energies, mut forces, mut differentials) = (Vec::new(), Vec::new(), Vec::new());
-    let finish = |graph: &mut Graph, fragment, raw: Vec<Expr>, list: &mut Vec<ElementExpressions>| {
-        let mut grouped = graph.group_constants(&raw, &variables);
-        grouped.varying = graph.shared(&grouped.varying);
-        list.push(ElementExpressions { fragment, raw, grouped });
-    };
     // what the samples of a fragment hold of stress, by its nodes
     let to_nodes = |graph: &mut Graph, fragment, addends: &dyn Fn(&AtSample) -> Vec<Vec<Expr>>| {
         let stresses: Vec<SampleStress> = of_samples(fragment)
@@ -156,9 +151,9 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
         let of_energy: Vec<Expr> =
             of_samples(fragment).flat_map(|q| samples[q].energies[all_terms(fragment)].to_vec()).collect();
         let of_energy = graph.sum(&of_energy);
-        finish(&mut graph, fragment, vec![of_energy], &mut energies);
+        energies.push((fragment, vec![of_energy]));
         let of_forces = to_nodes(&mut graph, fragment, &|at| at.stresses[all_terms(fragment)].to_vec());
-        finish(&mut graph, fragment, of_forces, &mut forces);
+        forces.push((fragment, of_forces));
     }
     for fragment in Fragment::of_differentials(cut, counts, (element.node_count, element.dimension)) {
         let is_wanted = |varied: usize| {
@@ -174,8 +169,18 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
             all_terms(fragment).flat_map(of_term).map(stress).collect()
         };
         let of_differentials = to_nodes(&mut graph, fragment, &addends);
-        finish(&mut graph, fragment, of_differentials, &mut differentials);
+        differentials.push((fragment, of_differentials));
     }
+    // grouped when all are there: what grouping makes is no part of other fragments, and stands behind them
+    let mut grouped = |list: Vec<(Fragment, Vec<Expr>)>| -> Vec<ElementExpressions> {
+        let of_fragment = |(fragment, raw): (Fragment, Vec<Expr>)| {
+            let mut grouped = graph.group_constants(&raw, &variables);
+            grouped.varying = graph.shared(&grouped.varying);
+            ElementExpressions { fragment, raw, grouped }
+        };
+        list.into_iter().map(of_fragment).collect()
+    };
+    let (energies, forces, differentials) = (grouped(energies), grouped(forces), grouped(differentials));
     let name = format!("{}{cut}", element.name);
     Ok(Derived {
         graph,

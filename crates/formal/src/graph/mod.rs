@@ -300,24 +300,28 @@ impl Graph {
     /// All that `roots` are made of, operands before what uses them.
     pub fn reachable(&self, roots: &[Expr]) -> Vec<Expr> {
         let Some(last) = roots.iter().max() else { return Vec::new() };
-        let mut wanted = vec![false; last.index() + 1];
-        roots.iter().for_each(|root| wanted[root.index()] = true);
-        for index in (0..wanted.len()).rev() {
-            if wanted[index] {
-                self.nodes[index].operands().for_each(|operand| wanted[operand.index()] = true);
+        let mut is_found = vec![false; last.index() + 1];
+        let (mut open, mut found) = (roots.to_vec(), Vec::new());
+        // by what is there, not by all that was ever made: large graphs are asked for small parts
+        while let Some(expr) = open.pop() {
+            if !std::mem::replace(&mut is_found[expr.index()], true) {
+                found.push(expr);
+                open.extend(self.node(expr).operands());
             }
         }
-        (0..wanted.len()).filter(|index| wanted[*index]).map(|index| Expr(index as u32)).collect()
+        found.sort_unstable();
+        found
     }
 
-    /// For each expression up to the last of `roots`: whether one of `of` is among what it is made of.
+    /// For each expression that `roots` are made of: whether one of `of` is among what it is made of.
     pub fn depends(&self, roots: &[Expr], of: &[Expr]) -> Vec<bool> {
         let length = roots.iter().chain(of).max().map_or(0, |last| last.index() + 1);
         let mut depends = vec![false; length];
         of.iter().for_each(|expr| depends[expr.index()] = true);
-        for index in 0..length {
-            depends[index] =
-                depends[index] || self.nodes[index].operands().any(|operand| depends[operand.index()]);
+        for expr in self.reachable(roots) {
+            if self.node(expr).operands().any(|operand| depends[operand.index()]) {
+                depends[expr.index()] = true;
+            }
         }
         depends
     }

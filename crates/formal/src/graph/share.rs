@@ -5,7 +5,7 @@
 //! sums in sums and products in products: it is meant to be evaluated, and simplifying it again would flatten it.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap};
 
 use super::{Expr, Graph, Node, Shape};
 
@@ -17,7 +17,7 @@ enum Kind {
 }
 
 /// An addend or factor: one of those that were written, or a pair that was taken out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 enum Part {
     Written(Expr),
     Pair(usize),
@@ -33,33 +33,35 @@ struct List {
     parts: Vec<(bool, Part)>,
 }
 
-/// The pairs of all lists, those that most lists have first.
+/// The pairs of all lists, and those that several have, those that most have first.
 #[derive(Default)]
 struct Counts {
-    lists_of: BTreeMap<Pair, BTreeSet<usize>>,
+    lists_of: HashMap<Pair, Vec<usize>>,
     by_count: BTreeSet<(Reverse<usize>, Pair)>,
 }
 
 impl Counts {
     fn change(&mut self, pair: Pair, list: usize, is_there: bool) {
         let lists = self.lists_of.entry(pair).or_default();
-        self.by_count.remove(&(Reverse(lists.len()), pair));
-        if is_there {
-            lists.insert(list);
-        } else {
-            lists.remove(&list);
+        if lists.len() > 1 {
+            self.by_count.remove(&(Reverse(lists.len()), pair));
         }
-        if lists.is_empty() {
-            self.lists_of.remove(&pair);
+        if is_there {
+            lists.push(list);
         } else {
+            lists.retain(|other| *other != list);
+        }
+        if lists.len() > 1 {
             self.by_count.insert((Reverse(lists.len()), pair));
         }
     }
 
-    /// A pair that several lists have, and which.
+    /// The pair that most lists have, the first of several, and which lists.
     fn most_frequent(&self) -> Option<(Pair, Vec<usize>)> {
-        let (Reverse(count), pair) = *self.by_count.first()?;
-        (count > 1).then(|| (pair, self.lists_of[&pair].iter().copied().collect()))
+        let (_, pair) = *self.by_count.first()?;
+        let mut lists = self.lists_of[&pair].clone();
+        lists.sort_unstable();
+        Some((pair, lists))
     }
 }
 

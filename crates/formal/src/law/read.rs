@@ -225,23 +225,22 @@ impl<'a> Reader<'a> {
                 .operands()
                 .map(|operand| (values[operand.index()], expression.node(operand).span))
                 .collect();
-            let value =
-                self.node(&node.kind, node.span, &operands).map_err(|fault| {
-                    match transpose_meant(text, fault) {
-                        Fault::Here(span, LawProblem::WrongUnit(clash)) => {
-                            // of two terms of the energy the one that is none is wrong, whichever stands first
-                            let misfit = misfit(&expression, &values, wanted, node.span);
-                            let (span, clash) = misfit.unwrap_or((span, clash));
-                            fail(span, LawProblem::WrongUnit(self.told(clash, span, &expression, text)))
-                        }
-                        Fault::Here(span, LawProblem::UnknownName { name, nearest, own, .. }) => {
-                            let shape = shape_wanted(&expression, values.len());
-                            fail(span, LawProblem::UnknownName { name, nearest, own, shape })
-                        }
-                        Fault::Here(span, problem) => fail(span, problem),
-                        Fault::Elsewhere(error) => error,
+            let value = self.node(&node.kind, node.span, &operands).map_err(|fault| {
+                match transpose_meant(text, fault) {
+                    Fault::Here(span, LawProblem::WrongUnit(clash)) => {
+                        // of two terms of the energy the one that is none is wrong, whichever stands first
+                        let misfit = misfit(&expression, &values, wanted, node.span);
+                        let (span, clash) = misfit.unwrap_or((span, clash));
+                        fail(span, LawProblem::WrongUnit(self.told(clash, span, &expression, text)))
                     }
-                })?;
+                    Fault::Here(span, LawProblem::UnknownName { name, nearest, own, .. }) => {
+                        let shape = shape_wanted(&expression, values.len());
+                        fail(span, LawProblem::UnknownName { name, nearest, own, shape })
+                    }
+                    Fault::Here(span, problem) => fail(span, problem),
+                    Fault::Elsewhere(error) => error,
+                }
+            })?;
             self.origins.entry(value.expr).or_insert_with(|| (part.to_owned(), node.span));
             if self.graph.len() > LARGEST_GRAPH {
                 let problem = LawProblem::TooLarge { nodes: self.graph.len(), limit: LARGEST_GRAPH };

@@ -2,8 +2,9 @@
 //!
 //! A connected part of a mesh moves rigidly as `u(x) = t + ω × x`, with six numbers. Every pin, spring to ground,
 //! attachment, coupling and touching contact hinders `d · u` at a point in a direction `d`; the motions that none
-//! hinders are the null space of the sum `Σ c cᵀ` of those conditions over the parts that are joined. Contacts that
-//! do not touch yet may come to hold a part: where they could, a warning says so instead of an error.
+//! hinders are the null space of the sum `Σ c cᵀ` of those conditions over the parts that are joined, less what moves no
+//! point: a straight cable turns about itself without anybody noticing. Contacts that do not touch yet may come to hold
+//! a part: where they could, a warning says so instead of an error.
 
 use std::collections::BTreeMap;
 
@@ -68,12 +69,13 @@ fn check_system(draft: &Draft, system: usize, warnings: &mut Vec<String>) {
             continue;
         }
         let names: Vec<String> = group.iter().map(|part| parts[*part].name()).collect();
-        let (what, total) = (names.join(" and "), 6 * group.len());
+        let what = names.join(" and ");
         let body = parts[group[0]].body.spec;
         let message = format!(
-            "{what} can move freely: {} of {total} rigid motions are held by nothing, {} shifts and {} turns among \
+            "{what} can move freely: {} of {} rigid motions are held by nothing, {} shifts and {} turns among \
              them, and a static system finds no equilibrium then",
             free.count,
+            free.total,
             free.shifts,
             free.count - free.shifts,
         );
@@ -165,6 +167,8 @@ fn groups(part_count: usize, part_of_row: &[usize], joints: &[Joint]) -> Vec<Vec
 /// How many independent motions of a group of parts are free, and how many of them are shifts of the whole group.
 struct Free {
     count: usize,
+    /// Motions that move a point.
+    total: usize,
     shifts: usize,
 }
 
@@ -188,6 +192,20 @@ fn free_motions(
     let bounds = souple_mesh::BoundingBox::of(rows().map(place));
     let (centre, size) = (bounds.centre(), bounds.diagonal());
     let count = 6 * group.len();
+    let arm_of = |row: usize| (place(row) - centre) / size;
+    let mut moved = vec![[0.0; 36]; group.len()];
+    for row in rows() {
+        let part = group.binary_search(&part_of_row[row]).unwrap_or(0);
+        for direction in [Vec3::X, Vec3::Y, Vec3::Z] {
+            let condition =
+                [direction, arm_of(row).cross(direction)].map(|vector| vector.to_array()).concat();
+            moved[part]
+                .iter_mut()
+                .enumerate()
+                .for_each(|(k, sum)| *sum += condition[k / 6] * condition[k % 6]);
+        }
+    }
+    let total: usize = moved.iter_mut().map(|sum| rank(sum, 6)).sum();
     let mut sum = vec![0.0; count * count];
     for joint in joints {
         let belongs = |end: &(u32, f64)| group.binary_search(&part_of_row[end.0 as usize]).is_ok();
@@ -201,8 +219,8 @@ fn free_motions(
             let mut condition: Vec<(usize, f64)> = Vec::new();
             for &(row, weight) in &joint.ends {
                 let part = group.binary_search(&part_of_row[row as usize]).unwrap_or(0);
-                let arm = (place(row as usize) - centre) / size;
-                let numbers = [*direction, arm.cross(*direction)].map(|vector| vector * weight);
+                let numbers =
+                    [*direction, arm_of(row as usize).cross(*direction)].map(|vector| vector * weight);
                 for (k, number) in numbers.iter().flat_map(|vector| vector.to_array()).enumerate() {
                     condition.push((6 * part + k, number));
                 }
@@ -226,7 +244,7 @@ fn free_motions(
         }
     }
     let shifts = 3 - rank(&mut shifts.concat(), 3);
-    Free { count: count - rank(&mut sum, count), shifts }
+    Free { count: total - rank(&mut sum, count), total, shifts }
 }
 
 /// Rank of a symmetric positive semidefinite matrix, by elimination with the greatest diagonal entry as pivot.
