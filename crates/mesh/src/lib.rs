@@ -30,6 +30,7 @@ mod surface;
 mod surface_quality;
 mod tree;
 mod validate;
+mod voronoi;
 mod winding;
 
 pub use boundary::{BoundaryFace, FaceReport, SplitQuadrilateral, facet_triangles, node_measures};
@@ -52,4 +53,5 @@ pub use surface::{Feature, TriangleSurface, closest_point_on_triangle, vertex_no
 pub use surface_quality::TriangleQuality;
 pub use tree::{Aabb, AabbTree};
 pub use validate::Repairs;
+pub use voronoi::{VoronoiCells, Wall};
 pub use winding::WindingNumber;

@@ -11,4 +11,5 @@ pub mod loads;
 pub mod materials;
 pub mod multiresolution;
 pub mod network;
+pub mod particles;
 pub mod solids;

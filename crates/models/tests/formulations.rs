@@ -381,6 +381,60 @@ fn differences_are_near_the_tangent() {
     }
 }
 
+/// One matrix on every edge is Hooke's law, and so are fluxes of the stress through median cells; of the operators they are the hybrid.
+#[test]
+fn edge_tensors_are_the_law() {
+    let (mesh, material) = (crooked("tet4"), material("linear"));
+    let median = |flux| Values::new().with("dual", Value::Text("median")).with("flux", Value::Text(flux));
+    for (exact, name, values) in [
+        ("samples", "edge_tensors", Values::new()),
+        ("samples", "gauss_voronoi", median("stress")),
+        ("hybrid", "gauss_voronoi", median("operators")),
+    ] {
+        let exact = build(exact, &mesh, &material).unwrap();
+        let other = build_with(name, values, &mesh, &material).unwrap();
+        assert_same(name, exact.as_ref(), other.as_ref(), &bent(&mesh));
+    }
+}
+
+/// Forces between pairs are linear in displacements and do not know a translation; those that say so have an energy, of which
+/// they are minus the gradient; blocks are the differential.
+#[test]
+fn pairs_are_linear() {
+    let operators = |name| Values::new().with("operators", Value::Text(name));
+    let dual = |name| Values::new().with("dual", Value::Text(name));
+    for (element, name, values, has_energy) in [
+        ("tet4", "hybrid", Values::new(), true),
+        ("tet4", "gauss_voronoi", dual("voronoi"), false),
+        ("tet4", "gauss_voronoi", dual("median"), true),
+        ("hex8", "particles", operators("legacy"), false),
+        ("hex8", "particles", operators("corrected"), false),
+        ("hex8", "particles", operators("least_squares"), false),
+        ("hex8", "particles", operators("energy"), true),
+        ("prism6", "particles", operators("energy"), true),
+    ] {
+        let mesh = crooked(element);
+        let force = build_with(name, values, &mesh, &material("linear")).unwrap();
+        let declared = force.declaration();
+        assert_eq!([declared.conservative, declared.symmetric_tangent], [has_energy; 2], "{name} {element}");
+        let x = bent(&mesh);
+        let found = answers(force.as_ref(), &x);
+        assert!(distance(&found.products[0], &found.products[1]) < 1e-12, "{name} {element}: blocks");
+        let moved: Vec<Vec3> = x.iter().map(|p| *p + Vec3::new(0.3, -0.2, 0.1)).collect();
+        assert!(distance(&found.force, &answers(force.as_ref(), &moved).force) < 1e-11, "{name} {element}: moved");
+        let doubled: Vec<Vec3> = x.iter().zip(&mesh.points).map(|(x, rest)| *x * 2.0 - *rest).collect();
+        let twice: Vec<Vec3> = found.force.iter().map(|f| *f * 2.0).collect();
+        assert!(distance(&twice, &answers(force.as_ref(), &doubled).force) < 1e-12, "{name} {element}: linear");
+        if has_energy {
+            let u = x.iter().zip(&mesh.points).map(|(x, rest)| *x - *rest);
+            let work: f64 = u.zip(&found.force).map(|(u, f)| -0.5 * u.dot(*f)).sum();
+            assert!((work - found.energy).abs() <= 1e-11 * found.energy, "{name} {element}: energy");
+            let sum: Vec3 = found.force.iter().copied().sum();
+            assert!(sum.length() < 1e-12 * norm(&found.force), "{name} {element}: momentum");
+        }
+    }
+}
+
 /// What a formulation cannot do is refused, with what it takes.
 #[test]
 fn what_does_not_fit_is_refused() {

@@ -22,6 +22,7 @@ mod session;
 pub mod show;
 mod snapshot_file;
 mod sound;
+mod spectrum;
 mod trace;
 
 use std::collections::BTreeMap;

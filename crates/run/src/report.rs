@@ -157,6 +157,10 @@ fn probe_to_json(probe: &Summary) -> (String, Value) {
         "last": value(&probe.last),
         "min": value(&probe.min),
         "max": value(&probe.max),
+        "frequency": match probe.frequency.as_slice() {
+            [single] => json!(single),
+            several => json!(several),
+        },
     });
     (probe.name.clone(), summary)
 }

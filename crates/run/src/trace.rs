@@ -5,6 +5,8 @@ use std::path::Path;
 use souple_io::{Column, IoError};
 use souple_scene::{Measurement, ProbeInfo};
 
+use crate::spectrum::strongest_frequency;
+
 /// The values of a probe, one for each step and one before the first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
@@ -28,6 +30,8 @@ pub struct Summary {
     pub last: Vec<f64>,
     pub min: Vec<f64>,
     pub max: Vec<f64>,
+    /// The strongest frequency of each [Hz]; `None` of what does not swing.
+    pub frequency: Vec<Option<f64>>,
 }
 
 impl Trace {
@@ -79,7 +83,20 @@ impl Trace {
             last: self.last().map(<[f64]>::to_vec).unwrap_or_default(),
             min: pick(f64::min, f64::INFINITY),
             max: pick(f64::max, f64::NEG_INFINITY),
+            frequency: self.frequencies(),
         }
+    }
+
+    fn frequencies(&self) -> Vec<Option<f64>> {
+        let interval = match (self.times.first(), self.times.last(), self.times.len()) {
+            (Some(first), Some(last), count) if count > 1 => (last - first) / (count - 1) as f64,
+            _ => 0.0,
+        };
+        let of = |c: usize| {
+            let values: Vec<f64> = self.values.iter().skip(c).step_by(self.components).copied().collect();
+            strongest_frequency(&values, interval)
+        };
+        (0..self.components).map(of).collect()
     }
 }
 

@@ -105,6 +105,7 @@ fn of_body(body: &Body) -> Vec<Adjustable> {
         (&DAMPING, "rayleigh_mass", format!("{path}.damping"), damping.rayleigh_mass),
         (&DAMPING, "rayleigh_stiffness", format!("{path}.damping"), damping.rayleigh_stiffness),
         (&DAMPING, "viscosity", format!("{path}.damping"), damping.viscosity),
+        (&DAMPING, "neighbour_friction", format!("{path}.damping"), damping.neighbour_friction),
         (&BODY, "drag", path, body.drag),
     ];
     for (keys, name, path, value) in numbers {

@@ -12,6 +12,7 @@ mod hands;
 mod laws;
 mod levels;
 mod links;
+mod resolution;
 mod skins;
 mod startup;
 mod stretched;
@@ -170,6 +171,9 @@ pub const BENCHES: &[Bench] = &[
         name: "balls_scaling",
         what: "the same with 1,000 to 1,000,000 balls [ns/ball and step], memory, and the exponent fitted (BEN-6)",
         run: |effort| balls::scaling("balls_scaling", effort),
+        name: "resolution",
+        what: "how alike one cube swings on meshes of three resolutions, by every model [Hz], with the spread of each model",
+        run: resolution::table,
     },
     Bench {
         name: "adaptive_saving",

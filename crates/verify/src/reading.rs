@@ -41,6 +41,8 @@ pub enum Statistic {
     Max,
     /// The greatest less the least.
     Span,
+    /// The strongest frequency [Hz].
+    Frequency,
 }
 
 impl Reading {
@@ -141,7 +143,8 @@ impl Observation {
         let trace = outcome.traces.iter().find(|trace| trace.name == self.probe);
         let trace = trace.ok_or_else(|| format!("the scene has no probe `{}`", self.probe))?;
         let value = self.statistic.of(trace, self.component.unwrap_or(0));
-        Ok((value.ok_or("the probe has no such component")?, trace.unit))
+        let unit = if self.statistic == Statistic::Frequency { "Hz" } else { trace.unit };
+        Ok((value.ok_or("the probe has no such component, or does not swing")?, unit))
     }
 }
 
@@ -154,6 +157,7 @@ impl Statistic {
             Self::Min => of(&summary.min),
             Self::Max => of(&summary.max),
             Self::Span => Some(of(&summary.max)? - of(&summary.min)?),
+            Self::Frequency => summary.frequency.get(component).copied().flatten(),
         }
     }
 }

@@ -23,6 +23,7 @@ mod pinched;
 mod prisms;
 mod stencil;
 mod surface;
+mod voxels;
 mod warp;
 
 use souple_math::Vec3;
@@ -70,6 +71,8 @@ pub enum Cells {
     Tetrahedra,
     /// Hexahedra inside, tetrahedra at the surface, prisms and pyramids between.
     HexDominant,
+    /// Equal cubes alone, with a stair for a surface.
+    Voxels,
 }
 
 impl Cells {
@@ -77,7 +80,7 @@ impl Cells {
     fn of_cube(self) -> f64 {
         match self {
             Self::Tetrahedra => 12.0,
-            Self::HexDominant => 1.0,
+            Self::HexDominant | Self::Voxels => 1.0,
         }
     }
 
@@ -87,7 +90,7 @@ impl Cells {
     pub fn memory(self, cells: f64) -> u64 {
         let of_cell = match self {
             Self::Tetrahedra => 220.0,
-            Self::HexDominant => 900.0,
+            Self::HexDominant | Self::Voxels => 900.0,
         };
         (of_cell * cells) as u64
     }
@@ -208,6 +211,7 @@ pub fn fill(shape: &dyn Shape, size: &Size, cells: Cells, parts: &[Part<'_>]) ->
     let mut mesh = match cells {
         Cells::Tetrahedra => tetrahedra(&lattice, shape),
         Cells::HexDominant => hexes::hex_dominant(&lattice, shape),
+        Cells::Voxels => voxels::voxels(shape, size.smallest),
     };
     if mesh.cell_count() == 0 {
         let extent = shape.bounds().size().to_array();

@@ -36,7 +36,11 @@ pub const PARAMETERS: &[Parameter] = &[
         "longest edge as a formula of x, y, z [m], at the surface too; `size` is then the smallest; empty: none",
     )
     .or(Value::Text("")),
-    Parameter::choice("element", &["tet4", "hex_dominant"], "tetrahedra, or hexahedra where they fit")
+    Parameter::choice(
+        "element",
+        &["tet4", "hex_dominant", "voxels"],
+        "tetrahedra, hexahedra where they fit, or equal cubes alone, whose surface is a stair",
+    )
         .or(Value::Text("tet4")),
 ];
 
@@ -147,8 +151,11 @@ impl Options {
                 expected: "`growth` above 0, `size_inside` or `size_everywhere` with it".to_owned(),
             });
         }
-        let cells =
-            if values.text("element") == "hex_dominant" { Cells::HexDominant } else { Cells::Tetrahedra };
+        let cells = match values.text("element") {
+            "hex_dominant" => Cells::HexDominant,
+            "voxels" => Cells::Voxels,
+            _ => Cells::Tetrahedra,
+        };
         Ok(Self { wanted, growth, largest, field, cells })
     }
 

@@ -164,6 +164,18 @@ fn fillings_graded_at_the_surface() {
     assert!(worst[0] > 10.0 && worst[1] < 160.0, "{worst:?}");
 }
 
+/// Voxels are cubes of one size that fill about the volume of a ball, conforming and in one piece.
+#[test]
+fn voxels_are_equal_cubes() {
+    let mesh = fill(&ball(1.0), &Size::uniform(0.1), Cells::Voxels, &[]).unwrap();
+    assert_eq!(mesh.count_of(ElementKind::Hex8), mesh.cell_count());
+    assert!(mesh.faces().conforming().is_ok() && mesh.components().1 == 1);
+    let exact = 4.0 / 3.0 * std::f64::consts::PI;
+    // half of the cubes that the surface cuts are in, half are not
+    assert!((mesh.volume() / exact - 1.0).abs() < 0.03, "{}", mesh.volume());
+    assert!((mesh.volume() - 1e-3 * mesh.cell_count() as f64).abs() < 1e-9);
+}
+
 /// A size that is nothing somewhere inside is refused with the place; one that is too fine for a count, in words.
 #[test]
 fn sizes_that_cannot_be() {

@@ -55,7 +55,10 @@ use stiffness::{Shapes, Stiffness};
 pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
 pub use difference::DifferencedForce;
 pub(crate) use formulation::four_loop_count;
-pub use formulation::{BuildFormulation, FORMULATIONS, FormulationError};
+pub(crate) use formulation::linear_pairs;
+pub use formulation::{
+    BuildFormulation, FORMULATIONS, FormulationError, OperatorQuality, QualityError, operator_quality,
+};
 pub use layout::FlatCell;
 pub use mass::{consistent_mass, lumped_mass, uniform_mass};
 pub use quadrature::Quadrature;

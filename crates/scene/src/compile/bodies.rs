@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
+use souple_engine::steppers::Stability;
 use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, LoadError, MassDamping};
 use souple_models::materials::Material;
+use souple_models::particles::{FrictionFilter, NeighbourFriction, neighbours};
 use souple_models::solids::{
     Adaptation, AdaptiveForce, DifferencedForce, FormulationError, RayleighDamping, SolidDescription,
     SolidForce, Viscosity, consistent_mass, lumped_mass, uniform_mass,
@@ -16,7 +18,7 @@ use souple_models::solids::{
 use super::frames::PlacedFrames;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, inertial, levels, network, section, shape, start};
+use super::{Draft, frames, inertial, levels, network, octree, section, shape, start};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -110,13 +112,14 @@ pub fn place(draft: &mut Draft) -> Option<()> {
             draft.warnings.extend(warnings);
         }
         let mut warnings = Vec::new();
-        placed.levels = levels::place(draft, body, system, &placed.mesh, &mut warnings);
+        placed.levels = levels::place(draft, body, system, &placed.mesh, &mut warnings)
+            .or_else(|| octree::place(draft, body, system, &placed.mesh));
         draft.warnings.extend(warnings);
         draft.bodies.push(placed);
     }
     let is_complete = |body: &Placed| {
         body.spec.frames.is_some() == body.frames.is_some()
-            && body.spec.levels.is_some() == body.levels.is_some()
+            && (body.spec.levels.is_some() || body.spec.octree.is_some()) == body.levels.is_some()
     };
     if draft.bodies.len() < spec.bodies.len()
         || !draft.bodies.iter().all(is_complete)
@@ -195,6 +198,10 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             MassKind::Consistent => consistent_mass(&body.mesh, body.rows.start, &density, &mut mass),
             MassKind::Uniform => uniform_mass(&body.mesh, body.rows.start, &density, &mut mass),
         }
+        if body.spec.octree.is_some() {
+            forces.extend(octree::force(draft, body));
+            continue;
+        }
         if let Some(coarser) = &body.levels {
             forces.extend(levels::force(draft, body, coarser));
             continue;
@@ -272,7 +279,11 @@ fn check_together(draft: &Draft, body: &Body) {
     let report = |site: &Site, message: String, expected: &str| {
         draft.log.add(Code::Conflict, site, message, expected);
     };
-    let carriers = [("frames", body.frames.is_some()), ("levels", body.levels.is_some())];
+    let carriers = [
+        ("frames", body.frames.is_some()),
+        ("levels", body.levels.is_some()),
+        ("octree", body.octree.is_some()),
+    ];
     for (carrier, _) in carriers.into_iter().filter(|(_, is_there)| *is_there) {
         let message =
             |key: &str| format!("`{carrier}` carry body `{}`, and know one way only: no `{key}`", body.name);
@@ -284,7 +295,7 @@ fn check_together(draft: &Draft, body: &Body) {
         }
     }
     if let Some(start) = &body.start
-        && (body.frames.is_some() || body.levels.is_some())
+        && (body.frames.is_some() || body.levels.is_some() || body.octree.is_some())
     {
         let message = format!("the points of body `{}` follow its frames or levels", body.name);
         report(&start.site, message, "`velocity` and `angular_velocity`, or a body of points alone");
@@ -293,6 +304,7 @@ fn check_together(draft: &Draft, body: &Body) {
     let others = [
         ("frames", body.frames.is_some()),
         ("levels", body.levels.is_some()),
+        ("octree", body.octree.is_some()),
         ("section", body.section.is_some()),
         ("regions", !body.regions.is_empty()),
         ("formulation", body.formulation.is_some()),
@@ -341,6 +353,9 @@ fn add_outer_forces(
             let force = MassDamping::new(format!("{name}.rayleigh_mass"), part, damping.rayleigh_mass);
             added.push(force.map(|force| Box::new(force) as _));
         }
+        if damping.neighbour_friction > 0.0 {
+            added.extend(neighbour_friction(draft, body, mass).map(|force| Ok(Box::new(force) as _)));
+        }
         if body.spec.drag > 0.0 {
             let force = Drag::new(format!("{name}.drag"), surface_shares(body), body.spec.drag);
             added.push(force.map(|force| Box::new(force) as _));
@@ -360,6 +375,38 @@ fn add_outer_forces(
             }
         }
     }
+}
+
+/// Friction of a body's points against their neighbours; `None` of a body whose points follow others.
+fn neighbour_friction(draft: &Draft, body: &Placed, mass: &Mass) -> Option<NeighbourFriction> {
+    let refuse = |message: &str, expected: &str| {
+        draft.log.add(Code::Conflict, &body.spec.site, message, expected);
+        None
+    };
+    if body.frames.is_some() || body.levels.is_some() || body.spec.network.is_some() {
+        return refuse("`neighbour_friction` is of points that move by themselves", "a body of points alone");
+    }
+    let system = draft.spec.systems.get(body.system)?;
+    let filter = if body.spec.damping.friction_filter {
+        let is_explicit = system.stepper.as_ref().is_none_or(|chosen| {
+            (chosen.entry.build)(&chosen.values).stability() != Stability::Unconditional
+        });
+        if !is_explicit {
+            return refuse("`friction_filter` has no tangent", "an explicit stepper, or no filter");
+        }
+        let timestep = draft.spec.world.period / f64::from(system.steps_per_period);
+        FrictionFilter::Drop { timestep }
+    } else {
+        FrictionFilter::None
+    };
+    Some(NeighbourFriction::new(
+        format!("{}.neighbour_friction", body.spec.name),
+        body.rows.start,
+        body.spec.damping.neighbour_friction,
+        neighbours(&body.mesh),
+        mass.diagonal[body.rows.clone()].to_vec(),
+        filter,
+    ))
 }
 
 /// The mass of some rows.

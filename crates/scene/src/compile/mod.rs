@@ -14,6 +14,7 @@ mod links;
 mod memory;
 mod motion;
 mod network;
+mod octree;
 mod pins;
 mod section;
 mod selection;

@@ -11,6 +11,7 @@ use super::frames::{FRAMES, FramesSpec};
 use super::levels::{LEVELS, LevelsSpec};
 use super::mesh::{MESH, MeshSpec};
 use super::network::Network;
+use super::octree::{OCTREE, OctreeSpec};
 use super::region::{Region, direction};
 use super::skin::BODY_SKIN;
 use super::start::{START, StartSpec};
@@ -37,6 +38,19 @@ pub(crate) static DAMPING: Keys = Keys::new(
             .or(Value::Number(0.0)),
         Key::number("viscosity", "Pa s", Range::NOT_NEGATIVE, "Kelvin–Voigt: stress per rate of strain")
             .or(Value::Number(0.0)),
+        Key::number(
+            "neighbour_friction",
+            "N s/m",
+            Range::NOT_NEGATIVE,
+            "of each point against those that share a cell with it, by their masses",
+        )
+        .or(Value::Number(0.0)),
+        Key::new(
+            "friction_filter",
+            Shape::Boolean,
+            "drop the friction of a point that it would speed up, or turn back within a step; of explicit steppers",
+        )
+        .or(Value::Boolean(false)),
     ],
 );
 
@@ -72,6 +86,11 @@ pub(crate) static BODY: Keys = Keys::new(
         ),
         Key::new("frames", Shape::Table(&FRAMES), "a few frames that carry it, in the place of its mesh"),
         Key::new("levels", Shape::Table(&LEVELS), "coarser meshes that are at work where little happens"),
+        Key::new(
+            "octree",
+            Shape::Table(&OCTREE),
+            "its points as particles, grouped by eight where little happens",
+        ),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new(
             "mass",
@@ -135,6 +154,8 @@ pub struct Body {
     pub frames: Option<FramesSpec>,
     /// Coarser meshes of it.
     pub levels: Option<LevelsSpec>,
+    /// Its points as particles of several levels.
+    pub octree: Option<OctreeSpec>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
@@ -196,6 +217,10 @@ pub struct Damping {
     pub rayleigh_stiffness: f64,
     /// [Pa s]
     pub viscosity: f64,
+    /// Of each point against its neighbours [N s/m].
+    pub neighbour_friction: f64,
+    /// Whether friction that speeds up or turns back is dropped.
+    pub friction_filter: bool,
 }
 
 /// Where a rest shape stands: turned by `rotation` about `centre`, then moved.
@@ -250,6 +275,8 @@ impl Body {
             rayleigh_mass: table.number("rayleigh_mass"),
             rayleigh_stiffness: table.number("rayleigh_stiffness"),
             viscosity: table.number("viscosity"),
+            neighbour_friction: table.number("neighbour_friction"),
+            friction_filter: table.boolean("friction_filter"),
         });
         let region = |(name, part): (String, Reader)| BodyRegion {
             name,
@@ -263,6 +290,7 @@ impl Body {
             section: reader.entry("section", &SECTIONS),
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
+            octree: reader.table("octree").map(|table| OctreeSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
             mass: match reader.choice("mass") {
                 "consistent" => MassKind::Consistent,

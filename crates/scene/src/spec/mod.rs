@@ -13,6 +13,7 @@ pub mod levels;
 pub mod mesh;
 pub mod network;
 pub mod parts;
+pub mod octree;
 pub mod picture;
 pub mod probe;
 pub mod quantity;

@@ -390,6 +390,7 @@ impl Network {
             springs: reader.tables("springs").iter().map(Spring::read).collect(),
             frames: None,
             levels: None,
+            octree: None,
             network: Some(network),
             site: reader.site(),
         }

@@ -1,6 +1,7 @@
 //! `souple mesh`: generate, fill, repair, simplify, skin, convert, quality.
 
 mod fill;
+mod operators;
 mod parameters;
 mod repair;
 mod skin;
@@ -94,6 +95,14 @@ enum Action {
         #[arg(long)]
         json: bool,
     },
+    /// Tells what the linear formulations make of a mesh of tet4, or tri3 in a plane: symmetry, growth, exactness of quadratic fields
+    Operators {
+        input: PathBuf,
+        /// NAME=VALUE: mu, lambda [Pa], density
+        parameters: Vec<String>,
+        #[arg(long)]
+        json: bool,
+    },
 }
 
 impl Arguments {
@@ -105,7 +114,8 @@ impl Arguments {
             | Action::Simplify { json, .. }
             | Action::Skin { json, .. }
             | Action::Convert { json, .. }
-            | Action::Quality { json, .. } => *json,
+            | Action::Quality { json, .. }
+            | Action::Operators { json, .. } => *json,
         }
     }
 }
@@ -166,19 +176,31 @@ pub fn mesh(arguments: Arguments) -> Result<End, Refusal> {
                 return Ok(End::Done);
             }
             let repairs = mesh.validate();
-            let refuse = |error: souple_mesh::MeshError| {
-                Refusal::request(
-                    "mesh",
-                    input.display().to_string(),
-                    "a mesh that can be computed with",
-                    format!("{}: {error}", input.display()),
-                )
-            };
-            notes.extend(repairs.map_err(refuse)?.messages());
+            notes.extend(repairs.map_err(|error| unfit(&input, &error))?.messages());
             report(&input, &mesh, &notes, json);
             Ok(End::Done)
         }
+        Action::Operators { input, parameters, json } => {
+            let (mut mesh, _) = read(&input)?;
+            mesh.validate().map_err(|error| unfit(&input, &error))?;
+            let found = operators::of(&mesh, &parameters)?;
+            if json {
+                print_json(&operators::to_json(&found));
+            } else {
+                operators::print(&found);
+            }
+            Ok(End::Done)
+        }
     }
+}
+
+fn unfit(input: &Path, error: &souple_mesh::MeshError) -> Refusal {
+    Refusal::request(
+        "mesh",
+        input.display().to_string(),
+        "a mesh that can be computed with",
+        format!("{}: {error}", input.display()),
+    )
 }
 
 /// Refuses to write over the file that is read: what is made of it is less than it, or something else.

@@ -26,6 +26,7 @@ mod moving_frame;
 mod network;
 mod patch;
 mod pressure;
+mod resolution;
 mod rheology;
 mod rheometer;
 mod rubber;
@@ -73,6 +74,8 @@ pub const TABLES: &[&[Case]] = &[
     conditional::CASES,
     matter::CASES,
     frames::CASES,
+    resolution::CASES,
+    resolution::SPRINGS,
     levels::CASES,
     hands::CASES,
     tools::CASES,

@@ -6,9 +6,14 @@
 
 mod cells;
 mod corotated;
+mod edge_tensors;
 mod four_loops;
+mod gauss_voronoi;
 mod grouped;
+mod pairs;
 mod polynomial;
+mod quality;
+mod simplices;
 mod springs;
 mod tensor_mass;
 
@@ -17,6 +22,14 @@ use souple_mesh::ElementKind;
 use souple_table::{Entry, Table, Values};
 
 pub(crate) use four_loops::operations as four_loop_count;
+pub use quality::{OperatorQuality, QualityError, operator_quality};
+
+/// What linear forces between pairs of points are made of, for rooms that have other pairs.
+pub(crate) mod linear_pairs {
+    pub use super::edge_tensors::{add as add_simplex, elastic, in_plane};
+    pub use super::pairs::{PairForce, PairSums};
+    pub use super::simplices::{Simplex, depth_of, linear_moduli};
+}
 
 use super::{FlatCell, Section, SolidDescription, SolidForce};
 use crate::materials::{AnyLaw, Lame, Material, MaterialLaw};
@@ -48,6 +61,10 @@ pub static FORMULATIONS: Table<BuildFormulation> = Table {
         &four_loops::ENTRY,
         &corotated::ENTRY,
         &springs::ENTRY,
+        &edge_tensors::ENTRY,
+        &edge_tensors::HYBRID_ENTRY,
+        &gauss_voronoi::ENTRY,
+        &crate::particles::ENTRY,
     ],
 };
 
@@ -64,6 +81,12 @@ pub enum FormulationError {
     Cut { name: String },
     #[error("`{formulation}` is of volumes, and the body has a section")]
     Section { formulation: &'static str },
+    #[error("`{formulation}` is of volumes, or of plane bodies that nothing stretches across")]
+    PlaneStrain { formulation: &'static str },
+    #[error(
+        "the neighbours of point {point} do not tell second derivatives: {count} points, as far as three rings around it"
+    )]
+    Neighbours { point: u32, count: usize },
 }
 
 /// Refuses sections, and cells of other kinds.

@@ -3,6 +3,9 @@
 //! `k = Σ E V / l²` over the cells of an edge of rest length `l`, so that a mesh of regular tetrahedra has about the stiffness of the
 //! matter; no set of springs has the stiffness of any other, and Poisson's ratio is theirs. (Van Gelder 1998, Approximate
 //! simulation of elastic membranes by triangulated spring meshes.)
+//!
+//! Simpler rules are there to be compared: the same `k` everywhere, `k = c l`, `k = c/l`. None of them makes two meshes of one
+//! body move alike.
 
 #![allow(non_snake_case)]
 
@@ -14,7 +17,7 @@ use souple_engine::tangent::add_block;
 use souple_engine::{Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
-use souple_table::Entry;
+use souple_table::{Entry, Parameter, Range, Value, Values};
 
 use super::{BuildFormulation, FormulationError, check_cells};
 use crate::solids::SolidDescription;
@@ -25,9 +28,56 @@ pub(super) const ENTRY: Entry<BuildFormulation> = Entry {
     name: NAME,
     summary: "a spring along every edge, with the stiffness that the cells around it ask for; Poisson's ratio is not kept",
     source: "Van Gelder 1998, Approximate simulation of elastic membranes by triangulated spring meshes",
-    parameters: &[],
-    build: |description, _| Ok(Box::new(MassSpring::new(description)?)),
+    parameters: &[
+        Parameter::choice(
+            "rule",
+            &["van_gelder", "constant", "proportional", "inverse"],
+            "stiffness k of a spring of length l: E Σ V/l², c, c l, c/l",
+        )
+        .or(Value::Text("van_gelder")),
+        Parameter::number(
+            "coefficient",
+            "",
+            Range::NOT_NEGATIVE,
+            "c of the other rules, in N/m times what power of m the rule asks for; 0: springs as stiff in sum as van_gelder's",
+        )
+        .or(Value::Number(0.0)),
+    ],
+    build: |description, values| Ok(Box::new(MassSpring::new(description, &Rule::of(values))?)),
 };
+
+/// How stiff springs are that do not follow the matter: `k = c l^power`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rule {
+    /// None: by the cells around.
+    power: Option<i32>,
+    /// 0: as much in sum as by the cells around.
+    coefficient: f64,
+}
+
+impl Rule {
+    fn of(values: &Values) -> Self {
+        let power = match values.text("rule") {
+            "constant" => Some(0),
+            "proportional" => Some(1),
+            "inverse" => Some(-1),
+            _ => None,
+        };
+        Self { power, coefficient: values.number("coefficient") }
+    }
+
+    fn apply(self, springs: &mut [Spring]) {
+        let Some(power) = self.power else { return };
+        let shares = || springs.iter().map(|spring| spring.rest_length.powi(power));
+        let coefficient = if self.coefficient > 0.0 {
+            self.coefficient
+        } else {
+            springs.iter().map(|spring| spring.stiffness).sum::<f64>() / shares().sum::<f64>()
+        };
+        let stiffness: Vec<f64> = shares().map(|share| coefficient * share).collect();
+        springs.iter_mut().zip(stiffness).for_each(|(spring, stiffness)| spring.stiffness = stiffness);
+    }
+}
 
 /// [`Force`] of springs along edges.
 struct MassSpring {
@@ -45,7 +95,7 @@ struct Spring {
 }
 
 impl MassSpring {
-    fn new(description: &SolidDescription) -> Result<Self, FormulationError> {
+    fn new(description: &SolidDescription, rule: &Rule) -> Result<Self, FormulationError> {
         let linear = |kind: souple_mesh::ElementKind| kind.dimension() == 3 && kind.corners() == kind;
         check_cells(NAME, description, linear, "linear volume elements")?;
         let SolidDescription { mesh, first_row, materials, material_of_cell, .. } = description;
@@ -72,7 +122,9 @@ impl MassSpring {
             let rows = ends.map(|end| end + *first_row as u32);
             Spring { rows, stiffness, rest_length: (b - a).length() }
         };
-        Ok(Self { name: description.name.clone(), springs: stiffness.into_iter().map(spring).collect() })
+        let mut springs: Vec<Spring> = stiffness.into_iter().map(spring).collect();
+        rule.apply(&mut springs);
+        Ok(Self { name: description.name.clone(), springs })
     }
 }
 
