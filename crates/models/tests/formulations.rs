@@ -421,10 +421,16 @@ fn pairs_are_linear() {
         let found = answers(force.as_ref(), &x);
         assert!(distance(&found.products[0], &found.products[1]) < 1e-12, "{name} {element}: blocks");
         let moved: Vec<Vec3> = x.iter().map(|p| *p + Vec3::new(0.3, -0.2, 0.1)).collect();
-        assert!(distance(&found.force, &answers(force.as_ref(), &moved).force) < 1e-11, "{name} {element}: moved");
+        assert!(
+            distance(&found.force, &answers(force.as_ref(), &moved).force) < 1e-11,
+            "{name} {element}: moved"
+        );
         let doubled: Vec<Vec3> = x.iter().zip(&mesh.points).map(|(x, rest)| *x * 2.0 - *rest).collect();
         let twice: Vec<Vec3> = found.force.iter().map(|f| *f * 2.0).collect();
-        assert!(distance(&twice, &answers(force.as_ref(), &doubled).force) < 1e-12, "{name} {element}: linear");
+        assert!(
+            distance(&twice, &answers(force.as_ref(), &doubled).force) < 1e-12,
+            "{name} {element}: linear"
+        );
         if has_energy {
             let u = x.iter().zip(&mesh.points).map(|(x, rest)| *x - *rest);
             let work: f64 = u.zip(&found.force).map(|(u, f)| -0.5 * u.dot(*f)).sum();

@@ -148,15 +148,30 @@ fn inverse(mut m: [[f64; MOST]; MOST], size: usize) -> Option<[[f64; MOST]; MOST
 /// Weights of the neighbours in the gradient that fits them best, `G = Σ (u_j - u_i) ⊗ g_j` with
 /// `g_j = w_j (Σ w l lᵀ)⁻¹ l_j` and `w = 1/l²`; `None` where arms lie in a plane, or on a line of the plane.
 pub fn gradient_weights(arms: &[Vec3], dimension: usize) -> Option<Vec<Vec3>> {
-    let mut moments = Mat3::ZERO;
-    arms.iter().for_each(|arm| moments += arm.outer(*arm) * (1.0 / arm.length_sq()));
+    let mut moments = moments(arms);
     if dimension == 2 {
         moments.columns[2] = Vec3::AXES[2];
     }
     let inverse = moments.try_inverse().filter(|inverse| inverse.is_finite())?;
     // of a sum of unit matrices the inverse is of the size of one over their number
-    (inverse.largest_entry() * arms.len() as f64 * SINGULAR < 1.0)
-        .then(|| arms.iter().map(|arm| inverse * *arm * (1.0 / arm.length_sq())).collect())
+    (inverse.largest_entry() * SINGULAR < 1.0).then(|| weighted(arms, &inverse))
+}
+
+/// The same where arms may lie in a plane or on a line: the least gradient that fits them, to a part of a billion.
+pub fn least_gradient_weights(arms: &[Vec3]) -> Vec<Vec3> {
+    let moments = moments(arms);
+    let inverse = moments.plus_diagonal(SINGULAR * moments.trace()).try_inverse();
+    inverse.map_or_else(|| vec![Vec3::ZERO; arms.len()], |inverse| weighted(arms, &inverse))
+}
+
+fn moments(arms: &[Vec3]) -> Mat3 {
+    let mut moments = Mat3::ZERO;
+    arms.iter().for_each(|arm| moments += arm.outer(*arm) * (1.0 / arm.length_sq()));
+    moments
+}
+
+fn weighted(arms: &[Vec3], inverse: &Mat3) -> Vec<Vec3> {
+    arms.iter().map(|arm| *inverse * *arm * (1.0 / arm.length_sq())).collect()
 }
 
 #[cfg(test)]
@@ -268,10 +283,13 @@ mod tests {
         (0..dimension).flat_map(all)
     }
 
+    /// Without any symmetry: each axis by a frequency of its own.
     fn random(count: usize, dimension: usize) -> Vec<Vec3> {
-        let number = |i: usize, salt: f64| ((i as f64 + salt) * 12.9898).sin();
+        let number = |i: usize, frequency: f64| ((i as f64 + 0.3) * frequency).sin();
         let flat = if dimension == 2 { 0.0 } else { 1.0 };
-        (0..count).map(|i| Vec3::new(number(i, 0.1), number(i, 0.37), flat * number(i, 0.71))).collect()
+        (0..count)
+            .map(|i| Vec3::new(number(i, 12.9898), number(i, 78.233), flat * number(i, 37.719)))
+            .collect()
     }
 
     /// Least squares are exact of all quadratic fields on sets without any symmetry, and see neither values nor slopes.

@@ -50,7 +50,7 @@ pub(crate) static OCTREE: Keys = Keys::new(
         Key::new(
             "fixed",
             Shape::Formula(&PLACE_VARIABLES),
-            "the level at a place, counted from 0, the coarsest, in the place of the criterion; neighbours differ by one at most",
+            "the level at a place, counted from 0, the coarsest; then there is no criterion, and neighbours differ by one at most",
         ),
     ],
 );
@@ -77,12 +77,6 @@ impl OctreeSpec {
                 message,
                 format!("below `refine`, {refine}"),
             );
-        }
-        if reader.has("fixed") {
-            for key in reader.written(&["refine", "coarsen"]) {
-                let message = format!("`{key}` is of levels that change, and `fixed` says what they are");
-                reader.log().add(Code::Conflict, &reader.site_of(key), message, "`fixed` alone");
-            }
         }
         let operators = match reader.choice("operators") {
             "legacy" => OctreeOperators::Strong(Operators::Legacy),

@@ -24,6 +24,7 @@ mod mixed_models;
 mod motion;
 mod moving_frame;
 mod network;
+mod octree;
 mod patch;
 mod pressure;
 mod resolution;
@@ -74,6 +75,7 @@ pub const TABLES: &[&[Case]] = &[
     conditional::CASES,
     matter::CASES,
     frames::CASES,
+    octree::CASES,
     resolution::CASES,
     resolution::SPRINGS,
     levels::CASES,

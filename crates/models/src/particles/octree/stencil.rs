@@ -6,7 +6,7 @@ use souple_math::{Mat3, Vec3};
 
 use super::OctreeOperators;
 use crate::materials::Lame;
-use crate::particles::operators::{Operators, gradient_weights};
+use crate::particles::operators::{Operators, gradient_weights, least_gradient_weights};
 
 /// A particle with its neighbours.
 #[derive(Clone, Debug)]
@@ -16,6 +16,8 @@ pub struct Stencil {
     blocks: Vec<Mat3>,
     /// Weights of neighbours in the gradient that fits them; none where they do not tell one.
     gradients: Vec<Vec3>,
+    /// The same for the criterion, as far as they tell one.
+    slopes: Vec<Vec3>,
     /// Arms at rest [m].
     arms: Vec<Vec3>,
     /// What holds that part of displacements which gradients do not see [N/m].
@@ -32,6 +34,7 @@ impl Default for Stencil {
             neighbours: Vec::new(),
             blocks: Vec::new(),
             gradients: Vec::new(),
+            slopes: Vec::new(),
             arms: Vec::new(),
             holds: Vec::new(),
             laplacian: Vec::new(),
@@ -60,6 +63,8 @@ impl Stencil {
         self.holds.clear();
         self.gradients.clear();
         self.gradients.extend(gradient_weights(&self.arms, 3).into_iter().flatten());
+        self.slopes.clear();
+        self.slopes.extend(least_gradient_weights(&self.arms));
         self.laplacian.clear();
         let laplacian = Operators::Corrected.of(&self.arms, 3);
         self.laplacian.extend(laplacian.into_iter().flatten().map(|coefficient| coefficient.laplacian));
@@ -103,20 +108,22 @@ impl Stencil {
         let mut at = kept.iter();
         self.gradients.retain(|_| at.next() == Some(&true));
         let mut at = kept.iter();
+        self.slopes.retain(|_| at.next() == Some(&true));
+        let mut at = kept.iter();
         self.laplacian.retain(|_| at.next() == Some(&true));
     }
 
     pub fn bytes(&self) -> usize {
         4 * self.neighbours.capacity()
             + 72 * self.blocks.capacity()
-            + 24 * (self.gradients.capacity() + self.arms.capacity())
+            + 24 * (self.gradients.capacity() + self.slopes.capacity() + self.arms.capacity())
             + 8 * (self.holds.capacity() + self.laplacian.capacity())
     }
 
     /// `G = Σ (u_j - u_i) ⊗ g_j`.
-    fn gradient(&self, relative: impl Fn(u32) -> Vec3) -> Mat3 {
+    fn gradient(&self, weights: &[Vec3], relative: impl Fn(u32) -> Vec3) -> Mat3 {
         let mut G = Mat3::ZERO;
-        for (other, g) in self.neighbours.iter().zip(&self.gradients) {
+        for (other, g) in self.neighbours.iter().zip(weights) {
             G += relative(*other).outer(*g);
         }
         G
@@ -149,7 +156,7 @@ impl Stencil {
             }
             return;
         }
-        let G = self.gradient(&relative);
+        let G = self.gradient(&self.gradients, &relative);
         let Lame { mu, lambda } = self.moduli;
         // σ V less Σ c_j r_j ⊗ l_j, with r_j = d_j - G l_j
         let strain = G.symmetric_part();
@@ -180,7 +187,7 @@ impl Stencil {
             let of = |(other, block): (&u32, &Mat3)| 0.5 * relative(*other).dot(*block * relative(*other));
             return self.neighbours.iter().zip(&self.blocks).map(of).sum();
         }
-        let G = self.gradient(&relative);
+        let G = self.gradient(&self.gradients, &relative);
         let strain = G.symmetric_part();
         let Lame { mu, lambda } = self.moduli;
         let held: f64 = (0..self.holds.len())
@@ -194,10 +201,7 @@ impl Stencil {
 
     /// `|Δu|` less what the mean gradient gives on a set that leans to one side [1/m]; zero of every affine motion.
     pub fn variation(&self, relative: impl Fn(u32) -> Vec3) -> f64 {
-        if self.gradients.is_empty() {
-            return 0.0;
-        }
-        let G = self.gradient(&relative);
+        let G = self.gradient(&self.slopes, &relative);
         let part = |at: usize| (relative(self.neighbours[at]) - G * self.arms[at]) * self.laplacian[at];
         (0..self.neighbours.len()).map(part).sum::<Vec3>().length()
     }
