@@ -109,7 +109,7 @@ struct Particle {
 
 impl Particle {
     /// Answers from the neighbours, from more rings of them where these do not tell enough.
-    fn from_rings<T>(
+    fn ask_rings<T>(
         &self,
         mesh: &Mesh,
         around: &[Vec<u32>],
@@ -141,8 +141,7 @@ impl Particle {
         sums: &mut PairSums,
     ) -> Result<(), FormulationError> {
         let dimension = mesh.dimension();
-        let (others, _, coefficients) =
-            self.from_rings(mesh, around, |arms| operators.of(arms, dimension))?;
+        let (others, _, coefficients) = self.ask_rings(mesh, around, |arms| operators.of(arms, dimension))?;
         let Lame { mu, lambda } = self.moduli;
         for (other, coefficient) in others.into_iter().zip(coefficients) {
             let block = (coefficient.grad_div * (lambda + mu)).plus_diagonal(mu * coefficient.laplacian);
@@ -159,7 +158,7 @@ impl Particle {
     ) -> Result<(), FormulationError> {
         let dimension = mesh.dimension();
         let (others, arms, gradients) =
-            self.from_rings(mesh, around, |arms| gradient_weights(arms, dimension))?;
+            self.ask_rings(mesh, around, |arms| gradient_weights(arms, dimension))?;
         // the particle and its neighbours as one element with a constant gradient
         let own = -gradients.iter().copied().sum::<Vec3>();
         let stencil = Simplex {

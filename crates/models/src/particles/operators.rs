@@ -124,7 +124,8 @@ fn inverse(mut m: [[f64; MOST]; MOST], size: usize) -> Option<[[f64; MOST]; MOST
     let largest = m.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
     for column in 0..size {
         let pivot = (column..size).max_by(|a, b| m[*a][column].abs().total_cmp(&m[*b][column].abs()))?;
-        if !(m[pivot][column].abs() > SINGULAR * largest) {
+        let height = m[pivot][column].abs();
+        if height.is_nan() || height <= SINGULAR * largest {
             return None;
         }
         m.swap(column, pivot);

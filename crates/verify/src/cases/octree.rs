@@ -44,7 +44,7 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::NaturalFrequency(1),
         reference: 4.701,
         source: "specification, 3.4: linear finite elements on K_M(12)",
-        mutation: "bodies.cube.material.poissons_ratio=0.2",
+        mutation: "bodies.cube.material.density=1200",
         ..SWING
     },
     Case {

@@ -64,7 +64,11 @@ impl Stencil {
         self.gradients.clear();
         self.gradients.extend(gradient_weights(&self.arms, 3).into_iter().flatten());
         self.slopes.clear();
-        self.slopes.extend(least_gradient_weights(&self.arms));
+        if self.gradients.is_empty() {
+            self.slopes.extend(least_gradient_weights(&self.arms));
+        } else {
+            self.slopes.extend_from_slice(&self.gradients);
+        }
         self.laplacian.clear();
         let laplacian = Operators::Corrected.of(&self.arms, 3);
         self.laplacian.extend(laplacian.into_iter().flatten().map(|coefficient| coefficient.laplacian));

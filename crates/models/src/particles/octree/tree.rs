@@ -101,7 +101,7 @@ impl Level {
         for (point, x) in points.iter().enumerate() {
             let at = ((*x - low) * (1.0 / spacing)).to_array();
             let whole = at.map(f64::round);
-            if at.iter().zip(whole).any(|(at, whole)| !((at - whole).abs() <= OFF_LATTICE)) {
+            if at.iter().zip(whole).any(|(at, whole)| (at - whole).abs() > OFF_LATTICE || at.is_nan()) {
                 return Err(OctreeError::OffLattice { point, spacing });
             }
             let place = whole.map(|at| at as i64);
