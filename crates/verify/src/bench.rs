@@ -171,6 +171,8 @@ pub const BENCHES: &[Bench] = &[
         name: "balls_scaling",
         what: "the same with 1,000 to 1,000,000 balls [ns/ball and step], memory, and the exponent fitted (BEN-6)",
         run: |effort| balls::scaling("balls_scaling", effort),
+    },
+    Bench {
         name: "resolution",
         what: "how alike one cube swings on meshes of three resolutions, by every model [Hz], with the spread of each model",
         run: resolution::table,
