@@ -228,7 +228,7 @@ fn fruit(more: &str) -> String {
     };
     let ball = "{ name = \"ball\", threshold = 0.5, stiffness = 10 }";
     format!(
-        "{}{}{}[networks.n.objects.fruit]\nkernel = [\"core\"]\ndermis = [\"flesh\"]\ncentpolygon = {ball}\nmatter = {ball}\n{more}\n\
+        "{}{}{}[networks.n.objects.fruit]\nkernel = [\"core\"]\ndermis = [\"flesh\"]\ncentring = {ball}\nmatter = {ball}\n{more}\n\
          [[networks.n.encounters]]\nlaw = {ball}\n",
         group("core", 0.0),
         group("flesh", 1.0),
