@@ -202,6 +202,12 @@ pub trait Force: Send + Sync {
     /// The groups of rows it couples: each is a clique of the matrix pattern.
     fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32]));
 
+    /// Whether all rows that it reads are unknowns or in its cliques, for what carries no unknown of its own and is only
+    /// looked at need not be placed then where a step tries things out.
+    fn reads_cliques_alone(&self) -> bool {
+        false
+    }
+
     /// `matrix += a ∂f/∂x + b ∂f/∂v` over rows, in blocks of the pattern that its cliques made.
     fn add_blocks(
         &self,

@@ -45,9 +45,7 @@ pub fn led_accelerations_at(
     // f - M a over what is led
     ws.row_scratch.fill(Vec3::ZERO);
     for constraint in &system.constraints {
-        if let Some(row) = system.kinematics.point_block_row(constraint.block) {
-            ws.row_scratch[row as usize] += led(constraint);
-        }
+        system.add_led(constraint, led(constraint), &state.q, &mut ws.row_scratch);
     }
     system.kinematics.derive_rows(&mut ws.row_scratch);
     system.mass.add_scaled_product(-1.0, &ws.row_scratch, &mut ws.row_force);
@@ -163,10 +161,8 @@ pub fn take_along(
     }
     ws.row_scratch.fill(Vec3::ZERO);
     for constraint in &system.constraints {
-        if let Some(row) = system.kinematics.point_block_row(constraint.block) {
-            let change = constraint.velocity(to) - constraint.velocity(from);
-            ws.row_scratch[row as usize] += constraint.constrained() * change;
-        }
+        let change = constraint.velocity(to) - constraint.velocity(from);
+        system.add_led(constraint, constraint.constrained() * change, q, &mut ws.row_scratch);
     }
     system.kinematics.derive_rows(&mut ws.row_scratch);
     ws.row_force.fill(Vec3::ZERO);

@@ -311,6 +311,21 @@ impl Kinematics {
         );
     }
 
+    /// [`Kinematics::rows_into`] of the free rows and of these derived ones alone.
+    pub fn some_rows_into(
+        &self,
+        q: &[Vec3],
+        v: &[Vec3],
+        which: &[u32],
+        positions: &mut [Vec3],
+        velocities: &mut [Vec3],
+    ) {
+        reduce::copy(&mut positions[..q.len()], q);
+        self.free_velocities_into(q, v, &mut velocities[..q.len()]);
+        self.derive_some_rows(which, positions);
+        self.derive_some_rows(which, velocities);
+    }
+
     /// Velocities of all rows, `ẋ = T(q) v`.
     pub fn velocities_into(&self, q: &[Vec3], v: &[Vec3], rows: &mut [Vec3]) {
         self.free_velocities_into(q, v, &mut rows[..q.len()]);

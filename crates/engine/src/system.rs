@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3, logarithm, orthonormalised};
 
 use crate::constraint::Constraint;
 use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
@@ -416,10 +416,36 @@ impl System {
         for constraint in &self.constraints {
             let block = constraint.block as usize;
             v[block] = constraint.free * v[block] + constraint.constrained() * constraint.velocity(time);
-            if let Some(row) = self.kinematics.point_block_row(constraint.block) {
+            if let (Some(axes), Some(row)) =
+                (&constraint.axes, self.kinematics.row_of_block(constraint.block))
+            {
+                let turned = orthonormalised(&constraint.turned(axes, time, load));
+                q[row as usize..row as usize + 3].copy_from_slice(&turned.columns);
+            } else if let Some(row) = self.kinematics.point_block_row(constraint.block) {
                 let q = &mut q[row as usize];
                 *q += constraint.constrained() * (constraint.position(time, load) - *q);
             }
+        }
+    }
+
+    /// How far the block of a constraint is from where it is led: the displacement that [`Kinematics::retract`] takes it
+    /// there by, along directions that are left free too.
+    pub fn to_go(&self, constraint: &Constraint, q: &[Vec3], time: f64, load: f64) -> Vec3 {
+        if let Some(axes) = &constraint.axes {
+            let Some(row) = self.kinematics.row_of_block(constraint.block) else { return Vec3::ZERO };
+            let now = Mat3::from_columns(q[row as usize], q[row as usize + 1], q[row as usize + 2]);
+            return logarithm(&constraint.turned(axes, time, load).mul_transpose(&now));
+        }
+        let row = self.kinematics.point_block_row(constraint.block);
+        row.map_or(Vec3::ZERO, |row| constraint.position(time, load) - q[row as usize])
+    }
+
+    /// Adds to rows what velocity blocks `led` of a constraint move: a point, or the axes of a frame that turns.
+    pub fn add_led(&self, constraint: &Constraint, led: Vec3, q: &[Vec3], rows: &mut [Vec3]) {
+        if let Some(row) = self.kinematics.point_block_row(constraint.block) {
+            rows[row as usize] += led;
+        } else if let Some(row) = self.kinematics.row_of_block(constraint.block) {
+            (row as usize..row as usize + 3).for_each(|row| rows[row] += led.cross(q[row]));
         }
     }
 

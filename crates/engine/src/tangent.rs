@@ -538,16 +538,30 @@ impl OperatorBuffers {
             + self.mass.as_ref().map_or(0, FrameMass::bytes)
     }
 
+    /// Derived rows that have to be placed for forces to be asked; `None` where that is all of them.
+    pub fn rows_at_work(&mut self, system: &System) -> Option<&[u32]> {
+        let asks_all = |force: &Box<dyn Force>| !force.reads_cliques_alone();
+        if system.kinematics.is_trivial() || system.has_pairs() || system.forces.iter().any(asks_all) {
+            return None;
+        }
+        self.learn(system);
+        Some(&self.derived)
+    }
+
+    fn learn(&mut self, system: &System) {
+        if self.mass.is_none() {
+            self.derived = derived_rows_at_work(system);
+            self.mass = Some(FrameMass::new(&system.mass, &system.kinematics));
+        }
+    }
+
     /// What all products at a linearisation have in common.
     fn prepare(&mut self, at: &Linearisation, part: Part) {
         let kinematics = &at.system.kinematics;
         if kinematics.is_trivial() {
             return;
         }
-        if self.mass.is_none() {
-            self.derived = derived_rows_at_work(at.system);
-            self.mass = Some(FrameMass::new(&at.system.mass, kinematics));
-        }
+        self.learn(at.system);
         // derived rows that are not looked at keep nothing of solves before
         self.row_positions.fill(Vec3::ZERO);
         self.row_velocities.fill(Vec3::ZERO);

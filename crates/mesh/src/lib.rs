@@ -28,6 +28,7 @@ mod signed_distance;
 pub mod simplify;
 mod surface;
 mod surface_quality;
+pub mod tissue;
 mod tree;
 mod validate;
 mod voronoi;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 use souple_engine::{EnergyReport, StageTimes, StepReport, UnknownKind, World};
 use souple_math::Vec3;
+use souple_models::loads::{Attachments, Slip};
 use souple_scene::{BodyInfo, SkinInfo};
 
 use crate::expect::summary;
@@ -52,6 +53,8 @@ pub struct Report {
     pub counts: BTreeMap<String, u64>,
     /// Of each skin by its name.
     pub skins: serde_json::Map<String, Value>,
+    /// Of each attachment by its name, at the end.
+    pub attachments: serde_json::Map<String, Value>,
     /// Changes of the topology of skins, in their order; of a run that went on from a snapshot those since.
     pub skin_changes: Vec<SkinChange>,
     pub stages: StageTimes,
@@ -120,6 +123,7 @@ impl Report {
             "solver_bytes": self.solver_bytes,
             "counts": self.counts,
             "skins": self.skins,
+            "attachments": self.attachments,
             "stages_ms": {
                 "pairs": 1e3 * pairs,
                 "forces": 1e3 * forces,
@@ -147,6 +151,21 @@ impl Report {
             "warnings": self.warnings,
         })
     }
+}
+
+/// How attachments stand: how many springs each has, how many of them have torn, and how far the others let go.
+pub fn attachments(world: &World) -> serde_json::Map<String, Value> {
+    let mut found = serde_json::Map::new();
+    for system in 0..world.model().systems.len() {
+        world.visit_forces(system, &mut |force, at| {
+            if let Some(springs) = force.as_any().downcast_ref::<Attachments>() {
+                let Slip { links, torn, greatest } = springs.slip(at);
+                let told = json!({"springs": links, "torn": torn, "greatest_slip_m": greatest});
+                found.insert(force.name().to_owned(), told);
+            }
+        });
+    }
+    found
 }
 
 fn probe_to_json(probe: &Summary) -> (String, Value) {

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::frames::solid_of;
 use crate::machine::peak_bytes;
 use crate::recording::{Recording, add_hash};
-use crate::report::{AroundSteps, Report, SkinChange, Status, counts, skins};
+use crate::report::{AroundSteps, Report, SkinChange, Status, attachments, counts, skins};
 use crate::show::{MOST_GROWTH, growth};
 use crate::snapshot_file::{snapshot_bytes, write_snapshot};
 use crate::{Options, RunError, forecast_warnings};
@@ -305,6 +305,7 @@ impl Session {
             wall_seconds: self.clock.elapsed().as_secs_f64(),
             counts: counts(&self.world, &self.bodies),
             skins: skins(&self.world, &self.skins, &self.skin_changes),
+            attachments: attachments(&self.world),
             skin_changes: self.skin_changes.clone(),
             stages: self.world.stages(),
             around: self.around,

@@ -28,8 +28,8 @@ pub use diagnostic::{Code, Diagnostic, Diagnostics};
 pub use measure::{ContourInfo, Measurement, ProbeInfo};
 pub use modules::MODULES;
 pub use scene::{
-    BodyInfo, DressInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file, read_spec,
-    read_text,
+    BodyInfo, Carriers, DressInfo, FramesInfo, HandInfo, LawsInfo, Scene, SkinInfo, read_again, read_file,
+    read_file_with_carriers, read_spec, read_text,
 };
 pub use schema::schema;
 pub use spec::Spec;

@@ -6,11 +6,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use souple_engine::{Census, FieldState, InHand, Levels, Model, State, World};
+use souple_engine::{Census, FieldState, InHand, Levels, Model, State, UnknownKind, World};
 use souple_haptics::{Between, DeviceChoice, Port};
 use souple_math::Vec3;
 use souple_mesh::{Mesh, TriangleSurface};
-use souple_models::frames::Carried;
+use souple_models::frames::{Carried, FramesReport};
 use souple_models::multiresolution::Dress;
 use souple_skin::target::Moment;
 use souple_skin::{Polygons, Skin, SkinError};
@@ -120,6 +120,8 @@ pub struct FramesInfo {
     pub rows: Vec<u32>,
     /// Origin and axes of each frame at rest, in the order of the rows.
     pub rest: Vec<Vec3>,
+    /// How well they serve.
+    pub report: FramesReport,
     /// The number of the frame whose weights are shown.
     pub shown: usize,
     /// Of each point of the mesh: the weight of the frame that is shown.
@@ -277,7 +279,9 @@ impl BodyInfo {
                 let place = carried.frames.binary_search(&shown);
                 place.map_or(0.0, |place| carried.rows[place][0].0)
             };
+            let is_affine = frames.kind == UnknownKind::AffineFrame;
             FramesInfo {
+                report: FramesReport::new(&frames.frames, &frames.samples, &frames.carried, is_affine),
                 shown: shown as usize,
                 influence: frames.carried_points.iter().map(weight).collect(),
                 rest: frames.configuration().collect(),
@@ -294,7 +298,41 @@ impl BodyInfo {
 /// # Errors
 /// Everything that is wrong with it.
 pub fn read_file(path: &Path, overrides: &[String]) -> Result<Scene, Diagnostics> {
-    read(Library::default(), overrides, |includer| includer.read_file(path, None))
+    read(Library::default(), overrides, |includer| includer.read_file(path, None), |_| ())
+}
+
+/// What carries a body of frames in place of the frames that its scene gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Carriers {
+    /// The points of its mesh.
+    Mesh,
+    /// So many times as many frames.
+    Frames(f64),
+}
+
+/// The same with other carriers of one body, to compare them.
+///
+/// # Errors
+/// Everything that is wrong with it then.
+pub fn read_file_with_carriers(
+    path: &Path,
+    overrides: &[String],
+    body: &str,
+    carriers: Carriers,
+) -> Result<Scene, Diagnostics> {
+    let change = |spec: &mut Spec| {
+        for body in spec.bodies.iter_mut().filter(|other| other.name == body) {
+            match carriers {
+                Carriers::Mesh => body.frames = None,
+                Carriers::Frames(times) => {
+                    if let Some(frames) = &mut body.frames {
+                        frames.multiply(times);
+                    }
+                }
+            }
+        }
+    };
+    read(Library::default(), overrides, |includer| includer.read_file(path, None), change)
 }
 
 /// The same from a text; files it names are relative to `folder`, and messages call it `name`.
@@ -303,7 +341,7 @@ pub fn read_file(path: &Path, overrides: &[String]) -> Result<Scene, Diagnostics
 /// Everything that is wrong with it.
 pub fn read_text(name: &str, text: &str, folder: &Path, overrides: &[String]) -> Result<Scene, Diagnostics> {
     let source = Source { name: name.to_owned(), folder: PathBuf::from(folder), text: text.to_owned() };
-    read(Library::default(), overrides, |includer| Some(includer.read_text(source)))
+    read(Library::default(), overrides, |includer| Some(includer.read_text(source)), |_| ())
 }
 
 /// Reads a scene again from what it was read from before, wherever that is now: texts are taken from `inputs`, other
@@ -319,7 +357,7 @@ pub fn read_again(inputs: &Inputs, places: BTreeMap<PathBuf, PathBuf>) -> Result
         files: places,
     };
     let source = Source { name: first.name, folder: first.folder, text: first.text };
-    read(library, &inputs.settings, |includer| Some(includer.read_text(source)))
+    read(library, &inputs.settings, |includer| Some(includer.read_text(source)), |_| ())
 }
 
 /// What a text says, with what it includes, checked key by key; nothing is built. For editors and for asking a scene
@@ -354,11 +392,15 @@ fn read(
     library: Library,
     overrides: &[String],
     load: impl FnOnce(&mut Includer) -> Option<Table>,
+    change: impl FnOnce(&mut Spec),
 ) -> Result<Scene, Diagnostics> {
     let (mut sources, log) = (Sources::with_library(library), Log::default());
     let document = load(&mut Includer::new(&mut sources, &log));
     let spec = document.and_then(|document| specify(document, overrides, &mut sources, &log));
-    let scene = spec.and_then(|spec| compile(&spec, &sources, &log));
+    let scene = spec.and_then(|mut spec| {
+        change(&mut spec);
+        compile(&spec, &sources, &log)
+    });
     match scene {
         Some(scene) if log.is_empty() => Ok(Scene { inputs: sources.into_inputs(overrides), ..scene }),
         _ => Err(log.into_diagnostics(&sources)),

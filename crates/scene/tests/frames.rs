@@ -349,3 +349,93 @@ fn the_reference_factor_serves_points() {
     let off = apart(&direct, &turned);
     assert!(off < 1e-7 && most < 40, "{off} m, {most} iterations");
 }
+
+fn refusal(name: &str, overrides: &[&str]) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+    let text = std::fs::read_to_string(folder.join("scene.toml")).expect("the scene");
+    let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
+    read_text(name, &text, &folder, &overrides).map(|_| ()).expect_err("a scene that cannot be").to_string()
+}
+
+/// What bodies of frames cannot be is said in words, with what to change.
+#[test]
+fn faults_of_frames_are_said_with_what_to_change() {
+    let frames = |setting: &str| refusal("ligament", &[&format!("bodies.ligament.frames.{setting}")]);
+    let told = |said: &str, words: &[&str]| {
+        for word in words {
+            assert!(said.contains(word), "{said}");
+        }
+    };
+    // points outside every support
+    let apart = "placement={ name = \"given\", at = [0.02, 0.005, 0.005, 0.03, 0.005, 0.005] }";
+    told(&frames(apart), &["no frame reaches", "reaches 2.000e-2 m", "take more frames, or a wider support"]);
+    // frames on top of each other
+    let twice = "placement={ name = \"given\", at = [0.02, 0.005, 0.005, 0.02, 0.005, 0.005] }";
+    told(&frames(twice), &["frames 0 and 1 are on top of each other", "take fewer frames or move one"]);
+    // nothing to turn: one point for the whole shape, which is thinner than the voxels
+    let voxels = |size: &str| format!("points={{ name = \"voxels\", size = \"{size}\" }}");
+    told(
+        &frames(&voxels("20 cm")),
+        &["reaches no integration point", "take more points, fewer frames, or a wider support"],
+    );
+    let thin = [
+        "bodies.ligament.frames.kind=\"rigid\"".to_owned(),
+        format!("bodies.ligament.frames.{}", voxels("11 mm")),
+    ];
+    let thin: Vec<&str> = thin.iter().map(String::as_str).collect();
+    told(&refusal("ligament", &thin), &["lies on a line", "take more integration points there"]);
+    // weights that do not reach: a part of the shape that no frame is in
+    let far = refusal("fork", &["bodies.fork.frames.placement.at=[0.39, 0.05, 0, 0.3, 0.05, 0]"]);
+    told(&far, &["no frame reaches", "wider support"]);
+    // bones that are not there, frames that are not, and two for one
+    let bound = |bones: &str| refusal("frames_led", &[&format!("bodies.bar.frames.bones={bones}")]);
+    told(&bound("[{ bone = \"hnad\", frames = [0] }]"), &["no bone `hnad`", "did you mean `hand`?"]);
+    told(&bound("[{ bone = \"hand\", frames = [12] }]"), &["no frame 12", "0 to 11"]);
+    told(&bound("[{ bone = \"hand\", frames = [1, 1] }]"), &["frame 1 follows `hand` already"]);
+    told(&refusal("frames_led", &["bones.hand.follows=\"hand\""]), &["`hand` follows itself"]);
+}
+
+/// Tissue that has no room is refused in words.
+#[test]
+fn tissue_without_room_is_refused() {
+    let pad = |setting: &str| refusal("tissues", &[setting]);
+    let thin = pad("bodies.pad.mesh.thickness=\"1 cm\"");
+    assert!(
+        thin.contains("the narrowest gap is 2.000e-2 m") && thin.contains("a greater `thickness`"),
+        "{thin}"
+    );
+    let itself = pad("bodies.pad.mesh.to=\"lower\"");
+    assert!(itself.contains("to itself"), "{itself}");
+    let knot = refusal("tissues", &["bodies.pad.mesh.from=\"sheet\"", "bodies.sheet.mesh.from=\"pad\""]);
+    assert!(knot.contains("waits for it"), "{knot}");
+    let line = pad("bodies.sheet.mesh.from_region={ nearest = [0.1, 0.04, 0.05] }");
+    assert!(line.contains("has no width there"), "{line}");
+}
+
+/// Frames on a bone are where it takes them at the end of every step, rigid or affine, by any stepper that takes frames, and so
+/// are all points that they carry.
+#[test]
+fn bound_frames_are_where_their_bone_is() {
+    for kind in ["rigid", "affine"] {
+        for stepper in
+            ["{ name = \"backward_euler\", newton = \"one\" }", "\"backward_euler\"", "\"rk4\"", "\"static\""]
+        {
+            let kind = format!("bodies.bar.frames.kind=\"{kind}\"");
+            let stepper = format!("systems.main.stepper={stepper}");
+            let mut world = world("frames_led", &[&kind, &stepper]);
+            steps(&mut world, 30).unwrap_or_else(|error| panic!("{stepper}: {error}"));
+            // as the scene says it, at 0.3 s
+            let (t, pi) = (0.3, std::f64::consts::PI);
+            let pivot = Vec3::new(0.25, 0.05, 0.05);
+            let turn = souple_math::exponential(Vec3::new(4.0 * pi * t, pi * t, 0.0));
+            let offset = Vec3::new(0.5 * t, 0.2 * (2.0 * pi * t).sin(), 0.0);
+            let rest = scene("frames_led", &[]).bodies[0].mesh.points.clone();
+            let rows = scene("frames_led", &[&kind]).bodies[0].rows.clone();
+            let now = &world.rows(0).positions[rows];
+            let expected = |x: &Vec3| pivot + offset + turn * (*x - pivot);
+            let off = now.iter().zip(&rest).map(|(now, x)| (*now - expected(x)).length()).fold(0.0, f64::max);
+            // rounding over thirty steps
+            assert!(off < 1e-12, "{kind} {stepper}: {off}");
+        }
+    }
+}

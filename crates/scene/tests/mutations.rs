@@ -85,7 +85,9 @@ fn is_tiny(spec: &Spec) -> bool {
             Some(Value::Integer(cells)) => (cells as f64).powi(3),
             _ => f64::INFINITY,
         },
-        MeshSpec::File { .. } | MeshSpec::Shape { .. } | MeshSpec::Filled { .. } => f64::INFINITY,
+        MeshSpec::File { .. } | MeshSpec::Shape { .. } | MeshSpec::Filled { .. } | MeshSpec::Tissue(_) => {
+            f64::INFINITY
+        }
     };
     // skins are stepped by a test of their own
     if !spec.skins.is_empty() {

@@ -8,6 +8,7 @@ mod contact;
 mod filling;
 mod formulations;
 mod frames;
+mod frames_table;
 mod hands;
 mod laws;
 mod levels;
@@ -26,6 +27,8 @@ use serde_json::{Value, json};
 use souple_run::{Control, Options};
 use souple_scene::Scene;
 use souple_table::counted;
+
+pub(crate) use timing::{Clock, with_threads};
 
 /// One benchmark.
 #[derive(Clone, Copy)]
@@ -135,6 +138,11 @@ pub const BENCHES: &[Bench] = &[
         name: "frames_50_1k",
         what: "52 rigid frames and 1,024 points, neo-Hookean, one linearised backward Euler step [steps/s]",
         run: |effort| frames::steps("frames_50_1k", frames::SMALL, effort),
+    },
+    Bench {
+        name: "frames_errors",
+        what: "the reference bar by every kind of frames and weights: error of the tip, and of the first frequency of torsion beside it [%]",
+        run: |effort| frames_table::errors("frames_errors", effort),
     },
     Bench {
         name: "frames_500_50k",

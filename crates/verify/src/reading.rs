@@ -5,6 +5,7 @@ use std::path::Path;
 use souple_run::{Control, Options, Status, Trace};
 use souple_scene::Scene;
 
+use crate::bench::{Clock, with_threads};
 use crate::derivation::{self, Count};
 use crate::row::Problem;
 use crate::scenes;
@@ -18,6 +19,12 @@ pub enum Reading {
     NaturalFrequency(usize),
     /// The highest angular frequency [rad/s] of the first system, as `souple check --json` forecasts it.
     HighestFrequency,
+    /// The condition of the moments that moving least squares over the places of a body's frames would invert, as
+    /// `souple check --json` forecasts it.
+    MomentCondition(&'static str),
+    /// What a step and its probes take of one processor [ms]: `wall_seconds` over `steps` of `report.json` where nothing else works
+    /// on the machine.
+    StepMilliseconds,
     /// A count of a derivation; there is no scene, and settings are arguments of `souple derive`.
     Derived(Count),
 }
@@ -83,6 +90,8 @@ impl Reading {
             Self::Probe(observation) => observation.probe.to_owned(),
             Self::NaturalFrequency(number) => format!("natural frequency {number}"),
             Self::HighestFrequency => "highest frequency".to_owned(),
+            Self::MomentCondition(body) => format!("moment_condition of {body}"),
+            Self::StepMilliseconds => "wall_seconds / steps".to_owned(),
             Self::Derived(count) => format!("{count:?}").to_lowercase(),
         }
     }
@@ -94,7 +103,8 @@ impl Reading {
                 ("run", steps.map(|steps| format!(" --steps {steps}")).unwrap_or_default())
             }
             Self::NaturalFrequency(number) => ("modes", format!(" --count {number}")),
-            Self::HighestFrequency => ("check", " --json".to_owned()),
+            Self::HighestFrequency | Self::MomentCondition(_) => ("check", " --json".to_owned()),
+            Self::StepMilliseconds => ("run", " --threads 1 --json".to_owned()),
             Self::Derived(_) => return derivation::command(settings),
         };
         let settings: String = settings.iter().map(|setting| format!(" --set '{setting}'")).collect();
@@ -121,12 +131,24 @@ impl Reading {
                 Ok((*hertz.ok_or("the scene has no such frequency")?, "Hz"))
             }
             Self::Derived(_) => unreachable!("counted above"),
-            Self::HighestFrequency => {
-                let mut world = scene.model.start(scene.state);
-                let forecast = world.with_system(0, |system, state, around, ws| {
-                    souple_engine::stability::forecast(system, state, around, ws)
-                });
-                Ok((forecast.highest_frequency, "rad/s"))
+            Self::MomentCondition(name) => {
+                let body = scene.bodies.iter().find(|body| body.name == *name);
+                let frames = body.and_then(|body| body.frames.as_ref());
+                Ok((frames.ok_or("the scene has no such body of frames")?.report.moment_condition, ""))
+            }
+            Self::StepMilliseconds => {
+                let options = Options { scene_name: name.to_owned(), ..Options::default() };
+                let run = || {
+                    let clock = Clock::start();
+                    let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue);
+                    (outcome, clock.seconds())
+                };
+                let (outcome, seconds) = with_threads(1, run)?;
+                let report = outcome.map_err(|error| error.to_string())?.report;
+                if report.status != Status::Done {
+                    return Err(Problem { message: report.warnings.join("; "), has_run: true });
+                }
+                Ok((1e3 * seconds / report.steps as f64, "ms"))
             }
         }
     }

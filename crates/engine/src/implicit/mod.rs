@@ -196,9 +196,8 @@ impl ImplicitStep<'_> {
     /// which a formula of two steps would follow late, or swing about.
     pub fn lead_constrained(&self, timestep: f64, buffers: &mut ImplicitBuffers) {
         for constraint in &self.system.constraints {
-            let Some(row) = self.system.kinematics.point_block_row(constraint.block) else { continue };
             let (block, constrained) = (constraint.block as usize, constraint.constrained());
-            let d = constraint.position(self.end, self.around.load) - buffers.q_start[row as usize];
+            let d = self.system.to_go(constraint, &buffers.q_start, self.end, self.around.load);
             let velocity = constraint.velocity(self.end);
             let acceleration = constraint.mean_acceleration(self.end, timestep);
             let offset = &mut buffers.velocity_offset[block];
@@ -221,16 +220,37 @@ impl ImplicitStep<'_> {
 
     /// Row velocities from which acceleration counts.
     fn place_coasting(&self, buffers: &mut ImplicitBuffers) {
-        let ImplicitBuffers { q_start, coasting, coasting_rows, .. } = buffers;
+        let ImplicitBuffers { q_start, coasting, coasting_rows, operator, .. } = buffers;
         if !coasting_rows.is_empty() {
-            self.system.kinematics.velocities_into(q_start, coasting, coasting_rows);
+            // rows with a mass are among those at work
+            match operator.rows_at_work(self.system) {
+                Some(derived) => {
+                    let kinematics = &self.system.kinematics;
+                    kinematics.free_velocities_into(q_start, coasting, &mut coasting_rows[..q_start.len()]);
+                    kinematics.derive_some_rows(derived, coasting_rows);
+                }
+                None => self.system.kinematics.velocities_into(q_start, coasting, coasting_rows),
+            }
+        }
+    }
+
+    /// Rows at the trial, as far as forces look at them.
+    fn place_trial(&self, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) {
+        let ImplicitBuffers { q_trial, v_trial, operator, .. } = buffers;
+        match operator.rows_at_work(self.system) {
+            Some(derived) => {
+                let Rows { positions, velocities, time } = &mut ws.rows;
+                *time = self.end;
+                self.system.kinematics.some_rows_into(q_trial, v_trial, derived, positions, velocities);
+            }
+            None => self.system.place_rows(q_trial, v_trial, self.end, &mut ws.rows),
         }
     }
 
     /// `g = b M (ẋ - p) - f` over rows and `-Tᵀ g` without constrained components at `(q_trial, v_trial)`;
     /// returns the norm of the latter.
     fn evaluate(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) -> f64 {
-        self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        self.place_trial(ws, buffers);
         self.place_inertia(ws, buffers);
         self.add_forces(state, ws, buffers);
         self.contract(ws, buffers);
@@ -291,10 +311,8 @@ impl ImplicitStep<'_> {
     fn prescribed_into(&self, q: &[Vec3], prescribed: &mut [Vec3]) -> f64 {
         prescribed.fill(Vec3::ZERO);
         for constraint in &self.system.constraints {
-            if let Some(row) = self.system.kinematics.point_block_row(constraint.block) {
-                let to_go = constraint.position(self.end, self.around.load) - q[row as usize];
-                prescribed[constraint.block as usize] += constraint.constrained() * to_go;
-            }
+            let to_go = self.system.to_go(constraint, q, self.end, self.around.load);
+            prescribed[constraint.block as usize] += constraint.constrained() * to_go;
         }
         let to_go = norm(prescribed);
         if to_go <= 1e-14 * norm(q) { 0.0 } else { to_go }
@@ -520,7 +538,7 @@ impl ImplicitStep<'_> {
         if turns {
             self.place_inertia_where_turns_lead(ws, buffers);
         }
-        self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        self.place_trial(ws, buffers);
         if !turns {
             self.place_inertia(ws, buffers);
         }
@@ -581,7 +599,7 @@ impl ImplicitStep<'_> {
             buffers.q_trial = at;
             let ImplicitBuffers { q_trial, v_trial, q_start, velocity_offset, .. } = &mut *buffers;
             self.velocity_into(q_trial, q_start, velocity_offset, v_trial);
-            self.system.place_rows(q_trial, v_trial, self.end, &mut ws.rows);
+            self.place_trial(ws, buffers);
             self.merit(state, ws, buffers)
         };
         let start = place(0.0, ws, buffers);
@@ -654,7 +672,7 @@ impl ImplicitStep<'_> {
         let mut start = std::mem::take(&mut buffers.inertia_residual);
         start.clone_from(&buffers.q_trial);
         self.system.kinematics.retract(&mut buffers.q_trial, &buffers.turns);
-        self.system.place_rows(&buffers.q_trial, &buffers.v_trial, self.end, &mut ws.rows);
+        self.place_trial(ws, buffers);
         self.place_inertia(ws, buffers);
         self.contract(ws, buffers);
         buffers.q_trial.copy_from_slice(&start);

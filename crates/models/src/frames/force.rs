@@ -56,6 +56,8 @@ pub struct FramesForce {
     /// By law.
     chunks: Vec<Chunk>,
     law_of_chunk: Vec<usize>,
+    /// Runs of samples before each chunk, and all of them.
+    first_runs: Vec<usize>,
     pairs: Pairs,
     row_of_frame: Vec<u32>,
     materials: Vec<Material>,
@@ -65,9 +67,13 @@ pub struct FramesForce {
     tangent: TangentKind,
 }
 
-/// Sums of chunks, kept between calls.
+/// Sums of chunks, kept between calls, and deformation gradients: products about one configuration have them in common.
 #[derive(Default)]
 struct FramesScratch {
+    /// Rows of the frames that `deformation` is of.
+    placed: Vec<Vec3>,
+    /// Of each run of samples, as laws take it.
+    deformation: Vec<f64>,
     rows: Vec<Vec3>,
     pairs: Vec<f64>,
     slots: Slots,
@@ -126,6 +132,7 @@ impl FramesForce {
             laws: Vec::new(),
             chunks: Vec::new(),
             law_of_chunk: Vec::new(),
+            first_runs: vec![0],
             pairs: Pairs::new(&[]),
             row_of_frame: row_of_frame.to_vec(),
             materials: materials.to_vec(),
@@ -148,6 +155,8 @@ impl FramesForce {
             (chunk.first_frame, chunk.first_pair) = (first_frame, first_pair);
             first_frame += chunk.frames.len();
             first_pair += chunk.pairs.len();
+            let runs = force.first_runs.last().map_or(0, |first| first + chunk.block_count.div_ceil(ROWS));
+            force.first_runs.push(runs);
         }
         force.pairs = Pairs::new(&force.chunks);
         force
@@ -197,13 +206,15 @@ impl FramesForce {
         scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        let partials = &mut FramesScratch::of(scratch).rows;
+        let scratch = FramesScratch::of(scratch);
+        self.place(positions, scratch);
+        let FramesScratch { deformation, rows: partials, .. } = scratch;
         partials.resize(self.first_row(self.chunks.len()), Vec3::ZERO);
         let start_of = |chunk: usize| self.first_row(chunk);
         parallel::fill(0..self.chunks.len(), 2, partials, &start_of, &|number, partials| {
             MEMORY.with_borrow_mut(|memory| {
                 let work = Work { force: self, number, chunk: &self.chunks[number], memory };
-                work.spread(answer, [positions, delta], scale, partials);
+                work.spread(answer, (deformation, delta), scale, partials);
             });
         });
         for chunk in &self.chunks {
@@ -212,6 +223,39 @@ impl FramesForce {
                 out[row] += *partial;
             }
         }
+    }
+}
+
+/// Numbers that a run has of deformation gradients.
+const DEFORMATION_LEN: usize = MATRIX_LEN;
+
+impl FramesForce {
+    /// Where the deformation gradients of a chunk start.
+    fn first_deformation(&self, chunk: usize) -> usize {
+        self.first_runs[chunk] * DEFORMATION_LEN
+    }
+
+    /// Deformation gradients where frames stand, unless they stood there before.
+    fn place(&self, positions: &[Vec3], scratch: &mut FramesScratch) {
+        let FramesScratch { placed, deformation, .. } = scratch;
+        let rows = |first: &u32| {
+            let first = *first as usize;
+            &positions[first..first + ROWS_OF_FRAME]
+        };
+        let now = self.row_of_frame.iter().flat_map(rows);
+        if placed.len() == ROWS_OF_FRAME * self.row_of_frame.len() && now.clone().eq(placed.iter()) {
+            return;
+        }
+        placed.clear();
+        placed.extend(now);
+        deformation.resize(self.first_deformation(self.chunks.len()), 0.0);
+        let start_of = |chunk: usize| self.first_deformation(chunk);
+        parallel::fill(0..self.chunks.len(), 2, deformation, &start_of, &|number, deformation| {
+            MEMORY.with_borrow_mut(|memory| {
+                let work = Work { force: self, number, chunk: &self.chunks[number], memory };
+                work.place(positions, deformation);
+            });
+        });
     }
 }
 
@@ -245,12 +289,33 @@ impl Work<'_> {
         own.extend(self.chunk.maps_of(self.force.rows_of(self.chunk).map(|row| values[row])));
     }
 
-    fn spread(mut self, answer: Answer, [positions, delta]: [&[Vec3]; 2], scale: f64, partials: &mut [Vec3]) {
-        let varies = answer == Answer::Differential;
+    /// Deformation gradients of all samples.
+    fn place(mut self, positions: &[Vec3], deformation: &mut [f64]) {
         self.gather(0, positions);
+        let (chunk, own) = (self.chunk, &self.memory.own[0]);
+        for (run, out) in runs(chunk).zip(deformation.chunks_exact_mut(DEFORMATION_LEN)) {
+            Arch::new().dispatch(Gradients { chunk, run: &run, field: own, out, start: 0 });
+        }
+    }
+
+    /// The chunk's own part of the deformation gradients of all.
+    fn own_deformation<'d>(&self, deformation: &'d [f64]) -> std::slice::ChunksExact<'d, f64> {
+        let range = self.force.first_deformation(self.number)..self.force.first_deformation(self.number + 1);
+        deformation[range].chunks_exact(DEFORMATION_LEN)
+    }
+
+    fn spread(
+        mut self,
+        answer: Answer,
+        (deformation, delta): (&[f64], &[Vec3]),
+        scale: f64,
+        partials: &mut [Vec3],
+    ) {
+        let varies = answer == Answer::Differential;
         if varies {
             self.gather(1, delta);
         }
+        let deformation = self.own_deformation(deformation);
         let wants_material = varies && self.force.tangent == TangentKind::Material;
         let (law, chunk) = (self.force.law(self.number), self.chunk);
         let places = law.places(answer);
@@ -259,25 +324,22 @@ impl Work<'_> {
         law.prepare(answer, memory);
         sums.clear();
         sums.resize(chunk.frames.len() * MAP_LEN, LaneBlock::default());
-        for run in runs(chunk) {
+        for (run, deformation) in runs(chunk).zip(deformation) {
             let arch = Arch::new();
             if wants_material {
-                second_stress(law, chunk, &run, &own[0], stress);
+                second_stress(law, &run, deformation, stress);
             }
+            give(&run, deformation, &mut memory[places.deformation..]);
             if varies {
-                let fields = [&own[0][..], &own[1]];
-                let starts = [places.deformation, places.variation];
-                arch.dispatch(Gradients { chunk, run: &run, fields, out: &mut *memory, starts });
-            } else {
-                let starts = [places.deformation];
-                arch.dispatch(Gradients { chunk, run: &run, fields: [&own[0]], out: &mut *memory, starts });
+                let (field, start) = (&own[1][..], places.variation);
+                arch.dispatch(Gradients { chunk, run: &run, field, out: &mut *memory, start });
             }
             law.answer(answer, &run, memory);
             if wants_material {
                 // the law may have overwritten what it was given
                 let mut variation = [0.0; MATRIX_LEN];
                 let out = &mut variation;
-                arch.dispatch(Gradients { chunk, run: &run, fields: [&own[1]], out, starts: [0] });
+                arch.dispatch(Gradients { chunk, run: &run, field: &own[1], out, start: 0 });
                 let second: &[f64] = bytemuck::cast_slice(stress);
                 let result = &mut memory[places.result..];
                 tangents::subtract_from_differential(second, &variation, result, run.lane_count());
@@ -294,17 +356,15 @@ impl Work<'_> {
         }
     }
 
-    fn energy(mut self, positions: &[Vec3]) -> f64 {
-        self.gather(0, positions);
+    fn energy(self, deformation: &[f64]) -> f64 {
+        let deformation = self.own_deformation(deformation);
         let (law, chunk) = (self.force.law(self.number), self.chunk);
         let places = law.places(Answer::Energy);
-        let Memory { law: memory, own, .. } = &mut *self.memory;
-        let memory = lanes_of(memory, places.memory_len);
+        let memory = lanes_of(&mut self.memory.law, places.memory_len);
         law.prepare(Answer::Energy, memory);
         let mut sum = 0.0;
-        for run in runs(chunk) {
-            let (out, starts) = (&mut *memory, [places.deformation]);
-            Arch::new().dispatch(Gradients { chunk, run: &run, fields: [&own[0]], out, starts });
+        for (run, deformation) in runs(chunk).zip(deformation) {
+            give(&run, deformation, &mut memory[places.deformation..]);
             law.answer(Answer::Energy, &run, memory);
             for block in run.rows() {
                 let densities = &memory[places.result + run.lane_of(block)..];
@@ -319,24 +379,23 @@ impl Work<'_> {
         sum
     }
 
-    fn blocks(mut self, positions: &[Vec3], scale: f64, sums: &mut [f64]) {
-        self.gather(0, positions);
+    fn blocks(self, deformation: &[f64], scale: f64, sums: &mut [f64]) {
+        let deformation = self.own_deformation(deformation);
         let wants_material = self.force.tangent == TangentKind::Material;
         let (law, chunk) = (self.force.law(self.number), self.chunk);
         let places = law.places(Answer::Differential);
-        let Memory { law: memory, stress, tangents, rates, gradients, own, .. } = &mut *self.memory;
+        let Memory { law: memory, stress, tangents, rates, gradients, .. } = &mut *self.memory;
         let memory = lanes_of(memory, places.memory_len);
         law.prepare(Answer::Differential, memory);
         let tangents = lanes_of(tangents, TANGENT_LEN * BATCH);
         rates.resize(RATES_LEN, 0.0);
         sums.fill(0.0);
-        for run in runs(chunk) {
+        for (run, deformation) in runs(chunk).zip(deformation) {
             let arch = Arch::new();
             if wants_material {
-                second_stress(law, chunk, &run, &own[0], stress);
+                second_stress(law, &run, deformation, stress);
             }
-            let (out, starts) = (&mut *memory, [places.deformation]);
-            arch.dispatch(Gradients { chunk, run: &run, fields: [&own[0]], out, starts });
+            give(&run, deformation, &mut memory[places.deformation..]);
             law.tangents(&run, memory, tangents);
             if wants_material {
                 tangents::subtract_from_tangents(bytemuck::cast_slice(stress), tangents, run.lane_count());
@@ -346,26 +405,23 @@ impl Work<'_> {
     }
 }
 
+/// Gives a law the deformation gradients of a run, at the head of `memory`.
+fn give(run: &Run, deformation: &[f64], memory: &mut [f64]) {
+    let lanes = 0..run.lane_count();
+    for (own, given) in memory.chunks_exact_mut(BATCH).zip(deformation.chunks_exact(BATCH)) {
+        own[lanes.clone()].copy_from_slice(&given[lanes.clone()]);
+    }
+}
+
 /// Writes `S = F⁻¹ P` of a run to the head of `stress`.
-fn second_stress(
-    law: &dyn SampleLaw,
-    chunk: &Chunk,
-    run: &Run,
-    own: &[FrameMap],
-    stress: &mut Vec<LaneBlock>,
-) {
+fn second_stress(law: &dyn SampleLaw, run: &Run, deformation: &[f64], stress: &mut Vec<LaneBlock>) {
     let places = law.places(Answer::Stress);
     let memory = lanes_of(stress, places.memory_len.max(MATRIX_LEN));
     law.prepare(Answer::Stress, memory);
-    let mut deformation = [0.0; MATRIX_LEN];
-    Arch::new().dispatch(Gradients { chunk, run, fields: [own], out: &mut deformation, starts: [0] });
-    for entry in 0..9 {
-        let lanes = entry * BATCH..entry * BATCH + run.lane_count();
-        memory[places.deformation..][lanes.clone()].copy_from_slice(&deformation[lanes]);
-    }
+    give(run, deformation, &mut memory[places.deformation..]);
     law.answer(Answer::Stress, run, memory);
     memory.copy_within(places.result..places.result + MATRIX_LEN, 0);
-    tangents::second_stress(&deformation, memory, run.lane_count());
+    tangents::second_stress(deformation, memory, run.lane_count());
 }
 
 impl Force for FramesForce {
@@ -383,10 +439,13 @@ impl Force for FramesForce {
         Box::new(FramesScratch::default())
     }
 
-    fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
+    fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
+        let scratch = FramesScratch::of(scratch);
+        self.place(at.positions, scratch);
+        let deformation = &scratch.deformation;
         let stored = parallel::sum(0..self.chunks.len(), &|number| {
             MEMORY.with_borrow_mut(|memory| {
-                Work { force: self, number, chunk: &self.chunks[number], memory }.energy(at.positions)
+                Work { force: self, number, chunk: &self.chunks[number], memory }.energy(deformation)
             })
         });
         Energy { stored, dissipated: 0.0 }
@@ -423,6 +482,10 @@ impl Force for FramesForce {
         }
     }
 
+    fn reads_cliques_alone(&self) -> bool {
+        true
+    }
+
     fn add_blocks(
         &self,
         at: &Configuration,
@@ -433,13 +496,15 @@ impl Force for FramesForce {
         if weights.position == 0.0 {
             return;
         }
-        let FramesScratch { pairs: sums, slots, .. } = FramesScratch::of(scratch);
+        let scratch = FramesScratch::of(scratch);
+        self.place(at.positions, scratch);
+        let FramesScratch { deformation, pairs: sums, slots, .. } = scratch;
         sums.resize(self.first_pair(self.chunks.len()), 0.0);
         let start_of = |chunk: usize| self.first_pair(chunk);
         parallel::fill(0..self.chunks.len(), 2, sums, &start_of, &|number, sums| {
             MEMORY.with_borrow_mut(|memory| {
                 let work = Work { force: self, number, chunk: &self.chunks[number], memory };
-                work.blocks(at.positions, -weights.position, sums);
+                work.blocks(deformation, -weights.position, sums);
             });
         });
         slots.gather(&self.pairs, &self.row_of_frame, sums, matrix);
@@ -463,6 +528,7 @@ impl Force for FramesForce {
         self.chunks.iter().map(|chunk| size_of::<Chunk>() + chunk.bytes()).sum::<usize>()
             + self.pairs.bytes()
             + 4 * self.row_of_frame.capacity()
+            + 8 * self.first_runs.capacity()
             + carried
                 .map(|c| 4 * c.frames.capacity() + size_of::<[(f64, Vec3); 4]>() * c.rows.capacity())
                 .sum::<usize>()
@@ -471,8 +537,11 @@ impl Force for FramesForce {
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
-        scratch.downcast_ref::<FramesScratch>().map_or(0, |FramesScratch { rows, pairs, slots }| {
-            24 * rows.capacity() + 8 * pairs.capacity() + slots.bytes()
+        scratch.downcast_ref::<FramesScratch>().map_or(0, |scratch| {
+            let FramesScratch { placed, deformation, rows, pairs, slots } = scratch;
+            24 * (placed.capacity() + rows.capacity())
+                + 8 * (deformation.capacity() + pairs.capacity())
+                + slots.bytes()
         })
     }
 

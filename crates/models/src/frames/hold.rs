@@ -103,6 +103,10 @@ impl Force for Hold {
         self.points.iter().for_each(|point| visit(&[point.row]));
     }
 
+    fn reads_cliques_alone(&self) -> bool {
+        true
+    }
+
     fn add_blocks(
         &self,
         _: &Configuration,

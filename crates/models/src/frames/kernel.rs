@@ -25,46 +25,39 @@ pub const PAIR_LEN: usize = LINES * LINE;
 /// Numbers of the rates of a frame at eight samples: `[sample][J][i]` lines.
 pub const RATES_LEN: usize = LANES * 9 * LINE;
 
-/// Writes `Σ (o + B P) ⊗ ∇w + w B` of every sample of a run, for `N` fields at once: maps `P -> o + B P` of the chunk's own frames.
-pub struct Gradients<'a, const N: usize> {
+/// Writes `Σ (o + B P) ⊗ ∇w + w B` of every sample of a run, of maps `P -> o + B P` of the chunk's own frames.
+pub struct Gradients<'a> {
     pub chunk: &'a Chunk,
     pub run: &'a Run<'a>,
-    pub fields: [&'a [FrameMap]; N],
-    /// All in one memory; where each field's starts.
+    pub field: &'a [FrameMap],
     pub out: &'a mut [f64],
-    pub starts: [usize; N],
+    pub start: usize,
 }
 
-impl<const N: usize> WithSimd for Gradients<'_, N> {
+impl WithSimd for Gradients<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { chunk, run, fields, out, starts } = self;
+        let Self { chunk, run, field, out, start } = self;
         for block in run.rows() {
             let mut lane = 0;
             while lane < LANES {
                 let P = load_vector(simd, chunk.points(block), lane);
-                let mut gradients = [Mat3::zero(Lanes::constant(simd, 0.0)); N];
+                let mut F = Mat3::zero(Lanes::constant(simd, 0.0));
                 for member in chunk.members(block) {
                     let share = chunk.share(member);
                     let weight = Lanes::load(simd, &share[0].0[lane..]);
                     let slope = load_vector(simd, &share[1..], lane);
-                    for field in 0..N {
-                        let map = &fields[field][chunk.members[member] as usize];
-                        let (at, turn) = carried(simd, map, P);
-                        let F = &mut gradients[field];
-                        accumulate(&mut F.columns[0], at, slope.x);
-                        accumulate(&mut F.columns[1], at, slope.y);
-                        accumulate(&mut F.columns[2], at, slope.z);
-                        for J in 0..3 {
-                            accumulate(&mut F.columns[J], turn.columns[J], weight);
-                        }
+                    let (at, turn) = carried(simd, &field[chunk.members[member] as usize], P);
+                    accumulate(&mut F.columns[0], at, slope.x);
+                    accumulate(&mut F.columns[1], at, slope.y);
+                    accumulate(&mut F.columns[2], at, slope.z);
+                    for J in 0..3 {
+                        accumulate(&mut F.columns[J], turn.columns[J], weight);
                     }
                 }
-                for field in 0..N {
-                    store_matrix(&gradients[field], &mut out[starts[field] + run.lane_of(block) + lane..]);
-                }
+                store_matrix(&F, &mut out[start + run.lane_of(block) + lane..]);
                 lane += S::F64_LANES;
             }
         }

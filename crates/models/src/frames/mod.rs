@@ -10,6 +10,7 @@
 //! Frames may lie on a line or in a plane: each carries a rotation, so that nothing is singular there.
 
 mod force;
+mod geodesic;
 mod harmonic;
 mod hold;
 mod kernel;
@@ -18,6 +19,7 @@ mod mass;
 mod matrix;
 mod placement;
 mod points;
+mod report;
 mod tangents;
 mod weights;
 
@@ -28,6 +30,7 @@ pub use hold::{HeldPoint, Hold, layer_stiffness};
 pub use mass::{check_inertia, consistent_mass, lumped_mass};
 pub use placement::{BuildPlacement, Matter, PLACEMENTS};
 pub use points::{BuildPoints, POINTS, Sample};
+pub use report::FramesReport;
 pub use weights::{BuildWeights, Shape, Share, WEIGHTS, Weights, spacings};
 
 /// A frame at rest.
@@ -79,8 +82,8 @@ pub enum FrameError {
         "{frames} frames are more than the {points} integration points they are placed among; take fewer frames, or more points"
     )]
     MoreThanPoints { frames: usize, points: usize },
-    #[error("`at` holds {count} numbers; each frame takes three")]
-    NoTriples { count: usize },
+    #[error("`{key}` holds {count} numbers; each frame takes three")]
+    NoTriples { key: &'static str, count: usize },
     #[error("`counts` holds {count}; each is a whole number from 1 to 1000")]
     NoGrid { count: f64 },
     #[error("there are no frames; place at least one")]

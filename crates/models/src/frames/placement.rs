@@ -21,6 +21,14 @@ pub type BuildPlacement = fn(&Values, &Matter) -> Result<Vec<Frame>, FrameError>
 
 const COUNT: Parameter = Parameter::integer("count", Range::closed(1.0, 100_000.0), "frames");
 
+const KEPT: Parameter = Parameter::numbers(
+    "kept",
+    "m",
+    Range::ANY,
+    "frames that stand where they are put, at the ends of bones or of what is held: x, y, z of one after the other; they come first, and count",
+)
+.or(Value::Numbers(&[]));
+
 /// All placements.
 pub static PLACEMENTS: Table<BuildPlacement> = Table {
     kind: "placement",
@@ -29,10 +37,10 @@ pub static PLACEMENTS: Table<BuildPlacement> = Table {
             name: "farthest_point",
             summary: "one after the other as far as can be from those before: ends and corners first",
             source: "Gonzalez 1985",
-            parameters: &[COUNT],
+            parameters: &[COUNT, KEPT],
             build: |values, matter| {
-                let origins = farthest_points(matter.samples, count(values, matter)?);
-                Ok(upright(origins))
+                let kept = places(values.numbers("kept"), "kept")?;
+                Ok(upright(farthest_points(matter.samples, count(values, matter)?, kept)))
             },
         },
         &Entry {
@@ -49,9 +57,12 @@ pub static PLACEMENTS: Table<BuildPlacement> = Table {
                     "what the middle is of: matter, or matter over its stiffness, which puts more frames into soft parts",
                 )
                 .or(Value::Text("volume")),
+                KEPT,
             ],
             build: |values, matter| {
-                let mut origins = farthest_points(matter.samples, count(values, matter)?);
+                let kept = places(values.numbers("kept"), "kept")?;
+                let still = kept.len();
+                let mut origins = farthest_points(matter.samples, count(values, matter)?, kept);
                 let by_compliance = values.text("by") == "compliance";
                 let softest = matter.stiffness.iter().copied().fold(f64::INFINITY, f64::min);
                 let masses: Vec<f64> = matter
@@ -61,7 +72,7 @@ pub static PLACEMENTS: Table<BuildPlacement> = Table {
                     .map(|(s, stiffness)| if by_compliance { s.volume * softest / stiffness } else { s.volume })
                     .collect();
                 for _ in 0..values.integer("iterations") {
-                    move_to_middles(matter.samples, &masses, &mut origins);
+                    move_to_middles(matter.samples, &masses, &mut origins, still);
                 }
                 Ok(upright(origins))
             },
@@ -99,13 +110,7 @@ pub static PLACEMENTS: Table<BuildPlacement> = Table {
                 Range::ANY,
                 "x, y, z of one frame after the other, such as [0, 0, 0, 0.1, 0, 0] for two",
             )],
-            build: |values, _| {
-                let numbers = values.numbers("at");
-                if !numbers.len().is_multiple_of(3) {
-                    return Err(FrameError::NoTriples { count: numbers.len() });
-                }
-                Ok(upright(numbers.chunks(3).map(|at| Vec3::new(at[0], at[1], at[2])).collect()))
-            },
+            build: |values, _| Ok(upright(places(values.numbers("at"), "at")?)),
         },
     ],
 };
@@ -114,18 +119,29 @@ fn upright(origins: Vec<Vec3>) -> Vec<Frame> {
     origins.into_iter().map(|origin| Frame { origin, axes: Mat3::IDENTITY }).collect()
 }
 
+/// Places of which the coordinates are listed.
+fn places(numbers: &[f64], key: &'static str) -> Result<Vec<Vec3>, FrameError> {
+    if !numbers.len().is_multiple_of(3) {
+        return Err(FrameError::NoTriples { key, count: numbers.len() });
+    }
+    Ok(numbers.chunks(3).map(|at| Vec3::new(at[0], at[1], at[2])).collect())
+}
+
 fn count(values: &Values, matter: &Matter) -> Result<usize, FrameError> {
     let (frames, points) = (values.integer("count") as usize, matter.samples.len());
     if frames > points { Err(FrameError::MoreThanPoints { frames, points }) } else { Ok(frames) }
 }
 
-/// The first is the farthest from the middle; of several as far, the first in the list.
-fn farthest_points(samples: &[Sample], count: usize) -> Vec<Vec3> {
+/// Where none is `kept`, the first is the farthest from the middle; of several as far, the first in the list.
+fn farthest_points(samples: &[Sample], count: usize, kept: Vec<Vec3>) -> Vec<Vec3> {
     let volume: f64 = samples.iter().map(|sample| sample.volume).sum();
     let middle = samples.iter().map(|sample| sample.position * sample.volume).sum::<Vec3>() / volume;
-    let mut distances: Vec<f64> =
-        samples.iter().map(|sample| (sample.position - middle).length_sq()).collect();
-    let mut origins = Vec::with_capacity(count);
+    let to_nearest = |sample: &Sample| {
+        let distances = kept.iter().map(|origin| (sample.position - *origin).length_sq());
+        distances.reduce(f64::min).unwrap_or_else(|| (sample.position - middle).length_sq())
+    };
+    let mut distances: Vec<f64> = samples.iter().map(to_nearest).collect();
+    let mut origins = kept;
     while origins.len() < count {
         let mut farthest = 0;
         for (index, distance) in distances.iter().enumerate() {
@@ -144,8 +160,8 @@ fn farthest_points(samples: &[Sample], count: usize) -> Vec<Vec3> {
     origins
 }
 
-/// Moves each origin to the middle of the masses that are nearest to it.
-fn move_to_middles(samples: &[Sample], masses: &[f64], origins: &mut [Vec3]) {
+/// Moves each origin, but the first ones that stand `still`, to the middle of the masses that are nearest to it.
+fn move_to_middles(samples: &[Sample], masses: &[f64], origins: &mut [Vec3], still: usize) {
     let mut sums = vec![(0.0, Vec3::ZERO); origins.len()];
     for (sample, mass) in samples.iter().zip(masses) {
         let distance = |index: &usize| (origins[*index] - sample.position).length_sq();
@@ -153,7 +169,7 @@ fn move_to_middles(samples: &[Sample], masses: &[f64], origins: &mut [Vec3]) {
         sums[nearest].0 += mass;
         sums[nearest].1 += sample.position * *mass;
     }
-    for (origin, (mass, moment)) in origins.iter_mut().zip(sums) {
+    for (origin, (mass, moment)) in origins.iter_mut().zip(sums).skip(still) {
         if mass > 0.0 {
             *origin = moment / mass;
         }

@@ -7,8 +7,8 @@ use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_table::{Entry, Parameter, Range, Table, Value, Values};
 
-use super::harmonic;
 use super::{Frame, FrameError};
+use super::{geodesic, harmonic};
 
 /// The part of a frame in the position of a material point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Shape<'a> {
 /// Makes the weights of completed values.
 pub type BuildWeights = for<'a> fn(&Values, &Shape<'a>) -> Result<Box<dyn Weights + 'a>, FrameError>;
 
-const SUPPORT: Parameter = Parameter::number(
+pub(super) const SUPPORT: Parameter = Parameter::number(
     "support",
     "",
     Range::closed(1.0, 100.0),
@@ -72,6 +72,13 @@ pub static WEIGHTS: Table<BuildWeights> = Table {
             build: |_, shape| Ok(Shepard::boxed(Kernel::InverseDistance, 1.0, shape)),
         },
         &Entry {
+            name: "geodesic",
+            summary: "`wendland` by the way within the shape, shorter through what is stiff: keeps the sides of a slit apart, moves what is stiff as one, and bends as well",
+            source: "own; Dijkstra 1959; Daniel et al. 2010; distances as of compliance after Faure et al. 2011",
+            parameters: geodesic::PARAMETERS,
+            build: |values, shape| geodesic::build(values, shape),
+        },
+        &Entry {
             name: "harmonic",
             summary: "solved on the shape's own cells: keeps the sides of a slit apart, moves what is stiff as one",
             source: "Joshi et al. 2007; Faure et al. 2011",
@@ -83,7 +90,7 @@ pub static WEIGHTS: Table<BuildWeights> = Table {
 
 /// `φ(u)` of a distance in supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kernel {
+pub(super) enum Kernel {
     Wendland,
     Gaussian,
     InverseDistance,
@@ -96,7 +103,7 @@ const GAUSSIAN_END: f64 = 2.0;
 
 impl Kernel {
     /// `φ` and `φ'(u)/u`, which has a limit at zero; `None` beyond its end.
-    fn at(self, u: f64) -> Option<(f64, f64)> {
+    pub fn at(self, u: f64) -> Option<(f64, f64)> {
         match self {
             Self::Wendland => {
                 let rest = 1.0 - u;

@@ -33,6 +33,18 @@ pub struct Attachments {
     stiffness: f64,
     /// Per link [N s/m].
     damping: f64,
+    /// Pull under which a link tears for good [N]; infinite where none does.
+    strength: f64,
+}
+
+/// How attachments stand.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slip {
+    pub links: usize,
+    /// Links that have torn.
+    pub torn: usize,
+    /// The greatest way between what a whole link holds together, beyond its rest length [m].
+    pub greatest: f64,
 }
 
 impl Attachments {
@@ -52,7 +64,47 @@ impl Attachments {
         }
         not_negative("stiffness", stiffness)?;
         not_negative("damping", damping)?;
-        Ok(Self { name: name.into(), links, stiffness, damping })
+        Ok(Self { name: name.into(), links, stiffness, damping, strength: f64::INFINITY })
+    }
+
+    /// Links that tear, each for good, once a step has ended with a pull above `strength` [N].
+    ///
+    /// # Errors
+    /// A strength that is not a number above zero.
+    pub fn with_strength(self, strength: f64) -> Result<Self, LoadError> {
+        if strength > 0.0 {
+            return Ok(Self { strength, ..self });
+        }
+        Err(LoadError::Unfit { field: "strength".to_owned(), value: strength, expected: "a number above 0" })
+    }
+
+    fn can_tear(&self) -> bool {
+        self.strength.is_finite()
+    }
+
+    /// Whether a link has torn, by the force's memory.
+    pub fn is_torn(&self, link: usize, memory: &[f64]) -> bool {
+        self.can_tear() && memory.get(1 + link).is_some_and(|torn| *torn > 0.0)
+    }
+
+    /// Links that hold.
+    fn whole<'a>(&'a self, memory: &'a [f64]) -> impl Iterator<Item = &'a Link> {
+        self.links.iter().enumerate().filter(|(index, _)| !self.is_torn(*index, memory)).map(|(_, link)| link)
+    }
+
+    /// How far the ends of a link are from where it would have them [m]; zero once it has torn.
+    pub fn slip_of(&self, link: usize, at: &Configuration) -> f64 {
+        if self.is_torn(link, at.memory) { 0.0 } else { stretch(&self.links[link], at).abs() }
+    }
+
+    /// How all links stand.
+    pub fn slip(&self, at: &Configuration) -> Slip {
+        let all = 0..self.links.len();
+        Slip {
+            links: self.links.len(),
+            torn: all.clone().filter(|link| self.is_torn(*link, at.memory)).count(),
+            greatest: all.map(|link| self.slip_of(link, at)).fold(0.0, f64::max),
+        }
     }
 
     pub fn links(&self) -> &[Link] {
@@ -92,6 +144,11 @@ impl Attachments {
     }
 }
 
+/// `l - L` [m].
+fn stretch(link: &Link, at: &Configuration) -> f64 {
+    Stretch::of(link, at).d.length() - link.rest_length
+}
+
 /// How a link stands: `d`, `ḋ`, and `n` where there is one.
 struct Stretch {
     d: Vec3,
@@ -127,7 +184,7 @@ impl Force for Attachments {
         let whole = |point: &Combination| (point.total_weight() - 1.0).abs() < 1e-12;
         let internal = !across && self.links.iter().all(|link| whole(&link.a) && whole(&link.b));
         Declaration {
-            conservative: !damped,
+            conservative: !damped && !self.can_tear(),
             velocity_terms: damped,
             symmetric_tangent: !self.turns_with_damping(),
             internal,
@@ -135,24 +192,24 @@ impl Force for Attachments {
         }
     }
 
+    // an account of heat, then 1 for each link that has torn
     fn memory_len(&self) -> usize {
-        1
+        if self.can_tear() { 1 + self.links.len() } else { 1 }
     }
 
-    // it is an account of heat
     fn tangent_reads_memory(&self) -> bool {
-        false
+        self.can_tear()
     }
 
     // E = Σ k/2 (l - L)²
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let stretch = |link: &Link| (Stretch::of(link, at).d.length() - link.rest_length).powi(2);
-        let stored = 0.5 * self.stiffness * self.links.iter().map(stretch).sum::<f64>();
+        let stretches = self.whole(at.memory).map(|link| stretch(link, at).powi(2));
+        let stored = 0.5 * self.stiffness * stretches.sum::<f64>();
         Energy { stored, dissipated: at.memory[0] }
     }
 
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
-        for link in &self.links {
+        for link in self.whole(at.memory) {
             let pull = self.pull(link, at);
             link.a.spread(pull, out);
             link.b.spread(-pull, out);
@@ -167,7 +224,7 @@ impl Force for Attachments {
         _scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        for link in &self.links {
+        for link in self.whole(at.memory) {
             let change = self.tangent(link, at, weights) * (link.a.of(delta) - link.b.of(delta));
             link.a.spread(change, out);
             link.b.spread(-change, out);
@@ -185,6 +242,10 @@ impl Force for Attachments {
         }
     }
 
+    fn reads_cliques_alone(&self) -> bool {
+        true
+    }
+
     fn add_blocks(
         &self,
         at: &Configuration,
@@ -192,7 +253,7 @@ impl Force for Attachments {
         _: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        self.links.iter().for_each(|link| add_link(link, self.tangent(link, at, weights), matrix));
+        self.whole(at.memory).for_each(|link| add_link(link, self.tangent(link, at, weights), matrix));
     }
 
     fn add_symmetric_blocks(
@@ -204,7 +265,7 @@ impl Force for Attachments {
     ) {
         // both ends have one block, so its symmetric part is that of the whole
         let of = |link: &Link| self.tangent(link, at, weights).symmetric_part();
-        self.links.iter().for_each(|link| add_link(link, of(link), matrix));
+        self.whole(at.memory).for_each(|link| add_link(link, of(link), matrix));
     }
 
     // heat: ∫ c |ḋ|² dt, or c (n·ḋ)² where the damper lies along the line
@@ -217,7 +278,18 @@ impl Force for Attachments {
                 direction.map_or(0.0, |n| n.dot(rate).powi(2))
             }
         };
-        memory[0] += timestep * self.damping * self.links.iter().map(speed_sq).sum::<f64>();
+        let speeds: f64 = self.whole(memory).map(speed_sq).sum();
+        memory[0] += timestep * self.damping * speeds;
+        if !self.can_tear() {
+            return;
+        }
+        for (index, link) in self.links.iter().enumerate() {
+            if memory[1 + index] == 0.0 && self.pull(link, at).length() > self.strength {
+                memory[1 + index] = 1.0;
+                // what it held is given off
+                memory[0] += 0.5 * self.stiffness * stretch(link, at).powi(2);
+            }
+        }
     }
 
     fn editable(&self) -> Vec<Editable> {

@@ -135,6 +135,11 @@ impl Force for Gravity {
     ) {
     }
 
+    // those with a mass, which are unknowns or at work in it
+    fn reads_cliques_alone(&self) -> bool {
+        true
+    }
+
     fn visit_cliques(&self, _pairs: &[souple_engine::Pair], _visit: &mut dyn FnMut(&[u32])) {}
 
     fn add_blocks(&self, _: &Configuration, _: TangentWeights, _: &mut Scratch, _: &mut BlockMatrix) {}

@@ -22,7 +22,7 @@ mod tests;
 
 use souple_engine::{Editable, ParameterError};
 
-pub use attachment::{Attachments, Link};
+pub use attachment::{Attachments, Link, Slip};
 pub use combination::Combination;
 pub use drag::{Drag, MassDamping};
 pub use field::{ForceField, UniformForce};
@@ -33,7 +33,7 @@ pub use motion::{Interpolation, KeyFrames};
 pub use moving_frame::{FictitiousForce, MovingFrame};
 pub use point_load::PointLoad;
 pub use pressure::{PressedFace, Pressure};
-pub use rigid_motion::{Pose, RigidMotion};
+pub use rigid_motion::{NestedMotion, Pose, RigidMotion};
 
 /// A number a load cannot take.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

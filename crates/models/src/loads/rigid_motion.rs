@@ -69,6 +69,41 @@ impl Motion for RigidMotion {
         let pose = self.pose(time);
         pose.velocity + pose.angular_velocity.cross(pose.turn * (start - pose.pivot))
     }
+
+    fn turn(&self, time: f64) -> Mat3 {
+        self.pose(time).turn
+    }
+
+    fn spin(&self, time: f64) -> Vec3 {
+        self.pose(time).angular_velocity
+    }
+}
+
+/// A rigid motion within another one: what `inner` leads where `outer` rests is led on by `outer`.
+#[derive(Clone, Debug)]
+pub struct NestedMotion {
+    pub inner: Arc<dyn Motion>,
+    pub outer: Arc<dyn Motion>,
+}
+
+impl Motion for NestedMotion {
+    fn offset(&self, start: Vec3, time: f64) -> Vec3 {
+        let inner = self.inner.offset(start, time);
+        inner + self.outer.offset(start + inner, time)
+    }
+
+    fn velocity(&self, start: Vec3, time: f64) -> Vec3 {
+        let place = start + self.inner.offset(start, time);
+        self.outer.velocity(place, time) + self.outer.turn(time) * self.inner.velocity(start, time)
+    }
+
+    fn turn(&self, time: f64) -> Mat3 {
+        self.outer.turn(time) * self.inner.turn(time)
+    }
+
+    fn spin(&self, time: f64) -> Vec3 {
+        self.outer.spin(time) + self.outer.turn(time) * self.inner.spin(time)
+    }
 }
 
 fn prescribed(motion: &Option<Arc<dyn Motion>>, start: Vec3, time: f64) -> (Vec3, Vec3) {

@@ -37,23 +37,74 @@ fn harmonic_weights_keep_the_sides_of_a_slit_apart() {
     assert!(share("wendland") > 0.1, "{}", share("wendland"));
     // by way of the root: the arm is three times as long as it is wide
     assert!(share("harmonic") < 0.05, "{}", share("harmonic"));
+    // round the end of the slit the other arm is farther than its frame reaches
+    assert_eq!(share("geodesic"), 0.0);
 }
 
-/// A stiff inclusion moves as one: harmonic weights are nearly constant in it, and not without its stiffness.
+/// In a convex body of one material the way within is the straight one: `geodesic` weights are Wendland's, and their
+/// gradients; the derivative of the weights is their gradient where ways bend, too.
+#[test]
+fn geodesic_weights_are_those_of_space_where_nothing_is_in_the_way() {
+    let mesh = bar(SIZE, [12.0, 3.0, 3.0], "tet4");
+    let frame = |x: f64, y: f64| Frame { origin: Vec3::new(x, y, 0.07), axes: Mat3::IDENTITY };
+    let frames = [frame(0.0, 0.0), frame(0.33, 0.12), frame(0.7, 0.05), frame(1.0, 0.2)];
+    let even = vec![1.0; mesh.cell_count()];
+    let stiff: Vec<f64> =
+        mesh.cell_centres().iter().map(|centre| if centre.x > 0.5 { 30.0 } else { 1.0 }).collect();
+    let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &even };
+    let (space, within) = (weights_of("wendland", &shape), weights_of("geodesic", &shape));
+    // the first would lie on a border of cells and of materials, where slopes jump
+    let points: Vec<Vec3> = (1..60)
+        .map(|i| {
+            let part = |k: usize| (0.5 + f64::from(i) * [0.618_034, 0.754_878, 0.569_840][k]).fract();
+            Vec3::new(part(0) * SIZE[0], part(1) * SIZE[1], part(2) * SIZE[2])
+        })
+        .collect();
+    for point in &points {
+        let (a, b) = (space.shares(*point), within.shares(*point));
+        assert_eq!(a.len(), b.len(), "{point:?}");
+        for (a, b) in a.iter().zip(&b) {
+            // slopes of shape functions of cells of a twelfth, times the rounding of distances
+            assert!((a.weight - b.weight).abs() < 1e-12 && (a.gradient - b.gradient).length() < 1e-10);
+        }
+    }
+    let shape = Shape { stiffness_of_cell: &stiff, ..shape };
+    let bent = weights_of("geodesic", &shape);
+    for point in &points {
+        let step = 1e-6;
+        let of = |point: Vec3, frame: u32| {
+            bent.shares(point).iter().find(|share| share.frame == frame).map_or(0.0, |share| share.weight)
+        };
+        for share in bent.shares(*point) {
+            for axis in 0..3 {
+                let ahead = *point + Vec3::AXES[axis] * step;
+                let behind = *point - Vec3::AXES[axis] * step;
+                let slope = (of(ahead, share.frame) - of(behind, share.frame)) / (2.0 * step);
+                // the error of the difference, of the square of the step over that of a cell, and rounding over the step
+                assert!((slope - share.gradient[axis]).abs() < 1e-4 * (1.0 + slope.abs()), "{point:?}");
+            }
+        }
+    }
+}
+
+/// A stiff inclusion moves as one: harmonic and geodesic weights are nearly constant in it, and not without its stiffness.
 #[test]
 fn harmonic_weights_are_flat_where_matter_is_stiff() {
     let mesh = bar([1.0, 0.1, 0.1], [40.0, 2.0, 2.0], "hex8");
     let frames = [0.0, 1.0].map(|x| Frame { origin: Vec3::new(x, 0.05, 0.05), axes: Mat3::IDENTITY });
-    let range = |contrast: f64| {
+    let range = |name: &str, contrast: f64| {
         let stiff = |centre: &Vec3| if (0.3..0.7).contains(&centre.x) { contrast } else { 1.0 };
         let stiffness: Vec<f64> = mesh.cell_centres().iter().map(stiff).collect();
         let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &stiffness };
-        let weights = weights_of("harmonic", &shape);
+        let weights = weights_of(name, &shape);
         let at = |x: f64| weights.shares(Vec3::new(x, 0.05, 0.05))[0].weight;
         at(0.32) - at(0.68)
     };
     // between cores of 0.2: resistances 0.2 / (0.6 - 0.4 + 0.4 / contrast) of the whole, 0.36/0.6 and about 0.0036/0.2036
-    assert!(range(1.0) > 0.5 && range(100.0) < 0.03, "{} {}", range(1.0), range(100.0));
+    assert!(range("harmonic", 1.0) > 0.5 && range("harmonic", 100.0) < 0.03);
+    // (1-u)⁴ (4u+1) over twice the distance of the frames: at 0.16 and 0.34 of it, 0.646 and 0.354; with the inclusion both points
+    // are as far from both frames, to a hundredth
+    assert!((range("geodesic", 1.0) - 0.2916).abs() < 1e-3 && range("geodesic", 100.0) < 0.03);
 }
 
 /// Placements give what they are asked for: as many frames, inside or near the matter, all apart; Lloyd's by compliance

@@ -18,7 +18,7 @@ use souple_models::solids::{
 use super::frames::PlacedFrames;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, inertial, levels, network, octree, section, shape, start};
+use super::{Draft, frames, inertial, levels, network, octree, section, shape, start, tissue};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -78,45 +78,12 @@ pub fn solid_name(body: &str) -> String {
 /// Builds all meshes and gives out rows; `None` where one was refused.
 pub fn place(draft: &mut Draft) -> Option<()> {
     let spec = draft.spec;
-    // every mesh is looked at, so that each refused one is reported
-    for body in &spec.bodies {
-        let built = match &body.network {
-            Some(network) => network::build(body, network, draft),
-            None => shape::build(body, draft).map(|shape| (shape, Vec::new())),
-        };
-        let Some((shape, links)) = built else { continue };
-        let Some(system) = spec.systems.iter().position(|system| system.name == body.system) else {
-            continue;
-        };
-        draft.warnings.extend(shape.warnings);
-        let (mesh, point_numbers) = (shape.mesh, shape.point_numbers);
-        let materials = BodyMaterials::default();
-        let mut placed = Placed {
-            spec: body,
-            system,
-            rows: 0..0,
-            mesh,
-            point_numbers,
-            materials,
-            links,
-            frames: None,
-            levels: None,
-        };
-        if let Some(materials) = materials_of(draft, &placed) {
-            placed.materials = materials;
-        }
-        if body.frames.is_some() {
-            let mut warnings = Vec::new();
-            let BodyMaterials { all, of_cell } = &placed.materials;
-            placed.frames = frames::place(draft, body, &placed.mesh, all, of_cell, &mut warnings);
-            draft.warnings.extend(warnings);
-        }
-        let mut warnings = Vec::new();
-        placed.levels = levels::place(draft, body, system, &placed.mesh, &mut warnings)
-            .or_else(|| octree::place(draft, body, system, &placed.mesh));
-        draft.warnings.extend(warnings);
-        draft.bodies.push(placed);
+    // every mesh is looked at, so that each refused one is reported; tissue is built between bodies that have one
+    for index in tissue::in_order(draft) {
+        place_one(draft, index);
     }
+    let number = |body: &Placed| spec.bodies.iter().position(|other| std::ptr::eq(other, body.spec));
+    draft.bodies.sort_by_key(number);
     let is_complete = |body: &Placed| {
         body.spec.frames.is_some() == body.frames.is_some()
             && (body.spec.levels.is_some() || body.spec.octree.is_some()) == body.levels.is_some()
@@ -129,6 +96,48 @@ pub fn place(draft: &mut Draft) -> Option<()> {
     }
     give_rows(&mut draft.bodies, spec.systems.len());
     Some(())
+}
+
+/// Builds the mesh of a body of the specification and what carries it.
+fn place_one(draft: &mut Draft, index: usize) {
+    let spec = draft.spec;
+    let body = &spec.bodies[index];
+    let built = match &body.network {
+        Some(network) => network::build(body, network, draft),
+        None => shape::build(body, draft).map(|shape| (shape, Vec::new())),
+    };
+    let Some((shape, links)) = built else { return };
+    let Some(system) = spec.systems.iter().position(|system| system.name == body.system) else {
+        return;
+    };
+    draft.warnings.extend(shape.warnings);
+    let (mesh, point_numbers) = (shape.mesh, shape.point_numbers);
+    let materials = BodyMaterials::default();
+    let mut placed = Placed {
+        spec: body,
+        system,
+        rows: 0..0,
+        mesh,
+        point_numbers,
+        materials,
+        links,
+        frames: None,
+        levels: None,
+    };
+    if let Some(materials) = materials_of(draft, &placed) {
+        placed.materials = materials;
+    }
+    if body.frames.is_some() {
+        let mut warnings = Vec::new();
+        let BodyMaterials { all, of_cell } = &placed.materials;
+        placed.frames = frames::place(draft, body, &placed.mesh, all, of_cell, &mut warnings);
+        draft.warnings.extend(warnings);
+    }
+    let mut warnings = Vec::new();
+    placed.levels = levels::place(draft, body, system, &placed.mesh, &mut warnings)
+        .or_else(|| octree::place(draft, body, system, &placed.mesh));
+    draft.warnings.extend(warnings);
+    draft.bodies.push(placed);
 }
 
 /// Rows of unknowns come first: points of meshes, then frames; points that frames carry follow.

@@ -7,10 +7,10 @@ use souple_models::frames::layer_stiffness;
 use souple_models::loads::{Attachments, Combination, Link as LoadLink};
 use souple_table::counted;
 
-use super::Draft;
 use super::bodies::Placed;
 use super::frames::cross_sections;
 use super::freedom::Joint;
+use super::{Draft, tissue};
 use crate::diagnostic::Code;
 use crate::spec::interaction::Link;
 
@@ -61,18 +61,21 @@ fn ends<'d, 'a>(draft: &'d Draft<'a>, link: &Link, between: Between) -> Option<[
     Some([from, to])
 }
 
-/// Springs from points of one body to the places of another that they touch or are nearest to.
+/// Springs from points of one body to the places of another that they touch or are nearest to: those that are written,
+/// and those of tissue.
 pub fn attach(draft: &mut Draft) {
     let (mut added, mut joints) = (Vec::new(), Vec::new());
-    for (index, link) in draft.spec.attachments.iter().enumerate() {
-        let Some([from, to]) = ends(draft, link, Between::BodiesOfOneSystem) else { continue };
+    let written = draft.spec.attachments.iter().cloned().enumerate();
+    let named = written.map(|(index, link)| (format!("attachments[{index}]"), link));
+    for (name, link) in named.chain(tissue::attachments(draft)) {
+        let Some([from, to]) = ends(draft, &link, Between::BodiesOfOneSystem) else { continue };
         let Some(region) = &link.region else { continue };
         let locator = CellLocator::new(&to.mesh);
         let (links, held): (Vec<LoadLink>, Vec<Joint>) = draft
             .selector(from)
             .points(region)
             .into_iter()
-            .filter_map(|point| attachment(&locator, link, point, from, to))
+            .filter_map(|point| attachment(&locator, &link, point, from, to))
             .unzip();
         joints.extend(held);
         if links.is_empty() {
@@ -85,8 +88,12 @@ pub fn attach(draft: &mut Draft) {
             );
             continue;
         }
-        let stiffness = link.stiffness.unwrap_or_else(|| layer_between(from, to, &links));
-        match Attachments::new(format!("attachments[{index}]"), links, stiffness, link.damping) {
+        let area = area_of(from, &links);
+        let stiffness = link.stiffness.unwrap_or_else(|| layer_between(from, to) * area);
+        let strength = link.strength * area;
+        match Attachments::new(name, links, stiffness, link.damping)
+            .and_then(|springs| springs.with_strength(strength))
+        {
             Ok(force) => added.push((from.system, force)),
             Err(error) => draft.log.add(Code::OutOfRange, &link.site, error.to_string(), "finite numbers"),
         }
@@ -97,9 +104,8 @@ pub fn attach(draft: &mut Draft) {
     }
 }
 
-/// Stiffness of each spring between two bodies: together that of a thin layer whose modulus is the harmonic mean of
-/// theirs, each spring on the mean cross-section of its point [N/m].
-fn layer_between(from: &Placed, to: &Placed, links: &[LoadLink]) -> f64 {
+/// Stiffness per area between two bodies: that of a thin layer whose modulus is the harmonic mean of theirs [N/m³].
+fn layer_between(from: &Placed, to: &Placed) -> f64 {
     let modulus = |body: &Placed| {
         let material = body.spec.material.as_ref();
         let built = material.and_then(|chosen| (chosen.entry.build)(&chosen.values).ok());
@@ -109,10 +115,15 @@ fn layer_between(from: &Placed, to: &Placed, links: &[LoadLink]) -> f64 {
     let smallest =
         |body: &Placed| body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
     let size = f64::min(smallest(from), smallest(to));
+    layer_stiffness(2.0 * a * b / (a + b), size)
+}
+
+/// Mean cross-section of the points that springs begin at [m²].
+fn area_of(from: &Placed, links: &[LoadLink]) -> f64 {
     let areas = cross_sections(&from.mesh);
     let rows = links.iter().flat_map(|link| link.a.rows());
     let area: f64 = rows.map(|(row, _)| areas[*row as usize - from.rows.start]).sum();
-    layer_stiffness(2.0 * a * b / (a + b), size) * area / links.len() as f64
+    area / links.len() as f64
 }
 
 /// The spring of a point, and what it hinders; `None` beyond reach.

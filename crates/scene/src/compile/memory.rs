@@ -81,8 +81,8 @@ pub fn check_specified(spec: &Spec, sources: &Sources, log: &Log) {
                 let bytes = std::fs::metadata(path).ok()?.len();
                 (bytes, format!("a file of {}", gigabytes(bytes)))
             }
-            // fillings bound the number of their points by themselves, and are counted when they are made
-            MeshSpec::Shape { .. } => return None,
+            // fillings bound the number of their points by themselves, and are counted when they are made; so is tissue
+            MeshSpec::Shape { .. } | MeshSpec::Tissue(_) => return None,
         };
         Some(Needs { body: &body.name, site: mesh.site(), bytes, size })
     });

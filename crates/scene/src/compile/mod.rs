@@ -1,6 +1,7 @@
 //! From a specification to a model and a state.
 
 mod bodies;
+mod bones;
 mod boundary;
 mod contact;
 mod depth;
@@ -22,6 +23,7 @@ mod shape;
 mod skin_shape;
 mod skins;
 mod start;
+mod tissue;
 
 pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;

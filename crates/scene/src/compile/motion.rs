@@ -7,7 +7,9 @@ use souple_math::{Mat3, Vec3};
 use souple_models::loads::{FormulaVector, Interpolation, KeyFrames, MovingFrame, Pose, RigidMotion};
 use souple_table::four_digits;
 
+use super::bones;
 use crate::diagnostic::{Code, Log, Site};
+use crate::spec::Spec;
 use crate::spec::boundary::{MotionSpec, Pin};
 use crate::spec::world::FrameSpec;
 
@@ -31,7 +33,10 @@ pub fn motion(log: &Log, spec: Option<&MotionSpec>, site: &Site) -> Option<Optio
 }
 
 /// How a pin leads its points: `Some(None)` where they stay, `None` where a motion was refused.
-pub fn motion_of_pin(log: &Log, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
+pub fn motion_of_pin(log: &Log, spec: &Spec, pin: &Pin) -> Option<Option<Arc<dyn Motion>>> {
+    if let Some(bone) = &pin.bone {
+        return bones::motion_of(log, spec, bone, &pin.site).map(Some);
+    }
     let translation = motion(log, pin.motion.as_ref(), &pin.site)?;
     let Some(rotation) = motion(log, pin.rotation.as_ref(), &pin.site)? else { return Some(translation) };
     Some(Some(Arc::new(RigidMotion { translation, rotation: Some(rotation), pivot: pin.pivot })))

@@ -10,7 +10,7 @@ use souple_math::{Mat3, Vec3};
 use super::bodies::Placed;
 use super::freedom::Joint;
 use super::motion::{AxisMotions, motion_of_pin};
-use super::{Draft, frames};
+use super::{Draft, bones, frames};
 use crate::diagnostic::Code;
 use crate::spec::boundary::{MotionSpec, Pin};
 
@@ -61,6 +61,9 @@ pub fn add(draft: &mut Draft) {
             let (force, held) = held_by_springs(body, holds);
             holding.extend(force.map(|force| (body.system, force)));
             joints.extend(held);
+            let (led, hindered) = bones::bind(draft, body, &system.kinematics);
+            added.extend(led.into_iter().map(|constraint| (body.system, constraint)));
+            joints.extend(hindered);
             continue;
         }
         for (point, hold) in holds {
@@ -72,7 +75,7 @@ pub fn add(draft: &mut Draft) {
             let motion = leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>);
             let block = system.kinematics.block_of(body.rows.start as u32 + point);
             let free = Mat3::from_diagonal(Vec3::from_array(free));
-            added.push((body.system, Constraint { block, free, start, motion }));
+            added.push((body.system, Constraint { free, motion, ..Constraint::pin(block, start) }));
         }
     }
     draft.warnings.extend(torn);
@@ -137,7 +140,7 @@ fn holds(draft: &Draft, body: &Placed) -> BTreeMap<u32, Hold> {
     let mut contradicting = BTreeSet::new();
     for (index, pin) in body.spec.pins.iter().enumerate() {
         let Some(region) = &pin.region else { continue };
-        let Some(motion) = motion_of_pin(draft.log, pin) else { continue };
+        let Some(motion) = motion_of_pin(draft.log, draft.spec, pin) else { continue };
         let points = draft.selector(body).points(region);
         if let Some(motion) = &motion
             && !starts_finite(draft, body, pin, motion.as_ref(), &points)

@@ -48,7 +48,21 @@ impl Selector<'_> {
     /// group of facets holds just its facets. Those of a plane body are its sides, those of a membrane its cells. A
     /// region without one is refused.
     pub fn faces(&self, region: &Region) -> Vec<(ElementKind, Vec<u32>)> {
-        let Some(mask) = self.point_mask(region) else { return Vec::new() };
+        let (faces, centres_of_others) = self.faces_in_and_out(region);
+        if faces.is_empty() {
+            self.refuse_empty(region, "face", &centres_of_others);
+        }
+        faces
+    }
+
+    /// The same, a region without one being none to complain about.
+    pub fn whole_faces(&self, region: &Region) -> Vec<(ElementKind, Vec<u32>)> {
+        self.faces_in_and_out(region).0
+    }
+
+    /// Faces in a region, and the middles of those that are not.
+    fn faces_in_and_out(&self, region: &Region) -> (Vec<(ElementKind, Vec<u32>)>, Vec<Vec3>) {
+        let Some(mask) = self.point_mask(region) else { return Default::default() };
         let listed = self.facets_of_group(region);
         let mut faces = Vec::new();
         let mut centres = Vec::new();
@@ -64,10 +78,7 @@ impl Selector<'_> {
                 centres.push(sum * (1.0 / face.len() as f64));
             }
         }
-        if faces.is_empty() {
-            self.refuse_empty(region, "face", &centres);
-        }
-        faces
+        (faces, centres)
     }
 
     fn all_faces(&self) -> Vec<(ElementKind, Vec<u32>)> {

@@ -5,7 +5,7 @@ use souple_mesh::repair::RepairLimits;
 use souple_mesh::{Mesh, MeshError};
 use souple_table::in_number;
 
-use super::Draft;
+use super::{Draft, tissue};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::Body;
 use crate::spec::mesh::MeshSpec;
@@ -37,7 +37,10 @@ pub fn build_of(body: &Body, spec: &MeshSpec, draft: &Draft) -> Option<Shape> {
         None
     };
     let mut warnings = Vec::new();
-    let mut mesh = mesh_of(spec, &body.name, draft, &mut warnings)?;
+    let mut mesh = match spec {
+        MeshSpec::Tissue(tissue) => tissue::build(body, tissue, draft)?,
+        _ => mesh_of(spec, &body.name, draft, &mut warnings)?,
+    };
     let section = body.section();
     if mesh.cell_count() == 0 && section.dimension() == 2 {
         mesh = mesh.facets_as_cells();
@@ -116,6 +119,11 @@ pub fn mesh_of(spec: &MeshSpec, body: &str, draft: &Draft, warnings: &mut Vec<St
                 warnings.extend(filled.notes.into_iter().map(|note| format!("body `{body}`: {note}")));
                 filled.mesh
             })
+        }
+        MeshSpec::Tissue(_) => {
+            let message = "tissue is the mesh of a body of its own, which it attaches".to_owned();
+            log.add(Code::Conflict, site, message, "`generate`, `file`, `shape` or `fill`");
+            return None;
         }
         MeshSpec::File { file, scale, .. } => Ok(read(draft, spec.site(), file, *scale, warnings)?),
         MeshSpec::Filled { file, scale, options, .. } => {

@@ -1,7 +1,8 @@
 //! Quantities at points.
 
-use souple_engine::World;
+use souple_engine::{Configuration, World};
 use souple_math::Vec3;
+use souple_models::loads::Attachments;
 
 use super::body::centre_of_mass;
 use super::contact::{Share, contact_forces, penetrations};
@@ -28,7 +29,36 @@ pub fn measure(quantity: PointQuantity, part: &Part, world: &mut World) -> Point
         PointQuantity::FrictionForce => contact_forces(part, Share::Tangential, world),
         PointQuantity::ContactTorque => moments(&contact_forces(part, Share::Total, world), part, world),
         PointQuantity::Penetration => return PointValues::Numbers(penetrations(part, world)),
+        PointQuantity::Slip => {
+            return PointValues::Numbers(of_attachments(part, world, Attachments::slip_of));
+        }
+        PointQuantity::Torn => {
+            let is_torn = |springs: &Attachments, link: usize, at: &Configuration| {
+                if springs.is_torn(link, at.memory) { 1.0 } else { 0.0 }
+            };
+            return PointValues::Numbers(of_attachments(part, world, is_torn));
+        }
     })
+}
+
+/// Of each row of the part the greatest number of the springs that attach it; zero where none does.
+fn of_attachments(
+    part: &Part,
+    world: &World,
+    number: impl Fn(&Attachments, usize, &Configuration) -> f64,
+) -> Vec<f64> {
+    let mut numbers = vec![0.0_f64; part.rows.len()];
+    // rows of a region ascend
+    let place = |row: u32| part.rows.binary_search(&row).ok();
+    world.visit_forces(part.system, &mut |force, at| {
+        let Some(springs) = force.as_any().downcast_ref::<Attachments>() else { return };
+        for (link, ends) in springs.links().iter().enumerate() {
+            for place in ends.a.rows().iter().filter_map(|(row, _)| place(*row)) {
+                numbers[place] = numbers[place].max(number(springs, link, at));
+            }
+        }
+    });
+    numbers
 }
 
 fn positions(part: &Part, world: &World) -> Vec<Vec3> {

@@ -53,6 +53,11 @@ pub(crate) static PIN: Keys = Keys::new(
             "how they are turned about the pivot, before the motion",
         ),
         Key::vector("pivot", "m", "where they turn").or(Value::Vector([0.0; 3])),
+        Key::new(
+            "bone",
+            Shape::Text,
+            "the bone, or the shape, that they follow; in the place of a motion of their own",
+        ),
     ],
 );
 
@@ -118,6 +123,8 @@ pub struct Pin {
     pub rotation: Option<MotionSpec>,
     /// [m]
     pub pivot: Vec3,
+    /// What they follow.
+    pub bone: Option<String>,
     pub site: Site,
 }
 
@@ -180,7 +187,14 @@ pub struct Spring {
 impl Pin {
     pub(crate) fn read(reader: &Reader) -> Self {
         let motion = |key| reader.table(key).and_then(|table| MotionSpec::read(&table));
+        for key in reader.written(&["motion", "rotation", "pivot"]) {
+            if reader.has("bone") {
+                let message = format!("a pin that follows a bone has no `{key}` of its own");
+                reader.log().add(Code::Conflict, &reader.site_of(key), message, "one of them");
+            }
+        }
         Self {
+            bone: reader.maybe_text("bone"),
             region: Region::read(reader, "region"),
             axes: reader.axes("axes"),
             motion: motion("motion"),

@@ -4,8 +4,9 @@ use souple_engine::UnknownKind;
 use souple_models::frames::{
     BuildPlacement, BuildPoints, BuildWeights, PLACEMENTS, POINTS, TangentKind, WEIGHTS,
 };
-use souple_table::{Range, Value};
+use souple_table::{Range, Value, Values};
 
+use super::bone::{BOUND, BoundFrames};
 use crate::diagnostic::Site;
 use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -40,6 +41,7 @@ pub(crate) static FRAMES: Keys = Keys::new(
             "what implicit steps see: the exact tangent, or that without the stiffness of the stress itself",
         )
         .or(Value::Text("full")),
+        Key::new("bones", Shape::Tables(&BOUND), "which frames follow which bones"),
         Key::integer(
             "shown",
             Range::NOT_NEGATIVE,
@@ -56,11 +58,35 @@ pub struct FramesSpec {
     pub weights: Option<Chosen<BuildWeights>>,
     pub points: Option<Chosen<BuildPoints>>,
     pub tangent: TangentKind,
+    pub bones: Vec<BoundFrames>,
     pub shown: usize,
     pub site: Site,
 }
 
 impl FramesSpec {
+    /// So many times as many frames, placed in the same manner; frames that are listed stay, and others come between them.
+    pub(crate) fn multiply(&mut self, times: f64) {
+        let Some(placement) = &mut self.placement else { return };
+        let values = &mut placement.values;
+        let more = |count: f64| (count * times).round().max(1.0);
+        if let Some(Value::Vector(counts)) = values.get("counts") {
+            // of distances between frames as many as of frames on a long line
+            let along = |count: f64| if count > 1.0 { 1.0 + more(count - 1.0) } else { count };
+            values.set("counts", Value::Vector(counts.map(along)));
+        } else if let Some(Value::Integer(count)) = values.get("count") {
+            values.set("count", Value::Integer(more(count as f64) as i64));
+        } else if let Some(Value::Numbers(at)) = values.get("at") {
+            let (kept, count) = (at.to_vec(), more(at.len() as f64 / 3.0) as i64);
+            if let Ok(entry) = PLACEMENTS.find("farthest_point") {
+                let wanted =
+                    Values::new().with("count", Value::Integer(count)).with("kept", Value::Numbers(&kept));
+                if let Ok(values) = entry.values(wanted) {
+                    *placement = Chosen { entry, values, site: placement.site.clone(), written: Vec::new() };
+                }
+            }
+        }
+    }
+
     pub(crate) fn read(reader: &Reader) -> Self {
         Self {
             kind: if reader.choice("kind") == "affine" {
@@ -76,6 +102,7 @@ impl FramesSpec {
             } else {
                 TangentKind::Full
             },
+            bones: reader.tables("bones").iter().map(BoundFrames::read).collect(),
             shown: reader.maybe_integer("shown").unwrap_or(0) as usize,
             site: reader.site(),
         }

@@ -22,6 +22,12 @@ pub(crate) static ATTACHMENT: Keys = Keys::new(
         ),
         Key::number("damping", "N s/m", Range::NOT_NEGATIVE, "of each point's spring").or(Value::Number(0.0)),
         Key::number("reach", "m", Range::NOT_NEGATIVE, "points further from the other body stay free"),
+        Key::number(
+            "strength",
+            "Pa",
+            Range::POSITIVE,
+            "tension, over the area of a point, under which its spring tears for good; never where left out",
+        ),
     ],
 );
 
@@ -47,6 +53,8 @@ pub struct Link {
     pub stiffness: Option<f64>,
     /// Of each point's spring [N s/m].
     pub damping: f64,
+    /// Tension over a point's area under which its spring tears [Pa]; infinite where it never does.
+    pub strength: f64,
     /// Attached points are at most this far from the other body [m].
     pub reach: f64,
     pub site: Site,
@@ -57,7 +65,8 @@ pub struct Link {
 impl Link {
     pub(crate) fn attachment(reader: &Reader) -> Self {
         let reach = reader.maybe_number("reach").unwrap_or(f64::INFINITY);
-        Self { reach, ..Self::coupling(reader) }
+        let strength = reader.maybe_number("strength").unwrap_or(f64::INFINITY);
+        Self { reach, strength, ..Self::coupling(reader) }
     }
 
     /// Couplings reach any distance.
@@ -68,6 +77,7 @@ impl Link {
             to: reader.text("to"),
             stiffness: reader.maybe_number("stiffness"),
             damping: reader.number("damping"),
+            strength: f64::INFINITY,
             reach: f64::INFINITY,
             site: reader.site(),
             from_site: reader.site_of("from"),

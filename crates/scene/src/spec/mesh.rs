@@ -2,10 +2,12 @@
 
 use souple_mesh::fill::{Options, PARAMETERS};
 use souple_mesh::implicit::{BuildBody, SHAPES};
+use souple_mesh::tissue::{Tissue, TissueForm};
 use souple_mesh::{Build, GENERATORS};
 use souple_table::{Kind, Parameter, Range, Value, Values};
 
 use super::body::BODY;
+use super::region::Region;
 use crate::diagnostic::{Code, Site};
 use crate::document::Content;
 use crate::keys::{EntryShape, Key, Keys, Need, Others, Shape, outlines};
@@ -56,6 +58,44 @@ static MESH_FILL: Keys = Keys::new(
     ],
 );
 
+const CELLS_OF_TISSUE: Range = Range::closed(1.0, 200.0);
+
+static MESH_TISSUE: Keys = Keys::new(
+    "mesh_tissue",
+    "tissue built between two other bodies, and attached to both",
+    &[
+        Key::new(
+            "tissue",
+            Shape::Choice(&["ligament", "sheet", "pad"]),
+            "ligament: of square section, from the middle of one region to that of the other; sheet: as wide as the regions; \
+             pad: fills the gap before the faces of the first",
+        )
+        .required(),
+        Key::new("from", Shape::Text, "the body that it begins on").required(),
+        Key::new("from_region", Shape::Region, "where on that").required(),
+        Key::new("to", Shape::Text, "the body that it ends on").required(),
+        Key::new("to_region", Shape::Region, "where on that").required(),
+        Key::number(
+            "thickness",
+            "m",
+            Range::POSITIVE,
+            "of a ligament its sides, of a sheet that of it, of a pad the widest gap that it fills",
+        )
+        .required(),
+        Key::integer("along", CELLS_OF_TISSUE, "cells from one end to the other").or(Value::Integer(4)),
+        Key::integer("across", CELLS_OF_TISSUE, "cells over the width of a ligament or sheet")
+            .or(Value::Integer(2)),
+        Key::integer("through", CELLS_OF_TISSUE, "cells through the thickness of a ligament or sheet")
+            .or(Value::Integer(2)),
+        Key::number(
+            "strength",
+            "Pa",
+            Range::POSITIVE,
+            "tension under which an end tears off, point by point; never where left out",
+        ),
+    ],
+);
+
 // all of them stand above
 const _: () = assert!(PARAMETERS.len() == 7);
 
@@ -83,7 +123,7 @@ pub(crate) const MESH: EntryShape = EntryShape {
     tag: "generate",
     kind: "mesh generator",
     outlines: || outlines(&GENERATORS),
-    instead: &[&MESH_FILE, &MESH_SHAPE, &MESH_FILL],
+    instead: &[&MESH_FILE, &MESH_SHAPE, &MESH_FILL, &MESH_TISSUE],
 };
 
 /// Where a body's rest shape comes from.
@@ -106,6 +146,25 @@ pub enum MeshSpec {
         options: Options,
         site: Site,
     },
+    /// What reaches from one body to another.
+    Tissue(Box<TissueSpec>),
+}
+
+/// Tissue between two bodies.
+pub struct TissueSpec {
+    pub shape: Tissue,
+    pub from: TissueEnd,
+    pub to: TissueEnd,
+    /// Tension under which its ends tear off [Pa]; infinite where they never do.
+    pub strength: f64,
+    pub site: Site,
+}
+
+/// Where tissue ends.
+pub struct TissueEnd {
+    pub body: String,
+    pub region: Region,
+    pub body_site: Site,
 }
 
 impl MeshSpec {
@@ -114,6 +173,7 @@ impl MeshSpec {
             Self::Generated(chosen) => &chosen.site,
             Self::Shape { shape, .. } => &shape.site,
             Self::File { site, .. } | Self::Filled { site, .. } => site,
+            Self::Tissue(tissue) => &tissue.site,
         }
     }
 
@@ -122,8 +182,13 @@ impl MeshSpec {
         match self {
             Self::Generated(chosen) => chosen.site_of(parameter),
             Self::Shape { shape, .. } => shape.site_of(parameter),
-            Self::File { .. } | Self::Filled { .. } => self.site(),
+            Self::File { .. } | Self::Filled { .. } | Self::Tissue(_) => self.site(),
         }
+    }
+
+    /// Tissue, where that is what it is.
+    pub fn tissue(&self) -> Option<&TissueSpec> {
+        if let Self::Tissue(tissue) = self { Some(tissue) } else { None }
     }
 
     /// `{ generate = "bar", … }`, `{ file = "bar.msh" }`, `{ shape = "liver", … }`, `{ fill = "liver.stl", … }`, or
@@ -137,7 +202,7 @@ impl MeshSpec {
                 _ => choose(&reading, &MESH, &GENERATORS, &[], &BODY).map(Self::Generated),
             };
         };
-        let tags = ["generate", "file", "shape", "fill"];
+        let tags = ["generate", "file", "shape", "fill", "tissue"];
         let written: Vec<&str> = tags.into_iter().filter(|tag| table.get(tag).is_some()).collect();
         match written[..] {
             ["generate"] => choose(&reading, &MESH, &GENERATORS, &[], &BODY).map(Self::Generated),
@@ -158,15 +223,42 @@ impl MeshSpec {
                 let (file, scale) = (table.maybe_text("fill")?, table.number("scale"));
                 Some(Self::Filled { file, scale, options, site })
             }
+            ["tissue"] => {
+                let table = Reader::open(&reading, &MESH_TISSUE)?;
+                read_tissue(&table, site).map(|tissue| Self::Tissue(Box::new(tissue)))
+            }
             _ => {
                 let says = if written.is_empty() { "none".to_owned() } else { written.join(" and ") };
                 let message = format!("a mesh says one of {}, this one says {says}", tags.join(", "));
-                let expected = "{ generate = \"bar\", … }, { file = \"…\" }, { shape = \"liver\", … } or \
-                                { fill = \"…\", … }";
+                let expected = "{ generate = \"bar\", … }, { file = \"…\" }, { shape = \"liver\", … }, \
+                                { fill = \"…\", … } or { tissue = \"ligament\", … }";
                 reading.refuse(Code::MissingKey, message, expected)
             }
         }
     }
+}
+
+fn read_tissue(table: &Reader, site: Site) -> Option<TissueSpec> {
+    let end = |body: &str, region: &str| {
+        let region = Region::read(table, region)?;
+        Some(TissueEnd { body: table.maybe_text(body)?, region, body_site: table.site_of(body) })
+    };
+    let (from, to) = (end("from", "from_region"), end("to", "to_region"));
+    let cells = |key: &str| table.maybe_integer(key).map(|count| count as usize);
+    let form = match table.choice("tissue") {
+        "sheet" => TissueForm::Sheet,
+        "pad" => TissueForm::Pad,
+        _ => TissueForm::Ligament,
+    };
+    let shape = Tissue {
+        form,
+        thickness: table.maybe_number("thickness")?,
+        along: cells("along")?,
+        across: cells("across")?,
+        through: cells("through")?,
+    };
+    let strength = table.maybe_number("strength").unwrap_or(f64::INFINITY);
+    Some(TissueSpec { shape, from: from?, to: to?, strength, site })
 }
 
 fn read_options(table: &Reader, whole: &Reading) -> Option<Options> {

@@ -2,6 +2,7 @@
 
 pub mod adapt;
 pub mod body;
+pub mod bone;
 pub mod boundary;
 pub mod contact;
 pub mod control;
@@ -37,10 +38,12 @@ use crate::source::Place;
 use crate::values::{Reading, quoted};
 
 use body::{BODY, Body};
+use bone::{BONE, BoneSpec};
 use contact::{Against, CONTACT, Contact, SHAPE, ShapeSpec};
 use expect::{EXPECT, Expect};
 use hand::{HAND, HandSpec};
 use interaction::{ATTACHMENT, COUPLING, Link};
+use mesh::MeshSpec;
 use network::{NETWORK, Network};
 use parts::MODULE;
 use picture::{PICTURE, PictureSpec, PictureView};
@@ -73,6 +76,7 @@ pub(crate) static SCENE: Keys = Keys::new(
             "parts of networks that are written once and placed often",
         ),
         Key::new("shapes", Shape::Named(&SHAPE), "things of fixed shape that bodies touch"),
+        Key::new("bones", Shape::Named(&BONE), "rigid motions that frames and pins follow"),
         Key::new("contacts", Shape::Tables(&CONTACT), "who touches whom"),
         Key::new("attachments", Shape::Tables(&ATTACHMENT), "what joins bodies of one system"),
         Key::new("couplings", Shape::Tables(&COUPLING), "what joins systems"),
@@ -96,6 +100,7 @@ pub struct Spec {
     pub systems: Vec<SystemSpec>,
     pub bodies: Vec<Body>,
     pub shapes: Vec<ShapeSpec>,
+    pub bones: Vec<BoneSpec>,
     pub contacts: Vec<Contact>,
     pub attachments: Vec<Link>,
     pub couplings: Vec<Link>,
@@ -151,6 +156,11 @@ impl Spec {
                 .into_iter()
                 .map(|(name, shape)| ShapeSpec::read(name, &shape))
                 .collect(),
+            bones: reader
+                .named("bones")
+                .into_iter()
+                .map(|(name, bone)| BoneSpec::read(name, &bone))
+                .collect(),
             contacts: contacts(&reader),
             attachments: reader.tables("attachments").iter().map(Link::attachment).collect(),
             couplings: reader.tables("couplings").iter().map(Link::coupling).collect(),
@@ -194,6 +204,7 @@ impl Spec {
             systems: Vec::new(),
             bodies: Vec::new(),
             shapes: Vec::new(),
+            bones: Vec::new(),
             contacts: Vec::new(),
             attachments: Vec::new(),
             couplings: Vec::new(),
@@ -237,6 +248,11 @@ impl Spec {
         }
         for body in &self.bodies {
             check("system", &body.system, &systems, &body.site);
+            if let Some(tissue) = body.mesh.as_ref().and_then(MeshSpec::tissue) {
+                for end in [&tissue.from, &tissue.to] {
+                    check("body", &end.body, &bodies, &end.body_site);
+                }
+            }
         }
         for probe in &self.probes {
             if let Some(body) = &probe.body {

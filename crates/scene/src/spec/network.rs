@@ -442,6 +442,7 @@ impl MassGroup {
     fn pin(&self) -> Pin {
         let region = Region { kind: RegionKind::Group(self.name.clone()), site: self.site.clone() };
         Pin {
+            bone: None,
             region: Some(region),
             axes: [true; 3],
             motion: None,

@@ -118,6 +118,8 @@ pub enum PointQuantity {
     FrictionForce,
     ContactTorque,
     Penetration,
+    Slip,
+    Torn,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -201,6 +203,7 @@ impl Quantity {
 }
 
 const KINEMATICS: &str = "kinematics of points";
+const ATTACHMENT: &str = "own";
 const CONTACT: &str = "Wriggers 2006, §5";
 const STRESS: &str = "Bonet & Wood 2008, §5";
 const SKIN: &str = "Desbrun & Cani-Gascuel 1998, Active implicit surface for animation";
@@ -310,6 +313,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         "how deep points are in what they touch, thickness included; zero where they do not",
         CONTACT,
         points("m", Number, Max, PointQuantity::Penetration),
+    ),
+    &entry(
+        "slip",
+        "how far attached points are from where their springs would have them; zero of points that are torn off or not attached",
+        ATTACHMENT,
+        points("m", Number, Max, PointQuantity::Slip),
+    ),
+    &entry(
+        "torn",
+        "springs of attached points that have torn",
+        ATTACHMENT,
+        points("", Number, Sum, PointQuantity::Torn),
     ),
     &entry(
         "von_mises",

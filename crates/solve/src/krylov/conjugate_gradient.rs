@@ -69,8 +69,13 @@ pub fn conjugate_gradient(
         return report(0, 0.0, Stop::Converged);
     }
 
-    // r = b − A x
-    let mut residual_norm = operator.residual(b, x, r).sqrt();
+    // r = b − A x, which takes no product where x is zero
+    let mut residual_norm = if x.iter().all(|x| *x == Vec3::ZERO) {
+        r.copy_from_slice(b);
+        b_norm
+    } else {
+        operator.residual(b, x, r).sqrt()
+    };
     if !(residual_norm.is_finite() && b_norm.is_finite()) {
         return report(0, residual_norm, Stop::NotFinite);
     }

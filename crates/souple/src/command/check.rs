@@ -5,9 +5,11 @@ use std::time::Instant;
 use serde_json::{Map, Value, json};
 use souple_engine::{World, WorldError};
 use souple_math::Vec3;
-use souple_scene::{LawInfo, NetworkInfo, SkinInfo};
+use souple_models::frames::FramesReport;
+use souple_scene::{BodyInfo, LawInfo, NetworkInfo, SkinInfo};
 use souple_skin::Cost;
 
+use super::frames_needed::Needed;
 use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path};
 
 #[derive(clap::Args)]
@@ -17,11 +19,27 @@ pub struct Arguments {
     /// Changes a value of the scene; may be repeated
     #[arg(long = "set", value_name = "PATH=VALUE")]
     settings: Vec<String>,
+    /// Says how many frames bodies of frames need for it, by their softest motions, such as 5% or 0.05
+    #[arg(long, value_name = "ERROR", value_parser = share)]
+    accuracy: Option<f64>,
     #[arg(long)]
     pub json: bool,
     /// Warnings and errors alone
     #[arg(long)]
     quiet: bool,
+}
+
+/// A share, also in per cent.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    let share = number.trim().parse::<f64>().map(|number| number * unit);
+    share
+        .ok()
+        .filter(|share| *share > 0.0 && *share < 1.0)
+        .ok_or("expected a share above 0 and below 1, such as 5%".to_owned())
 }
 
 pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
@@ -83,6 +101,12 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         broke_off
             .map(|(step, error)| format!("the last of {step} steps that were tried is refused: {error}")),
     );
+    let path = scene_path(&arguments.scene);
+    let of_body = |body: &BodyInfo, accuracy: f64| Needed::of(&path, &arguments.settings, body, accuracy);
+    let carried = bodies.iter().filter(|body| body.frames.is_some());
+    let needed: Vec<Needed> = arguments
+        .accuracy
+        .map_or_else(Vec::new, |accuracy| carried.map(|body| of_body(body, accuracy)).collect());
     let document = json!({
         "scene": scene_path(&arguments.scene).display().to_string(),
         "title": title,
@@ -92,6 +116,8 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         "systems": systems,
         "networks": networks.iter().zip(&network_costs).map(|(n, costs)| (n.name.clone(), network_to_json(n, costs))).collect::<Map<_, _>>(),
         "skins": costs.iter().map(|(name, cost)| ((*name).to_owned(), skin_to_json(cost))).collect::<Map<_, _>>(),
+        "frames": frames_to_json(&bodies),
+        "frames_needed": needed.iter().map(|of| (of.body.clone(), of.to_json())).collect::<Map<_, _>>(),
         "probes": probes.len(),
         "steps": steps,
         "forecast": {
@@ -137,6 +163,19 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     for (network, costs) in networks.iter().zip(&network_costs) {
         print_network(network, costs);
     }
+    for (name, of_body) in bodies.iter().filter_map(|body| Some((&body.name, body.frames.as_ref()?))) {
+        let FramesReport { frames, points, reaching, effective, least_effective, .. } = of_body.report;
+        let FramesReport { inertia_condition, moment_condition, .. } = of_body.report;
+        print_line(format_args!(
+            "  frames of {name}: {frames} at {points} points, {reaching:.1} reach a point, {effective:.1} have a say \
+             ({least_effective:.1} at least); condition of their inertia {inertia_condition:.1e}, of the moments that moving \
+             least squares would invert {moment_condition:.1e}{}",
+            if moment_condition > SINGULAR { ": singular" } else { "" }
+        ));
+    }
+    for of_body in &needed {
+        print_line(format_args!("  {}", of_body.told()));
+    }
     for (name, cost) in &costs {
         print_line(format_args!(
             "  skin {name}: {} nodes worked out in a step, {}, {:.1} MB, about {:.2} ms of it",
@@ -156,6 +195,35 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
         world.bytes() as f64 * 1e-6
     ));
     Ok(end_of(&errors))
+}
+
+/// Conditions beyond which a matrix is singular to rounding.
+const SINGULAR: f64 = 1e15;
+
+/// How well the frames of bodies serve.
+fn frames_to_json(bodies: &[BodyInfo]) -> Map<String, Value> {
+    let of_body = |body: &BodyInfo| {
+        let FramesReport {
+            frames,
+            points,
+            reaching,
+            effective,
+            least_effective,
+            inertia_condition,
+            moment_condition,
+        } = body.frames.as_ref()?.report;
+        let report = json!({
+            "frames": frames,
+            "points": points,
+            "frames_reaching_a_point": reaching,
+            "effective_frames_per_point": effective,
+            "least_effective_frames": least_effective,
+            "inertia_condition": inertia_condition,
+            "moment_condition": moment_condition,
+        });
+        Some((body.name.clone(), report))
+    };
+    bodies.iter().filter_map(of_body).collect()
 }
 
 /// Forecast of a skin.

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod compare;
 mod derive;
+mod frames_needed;
 mod haptics;
 mod interruption;
 mod law_steps;

@@ -73,6 +73,12 @@ impl Clock {
         Self { start: Instant::now(), on_processor }
     }
 
+    /// What the work took of the processor since the start, or the time that has passed where the system does not tell.
+    pub fn seconds(&self) -> f64 {
+        let passed = self.start.elapsed().as_secs_f64();
+        self.on_processor.zip(seconds_on_processor()).map_or(passed, |(start, end)| end - start)
+    }
+
     /// Adds what each of `count` pieces of work took.
     pub fn stop(self, seconds: &mut Vec<f64>, processor: &mut Vec<f64>, count: usize) {
         seconds.push(self.start.elapsed().as_secs_f64() / count as f64);

@@ -1,6 +1,6 @@
 //! Bodies of frames: the reference bar against converged answers, a ligament, a bar that spins freely, tied organs.
 
-use crate::{Case, Reading, Tolerance};
+use crate::{Case, Limit, Reading, Refinement, Statistic, Tolerance, Variant};
 
 const BAR: Case = Case {
     id: "",
@@ -42,6 +42,43 @@ const SPINNING: Case = Case {
     mutation: "bodies.bar.angular_velocity=[0, 0.5, 6.001]",
     ..BAR
 };
+
+/// A rigid motion of all frames.
+const LED: Case = Case {
+    capabilities: &["BOS-1"],
+    scene: "frames_led",
+    reading: Reading::last("strain").taking(Statistic::Max),
+    reference: 0.0,
+    // strains of 1e-14, rounding of positions over cells, squared, times a modulus of 1 MPa and 0.005 m³, is 5e-25 J
+    tolerance: Tolerance::Absolute(1e-22),
+    source: "F is a rotation for any weights that sum to one",
+    mutation: "bodies.bar.frames.bones[0].frames=[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]",
+    ..BAR
+};
+
+const MEMBRANE: Case = Case {
+    capabilities: &["BOS-3"],
+    scene: "membrane",
+    reference: 0.01,
+    tolerance: Tolerance::Absolute(2e-4),
+    source: "symmetry: the middle goes half of the way, and turns by half",
+    ..BAR
+};
+
+const CONDITION: Case = Case {
+    capabilities: &["BOS-3"],
+    reading: Reading::MomentCondition("sheet"),
+    // 1/epsilon where an eigenvalue is nothing, with the eigenvalues' own rounding
+    reference: 4.503_599_627_370_496e15,
+    tolerance: Tolerance::Absolute(3.6e15),
+    source: "points in a plane have no moment across it",
+    ..BAR
+};
+
+/// Energy of a spinning bar, `m v²/2 + ω·Jω/2` of a block of 5 kg [J].
+const SPINNING_ENERGY: f64 = 1.988_541_666_666_666_7;
+
+const TISSUES: Case = Case { capabilities: &["BOS-9"], scene: "tissues", ..BAR };
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -136,6 +173,223 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Relative(1e-3),
         source: "equilibrium: what is left of the swing after three seconds is the tolerance",
         mutation: "bodies.tissue.material.density=1200",
+        ..BAR
+    },
+    Case {
+        id: "frames_rigid_motion",
+        what: "energy of strain of a bar whose frames turn as one, Wendland's weights",
+        ..LED
+    },
+    Case {
+        id: "frames_rigid_motion_gaussian",
+        what: "the same, Gauss's",
+        settings: &[r#"bodies.bar.frames.weights="gaussian""#],
+        ..LED
+    },
+    Case {
+        id: "frames_rigid_motion_inverse",
+        what: "the same, by inverse distance",
+        settings: &[r#"bodies.bar.frames.weights="inverse_distance""#],
+        ..LED
+    },
+    Case {
+        id: "frames_rigid_motion_harmonic",
+        what: "the same, harmonic, affine frames, points in voxels",
+        settings: &[
+            r#"bodies.bar.frames.weights="harmonic""#,
+            r#"bodies.bar.frames.kind="affine""#,
+            r#"bodies.bar.frames.points={ name = "voxels", size = "4 cm" }"#,
+        ],
+        ..LED
+    },
+    Case {
+        id: "frames_rigid_motion_geodesic",
+        what: "the same, by the way within the shape",
+        settings: &[r#"bodies.bar.frames.weights="geodesic""#],
+        ..LED
+    },
+    Case {
+        id: "frames_energy_order",
+        capabilities: &["BOS-2", "BOS-6"],
+        what: "order at which the energy drifts by Runge and Kutta's steps: forces that are not its gradient would leave a rest",
+        scene: "frames_spinning",
+        settings: &[r#"systems.main.stepper="rk4""#, "run.duration=0.4"],
+        reading: Reading::last("energy"),
+        refinement: Some(Refinement {
+            size_of: "step [s]",
+            runs: &[
+                Variant { size: 1e-3, settings: &[r#"world.period="1 ms""#] },
+                Variant { size: 5e-4, settings: &[r#"world.period="0.5 ms""#] },
+            ],
+            limit: Limit::Known(SPINNING_ENERGY),
+        }),
+        // of each vibration a step loses (ωh)⁶/72; the next term is of the seventh order, and ωh about 0.2
+        reference: 5.0,
+        tolerance: Tolerance::Absolute(0.5),
+        source: "Hairer, Nørsett & Wanner 1993, II",
+        mutation: "bodies.bar.material.density=1000.1",
+        ..BAR
+    },
+    Case {
+        id: "frames_ligament_of_five",
+        what: "corner of the led end of a ligament of five frames on a line after half a turn",
+        settings: &["bodies.ligament.frames.placement.count=5"],
+        ..LIGAMENT
+    },
+    Case {
+        id: "frames_line_condition",
+        what: "least condition of what moving least squares would invert over five frames on a line",
+        scene: "ligament",
+        settings: &["bodies.ligament.frames.placement.count=5"],
+        reading: Reading::MomentCondition("ligament"),
+        mutation: r#"bodies.ligament.frames.placement={ name = "grid", counts = [5, 2, 2] }"#,
+        ..CONDITION
+    },
+    Case {
+        id: "frames_plane_condition",
+        what: "the same over the twelve frames of a membrane",
+        scene: "membrane",
+        mutation: "bodies.sheet.frames.placement.counts=[4, 2, 3]",
+        ..CONDITION
+    },
+    Case {
+        id: "frames_membrane_stretched",
+        what: "middle of a membrane of twelve frames in a plane, drawn out by a tenth and twisted by a quarter turn",
+        reading: Reading::component("centre", 0),
+        mutation: r#"parameters.stretch="1.8 cm""#,
+        ..MEMBRANE
+    },
+    Case {
+        id: "frames_membrane_twisted",
+        what: "side of its middle, twisted by a quarter turn without stretch",
+        settings: &[r#"parameters.stretch="0 cm""#],
+        reading: Reading::component("middle", 1),
+        // 0.05 m sin 45°
+        reference: -0.035_355_339_059_327_38,
+        // its sides draw it in: by what the length of the led edge's helix is over its middle, (0.05·π/2)²/(2·0.2²), a twelfth
+        tolerance: Tolerance::Relative(0.04),
+        mutation: r#"parameters.twist="80 deg""#,
+        ..MEMBRANE
+    },
+    Case {
+        id: "frames_membrane_bent",
+        what: "middle of the same, bent by a quarter turn: on the arc of a circle",
+        settings: &[
+            r#"parameters.stretch="0 cm""#,
+            r#"parameters.twist="0 deg""#,
+            r#"parameters.bend="90 deg""#,
+        ],
+        reading: Reading::component("centre", 1),
+        // 0.2 m/(π/2) (1 - cos 45°)
+        reference: 0.037_292_322_857_805_656,
+        // the arc of the middle, with its thickness over its radius squared and the sides that it turns up
+        tolerance: Tolerance::Relative(0.03),
+        source: "a strip that bending neither stretches nor shortens",
+        mutation: r#"parameters.bend="60 deg""#,
+        ..MEMBRANE
+    },
+    Case {
+        id: "frames_in_real_time",
+        capabilities: &["BOS-7"],
+        what: "a step of 52 rigid frames and 1,024 points, neo-Hookean, one solve, one thread, in less than a sixtieth of a second",
+        settings: &[
+            "bodies.bar.mesh.cells=[32, 2, 2]",
+            "bodies.bar.frames.placement.counts=[13, 2, 2]",
+            r#"bodies.bar.frames.kind="rigid""#,
+            r#"bodies.bar.material.name="neo_hookean""#,
+            r#"systems.main.stepper={ name = "backward_euler", newton = "one" }"#,
+            "run.duration=1",
+        ],
+        reading: Reading::StepMilliseconds,
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(1000.0 / 60.0),
+        source: "60 steps a second; a figure of the machine, of which it takes a tenth",
+        mutation: "bodies.bar.mesh.cells=[200, 12, 12]",
+        ..BAR
+    },
+    Case {
+        id: "frames_tissues_follow",
+        what: "how far an organ follows another through a pad, a ligament and a sheet, with nothing else that holds it",
+        settings: &["bodies.lower.springs=[]", "world.gravity=[0, 0, 0]", "run.duration=3"],
+        reading: Reading::component("lower", 1),
+        reference: 0.02,
+        tolerance: Tolerance::Relative(1e-3),
+        source: "what is free goes all of the way: what is left of the swing after three seconds is the tolerance",
+        mutation: r#"bodies.upper.pins[0].motion.offsets[1]=[0, "1.9 cm", 0]"#,
+        ..TISSUES
+    },
+    Case {
+        id: "frames_tissues_carry",
+        what: "what holds an organ from which another hangs by a pad, a ligament and a sheet: the weight of all five",
+        settings: &["bodies.lower.springs=[]", "run.duration=3"],
+        reading: Reading::component("pull", 1),
+        // 0.4 + 0.4 kg, a pad of (0.1/3)² 0.02 m³ of 920 kg/m³, 6 by 6 by 20 mm of 1100, 2 by 100 by 20 mm of 1050; 9.81 m/s²
+        reference: 8.097_531_52,
+        tolerance: Tolerance::Relative(1e-3),
+        source: "equilibrium: what is left of the swing after three seconds is the tolerance",
+        mutation: r#"bodies.pad.mesh.from_region={ box = [[0.01, 0.039, 0.03], [0.07, 0.041, 0.07]] }"#,
+        ..TISSUES
+    },
+    Case {
+        id: "frames_tissues_slip",
+        what: "how far the ends of a ligament slip on two organs that are drawn apart: a thirtieth of its thickness at most",
+        reading: Reading::last("slip").taking(Statistic::Max),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(2e-4),
+        source: "springs as stiff as a layer of both materials of a thousandth of the thickness, on an organ that bends under them",
+        mutation: "bodies.upper.pins[0].motion.offsets[1]=[0, 0.08, 0]",
+        ..TISSUES
+    },
+    Case {
+        id: "frames_fork_bent",
+        capabilities: &["BOS-8"],
+        what: "how far one prong of a fork moves while the other one is bent, ten frames, by the way within the shape",
+        scene: "fork",
+        reading: Reading::component("other", 2),
+        reference: 0.006_098_885_727_868_7,
+        // ten frames bend a fifth less than 18,603 tetrahedra
+        tolerance: Tolerance::Relative(0.25),
+        source: "the fork's own mesh in place of frames",
+        mutation: r#"bodies.fork.frames.weights={ name = "wendland", support = 2 }"#,
+        ..BAR
+    },
+    Case {
+        id: "frames_bar_geodesic",
+        capabilities: &["BOS-4", "BOS-8"],
+        what: "tip of the clamped bar, 44 affine frames, weights by the way within the shape",
+        settings: &[r#"bodies.bar.frames.weights={ name = "geodesic", support = 2 }"#],
+        ..BAR
+    },
+    Case {
+        id: "frames_tissue_gains_nothing",
+        capabilities: &["BOS-9", "BOS-6"],
+        what: "the greatest energy of two tied organs of which one is thrown, over what they begin with",
+        scene: "tied_organs",
+        settings: &[
+            "bodies.upper.pins=[]",
+            "bodies.upper.velocity=[0.1, 0, 0]",
+            "world.gravity=[0, 0, 0]",
+            "run.duration=1",
+        ],
+        reading: Reading::last("energy").taking(Statistic::Max),
+        // 0.4 kg at 0.1 m/s
+        reference: 0.002,
+        tolerance: Tolerance::Relative(1e-9),
+        source: "backward Euler takes energy and makes none",
+        mutation: "bodies.upper.velocity=[0.11, 0, 0]",
+        ..BAR
+    },
+    Case {
+        id: "frames_fascia_torn",
+        capabilities: &["BOS-9"],
+        what: "springs by which a sheet had grown to a bump, all torn when it is drawn off",
+        scene: "fascia_torn",
+        reading: Reading::last("torn"),
+        // eleven by eleven points over the bump
+        reference: 121.0,
+        tolerance: Tolerance::Absolute(0.5),
+        source: "points of its underside that lie on the bump",
+        mutation: "bodies.sheet.pins[0].motion.offsets[2]=[0, 0.01, 0]",
         ..BAR
     },
 ];
