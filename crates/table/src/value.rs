@@ -173,7 +173,10 @@ impl Values {
                 | (Kind::Texts, Value::Texts(_)) => true,
                 (Kind::Vector, Value::Vector(vector)) => vector.iter().all(|component| component.is_finite()),
                 (Kind::Numbers, Value::Numbers(numbers)) => {
-                    !numbers.is_empty() && numbers.iter().all(|number| parameter.range.contains(*number))
+                    // an empty list says nothing, unless that is what is meant where nothing is written
+                    let may_be_empty = matches!(parameter.default, Some(Value::Numbers([])));
+                    (may_be_empty || !numbers.is_empty())
+                        && numbers.iter().all(|number| parameter.range.contains(*number))
                 }
                 (Kind::Choice(choices), Value::Text(text)) => choices.contains(&text),
                 _ => false,
