@@ -540,8 +540,8 @@ impl OperatorBuffers {
 
     /// Derived rows that have to be placed for forces to be asked; `None` where that is all of them.
     pub fn rows_at_work(&mut self, system: &System) -> Option<&[u32]> {
-        let asks_all = |force: &Box<dyn Force>| !force.reads_cliques_alone();
-        if system.kinematics.is_trivial() || system.has_pairs() || system.forces.iter().any(asks_all) {
+        let suffices = system.forces.iter().all(|force| force.reads_cliques_alone());
+        if system.kinematics.is_trivial() || system.has_pairs() || !suffices {
             return None;
         }
         self.learn(system);

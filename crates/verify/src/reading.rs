@@ -131,6 +131,13 @@ impl Reading {
                 Ok((*hertz.ok_or("the scene has no such frequency")?, "Hz"))
             }
             Self::Derived(_) => unreachable!("counted above"),
+            Self::HighestFrequency => {
+                let mut world = scene.model.start(scene.state);
+                let forecast = world.with_system(0, |system, state, around, ws| {
+                    souple_engine::stability::forecast(system, state, around, ws)
+                });
+                Ok((forecast.highest_frequency, "rad/s"))
+            }
             Self::MomentCondition(name) => {
                 let body = scene.bodies.iter().find(|body| body.name == *name);
                 let frames = body.and_then(|body| body.frames.as_ref());

@@ -228,7 +228,6 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(0.5),
         source: "Hairer, Nørsett & Wanner 1993, II",
         mutation: "bodies.bar.material.density=1000.1",
-        ..BAR
     },
     Case {
         id: "frames_ligament_of_five",
