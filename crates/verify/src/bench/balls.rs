@@ -18,7 +18,7 @@ fn heap(radius: f64) -> Vec<String> {
 }
 
 fn held(baseline: Option<f64>) -> Result<Held, String> {
-    let rebound = value_of(scene("network_collision", &[])?, 200, "speed", 0)?;
+    let rebound = value_of(scene("network_collision", &[])?, 600, "speed", 0)?;
     let error_of = "the speed after a collision of two such balls".to_owned();
     Ok(Held { error: (rebound / REBOUND - 1.0).abs(), error_of, baseline })
 }

@@ -201,7 +201,7 @@ pub(super) const CASES: &[Case] = &[
         reference: 142.0 / 30.0,
         tolerance: Tolerance::Relative(0.1),
         source: "EXP-37: the same energy within 10 %; Harborth 1974: [3n - √(12n - 3)] contacts",
-        mutation: "networks.group.crowds[1].law.push=0",
+        mutation: r#"networks.group.crowds[1].law.push="0 * D""#,
         ..AGGLOMERATE
     },
     Case {
@@ -213,7 +213,7 @@ pub(super) const CASES: &[Case] = &[
         reference: 0.0,
         tolerance: Tolerance::Absolute(0.2),
         source: "EXP-48: both agree within 0.2 S",
-        mutation: "networks.block.contours.trace.radius=0.8",
+        mutation: "networks.block.contours.trace.radius=1.2",
         ..AGGLOMERATE
     },
     Case {
@@ -253,7 +253,7 @@ pub(super) const CASES: &[Case] = &[
         // 40 % of it
         tolerance: Tolerance::Absolute(0.97),
         source: "EXP-05: more than 60 % of the imprint stays",
-        mutation: "networks.dough.crowds[0].law={ name = \"spring\", stiffness = 20 }",
+        mutation: "shapes.board.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -1], [0, 0, -1], [0, 0, 4]]",
         ..OSCILLATOR
     },
     Case {
