@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn sheets_are_full() {
         let spacing = 0.1;
-        let sphere = Sphere { centre: Vec3::new(0.3, 0.1, -0.2), radius: 0.53 };
+        let sphere = Sphere::new(Vec3::new(0.3, 0.1, -0.2), 0.53);
         let bounds = BoundingBox::of([sphere.centre]).grown(sphere.radius);
         let filling = Filling { spacing, inset: 0.5 * spacing, depth: f64::INFINITY, bounds };
         let balls = filling.fill(&sphere).unwrap();
