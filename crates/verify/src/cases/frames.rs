@@ -248,7 +248,7 @@ pub(super) const CASES: &[Case] = &[
         id: "frames_plane_condition",
         what: "the same over the twelve frames of a membrane",
         scene: "membrane",
-        mutation: "bodies.sheet.frames.placement.counts=[4, 2, 3]",
+        mutation: r#"bodies.sheet.frames.placement={ name = "farthest_point", count = 24 }"#,
         ..CONDITION
     },
     Case {
@@ -381,14 +381,14 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "frames_fascia_torn",
         capabilities: &["BOS-9"],
-        what: "springs by which a sheet had grown to a bump, all torn when it is drawn off",
+        what: "springs by which a strip had grown to a bump, all torn when it is drawn off; none are where nobody draws",
         scene: "fascia_torn",
         reading: Reading::last("torn"),
-        // eleven by eleven points over the bump
-        reference: 121.0,
+        // eleven by five points over the bump
+        reference: 55.0,
         tolerance: Tolerance::Absolute(0.5),
         source: "points of its underside that lie on the bump",
-        mutation: "bodies.sheet.pins[0].motion.offsets[2]=[0, 0.01, 0]",
+        mutation: "bodies.sheet.pins[0].motion.offsets[2]=[0, 0, 0]",
         ..BAR
     },
 ];
