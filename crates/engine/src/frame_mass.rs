@@ -82,15 +82,28 @@ impl FrameMass {
         if self.tiles.is_empty() {
             return;
         }
+        self.multiply(x);
+        for (out, product) in out.iter_mut().zip(&self.products) {
+            *out += Vec3::new(product[0], product[1], product[2]) * scale;
+        }
+    }
+
+    /// `½ ẋᵀ M ẋ` [J].
+    pub fn kinetic_energy(&mut self, velocities: &[Vec3]) -> f64 {
+        let rest = self.rest.kinetic_energy(velocities);
+        self.multiply(velocities);
+        let products = self.products.iter().zip(velocities);
+        rest + 0.5 * products.map(|(p, v)| p[0] * v.x + p[1] * v.y + p[2] * v.z).sum::<f64>()
+    }
+
+    /// `products = M x` of what is in tiles.
+    fn multiply(&mut self, x: &[Vec3]) {
         let Self { tiles, rows, products, free_rows, .. } = self;
         rows.clear();
         rows.extend(x[..*free_rows].iter().map(|x| [x.x, x.y, x.z, 0.0]));
         products.clear();
         products.resize(*free_rows, [0.0; 4]);
         Arch::new().dispatch(Products { tiles, rows, products });
-        for (out, product) in out.iter_mut().zip(products) {
-            *out += Vec3::new(product[0], product[1], product[2]) * scale;
-        }
     }
 
     /// Bytes held.
@@ -173,5 +186,6 @@ mod tests {
             // sums of 14 products of order one
             assert!((*out - *expected).length() < 1e-14);
         }
+        assert!((tiled.kinetic_energy(&x) - mass.kinetic_energy(&x)).abs() < 1e-13);
     }
 }

@@ -548,6 +548,31 @@ impl OperatorBuffers {
         Some(&self.derived)
     }
 
+    /// `out += M x` over rows.
+    pub fn add_mass_product(&mut self, system: &System, x: &[Vec3], out: &mut [Vec3]) {
+        match self.mass_of(system) {
+            Some(mass) => mass.add_scaled_product(1.0, x, out),
+            None => system.mass.add_product(x, out),
+        }
+    }
+
+    /// `½ ẋᵀ M ẋ` [J].
+    pub fn kinetic_energy(&mut self, system: &System, velocities: &[Vec3]) -> f64 {
+        match self.mass_of(system) {
+            Some(mass) => mass.kinetic_energy(velocities),
+            None => system.mass.kinetic_energy(velocities),
+        }
+    }
+
+    /// The mass in tiles, where there are frames.
+    fn mass_of(&mut self, system: &System) -> Option<&mut FrameMass> {
+        if !system.kinematics.has_frames() {
+            return None;
+        }
+        self.learn(system);
+        self.mass.as_mut()
+    }
+
     fn learn(&mut self, system: &System) {
         if self.mass.is_none() {
             self.derived = derived_rows_at_work(system);

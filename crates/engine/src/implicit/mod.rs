@@ -275,7 +275,8 @@ impl ImplicitStep<'_> {
             for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(coasting) {
                 *change = (*now - *before) * self.rates.acceleration;
             }
-            self.system.mass.add_product(&ws.row_scratch, &mut buffers.unbalanced);
+            let ImplicitBuffers { operator, unbalanced, .. } = buffers;
+            operator.add_mass_product(self.system, &ws.row_scratch, unbalanced);
         }
     }
 
@@ -290,7 +291,7 @@ impl ImplicitStep<'_> {
 
     /// The incremental potential `½ b/a Σ m |ẋ - p|² + E(x)` at the placed rows: minus its gradient is the residual. For
     /// backward Euler the first part is `Σ m |x - x̂|²/(2 h²)`, `x̂` where inertia alone would lead.
-    fn merit(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &ImplicitBuffers) -> f64 {
+    fn merit(&self, state: &SystemState, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers) -> f64 {
         let system = self.system;
         let mut stored = 0.0;
         for (index, force) in system.forces.iter().enumerate() {
@@ -304,7 +305,7 @@ impl ImplicitStep<'_> {
         for ((change, now), before) in ws.row_scratch.iter_mut().zip(&ws.rows.velocities).zip(coasting) {
             *change = *now - *before;
         }
-        self.rates.potential() * system.mass.kinetic_energy(&ws.row_scratch) + stored
+        self.rates.potential() * buffers.operator.kinetic_energy(system, &ws.row_scratch) + stored
     }
 
     /// What is left of prescribed motion: how far constrained components are from where they are led.
