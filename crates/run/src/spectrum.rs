@@ -4,6 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Zeros behind the values, as many times as these: the peak is found between the bins of the values alone.
 const PADDING: usize = 8;
+/// Values of which a swing can be told, at least.
+const LEAST: usize = 8;
 /// Values and zeros at most.
 const MOST: usize = 1 << 20;
 
@@ -11,7 +13,8 @@ const MOST: usize = 1 << 20;
 /// swings within the whole time, below which the window cannot tell a swing from a drift. `None` where nothing swings.
 pub fn strongest_frequency(values: &[f64], interval: f64) -> Option<f64> {
     let count = values.len();
-    if count < 8 || count > MOST || !(interval > 0.0) || values.iter().any(|value| !value.is_finite()) {
+    let apart = interval.is_finite() && interval > 0.0;
+    if !(LEAST..=MOST).contains(&count) || !apart || values.iter().any(|value| !value.is_finite()) {
         return None;
     }
     let mean = values.iter().sum::<f64>() / count as f64;

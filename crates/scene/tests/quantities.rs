@@ -186,7 +186,13 @@ stepper = { name = "staggered", halvings = 2 }
 [bodies.cube]
 mesh = { generate = "box", size = [1, 1, 1], cells = [4, 4, 4], element = "tet4" }
 material = { name = "neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
-levels = { count = 2, refine = 0.1, coarsen = 0.03 }
+[bodies.cube.levels]
+count = 2
+refine = 0.1
+coarsen = 0.03
+[bodies.cube.levels.dress]
+mesh = { generate = "box", size = [1, 1, 1], cells = [8, 8, 8], element = "tet4" }
+blend = "20 ms"
 "#;
 
 const FELT: &str = r#"[hands.right]
@@ -196,6 +202,27 @@ mass = "50 g"
 body = "cube"
 region = "y_max"
 motion = { formula = [0, "-0.1 * t", 0] }
+"#;
+
+const BALLS: &str = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = "t_simulation"
+[networks.cube.masses.balls]
+fill = { shape = { name = "sphere", centre = [0, 0, 0], radius = 2 }, spacing = 1 }
+mass = 1
+[[networks.cube.crowds]]
+law = { name = "ball", threshold = 1, stiffness = 1000, damping = 5 }
+[networks.cube.contours.trace]
+scan = ["balls"]
+radius = 0.7
+step = 0.03
+[networks.cube.contours.frontier]
+frontier = ["balls"]
+radius = 0.7
+step = 0.05
 "#;
 
 /// Every quantity of the table can be measured, and gives what its rank says; none is not finite at rest.
@@ -212,6 +239,10 @@ fn every_quantity_is_measured() {
         (&changing, cube),
         (LAYERED, cube),
         (&felt, "hand = \"right\""),
+        (BALLS, "body = \"cube\""),
+        (BALLS, "body = \"cube\"\nwithin = 1.3"),
+        (BALLS, "body = \"cube\"\ncontour = \"trace\""),
+        (BALLS, "body = \"cube\"\ncontour = \"trace\"\nfrom = \"frontier\""),
     ];
     for entry in QUANTITIES.entries {
         let scene = |(scene, of)| format!("{scene}[probes.q]\n{of}\nquantity = \"{}\"\n", entry.name);

@@ -55,7 +55,7 @@ fn moving() -> RigidMotion {
 #[test]
 fn shape_contacts_agree_with_energies_and_derivatives() {
     type Make = fn() -> Box<dyn Shape>;
-    let shapes: [(&str, Make); 6] = [
+    let shapes: [(&str, Make); 7] = [
         ("plane", || Box::new(Plane { point: Vec3::ZERO, normal: Vec3::new(0.6, 0.8, 0.0) })),
         ("sphere", || Box::new(Sphere::new(Vec3::new(0.1, 0.0, 0.2), 1.0))),
         ("capsule", || Box::new(Capsule { from: Vec3::new(-0.5, 0.0, 0.0), to: Vec3::X, radius: 0.6 })),
@@ -64,6 +64,13 @@ fn shape_contacts_agree_with_energies_and_derivatives() {
             // turned by nearly a quarter, its sides exchanged for that: the same places are inside and outside, at an angle
             let axes = exponential(Vec3::new(0.0, 0.0, 1.5));
             Box::new(Cuboid { centre: Vec3::ZERO, half_size: Vec3::new(0.5, 0.9, 0.7), axes })
+        }),
+        ("height", || {
+            let entry = SHAPES.find("height").unwrap();
+            let values = Values::new()
+                .with("height", Value::Text("0.3 * x - 0.2 * y + 0.04 * sin(2 * x) * cos(y) + 0.6"));
+            (entry.build)(&entry.values(values).unwrap(), &|_| Err("there are no files here".to_owned()))
+                .unwrap()
         }),
         ("closed_surface", || {
             let surface = cube(Vec3::new(-0.6, -0.5, -0.4), Vec3::new(0.1, 0.2, -0.1));

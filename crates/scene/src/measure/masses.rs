@@ -30,7 +30,11 @@ pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World
         MassesQuantity::Neighbours => 2.0 * near.len() as f64 / places.len() as f64,
         MassesQuantity::Spacing => {
             let apart = |[a, b]: &[u32; 2]| (places[*a as usize] - places[*b as usize]).length();
-            near.iter().map(apart).sum::<f64>() / near.len() as f64
+            match near.len() {
+                // all stand at least that far apart
+                0 => within,
+                count => near.iter().map(apart).sum::<f64>() / count as f64,
+            }
         }
         MassesQuantity::Pairs => unreachable!("counted above"),
     }

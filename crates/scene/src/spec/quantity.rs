@@ -481,7 +481,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     ),
     &entry(
         "masses.spacing",
-        "mean distance of masses nearer than the key `within`",
+        "mean distance of masses nearer than the key `within`; that itself where none are",
         MULTITUDE,
         masses("m", MassesQuantity::Spacing),
     ),

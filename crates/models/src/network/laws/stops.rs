@@ -299,7 +299,7 @@ mod tests {
             let rounding = 1e-9;
             assert!(worst.iter().all(|off| *off >= -rounding && *off <= error + rounding), "{error}: {most}");
             assert!(most > 0.5 * error, "{error}: {most}");
-            assert_eq!(push(-0.01).abs() < rounding, true, "outside");
+            assert!(push(-0.01).abs() < rounding, "outside");
             let (knots, slopes) = exponential_pieces(k, d, error, deepest).unwrap();
             assert!(slopes.is_sorted_by(|a, b| a < b));
             assert_eq!(knots.len(), slopes.len());
