@@ -39,6 +39,11 @@ impl LinearError {
                 | SolveError::NotConverged { .. }
         )
     }
+
+    /// Whether the system was given with a number that is not finite.
+    pub fn is_not_finite(&self) -> bool {
+        matches!(self.error, SolveError::NotFinite { .. })
+    }
 }
 
 impl From<SolveError> for LinearError {

@@ -270,6 +270,29 @@ impl System {
         })
     }
 
+    /// The first force whose differential is not finite at the placed rows, evaluated one by one; `None` where all are.
+    pub fn first_slope_not_finite(
+        &self,
+        rows: &Rows,
+        state: &SystemState,
+        around: &Surroundings,
+        weights: TangentWeights,
+        scratches: &mut [Scratch],
+    ) -> Option<StepError> {
+        // of no direction that a slope might vanish in
+        let delta: Vec<Vec3> = (0..rows.positions.len())
+            .map(|row| Vec3::new(1.0, 2.0_f64.sqrt(), 3.0_f64.sqrt()) * (1.0 + (row as f64).sin().abs()))
+            .collect();
+        let mut alone = vec![Vec3::ZERO; rows.positions.len()];
+        self.forces.iter().enumerate().find_map(|(index, force)| {
+            alone.fill(Vec3::ZERO);
+            let at = self.view(index, rows, state, around);
+            force.add_differential(&at, weights, &delta, &mut scratches[index], &mut alone);
+            let row = alone.iter().position(|f| !f.is_finite())?;
+            Some(StepError::SlopeNotFinite { force: force.name().to_owned(), row, time: rows.time })
+        })
+    }
+
     /// The norm of the largest force at the placed rows, evaluated one by one: what is balanced where the sum is nothing [N].
     pub fn largest_force(
         &self,

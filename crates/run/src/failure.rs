@@ -71,7 +71,7 @@ impl Failure {
             StepError::NewtonStalled { block, .. } | StepError::Linear { block: Some(block), .. } => {
                 row_of(system, *block)
             }
-            StepError::ForceNotFinite { row, .. } => Some(*row),
+            StepError::ForceNotFinite { row, .. } | StepError::SlopeNotFinite { row, .. } => Some(*row),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".q") => Some(field.index),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".v") => {
                 row_of(system, field.index)
@@ -83,7 +83,9 @@ impl Failure {
             own.find_map(|body| Some((body, Part::of_row(row, body)?)))
         });
         let force = match error.error.cause() {
-            StepError::ForceNotFinite { force, .. } => Some(force.clone()),
+            StepError::ForceNotFinite { force, .. } | StepError::SlopeNotFinite { force, .. } => {
+                Some(force.clone())
+            }
             _ => None,
         };
         let spot = found.map(|(body, (part, row))| {
@@ -174,6 +176,30 @@ mod tests {
             assert!(matches!(failure.spot, Some(Spot { part: Part::Frame(_), .. })), "{failure:?}");
             assert!(failure.message().contains("of body `ligament`, at ("), "{}", failure.message());
             assert!(failure.to_json()["frame"].is_u64());
+        }
+    }
+
+    /// Forces without a slope, and laws beyond their range, are named in the place of the linear system that they spoil.
+    #[test]
+    fn what_spoils_a_linear_system_is_named() {
+        let body = "format = 1\n[world]\nperiod = \"10 ms\"\n[bodies.cube]\n\
+                    mesh = { generate = \"box\", size = [1, 1, 1], cells = [2, 2, 2], element = \"hex8\" }\n";
+        let steep = "material = { name = \"neo_hookean\", youngs_modulus = \"1 MPa\", poissons_ratio = 0.3, density = 1000 }\n\
+                     [[bodies.cube.pins]]\nregion = \"y_min\"\n\
+                     [[bodies.cube.loads]]\nregion = \"x_min\"\nforce = [\"sqrt(x)\", 0, 0]\n";
+        let ended = "material = { name = \"hyperelastic\", density = 1000, parameters = { m = \"1 kPa\", most = 0.1 }, \
+                     energy = \"-m*most/2*ln(1 - (I1 - 3)/most) - m*ln(J) + m/2*ln(J)^2\" }\n\
+                     [[bodies.cube.pins]]\nregion = \"x_min\"\n[[bodies.cube.pins]]\nregion = \"x_max\"\n\
+                     motion = { formula = [\"100*t\", 0, 0] }\n[systems.main]\nstepper = \"static\"\n";
+        for (rest, force, words) in
+            [(steep, "cube.loads[0]", "the slope of force"), (ended, "cube.material", "is not finite")]
+        {
+            let scene = souple_scene::read_text("cube", &format!("{body}{rest}"), Path::new("."), &[]);
+            let scene = scene.unwrap_or_else(|errors| panic!("{errors}"));
+            let mut world = scene.model.start(scene.state);
+            let failure = Failure::of_step(world.step().expect_err("a refused step"), &world, &scene.bodies);
+            assert_eq!(failure.force.as_deref(), Some(force), "{failure:?}");
+            assert!(failure.message().contains(words), "{}", failure.message());
         }
     }
 }

@@ -91,7 +91,12 @@ pub struct EntryShape {
     pub outlines: fn() -> Vec<Outline>,
     /// Whole other forms (`{ file = … }`); the first of them also as a text alone.
     pub instead: &'static [&'static Keys],
+    /// Where a name is known that is none of the tables', in words to stand behind `there is no …`.
+    pub elsewhere: fn(&str) -> Option<String>,
 }
+
+/// For tables that hold all names of their kind.
+pub const NOWHERE: fn(&str) -> Option<String> = |_| None;
 
 /// An entry of a table without its constructor.
 #[derive(Clone, Debug)]

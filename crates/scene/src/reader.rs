@@ -358,7 +358,9 @@ pub fn choose<B>(
     let entry = match table.find(name.text()?) {
         Ok(entry) => entry,
         Err(unknown) => {
-            let hint = unknown.nearest.map(|near| format!(" (did you mean `{near}`?)")).unwrap_or_default();
+            let elsewhere = (shape.elsewhere)(&unknown.name).map(|words| format!(" ({words})"));
+            let near = || unknown.nearest.map(|near| format!(" (did you mean `{near}`?)"));
+            let hint = elsewhere.or_else(near).unwrap_or_default();
             let message = format!("there is no {} `{}`{hint}", unknown.kind, quoted(&unknown.name));
             return name.refuse(Code::UnknownName, message, format!("one of {}", unknown.known.join(", ")));
         }

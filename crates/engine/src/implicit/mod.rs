@@ -17,7 +17,7 @@ use souple_math::Vec3;
 use souple_solve::newton as iteration;
 use souple_solve::reduce::norm;
 
-use crate::force::TangentWeights;
+use crate::force::{Scratch, TangentWeights};
 use crate::kinematics::UnknownKind;
 use crate::linear::{ByReference, Indefinite, LinearError, LinearSystem, Solved, Use};
 use crate::state::SystemState;
@@ -327,7 +327,7 @@ impl ImplicitStep<'_> {
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
         wanted: Wanted,
-    ) -> Result<(Solved, f64), LinearError> {
+    ) -> Result<(Solved, f64), StepError> {
         buffers.rhs.copy_from_slice(&buffers.residual);
         if wanted.constrained == Constrained::Led {
             self.lift_prescribed(state, ws, buffers);
@@ -336,6 +336,11 @@ impl ImplicitStep<'_> {
         if !ws.linear.is_matrix_free() && attempt.solved.as_ref().is_err_and(LinearError::may_be_indefinite) {
             // a direction in which the potential falls, where there is one; Newton's method judges it by the residual
             attempt = self.attempt(Curvature::Definite, state, ws, buffers, wanted);
+        }
+        if attempt.solved.as_ref().is_err_and(LinearError::is_not_finite)
+            && let Some(error) = self.force_not_finite(state, ws)
+        {
+            return Err(error);
         }
         let ImplicitBuffers { residual, direction, prescribed, .. } = buffers;
         self.system.project_free(direction);
@@ -349,6 +354,16 @@ impl ImplicitStep<'_> {
             LinearError { block: error.block.or_else(most_left), ..error }
         })?;
         Ok((solved, attempt.rounding))
+    }
+
+    /// The force at the placed rows that spoils a linear system, by itself or by its slope.
+    fn force_not_finite(&self, state: &SystemState, ws: &mut SystemWorkspace) -> Option<StepError> {
+        let SystemWorkspace { scratches, rows, .. } = ws;
+        let weights = TangentWeights { position: -1.0, velocity: -self.rates.velocity };
+        let slope = |scratches: &mut [Scratch]| {
+            self.system.first_slope_not_finite(rows, state, &self.around, weights, scratches)
+        };
+        self.system.first_force_not_finite(rows, state, &self.around, scratches).or_else(|| slope(scratches))
     }
 
     /// Takes from the right-hand side what prescribed motion brings: `A (δ_free + δ_prescribed) = -r`.

@@ -88,8 +88,14 @@ pub enum StepError {
         parts: f64,
         error: Box<StepError>,
     },
-    #[error("force `{force}` is not finite ({value:?} at row {row}, time {time} s)")]
+    #[error(
+        "force `{force}` is not finite ({value:?} at row {row}, time {time} s): it has no value there; lead or load more slowly, or stay where it has"
+    )]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
+    #[error(
+        "the slope of force `{force}` is not finite (at row {row}, time {time} s): it is infinite there, or there is none"
+    )]
+    SlopeNotFinite { force: String, row: usize, time: f64 },
     #[error(
         "what touches changed {searches} times within a step, and with it where the step leads; take a smaller step or more load steps"
     )]

@@ -1,7 +1,7 @@
 //! Bodies: shape, material, damping, where they start, what holds and loads them.
 
 use souple_math::Vec3;
-use souple_models::materials;
+use souple_models::materials::{self, WrittenLaw};
 use souple_models::solids::{BuildFormulation, BuildSection, FORMULATIONS, Quadrature, SECTIONS, Section};
 use souple_table::{Range, Value};
 
@@ -16,17 +16,32 @@ use super::region::{Region, direction};
 use super::skin::BODY_SKIN;
 use super::start::{START, StartSpec};
 use crate::diagnostic::{Code, Site};
-use crate::keys::{EntryShape, Key, Keys, Need, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Need, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
-pub(crate) const MATERIAL: EntryShape =
-    EntryShape { tag: "name", kind: "material", outlines: || outlines(&materials::TABLE), instead: &[] };
+pub(crate) const MATERIAL: EntryShape = EntryShape {
+    tag: "name",
+    kind: "material",
+    outlines: || outlines(&materials::TABLE),
+    instead: &[],
+    elsewhere: law_as_text,
+};
 
-pub(crate) const SECTION: EntryShape =
-    EntryShape { tag: "name", kind: "section", outlines: || outlines(&SECTIONS), instead: &[] };
+pub(crate) const SECTION: EntryShape = EntryShape {
+    tag: "name",
+    kind: "section",
+    outlines: || outlines(&SECTIONS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
-pub(crate) const FORMULATION: EntryShape =
-    EntryShape { tag: "name", kind: "formulation", outlines: || outlines(&FORMULATIONS), instead: &[] };
+pub(crate) const FORMULATION: EntryShape = EntryShape {
+    tag: "name",
+    kind: "formulation",
+    outlines: || outlines(&FORMULATIONS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
 pub(crate) static DAMPING: Keys = Keys::new(
     "damping",
@@ -326,6 +341,16 @@ impl Body {
     pub fn section(&self) -> Section {
         self.section.as_ref().map_or(Section::Solid, |chosen| (chosen.entry.build)(&chosen.values))
     }
+}
+
+/// Laws that are known by name as texts alone.
+fn law_as_text(name: &str) -> Option<String> {
+    let law = WrittenLaw::find(name)?;
+    Some(format!(
+        "`{name}` is a law as text: name = \"hyperelastic\", energy = \"{}\" with the parameters and definitions that `souple \
+         describe {name}` prints",
+        law.energy
+    ))
 }
 
 /// The material, built once on trial: a law as text may be wrong where its table is right, and numbers that are each in their

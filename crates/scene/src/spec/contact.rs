@@ -8,11 +8,16 @@ use souple_table::{Range, Value};
 use super::boundary::{MOTION, MotionSpec, TURNING};
 use super::region::Region;
 use crate::diagnostic::{Code, Site};
-use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
-pub(super) const SHAPE_ENTRY: EntryShape =
-    EntryShape { tag: "name", kind: "shape", outlines: || outlines(&SHAPES), instead: &[] };
+pub(super) const SHAPE_ENTRY: EntryShape = EntryShape {
+    tag: "name",
+    kind: "shape",
+    outlines: || outlines(&SHAPES),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
 pub(crate) static SHAPE: Keys = Keys::new(
     "shape",

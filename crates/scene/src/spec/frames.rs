@@ -8,15 +8,30 @@ use souple_table::{Range, Value, Values};
 
 use super::bone::{BOUND, BoundFrames};
 use crate::diagnostic::Site;
-use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
-const PLACEMENT: EntryShape =
-    EntryShape { tag: "name", kind: "placement", outlines: || outlines(&PLACEMENTS), instead: &[] };
-const WEIGHT: EntryShape =
-    EntryShape { tag: "name", kind: "weights", outlines: || outlines(&WEIGHTS), instead: &[] };
-const POINT: EntryShape =
-    EntryShape { tag: "name", kind: "points", outlines: || outlines(&POINTS), instead: &[] };
+const PLACEMENT: EntryShape = EntryShape {
+    tag: "name",
+    kind: "placement",
+    outlines: || outlines(&PLACEMENTS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
+const WEIGHT: EntryShape = EntryShape {
+    tag: "name",
+    kind: "weights",
+    outlines: || outlines(&WEIGHTS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
+const POINT: EntryShape = EntryShape {
+    tag: "name",
+    kind: "points",
+    outlines: || outlines(&POINTS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
 pub(crate) static FRAMES: Keys = Keys::new(
     "frames",

@@ -9,13 +9,23 @@ use super::boundary::{MOTION, MotionSpec};
 use super::contact::{Contact, DAMPING, DETECT, Detect, FRICTION, TANGENTIAL_STIFFNESS, THICKNESS};
 use super::region::Region;
 use crate::diagnostic::Site;
-use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
-const TOOL: EntryShape =
-    EntryShape { tag: "name", kind: "shape", outlines: || outlines(&SHAPES), instead: &[] };
-const DEVICE: EntryShape =
-    EntryShape { tag: "name", kind: "device", outlines: || outlines(&DEVICES), instead: &[] };
+const TOOL: EntryShape = EntryShape {
+    tag: "name",
+    kind: "shape",
+    outlines: || outlines(&SHAPES),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
+const DEVICE: EntryShape = EntryShape {
+    tag: "name",
+    kind: "device",
+    outlines: || outlines(&DEVICES),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
 static TOUCH: Keys = Keys::new(
     "touch",

@@ -10,7 +10,7 @@ use super::body::BODY;
 use super::region::Region;
 use crate::diagnostic::{Code, Site};
 use crate::document::Content;
-use crate::keys::{EntryShape, Key, Keys, Need, Others, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Need, Others, Shape, outlines};
 use crate::reader::{Chosen, Reader, choose};
 use crate::values::Reading;
 
@@ -23,8 +23,13 @@ static MESH_FILE: Keys = Keys::new(
     &[Key::new("file", Shape::Text, "relative to the scene file that names it").required(), SCALE],
 );
 
-const BODY_SHAPE: EntryShape =
-    EntryShape { tag: "name", kind: "body shape", outlines: || outlines(&SHAPES), instead: &[] };
+const BODY_SHAPE: EntryShape = EntryShape {
+    tag: "name",
+    kind: "body shape",
+    outlines: || outlines(&SHAPES),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
 static MESH_SHAPE: Keys = Keys {
     name: "mesh_shape",
@@ -124,6 +129,7 @@ pub(crate) const MESH: EntryShape = EntryShape {
     kind: "mesh generator",
     outlines: || outlines(&GENERATORS),
     instead: &[&MESH_FILE, &MESH_SHAPE, &MESH_FILL, &MESH_TISSUE],
+    elsewhere: NOWHERE,
 };
 
 /// Where a body's rest shape comes from.

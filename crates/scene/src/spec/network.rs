@@ -23,11 +23,11 @@ use super::skin::BODY_SKIN;
 use super::start::{START, StartSpec};
 use super::units::Space;
 use crate::diagnostic::{Code, Site};
-use crate::keys::{EntryShape, Key, Keys, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
 const LINK: EntryShape =
-    EntryShape { tag: "name", kind: "link", outlines: || outlines(&LINKS), instead: &[] };
+    EntryShape { tag: "name", kind: "link", outlines: || outlines(&LINKS), instead: &[], elsewhere: NOWHERE };
 
 /// Masses of a network, at most.
 pub(super) const MASSES_MAX: f64 = 1e8;

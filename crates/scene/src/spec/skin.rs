@@ -8,15 +8,30 @@ use souple_skin::target::{BuildPart, BuildWarp, Combine, PARTS, WARPS};
 use souple_table::{Entry, Range, Table, Value, Values};
 
 use crate::diagnostic::{Code, Site};
-use crate::keys::{EntryShape, Key, Keys, Others, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Others, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
-const PART: EntryShape =
-    EntryShape { tag: "name", kind: "skin part", outlines: || outlines(&PARTS), instead: &[] };
-const TERM: EntryShape =
-    EntryShape { tag: "name", kind: "skin term", outlines: || outlines(&TERMS), instead: &[] };
-const WARP: EntryShape =
-    EntryShape { tag: "name", kind: "skin warp", outlines: || outlines(&WARPS), instead: &[] };
+const PART: EntryShape = EntryShape {
+    tag: "name",
+    kind: "skin part",
+    outlines: || outlines(&PARTS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
+const TERM: EntryShape = EntryShape {
+    tag: "name",
+    kind: "skin term",
+    outlines: || outlines(&TERMS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
+const WARP: EntryShape = EntryShape {
+    tag: "name",
+    kind: "skin warp",
+    outlines: || outlines(&WARPS),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
 static SKIN_WARP: Keys = Keys {
     name: "skin_warp",

@@ -8,7 +8,7 @@ use souple_table::{Range, Value};
 
 use super::boundary::{MOTION, MotionSpec, TURNING};
 use crate::diagnostic::{Code, Site};
-use crate::keys::{EntryShape, Key, Keys, Others, Shape, outlines};
+use crate::keys::{EntryShape, Key, Keys, NOWHERE, Others, Shape, outlines};
 use crate::reader::{Chosen, Reader};
 
 /// Most steps a system makes in a period.
@@ -47,8 +47,13 @@ pub(crate) static FRAME: Keys = Keys::new(
     ],
 );
 
-const STEPPER: EntryShape =
-    EntryShape { tag: "name", kind: "stepper", outlines: || outlines(&steppers::TABLE), instead: &[] };
+const STEPPER: EntryShape = EntryShape {
+    tag: "name",
+    kind: "stepper",
+    outlines: || outlines(&steppers::TABLE),
+    instead: &[],
+    elsewhere: NOWHERE,
+};
 
 pub(crate) static SYSTEM: Keys = Keys {
     name: "system",
