@@ -2,7 +2,7 @@
 
 use souple_formal::law::{EnergyLaw, LawParameter, LawText};
 use souple_formal::parse_quantity;
-use souple_formal::tape::Tape;
+use souple_formal::tape::{Part, Tape};
 use souple_math::{Mat3, Vec3};
 
 /// What mutations start from: a law of each kind of word that there is.
@@ -47,7 +47,8 @@ pub fn law_of_lines(content: &str) -> LawText {
 /// Compiles and runs a law; whether it is one.
 ///
 /// # Panics
-/// If an error does not point into the text, or a law is not at rest where there is no strain.
+/// If an error does not point into the text, a law is not at rest where there is no strain, or its tape gives another energy than its
+/// graph.
 pub fn try_law(content: &str) -> bool {
     let text = law_of_lines(content);
     let law = match EnergyLaw::compile(&text) {
@@ -67,8 +68,27 @@ pub fn try_law(content: &str) -> bool {
     let columns = [[1.1, 0.1, -0.05], [-0.2, 0.95, 0.1], [0.03, -0.1, 1.2]].map(Vec3::from_array);
     let [a, b, c] = columns;
     let strained = Mat3::from_columns(a, b, c);
-    let _ = (law.energy_at(&strained), law.stress_at(&strained), law.differential_at(&strained, &rest));
-    let tape = Tape::compile(&law, &[law.energy, law.stress, law.differential]);
-    assert!(!tape.is_empty());
+    let outputs = [law.energy, law.stress, law.differential];
+    let values = law.evaluate(&outputs, &strained, &rest);
+    let tape = Tape::compile(&law, &outputs);
+    let mut memory = vec![0.0; tape.memory_len()];
+    tape.prepare(&mut memory);
+    for entry in 0..9 {
+        memory[tape.deformation(entry)] = strained.columns[entry / 3].to_array()[entry % 3];
+        memory[tape.variation(entry)] = rest.columns[entry / 3].to_array()[entry % 3];
+    }
+    tape.run_here(Part::Deformation, 1, &mut memory);
+    tape.run_here(Part::Variation, 1, &mut memory);
+    for (index, output) in outputs.iter().enumerate() {
+        let expected = values.of(*output);
+        let scale = expected.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
+        // what cancels, or is beyond what numbers hold, is not compared
+        if scale.is_finite() && scale > 1e-6 * law.energy_at(&strained).abs() {
+            for (entry, expected) in expected.iter().enumerate() {
+                let found = memory[tape.output(index, entry)];
+                assert!((found - expected).abs() <= 1e-6 * scale, "{content}: {found} for {expected}");
+            }
+        }
+    }
     true
 }

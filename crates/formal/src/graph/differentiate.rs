@@ -198,6 +198,8 @@ impl Graph {
         let mut adjoints = Adjoints::default();
         let one = self.number(1.0);
         adjoints.add(psi, one);
+        // adjoints are of what the number is made of
+        let depends = self.depends(&[psi], &[by]);
         while let Some((expr, adjoint)) = adjoints.pop(self) {
             if self.is_exhausted() {
                 break;
@@ -206,16 +208,15 @@ impl Graph {
                 return adjoint;
             }
             if expr > by {
-                self.push_back(expr, adjoint, by, &mut adjoints);
+                self.push_back(expr, adjoint, &depends, &mut adjoints);
             }
         }
         self.zero(self.shape(by))
     }
 
     /// Adds to the adjoints of the operands of `expr` what its own adjoint gives them.
-    fn push_back(&mut self, expr: Expr, adjoint: Expr, by: Expr, adjoints: &mut Adjoints) {
-        let depends = self.depends(&[expr], &[by]);
-        let depends = |operand: Expr| depends[operand.index()];
+    fn push_back(&mut self, expr: Expr, adjoint: Expr, dependent: &[bool], adjoints: &mut Adjoints) {
+        let depends = |operand: Expr| dependent[operand.index()];
         match self.node(expr).clone() {
             Node::Sum(terms) if self.shape(expr) != Shape::Scalar => {
                 terms.iter().filter(|term| depends(**term)).for_each(|term| adjoints.add(*term, adjoint));
@@ -312,13 +313,13 @@ impl Graph {
             Node::Compose(..) | Node::StretchRates(..) | Node::ComposeDifferential(..) => {
                 unreachable!("an energy has no differentials in it")
             }
-            _ => self.push_to_invariants(expr, adjoint, by, adjoints),
+            _ => self.push_to_invariants(expr, adjoint, dependent, adjoints),
         }
     }
 
     /// For a number made of numbers: hands the adjoint to the invariants of tensors it is made of.
-    fn push_to_invariants(&mut self, expr: Expr, adjoint: Expr, by: Expr, adjoints: &mut Adjoints) {
-        let invariants = self.invariants(expr, by);
+    fn push_to_invariants(&mut self, expr: Expr, adjoint: Expr, dependent: &[bool], adjoints: &mut Adjoints) {
+        let invariants = self.invariants(expr, dependent);
         let zero = self.number(0.0);
         let constant: HashMap<Expr, Expr> = invariants.iter().map(|invariant| (*invariant, zero)).collect();
         for invariant in &invariants {
@@ -333,9 +334,8 @@ impl Graph {
         }
     }
 
-    /// The numbers taken directly from tensors that vary with `by`, below `expr`.
-    pub(crate) fn invariants(&self, expr: Expr, by: Expr) -> Vec<Expr> {
-        let depends = self.depends(&[expr], &[by]);
+    /// The numbers taken directly from tensors that vary, as `depends` says, below `expr`.
+    fn invariants(&self, expr: Expr, depends: &[bool]) -> Vec<Expr> {
         let mut found = Vec::new();
         let mut remaining = vec![expr];
         let mut seen = std::collections::HashSet::new();

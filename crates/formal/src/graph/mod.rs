@@ -198,15 +198,17 @@ pub struct Graph {
     symbols: Vec<Symbol>,
     /// Transposes, determinants and cofactors of products made so far: a factor that stands in a product many times is gone
     /// into once.
-    of_products: HashMap<(OfProduct, Expr), Expr>,
+    of_tensors: HashMap<(OfTensor, Expr), Expr>,
     /// Operands that new expressions may still have; `None` is without bound.
     allowance: Option<usize>,
 }
 
-/// What distributes over the factors of a product of matrices.
+/// What distributes over the terms of a sum of tensors, or the factors of a product of matrices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum OfProduct {
+enum OfTensor {
     Transpose,
+    Trace,
+    Entry(u8),
     Determinant,
     Cofactor,
 }

@@ -211,9 +211,14 @@ impl Graph {
 /// Takes pairs out of lists until none stands in several; gives what they are of, the first of each with a plus.
 fn take_out(lists: &mut [List]) -> Vec<Pair> {
     let mut counts = Counts::default();
+    let mut users: HashMap<Part, usize> = HashMap::new();
+    lists.iter().flat_map(|list| &list.parts).for_each(|(_, part)| *users.entry(*part).or_default() += 1);
+    // what one list has alone is in no pair that several have; pairs are as many as the square of the others
+    let is_shared = |(_, part): &(bool, Part)| users.get(part).is_none_or(|count| *count > 1);
     for (index, list) in lists.iter().enumerate() {
-        for (position, a) in list.parts.iter().enumerate() {
-            list.parts[..position].iter().for_each(|b| counts.change(pair_of(*a, *b), index, true));
+        let shared: Vec<_> = list.parts.iter().filter(|part| is_shared(part)).collect();
+        for (position, a) in shared.iter().enumerate() {
+            shared[..position].iter().for_each(|b| counts.change(pair_of(**a, **b), index, true));
         }
     }
     let mut pairs = Vec::new();
@@ -222,9 +227,10 @@ fn take_out(lists: &mut [List]) -> Vec<Pair> {
         pairs.push(pair);
         for user in users {
             let parts = &mut lists[user].parts;
-            for (position, a) in parts.iter().enumerate() {
-                for b in &parts[..position] {
-                    if [a.1, b.1].iter().any(|part| *part == pair.0 || *part == pair.1) {
+            let is_taken = |part: &Part| *part == pair.0 || *part == pair.1;
+            for (position, a) in parts.iter().enumerate().filter(|(_, a)| is_shared(a)) {
+                for b in parts[..position].iter().filter(|b| is_shared(b)) {
+                    if is_taken(&a.1) || is_taken(&b.1) {
                         counts.change(pair_of(*a, *b), user, false);
                     }
                 }
@@ -233,7 +239,7 @@ fn take_out(lists: &mut [List]) -> Vec<Pair> {
             // pairs are of parts that are there
             let sign = first.is_some_and(|first| parts[first].0);
             parts.retain(|(_, part)| *part != pair.0 && *part != pair.1);
-            for other in parts.iter() {
+            for other in parts.iter().filter(|part| is_shared(part)) {
                 counts.change(pair_of(*other, (sign, new)), user, true);
             }
             parts.push((sign, new));

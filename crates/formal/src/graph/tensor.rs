@@ -3,20 +3,34 @@
 //! Factors move out, transposes move in (so a matrix is symmetric where its transpose is the same [`Expr`]), traces and
 //! products of dyads become dot products, determinants and cofactors of products become products.
 
-use super::{Expr, Graph, Node, OfProduct, Shape};
+use super::{Expr, Graph, Node, OfTensor, Shape};
 
 /// Factors of a product that is applied to a vector one after the other; longer ones are computed first.
 const FACTORS_APPLIED: usize = 16;
 
 impl Graph {
-    /// What is made of a product, made once.
-    fn of_product(&mut self, what: OfProduct, product: Expr, make: impl FnOnce(&mut Self) -> Expr) -> Expr {
-        if let Some(made) = self.of_products.get(&(what, product)) {
+    /// What is made of a sum or product, made once: a chain of sums that each hold the one before twice has as many ways down as
+    /// two to its length.
+    fn of_tensor(&mut self, what: OfTensor, tensor: Expr, make: impl FnOnce(&mut Self) -> Expr) -> Expr {
+        if let Some(made) = self.of_tensors.get(&(what, tensor)) {
             return *made;
         }
         let made = make(self);
-        self.of_products.insert((what, product), made);
+        self.of_tensors.insert((what, tensor), made);
         made
+    }
+
+    /// The sum of what is made of its terms.
+    fn of_sum(
+        &mut self,
+        what: OfTensor,
+        (sum, terms): (Expr, &[Expr]),
+        make: impl Fn(&mut Self, Expr) -> Expr,
+    ) -> Expr {
+        self.of_tensor(what, sum, |graph| {
+            let terms: Vec<Expr> = terms.iter().map(|term| make(graph, *term)).collect();
+            graph.sum(&terms)
+        })
     }
 
     /// Whether a matrix is a product of at most so many factors; what is left of them.
@@ -119,11 +133,8 @@ impl Graph {
                 let inner = self.transpose(inner);
                 self.scale(factor, inner)
             }
-            Node::Sum(terms) => {
-                let terms: Vec<Expr> = terms.iter().map(|term| self.transpose(*term)).collect();
-                self.sum(&terms)
-            }
-            Node::Multiply(a, b) => self.of_product(OfProduct::Transpose, matrix, |graph| {
+            Node::Sum(terms) => self.of_sum(OfTensor::Transpose, (matrix, &terms), Self::transpose),
+            Node::Multiply(a, b) => self.of_tensor(OfTensor::Transpose, matrix, |graph| {
                 let (a, b) = (graph.transpose(a), graph.transpose(b));
                 graph.multiply(b, a)
             }),
@@ -184,10 +195,7 @@ impl Graph {
                 let inner = self.trace(inner);
                 self.product(&[factor, inner])
             }
-            Node::Sum(terms) => {
-                let terms: Vec<Expr> = terms.iter().map(|term| self.trace(*term)).collect();
-                self.sum(&terms)
-            }
+            Node::Sum(terms) => self.of_sum(OfTensor::Trace, (matrix, &terms), Self::trace),
             Node::Multiply(a, b) => {
                 let a = self.transpose(a);
                 self.dot(a, b)
@@ -207,7 +215,7 @@ impl Graph {
                 let (cube, inner) = (self.power_number(factor, 3.0), self.determinant(inner));
                 self.product(&[cube, inner])
             }
-            Node::Multiply(a, b) => self.of_product(OfProduct::Determinant, matrix, |graph| {
+            Node::Multiply(a, b) => self.of_tensor(OfTensor::Determinant, matrix, |graph| {
                 let (a, b) = (graph.determinant(a), graph.determinant(b));
                 graph.product(&[a, b])
             }),
@@ -224,7 +232,7 @@ impl Graph {
                 let (square, inner) = (self.power_number(factor, 2.0), self.cofactor(inner));
                 self.scale(square, inner)
             }
-            Node::Multiply(a, b) => self.of_product(OfProduct::Cofactor, matrix, |graph| {
+            Node::Multiply(a, b) => self.of_tensor(OfTensor::Cofactor, matrix, |graph| {
                 let (a, b) = (graph.cofactor(a), graph.cofactor(b));
                 graph.multiply(a, b)
             }),
@@ -285,8 +293,7 @@ impl Graph {
                 self.product(&[factor, inner])
             }
             Node::Sum(terms) => {
-                let terms: Vec<Expr> = terms.iter().map(|term| self.entry(*term, index)).collect();
-                self.sum(&terms)
+                self.of_sum(OfTensor::Entry(index), (tensor, &terms), |graph, term| graph.entry(term, index))
             }
             Node::Transpose(inner) => self.entry(inner, 3 * row + column),
             Node::Outer(u, v) => {

@@ -401,6 +401,24 @@ fn towers_of_powers_are_answered() {
     refused(&chain);
 }
 
+/// Sums that each hold the one before twice are gone into once: a chain of them has as many ways down as two to its length.
+#[test]
+fn chains_of_sums_are_answered() {
+    for link in ["J*A + I1*transpose(A)", "J*A + I1*(A + F)", "J*transpose(A) + I1*(A + transpose(A))"] {
+        for energy in ["mu*tr(A60)", "mu*A60_12", "mu*dot(A60, A60)", "mu*dot([1, 0, 0], A60*[1, 0, 0])"] {
+            let energy = energy.replace("A60_12", "dot([1, 0, 0], A60*[0, 1, 0])");
+            let mut chain = text(&energy, &[("mu", 1.0)]);
+            chain.definitions.push(("A0".to_owned(), "F + E".to_owned()));
+            for level in 1..=60 {
+                let below = link.replace('A', &format!("A{}", level - 1));
+                chain.definitions.push((format!("A{level}"), below));
+            }
+            // none of them is at rest without stress
+            refused(&chain);
+        }
+    }
+}
+
 /// Ten megabytes, deep nesting and long products are answered at once.
 #[test]
 fn monstrous_laws_are_refused() {

@@ -5,6 +5,9 @@ use std::collections::{HashMap, HashSet};
 use super::Code;
 use crate::graph::{Evaluation, Expr, Graph, Node, Shape, Symbol};
 
+/// Whole powers up to this one are multiplied out; beyond, one transcendental function is cheaper and rounds less.
+const MOST_MULTIPLIED: f64 = 64.0;
+
 /// A number, or the first of several, within a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Place {
@@ -400,7 +403,7 @@ impl Lowering<'_> {
             return self.emit_of(Code::Power, 1, 1, &[base, exponent]);
         };
         let at = self.place(base);
-        if value.fract() == 0.0 && value.abs() <= 64.0 {
+        if value.fract() == 0.0 && value.abs() <= MOST_MULTIPLIED {
             let power = self.whole_power(at, value.abs() as u8);
             return if value < 0.0 { self.reciprocal(power) } else { power };
         }
@@ -409,7 +412,11 @@ impl Lowering<'_> {
         let nearest = self.nearest_to_zero(base, value);
         let known = self.powers.get(&base).and_then(|known| {
             known.iter().copied().find(|(known, _)| {
-                (value - known).fract() == 0.0 && (known / value > 0.0 && known.abs() <= value.abs())
+                let further = value - known;
+                further.fract() == 0.0
+                    && further.abs() <= MOST_MULTIPLIED
+                    && further * value >= 0.0
+                    && known / value > 0.0
             })
         });
         let (start, place) = match known {
