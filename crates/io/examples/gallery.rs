@@ -45,6 +45,7 @@ fn bent_bar() -> Result<Picture, Box<dyn std::error::Error>> {
             shape: StrokeShape::Dot(*point),
             colour: Colour::from_screen([40, 60, 90]),
             width: 9.0,
+            through: Stroke::FAINTLY,
         })
         .collect();
     let tip = bend(Vec3::new(1.0, 0.0, 0.1));
@@ -52,6 +53,7 @@ fn bent_bar() -> Result<Picture, Box<dyn std::error::Error>> {
         shape: StrokeShape::Arrow(tip, tip - Vec3::Y * 0.18),
         colour: Colour::from_screen([200, 40, 40]),
         width: 4.0,
+        through: Stroke::FAINTLY,
     });
     let legend = Legend { title: "displacement".to_owned(), unit: "m".to_owned(), ..Legend::default() };
     Ok(Picture {

@@ -150,6 +150,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| frames::steps("frames_500_50k", frames::LARGE, effort),
     },
     Bench {
+        name: "frames_growth",
+        what: "a step of 144 rigid frames by the number of points: time of a thousand of them, memory, how far either is from growing as they do [us/step]",
+        run: |effort| frames::growth("frames_growth", effort),
+    },
+    Bench {
         name: "fill_100k",
         what: "the liver filled with about 100,000 tetrahedra, one thread [s]",
         run: filling::fill_100k,

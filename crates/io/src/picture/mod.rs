@@ -57,7 +57,7 @@ pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     pub surfaces: Vec<Surface>,
-    /// Drawn behind nothing: a stroke inside a surface shines through faintly.
+    /// Drawn behind nothing: a stroke inside a surface shines through.
     pub strokes: Vec<Stroke>,
     pub ground: Option<Ground>,
     pub view: View,

@@ -139,6 +139,7 @@ mod tests {
                 shape: StrokeShape::Arrow(from, Vec3::new(0.0, 0.0, -9.0)),
                 colour: Colour([1.0, 0.0, 0.0]),
                 width: 3.0,
+                through: Stroke::FAINTLY,
             };
             let picture = Picture {
                 strokes: vec![arrow],

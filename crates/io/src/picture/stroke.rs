@@ -14,12 +14,11 @@ pub(super) struct Drawn {
     /// At both ends [pixels]; a dot has no length, the head of an arrow ends in a point.
     half_widths: [f64; 2],
     colour: Colour,
+    through: f32,
     /// Rows of pixels that it may touch.
     rows: std::ops::Range<usize>,
 }
 
-/// Share of the colour that is seen through what stands before a stroke.
-const SHINE_THROUGH: f32 = 0.16;
 /// How much closer a stroke counts than it is, relative: one that lies on a surface is seen whole.
 const LIFT: f64 = 4e-3;
 
@@ -35,7 +34,8 @@ pub(super) fn prepared(strokes: &[Stroke], camera: &Camera, surfaces: &Samples) 
                 let reach = half_widths[0].max(half_widths[1]) + 1.0;
                 let first = (from.y.min(to.y) - reach).max(0.0) as usize;
                 let last = (from.y.max(to.y) + reach).max(0.0) as usize;
-                drawn.push(Drawn { from, to, half_widths, colour: stroke.colour, rows: first..last + 1 });
+                let Stroke { colour, through, .. } = *stroke;
+                drawn.push(Drawn { from, to, half_widths, colour, through, rows: first..last + 1 });
             }
         };
         match &stroke.shape {
@@ -91,6 +91,6 @@ impl Drawn {
         // not by the difference: of two that are nearer than anything it is nothing
         let own = from.inverse_depth * (1.0 - t) + to.inverse_depth * t;
         let hidden = own * (1.0 + LIFT) < f64::from(inverse_depth);
-        below.mixed(self.colour, if hidden { SHINE_THROUGH } else { 1.0 })
+        below.mixed(self.colour, if hidden { self.through } else { 1.0 })
     }
 }

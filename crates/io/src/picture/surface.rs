@@ -65,6 +65,15 @@ pub struct Stroke {
     pub colour: Colour,
     /// Width, or diameter of a dot [pixels].
     pub width: f64,
+    /// Share of the colour that is seen through what stands before it.
+    pub through: f32,
+}
+
+impl Stroke {
+    /// What is seen of strokes that belong on a surface.
+    pub const FAINTLY: f32 = 0.16;
+    /// Of those that belong inside one.
+    pub const PLAINLY: f32 = 0.7;
 }
 
 #[derive(Clone, Debug, PartialEq)]

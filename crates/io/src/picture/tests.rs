@@ -142,7 +142,12 @@ fn normals_keep_creases_and_round_balls() {
 fn strokes_are_hidden_by_what_is_before_them() {
     let red = Colour([1.0, 0.0, 0.0]);
     let pixel_of = |z: f64| {
-        let dot = Stroke { shape: StrokeShape::Dot(Vec3::new(0.5, 0.5, z)), colour: red, width: 9.0 };
+        let dot = Stroke {
+            shape: StrokeShape::Dot(Vec3::new(0.5, 0.5, z)),
+            colour: red,
+            width: 9.0,
+            through: Stroke::FAINTLY,
+        };
         let picture = Picture {
             surfaces: vec![MeshSurface::of(&cube()).surface],
             strokes: vec![dot],

@@ -75,6 +75,9 @@ struct FramesScratch {
     /// Of each run of samples, as laws take it.
     deformation: Vec<f64>,
     rows: Vec<Vec3>,
+    /// Of the pairs of some chunks.
+    parts: Vec<f64>,
+    /// Of all pairs of frames.
     pairs: Vec<f64>,
     slots: Slots,
 }
@@ -226,6 +229,9 @@ impl FramesForce {
     }
 }
 
+/// Chunks whose blocks are summed before those of others are made.
+const CHUNKS_AT_ONCE: usize = 8;
+
 /// Numbers that a run has of deformation gradients.
 const DEFORMATION_LEN: usize = MATRIX_LEN;
 
@@ -344,7 +350,7 @@ impl Work<'_> {
                 let result = &mut memory[places.result..];
                 tangents::subtract_from_differential(second, &variation, result, run.lane_count());
             }
-            let stresses = &memory[places.result..];
+            let stresses = &mut memory[places.result..];
             arch.dispatch(Spread { chunk, run: &run, stresses, scale, sums });
         }
         let total = |lanes: &LaneBlock| lanes.0.iter().sum::<f64>();
@@ -498,16 +504,26 @@ impl Force for FramesForce {
         }
         let scratch = FramesScratch::of(scratch);
         self.place(at.positions, scratch);
-        let FramesScratch { deformation, pairs: sums, slots, .. } = scratch;
-        sums.resize(self.first_pair(self.chunks.len()), 0.0);
-        let start_of = |chunk: usize| self.first_pair(chunk);
-        parallel::fill(0..self.chunks.len(), 2, sums, &start_of, &|number, sums| {
-            MEMORY.with_borrow_mut(|memory| {
-                let work = Work { force: self, number, chunk: &self.chunks[number], memory };
-                work.blocks(deformation, -weights.position, sums);
+        let FramesScratch { deformation, parts, pairs: sums, slots, .. } = scratch;
+        sums.clear();
+        sums.resize(self.pairs.frames.len() * PAIR_LEN, 0.0);
+        // a few chunks at once: the pairs of all would take more memory than all else
+        for first in (0..self.chunks.len()).step_by(CHUNKS_AT_ONCE) {
+            let some = first..self.chunks.len().min(first + CHUNKS_AT_ONCE);
+            let start_of = |chunk: usize| self.first_pair(chunk) - self.first_pair(first);
+            let wanted = start_of(some.end);
+            if parts.len() < wanted {
+                parts.resize(wanted, 0.0);
+            }
+            parallel::fill(some.clone(), 2, &mut parts[..wanted], &start_of, &|number, parts| {
+                MEMORY.with_borrow_mut(|memory| {
+                    let work = Work { force: self, number, chunk: &self.chunks[number], memory };
+                    work.blocks(deformation, -weights.position, parts);
+                });
             });
-        });
-        slots.gather(&self.pairs, &self.row_of_frame, sums, matrix);
+            self.pairs.add_parts(self.first_pair(some.start) / PAIR_LEN, &parts[..wanted], sums);
+        }
+        slots.scatter(&self.pairs, &self.row_of_frame, sums, matrix);
     }
 
     fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
@@ -538,9 +554,9 @@ impl Force for FramesForce {
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {
         scratch.downcast_ref::<FramesScratch>().map_or(0, |scratch| {
-            let FramesScratch { placed, deformation, rows, pairs, slots } = scratch;
+            let FramesScratch { placed, deformation, rows, parts, pairs, slots } = scratch;
             24 * (placed.capacity() + rows.capacity())
-                + 8 * (deformation.capacity() + pairs.capacity())
+                + 8 * (deformation.capacity() + parts.capacity() + pairs.capacity())
                 + slots.bytes()
         })
     }

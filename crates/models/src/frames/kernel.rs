@@ -11,7 +11,7 @@ use souple_formal::tape::BATCH;
 use souple_math::{Lanes, Mat3, Real, Vec3};
 
 use super::ROWS_OF_FRAME;
-use super::layout::{Chunk, FrameMap, GRADIENT_LEN};
+use super::layout::{Chunk, FrameMap, GRADIENT_LEN, SingleBlock};
 use crate::solids::geometry::accumulate;
 use crate::solids::layout::{LANES, LaneBlock};
 use crate::solids::sample_law::{Run, load_matrix, store_matrix};
@@ -47,8 +47,8 @@ impl WithSimd for Gradients<'_> {
                 let mut F = Mat3::zero(Lanes::constant(simd, 0.0));
                 for member in chunk.members(block) {
                     let share = chunk.share(member);
-                    let weight = Lanes::load(simd, &share[0].0[lane..]);
-                    let slope = load_vector(simd, &share[1..], lane);
+                    let weight = load_single(simd, &share[0], lane);
+                    let slope = load_slope(simd, share, lane);
                     let (at, turn) = carried(simd, &field[chunk.members[member] as usize], P);
                     accumulate(&mut F.columns[0], at, slope.x);
                     accumulate(&mut F.columns[1], at, slope.y);
@@ -70,6 +70,25 @@ fn load_vector<S: Simd>(simd: S, blocks: &[LaneBlock], lane: usize) -> Vec3<Lane
         Lanes::load(simd, &blocks[0].0[lane..]),
         Lanes::load(simd, &blocks[1].0[lane..]),
         Lanes::load(simd, &blocks[2].0[lane..]),
+    )
+}
+
+#[inline(always)]
+fn load_single<S: Simd>(simd: S, block: &SingleBlock, lane: usize) -> Lanes<S> {
+    let mut numbers = [0.0; LANES];
+    for (number, single) in numbers[..S::F64_LANES].iter_mut().zip(&block.0[lane..]) {
+        *number = f64::from(*single);
+    }
+    Lanes::load(simd, &numbers)
+}
+
+/// The gradient of a member's weight.
+#[inline(always)]
+fn load_slope<S: Simd>(simd: S, share: &[SingleBlock], lane: usize) -> Vec3<Lanes<S>> {
+    Vec3::new(
+        load_single(simd, &share[1], lane),
+        load_single(simd, &share[2], lane),
+        load_single(simd, &share[3], lane),
     )
 }
 
@@ -100,11 +119,12 @@ fn constant<S: Simd>(simd: S, vector: Vec3) -> Vec3<Lanes<S>> {
 pub const MAP_LEN: usize = 12;
 
 /// Adds `scale V (P ∇w, P ∇w ⊗ X + w P)`, with the stress `P` at the sample `X`, to the sums of frames, eight samples side by side: the
-/// transpose of [`Gradients`].
+/// transpose of [`Gradients`]. What a frame gets of a run is summed in registers.
 pub struct Spread<'a> {
     pub chunk: &'a Chunk,
     pub run: &'a Run<'a>,
-    pub stresses: &'a [f64],
+    /// Overwritten by `scale V P`.
+    pub stresses: &'a mut [f64],
     pub scale: f64,
     /// Of each of the chunk's own frames [`MAP_LEN`].
     pub sums: &'a mut [LaneBlock],
@@ -116,28 +136,43 @@ impl WithSimd for Spread<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { chunk, run, stresses, scale, sums } = self;
-        for block in run.rows() {
-            let mut lane = 0;
-            while lane < LANES {
+        let mut lane = 0;
+        while lane < LANES {
+            for block in run.rows() {
                 let volume = Lanes::load(simd, &chunk.samples.volumes(block)[lane..]);
-                let stress = load_matrix(simd, &stresses[run.lane_of(block) + lane..]).scaled(volume * scale);
-                let X = load_vector(simd, chunk.points(block), lane);
-                for member in chunk.members(block) {
-                    let share = chunk.share(member);
-                    let weight = Lanes::load(simd, &share[0].0[lane..]);
-                    let force = stress * load_vector(simd, &share[1..], lane);
-                    let first = MAP_LEN * chunk.members[member] as usize;
-                    let sums = &mut sums[first..first + MAP_LEN];
-                    add(simd, force, &mut sums[..3], lane);
+                let stresses = &mut stresses[run.lane_of(block) + lane..];
+                store_matrix(&load_matrix(simd, stresses).scaled(volume * scale), stresses);
+            }
+            let mut visits = chunk.visits(run.first);
+            while let Some(first) = visits.first() {
+                let own = first.own;
+                let mut force_sum = constant(simd, Vec3::ZERO);
+                let mut turn_sum = Mat3::zero(Lanes::constant(simd, 0.0));
+                while let Some((visit, rest)) = visits.split_first() {
+                    if visit.own != own {
+                        break;
+                    }
+                    visits = rest;
+                    let block = usize::from(visit.block);
+                    let share = chunk.share(visit.member as usize);
+                    let stress = load_matrix(simd, &stresses[run.lane_of(block) + lane..]);
+                    let X = load_vector(simd, chunk.points(block), lane);
+                    let weight = load_single(simd, &share[0], lane);
+                    let force = stress * load_slope(simd, share, lane);
+                    force_sum += force;
                     let arms = [X.x, X.y, X.z];
                     for J in 0..3 {
-                        let mut on_turn = force * arms[J];
-                        accumulate(&mut on_turn, stress.columns[J], weight);
-                        add(simd, on_turn, &mut sums[3 * (J + 1)..3 * (J + 2)], lane);
+                        accumulate(&mut turn_sum.columns[J], force, arms[J]);
+                        accumulate(&mut turn_sum.columns[J], stress.columns[J], weight);
                     }
                 }
-                lane += S::F64_LANES;
+                let sums = &mut sums[MAP_LEN * usize::from(own)..][..MAP_LEN];
+                add(simd, force_sum, &mut sums[..3], lane);
+                for J in 0..3 {
+                    add(simd, turn_sum.columns[J], &mut sums[3 * (J + 1)..3 * (J + 2)], lane);
+                }
             }
+            lane += S::F64_LANES;
         }
     }
 }

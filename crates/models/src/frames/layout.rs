@@ -3,14 +3,18 @@
 //!
 //! Eight neighbours share most of their frames, so a frame is read once for eight samples; a frame that does not reach one of them
 //! has nothing to say there. Large bodies wait for memory, so what is kept of a frame at a sample is its weight and the gradient of
-//! that, four numbers: the twelve of the gradients of its rows follow from these and from where sample and frame are at rest. Order of
-//! samples and sums depends on the body alone.
+//! that, four numbers: the twelve of the gradients of its rows follow from these and from where sample and frame are at rest. They are
+//! kept in single precision, as multiples of a unit so that weights still sum to one and gradients to nothing exactly: a rigid motion
+//! strains nothing to double precision, and what strains differ is a millionth of them.
+//!
+//! Order of samples and sums depends on the body alone.
 
 use souple_math::{Mat3, Vec3};
 use souple_mesh::recursive_bisection;
 
 use super::{Carried, Frame, ROWS_OF_FRAME, Sample};
 use crate::solids::layout::{Chunk as SampleChunk, LANES, LaneBlock};
+use crate::solids::sample_law::ROWS;
 
 /// Samples of a chunk: as many as runs of a law take a few times over, few enough to share most of their frames.
 const SAMPLES_PER_CHUNK: usize = 256;
@@ -18,6 +22,20 @@ const SAMPLES_PER_CHUNK: usize = 256;
 pub const SHARE_LEN: usize = 4;
 /// Numbers of a frame at a sample, written out: the gradient of each of its rows.
 pub const GRADIENT_LEN: usize = 3 * ROWS_OF_FRAME;
+
+/// Numbers of eight samples in single precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(32))]
+pub struct SingleBlock(pub [f32; LANES]);
+
+/// A frame that a run of samples meets in one of its blocks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Visit {
+    /// The chunk's own frame.
+    pub own: u16,
+    pub block: u16,
+    pub member: u32,
+}
 
 /// Neighbouring samples of one law.
 pub struct Chunk {
@@ -31,7 +49,10 @@ pub struct Chunk {
     /// The chunk's own frame of each (block, frame).
     pub members: Vec<u16>,
     /// Of each member: its weight, and three components of the gradient of that.
-    shares: Vec<LaneBlock>,
+    shares: Vec<SingleBlock>,
+    /// Of each run of blocks that a law takes: its members, by own frame.
+    visits: Vec<Visit>,
+    visit_starts: Vec<u32>,
     /// Of each block: where its samples are at rest [m], counted from the middle of the chunk, so that bodies far from the origin
     /// lose no digits.
     points: Vec<LaneBlock>,
@@ -60,8 +81,14 @@ impl Chunk {
     }
 
     #[inline(always)]
-    pub fn share(&self, member: usize) -> &[LaneBlock] {
+    pub fn share(&self, member: usize) -> &[SingleBlock] {
         &self.shares[member * SHARE_LEN..(member + 1) * SHARE_LEN]
+    }
+
+    /// Members of the run that begins with a block, frame by frame.
+    pub fn visits(&self, first_block: usize) -> &[Visit] {
+        let run = first_block / ROWS;
+        &self.visits[self.visit_starts[run] as usize..self.visit_starts[run + 1] as usize]
     }
 
     #[inline(always)]
@@ -97,13 +124,16 @@ impl Chunk {
     pub fn gradients_into(&self, block: usize, member: usize, out: &mut [LaneBlock]) {
         let Frame { origin, axes } = &self.rest[self.members[member] as usize];
         let (share, points) = (self.share(member), self.points(block));
-        out[..3].copy_from_slice(&share[1..]);
+        for (out, slope) in out.iter_mut().zip(&share[1..]) {
+            out.0 = slope.0.map(f64::from);
+        }
         for (axis, out) in axes.columns.iter().zip(out[3..].chunks_exact_mut(3)) {
             for lane in 0..LANES {
                 let point = Vec3::new(points[0].0[lane], points[1].0[lane], points[2].0[lane]);
                 let local = axis.dot(point - *origin);
                 for J in 0..3 {
-                    out[J].0[lane] = share[1 + J].0[lane] * local + share[0].0[lane] * axis[J];
+                    let (slope, weight) = (f64::from(share[1 + J].0[lane]), f64::from(share[0].0[lane]));
+                    out[J].0[lane] = slope * local + weight * axis[J];
                 }
             }
         }
@@ -111,9 +141,12 @@ impl Chunk {
 
     pub fn bytes(&self) -> usize {
         self.samples.bytes()
-            + size_of::<LaneBlock>() * (self.shares.len() + self.points.len())
+            + size_of::<SingleBlock>() * self.shares.len()
+            + size_of::<Visit>() * self.visits.len()
+            + size_of::<LaneBlock>() * self.points.len()
             + size_of::<Frame>() * self.rest.len()
-            + 4 * (self.frames.len() + self.starts.len() + self.places.len() + self.place_starts.len())
+            + 4 * (self.frames.len() + self.starts.len() + self.visit_starts.len())
+            + 4 * (self.places.len() + self.place_starts.len())
             + 2 * (self.members.len() + 2 * self.pairs.len())
     }
 }
@@ -165,6 +198,8 @@ fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f
         starts: vec![0],
         members: Vec::new(),
         shares: Vec::new(),
+        visits: Vec::new(),
+        visit_starts: vec![0],
         points: vec![LaneBlock::default(); 3 * block_count],
         pairs: Vec::new(),
         places: Vec::new(),
@@ -172,7 +207,7 @@ fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f
         first_frame: 0,
         first_pair: 0,
     };
-    let own = |chunk: &Chunk, frame: u32| chunk.frames.partition_point(|known| *known < frame) as u16;
+    let own = |frames: &[u32], frame: u32| frames.partition_point(|known| *known < frame) as u16;
     for (block, indices) in order.chunks(LANES).enumerate() {
         // lanes past the last sample stand where it stands, without volume
         let at = |lane: usize| indices[lane.min(indices.len() - 1)];
@@ -182,25 +217,68 @@ fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f
                 chunk.points[3 * block + axis].0[lane] = point[axis];
             }
         }
-        for frame in frames_of(indices) {
-            chunk.members.push(own(&chunk, frame));
-            let first = chunk.shares.len();
-            chunk.shares.resize(first + SHARE_LEN, LaneBlock::default());
-            for lane in 0..LANES {
-                let point = &carried[at(lane) as usize];
-                let Ok(place) = point.frames.binary_search(&frame) else { continue };
+        let reaching = frames_of(indices);
+        let first = chunk.shares.len();
+        chunk.members.extend(reaching.iter().map(|frame| own(&chunk.frames, *frame)));
+        chunk.shares.resize(first + reaching.len() * SHARE_LEN, SingleBlock::default());
+        for lane in 0..LANES {
+            let point = &carried[at(lane) as usize];
+            let share = |frame: &u32| {
+                let Ok(place) = point.frames.binary_search(frame) else { return [0.0; SHARE_LEN] };
                 let (weight, gradient) = point.rows[place][0];
-                chunk.shares[first].0[lane] = weight;
-                for axis in 0..3 {
-                    chunk.shares[first + 1 + axis].0[lane] = gradient[axis];
-                }
+                [weight, gradient.x, gradient.y, gradient.z]
+            };
+            let shares = in_units(reaching.iter().map(share).collect());
+            for (share, blocks) in shares.iter().zip(chunk.shares[first..].chunks_exact_mut(SHARE_LEN)) {
+                blocks.iter_mut().zip(share).for_each(|(block, number)| block.0[lane] = *number as f32);
             }
         }
         chunk.starts.push(chunk.members.len() as u32);
     }
     chunk.shares.shrink_to_fit();
+    list_visits(&mut chunk);
     number_pairs(&mut chunk);
     chunk
+}
+
+/// Binary digits of a number in single precision, less one for what sums are made up with.
+const DIGITS: i32 = 23;
+
+/// The shares of frames at a sample, each number a multiple of a unit that single precision holds exactly, with the sums that they
+/// have: 1 and 0. What rounding leaves goes to the frame with the greatest weight.
+fn in_units(shares: Vec<[f64; SHARE_LEN]>) -> Vec<[f64; SHARE_LEN]> {
+    let mut shares = shares;
+    let Some(main) = (0..shares.len()).max_by(|a, b| shares[*a][0].total_cmp(&shares[*b][0])) else {
+        return shares;
+    };
+    for number in 0..SHARE_LEN {
+        let most = shares.iter().map(|share| share[number].abs()).fold(0.0, f64::max);
+        let unit = libm::ldexp(1.0, libm::frexp(most).1 - DIGITS);
+        let mut left = if number == 0 { 1.0 } else { 0.0 };
+        for share in &mut shares {
+            share[number] = (share[number] / unit).round() * unit;
+            left -= share[number];
+        }
+        shares[main][number] += left;
+    }
+    shares
+}
+
+fn list_visits(chunk: &mut Chunk) {
+    for first in (0..chunk.block_count).step_by(ROWS) {
+        let blocks = first..chunk.block_count.min(first + ROWS);
+        let start = chunk.visits.len();
+        for block in blocks {
+            let members = chunk.starts[block]..chunk.starts[block + 1];
+            chunk.visits.extend(members.map(|member| Visit {
+                own: chunk.members[member as usize],
+                block: block as u16,
+                member,
+            }));
+        }
+        chunk.visits[start..].sort_by_key(|visit| (visit.own, visit.block));
+        chunk.visit_starts.push(chunk.visits.len() as u32);
+    }
 }
 
 fn number_pairs(chunk: &mut Chunk) {
@@ -217,4 +295,43 @@ fn number_pairs(chunk: &mut Chunk) {
     chunk.pairs.dedup();
     let place = |pair: &[u16; 2]| chunk.pairs.partition_point(|known| known < pair) as u32;
     chunk.places = ordered.iter().map(place).collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shares in units are what single precision holds, sum to one and their gradients to nothing to the last bit, and are off by half
+    /// a unit, the greatest number over 2²², that with the greatest weight by as much as all.
+    #[test]
+    fn shares_in_units_sum_as_they_did() {
+        let raw: Vec<[f64; SHARE_LEN]> = (0..26)
+            .map(|i| {
+                let wave = |phase: f64| (f64::from(i) * 2.3 + phase).sin();
+                [wave(0.1).powi(4), 40.0 * wave(1.0), 1e-9 * wave(2.0), 0.0]
+            })
+            .collect();
+        let sum = |of: &[[f64; SHARE_LEN]], number: usize| of.iter().map(|share| share[number]).sum::<f64>();
+        let sums: [f64; SHARE_LEN] = std::array::from_fn(|number| sum(&raw, number));
+        let shares: Vec<[f64; SHARE_LEN]> = raw
+            .iter()
+            .map(|share| {
+                let part = share[0] / sums[0];
+                std::array::from_fn(
+                    |number| {
+                        if number == 0 { part } else { share[number] - part * sums[number] }
+                    },
+                )
+            })
+            .collect();
+        let rounded = in_units(shares.clone());
+        for number in 0..SHARE_LEN {
+            assert_eq!(sum(&rounded, number), if number == 0 { 1.0 } else { 0.0 });
+            let most = shares.iter().map(|share| share[number].abs()).fold(0.0, f64::max);
+            for (rounded, share) in rounded.iter().zip(&shares) {
+                assert_eq!(f64::from(rounded[number] as f32), rounded[number]);
+                assert!((rounded[number] - share[number]).abs() <= 26.0 * most * f64::from(f32::EPSILON));
+            }
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! From sums over pairs of frames in chunks to the blocks of a matrix over rows.
 //!
-//! Each block gathers the sums of the chunks that know its pair, in chunk order; those below the diagonal are the
+//! Sums of a pair are those of the chunks that know it, in chunk order; blocks below the diagonal are the
 //! transposes of those above, so the matrix is symmetric to the last bit.
 
 use std::sync::Arc;
@@ -21,39 +21,34 @@ const NOWHERE: u32 = u32::MAX;
 pub struct Pairs {
     /// Frames `i ≤ j`, each pair once.
     pub frames: Vec<[u32; 2]>,
-    /// The sums of each pair, `sources[starts[p]..starts[p + 1]]`, in chunk order.
-    starts: Vec<u32>,
-    sources: Vec<u32>,
+    /// Of each pair of each chunk, one chunk after the other: which of `frames` it is.
+    pair_of: Vec<u32>,
 }
 
 impl Pairs {
     pub fn new(chunks: &[Chunk]) -> Self {
         let mut all = Vec::new();
         for chunk in chunks {
-            for (index, pair) in chunk.pairs.iter().enumerate() {
-                let frames = pair.map(|own| chunk.frames[own as usize]);
-                all.push((frames, (chunk.first_pair + index) as u32));
-            }
+            all.extend(chunk.pairs.iter().map(|pair| pair.map(|own| chunk.frames[own as usize])));
         }
-        all.sort_unstable();
-        let mut pairs = Self { frames: Vec::new(), starts: Vec::new(), sources: Vec::new() };
-        for (frames, source) in all {
-            if pairs.frames.last() != Some(&frames) {
-                pairs.frames.push(frames);
-                pairs.starts.push(pairs.sources.len() as u32);
-            }
-            pairs.sources.push(source);
-        }
-        pairs.starts.push(pairs.sources.len() as u32);
-        pairs
+        let mut frames: Vec<[u32; 2]> = all.clone();
+        frames.sort_unstable();
+        frames.dedup();
+        let pair = |pair: &[u32; 2]| frames.partition_point(|known| known < pair) as u32;
+        let pair_of = all.iter().map(pair).collect();
+        Self { frames, pair_of }
     }
 
-    fn sources(&self, pair: usize) -> &[u32] {
-        &self.sources[self.starts[pair] as usize..self.starts[pair + 1] as usize]
+    /// Adds the parts of chunks, of which the first pair is number `first` of those of all chunks, to the sums of pairs.
+    pub fn add_parts(&self, first: usize, parts: &[f64], sums: &mut [f64]) {
+        for (pair, part) in self.pair_of[first..].iter().zip(parts.chunks_exact(PAIR_LEN)) {
+            let sum = &mut sums[*pair as usize * PAIR_LEN..][..PAIR_LEN];
+            sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        }
     }
 
     pub fn bytes(&self) -> usize {
-        8 * self.frames.len() + 4 * (self.starts.len() + self.sources.len())
+        8 * self.frames.len() + 4 * self.pair_of.len()
     }
 }
 
@@ -67,15 +62,11 @@ pub struct Slots {
 
 impl Slots {
     /// Adds the sums of all pairs to the matrix.
-    pub fn gather(&mut self, pairs: &Pairs, row_of_frame: &[u32], sums: &[f64], matrix: &mut BlockMatrix) {
+    pub fn scatter(&mut self, pairs: &Pairs, row_of_frame: &[u32], sums: &[f64], matrix: &mut BlockMatrix) {
         self.update(pairs, row_of_frame, matrix.pattern());
         let values = matrix.values_mut();
         for (pair, slots) in self.slots.iter().enumerate() {
-            let mut sum = [0.0; PAIR_LEN];
-            for source in pairs.sources(pair) {
-                let part = &sums[*source as usize * PAIR_LEN..][..PAIR_LEN];
-                sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-            }
+            let sum = &sums[pair * PAIR_LEN..][..PAIR_LEN];
             let is_own = pairs.frames[pair][0] == pairs.frames[pair][1];
             for a in 0..ROWS_OF_FRAME {
                 // a frame with itself is symmetric: its lower half would only repeat, with other rounding

@@ -151,6 +151,11 @@ impl Weights for Shepard {
         let (mut sum, mut sum_gradient) = (0.0, Vec3::ZERO);
         for (frame, &(centre, support)) in self.centres.iter().enumerate() {
             let arm = point - centre;
+            // most frames are far away, which squares tell; the kernel decides near its end
+            let end = support * self.kernel.end();
+            if arm.length_sq() > 1.001 * end * end {
+                continue;
+            }
             let Some((value, slope)) = self.kernel.at(arm.length() / support) else { continue };
             let gradient = arm * (slope / (support * support));
             shares.push(Share { frame: frame as u32, weight: value, gradient });

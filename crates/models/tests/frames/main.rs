@@ -265,6 +265,32 @@ fn forces_are_gradients_and_tangents_their_derivatives() {
     }
 }
 
+/// Shares are kept in single precision: the energy of a strained body is that of its points' own gradients to a millionth.
+#[test]
+fn energy_is_that_of_the_points() {
+    let mesh = bar(SIZE, [9.0, 3.0, 3.0], "tet4");
+    for weights in WEIGHTS.names() {
+        let body = Body::new(&mesh, line(5), weights);
+        let law = material("neo_hookean");
+        let force = body.force(&mesh, std::slice::from_ref(&law), TangentKind::Full);
+        let rows = body.strained();
+        let density = |carried: &Carried| {
+            let mut F = Mat3::ZERO;
+            for (frame, gradients) in carried.frames.iter().zip(&carried.rows) {
+                let first = body.rows[*frame as usize] as usize;
+                for (row, (_, gradient)) in rows[first..].iter().zip(gradients) {
+                    F += row.outer(*gradient);
+                }
+            }
+            law.field(&F, 1.0).energy_density
+        };
+        let points = body.samples.iter().zip(&body.carried);
+        let expected: f64 = points.map(|(sample, carried)| sample.volume * density(carried)).sum();
+        let found = energy(&force, &rows);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{weights}: {found} and {expected}");
+    }
+}
+
 /// Blocks times a displacement are the differential, to rounding; blocks are symmetric to the last bit.
 fn check_blocks(force: &FramesForce, rows: &[Vec3], delta: &[Vec3]) {
     let mut cliques: Vec<Vec<u32>> = Vec::new();

@@ -332,7 +332,7 @@ impl Figure {
         let every = loose.clone().count().div_ceil(MOST_DOTS).max(1);
         let dot = |point: u32| {
             let shape = StrokeShape::Dot(body.positions[point as usize]);
-            Stroke { shape, colour: colour(point), width: 8.0 }
+            Stroke { shape, colour: colour(point), width: 8.0, through: Stroke::FAINTLY }
         };
         loose.step_by(every).map(dot).collect()
     }
@@ -372,7 +372,7 @@ impl Figure {
         });
         let stroke = |foot: Foot| {
             let shape = StrokeShape::Arrow(foot.from, foot.tip(scale));
-            Stroke { shape, colour, width: 2.0 }
+            Stroke { shape, colour, width: 2.0, through: Stroke::FAINTLY }
         };
         self.feet_of(body).into_iter().map(stroke).collect()
     }
@@ -486,6 +486,8 @@ fn axes_of(body: &BodyMoment, length: f64) -> impl Iterator<Item = Stroke> + '_ 
             shape: StrokeShape::Arrow(*origin, *origin + *axis * length),
             colour: Colour::from_screen(colour),
             width: 2.0,
+            // they are inside it
+            through: Stroke::PLAINLY,
         })
     })
 }

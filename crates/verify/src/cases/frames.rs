@@ -31,6 +31,11 @@ const LIGAMENT: Case = Case {
     ..BAR
 };
 
+/// Without what leads the end of the ligament, five frames on a line.
+const FIVE: Case = Case { settings: &[FIVE_FRAMES, UNTURNED], ..LIGAMENT };
+const FIVE_FRAMES: &str = "bodies.ligament.frames.placement.count=5";
+const UNTURNED: &str = "bodies.ligament.pins[1].rotation.offsets[2]=[0, 0, 0]";
+
 const SPINNING: Case = Case {
     capabilities: &["BOS-6"],
     scene: "frames_spinning",
@@ -232,14 +237,55 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "frames_ligament_of_five",
         what: "corner of the led end of a ligament of five frames on a line after half a turn",
-        settings: &["bodies.ligament.frames.placement.count=5"],
+        settings: &[FIVE_FRAMES],
+        ..LIGAMENT
+    },
+    Case {
+        id: "frames_line_held",
+        what: "half the weight of the same, held at both ends",
+        settings: &[FIVE_FRAMES, UNTURNED, "bodies.ligament.pins[1].motion.offsets[1]=[0, 0, 0]"],
+        reading: Reading::component("pull", 1),
+        // 1100 kg/m³ of 10 cm³, 9.81 m/s², by symmetry
+        reference: 0.053_955,
+        tolerance: Tolerance::Relative(1e-5),
+        source: "equilibrium, at the tolerance of Newton's method and the end of the swing",
+        mutation: "bodies.ligament.material.density=1101",
+        ..FIVE
+    },
+    Case {
+        id: "frames_line_stretched",
+        what: "middle of the same, drawn out by a tenth",
+        reading: Reading::component("middle", 0),
+        reference: 0.005,
+        tolerance: Tolerance::Relative(1e-5),
+        source: "symmetry: the middle goes half of the way",
+        mutation: r#"bodies.ligament.pins[1].motion.offsets[1]=["10.1 mm", 0, 0]"#,
+        ..FIVE
+    },
+    Case {
+        id: "frames_line_bent",
+        what: "side of its middle, bent by a quarter turn without weight: on the arc of a circle",
+        settings: &[
+            FIVE_FRAMES,
+            "world.gravity=[0, 0, 0]",
+            r#"bodies.ligament.pins[1].rotation.offsets[2]=[0, 0, "90 deg"]"#,
+            // to the end of an arc of a length of 0.1 m, R = 0.2/π m: R (1, 1) - (0.1, 0)
+            "bodies.ligament.pins[1].motion={ times = [0, 0.5, 1.5], offsets = [[0, 0, 0], [0, 0, 0], [-0.036338, 0.063662, 0]] }",
+        ],
+        reading: Reading::component("middle", 1),
+        // R (1 - cos 45°) + 5 mm (cos 45° - 1)
+        reference: 0.017_181_7,
+        // between two of five frames a strip may leave the arc by its sagitta, R (1 - cos(π/16))
+        tolerance: Tolerance::Absolute(1.2e-3),
+        source: "a strip that bending neither stretches nor shortens",
+        mutation: "bodies.ligament.pins[1].motion.offsets[2]=[-0.036338, 0.055, 0]",
         ..LIGAMENT
     },
     Case {
         id: "frames_line_condition",
         what: "least condition of what moving least squares would invert over five frames on a line",
         scene: "ligament",
-        settings: &["bodies.ligament.frames.placement.count=5"],
+        settings: &[FIVE_FRAMES],
         reading: Reading::MomentCondition("ligament"),
         mutation: r#"bodies.ligament.frames.placement={ name = "grid", counts = [5, 2, 2] }"#,
         ..CONDITION
@@ -358,6 +404,37 @@ pub(super) const CASES: &[Case] = &[
         what: "tip of the clamped bar, 44 affine frames, weights by the way within the shape",
         settings: &[r#"bodies.bar.frames.weights={ name = "geodesic", support = 2 }"#],
         ..BAR
+    },
+    Case {
+        id: "frames_bar_placed",
+        capabilities: &["BOS-4", "BOS-8"],
+        what: "tip of the clamped bar, 100 affine frames by Lloyd's placement, 640 points in voxels",
+        settings: &[
+            r#"bodies.bar.frames.placement={ name = "lloyd", count = 100 }"#,
+            r#"bodies.bar.frames.points={ name = "voxels", size = "2.5 cm" }"#,
+        ],
+        ..BAR
+    },
+    Case {
+        id: "frames_bar_spread",
+        capabilities: &["BOS-4", "BOS-8"],
+        what: "the same, 60 frames as far apart as they can be",
+        settings: &[
+            r#"bodies.bar.frames.placement={ name = "farthest_point", count = 60 }"#,
+            r#"bodies.bar.frames.points={ name = "voxels", size = "2.5 cm" }"#,
+        ],
+        ..BAR
+    },
+    Case {
+        id: "frames_tissues_in_real_time",
+        what: "a step of 10 ms of two organs and what is between them in less than 10 ms, one thread",
+        settings: &["run.duration=0.5"],
+        reading: Reading::StepMilliseconds,
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(10.0),
+        source: "real time; a figure of the machine, of which it takes half",
+        mutation: "bodies.upper.mesh.cells=[14, 6, 14]",
+        ..TISSUES
     },
     Case {
         id: "frames_tissue_gains_nothing",
