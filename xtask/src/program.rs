@@ -82,14 +82,14 @@ fn row_fault(row: &Value) -> Option<String> {
     if row["problem"].is_string() {
         return Some(format!("{id} failed: {}: {}", field("what"), field("problem")));
     }
-    Some(format!(
-        "{id} failed: {}: {} {} was measured, the reference is {} within {}",
-        field("what"),
-        field("measured"),
-        field("unit"),
-        field("reference"),
-        field("tolerance")
-    ))
+    let wanted = match row["wanted"].as_str() {
+        None | Some("near") => {
+            format!("the reference is {} within {}", field("reference"), field("tolerance"))
+        }
+        Some(relation) => format!("{relation} {} is wanted", field("reference")),
+    };
+    let (what, measured, unit) = (field("what"), field("measured"), field("unit"));
+    Some(format!("{id} failed: {what}: {measured} {unit} was measured, {wanted}"))
 }
 
 /// A row that its mutation does not make fail, in words.
@@ -116,6 +116,9 @@ mod tests {
             "tolerance": 0.1, "pass": false,
         });
         let text = "bar_tip failed: tip of the bar: 1.5 m was measured, the reference is 1.0 within 0.1";
+        assert_eq!(row_fault(&row).as_deref(), Some(text));
+        row["wanted"] = "at most".into();
+        let text = "bar_tip failed: tip of the bar: 1.5 m was measured, at most 1.0 is wanted";
         assert_eq!(row_fault(&row).as_deref(), Some(text));
         row["problem"] = "no such probe".into();
         assert_eq!(row_fault(&row).as_deref(), Some("bar_tip failed: tip of the bar: no such probe"));

@@ -1,4 +1,11 @@
-//! The expression language: units, parsing, evaluation.
+//! Physics as text: formulas with units, and laws that are read, derived and compiled.
+//!
+//! - [`law`]: a strain energy as text, read, differentiated and tried; what it does at rest.
+//! - [`graph`]: expressions of numbers, vectors and matrices in which equal ones are one; derivatives, simplification, grouping of
+//!   constants, common parts.
+//! - [`element`]: forces and differentials of an element under a law, by the data of the element alone.
+//! - [`tape`]: instructions over lanes that run what was derived, without a compiler.
+//! - [`emit`]: what was derived as text, LaTeX, Rust, WGSL or a program of Maxima.
 //!
 //! [`parse_quantity`] reads `"10 kPa"`, [`Formula`] computes `"0.1 * sin(2*pi*t)"` and its derivative,
 //! [`Condition`] decides `"x > 0.5 and y < z"`, [`Expression`] is the syntax they share. Every error

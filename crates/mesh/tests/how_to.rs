@@ -13,13 +13,14 @@ fn the_page_shows_what_is_compiled() {
             .expect("a file of the project")
     };
     let page = read("../../docs/how-to-add-an-element.md");
-    let (element, table) = (read("src/element/edge.rs"), read("src/element/mod.rs"));
+    let (element, table) = (read("src/element/triangle.rs"), read("src/element/mod.rs"));
     let blocks: Vec<&str> =
         page.split("```rust\n").skip(1).map(|rest| rest.split("```").next().unwrap_or_default()).collect();
     assert_eq!(blocks.len(), 5);
     for block in blocks {
         assert!(element.contains(block) || table.contains(block), "not in the program:\n{block}");
     }
-    let edge = ElementKind::from_name("edge3").unwrap();
-    assert_eq!((edge.node_count(), edge.order(), edge.corners()), (3, Order::Quadratic, ElementKind::Edge2));
+    let triangle = ElementKind::from_name("tri6").unwrap();
+    let found = (triangle.node_count(), triangle.order(), triangle.corners());
+    assert_eq!(found, (6, Order::Quadratic, ElementKind::Tri3));
 }

@@ -1,20 +1,22 @@
 //! Derived expressions of an element under a law, tried: forces against energies, differentials against forces, symmetry, rigid
 //! motion, sums, and the law at the samples as bodies take it (EXP-6 of the solids' specification).
 //!
-//! The cell is crooked and its displacements have no symmetry; both are the same in every run.
+//! Expressions are tried as bodies take them, in tensors; on elements of first order under their usual rule also written out in
+//! numbers, as code is emitted; and hexahedra and quadrilaterals as boxes too. The cell is crooked, or a box of three
+//! different sides, and its displacements have no symmetry; both are the same in every run.
 
 use std::ops::Range;
 
 use souple_engine::{Configuration, Force};
-use souple_formal::element::{Cut, ElementData, Step, Steps};
-use souple_formal::graph::Expr;
+use souple_formal::element::{Cut, ElementData, ElementExpressions, Step};
+use souple_formal::graph::{Expr, Graph};
 use souple_formal::law::{EnergyLaw, LawParameter, Strain};
 use souple_formal::tape::{BATCH, Part, Tape};
 use souple_math::{Vec3, exponential};
-use souple_mesh::{ElementKind, Mesh, QuadratureRule};
+use souple_mesh::{ElementKind, Mesh, Order, QuadratureRule};
 use souple_table::{Value, Values};
 
-use crate::derive::{MapKind, element_data};
+use crate::derive::{MapKind, element_data, usual_rule};
 use crate::materials::{self, Material, WrittenLaw};
 use crate::solids::{Quadrature, Section, SolidDescription, SolidForce};
 
@@ -45,6 +47,8 @@ pub struct Battery {
     pub symmetry: f64,
     /// Forces of a cell that is turned and moved, over those of the bent one; zero where the law counts turns as strain.
     pub rigid: f64,
+    /// The same where the law counts turns as strain; zero where it does not.
+    pub turned: f64,
     /// Sums of forces, and of moments where the law does not count turns as strain.
     pub balance: f64,
     /// Of the law at the samples, by the kernels of bodies.
@@ -62,23 +66,25 @@ pub struct Untried {
 }
 
 impl Battery {
-    /// The bounds of the specification.
+    /// The bounds of the specification; there is none on what a law that counts turns as strain makes of them.
     pub const BOUNDS: Self = Self {
         force: 1e-6,
         differential: 1e-6,
         symmetry: 1e-12,
         rigid: 1e-10,
+        turned: f64::INFINITY,
         balance: 1e-10,
         samples: 1e-10,
     };
 
     /// Its numbers by name.
-    pub fn named(&self) -> [(&'static str, f64); 6] {
+    pub fn named(&self) -> [(&'static str, f64); 7] {
         [
             ("force", self.force),
             ("differential", self.differential),
             ("symmetry", self.symmetry),
             ("rigid", self.rigid),
+            ("turned", self.turned),
             ("balance", self.balance),
             ("samples", self.samples),
         ]
@@ -92,6 +98,7 @@ impl Battery {
             differential: worse(self.differential, other.differential),
             symmetry: worse(self.symmetry, other.symmetry),
             rigid: worse(self.rigid, other.rigid),
+            turned: worse(self.turned, other.turned),
             balance: worse(self.balance, other.balance),
             samples: worse(self.samples, other.samples),
         }
@@ -110,12 +117,15 @@ impl Battery {
         let untried = |problem: String| Untried { law: law.name, kind, rule: rule.name, problem };
         let text = law.text().map_err(|error| untried(error.to_string()))?;
         let compiled = EnergyLaw::compile(&text).map_err(|error| untried(error.to_string()))?;
-        let element =
-            element_data(kind, rule, MapKind::General).map_err(|error| untried(error.to_string()))?;
-        let cell = Cell::new(kind, &element, &compiled);
         let material = material(law).map_err(&untried)?;
-        let samples = cell.forces_at_samples(rule, &material).map_err(untried)?;
-        Ok(cell.battery(trying, compiled.strain == Strain::Finite, &samples))
+        let mut battery = Self::default();
+        for (map, form) in forms(kind, rule) {
+            let element = element_data(kind, rule, map).map_err(|error| untried(error.to_string()))?;
+            let Some(cell) = Cell::new(kind, map, form, &element, &compiled) else { continue };
+            let samples = cell.forces_at_samples(rule, &material).map_err(&untried)?;
+            battery = battery.worse(cell.battery(trying, compiled.strain == Strain::Finite, &samples));
+        }
+        Ok(battery)
     }
 }
 
@@ -135,6 +145,32 @@ fn material(law: &WrittenLaw) -> Result<Material, String> {
     (entry.build)(&values).map_err(|error| error.to_string())
 }
 
+/// How expressions are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    /// In tensors.
+    Tensors,
+    /// In numbers; laws of principal stretches have no such form.
+    Numbers,
+}
+
+/// The forms that an element is tried in under a rule.
+fn forms(kind: ElementKind, rule: &QuadratureRule) -> Vec<(MapKind, Form)> {
+    let mut forms = vec![(MapKind::General, Form::Tensors)];
+    // written out, elements of second order are as long as a book
+    let is_usual = rule.name == usual_rule(kind).name && kind.element().order == Order::Linear;
+    if is_usual {
+        forms.push((MapKind::General, Form::Numbers));
+    }
+    if element_data(kind, rule, MapKind::Box).is_ok() {
+        forms.push((MapKind::Box, Form::Tensors));
+        if is_usual {
+            forms.push((MapKind::Box, Form::Numbers));
+        }
+    }
+    forms
+}
+
 /// Numbers without symmetry between -1 and 1.
 fn wave(number: usize, phase: f64) -> f64 {
     (12.9898 * number as f64 + phase).sin()
@@ -147,7 +183,7 @@ struct Running {
     outputs: usize,
 }
 
-/// One crooked cell and its expressions.
+/// One cell and its expressions.
 struct Cell {
     kind: ElementKind,
     dimension: usize,
@@ -161,25 +197,64 @@ struct Cell {
 type Lane = (Vec<f64>, Vec<f64>);
 
 impl Cell {
-    fn new(kind: ElementKind, element: &ElementData, law: &EnergyLaw) -> Self {
+    /// `None` where the law has no such form.
+    fn new(
+        kind: ElementKind,
+        map: MapKind,
+        form: Form,
+        element: &ElementData,
+        law: &EnergyLaw,
+    ) -> Option<Self> {
         let dimension = element.dimension;
         let nodes = kind.element().nodes;
-        // cells of side one; middles of edges stay near the middle
         let rest: Vec<Vec3> = nodes
             .iter()
             .enumerate()
             .map(|(node, xi)| {
+                if map == MapKind::Box {
+                    return Vec3::new(0.9 * xi[0], 1.1 * xi[1], 1.05 * xi[2]);
+                }
+                // middles of edges stay near the middle
                 let shift = |axis: usize| {
                     if axis < dimension { 0.02 * wave(3 * node + axis, 0.4) } else { 0.0 }
                 };
                 Vec3::from_array(*xi) + Vec3::new(shift(0), shift(1), shift(2))
             })
             .collect();
-        let steps = element.steps(law, Cut::NONE);
-        let running = |step: &Step| Running::new(&steps, step, law, &rest, dimension);
-        let [energy, force, differential] =
-            [&steps.energies[0], &steps.forces[0], &steps.differentials[0]].map(running);
-        Self { kind, dimension, rest, energy, force, differential }
+        let [energy, force, differential] = match form {
+            Form::Tensors => {
+                let steps = element.steps(law, Cut::NONE);
+                let symbols = &steps.symbols;
+                let given = Given {
+                    graph: &steps.graph,
+                    law,
+                    rest: &symbols.rest,
+                    displacements: &symbols.displacements,
+                    variations: &symbols.variations,
+                    parameters: &symbols.parameters,
+                };
+                let running =
+                    |step: &Step| given.running(&rest, &step.constants, &step.definitions, &step.outputs);
+                [&steps.energies[0], &steps.forces[0], &steps.differentials[0]].map(running)
+            }
+            Form::Numbers => {
+                let derived = element.derive(law, Cut::NONE).ok()?;
+                let given = Given {
+                    graph: &derived.graph,
+                    law,
+                    rest: &derived.rest,
+                    displacements: &derived.displacements,
+                    variations: &derived.variations,
+                    parameters: &derived.parameters,
+                };
+                let running = |fragment: &ElementExpressions| {
+                    let grouped = &fragment.grouped;
+                    given.running(&rest, &grouped.constants, &[], &grouped.varying)
+                };
+                [&derived.energies[0], &derived.forces[0], &derived.differentials[0]].map(running)
+            }
+        };
+        Some(Self { kind, dimension, rest, energy, force, differential })
     }
 
     fn len(&self) -> usize {
@@ -248,9 +323,12 @@ impl Cell {
         let sum: Vec3 = f.iter().copied().sum();
         let moment: Vec3 = x.zip(&f).map(|(x, f)| x.cross(*f)).sum();
         battery.balance = sum.length() / norm(force);
+        let turned = norm(&forces[forces.len() - 1]) / norm(force);
         if is_objective {
             battery.balance = worse(battery.balance, moment.length() / norm(force));
-            battery.rigid = norm(&forces[forces.len() - 1]) / norm(force);
+            battery.rigid = turned;
+        } else {
+            battery.turned = turned;
         }
         battery.samples = distance(at_samples, force);
         battery
@@ -303,18 +381,37 @@ impl Cell {
     }
 }
 
-impl Running {
-    fn new(steps: &Steps, step: &Step, law: &EnergyLaw, rest: &[Vec3], dimension: usize) -> Self {
-        let Steps { graph, symbols, .. } = steps;
+/// What expressions are of.
+struct Given<'a> {
+    graph: &'a Graph,
+    law: &'a EnergyLaw,
+    rest: &'a [Vec<Expr>],
+    displacements: &'a [Vec<Expr>],
+    variations: &'a [Vec<Expr>],
+    parameters: &'a [Expr],
+}
+
+impl Given<'_> {
+    /// Outputs by constants and definitions, for a cell at rest in these places.
+    fn running(
+        &self,
+        rest: &[Vec3],
+        constants: &[(Expr, Expr)],
+        definitions: &[(Expr, Expr)],
+        outputs: &[Expr],
+    ) -> Running {
+        let Self { graph, law, .. } = self;
         let flat = |list: &[Vec<Expr>]| list.iter().flatten().copied().collect::<Vec<Expr>>();
-        let mut given = flat(&symbols.rest);
-        given.extend(&symbols.parameters);
-        let (constants, values): (Vec<Expr>, Vec<Expr>) = step.constants.iter().copied().unzip();
-        let start = Tape::of_expressions(graph, [&given, &[]], &step.constants, &values, &law.parameters);
+        let mut given = flat(self.rest);
+        given.extend(self.parameters);
+        let of_constants = constants;
+        let (constants, values): (Vec<Expr>, Vec<Expr>) = of_constants.iter().copied().unzip();
+        let start = Tape::of_expressions(graph, [&given, &[]], of_constants, &values, &law.parameters);
         let numbers = law.parameters.iter().filter_map(|(_, parameter)| match parameter {
             LawParameter::Number { value, .. } => Some(*value),
             LawParameter::Direction(_) => None,
         });
+        let dimension = self.rest[0].len();
         let rest = rest.iter().flat_map(|p| p.to_array()[..dimension].to_vec());
         let mut memory = vec![0.0; start.memory_len()];
         start.prepare(&mut memory);
@@ -323,18 +420,14 @@ impl Running {
         }
         start.run_here(Part::All, 1, &mut memory);
         let of_start = |constant: usize| memory[start.output(constant, 0)];
-        let inputs: Vec<Expr> = flat(&symbols.displacements).into_iter().chain(constants.clone()).collect();
-        let varied = flat(&symbols.variations);
-        let tape = Tape::of_expressions(
-            graph,
-            [&inputs, &varied],
-            &step.definitions,
-            &step.outputs,
-            &law.parameters,
-        );
-        Self { tape, constants: (0..constants.len()).map(of_start).collect(), outputs: step.outputs.len() }
+        let inputs: Vec<Expr> = flat(self.displacements).into_iter().chain(constants.clone()).collect();
+        let varied = flat(self.variations);
+        let tape = Tape::of_expressions(graph, [&inputs, &varied], definitions, outputs, &law.parameters);
+        Running { tape, constants: (0..constants.len()).map(of_start).collect(), outputs: outputs.len() }
     }
+}
 
+impl Running {
     /// The outputs of each lane.
     fn run(&self, lanes: &[Lane]) -> Vec<Vec<f64>> {
         let Self { tape, constants, outputs } = self;

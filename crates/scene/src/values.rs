@@ -198,13 +198,14 @@ impl<'a> Reading<'a> {
                 Content::Text(text) if entry.node.computed => {
                     let value =
                         if parse_quantity(text).is_ok() { None } else { item.computed(text, expected) };
-                    value.map_or_else(|| text.clone(), |value| value.to_string())
+                    value.map_or_else(|| text.clone(), readable)
                 }
                 Content::Text(text) => text.clone(),
                 Content::Integer(number) => number.to_string(),
-                Content::Number(number) => number.to_string(),
+                Content::Number(number) => readable(*number),
                 Content::List(_) => {
-                    let [x, y, z] = item.vector("", Range::ANY, expected)?.to_array();
+                    let wanted = "three numbers, as a direction";
+                    let [x, y, z] = item.vector("", Range::ANY, wanted)?.to_array().map(readable);
                     format!("[{x}, {y}, {z}]")
                 }
                 _ => return item.wrong_type(expected),

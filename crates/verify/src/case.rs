@@ -15,6 +15,12 @@ pub enum Tolerance {
     Absolute(f64),
     /// Of the reference.
     Relative(f64),
+    /// The reference is the least that is accepted.
+    AtLeast,
+    /// The reference is the most that is accepted.
+    AtMost,
+    /// More than the reference is wanted.
+    Above,
 }
 
 /// A number that a scene must give.
@@ -79,7 +85,7 @@ impl Case {
             Ok((measured, unit, runs)) => (measured, unit, runs, None),
             Err(problem) => (f64::NAN, "", Vec::new(), Some(problem)),
         };
-        let pass = (measured - self.reference).abs() <= self.tolerance.absolute(self.reference);
+        let pass = self.tolerance.accepts(measured, self.reference);
         // an order has no unit, whatever that of the errors is
         let unit = if self.refinement.is_some() { "" } else { unit };
         Row { case: *self, measured, unit, pass, seconds: clock.elapsed().as_secs_f64(), runs, problem }
@@ -135,6 +141,7 @@ impl Case {
             "probe": self.reading.name(),
             "reference": self.reference,
             "tolerance": self.tolerance.absolute(self.reference),
+            "wanted": self.tolerance.relation(),
             "source": self.source,
             "mutation": self.mutation,
         });
@@ -146,11 +153,32 @@ impl Case {
 }
 
 impl Tolerance {
-    /// The bound in the unit of the reference.
+    /// How far from the reference what is measured may be, in its unit; nothing where the reference is a bound.
     pub fn absolute(self, reference: f64) -> f64 {
         match self {
             Self::Absolute(bound) => bound,
             Self::Relative(fraction) => fraction * reference.abs(),
+            Self::AtLeast | Self::AtMost | Self::Above => 0.0,
+        }
+    }
+
+    /// What is not a number never does.
+    pub fn accepts(self, measured: f64, reference: f64) -> bool {
+        match self {
+            Self::Absolute(_) | Self::Relative(_) => (measured - reference).abs() <= self.absolute(reference),
+            Self::AtLeast => measured >= reference,
+            Self::AtMost => measured <= reference,
+            Self::Above => measured > reference,
+        }
+    }
+
+    /// How what is measured stands to the reference, in a word or two.
+    pub fn relation(self) -> &'static str {
+        match self {
+            Self::Absolute(_) | Self::Relative(_) => "near",
+            Self::AtLeast => "at least",
+            Self::AtMost => "at most",
+            Self::Above => "above",
         }
     }
 }

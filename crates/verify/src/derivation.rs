@@ -21,6 +21,8 @@ pub enum Count {
     Fragments,
     /// Operations of the differential at every step, written out in numbers.
     DifferentialOperations,
+    /// The same over those on another element; settings, apart by spaces, that make it another.
+    DifferentialOperationsOver(&'static str),
     /// How many times the operations of forces in tensors those of the four loops are.
     FourLoopForces,
     /// The same of the differential.
@@ -44,6 +46,7 @@ pub enum Trial {
     Differential,
     Symmetry,
     Rigid,
+    Turned,
     Balance,
     Samples,
 }
@@ -137,17 +140,19 @@ impl Settings {
 ///
 /// # Errors
 /// What an argument is not.
-pub fn count(count: Count, settings: &[String]) -> Result<f64, String> {
-    let settings = Settings::read(settings)?;
+pub fn count(count: Count, given: &[String]) -> Result<f64, String> {
+    let settings = Settings::read(given)?;
     let number = match count {
         Count::Constants => {
             settings.derived()?.energies.iter().map(|fragment| fragment.grouped.constants.len()).sum()
         }
         Count::Fragments => settings.derived()?.differentials.len(),
-        Count::DifferentialOperations => {
-            let derived = settings.derived()?;
-            let of = |fragment: &ElementExpressions| fragment.operations(&derived.graph).0.total();
-            derived.differentials.iter().map(of).sum()
+        Count::DifferentialOperations => settings.differential_operations()?,
+        Count::DifferentialOperationsOver(other) => {
+            let other: Vec<String> =
+                given.iter().cloned().chain(other.split(' ').map(str::to_owned)).collect();
+            let other = Settings::read(&other)?.differential_operations()?;
+            return Ok(settings.differential_operations()? as f64 / other as f64);
         }
         Count::CodeBytes => settings.derived()?.emit(ElementCode::Rust).text.len(),
         Count::Associations => {
@@ -180,6 +185,13 @@ pub fn count(count: Count, settings: &[String]) -> Result<f64, String> {
 }
 
 impl Settings {
+    /// Operations of the differential at every step, written out in numbers.
+    fn differential_operations(&self) -> Result<usize, String> {
+        let derived = self.derived()?;
+        let of = |fragment: &ElementExpressions| fragment.operations(&derived.graph).0.total();
+        Ok(derived.differentials.iter().map(of).sum())
+    }
+
     /// How many times the operations of forces, or of the differential, the four loops take.
     fn over_four_loops(&self, is_differential: bool) -> Result<f64, String> {
         let (kind, name) = (self.kind()?, self.law.as_deref().unwrap_or_default());
@@ -227,6 +239,7 @@ impl Trial {
             Self::Differential => battery.differential,
             Self::Symmetry => battery.symmetry,
             Self::Rigid => battery.rigid,
+            Self::Turned => battery.turned,
             Self::Balance => battery.balance,
             Self::Samples => battery.samples,
         }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
-use crate::case::Case;
+use crate::case::{Case, Tolerance};
 
 /// What a case gave.
 #[derive(Clone, Debug)]
@@ -95,18 +95,20 @@ impl fmt::Display for Row {
         if let Some(problem) = &self.problem {
             return write!(f, "{problem}");
         }
+        let tolerance = self.case.tolerance;
+        let is_near = matches!(tolerance, Tolerance::Absolute(_) | Tolerance::Relative(_));
+        let relation = if is_near { "for" } else { tolerance.relation() };
         if self.case.refinement.is_some() {
-            write!(f, "order {:.3} for {} ", self.measured, self.case.reference)?;
+            write!(f, "order {:.3} {relation} {} ", self.measured, self.case.reference)?;
         } else {
-            write!(f, "{:.10e} for {:.10e} {} ", self.measured, self.case.reference, self.unit)?;
+            write!(f, "{:.10e} {relation} {:.10e} {} ", self.measured, self.case.reference, self.unit)?;
         }
-        write!(
-            f,
-            "(off by {:.1e}, {:.1e} allowed) in {:.2} s",
-            (self.measured - self.case.reference).abs(),
-            self.case.tolerance.absolute(self.case.reference),
-            self.seconds
-        )?;
+        if is_near {
+            let off = (self.measured - self.case.reference).abs();
+            let allowed = tolerance.absolute(self.case.reference);
+            write!(f, "(off by {off:.1e}, {allowed:.1e} allowed) ")?;
+        }
+        write!(f, "in {:.2} s", self.seconds)?;
         if self.case.refinement.is_some() {
             for run in &self.runs {
                 write!(f, "\n       {:.10e}", run.value)?;

@@ -2,8 +2,8 @@
 //!
 //! `u(ξ) = Σ_n Π_k (1 ± ξ_k)/2 u_n` is interpolated between opposite faces, then between opposite edges of what is left. Samples
 //! that share a coordinate share what is made from it, and `∂u/∂ξ_k` does not depend on `ξ_k`: the eight samples of a hexahedron
-//! have twelve gradients of 28 operations for each component, where eight nodes at eight samples would take 360. Forces go back
-//! the same way.
+//! have twelve different gradients, which take 84 operations for each component, 28 along each axis, where eight nodes at eight
+//! samples would take 360. Forces go back the same way.
 
 use super::{ElementData, RestMap};
 use crate::graph::{Expr, Graph};

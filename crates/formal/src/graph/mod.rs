@@ -13,7 +13,6 @@ mod count;
 mod differentiate;
 mod evaluate;
 mod factor;
-mod integrate;
 mod share;
 mod simplify;
 mod spectral;

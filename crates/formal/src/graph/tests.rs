@@ -109,34 +109,6 @@ fn grouped_constants_of_the_worked_example() {
     assert!(!depends[of_d0.index()] && !depends[of_d1.index()]);
 }
 
-/// `∫∫ L_a L_b` over the reference triangle is a twelfth of its area, a sixth where both are the same; what is no polynomial has no
-/// such integral.
-#[test]
-fn integrals_over_the_triangle() {
-    let mut graph = Graph::new();
-    let [x, y, c] = abc(&mut graph);
-    let (zero, one) = (graph.number(0.0), graph.number(1.0));
-    let edge = graph.subtract(one, x);
-    let first = graph.subtract(edge, y);
-    for (factors, expected) in
-        [(vec![first, x], 1.0 / 24.0), (vec![first, first], 1.0 / 12.0), (vec![y, y, first], 1.0 / 60.0)]
-    {
-        let mut product = factors;
-        product.push(c);
-        let product = graph.product(&product);
-        let inner = graph.integral(product, y, [zero, edge]).unwrap();
-        let outer = graph.integral(inner, x, [zero, one]).unwrap();
-        let value = graph.evaluate(&[outer], |_| &[3.0]).scalar(outer);
-        assert!((value - 3.0 * expected).abs() < 1e-15, "{value} {expected}");
-    }
-    let quotient = graph.divide(c, first);
-    assert_eq!(graph.integral(quotient, y, [zero, one]), None);
-    // what does not hold the symbol is constant
-    let constant = graph.integral(quotient, c, [zero, one]);
-    let inverse = graph.power_number(first, -1.0);
-    assert_eq!(constant, Some(graph.times_number(0.5, inverse)));
-}
-
 /// Three sums that have two addends in common, one of them with the other sign, and two products: each pair is computed once, and
 /// all are worth what they were.
 #[test]

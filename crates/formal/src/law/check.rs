@@ -393,7 +393,7 @@ fn order_of_stretches(law: &mut EnergyLaw, read: &Read) -> Result<(), LawError> 
 fn doubts(law: &mut EnergyLaw) {
     let mut doubts = Vec::new();
     let largest = law.stiffness.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let (shear, volume) = (least_shear(law), bulk(law));
+    let (shear, volume) = (least_shear(law), law.bulk_modulus());
     if volume < -1e-9 * largest || shear < -1e-9 * largest {
         doubts.push("at rest the stiffness is negative: the body leaves its rest shape by itself");
     } else if volume <= 1e-9 * largest {
@@ -467,12 +467,6 @@ fn jump(law: &EnergyLaw) -> Option<String> {
             })
         })
     })
-}
-
-/// A third of the mean stress per relative change of volume at rest, times three [Pa].
-fn bulk(law: &EnergyLaw) -> f64 {
-    let diagonal = [0, 4, 8];
-    diagonal.iter().flat_map(|a| diagonal.iter().map(move |b| law.stiffness[9 * a + b])).sum::<f64>() / 9.0
 }
 
 /// The least stiffness at rest against shears and stretches without change of volume [Pa].

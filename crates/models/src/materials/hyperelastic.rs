@@ -160,6 +160,8 @@ fn direction(text: &str) -> Result<[f64; 3], String> {
 static KNOWN: Mutex<VecDeque<Arc<TextLaw>>> = Mutex::new(VecDeque::new());
 /// How many of them.
 const KNOWN_MOST: usize = 32;
+/// Of the largest entry of the stiffness at rest: eighty-one of them are summed, each a hundred roundings of the derivation.
+const MODULUS_ROUNDING: f64 = 1e-12;
 
 impl TextLaw {
     /// The law of a text, compiled if it is not among those compiled last.
@@ -205,6 +207,13 @@ impl TextLaw {
     /// `F`, `δF` to `δP`.
     pub(crate) fn differential(&self) -> &Tape {
         &self.differential
+    }
+
+    /// Bulk modulus at rest and, over all directions, the mean shear modulus [Pa]; what is nothing but rounding is zero.
+    pub(crate) fn bulk_and_shear(&self) -> [f64; 2] {
+        let largest = self.law.stiffness.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        [self.law.bulk_modulus(), self.law.mean_shear_modulus()]
+            .map(|modulus| if modulus.abs() <= MODULUS_ROUNDING * largest { 0.0 } else { modulus })
     }
 
     /// Moduli at rest: of an anisotropic law the mean shear modulus, and the stiffest longitudinal one.

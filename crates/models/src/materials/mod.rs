@@ -171,6 +171,15 @@ impl Material {
         Self { law: MaterialLaw::Known(law), parameters, small_strain, density }
     }
 
+    /// Bulk and shear modulus at rest [Pa]; of an anisotropic law the mean shear modulus over all directions.
+    pub fn bulk_and_shear(&self) -> [f64; 2] {
+        let Lame { lambda, mu } = self.small_strain;
+        match &self.law {
+            MaterialLaw::Known(_) => [lambda + 2.0 / 3.0 * mu, mu],
+            MaterialLaw::Text(law) => law.bulk_and_shear(),
+        }
+    }
+
     /// The numbers as the law `L` takes them.
     pub fn parameters_of<L: Law>(&self) -> L::Parameters<f64> {
         L::Parameters::unpack(|i| self.parameters[i])

@@ -92,10 +92,7 @@ pub fn refuse(draft: &Draft) {
             ] {
                 let value = written(key, computed);
                 let is_of_text = key == "youngs_modulus" && chosen.values.get("energy").is_some();
-                if is_of_text && (value.is_nan() || value <= 0.0) {
-                    let message =
-                        format!("at rest this energy does not resist stretch: {name} is {}", readable(value));
-                    let expected = "an energy that grows with the square of every shear and change of volume";
+                if let Some((message, expected)) = gives_way(&material).filter(|_| is_of_text) {
                     draft.log.add(Code::OutOfRange, chosen.site_of("energy"), message, expected);
                 } else if !within(value, ABSURD) {
                     let message = format!("{name} is {}", readable(value));
@@ -105,6 +102,24 @@ pub fn refuse(draft: &Draft) {
                 }
             }
         }
+    }
+}
+
+/// What of a law as text does not hold a body together at rest, and what would.
+fn gives_way(material: &Material) -> Option<(String, &'static str)> {
+    let [bulk, shear] = material.bulk_and_shear();
+    let lacks = |modulus: f64| modulus.is_nan() || modulus <= 0.0;
+    let told = |what: &str, modulus: f64, name: &str| {
+        format!("at rest this energy does not resist {what}: its {name} modulus is {} Pa", readable(modulus))
+    };
+    if lacks(shear) {
+        let expected = "a term that grows with the square of every shear, such as mu/2*(I1_bar - 3)";
+        Some((told("shear", shear, "shear"), expected))
+    } else if lacks(bulk) {
+        let expected = "a term that grows with the square of the change of volume, such as k/2*(J - 1)^2";
+        Some((told("a change of volume", bulk, "bulk"), expected))
+    } else {
+        None
     }
 }
 
@@ -123,7 +138,8 @@ fn materials(body: &Body) -> Vec<(&Chosen<Build>, Material)> {
 /// `is_linear`: some of its elements have linear shape functions.
 fn of_material(material: &Material, is_linear: bool) -> impl Iterator<Item = String> {
     let (density, modulus) = (material.density, material.small_strain.youngs_modulus());
-    let ratio = material.small_strain.lambda / material.small_strain.mu;
+    let [bulk, shear] = material.bulk_and_shear();
+    let ratio = bulk / shear - 2.0 / 3.0;
     let modulus_doubt = (!within(modulus, MODULI)).then(|| {
         let hint = if modulus < MODULI[0] { "did you mean kPa or MPa?" } else { "did you mean Pa or kPa?" };
         format!("Young's modulus is {modulus:.3e} Pa: {hint}")

@@ -155,6 +155,16 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     for warning in law.warnings.iter().filter(|_| name == TEXT) {
         print_note(format_args!("warning: {warning}"));
     }
+    let is_code = matches!(arguments.emit, Emit::Rust | Emit::Wgsl | Emit::Maxima);
+    if is_code && arguments.out.is_none() && cut != Cut::NONE {
+        let message = "emitted code holds the whole sum, whatever expressions are cut into".to_owned();
+        return Err(Refusal::request(
+            "cut",
+            &arguments.cut,
+            "`--out`, which writes the fragments, or no `--cut`",
+            message,
+        ));
+    }
     let association = format!("{}{}{cut}", source_law_name(&name), element.name);
     // another system derives it: nothing has to be derived here
     if arguments.emit == Emit::Maxima && arguments.out.is_none() {

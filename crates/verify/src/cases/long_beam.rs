@@ -76,6 +76,8 @@ const ORDER: Case = Case {
     ..BEAM
 };
 
+const FINE_POISSON: &[&str] = &["bodies.bar.mesh.cells=[48, 8, 8]", "bodies.bar.material.poissons_ratio=0.3"];
+
 const ST_VENANT_KIRCHHOFF: &[&str] = &[r#"bodies.strip.material.name="st_venant_kirchhoff""#];
 
 pub(super) const CASES: &[Case] = &[
@@ -302,12 +304,20 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "exp28_tet4",
         capabilities: &["FAU-73", "FAU-8"],
-        what: "the same of 34,992 tetrahedra, whose forces take as many operations (`souple derive`): off by 3 to 5 %",
-        settings: &["bodies.bar.mesh.cells=[72, 9, 9]", r#"bodies.bar.mesh.element="tet4""#],
-        reference: -0.6072 * 0.96,
-        tolerance: Tolerance::Absolute(0.6072 * 0.01),
+        what: "error of 34,992 tetrahedra, whose forces take as many operations (`souple derive`), over that of 3,072 hexahedra, as a power \
+               of two: tetrahedra are further off",
+        refinement: Some(Refinement {
+            size_of: "powers of two",
+            runs: &[
+                Variant { size: 2.0, settings: beam!("tet4", "[72, 9, 9]",) },
+                Variant { size: 1.0, settings: beam!("hex8", "[48, 8, 8]",) },
+            ],
+            limit: Limit::Known(-0.6072),
+        }),
+        reference: 0.0,
+        tolerance: Tolerance::Above,
         source: "specification, EXP-28; times in `souple bench accuracy`",
-        mutation: r#"bodies.bar.mesh.element="hex8""#,
+        mutation: r#"bodies.bar.mesh.element="tet4""#,
         ..BEAM
     },
     Case {
@@ -347,6 +357,37 @@ pub(super) const CASES: &[Case] = &[
         what: "the same energy of 3,072 hexahedra, no contraction across",
         settings: &["bodies.bar.mesh.cells=[48, 8, 8]"],
         reference: 4.3852e6,
+        ..TURN
+    },
+    Case {
+        id: "exp31_moment_fine",
+        what: "its moment",
+        settings: &["bodies.bar.mesh.cells=[48, 8, 8]"],
+        reading: Reading::component("moment", 0),
+        reference: 2.7734e6,
+        ..TURN
+    },
+    Case {
+        id: "exp31_moment_poisson",
+        what: "the moment of 384 hexahedra with a Poisson ratio of 0.3",
+        settings: &["bodies.bar.material.poissons_ratio=0.3"],
+        reading: Reading::component("moment", 0),
+        reference: 2.2648e6,
+        ..TURN
+    },
+    Case {
+        id: "exp31_energy_fine_poisson",
+        what: "the energy of 3,072 hexahedra with a Poisson ratio of 0.3",
+        settings: FINE_POISSON,
+        reference: 3.4134e6,
+        ..TURN
+    },
+    Case {
+        id: "exp31_moment_fine_poisson",
+        what: "their moment",
+        settings: FINE_POISSON,
+        reading: Reading::component("moment", 0),
+        reference: 2.1826e6,
         ..TURN
     },
     Case {

@@ -1,5 +1,6 @@
 //! EXP-29 to EXP-31 and EXP-39 of the solids' specification: bodies of several kinds of elements, laws and moduli.
 
+use crate::refinement::{Limit, Refinement, Variant};
 use crate::{Case, Reading, Tolerance};
 
 const BEAM: Case = Case {
@@ -53,6 +54,25 @@ pub(super) const CASES: &[Case] = &[
         what: "the same, 48 x 8 x 8 cubes: 11,520 cells",
         settings: &["bodies.bar.mesh.cells=[48, 8, 8]"],
         reference: -0.59816,
+        ..BEAM
+    },
+    Case {
+        id: "exp29_order_mixed",
+        what: "order of the tip's error, all four elements, 4 and 8 cubes across",
+        refinement: Some(Refinement {
+            size_of: "cell",
+            runs: &[
+                Variant { size: 1.0 / 4.0, settings: &["bodies.bar.mesh.cells=[24, 4, 4]"] },
+                Variant { size: 1.0 / 8.0, settings: &["bodies.bar.mesh.cells=[48, 8, 8]"] },
+            ],
+            limit: Limit::Known(-0.6072),
+        }),
+        reference: 2.0,
+        // as of each of the four: `long_beam.rs`
+        tolerance: Tolerance::Absolute(0.25),
+        source: "specification, EXP-27 (b): order two for every element",
+        // another limit
+        mutation: r#"bodies.bar.material.youngs_modulus="110 MPa""#,
         ..BEAM
     },
     Case {
