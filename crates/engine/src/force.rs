@@ -11,6 +11,7 @@ use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
 use crate::hand::InHand;
+use crate::kept::{Kept, KeptRef, Summed};
 use crate::levels::Levels;
 use crate::state::{FieldState, Pair};
 
@@ -29,6 +30,8 @@ pub struct Configuration<'a> {
     pub memory: &'a [f64],
     /// This force's own pairs, sorted by `(a, b)`.
     pub pairs: &'a [Pair],
+    /// What this force remembers of things that come and go without pairs.
+    pub kept: KeptRef<'a>,
     /// Driven parameters and exchanged quantities of the whole world.
     pub driven: &'a [f64],
     /// Committed fields of the whole world.
@@ -246,6 +249,32 @@ pub trait Force: Send + Sync {
 
     /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.
     fn advance_memory(&self, _at: &Configuration, _timestep: f64, _memory: &mut [f64], _pairs: &mut [Pair]) {}
+
+    /// Numbers of an entry of [`Kept`] of a force that has such; it finds by itself what acts on what, without pairs, and
+    /// its [`Force::advance_kept`] is asked in the place of [`Force::advance_memory`].
+    fn kept_len(&self) -> Option<usize> {
+        None
+    }
+
+    /// Moves memory on, and writes what it keeps after this step behind the entries of other forces, by ascending keys. What
+    /// it kept before is in `at`.
+    fn advance_kept(
+        &self,
+        _at: &Configuration,
+        _scratch: &mut Scratch,
+        _summed: Summed,
+        _memory: &mut [f64],
+        _kept: &mut Kept,
+    ) {
+    }
+
+    /// Whether a key read from a file is one that it could have written: an index beyond its data would be a panic.
+    fn accepts_key(&self, _key: u64) -> bool {
+        false
+    }
+
+    /// Calls `visit` for every two rows that act on each other without pairs in State.
+    fn visit_near(&self, _at: &Configuration, _scratch: &Scratch, _visit: &mut dyn FnMut([u32; 2])) {}
 
     /// Pairs that may interact at this configuration, in any order; each comes with its initial state.
     fn find_pairs(&self, _at: &Configuration, _scratch: &mut Scratch, _found: &mut Vec<Pair>) {}

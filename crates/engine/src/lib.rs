@@ -14,6 +14,7 @@ pub mod hash;
 pub mod implicit;
 pub mod inertia;
 pub mod interruption;
+pub mod kept;
 pub mod kinematics;
 pub mod levels;
 pub mod linear;
@@ -40,6 +41,7 @@ pub use force::{
 pub use hand::{Grip, Hand, Held, InHand};
 pub use hash::Fingerprint;
 pub use interruption::Interruption;
+pub use kept::{Kept, KeptRef, Summed};
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
 pub use levels::{Census, Levels};
 pub use mass::Mass;

@@ -2,15 +2,16 @@
 
 use souple_math::Vec3;
 
+use crate::kept::Kept;
 use crate::state::{FieldMut, Pair};
 use crate::{FieldState, Model, State, System, SystemState};
 
-const MAGIC: &[u8; 8] = b"SOUPLE01";
+const MAGIC: &[u8; 8] = b"SOUPLE02";
 
 /// Bytes that are no snapshot, or not one of this model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SnapshotError {
-    #[error("this is no Souple snapshot: it starts with {found:02x?}, not with `SOUPLE01`")]
+    #[error("this is no Souple snapshot: it starts with {found:02x?}, not with `SOUPLE02`")]
     NotASnapshot { found: Vec<u8> },
     #[error("the snapshot is cut off: {needed} bytes are needed at offset {offset}, {available} are there")]
     CutOff { offset: usize, needed: u64, available: usize },
@@ -96,6 +97,7 @@ impl Model {
             let memory = system.forces.iter().map(|force| force.memory_len()).sum();
             differ(&format!("numbers of memory in system {index}"), state.memory.len(), memory)?;
             check_pairs(index, system, &state.pairs)?;
+            check_kept(index, system, &state.kept)?;
             if !system.stepper.accepts_history(system, &state.history) {
                 let (field, found) = (format!("systems[{index}].history"), state.history.len());
                 return Err(SnapshotError::Unreadable {
@@ -140,6 +142,37 @@ fn check_pairs(index: usize, system: &System, pairs: &[Pair]) -> Result<(), Snap
             Some(force) => return Err(unreadable(at, format!("force `{}`", force.name()))),
             None => return Err(unreadable(at, format!("any of the {} forces", system.forces.len()))),
         }
+    }
+    Ok(())
+}
+
+/// Each force has as many entries as numbers for them, with keys that ascend and are its own.
+fn check_kept(index: usize, system: &System, kept: &Kept) -> Result<(), SnapshotError> {
+    let unreadable = |place: &str, found: String, reader: String| SnapshotError::Unreadable {
+        field: format!("systems[{index}].kept{place}"),
+        found,
+        reader,
+    };
+    let lens: Vec<usize> = system.forces.iter().map(|force| force.kept_len().unwrap_or(0)).collect();
+    let of = |counts: &[u64]| {
+        let sums = counts.iter().zip(&lens).try_fold((0_u64, 0_u64), |(keys, numbers), (count, len)| {
+            Some((keys.checked_add(*count)?, numbers.checked_add(count.checked_mul(*len as u64)?)?))
+        });
+        sums.filter(|_| counts.len() <= lens.len())
+    };
+    if of(&kept.counts) != Some((kept.keys.len() as u64, kept.numbers.len() as u64)) {
+        let found = format!("{} keys and {} numbers", kept.keys.len(), kept.numbers.len());
+        return Err(unreadable("", found, format!("{} forces by the counts beside them", lens.len())));
+    }
+    let mut first = 0;
+    for (force, count) in system.forces.iter().zip(&kept.counts) {
+        let keys = &kept.keys[first..first + *count as usize];
+        let is_read = |at: usize| (at == 0 || keys[at - 1] < keys[at]) && force.accepts_key(keys[at]);
+        if let Some(at) = (0..keys.len()).find(|at| !is_read(*at)) {
+            let (place, reader) = (format!(".keys[{}]", first + at), format!("force `{}`", force.name()));
+            return Err(unreadable(&place, format!("key {:#x}", keys[at]), reader));
+        }
+        first += keys.len();
     }
     Ok(())
 }
@@ -201,6 +234,7 @@ mod tests {
             v: vec![Vec3::X, Vec3::Y],
             memory: vec![0.1],
             pairs: vec![Pair::new(1, 2, [0.5; 8])],
+            kept: Kept { counts: vec![0, 2], keys: vec![3, 5], numbers: vec![0.5; 6] },
             history: vec![],
         };
         let fields = vec![FieldState { values: vec![1.0, 2.0], indices: vec![7] }];

@@ -5,6 +5,8 @@ use std::fmt;
 use souple_math::Vec3;
 use souple_solve::reduce;
 
+use crate::kept::Kept;
+
 /// Two things that touch, with what the contact remembers (an anchor, a phase).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[repr(C)]
@@ -66,6 +68,8 @@ pub struct SystemState {
     /// Memories of the forces, one after the other.
     pub memory: Vec<f64>,
     pub pairs: Vec<Pair>,
+    /// What forces remember of things that come and go without pairs.
+    pub kept: Kept,
     /// What the stepper carries from step to step (earlier configurations, warm starts, dates of factors).
     pub history: Vec<f64>,
 }
@@ -174,6 +178,9 @@ impl State {
                 (FieldName::System(index, "v"), FieldRef::Vectors(&system.v)),
                 (FieldName::System(index, "memory"), FieldRef::Numbers(&system.memory)),
                 (FieldName::System(index, "pairs"), FieldRef::Pairs(&system.pairs)),
+                (FieldName::System(index, "kept.counts"), FieldRef::Integers(&system.kept.counts)),
+                (FieldName::System(index, "kept.keys"), FieldRef::Integers(&system.kept.keys)),
+                (FieldName::System(index, "kept.numbers"), FieldRef::Numbers(&system.kept.numbers)),
                 (FieldName::System(index, "history"), FieldRef::Numbers(&system.history)),
             ]
         });
@@ -204,6 +211,9 @@ impl State {
             all.push(FieldMut::Vectors(&mut system.v));
             all.push(FieldMut::Numbers(&mut system.memory));
             all.push(FieldMut::Pairs(&mut system.pairs));
+            all.push(FieldMut::Integers(&mut system.kept.counts));
+            all.push(FieldMut::Integers(&mut system.kept.keys));
+            all.push(FieldMut::Numbers(&mut system.kept.numbers));
             all.push(FieldMut::Numbers(&mut system.history));
         }
         all.push(FieldMut::Numbers(&mut self.driven));
@@ -233,6 +243,7 @@ impl State {
             }
             mine.memory.clone_from(&other.memory);
             mine.pairs.clone_from(&other.pairs);
+            mine.kept.copy_from(&other.kept);
             mine.history.clone_from(&other.history);
         }
         self.driven.clone_from(&other.driven);
@@ -305,6 +316,7 @@ mod tests {
                 v: vec![Vec3::Y; 2],
                 memory: vec![1.0; 3],
                 pairs: vec![Pair::default(); 2],
+                kept: Kept { counts: vec![1], keys: vec![5], numbers: vec![0.5] },
                 history: vec![0.0],
             }],
             driven: vec![0.0; 2],
@@ -313,11 +325,12 @@ mod tests {
         };
         assert_eq!(finite.first_not_finite(), None);
         type Spoil = fn(&mut State);
-        let spoils: [(&str, Spoil); 6] = [
+        let spoils: [(&str, Spoil); 7] = [
             ("systems[0].q[1]", |state| state.systems[0].q[1].z = f64::NAN),
             ("systems[0].v[0]", |state| state.systems[0].v[0].y = f64::INFINITY),
             ("systems[0].memory[2]", |state| state.systems[0].memory[2] = f64::NAN),
             ("systems[0].pairs[1]", |state| state.systems[0].pairs[1].memory[7] = f64::NAN),
+            ("systems[0].kept.numbers[0]", |state| state.systems[0].kept.numbers[0] = f64::NAN),
             ("driven[0]", |state| state.driven[0] = f64::NEG_INFINITY),
             ("fields[0].values[1]", |state| state.fields[0].values[1] = f64::NAN),
         ];

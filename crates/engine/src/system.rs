@@ -8,6 +8,7 @@ use crate::constraint::Constraint;
 use crate::force::{Configuration, Energy, Force, Scratch, TangentWeights};
 use crate::implicit::ImplicitBuffers;
 use crate::interruption::Interruption;
+use crate::kept::{Kept, Summed};
 use crate::kinematics::Kinematics;
 use crate::linear::LinearSolver;
 use crate::mass::Mass;
@@ -142,6 +143,7 @@ impl SystemWorkspace {
             + size_of::<Pair>()
                 * (self.found_pairs.capacity() + self.mark.pairs.capacity() + self.before.pairs.capacity())
             + 8 * self.before.memory.capacity()
+            + self.before.kept.bytes()
             + self.tangent.bytes()
             + self.linear.bytes()
             + self.implicit.as_ref().map_or(0, ImplicitBuffers::bytes)
@@ -235,6 +237,7 @@ impl System {
             load: around.load,
             memory: &state.memory[self.memory_range(force)],
             pairs: &state.pairs[pairs_of(&state.pairs, force)],
+            kept: state.kept.of_force(force, |force| self.forces[force].kept_len().unwrap_or(0)),
             driven: around.driven,
             fields: around.fields,
         }
@@ -406,16 +409,28 @@ impl System {
         state: &mut SystemState,
         around: &Surroundings,
         timestep: f64,
+        summed: Summed,
     ) {
         // forces read the memory as it was: they are pure, and see their own part only
         let before = &mut ws.before;
         before.memory.clone_from(&state.memory);
         before.pairs.clone_from(&state.pairs);
+        // what is kept is written anew
+        std::mem::swap(&mut before.kept, &mut state.kept);
+        state.kept.clear();
         for (index, force) in self.forces.iter().enumerate() {
             let at = self.view(index, &ws.rows, before, around);
+            let memory = &mut state.memory[self.memory_range(index)];
+            if force.kept_len().is_some() {
+                let Kept { counts, keys, .. } = &mut state.kept;
+                let first = keys.len();
+                counts.resize(index + 1, 0);
+                force.advance_kept(&at, &mut ws.scratches[index], summed, memory, &mut state.kept);
+                state.kept.counts[index] = (state.kept.keys.len() - first) as u64;
+                continue;
+            }
             let pairs = pairs_of(&state.pairs, index);
-            let memory = self.memory_range(index);
-            force.advance_memory(&at, timestep, &mut state.memory[memory], &mut state.pairs[pairs]);
+            force.advance_memory(&at, timestep, memory, &mut state.pairs[pairs]);
         }
     }
 

@@ -222,6 +222,16 @@ impl World {
         &self.workspace.systems[system].rows
     }
 
+    /// Calls `visit` for every two rows of a system that forces let act on each other without pairs in State.
+    pub fn visit_near(&self, system: usize, visit: &mut dyn FnMut([u32; 2])) {
+        let (model, state, ws) =
+            (&self.model.systems[system], &self.state.systems[system], &self.workspace.systems[system]);
+        let around = Surroundings { driven: &self.state.driven, fields: &self.state.fields, load: 1.0 };
+        for (index, force) in model.forces.iter().enumerate() {
+            force.visit_near(&model.view(index, &ws.rows, state, &around), &ws.scratches[index], visit);
+        }
+    }
+
     /// Simulated seconds.
     pub fn time(&self) -> f64 {
         self.state.period as f64 * self.model.period

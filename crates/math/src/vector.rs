@@ -30,6 +30,7 @@ impl Vec3<f64> {
     }
 
     /// The unit vector along `self`, or `None` for a vector shorter than the smallest normal number.
+    #[inline]
     pub fn try_normalised(self) -> Option<Self> {
         let length = self.length();
         (length > f64::MIN_POSITIVE && length.is_finite()).then(|| self / length)

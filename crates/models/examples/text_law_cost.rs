@@ -105,6 +105,7 @@ fn measure(mesh: &Mesh, energy: &str) -> [f64; 5] {
         load: 1.0,
         memory: &[],
         pairs: &[],
+        kept: souple_engine::KeptRef::default(),
         driven: &[],
         fields: &[],
     };

@@ -372,6 +372,7 @@ impl Cell {
             load: 1.0,
             memory: &[],
             pairs: &[],
+            kept: souple_engine::KeptRef::default(),
             driven: &[],
             fields: &[],
         };

@@ -54,6 +54,7 @@ fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3], memory: &'a [f64]) -> C
         load: 1.0,
         memory,
         pairs: &[],
+        kept: souple_engine::KeptRef::default(),
         driven: &[],
         fields: &[],
     }

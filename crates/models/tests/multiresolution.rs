@@ -102,6 +102,7 @@ impl Alone {
             load: 1.0,
             memory: &self.memory,
             pairs: &[],
+            kept: souple_engine::KeptRef::default(),
             driven: &[],
             fields: &[],
         }

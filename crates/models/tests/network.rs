@@ -10,7 +10,7 @@ use souple_math::Vec3;
 use souple_models::network::laws::{Piecewise, SpringDamper};
 use souple_models::network::{
     Account, Crowd, CrowdDescription, Friction, Hook, InLanes, LINKS, LinkDescription, LinkEntry, LinkKernel,
-    Links, Making, Phase, Reach, Slide, Span,
+    Links, Listing, Making, Phase, Reach, Slide, Span,
 };
 use souple_table::{Value, Values};
 
@@ -90,6 +90,7 @@ fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3], memory: &'a [f64]) -> C
         load: 1.0,
         memory,
         pairs: &[],
+        kept: souple_engine::KeptRef::default(),
         driven: &[],
         fields: &[],
     }
@@ -438,6 +439,7 @@ fn crowds_are_all_pairs() {
                 range,
                 friction: None,
                 timestep: TE,
+                listing: Listing::State,
             });
             let mut pairs = Vec::new();
             let mut scratch = crowd.new_scratch();

@@ -171,6 +171,7 @@ fn energies_keep_momentum_across_levels() {
             load: 1.0,
             memory: &body.memory,
             pairs: &[],
+            kept: souple_engine::KeptRef::default(),
             driven: &[],
             fields: &[],
         };

@@ -101,6 +101,7 @@ fn at<'a>(positions: &'a [Vec3], velocities: &'a [Vec3]) -> Configuration<'a> {
         load: 1.0,
         memory: &[],
         pairs: &[],
+        kept: souple_engine::KeptRef::default(),
         driven: &[],
         fields: &[],
     }

@@ -139,6 +139,7 @@ fn differentials_add_up() {
             load: 1.0,
             memory: &memory[..force.memory_len()],
             pairs: &[],
+            kept: souple_engine::KeptRef::default(),
             driven: &[],
             fields: &[],
         };

@@ -237,7 +237,7 @@ fn momentum_to_json((linear, angular): (Vec3, Vec3)) -> Value {
 pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
     let mut counts = BTreeMap::new();
     let mut add = |name: &str, count: usize| *counts.entry(name.to_owned()).or_insert(0) += count as u64;
-    for (system, state) in world.model().systems.iter().zip(&world.state().systems) {
+    for (index, (system, state)) in world.model().systems.iter().zip(&world.state().systems).enumerate() {
         for (kind, _) in system.kinematics.unknowns() {
             let name = match kind {
                 UnknownKind::Point => "points",
@@ -248,7 +248,9 @@ pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
         }
         add("forces", system.forces.len());
         add("constraints", system.constraints.len());
-        add("pairs", state.pairs.len());
+        let mut near = 0;
+        world.visit_near(index, &mut |_| near += 1);
+        add("pairs", state.pairs.len() + near);
     }
     for block in bodies.iter().flat_map(|body| &body.mesh.blocks) {
         add(block.kind.name(), block.len());

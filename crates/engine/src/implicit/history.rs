@@ -17,6 +17,7 @@ impl Lent {
         Self(SystemState {
             memory: std::mem::take(&mut next.memory),
             pairs: std::mem::take(&mut next.pairs),
+            kept: std::mem::take(&mut next.kept),
             history: std::mem::take(&mut next.history),
             ..SystemState::default()
         })
@@ -25,6 +26,7 @@ impl Lent {
     pub fn give_back(self, next: &mut SystemState) {
         next.memory = self.0.memory;
         next.pairs = self.0.pairs;
+        next.kept = self.0.kept;
         next.history = self.0.history;
     }
 }

@@ -5,6 +5,7 @@ use souple_math::Vec3;
 use souple_solve::reduce::{self, KickAndDrift};
 
 use crate::inertia::{accelerations_at, sum_placed_forces, take_along};
+use crate::kept::Summed;
 use crate::state::SystemState;
 use crate::system::{System, SystemWorkspace};
 
@@ -87,7 +88,7 @@ impl OneForce {
         acceleration.resize(next.v.len(), Vec3::ZERO);
         let evaluated = accelerations_at(system, around, start + first, next, ws, &mut acceleration);
         let stepped = evaluated.and_then(|mut report| {
-            system.advance_memory(ws, next, around, timestep);
+            system.advance_memory(ws, next, around, timestep, Summed::Here);
             let [early, late] = match self.drifts {
                 Drifts::BeforeKick => [rest, 0.0],
                 Drifts::AfterKick => [0.0, rest],
@@ -128,7 +129,7 @@ fn step_points(
     }
     ws.rows.time = start;
     sum_placed_forces(system, around, next, ws)?;
-    system.advance_memory(ws, next, around, timestep);
+    system.advance_memory(ws, next, around, timestep, Summed::Here);
     system.project_free(&mut ws.row_force);
     let (forces, masses, rows) = (&ws.row_force, &system.mass.diagonal, &mut ws.rows);
     let (q, v) = (&mut rows.positions, &mut rows.velocities);
@@ -152,6 +153,10 @@ pub(super) fn kick(v: &mut [Vec3], acceleration: &[Vec3], timestep: f64) {
 }
 
 impl Stepper for ExplicitEuler {
+    fn reads_cliques(&self) -> bool {
+        false
+    }
+
     fn name(&self) -> &'static str {
         EXPLICIT_EULER.name
     }
@@ -173,6 +178,10 @@ impl Stepper for ExplicitEuler {
 }
 
 impl Stepper for NewtonCotes {
+    fn reads_cliques(&self) -> bool {
+        false
+    }
+
     fn name(&self) -> &'static str {
         NEWTON_COTES.name
     }
@@ -194,6 +203,10 @@ impl Stepper for NewtonCotes {
 }
 
 impl Stepper for SymplecticEuler {
+    fn reads_cliques(&self) -> bool {
+        false
+    }
+
     fn name(&self) -> &'static str {
         SYMPLECTIC_EULER.name
     }

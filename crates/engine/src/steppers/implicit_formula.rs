@@ -4,6 +4,7 @@ use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
 use crate::implicit::{ImplicitBuffers, ImplicitStep, Lent, NewtonSettings, Rates};
+use crate::kept::Summed;
 use crate::state::SystemState;
 use crate::system::{System, SystemWorkspace};
 
@@ -145,7 +146,7 @@ impl Step<'_> {
         let end = self.end();
         self.system.impose_constraints(&mut next.q, &mut next.v, end, self.around.load);
         self.system.place_rows(&next.q, &next.v, end, &mut ws.rows);
-        self.system.advance_memory(ws, next, self.around, self.timestep);
+        self.system.advance_memory(ws, next, self.around, self.timestep, Summed::Elsewhere);
     }
 }
 

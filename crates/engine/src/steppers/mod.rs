@@ -172,6 +172,11 @@ pub trait Stepper: Send + Sync {
         false
     }
 
+    /// Whether it asks which rows a force couples ([`crate::Force::visit_cliques`]), as those do that make a matrix.
+    fn reads_cliques(&self) -> bool {
+        true
+    }
+
     fn stability(&self) -> Stability;
 
     /// How long a force is taken to stay what it is within a step [s]: what [`Stepper::stability`] is of.

@@ -22,6 +22,10 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
 };
 
 impl Stepper for PositionVerlet {
+    fn reads_cliques(&self) -> bool {
+        false
+    }
+
     fn name(&self) -> &'static str {
         ENTRY.name
     }

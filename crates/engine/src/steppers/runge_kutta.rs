@@ -3,6 +3,7 @@
 use souple_math::Vec3;
 
 use crate::inertia::{accelerations_at, take_along};
+use crate::kept::Summed;
 use crate::state::SystemState;
 use crate::system::SystemWorkspace;
 
@@ -49,6 +50,10 @@ const MIDPOINT: &[Stage] = &[(0.0, 0.0), (0.5, 1.0)];
 const CLASSICAL: &[Stage] = &[(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
 
 impl Stepper for RungeKutta2 {
+    fn reads_cliques(&self) -> bool {
+        false
+    }
+
     fn name(&self) -> &'static str {
         RK2.name
     }
@@ -69,6 +74,10 @@ impl Stepper for RungeKutta2 {
 }
 
 impl Stepper for RungeKutta4 {
+    fn reads_cliques(&self) -> bool {
+        false
+    }
+
     fn name(&self) -> &'static str {
         RK4.name
     }
@@ -156,7 +165,7 @@ impl Method {
         next.v.copy_from_slice(start_v);
         // memory moves on at the start of the step, unseen by the stages
         system.place_rows(&next.q, &next.v, start, &mut ws.rows);
-        system.advance_memory(ws, next, around, timestep);
+        system.advance_memory(ws, next, around, timestep, Summed::Elsewhere);
         // q' = q + h Σ b v_i,  v' = v + h Σ b a_i
         system.kinematics.retract_scaled(&mut next.q, velocity_sum, timestep);
         kick(&mut next.v, acceleration_sum, timestep);

@@ -5,6 +5,7 @@ use std::ops::Range;
 use souple_math::Vec3;
 use souple_table::{Parameter, Range as Allowed, Value};
 
+use crate::kept::Summed;
 use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Push};
 use crate::state::{SystemState, pairs_of};
 use crate::system::{System, SystemWorkspace};
@@ -246,7 +247,7 @@ impl Stage<'_, '_> {
             }
             self.push_from_outside(tick_length);
             self.push_from_inside(tick, schedule);
-            system.advance_memory(self.ws, self.next, around, tick_length);
+            system.advance_memory(self.ws, self.next, around, tick_length, Summed::Elsewhere);
             self.drift(tick_length, start + f64::from(tick + 1) * tick_length);
             follow(system, Followers::Ghosts, self.ws);
             follow(system, Followers::These(&self.buffers.watched), self.ws);

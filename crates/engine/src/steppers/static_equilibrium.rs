@@ -4,6 +4,7 @@ use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
 
 use crate::implicit::{self, ImplicitBuffers, ImplicitStep, NewtonSettings, Rates};
+use crate::kept::Summed;
 use crate::linear::{self, SolverSettings};
 use crate::state::SystemState;
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -116,7 +117,7 @@ impl Stepper for StaticEquilibrium {
         let report = outcome.map_err(|stuck| stuck.error)?;
         next.v.fill(Vec3::ZERO);
         system.place_rows(&next.q, &next.v, step.end(), &mut ws.rows);
-        system.advance_memory(ws, next, around, timestep);
+        system.advance_memory(ws, next, around, timestep, Summed::Elsewhere);
         Ok(report)
     }
 }

@@ -45,6 +45,10 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
 };
 
 impl Stepper for TSimulation {
+    fn reads_cliques(&self) -> bool {
+        false
+    }
+
     fn name(&self) -> &'static str {
         ENTRY.name
     }

@@ -15,7 +15,7 @@ use souple_engine::{
     TangentWeights,
 };
 use souple_math::{Dual, Mat3, Vec3};
-use souple_solve::BlockMatrix;
+use souple_solve::{BlockMatrix, reduce};
 
 use crate::loads::{LoadError, finite, not_negative};
 
@@ -41,6 +41,8 @@ pub struct ContactPoint {
 pub struct ShapeContact {
     name: String,
     points: Vec<ContactPoint>,
+    /// Their rows ascend, each once.
+    ascends: bool,
     shape: Box<dyn Shape>,
     /// What other contacts with the same shape call it too.
     shape_name: String,
@@ -64,6 +66,8 @@ pub struct Touch {
 const HEAT: usize = 1;
 /// Anchor and stretch of a point, in the shape's place.
 const PER_POINT: usize = 6;
+/// Points that are worth a second thread.
+const SHARED_FROM: usize = 1024;
 
 /// A point as the law sees it, in the shape's place.
 struct Local {
@@ -115,7 +119,8 @@ impl ShapeContact {
             }
         }
         law.check()?;
-        Ok(Self { shape_name: name.clone(), name, points, shape, leading, law })
+        let ascends = points.is_sorted_by(|a, b| a.row < b.row);
+        Ok(Self { shape_name: name.clone(), name, points, ascends, shape, leading, law })
     }
 
     /// Where the shape is.
@@ -133,6 +138,39 @@ impl ShapeContact {
             }
         }
         pressed
+    }
+
+    /// On a point [N]; none where it does not touch.
+    fn force_on(&self, index: usize, pose: &Pose, at: &Configuration) -> Vec3 {
+        let local = self.local(index, pose, at).filter(|local| local.approach.gap < 0.0);
+        let share = self.points[index].share;
+        let force = local.and_then(|local| self.law.force(share, &local.approach, |number| number));
+        force.map_or(Vec3::ZERO, |force| pose.direction_to_world(force.total()))
+    }
+
+    /// Adds the forces on points whose rows ascend, each to its own row, so that threads may share them; `out` begins with row
+    /// `first`.
+    fn add_forces(
+        &self,
+        points: std::ops::Range<usize>,
+        pose: &Pose,
+        at: &Configuration,
+        first: usize,
+        out: &mut [Vec3],
+    ) {
+        if points.len() < SHARED_FROM || rayon::current_num_threads() == 1 {
+            for index in points {
+                out[self.points[index].row as usize - first] += self.force_on(index, pose, at);
+            }
+            return;
+        }
+        let middle = points.start + points.len() / 2;
+        let row = self.points[middle].row as usize;
+        let (head, tail) = out.split_at_mut(row - first);
+        rayon::join(
+            || self.add_forces(points.start..middle, pose, at, first, head),
+            || self.add_forces(middle..points.end, pose, at, row, tail),
+        );
     }
 
     /// With the name of the shape, by which one that several bodies touch is known as one.
@@ -249,8 +287,7 @@ fn remembered(memory: &[f64], point: usize) -> (Vec3, Vec3) {
     (Vec3::new(numbers[0], numbers[1], numbers[2]), Vec3::new(numbers[3], numbers[4], numbers[5]))
 }
 
-fn remember(memory: &mut [f64], point: usize, anchor: Vec3, stretch: Vec3) {
-    let numbers = &mut memory[HEAT + PER_POINT * point..][..PER_POINT];
+fn remember(numbers: &mut [f64], anchor: Vec3, stretch: Vec3) {
     numbers[..3].copy_from_slice(&anchor.to_array());
     numbers[3..].copy_from_slice(&stretch.to_array());
 }
@@ -289,7 +326,8 @@ impl Force for ShapeContact {
         memory.fill(0.0);
         let pose = self.leading.begin(&mut memory[self.burdens().end..]);
         for (index, point) in self.points.iter().enumerate() {
-            remember(memory, index, pose.to_shape(point.start), Vec3::ZERO);
+            let numbers = &mut memory[HEAT + PER_POINT * index..][..PER_POINT];
+            remember(numbers, pose.to_shape(point.start), Vec3::ZERO);
         }
     }
 
@@ -302,9 +340,11 @@ impl Force for ShapeContact {
 
     fn add_force(&self, at: &Configuration, _scratch: &mut Scratch, out: &mut [Vec3]) {
         let pose = self.pose(at);
-        for (point, local) in self.touching(&pose, at) {
-            if let Some(force) = self.law.force(point.share, &local.approach, |number| number) {
-                out[point.row as usize] += pose.direction_to_world(force.total());
+        if self.ascends {
+            self.add_forces(0..self.points.len(), &pose, at, 0, out);
+        } else {
+            for index in 0..self.points.len() {
+                out[self.points[index].row as usize] += self.force_on(index, &pose, at);
             }
         }
         burden::add(self.shape.as_ref(), &at.memory[self.burdens()], at.positions, out);
@@ -366,7 +406,10 @@ impl Force for ShapeContact {
 
     fn advance_memory(&self, at: &Configuration, timestep: f64, memory: &mut [f64], _pairs: &mut [Pair]) {
         let pose = self.pose(at);
-        for (index, point) in self.points.iter().enumerate() {
+        let (heat, own) = memory[..self.burdens().start].split_at_mut(HEAT);
+        let (own, _) = own.as_chunks_mut::<PER_POINT>();
+        let advance = |index: usize, numbers: &mut [f64; PER_POINT]| {
+            let point = &self.points[index];
             let (_, before) = remembered(at.memory, index);
             let position = pose.to_shape(at.positions[point.row as usize]);
             let local = self.local(index, &pose, at);
@@ -375,12 +418,15 @@ impl Force for ShapeContact {
                 // out of reach, so is whatever was stretched
                 None => (Vec3::ZERO, 0.5 * self.law.tangential_stiffness * point.share * before.length_sq()),
             };
-            memory[0] += heat;
             // what sticks to something that is borne goes with it
             let sticks = self.law.friction > 0.0 && local.is_some_and(|local| local.approach.gap < 0.0);
             let carried = if sticks { self.velocity_under(at, position) * timestep } else { Vec3::ZERO };
-            remember(memory, index, position - stretch + carried, stretch);
-        }
+            remember(numbers, position - stretch + carried, stretch);
+            heat
+        };
+        heat[0] += reduce::sum_mut(0, own, &|first, own: &mut [[f64; PER_POINT]]| {
+            (first..).zip(own).map(|(index, numbers)| advance(index, numbers)).sum::<f64>()
+        });
         if !self.shape.bearers().is_empty() {
             self.burden(&pose, at, &mut memory[self.burdens()]);
         }

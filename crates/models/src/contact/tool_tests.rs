@@ -62,6 +62,7 @@ impl Setting {
             load: 1.0,
             memory: &self.memory,
             pairs,
+            kept: souple_engine::KeptRef::default(),
             driven: &[],
             fields: &[],
         }

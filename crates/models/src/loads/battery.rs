@@ -36,6 +36,7 @@ impl Setting {
             load: 0.75,
             memory: &self.memory,
             pairs: &self.pairs,
+            kept: souple_engine::KeptRef::default(),
             driven: &[],
             fields: &[],
         }

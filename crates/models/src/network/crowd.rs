@@ -1,18 +1,23 @@
 //! Multitudes: balls of one group, or of two, that act on each other wherever they come near.
 //!
-//! What is near is searched in a grid at the start of every step: the same pairs as of all with all, since a law has a range
-//! beyond which it gives no force. Pairs stand in State with what they remember.
+//! What is near is searched in a grid: the same pairs as of all with all, since a law has a range beyond which it gives no
+//! force. State holds what pairs remember; the others are found anew, but for steppers that ask which rows a force couples:
+//! for those all pairs stand in State ([`Listing`]).
 
 use std::any::Any;
 use std::ops::Range;
 
 use rayon::prelude::*;
-use souple_engine::{Configuration, ContactPoint, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
+use souple_engine::{
+    Configuration, ContactPoint, Declaration, Energy, Force, Kept, Pair, Scratch, Summed, TangentWeights,
+};
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, reduce};
 
 use super::crowd_grid::Grid;
-use super::friction::{Friction, Hook};
+use super::crowd_list::{Groups, Neighbours};
+use super::crowd_pass::{Evaluation, Known, Pass, Task, key};
+use super::friction::{Friction, Hook, Phase};
 use super::kernel::LinkKernel;
 use super::law::{Reach, Response};
 use super::pair_tangent::{add_change, add_pair_blocks};
@@ -36,6 +41,16 @@ pub struct CrowdDescription {
     pub friction: Option<Friction>,
     /// Of the system [s].
     pub timestep: f64,
+    pub listing: Listing,
+}
+
+/// Where pairs are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Listing {
+    /// All of them in State, for steppers that make matrices.
+    State,
+    /// In lists of the crowd's own; in State what some remember. Smaller and faster by far.
+    Own,
 }
 
 /// Balls that act on each other within a range.
@@ -44,6 +59,7 @@ pub struct Crowd(CrowdDescription);
 
 /// How a pair stands.
 struct Standing {
+    pair: [u32; 2],
     d: Vec3,
     before: Vec3,
     reach: Reach,
@@ -66,6 +82,8 @@ struct Work {
     found: Vec<Vec<[u32; 2]>>,
     /// On the first balls of pairs [N].
     forces: Vec<Vec3>,
+    list: Neighbours,
+    pass: Pass,
 }
 
 impl Work {
@@ -90,55 +108,162 @@ impl Crowd {
         self.0.law.stiffest(self.0.range).max(hook)
     }
 
-    fn standing(&self, pair: &Pair, at: &Configuration) -> Standing {
-        let (a, b) = (pair.a as usize, pair.b as usize);
-        let d = at.positions[a] - at.positions[b];
-        let before = d - (at.velocities[a] - at.velocities[b]) * self.0.timestep;
-        let reach = Reach { length: d.length(), before: before.length(), rest: self.0.range };
-        Standing { d, before, reach }
+    fn groups(&self) -> Groups<'_> {
+        Groups { first: &self.0.first, second: &self.0.second }
     }
 
-    fn law_memory<'m>(&self, pair: &'m Pair) -> &'m [f64] {
-        &pair.memory[HOOK..HOOK + self.0.law.memory_len()]
+    fn standing(&self, pair: [u32; 2], at: &Configuration) -> Standing {
+        let [a, b] = pair.map(|row| row as usize);
+        let d = at.positions[a] - at.positions[b];
+        self.between(pair, [d, d - (at.velocities[a] - at.velocities[b]) * self.0.timestep])
+    }
+
+    fn between(&self, pair: [u32; 2], [d, before]: [Vec3; 2]) -> Standing {
+        let reach = Reach { length: d.length(), before: before.length(), rest: self.0.range };
+        Standing { pair, d, before, reach }
+    }
+
+    fn law_memory<'m>(&self, memory: &'m [f64; 8]) -> &'m [f64] {
+        &memory[HOOK..HOOK + self.0.law.memory_len()]
     }
 
     /// `None` out of range.
-    fn act(&self, pair: &Pair, at: &Configuration) -> Option<Act> {
-        let Standing { d, before, reach } = self.standing(pair, at);
+    fn act(&self, standing: &Standing, memory: &[f64; 8], time: f64) -> Option<Act> {
+        let Standing { d, before, reach, .. } = *standing;
         if reach.length >= self.0.range {
             return None;
         }
-        let mut memory = pair.memory;
-        let own = self.law_memory(pair);
-        let Response { push, stored, heat } = self.0.law.respond(&reach, at.time, own);
+        let mut next = *memory;
+        let own = self.law_memory(memory);
+        let Response { push, stored, heat } = self.0.law.respond(&reach, time, own);
         let u = d.try_normalised().or(before.try_normalised()).unwrap_or(Vec3::X);
         let mut energy = Energy { stored, dissipated: heat };
         let mut across = Vec3::ZERO;
         if let Some(friction) = &self.0.friction {
             // the elastic part alone presses
             let still = Reach { before: reach.length, ..reach };
-            let normal = self.0.law.respond(&still, at.time, own).push;
-            let hook = Hook::from_numbers(std::array::from_fn(|i| pair.memory[i]));
+            let normal = self.0.law.respond(&still, time, own).push;
+            let hook = Hook::from_numbers(std::array::from_fn(|i| memory[i]));
             let grip = friction.grip(hook, d, before, normal);
             across = grip.force;
             energy.stored += grip.stored;
             energy.dissipated += grip.heat;
-            memory[..HOOK].copy_from_slice(&grip.next.numbers());
+            next[..HOOK].copy_from_slice(&grip.next.numbers());
         }
-        Some(Act { axial: u * push, across, energy, memory })
+        Some(Act { axial: u * push, across, energy, memory: next })
+    }
+
+    /// The same of a pair in State.
+    fn act_of(&self, pair: &Pair, at: &Configuration) -> Option<Act> {
+        self.act(&self.standing([pair.a as u32, pair.b as u32], at), &pair.memory, at.time)
+    }
+
+    /// Numbers that State has of a pair that is not listed there: of a hook where it began, before those of the law.
+    fn own_len(&self) -> usize {
+        let law = self.0.law.memory_len();
+        match (&self.0.friction, law) {
+            (None, law) => law,
+            // who is there sticks
+            (Some(_), 0) => HOOK - 1,
+            (Some(_), law) => HOOK + law,
+        }
+    }
+
+    /// What a pair remembers, from the numbers that State has of it.
+    fn recalled(&self, known: Option<&[f64]>, length: f64) -> [f64; 8] {
+        let (mut memory, law) = ([0.0; 8], self.0.law.memory_len());
+        match known {
+            None => {
+                if law > 0 {
+                    self.0.law.begin(self.0.range, length, &mut memory[HOOK..HOOK + law]);
+                }
+            }
+            Some(numbers) if self.0.friction.is_none() => memory[HOOK..HOOK + law].copy_from_slice(numbers),
+            Some(numbers) if law > 0 => memory[..HOOK + law].copy_from_slice(numbers),
+            Some(&[x, y, z]) => {
+                let hook = Hook { phase: Phase::Stick, began: Vec3::new(x, y, z) };
+                memory[..HOOK].copy_from_slice(&hook.numbers());
+            }
+            Some(numbers) => unreachable!("{} numbers of a hook", numbers.len()),
+        }
+        memory
+    }
+
+    /// A pair of a law with memory in a pass: the force on the first ball.
+    fn act_alone(
+        &self,
+        time: f64,
+        (pair, ways): ([u32; 2], [Vec3; 2]),
+        known: Option<&[f64]>,
+        task: &mut Task,
+    ) -> Vec3 {
+        let standing = self.between(pair, ways);
+        let memory = self.recalled(known, standing.reach.length);
+        let Some(act) = self.act(&standing, &memory, time) else { return Vec3::ZERO };
+        task.heat += act.energy.dissipated;
+        let own = if self.0.friction.is_some() { 0 } else { HOOK };
+        task.keep(pair, &act.memory[own..HOOK + self.0.law.memory_len()]);
+        act.axial + act.across
+    }
+
+    /// Evaluates all pairs that are not in State.
+    fn pass(&self, at: &Configuration, work: &mut Work) {
+        let CrowdDescription { law, range, friction, timestep, .. } = &self.0;
+        let groups = self.groups();
+        work.list.bring_up_to_date(groups, at.positions, *range);
+        let with = Evaluation {
+            groups,
+            list: &work.list,
+            law: law.as_ref(),
+            friction: friction.as_ref(),
+            range: *range,
+            timestep: *timestep,
+            kept_len: self.own_len(),
+        };
+        let act = |pair, ways, known: Option<&[f64]>, task: &mut Task| {
+            self.act_alone(at.time, (pair, ways), known, task)
+        };
+        work.pass.run(&with, at, &act);
+    }
+
+    /// Calls `visit` for every pair that may be in range, with what it remembers, in the order of rows.
+    fn visit_standing(
+        &self,
+        at: &Configuration,
+        work: &mut Work,
+        mut visit: impl FnMut(&Standing, &[f64; 8]),
+    ) {
+        if self.0.listing == Listing::State {
+            for pair in at.pairs {
+                visit(&self.standing([pair.a as u32, pair.b as u32], at), &pair.memory);
+            }
+            return;
+        }
+        work.list.bring_up_to_date(self.groups(), at.positions, self.0.range);
+        let mut known = Known::from(at.kept, self.own_len(), self.0.first.start);
+        for (ball, row) in self.0.first.clone().enumerate() {
+            for slot in work.list.start(ball)..work.list.start(ball + 1) {
+                let standing = self.standing([row, work.list.other(slot) as u32], at);
+                if standing.reach.length < self.0.range {
+                    let known = known.find(key(standing.pair));
+                    visit(&standing, &self.recalled(known, standing.reach.length));
+                }
+            }
+        }
     }
 
     fn visit_tangents(
         &self,
         at: &Configuration,
         weights: TangentWeights,
+        scratch: &mut Scratch,
         mut visit: impl FnMut([u32; 2], Mat3),
     ) {
-        for pair in at.pairs {
-            let Standing { d, before, reach } = self.standing(pair, at);
-            let (Some(n), true) = (d.try_normalised(), reach.length < self.0.range) else { continue };
+        self.visit_standing(at, Work::of(scratch), |standing, memory| {
+            let Standing { pair, d, before, reach } = *standing;
+            let (Some(n), true) = (d.try_normalised(), reach.length < self.0.range) else { return };
             let m = before.try_normalised().unwrap_or(n);
-            let own = self.law_memory(pair);
+            let own = self.law_memory(memory);
             let push = self.0.law.respond(&reach, at.time, own).push;
             let [now, past] = self.0.law.slopes(&reach, at.time, own);
             let side = push / reach.length;
@@ -152,8 +277,8 @@ impl Crowd {
                 position -= across * friction.stiffness;
                 velocity -= across * (friction.damping * self.0.timestep);
             }
-            visit([pair.a as u32, pair.b as u32], position * weights.position + velocity * weights.velocity);
-        }
+            visit(pair, position * weights.position + velocity * weights.velocity);
+        });
     }
 }
 
@@ -170,7 +295,7 @@ impl Force for Crowd {
             symmetric_tangent: conservative,
             // friction leaves a couple that no ball bears
             internal: self.0.friction.is_none(),
-            changing_pattern: true,
+            changing_pattern: self.0.listing == Listing::State,
         }
     }
 
@@ -182,17 +307,26 @@ impl Force for Crowd {
         Box::new(Work::default())
     }
 
-    fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
-        let stored = at.pairs.iter().filter_map(|pair| Some(self.act(pair, at)?.energy.stored)).sum();
+    fn energy(&self, at: &Configuration, scratch: &mut Scratch) -> Energy {
+        let mut stored = 0.0;
+        self.visit_standing(at, Work::of(scratch), |standing, memory| {
+            stored += self.act(standing, memory, at.time).map_or(0.0, |act| act.energy.stored);
+        });
         Energy { stored, dissipated: at.memory[0] }
     }
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
+        if self.0.listing == Listing::Own {
+            let work = Work::of(scratch);
+            self.pass(at, work);
+            work.pass.add_to(self.groups(), &work.list, out);
+            return;
+        }
         let forces = &mut Work::of(scratch).forces;
         forces.resize(at.pairs.len(), Vec3::ZERO);
         reduce::sum_mut(0, forces, &|first, forces: &mut [Vec3]| {
             for (force, pair) in forces.iter_mut().zip(&at.pairs[first..]) {
-                *force = self.act(pair, at).map_or(Vec3::ZERO, |act| act.axial + act.across);
+                *force = self.act_of(pair, at).map_or(Vec3::ZERO, |act| act.axial + act.across);
             }
             0.0
         });
@@ -208,10 +342,10 @@ impl Force for Crowd {
         at: &Configuration,
         weights: TangentWeights,
         delta: &[Vec3],
-        _: &mut Scratch,
+        scratch: &mut Scratch,
         out: &mut [Vec3],
     ) {
-        self.visit_tangents(at, weights, |ends, block| add_change(ends, &block, delta, out));
+        self.visit_tangents(at, weights, scratch, |ends, block| add_change(ends, &block, delta, out));
     }
 
     fn visit_cliques(&self, pairs: &[Pair], visit: &mut dyn FnMut(&[u32])) {
@@ -222,17 +356,17 @@ impl Force for Crowd {
         &self,
         at: &Configuration,
         weights: TangentWeights,
-        _: &mut Scratch,
+        scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        self.visit_tangents(at, weights, |ends, block| add_pair_blocks(ends, &block, matrix));
+        self.visit_tangents(at, weights, scratch, |ends, block| add_pair_blocks(ends, &block, matrix));
     }
 
     fn advance_memory(&self, at: &Configuration, _timestep: f64, memory: &mut [f64], pairs: &mut [Pair]) {
         memory[0] += reduce::sum_mut(0, pairs, &|first, pairs: &mut [Pair]| {
             let mut heat = 0.0;
             for (pair, next) in at.pairs[first..].iter().zip(pairs) {
-                let Some(act) = self.act(pair, at) else {
+                let Some(act) = self.act_of(pair, at) else {
                     next.memory[..HOOK].copy_from_slice(&Hook::FREE.numbers());
                     continue;
                 };
@@ -243,8 +377,65 @@ impl Force for Crowd {
         });
     }
 
+    fn kept_len(&self) -> Option<usize> {
+        (self.0.listing == Listing::Own).then(|| self.own_len())
+    }
+
+    fn advance_kept(
+        &self,
+        at: &Configuration,
+        scratch: &mut Scratch,
+        summed: Summed,
+        memory: &mut [f64],
+        kept: &mut Kept,
+    ) {
+        let work = Work::of(scratch);
+        if summed == Summed::Elsewhere {
+            self.pass(at, work);
+        }
+        memory[0] += work.pass.keep(kept);
+    }
+
+    fn accepts_key(&self, key: u64) -> bool {
+        self.accepts_pair(&Pair::new((key >> 32) as usize, (key & u64::from(u32::MAX)) as usize, [0.0; 8]))
+            && (self.0.first != self.0.second || key >> 32 < key & u64::from(u32::MAX))
+    }
+
+    fn visit_near(&self, at: &Configuration, scratch: &Scratch, visit: &mut dyn FnMut([u32; 2])) {
+        if self.0.listing == Listing::State {
+            return;
+        }
+        let held = scratch.downcast_ref().map(|work: &Work| &work.list);
+        let held = held.filter(|list| list.hold(self.groups(), at.positions, self.0.range));
+        let made = held.is_none().then(|| {
+            let mut made = Neighbours::default();
+            made.bring_up_to_date(self.groups(), at.positions, self.0.range);
+            made
+        });
+        let Some(list) = held.or(made.as_ref()) else { return };
+        let range_sq = self.0.range * self.0.range;
+        for (ball, row) in self.0.first.clone().enumerate() {
+            for slot in list.start(ball)..list.start(ball + 1) {
+                let other = list.other(slot);
+                if (at.positions[row as usize] - at.positions[other]).length_sq() < range_sq {
+                    visit([row, other as u32]);
+                }
+            }
+        }
+    }
+
+    fn scratch_bytes(&self, scratch: &Scratch) -> usize {
+        let Some(Work { grid, found, forces, list, pass }) = scratch.downcast_ref() else { return 0 };
+        let found: usize = found.iter().map(|list| 8 * list.capacity()).sum();
+        let own = grid.bytes() + found + size_of::<Vec3>() * forces.capacity();
+        own + list.bytes() + pass.bytes()
+    }
+
     /// Pairs of a second body that come in the order of their rows.
     fn find_pairs(&self, at: &Configuration, scratch: &mut Scratch, found: &mut Vec<Pair>) {
+        if self.0.listing == Listing::Own {
+            return;
+        }
         let Work { grid, found: chunks, .. } = Work::of(scratch);
         let CrowdDescription { first, second, range, law, .. } = &self.0;
         grid.sort(second.clone(), at.positions, *range);
@@ -294,16 +485,16 @@ impl Force for Crowd {
     }
 
     fn visit_contacts(&self, at: &Configuration, visit: &mut dyn FnMut(&ContactPoint)) {
-        for pair in at.pairs {
-            let Some(act) = self.act(pair, at) else { continue };
+        self.visit_standing(at, &mut Work::default(), |standing, memory| {
+            let Some(act) = self.act(standing, memory, at.time) else { return };
             visit(&ContactPoint {
-                row: pair.a as u32,
-                against: &[(pair.b as u32, 1.0)],
-                penetration: self.0.range - self.standing(pair, at).reach.length,
+                row: standing.pair[0],
+                against: &[(standing.pair[1], 1.0)],
+                penetration: self.0.range - standing.reach.length,
                 normal_force: act.axial,
                 friction: act.across,
             });
-        }
+        });
     }
 
     fn as_any(&self) -> &dyn Any {

@@ -113,6 +113,13 @@ impl Grid {
         }
     }
 
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        4 * (self.rows.capacity() + self.table.starts.capacity())
+            + size_of::<Vec3>() * self.places.capacity()
+            + size_of::<([i32; 3], u32)>() * self.cells.capacity()
+    }
+
     /// Visits the balls that are nearer than the range.
     pub fn visit_near(&self, place: Vec3, mut visit: impl FnMut(u32)) {
         let [i, j, k] = cell(place, self.size);

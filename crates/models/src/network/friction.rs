@@ -113,9 +113,15 @@ impl Hook {
 impl Friction {
     /// Of a pair at `d = D u` that was at `before`, pressed together by `normal`.
     pub fn grip(&self, hook: Hook, d: Vec3, before: Vec3, normal: f64) -> Grip {
-        let Some(u) = d.try_normalised().filter(|_| normal > 0.0) else {
-            return Grip { force: Vec3::ZERO, next: Hook::FREE, heat: 0.0, stored: 0.0 };
-        };
+        match d.try_normalised() {
+            Some(u) if normal > 0.0 => self.grip_along(u, hook, d, before, normal),
+            _ => Grip { force: Vec3::ZERO, next: Hook::FREE, heat: 0.0, stored: 0.0 },
+        }
+    }
+
+    /// The same with `u` known and a pressure that is positive.
+    #[inline]
+    pub(super) fn grip_along(&self, u: Vec3, hook: Hook, d: Vec3, before: Vec3, normal: f64) -> Grip {
         let moved = d - before;
         let across = moved - u * moved.dot(u);
         let mut next = hook;

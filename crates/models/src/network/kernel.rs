@@ -54,6 +54,21 @@ pub trait LinkKernel: Debug + Send + Sync {
     fn advance_along(&self, part: &Part, on_axis: OnAxis<Projected>, memory: &mut [f64]) -> f64;
     /// Force and energy of one link.
     fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response;
+    /// The same of many links of one rest length, of a law without memory: pushes [N] and heats [J] over lengths now and a step
+    /// before [m]. All slices are whole blocks of [`LANES`].
+    fn respond_to_many(
+        &self,
+        rest: f64,
+        time: f64,
+        [lengths, before]: [&[f64]; 2],
+        [pushes, heats]: [&mut [f64]; 2],
+    ) {
+        let ways = lengths.iter().zip(before).zip(pushes).zip(heats);
+        for (((length, before), push), heat) in ways {
+            let response = self.respond(&Reach { length: *length, before: *before, rest }, time, &[]);
+            (*push, *heat) = (response.push, response.heat);
+        }
+    }
     /// `∂φ/∂D` and `∂φ/∂D^r` of one link [N/m].
     fn slopes(&self, reach: &Reach, time: f64, memory: &[f64]) -> [f64; 2];
     /// Names of the parameters that a control may drive.
@@ -129,6 +144,16 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
 
     fn respond(&self, reach: &Reach, _: f64, memory: &[f64]) -> Response {
         self.0.respond(reach, &mut self.numbers(memory, |number| number))
+    }
+
+    fn respond_to_many(
+        &self,
+        rest: f64,
+        _: f64,
+        [lengths, before]: [&[f64]; 2],
+        [pushes, heats]: [&mut [f64]; 2],
+    ) {
+        Arch::new().dispatch(Many { law: &self.0, rest, lengths, before, pushes, heats });
     }
 
     fn slopes(&self, reach: &Reach, _: f64, memory: &[f64]) -> [f64; 2] {
@@ -258,6 +283,35 @@ impl<L: LinkLaw, B: Between, const ADDS: bool> WithSimd for Forces<'_, L, B, ADD
                 }
                 lane += S::F64_LANES;
             }
+        }
+    }
+}
+
+/// What a law without memory says of many links.
+struct Many<'a, L> {
+    law: &'a L,
+    rest: f64,
+    lengths: &'a [f64],
+    before: &'a [f64],
+    pushes: &'a mut [f64],
+    heats: &'a mut [f64],
+}
+
+impl<L: LinkLaw> WithSimd for Many<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { law, rest, lengths, before, pushes, heats } = self;
+        let rest = Lanes::constant(simd, rest);
+        let mut memory = [Lanes::constant(simd, 0.0); MEMORY];
+        for first in (0..lengths.len()).step_by(S::F64_LANES) {
+            let own = first..first + S::F64_LANES;
+            let (length, before) =
+                (Lanes::load(simd, &lengths[own.clone()]), Lanes::load(simd, &before[own.clone()]));
+            let response = law.respond(&Reach { length, before, rest }, &mut memory);
+            response.push.store(&mut pushes[own.clone()]);
+            response.heat.store(&mut heats[own]);
         }
     }
 }

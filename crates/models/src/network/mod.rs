@@ -6,6 +6,8 @@
 pub mod contour;
 pub mod crowd;
 mod crowd_grid;
+mod crowd_list;
+mod crowd_pass;
 pub mod filling;
 pub mod force;
 pub mod friction;
@@ -19,7 +21,7 @@ mod sample;
 mod span;
 pub mod written;
 
-pub use crowd::{Crowd, CrowdDescription, PAIR_MEMORY};
+pub use crowd::{Crowd, CrowdDescription, Listing, PAIR_MEMORY};
 pub use filling::{Filling, FillingError};
 pub use force::{Account, LinkDescription, LinkStance, Links, REGISTERS, Wiring};
 pub use friction::{Friction, Grip, Hook, Phase, Slide};

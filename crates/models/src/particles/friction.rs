@@ -173,6 +173,7 @@ mod tests {
                 load: 1.0,
                 memory: &[],
                 pairs: &[],
+                kept: souple_engine::KeptRef::default(),
                 driven: &[],
                 fields: &[],
             };

@@ -131,6 +131,7 @@ fn at(positions: &[Vec3]) -> Configuration<'_> {
         load: 1.0,
         memory: &[],
         pairs: &[],
+        kept: souple_engine::KeptRef::default(),
         driven: &[],
         fields: &[],
     }

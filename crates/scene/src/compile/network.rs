@@ -17,8 +17,8 @@ use souple_engine::{Force, Mass};
 use souple_math::Vec3;
 use souple_mesh::{CellBlock, ElementKind, Group, Mesh};
 use souple_models::network::{
-    Account, BuildLink, Crowd, CrowdDescription, Friction, LinkDescription, LinkKernel, Links, Making,
-    PAIR_MEMORY, Slide, Span,
+    Account, BuildLink, Crowd, CrowdDescription, Friction, LinkDescription, LinkKernel, Links, Listing,
+    Making, PAIR_MEMORY, Slide, Span,
 };
 
 use super::bodies::Placed;
@@ -189,9 +189,12 @@ pub fn add_forces(
         });
         forces.push(Box::new(links.wired(wiring)));
     }
+    let stepper = system.stepper.as_ref().map(|chosen| (chosen.entry.build)(&chosen.values));
+    let listing =
+        if stepper.is_none_or(|stepper| stepper.reads_cliques()) { Listing::State } else { Listing::Own };
     for (index, crowd) in network.crowds.iter().enumerate() {
         let name = crowd.name.clone().unwrap_or_else(|| format!("{}.crowds[{index}]", body.spec.name));
-        if let Some(crowd) = self::crowd(name, crowd, body, network, timestep, draft) {
+        if let Some(crowd) = self::crowd(name, crowd, body, network, (timestep, listing), draft) {
             forces.push(Box::new(crowd));
         }
     }
@@ -214,7 +217,7 @@ fn crowd(
     spec: &CrowdSpec,
     body: &Placed,
     network: &Network,
-    timestep: f64,
+    (timestep, listing): (f64, Listing),
     draft: &Draft,
 ) -> Option<Crowd> {
     let law = law(spec.law.as_ref(), timestep, draft)?;
@@ -247,7 +250,7 @@ fn crowd(
     };
     let (first, second) = (rows(first), rows(second));
     let friction = spec.friction.as_ref().map(|friction| friction_of(friction, timestep));
-    Some(Crowd::new(CrowdDescription { name, law, first, second, range, friction, timestep }))
+    Some(Crowd::new(CrowdDescription { name, law, first, second, range, friction, timestep, listing }))
 }
 
 /// The contours of each body.

@@ -12,9 +12,11 @@ use crate::spec::quantity::MassesQuantity;
 /// `within`: how far apart masses count as neighbours [m].
 pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World) -> f64 {
     if quantity == MassesQuantity::Pairs {
-        let is_in = |row: u64| part.rows.binary_search(&(row as u32)).is_ok();
+        let is_in = |row: u32| part.rows.binary_search(&row).is_ok();
         let pairs = &world.state().systems[part.system].pairs;
-        return pairs.iter().filter(|pair| is_in(pair.a) && is_in(pair.b)).count() as f64;
+        let mut count = pairs.iter().filter(|pair| is_in(pair.a as u32) && is_in(pair.b as u32)).count();
+        world.visit_near(part.system, &mut |rows| count += usize::from(rows.into_iter().all(is_in)));
+        return count as f64;
     }
     let positions = &world.rows(part.system).positions;
     let places: Vec<Vec3> = part.rows.iter().map(|row| positions[*row as usize]).collect();
