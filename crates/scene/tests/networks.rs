@@ -77,6 +77,29 @@ fn wrong_networks_are_refused_in_words() {
     );
 }
 
+/// Links name points of view as they name groups; what these cannot see is refused.
+#[test]
+fn points_of_view_are_checked() {
+    let seen = |view: &str, rest: &str| {
+        linked(&format!(
+            "{SPRING}\nof = [\"v\", \"a\"]\nall = true\nrest_length = 1\n{rest}\n[networks.n.views.v]\n{view}\n"
+        ))
+    };
+    let good = scene(&seen("of = \"a\"\nkind = \"scale\"\nfactor = 3", "")).unwrap();
+    assert_eq!(good.bodies[0].mesh.points.len(), 2, "points of view are no masses");
+    refused(&seen("of = \"b\"\nkind = \"mean\"", ""), &["`b`"]);
+    refused(&seen("of = \"a\"\nkind = \"mean\"\nweights = [1]", ""), &["1 weights of 2 masses"]);
+    refused(&seen("of = \"a\"\nkind = \"cylinder\"\naxis = [0, 0, 0]", ""), &["an axis of no length"]);
+    refused(
+        &seen("of = \"a\"\nkind = \"frame\"\nmoving_with = \"c\"", ""),
+        &["no group of masses `c`", "one of a"],
+    );
+    refused(&seen("of = \"a\"\nkind = \"mirror\"", ""), &["mirror", "scale"]);
+    let crowd =
+        "[[networks.n.crowds]]\nof = [\"v\"]\nlaw = { name = \"ball\", threshold = 0.1, stiffness = 1 }";
+    refused(&seen("of = \"a\"\nkind = \"scale\"", crowd), &["points of view do not come near"]);
+}
+
 /// A lattice keeps the masses where its condition holds, in their order; none, and more than can be asked about, are refused.
 #[test]
 fn lattices_keep_what_is_within() {

@@ -58,6 +58,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("network_oscillator", include_str!("../../../scenes/network_oscillator/scene.toml")),
     ("network_spin", include_str!("../../../scenes/network_spin/scene.toml")),
     ("network_switched", include_str!("../../../scenes/network_switched/scene.toml")),
+    ("network_views", include_str!("../../../scenes/network_views/scene.toml")),
     ("octree_liver", include_str!("../../../scenes/octree_liver/scene.toml")),
     ("octree_rod", include_str!("../../../scenes/octree_rod/scene.toml")),
     ("particles_cube", include_str!("../../../scenes/particles_cube/scene.toml")),

@@ -230,7 +230,7 @@ impl Links {
 
     /// Calls `visit(rows, a ∂f1/∂d + b ∂f1/∂w)` for every link, with `d = P1 - P2` and its rate `w`. Returns whether it turned
     /// any round to be definite.
-    fn visit_tangents(
+    pub(super) fn visit_tangents(
         &self,
         at: &Configuration,
         curvature: Curvature,

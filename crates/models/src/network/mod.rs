@@ -19,6 +19,7 @@ mod pair_tangent;
 mod rheology;
 mod sample;
 mod span;
+mod view;
 pub mod written;
 
 pub use crowd::{Crowd, CrowdDescription, Listing, PAIR_MEMORY};
@@ -31,3 +32,4 @@ pub use laws::LINKS;
 pub use layout::Ends;
 pub use sample::state_dimension;
 pub use span::Span;
+pub use view::{Map, ViewPoint, ViewedLinks};

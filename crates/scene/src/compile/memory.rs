@@ -4,7 +4,6 @@
 //! The estimate counts what every scene of that size needs, and no more: it refuses what cannot fit, and lets pass
 //! what may. Contacts, factors of direct solvers and pictures come on top.
 
-use souple_engine::Pair;
 use souple_mesh::{MeshSize, available_memory, gigabytes};
 
 use super::bodies::Placed;
@@ -31,8 +30,8 @@ const CELL: u64 = 250;
 /// What a link has: its ends in two lists and as a cell of two meshes, two lengths; with its force, its ends and length
 /// once more, and where it stands in four orders.
 const LINK: u64 = 80;
-/// What a pair of a crowd has: in two states, and in the list that is merged into the next.
-const PAIR: u64 = 3 * size_of::<Pair>() as u64;
+/// What a pair of a crowd has, in a list by either ball and as a force; what it remembers comes on top.
+const PAIR: u64 = 2 * size_of::<u32>() as u64 + VECTOR;
 /// Links are told apart by 32 bits.
 const LINKS_MAX: u64 = 500_000_000;
 

@@ -4,6 +4,7 @@ mod controls;
 mod ends;
 mod fill;
 mod summary;
+mod views;
 
 pub use controls::add as add_controls;
 pub use ends::size;
@@ -57,20 +58,25 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
         draft.log.add(Code::EmptyRegion, &body.site, "the network has no masses", "at least one");
         return None;
     }
-    let starts = start::places(body.start.as_ref(), &points);
+    let mut starts = start::places(body.start.as_ref(), &points);
+    // links see points of view behind the masses
+    let (masses, seen) = (points.len(), views::points(network, 0, draft));
+    let mut places = points.clone();
+    places.extend(views::places(&seen, &points));
+    starts.extend(views::places(&seen, &starts));
     let mut room = memory::links_that_fit();
     let links: Vec<PlacedLinks> = network
         .links
         .iter()
         .enumerate()
         .filter_map(|(index, table)| {
-            let ends = ends::of_table(table, network, &points, room, draft.log)?;
+            let ends = ends::of_table(table, network, &places, room, draft.log)?;
             room -= ends.len();
             let lengths_at = |points: &[Vec3]| -> Vec<f64> {
                 let apart = |[a, b]: [u32; 2]| points[a as usize] - points[b as usize];
                 ends.iter().map(|ends| table.span.length(apart(*ends))).collect()
             };
-            let (lengths, mut rest_lengths) = (lengths_at(&starts), lengths_at(&points));
+            let (lengths, mut rest_lengths) = (lengths_at(&starts), lengths_at(&places));
             if let Some(length) = table.rest_length {
                 // along an axis lengths have a sign
                 rest_lengths.iter_mut().for_each(|rest| *rest = length.copysign(*rest));
@@ -81,14 +87,18 @@ pub fn build(body: &Body, network: &Network, draft: &Draft) -> Option<(Shape, Ve
     if links.len() < network.links.len() {
         return None;
     }
-    let warnings = coincident(body, network, &links, &points, draft);
+    let warnings = coincident(body, network, &links, &places, draft);
     let links = together(network, links);
-    let nodes = links.iter().flat_map(|links| links.ends.iter().flatten().copied()).collect();
+    let is_between_masses = |ends: &&[u32; 2]| ends.iter().all(|end| (*end as usize) < masses);
+    let nodes = links.iter().flat_map(|links| links.ends.iter().filter(is_between_masses).flatten().copied());
+    let nodes = nodes.collect();
     let mut mesh = Mesh::new(points, ElementKind::Edge2, nodes);
     mesh.blocks.retain(|block: &CellBlock| !block.is_empty());
     let presented = network.presented.iter().map(|(name, _)| name);
     for name in network.masses.iter().map(|group| &group.name).chain(presented) {
-        let points = network.numbers_of(name).into_iter().flatten().collect();
+        let numbers = network.numbers_of(name).filter(|numbers| numbers.end as usize <= masses);
+        let Some(numbers) = numbers else { continue };
+        let points = numbers.collect();
         mesh.groups.insert(name.clone(), Group { points, ..Group::default() });
     }
     let point_numbers = (0..mesh.points.len() as u32).collect();
@@ -175,7 +185,14 @@ pub fn add_forces(
     for (index, links) in body.links.iter().enumerate() {
         let table = &network.links[links.table];
         let Some(law) = law(table.law.as_ref(), timestep, draft) else { continue };
-        let ends: Vec<[u32; 2]> = links.ends.iter().map(|ends| ends.map(|end| first + end)).collect();
+        let masses = body.mesh.points.len() as u32;
+        let is_viewed = links.ends.iter().flatten().any(|end| *end >= masses);
+        let seen = is_viewed
+            .then(|| views::Ends::new(&links.ends, masses, first, &views::points(network, first, draft)));
+        let ends = match &seen {
+            Some(seen) => seen.ends.clone(),
+            None => links.ends.iter().map(|ends| ends.map(|end| first + end)).collect(),
+        };
         let wiring = controls::wiring(draft, body, network, &table.name, law.as_ref());
         let links = Links::new(LinkDescription {
             name: format!("{}.links[{index}]", body.spec.name),
@@ -187,7 +204,11 @@ pub fn add_forces(
             timestep,
             account: if network.keeps_account { Account::Heat } else { Account::None },
         });
-        forces.push(Box::new(links.wired(wiring)));
+        let links = links.wired(wiring);
+        match seen {
+            Some(seen) => forces.push(Box::new(seen.seen_by(links))),
+            None => forces.push(Box::new(links)),
+        }
     }
     let stepper = system.stepper.as_ref().map(|chosen| (chosen.entry.build)(&chosen.values));
     let listing =
@@ -239,6 +260,12 @@ fn crowd(
         return None;
     }
     let (first, second) = ends::groups(&spec.of, network)?;
+    let masses = body.mesh.points.len() as u32;
+    if first.end > masses || second.end > masses {
+        let message = "crowds are of masses: points of view do not come near each other";
+        draft.log.add(Code::Conflict, &spec.site, message, "groups, parts or ports");
+        return None;
+    }
     if !ends::may_crowd(first.clone(), second.clone(), range, &body.mesh.points) {
         let message = format!("more pairs are within {range} m of each other at the start than memory holds");
         draft.log.add(Code::TooLarge, &spec.site, message, "a shorter range, or fewer masses");

@@ -24,6 +24,7 @@ pub mod skin;
 pub mod sound;
 pub mod start;
 pub mod units;
+pub mod view;
 pub mod world;
 
 use souple_formal::Formula;

@@ -22,6 +22,7 @@ use super::region::{Region, RegionKind};
 use super::skin::BODY_SKIN;
 use super::start::{START, StartSpec};
 use super::units::Space;
+use super::view::{VIEW, ViewSpec};
 use crate::diagnostic::{Code, Site};
 use crate::keys::{EntryShape, Key, Keys, NOWHERE, Shape, outlines};
 use crate::reader::{Chosen, Reader};
@@ -203,6 +204,7 @@ pub(crate) static NETWORK: Keys = Keys::new(
         Key::new("modules", Shape::Named(&PART), PARTS_SUMMARY),
         PORTS_KEY,
         CONNECTIONS_KEY,
+        Key::new("views", Shape::Named(&VIEW), "what links may see in the place of masses"),
         Key::new("controls", Shape::Named(&CONTROL), "what drives links and their parameters"),
         Key::new(
             "space",
@@ -238,6 +240,8 @@ pub struct Network {
     /// Numbers of the masses of parts and ports.
     pub presented: Vec<(String, std::ops::Range<u32>)>,
     pub controls: Vec<ControlSpec>,
+    /// What links may see in the place of masses: numbers behind those of masses, see [`Network::seen`].
+    pub views: Vec<ViewSpec>,
     /// Of its masses and laws as they are written; they are physical from then on.
     pub space: Space,
     pub contours: Vec<ContourSpec>,
@@ -341,12 +345,13 @@ pub enum Join {
 impl Network {
     /// A network as a body: its masses are points, its links are cells.
     pub(crate) fn body(name: String, reader: &Reader) -> Body {
-        let Assembly { masses, links, crowds, presented } = Assembly::read(reader);
+        let Assembly { masses, links, crowds, presented, views } = Assembly::read(reader);
         let mut network = Self {
             masses,
             links,
             crowds,
             presented,
+            views,
             controls: reader
                 .named("controls")
                 .into_iter()
@@ -398,6 +403,11 @@ impl Network {
 
     pub fn mass_count(&self) -> u64 {
         self.masses.iter().map(|group| group.places.count()).sum()
+    }
+
+    /// The masses that a point of view sees, one by one; a mean sees them as one.
+    pub fn seen(&self, view: &ViewSpec) -> std::ops::Range<u32> {
+        self.numbers_of(&view.of).unwrap_or(0..0)
     }
 
     /// What each mass has of its group, in the order of the masses' numbers.

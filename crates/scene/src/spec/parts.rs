@@ -14,6 +14,7 @@ use souple_table::{Range as Interval, Value};
 
 use super::body::{Placement, ROTATION};
 use super::network::{CROWD, CrowdSpec, LINK_TABLE, LinkTable, MASSES, MASSES_MAX, MassGroup};
+use super::view::ViewSpec;
 use crate::diagnostic::{Code, Log, Site};
 use crate::keys::{Key, Keys, Shape, did_you_mean};
 use crate::reader::Reader;
@@ -105,6 +106,8 @@ pub struct Assembly {
     pub crowds: Vec<CrowdSpec>,
     /// Numbers of the masses of parts and of ports.
     pub presented: Vec<(String, Range<u32>)>,
+    /// What links may see in the place of masses; their numbers are presented too.
+    pub views: Vec<ViewSpec>,
 }
 
 /// How a part stands in what holds it.
@@ -142,6 +145,8 @@ struct Part<'a> {
     site: Site,
     /// Names of its own groups, as they are written.
     groups: Vec<String>,
+    /// Names of points of view, of the network.
+    views: Vec<String>,
     parts: Vec<(String, Part<'a>)>,
     ports: Vec<Port>,
     connections: Vec<Connection>,
@@ -156,10 +161,11 @@ struct Part<'a> {
 impl Assembly {
     pub(super) fn read(reader: &Reader) -> Self {
         let log = reader.log();
-        let mut all =
-            Self { masses: Vec::new(), links: Vec::new(), crowds: Vec::new(), presented: Vec::new() };
+        let (masses, presented) = (Vec::new(), Vec::new());
+        let mut all = Self { masses, links: Vec::new(), crowds: Vec::new(), presented, views: Vec::new() };
         let mut root = Part::open(String::new(), reader, Vec::new(), &mut all.masses);
         root.present(&mut all, log);
+        root.see(reader, &mut all);
         root.require_feeds(log);
         root.connect(log);
         root.act(&mut all, log);
@@ -233,6 +239,7 @@ impl<'a> Part<'a> {
         let mut part = Self {
             site: reader.site(),
             groups: Vec::new(),
+            views: Vec::new(),
             parts: Vec::new(),
             ports: reader.named("ports").into_iter().map(|(name, port)| Port::read(name, &port)).collect(),
             connections: reader.tables("connections").iter().map(Connection::read).collect(),
@@ -304,7 +311,7 @@ impl<'a> Part<'a> {
 
     /// What a name within it is of, as it is known to the network: masses, however they are named, or what a port L is joined to.
     fn masses(&self, name: &str) -> Result<String, String> {
-        if self.groups.iter().any(|known| known == name) {
+        if self.groups.iter().chain(&self.views).any(|known| known == name) {
             return Ok(self.full(name));
         }
         if let Some(port) = self.port(name) {
@@ -352,6 +359,36 @@ impl<'a> Part<'a> {
     fn refuse(&self, site: &Site, what: String, log: &Log) {
         if !what.is_empty() {
             log.add(Code::UnknownName, site, what, format!("one of {}", self.known().join(", ")));
+        }
+    }
+
+    /// Presents points of view, of the network alone, behind all masses.
+    fn see(&mut self, reader: &Reader, all: &mut Assembly) {
+        let log = reader.log();
+        let mut first: u32 = all.masses.iter().map(|group| group.places.count() as u32).sum();
+        for (name, view) in reader.named("views") {
+            let Some(mut view) = ViewSpec::read(name, &view) else { continue };
+            if self.known().contains(&view.name.as_str()) {
+                let message = format!("there are masses and a point of view `{}`", view.name);
+                log.add(Code::Conflict, &view.site, message, "names that differ");
+            }
+            let numbers = match self.masses(&view.of) {
+                Ok(of) => {
+                    view.of = of;
+                    all.numbers_of(&view.of)
+                }
+                Err(what) => {
+                    self.refuse(&view.site, what, log);
+                    None
+                }
+            };
+            let Some(numbers) = numbers else { continue };
+            let count = view.count(numbers.len() as u32);
+            all.presented.push((view.name.clone(), first..first + count));
+            first += count;
+            // links name it as they do a group
+            self.views.push(view.name.clone());
+            all.views.push(view);
         }
     }
 

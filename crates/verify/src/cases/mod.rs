@@ -37,6 +37,7 @@ mod stepper_orders;
 mod thick_sphere;
 mod tools;
 mod traction;
+mod views;
 mod wall_cube;
 
 use crate::Case;
@@ -74,6 +75,7 @@ pub const TABLES: &[&[Case]] = &[
     rheology::CASES,
     conditional::CASES,
     matter::CASES,
+    views::CASES,
     frames::CASES,
     octree::CASES,
     resolution::CASES,

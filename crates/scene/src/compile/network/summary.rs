@@ -1,6 +1,6 @@
 //! What a network is made of, for those who ask what it costs: masses, laws, memories, and its numbers in the algorithmic space.
 
-use souple_models::network::Links;
+use souple_models::network::{Links, ViewedLinks};
 use souple_table::Value;
 
 use super::super::Draft;
@@ -81,7 +81,9 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
                 let law = network.links[links.table].law.as_ref()?;
                 let force = format!("{}.links[{index}]", body.spec.name);
                 let of = system.forces.iter().find(|known| known.name() == force)?;
-                let of = of.as_any().downcast_ref::<Links>()?;
+                let any = of.as_any();
+                let seen = || any.downcast_ref::<ViewedLinks>().map(ViewedLinks::links);
+                let of = any.downcast_ref::<Links>().or_else(seen)?;
                 Some(LawInfo {
                     law: law.entry.name,
                     links: links.ends.len(),
