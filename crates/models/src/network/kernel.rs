@@ -55,7 +55,7 @@ pub trait LinkKernel: Debug + Send + Sync {
     /// Force and energy of one link.
     fn respond(&self, reach: &Reach, time: f64, memory: &[f64]) -> Response;
     /// The same of many links of one rest length, of a law without memory: pushes [N] and heats [J] over lengths now and a step
-    /// before [m]. All slices are whole blocks of [`LANES`].
+    /// before [m]. All slices are whole blocks of eight.
     fn respond_to_many(
         &self,
         rest: f64,
