@@ -25,6 +25,7 @@ const SWITCHED: Case = Case {
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "words_stop",
+        capabilities: &["JIM-10", "JIM-11"],
         what: "a stop in the words of the source: inside 0.995 m only, -k (0.98 - 1)",
         settings: &[
             r#"networks.sample.links[0].law={ name = "conditional", stiffness = 0, states = { away = "CHK, 0; CHZ, 0; INF, D, 0.995 -> in", in = "CHK, 1000; SUP, D, 0.995 -> away" } }"#,

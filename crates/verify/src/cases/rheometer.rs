@@ -355,7 +355,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "glued_state",
-        capabilities: &["JIM-10", "JIM-19"],
+        capabilities: &["JIM-10", "JIM-11", "JIM-19"],
         what: "glue: joined below 0.985 m with the length of that moment, k (1.03 - 0.98) at the end",
         settings: &[
             r#"networks.sample.links[0].law={ name = "finite_state", states = { free = "0", glued = "-k * (D - L0)" }, transitions = { "free -> glued" = "D < 0.985" }, entries = { glued = "L0 = D" }, parameters = { k = 1000 } }"#,
