@@ -286,11 +286,10 @@ impl System {
         let delta: Vec<Vec3> = (0..rows.positions.len())
             .map(|row| Vec3::new(1.0, 2.0_f64.sqrt(), 3.0_f64.sqrt()) * (1.0 + (row as f64).sin().abs()))
             .collect();
-        let mut alone = vec![Vec3::ZERO; rows.positions.len()];
-        self.forces.iter().enumerate().find_map(|(index, force)| {
-            alone.fill(Vec3::ZERO);
-            let at = self.view(index, rows, state, around);
-            force.add_differential(&at, weights, &delta, &mut scratches[index], &mut alone);
+        let add = |force: &dyn Force, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]| {
+            force.add_differential(at, weights, &delta, scratch, out);
+        };
+        self.find_alone(rows, state, around, scratches, add, |force, alone| {
             let row = alone.iter().position(|f| !f.is_finite())?;
             Some(StepError::SlopeNotFinite { force: force.name().to_owned(), row, time: rows.time })
         })
@@ -319,12 +318,29 @@ impl System {
         state: &SystemState,
         around: &Surroundings,
         scratches: &mut [Scratch],
+        look: impl FnMut(&dyn Force, &[Vec3]) -> Option<T>,
+    ) -> Option<T> {
+        let add = |force: &dyn Force, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]| {
+            force.add_force(at, scratch, out);
+        };
+        self.find_alone(rows, state, around, scratches, add, look)
+    }
+
+    /// The same of whatever is added up of each force.
+    fn find_alone<T>(
+        &self,
+        rows: &Rows,
+        state: &SystemState,
+        around: &Surroundings,
+        scratches: &mut [Scratch],
+        add: impl Fn(&dyn Force, &Configuration, &mut Scratch, &mut [Vec3]),
         mut look: impl FnMut(&dyn Force, &[Vec3]) -> Option<T>,
     ) -> Option<T> {
         let mut alone = vec![Vec3::ZERO; rows.positions.len()];
         self.forces.iter().enumerate().find_map(|(index, force)| {
             alone.fill(Vec3::ZERO);
-            force.add_force(&self.view(index, rows, state, around), &mut scratches[index], &mut alone);
+            let at = self.view(index, rows, state, around);
+            add(force.as_ref(), &at, &mut scratches[index], &mut alone);
             look(force.as_ref(), &alone)
         })
     }

@@ -405,9 +405,8 @@ impl Given<'_> {
         let flat = |list: &[Vec<Expr>]| list.iter().flatten().copied().collect::<Vec<Expr>>();
         let mut given = flat(self.rest);
         given.extend(self.parameters);
-        let of_constants = constants;
-        let (constants, values): (Vec<Expr>, Vec<Expr>) = of_constants.iter().copied().unzip();
-        let start = Tape::of_expressions(graph, [&given, &[]], of_constants, &values, &law.parameters);
+        let (symbols, values): (Vec<Expr>, Vec<Expr>) = constants.iter().copied().unzip();
+        let start = Tape::of_expressions(graph, [&given, &[]], constants, &values, &law.parameters);
         let numbers = law.parameters.iter().filter_map(|(_, parameter)| match parameter {
             LawParameter::Number { value, .. } => Some(*value),
             LawParameter::Direction(_) => None,
@@ -421,7 +420,7 @@ impl Given<'_> {
         }
         start.run_here(Part::All, 1, &mut memory);
         let of_start = |constant: usize| memory[start.output(constant, 0)];
-        let inputs: Vec<Expr> = flat(self.displacements).into_iter().chain(constants.clone()).collect();
+        let inputs: Vec<Expr> = flat(self.displacements).into_iter().chain(symbols).collect();
         let varied = flat(self.variations);
         let tape = Tape::of_expressions(graph, [&inputs, &varied], definitions, outputs, &law.parameters);
         Running { tape, constants: (0..constants.len()).map(of_start).collect(), outputs: outputs.len() }
