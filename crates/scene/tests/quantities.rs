@@ -35,6 +35,69 @@ fn probe(name: &str, quantity: &str, more: &str) -> String {
     format!("[probes.{name}]\nbody = \"cube\"\nquantity = \"{quantity}\"\n{more}\n")
 }
 
+/// A cube led by `u = t (x, −2y, 3z)` against the formula of two thirds of that and against a finer cube led by half
+/// of it, whose trilinear cells carry a linear field exactly: what is left is a third and a half of it.
+#[test]
+fn values_against_a_formula_and_another_body() {
+    let led = |body: &str, factor: f64| {
+        let formula = format!("[{factor} * t * x, {factor} * -2 * t * y, {factor} * 3 * t * z]");
+        format!("[[bodies.{body}.pins]]\nregion = {{ all = true }}\nmotion = {{ formula = \"{formula}\" }}\n")
+    };
+    let fine = CUBE.split("[bodies.cube]").nth(1).expect("a body").replace("[2, 2, 2]", "[3, 3, 3]");
+    let formula = "against = { formula = \"[2 / 3 * t * x, -4 / 3 * t * y, 2 * t * z]\" }\n";
+    let body = "against = { body = \"fine\" }\n";
+    let text = [
+        CUBE.to_owned(),
+        led("cube", 1.0),
+        format!("[bodies.fine]{fine}"),
+        led("fine", 0.5),
+        probe("formula", "displacement", formula),
+        probe("body", "displacement", body),
+        probe("far", "displacement", &format!("{body}component = \"length\"\nreduce = \"max\"")),
+        probe("mean", "displacement", &format!("{body}component = \"y\"\nreduce = \"mean_magnitude\"")),
+        probe("speed", "velocity", body),
+    ];
+    let (mut world, probes) = start(&text.concat());
+    for _ in 0..2 {
+        world.step().expect("a step");
+    }
+    let t = 2e-3;
+    // means of x, y, z over the points are one half
+    let close = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-14, "{a:?} {b:?}");
+    let mean = Vec3::new(0.5, -1.0, 1.5);
+    close(value(&mut world, &probes, "formula"), mean * (t / 3.0));
+    close(value(&mut world, &probes, "body"), mean * (t / 2.0));
+    close(value(&mut world, &probes, "far"), Vec3::new(14.0_f64.sqrt() * t / 2.0, 0.0, 0.0));
+    close(value(&mut world, &probes, "mean"), Vec3::new(t / 2.0, 0.0, 0.0));
+    // velocities are differences of positions over 1 ms: a thousand times their rounding
+    assert!((value(&mut world, &probes, "speed") - mean * 0.5).length() < 1e-11);
+}
+
+/// What a probe cannot be held against is refused where it stands.
+#[test]
+fn what_nothing_is_held_against() {
+    let small =
+        CUBE.split("[bodies.cube]").nth(1).expect("a body").replace("size = [1, 1, 1]", "size = [0.5, 1, 1]");
+    let refusals = [
+        ("displacement", "against = { body = \"small\" }", "is outside of body `small`"),
+        ("displacement", "against = { body = \"smal\" }", "there is no body `smal` (did you mean `small`?)"),
+        ("displacement", "against = {}", "`against` names 0 things"),
+        ("displacement", "against = { formula = [0, 0, 0], body = \"small\" }", "`against` names 2 things"),
+        ("displacement", "against = { formula = \"[0, w, 0]\" }", "`w`"),
+        ("reaction", "against = { body = \"small\" }", "`reaction` is not carried"),
+        ("penetration", "against = { formula = [0, 0, 0] }", "`penetration` is no vector at points"),
+        ("volume", "against = { formula = [0, 0, 0] }", "`volume` is no vector at points"),
+        ("displacement", "reduce = \"mean_magnitude\"", "no least, greatest or magnitude"),
+    ];
+    for (quantity, more, message) in refusals {
+        let text =
+            format!("{CUBE}[bodies.small]{small}translate = [0.1, 0, 0]\n{}", probe("gap", quantity, more));
+        let read = read_text("scene.toml", &text, Path::new("."), &[]);
+        let errors = read.err().map(|errors| errors.to_string()).unwrap_or_default();
+        assert!(errors.contains(message), "{more}: {errors}");
+    }
+}
+
 /// A body led as a whole by `½ a t²` upward: the reaction is `m (a − g)`, whatever the mass matrix; to the tolerance of
 /// the solve for the consistent one, and the rounding of velocities over a step of 1 ms (10⁻¹⁶/10⁻³ relative).
 #[test]

@@ -92,6 +92,9 @@ pub fn benches(names: &[String]) -> Result<Vec<&'static Bench>, String> {
         .collect())
 }
 
+/// Of forces of hexahedra, prisms and pyramids.
+const WANTED_OF_OTHERS: laws::Wanted = laws::Wanted::ElementsPerSecond(3e6);
+
 /// Every benchmark.
 pub const BENCHES: &[Bench] = &[
     Bench {
@@ -263,22 +266,22 @@ pub const BENCHES: &[Bench] = &[
     Bench {
         name: "tet4_forces",
         what: "forces alone of tetrahedra, St. Venant-Kirchhoff, bent [elements/s], and a derivative product [x force]",
-        run: |effort| laws::forces("tet4_forces", "tet4", 12, 20e6, effort),
+        run: |effort| laws::forces("tet4_forces", "tet4", 12, laws::Wanted::Steps, effort),
     },
     Bench {
         name: "hex8_forces",
         what: "the same of hexahedra of eight samples",
-        run: |effort| laws::forces("hex8_forces", "hex8", 12, 3e6, effort),
+        run: |effort| laws::forces("hex8_forces", "hex8", 12, WANTED_OF_OTHERS, effort),
     },
     Bench {
         name: "prism6_forces",
         what: "the same of prisms of six samples",
-        run: |effort| laws::forces("prism6_forces", "prism6", 10, 3e6, effort),
+        run: |effort| laws::forces("prism6_forces", "prism6", 10, WANTED_OF_OTHERS, effort),
     },
     Bench {
         name: "pyramid5_forces",
         what: "the same of pyramids of five samples",
-        run: |effort| laws::forces("pyramid5_forces", "pyramid5", 7, 3e6, effort),
+        run: |effort| laws::forces("pyramid5_forces", "pyramid5", 7, WANTED_OF_OTHERS, effort),
     },
     Bench {
         name: "tangents",

@@ -2,6 +2,7 @@
 //!
 //! Each subject of the table of quantities has a file that measures it.
 
+mod against;
 mod body;
 mod cells;
 mod contact;
@@ -17,6 +18,7 @@ pub use contour::ContourInfo;
 use souple_engine::{Force, World};
 use souple_math::Vec3;
 
+use self::against::Reference;
 use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
 use crate::scene::{DressInfo, HandInfo, SkinInfo};
@@ -38,6 +40,8 @@ pub struct ProbeInfo {
     component: Option<Component>,
     reduction: Reduction,
     target: Target,
+    /// What the values at points are the differences from.
+    against: Option<Reference>,
 }
 
 /// What is read, and where.
@@ -123,6 +127,10 @@ impl Measurement {
 impl ProbeInfo {
     /// `None` where the body or region was refused.
     pub(crate) fn compile(probe: &Probe, draft: &Draft) -> Option<Self> {
+        let against = match &probe.against {
+            Some(against) => Some(Reference::compile(against, probe, draft)?),
+            None => None,
+        };
         let target = match (probe.quantity.build.subject, &probe.body) {
             (Subject::World(quantity), _) => Target::World(quantity),
             (Subject::Skin(quantity), _) => {
@@ -175,6 +183,7 @@ impl ProbeInfo {
             component: probe.component,
             reduction: probe.reduction,
             target,
+            against,
         })
     }
 
@@ -211,7 +220,13 @@ impl ProbeInfo {
                 Measurement::Vector(vector) => self.vector(vector),
                 number => number,
             },
-            Target::Points(quantity, part) => self.reduce_points(&points::measure(*quantity, part, world)),
+            Target::Points(quantity, part) => {
+                let mut values = points::measure(*quantity, part, world);
+                if let (Some(reference), PointValues::Vectors(vectors)) = (&self.against, &mut values) {
+                    reference.take_from(vectors, *quantity, part, world);
+                }
+                self.reduce_points(&values)
+            }
             Target::Cells(quantity, part) => {
                 let (numbers, volumes) = cells::measure(*quantity, part, world);
                 Measurement::Number(reduced(&numbers, &volumes, self.reduction))
@@ -361,6 +376,10 @@ fn reduced(numbers: &[f64], weights: &[f64], reduction: Reduction) -> f64 {
         Reduction::Mean => {
             let total: f64 = weights.iter().sum();
             numbers.iter().zip(weights).map(|(number, weight)| number * weight).sum::<f64>() / total
+        }
+        Reduction::MeanMagnitude => {
+            let magnitudes: Vec<f64> = numbers.iter().map(|number| number.abs()).collect();
+            reduced(&magnitudes, weights, Reduction::Mean)
         }
     }
 }

@@ -259,6 +259,9 @@ impl Spec {
             if let Some(body) = &probe.body {
                 check("body", body, &bodies, &probe.site);
             }
+            if let Some(probe::Against::Body(body)) = &probe.against {
+                check("body", body, &bodies, &probe.site);
+            }
         }
         let shapes: Vec<&str> = self.shapes.iter().map(|shape| shape.name.as_str()).collect();
         let contacts: Vec<&str> = self.contacts.iter().map(|contact| contact.name.as_str()).collect();

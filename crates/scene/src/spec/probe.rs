@@ -1,9 +1,13 @@
 //! Probes: what is measured along a run.
 
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_table::Range;
 
-use super::quantity::{ContourQuantity, NAMES, QUANTITIES, QuantityEntry, Rank, Reduction, Subject};
+use super::boundary::LOAD_VARIABLES;
+use super::quantity::{
+    ContourQuantity, NAMES, PointQuantity, QUANTITIES, Quantity, QuantityEntry, Rank, Reduction, Subject,
+};
 use super::region::Region;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
@@ -11,6 +15,19 @@ use crate::reader::Reader;
 
 pub(crate) const COMPONENT: Key =
     Key::new("component", Shape::Choice(&["x", "y", "z", "length"]), "one number of a vector");
+
+pub(crate) static AGAINST: Keys = Keys::new(
+    "against",
+    "what the values at points are the differences from: a `formula` or a `body`, one of them",
+    &[
+        Key::new(
+            "formula",
+            Shape::VectorFormula(LOAD_VARIABLES),
+            "of the place where a point started and of time, in the unit of the quantity",
+        ),
+        Key::new("body", Shape::Text, "another, whose shape at the start holds the points: its value there"),
+    ],
+);
 
 pub(crate) static PROBE: Keys = Keys::new(
     "probe",
@@ -22,9 +39,10 @@ pub(crate) static PROBE: Keys = Keys::new(
         COMPONENT,
         Key::new(
             "reduce",
-            Shape::Choice(&["mean", "sum", "min", "max"]),
+            Shape::Choice(&["mean", "sum", "min", "max", "mean_magnitude"]),
             "how the values of a region become one",
         ),
+        Key::new("against", Shape::Table(&AGAINST), "what the values at points are the differences from"),
         Key::new("skin", Shape::Text, "whose, for quantities of skins; a body's skin has the body's name"),
         Key::new("contact", Shape::Text, "only what this contact does (for quantities of contacts)"),
         Key::new("hand", Shape::Text, "whose, for quantities of hands and their tools"),
@@ -49,6 +67,7 @@ pub struct Probe {
     pub region: Option<Region>,
     pub component: Option<Component>,
     pub reduction: Reduction,
+    pub against: Option<Against>,
     pub contact: Option<String>,
     pub skin: Option<String>,
     pub hand: Option<String>,
@@ -62,6 +81,15 @@ pub struct Probe {
     /// How far apart masses count as neighbours [m].
     pub within: Option<f64>,
     pub site: Site,
+}
+
+/// What the values of a probe are the differences from.
+#[derive(Clone, Debug)]
+pub enum Against {
+    /// Of [`LOAD_VARIABLES`], in the unit of the quantity.
+    Formula([Formula; 3]),
+    /// The same quantity of another body, where the points lie in its shape at the start.
+    Body(String),
 }
 
 /// One number of a vector.
@@ -89,6 +117,26 @@ impl Component {
     }
 }
 
+impl Against {
+    fn read(reader: &Reader) -> Option<Self> {
+        let written = reader.written(&["formula", "body"]);
+        let [key] = written.as_slice() else {
+            let message = format!("`against` names {} things", written.len());
+            reader.log().add(
+                Code::WrongType,
+                &reader.site(),
+                message,
+                "a `formula` or a `body`, one of them",
+            );
+            return None;
+        };
+        match *key {
+            "formula" => reader.maybe_vector_formula(key).map(Self::Formula),
+            _ => reader.maybe_text(key).map(Self::Body),
+        }
+    }
+}
+
 impl Probe {
     pub(crate) fn read(name: String, reader: &Reader) -> Self {
         let known = reader.has("quantity").then(|| QUANTITIES.find(reader.choice("quantity")).ok()).flatten();
@@ -99,10 +147,13 @@ impl Probe {
             Some("mean") => Reduction::Mean,
             Some("sum") => Reduction::Sum,
             Some("min") => Reduction::Min,
-            Some(_) => Reduction::Max,
+            Some("max") => Reduction::Max,
+            Some(_) => Reduction::MeanMagnitude,
             None => quantity.build.reduction,
         };
+        let against = reader.table("against");
         if known.is_some() {
+            against.iter().for_each(|against| check_against(against, quantity));
             check_keys(reader, quantity);
             check_reduction(reader, quantity, component, reduction);
         }
@@ -113,6 +164,7 @@ impl Probe {
             region: Region::read(reader, "region"),
             component,
             reduction,
+            against: against.as_ref().and_then(Against::read),
             contact: reader.maybe_text("contact"),
             skin: reader.maybe_text("skin"),
             hand: reader.maybe_text("hand"),
@@ -254,6 +306,22 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
     }
 }
 
+/// Differences are of vectors at points, and those from another body of what its cells carry.
+fn check_against(reader: &Reader, entry: &QuantityEntry) {
+    let Quantity { rank, subject, .. } = entry.build;
+    let is_carried = matches!(
+        subject,
+        Subject::Points(PointQuantity::Displacement | PointQuantity::Position | PointQuantity::Velocity)
+    );
+    if rank != Rank::Vector || !matches!(subject, Subject::Points(_)) {
+        let message = format!("`{}` is no vector at points", entry.name);
+        refuse(reader, "formula", message, "a vector at points, such as \"displacement\"");
+    } else if reader.has("body") && !is_carried {
+        let message = format!("`{}` is not carried from point to point by cells", entry.name);
+        refuse(reader, "body", message, "displacement, position or velocity, or a `formula`");
+    }
+}
+
 fn check_reduction(
     reader: &Reader,
     entry: &QuantityEntry,
@@ -266,9 +334,9 @@ fn check_reduction(
         refuse(reader, "reduce", format!("`{}` is one value already", entry.name), "no `reduce`");
     } else if quantity.rank == Rank::Vector
         && component.is_none()
-        && matches!(reduction, Reduction::Min | Reduction::Max)
+        && matches!(reduction, Reduction::Min | Reduction::Max | Reduction::MeanMagnitude)
     {
-        let expected = "`mean`, `sum`, or a component";
-        refuse(reader, "reduce", "a vector has no least or greatest".to_owned(), expected);
+        let expected = "`mean`, `sum`, or a component: `component = \"length\"` is that of the vector";
+        refuse(reader, "reduce", "a vector has no least, greatest or magnitude".to_owned(), expected);
     }
 }

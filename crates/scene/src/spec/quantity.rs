@@ -33,6 +33,8 @@ pub enum Reduction {
     Sum,
     Min,
     Max,
+    /// As the mean, of values without their signs.
+    MeanMagnitude,
 }
 
 /// What a quantity is measured on.

@@ -7,6 +7,10 @@ use super::{Effort, Figure};
 /// How often derived expressions must outrun the literal sums (EXP-20), by law.
 const OVER_FOUR_LOOPS: [(&str, f64); 2] = [("st_venant_kirchhoff", 10.0), ("linear", 1.0)];
 
+/// Kinds of elements by what a derivative product of derived expressions takes, from little to much (EXP-26): tetrahedra by far
+/// the least, the others near each other.
+const BY_DERIVATIVE: [&str; 4] = ["tet4", "pyramid5", "hex8", "prism6"];
+
 /// Formulation, element, law.
 type Variant = (&'static str, &'static str, &'static str);
 
@@ -87,8 +91,31 @@ pub fn table(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
                 figures.extend(ratios(&row, wanted, derived, other_times));
             }
         }
+        for pair in BY_DERIVATIVE.windows(2) {
+            let [first, second] =
+                [0, 1].map(|end| of(("grouped_constants", pair[end], "st_venant_kirchhoff")));
+            let (first, second) = first.zip(second).ok_or("both are among the variants")?;
+            figures.push(per_element(
+                &format!("{name}_{size}_derivative_{}", pair[0]),
+                first,
+                pair[1],
+                second,
+            ));
+        }
     }
     Ok(figures)
+}
+
+/// How many times as many derivative products of an element of the first kind there are in a second as of the other's.
+fn per_element(name: &str, first: &ForceTimes, other: &str, second: &ForceTimes) -> Figure {
+    let cells = |times: &ForceTimes| times.derivative.cells as f64;
+    let held = Held {
+        error: f64::max(first.derivative_error, second.derivative_error),
+        error_of: "derivatives against differences of the force".to_owned(),
+        baseline: Some(1.0),
+    };
+    let in_one = |times: &ForceTimes| times.derivative.clone().in_parts(cells(times) as usize);
+    in_one(first).times_as_fast(&format!("{name}_over_{other}"), &in_one(second), &held)
 }
 
 /// How much less time the first takes than the second, for forces and for derivatives.

@@ -241,12 +241,29 @@ pub fn bar(element: &str, cells: u32, law: &str) -> Vec<String> {
     ]
 }
 
+/// What forces alone must be as fast as.
+#[derive(Clone, Copy)]
+pub enum Wanted {
+    ElementsPerSecond(f64),
+    /// Complete explicit steps of the same bar, measured in the same run.
+    Steps,
+}
+
+impl Wanted {
+    fn elements_per_second(self, element: &str, threads: usize, effort: Effort) -> Result<f64, String> {
+        match self {
+            Self::ElementsPerSecond(number) => Ok(number),
+            Self::Steps => super::beams::explicit_elements_per_second(element, threads, effort),
+        }
+    }
+}
+
 /// Forces alone of an element under St. Venant-Kirchhoff's law, and what a derivative product takes of them.
 pub fn forces(
     name: &str,
     element: &str,
     cells: u32,
-    wanted: f64,
+    wanted: Wanted,
     effort: Effort,
 ) -> Result<Vec<Figure>, String> {
     let settings = bar(element, cells, "st_venant_kirchhoff");
@@ -259,6 +276,7 @@ pub fn forces(
             baseline: Some(baseline),
         };
         let of_derivative = "derivative against differences of the force";
+        let wanted = wanted.elements_per_second(element, threads, effort)?;
         figures.push(times.force.elements_per_second(name, &held(wanted, of_derivative)));
         let ForceTimes { force, derivative, .. } = &times;
         let (name, unit) = (format!("{name}_derivative"), ("x force", false));

@@ -27,8 +27,7 @@ pub struct Timed {
     pub threads: usize,
     /// Of a step, sample by sample [s].
     pub seconds: Vec<f64>,
-    /// The same by time of the processor, of one thread where the system tells; else empty. The system tells at ticks of some
-    /// milliseconds: only the sum means something.
+    /// The same by time of the processor, of one thread where the system tells; else empty.
     pub processor: Vec<f64>,
     pub cells: usize,
     pub bytes: usize,
@@ -89,10 +88,15 @@ impl Clock {
 }
 
 /// Of this thread so far; `None` where the system does not tell.
+#[cfg(unix)]
 fn seconds_on_processor() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    Some(time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64)
+}
+
+#[cfg(not(unix))]
+fn seconds_on_processor() -> Option<f64> {
+    None
 }
 
 pub fn as_it_is(_: &mut World) -> Result<(), SnapshotError> {

@@ -5,6 +5,8 @@
 //! `C h²`, quadratic ones `C h⁴`. Between the two finest meshes the next power, which is no more than the first at the
 //! coarser of the two, moves the order by `log₂ (1 + 1/4) / (1 + 1/16)` = 0.23 at most.
 
+use std::f64::consts::E;
+
 use super::bar::{FULL_RULE, LINEAR, N1, N2, ST_VENANT_KIRCHHOFF};
 use crate::{Case, Limit, Reading, Refinement, Tolerance, Variant};
 
@@ -60,6 +62,26 @@ const CUBE: Case = Case {
     // another material: the error does not fall at all
     mutation: "bodies.cube.material.poissons_ratio=0.301",
 };
+
+/// The same in the plane: `0.05² μ (e² − 1)` of a slice 10 mm thick.
+const SHEET: Case = Case {
+    capabilities: &["FAU-1", "FAU-58", "FAU-72"],
+    scene: "harmonic_sheet",
+    refinement: of_sheet(&[SHEET_8, SHEET_16]),
+    source: "Strang & Fix 1973, §3.4; the energy is an integral of an exponential",
+    mutation: "bodies.sheet.material.poissons_ratio=0.301",
+    ..CUBE
+};
+
+const SHEET_ENERGY: f64 = 0.05 * 0.05 * 1e6 / 2.6 * (E * E - 1.0) * 0.01;
+
+const fn of_sheet(runs: &'static [Variant]) -> Option<Refinement> {
+    Some(Refinement { size_of: "cell [m]", runs, limit: Limit::Known(SHEET_ENERGY) })
+}
+
+const SHEET_8: Variant = Variant { size: 1.0 / 8.0, settings: &["parameters.cells=8"] };
+const SHEET_16: Variant = Variant { size: 1.0 / 16.0, settings: &["parameters.cells=16"] };
+const SHEET_32: Variant = Variant { size: 1.0 / 32.0, settings: &["parameters.cells=32"] };
 
 const PLATE: Case = Case {
     id: "",
@@ -155,6 +177,35 @@ pub(super) const CASES: &[Case] = &[
         what: "order of the energy's error on a smooth solution, pyramid13",
         settings: &[r#"parameters.element="pyramid13""#],
         ..CUBE
+    },
+    Case {
+        id: "order_tri3_smooth_energy",
+        what: "order of the energy's error on a smooth solution in the plane, tri3",
+        settings: &[r#"parameters.element="tri3""#],
+        refinement: of_sheet(&[SHEET_16, SHEET_32]),
+        reference: 2.0,
+        // the triangles cut off at two corners have no point of their own, which adds an odd power: `log₂ (1 + 1/2) / (1 + 1/4)`
+        tolerance: Tolerance::Absolute(0.26),
+        ..SHEET
+    },
+    Case {
+        id: "order_quad4_smooth_energy",
+        what: "order of the energy's error on a smooth solution in the plane, quad4",
+        settings: &[r#"parameters.element="quad4""#],
+        reference: 2.0,
+        ..SHEET
+    },
+    Case {
+        id: "order_tri6_smooth_energy",
+        what: "order of the energy's error on a smooth solution in the plane, tri6",
+        settings: &[r#"parameters.element="tri6""#],
+        ..SHEET
+    },
+    Case {
+        id: "order_quad8_smooth_energy",
+        what: "order of the energy's error on a smooth solution in the plane, quad8",
+        settings: &[r#"parameters.element="quad8""#],
+        ..SHEET
     },
     Case {
         id: "mixed_quadratic_tip",

@@ -34,6 +34,38 @@ const TURN: Case = Case {
     ..BEAM
 };
 
+/// Mean distance of the points on the axis from the curve of Euler and Bernoulli, printed to 1e-5 m.
+const GAP: Case = Case {
+    reading: Reading::last("gap"),
+    tolerance: Tolerance::Absolute(1e-5),
+    source: "specification, EXP-29 oracle",
+    ..BEAM
+};
+
+/// A thousandth of the length.
+const WITHIN_8_MM: Case = Case {
+    reference: 8e-3,
+    tolerance: Tolerance::AtMost,
+    source: "specification, EXP-29: a mean gap of 8 mm at most",
+    mutation: r#"bodies.bar.regions.prisms.material.youngs_modulus="90 MPa""#,
+    ..GAP
+};
+
+/// Distances between two meshes of the twisted beam, of which the oracle prints two or three digits.
+const TWO_MESHES: Case = Case {
+    capabilities: &["FAU-53", "FAU-74"],
+    scene: "half_turn_two_meshes",
+    reading: Reading::last("gap"),
+    source: "specification, EXP-31 oracle",
+    mutation: r#"bodies.mixed.mesh.cells=[30, 5, 5]"#,
+    ..BEAM
+};
+
+const COARSE_HEXAHEDRA: &str =
+    r#"bodies.mixed.mesh={ generate = "bar", size = [8, 1, 1], cells = [24, 4, 4], element = "hex8" }"#;
+const POISSON: [&str; 2] =
+    ["bodies.mixed.material.poissons_ratio=0.3", "bodies.fine.material.poissons_ratio=0.3"];
+
 const TUMOUR: Case = Case {
     capabilities: &["FAU-55"],
     scene: "tumour",
@@ -89,6 +121,29 @@ pub(super) const CASES: &[Case] = &[
         ..BEAM
     },
     Case {
+        id: "exp29_gap_24",
+        what: "mean distance of the axis from the curve of Euler and Bernoulli, 24 x 4 x 4 cubes",
+        reference: 0.01052,
+        ..GAP
+    },
+    Case {
+        id: "exp29_gap_48",
+        what: "the same, 48 x 8 x 8 cubes",
+        settings: &["bodies.bar.mesh.cells=[48, 8, 8]"],
+        ..WITHIN_8_MM
+    },
+    Case {
+        id: "exp30_gap",
+        capabilities: &["FAU-53", "FAU-54"],
+        what: "the same with Hooke's law in the prisms",
+        settings: &[
+            "bodies.bar.mesh.cells=[48, 8, 8]",
+            r#"bodies.bar.regions.prisms.material.name="linear""#,
+        ],
+        source: "specification, EXP-30: the accuracy of EXP-29",
+        ..WITHIN_8_MM
+    },
+    Case {
         id: "exp31_mixed_energy",
         what: "energy of the mixed beam twisted by half a turn",
         reference: 5.0169e6,
@@ -115,6 +170,68 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::component("moment", 0),
         reference: 2.5026e6,
         ..TURN
+    },
+    Case {
+        id: "exp31_gap_mixed",
+        what: "mean distance of the corners of the twisted mixed beam from where 3,072 hexahedra have them [m]",
+        reference: 0.0360,
+        tolerance: Tolerance::Absolute(5e-5),
+        ..TWO_MESHES
+    },
+    Case {
+        id: "exp31_gap_mixed_greatest",
+        what: "the greatest of these distances",
+        reading: Reading::last("greatest_gap"),
+        reference: 0.137,
+        tolerance: Tolerance::Absolute(5e-4),
+        ..TWO_MESHES
+    },
+    Case {
+        id: "exp31_gap_mixed_poisson",
+        what: "their mean with a Poisson ratio of 0.3",
+        settings: &POISSON,
+        reference: 0.0342,
+        tolerance: Tolerance::Absolute(5e-5),
+        ..TWO_MESHES
+    },
+    Case {
+        id: "exp31_gap_mixed_48",
+        what: "mean distance of all points of the mixed beam of 48 x 8 x 8 cubes from the same hexahedra",
+        settings: &["bodies.mixed.mesh.cells=[48, 8, 8]", "probes.gap.region={ all = true }"],
+        reference: 0.0403,
+        tolerance: Tolerance::AtMost,
+        source: "specification, EXP-31: 0.0403 m at most",
+        mutation: "bodies.mixed.mesh.cells=[16, 2, 2]",
+        ..TWO_MESHES
+    },
+    Case {
+        id: "exp31_gap_hexahedra",
+        what: "mean distance of 384 hexahedra from 3,072",
+        settings: &[COARSE_HEXAHEDRA],
+        reference: 0.49e-3,
+        tolerance: Tolerance::Absolute(5e-6),
+        mutation: r#"bodies.mixed.mesh.element="prism6""#,
+        ..TWO_MESHES
+    },
+    Case {
+        id: "exp31_gap_hexahedra_greatest",
+        what: "the greatest of these distances",
+        settings: &[COARSE_HEXAHEDRA],
+        reading: Reading::last("greatest_gap"),
+        reference: 1.7e-3,
+        tolerance: Tolerance::Absolute(5e-5),
+        mutation: r#"bodies.mixed.mesh.element="prism6""#,
+        ..TWO_MESHES
+    },
+    Case {
+        id: "exp31_gap_hexahedra_poisson",
+        what: "their mean with a Poisson ratio of 0.3",
+        settings: &[COARSE_HEXAHEDRA, POISSON[0], POISSON[1]],
+        reference: 0.58e-3,
+        // the last digit printed
+        tolerance: Tolerance::Absolute(1e-5),
+        mutation: r#"bodies.mixed.mesh.element="prism6""#,
+        ..TWO_MESHES
     },
     Case {
         id: "exp39_tumour_keeps_its_volume",
