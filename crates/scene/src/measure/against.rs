@@ -36,7 +36,7 @@ impl Reference {
     /// `None` where a body is unknown or does not hold the points, which is reported.
     pub fn compile(against: &Against, probe: &Probe, draft: &Draft) -> Option<Self> {
         match against {
-            Against::Formula(formulas) => Some(Self::Formula(Box::new(formulas.clone()))),
+            Against::Formula(formulas) => Some(Self::Formula(formulas.clone())),
             Against::Body(name) => {
                 // names of bodies are checked when the scene is read
                 let other = draft.body(name)?;

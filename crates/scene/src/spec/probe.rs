@@ -87,7 +87,7 @@ pub struct Probe {
 #[derive(Clone, Debug)]
 pub enum Against {
     /// Of [`LOAD_VARIABLES`], in the unit of the quantity.
-    Formula([Formula; 3]),
+    Formula(Box<[Formula; 3]>),
     /// The same quantity of another body, where the points lie in its shape at the start.
     Body(String),
 }
@@ -131,7 +131,7 @@ impl Against {
             return None;
         };
         match *key {
-            "formula" => reader.maybe_vector_formula(key).map(Self::Formula),
+            "formula" => reader.maybe_vector_formula(key).map(|formulas| Self::Formula(Box::new(formulas))),
             _ => reader.maybe_text(key).map(Self::Body),
         }
     }
