@@ -250,6 +250,15 @@ pub trait Force: Send + Sync {
     /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.
     fn advance_memory(&self, _at: &Configuration, _timestep: f64, _memory: &mut [f64], _pairs: &mut [Pair]) {}
 
+    /// Whether its [`Force::end_step`] does anything.
+    fn ends_steps(&self) -> bool {
+        false
+    }
+
+    /// What of its memory changes between one step and the next, at the rows that the step came to, whatever the stepper:
+    /// a change of what energy is stored there is a jump at that very state, which can be booked exactly.
+    fn end_step(&self, _positions: &[Vec3], _memory: &mut [f64]) {}
+
     /// Numbers of an entry of [`Kept`] of a force that has such; it finds by itself what acts on what, without pairs, and
     /// its [`Force::advance_kept`] is asked in the place of [`Force::advance_memory`].
     fn kept_len(&self) -> Option<usize> {

@@ -450,6 +450,18 @@ impl System {
         }
     }
 
+    /// Whether forces change their memory between steps.
+    pub fn ends_steps(&self) -> bool {
+        self.forces.iter().any(|force| force.ends_steps())
+    }
+
+    /// Lets forces change their memory at the placed rows, those that a step came to.
+    pub fn end_step(&self, rows: &Rows, state: &mut SystemState) {
+        for (index, force) in self.forces.iter().enumerate().filter(|(_, force)| force.ends_steps()) {
+            force.end_step(&rows.positions, &mut state.memory[self.memory_range(index)]);
+        }
+    }
+
     /// Kinetic energy at the placed rows [J].
     pub fn kinetic_energy(&self, rows: &Rows) -> f64 {
         self.mass.kinetic_energy(&rows.velocities)

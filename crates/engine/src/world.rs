@@ -419,7 +419,7 @@ impl World {
         let timestep = self.model.timestep(index);
         let (clock, before) = (Instant::now(), ws.stages.total());
         let has_pairs = system.has_pairs();
-        let reads_rows = ws.rows_are_the_state;
+        let (reads_rows, ends_steps) = (ws.rows_are_the_state, system.ends_steps());
         for step in 0..system.steps_per_period {
             ws.interruption.check().map_err(|error| WorldError { place: "the world".to_owned(), error })?;
             let time = start + f64::from(step) * timestep;
@@ -436,6 +436,12 @@ impl World {
                 system.stepper.step(&Step { system, around: &around, start: time, timestep }, state, ws);
             let place = || format!("system `{}`", system.name);
             report.merge(&stepped.map_err(|error| WorldError { place: place(), error })?);
+            if ends_steps {
+                if !reads_rows {
+                    system.place_rows(&state.q, &state.v, time + timestep, &mut ws.rows);
+                }
+                system.end_step(&ws.rows, state);
+            }
         }
         let state = &next.systems[index];
         // the very time that a resumed world has here, not `start + period`

@@ -101,6 +101,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("stretched_cube", include_str!("../../../scenes/stretched_cube/scene.toml")),
     ("string", include_str!("../../../scenes/string/scene.toml")),
     ("surgical", include_str!("../../../scenes/surgical/scene.toml")),
+    ("swelling_laws", include_str!("../../../scenes/swelling_laws/scene.toml")),
     ("swinging_cube", include_str!("../../../scenes/swinging_cube/scene.toml")),
     ("tearing_sheet", include_str!("../../../scenes/tearing_sheet/scene.toml")),
     ("thick_sphere", include_str!("../../../scenes/thick_sphere/scene.toml")),

@@ -137,6 +137,14 @@ impl Force for DifferencedForce {
         self.inner.advance_memory(at, timestep, memory, pairs);
     }
 
+    fn ends_steps(&self) -> bool {
+        self.inner.ends_steps()
+    }
+
+    fn end_step(&self, positions: &[Vec3], memory: &mut [f64]) {
+        self.inner.end_step(positions, memory);
+    }
+
     fn editable(&self) -> Vec<Editable> {
         self.inner.editable()
     }

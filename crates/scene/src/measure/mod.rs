@@ -359,6 +359,10 @@ fn cell_part(probe: &Probe, draft: &Draft) -> Option<CellPart> {
 fn of_world(quantity: WorldQuantity, world: &mut World) -> f64 {
     match quantity {
         WorldQuantity::TotalEnergy => world.energy().total(),
+        WorldQuantity::EnergyBalance => {
+            let energy = world.energy();
+            energy.total() + energy.by_force.iter().map(|(_, energy)| energy.dissipated).sum::<f64>()
+        }
         WorldQuantity::KineticEnergy => world.energy().kinetic,
         WorldQuantity::StoredEnergy => world.energy().by_force.iter().map(|(_, energy)| energy.stored).sum(),
         WorldQuantity::DissipatedEnergy => {

@@ -156,6 +156,7 @@ pub enum Momentum {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorldQuantity {
     TotalEnergy,
+    EnergyBalance,
     KineticEnergy,
     StoredEnergy,
     DissipatedEnergy,
@@ -433,6 +434,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "since the start, by the forces that keep account of it",
         MECHANICS,
         world("J", WorldQuantity::DissipatedEnergy),
+    ),
+    &entry(
+        "energy.balance",
+        "kinetic, stored and dissipated: it stays as it was where forces keep account of what they take and nothing works from outside",
+        MECHANICS,
+        world("J", WorldQuantity::EnergyBalance),
     ),
     &entry("time", "simulated", KINEMATICS, world("s", WorldQuantity::Time)),
     &entry("skin.area", "of its triangles", SKIN, skin("m^2", SkinQuantity::Area)),

@@ -362,17 +362,21 @@ impl Force for AdaptiveForce {
         self.assemble(Curvature::Definite, at, weights, scratch, matrix)
     }
 
-    fn advance_memory(&self, at: &Configuration, _: f64, memory: &mut [f64], _: &mut [Pair]) {
+    fn ends_steps(&self) -> bool {
+        true
+    }
+
+    fn end_step(&self, positions: &[Vec3], memory: &mut [f64]) {
         let count = self.mesh.cell_count();
         // taken out: where threads share the work, this one may be given a part of another's
         let mut excesses = EXCESS.take();
-        self.excesses(&memory[..count], at.positions, &mut excesses);
+        self.excesses(&memory[..count], positions, &mut excesses);
         let cells = self.solids[0].elements.chunks().flat_map(|(_, chunk)| &chunk.cells);
         for (cell, excess) in cells.map(|cell| *cell as usize).zip(&excesses) {
             let law = usize::from(memory[cell] != 0.0);
             let (is_over, is_back) = (*excess > 1.0, *excess < self.adaptation.back);
             if (law == 0 && is_over) || (law == 1 && is_back) {
-                let [before, after] = [law, 1 - law].map(|law| self.energy_of(cell, law, at.positions));
+                let [before, after] = [law, 1 - law].map(|law| self.energy_of(cell, law, positions));
                 memory[cell] = (1 - law) as f64;
                 memory[count] += before - after;
                 memory[count + 1] += 1.0;
