@@ -40,9 +40,13 @@ impl LinearError {
         )
     }
 
-    /// Whether the system was given with a number that is not finite.
+    /// Whether the system was given with a number that is not finite, or came to one.
     pub fn is_not_finite(&self) -> bool {
-        matches!(self.error, SolveError::NotFinite { .. })
+        match self.error {
+            SolveError::NotFinite { .. } => true,
+            SolveError::NotConverged { relative_residual, .. } => !relative_residual.is_finite(),
+            _ => false,
+        }
     }
 }
 

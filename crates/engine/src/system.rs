@@ -150,6 +150,11 @@ impl SystemWorkspace {
     }
 }
 
+/// Whether a force can be computed with: norms are roots of sums of squares.
+fn is_usable(force: Vec3) -> bool {
+    force.dot(force).is_finite()
+}
+
 impl System {
     /// Why its stepper cannot step it, in words that name what stands in the way.
     pub fn refused(&self) -> Option<String> {
@@ -258,7 +263,7 @@ impl System {
         }
     }
 
-    /// The first force that is not finite at the placed rows, evaluated one by one; `None` where all are.
+    /// The first force that is not finite, or whose norm is not, at the placed rows, evaluated one by one; `None` where all are.
     pub fn first_force_not_finite(
         &self,
         rows: &Rows,
@@ -267,13 +272,28 @@ impl System {
         scratches: &mut [Scratch],
     ) -> Option<StepError> {
         self.find_force(rows, state, around, scratches, |force, alone| {
-            let row = alone.iter().position(|f| !f.is_finite())?;
+            let row = alone.iter().position(|f| !is_usable(*f))?;
             let (force, value) = (force.name().to_owned(), alone[row].to_array());
             Some(StepError::ForceNotFinite { force, row, value, time: rows.time })
         })
     }
 
-    /// The first force whose differential is not finite at the placed rows, evaluated one by one; `None` where all are.
+    /// The first force whose energy is not finite at the placed rows; `None` where all are.
+    pub fn first_energy_not_finite(
+        &self,
+        rows: &Rows,
+        state: &SystemState,
+        around: &Surroundings,
+        scratches: &mut [Scratch],
+    ) -> Option<StepError> {
+        self.forces.iter().zip(scratches).enumerate().find_map(|(index, (force, scratch))| {
+            let energy = force.energy(&self.view(index, rows, state, around), scratch).stored;
+            let force = || force.name().to_owned();
+            (!energy.is_finite()).then(|| StepError::EnergyNotFinite { force: force(), time: rows.time })
+        })
+    }
+
+    /// The first force whose differential is not finite, or has no finite norm, at the placed rows, evaluated one by one; `None` where all are.
     pub fn first_slope_not_finite(
         &self,
         rows: &Rows,
@@ -290,7 +310,7 @@ impl System {
             force.add_differential(at, weights, &delta, scratch, out);
         };
         self.find_alone(rows, state, around, scratches, add, |force, alone| {
-            let row = alone.iter().position(|f| !f.is_finite())?;
+            let row = alone.iter().position(|f| !is_usable(*f))?;
             Some(StepError::SlopeNotFinite { force: force.name().to_owned(), row, time: rows.time })
         })
     }

@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use souple_engine::{Configuration, Force};
-use souple_formal::element::{Cut, ElementData, ElementExpressions, Step};
+use souple_formal::element::{Cut, ElementData, ElementExpressions, Step, Symbols};
 use souple_formal::graph::{Expr, Graph};
 use souple_formal::law::{EnergyLaw, LawParameter, Strain};
 use souple_formal::tape::{BATCH, Part, Tape};
@@ -224,29 +224,14 @@ impl Cell {
         let [energy, force, differential] = match form {
             Form::Tensors => {
                 let steps = element.steps(law, Cut::NONE);
-                let symbols = &steps.symbols;
-                let given = Given {
-                    graph: &steps.graph,
-                    law,
-                    rest: &symbols.rest,
-                    displacements: &symbols.displacements,
-                    variations: &symbols.variations,
-                    parameters: &symbols.parameters,
-                };
+                let given = Given { graph: &steps.graph, law, symbols: &steps.symbols };
                 let running =
                     |step: &Step| given.running(&rest, &step.constants, &step.definitions, &step.outputs);
                 [&steps.energies[0], &steps.forces[0], &steps.differentials[0]].map(running)
             }
             Form::Numbers => {
                 let derived = element.derive(law, Cut::NONE).ok()?;
-                let given = Given {
-                    graph: &derived.graph,
-                    law,
-                    rest: &derived.rest,
-                    displacements: &derived.displacements,
-                    variations: &derived.variations,
-                    parameters: &derived.parameters,
-                };
+                let given = Given { graph: &derived.graph, law, symbols: &derived.symbols };
                 let running = |fragment: &ElementExpressions| {
                     let grouped = &fragment.grouped;
                     given.running(&rest, &grouped.constants, &[], &grouped.varying)
@@ -386,10 +371,7 @@ impl Cell {
 struct Given<'a> {
     graph: &'a Graph,
     law: &'a EnergyLaw,
-    rest: &'a [Vec<Expr>],
-    displacements: &'a [Vec<Expr>],
-    variations: &'a [Vec<Expr>],
-    parameters: &'a [Expr],
+    symbols: &'a Symbols,
 }
 
 impl Given<'_> {
@@ -403,15 +385,15 @@ impl Given<'_> {
     ) -> Running {
         let Self { graph, law, .. } = self;
         let flat = |list: &[Vec<Expr>]| list.iter().flatten().copied().collect::<Vec<Expr>>();
-        let mut given = flat(self.rest);
-        given.extend(self.parameters);
+        let mut given = flat(&self.symbols.rest);
+        given.extend(&self.symbols.parameters);
         let (symbols, values): (Vec<Expr>, Vec<Expr>) = constants.iter().copied().unzip();
         let start = Tape::of_expressions(graph, [&given, &[]], constants, &values, &law.parameters);
         let numbers = law.parameters.iter().filter_map(|(_, parameter)| match parameter {
             LawParameter::Number { value, .. } => Some(*value),
             LawParameter::Direction(_) => None,
         });
-        let dimension = self.rest[0].len();
+        let dimension = self.symbols.rest[0].len();
         let rest = rest.iter().flat_map(|p| p.to_array()[..dimension].to_vec());
         let mut memory = vec![0.0; start.memory_len()];
         start.prepare(&mut memory);
@@ -420,8 +402,8 @@ impl Given<'_> {
         }
         start.run_here(Part::All, 1, &mut memory);
         let of_start = |constant: usize| memory[start.output(constant, 0)];
-        let inputs: Vec<Expr> = flat(self.displacements).into_iter().chain(symbols).collect();
-        let varied = flat(self.variations);
+        let inputs: Vec<Expr> = flat(&self.symbols.displacements).into_iter().chain(symbols).collect();
+        let varied = flat(&self.symbols.variations);
         let tape = Tape::of_expressions(graph, [&inputs, &varied], definitions, outputs, &law.parameters);
         Running { tape, constants: (0..constants.len()).map(of_start).collect(), outputs: outputs.len() }
     }

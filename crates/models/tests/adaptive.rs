@@ -163,7 +163,6 @@ fn switches_follow_criteria_and_account_for_energy() {
 fn lower_thresholds_switch_more() {
     let mesh = bar("tet4");
     let x = bent(&mesh);
-    let v = vec![Vec3::ZERO; x.len()];
     for (criterion, unit) in [
         (Criterion::Length, 1.0),
         (Criterion::Volume, 1.0),

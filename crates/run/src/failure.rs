@@ -83,9 +83,9 @@ impl Failure {
             own.find_map(|body| Some((body, Part::of_row(row, body)?)))
         });
         let force = match error.error.cause() {
-            StepError::ForceNotFinite { force, .. } | StepError::SlopeNotFinite { force, .. } => {
-                Some(force.clone())
-            }
+            StepError::ForceNotFinite { force, .. }
+            | StepError::EnergyNotFinite { force, .. }
+            | StepError::SlopeNotFinite { force, .. } => Some(force.clone()),
             _ => None,
         };
         let spot = found.map(|(body, (part, row))| {

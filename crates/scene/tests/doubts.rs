@@ -214,3 +214,41 @@ fn names_of_files() {
     }
     assert!(warnings(&BAR.replace("bodies.bar", "bodies.\"größer 2-b_c\"")).is_empty());
 }
+
+/// Pulled to where its exponential overflows a body is told by its force, whatever the stepper, not by what became of it in a
+/// linear solve or a line search.
+#[test]
+fn laws_that_overflow_are_named() {
+    // Fung's, which ends at E:E near 700/b: steps of a tenth of the length lead beyond
+    let pulled = |stepper: &str, b: &str| {
+        format!(
+            r#"format = 1
+[world]
+period = 0.1
+[systems.main]
+stepper = "{stepper}"
+[bodies.b]
+mesh = {{ generate = "box", size = [1, 1, 1], cells = [1, 1, 1], element = "hex8" }}
+material = {{ name = "hyperelastic", energy = "c/2*(exp(b*dot(E, E)) - 1) + k/2*(J - 1)^2", parameters = {{ c = "10 kPa", b = {b}, k = "100 kPa" }}, density = 1000 }}
+[[bodies.b.pins]]
+region = "x_min"
+[[bodies.b.pins]]
+region = "x_max"
+motion = {{ formula = ["t", 0, 0] }}
+"#
+        )
+    };
+    for stepper in ["static", "quasi_static", "backward_euler", "newmark", "symplectic_euler"] {
+        for b in ["500", "5000"] {
+            let scene =
+                read_text("scene.toml", &pulled(stepper, b), Path::new("."), &[]).expect("a pulled cube");
+            let mut world = scene.model.start(scene.state);
+            let error = (0..20).find_map(|_| world.step().err()).expect("an exponential that overflows");
+            let said = error.to_string();
+            let is_told = said.contains("force `b.material` is not finite or too large")
+                && !said.contains("buckle")
+                && !said.contains("linear solve");
+            assert!(is_told, "{stepper}, b = {b}: {said}");
+        }
+    }
+}

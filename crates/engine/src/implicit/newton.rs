@@ -149,6 +149,8 @@ impl ImplicitProblem<'_, '_> {
 
     /// Brings constrained components to where they are led, and the free ones along.
     fn predict(&mut self) -> Result<(), StepError> {
+        // what has no value where prescribed points would have stood
+        let mut obstacle = None;
         self.place(None);
         let unbalanced = self.evaluate();
         self.scale = unbalanced.max(SHARE_OF_LOADS * norm(&self.ws.row_force));
@@ -173,6 +175,9 @@ impl ImplicitProblem<'_, '_> {
                 if is_usable || halvings == MAX_HALVINGS {
                     break after;
                 }
+                if halvings == 0 {
+                    obstacle = self.not_finite();
+                }
                 fraction *= 0.5;
                 halvings += 1;
             };
@@ -183,8 +188,17 @@ impl ImplicitProblem<'_, '_> {
         }
         match self.step.prescribed_into(&self.buffers.q, &mut self.buffers.prescribed) {
             0.0 => Ok(()),
-            to_go => Err(StepError::NotReached { to_go }),
+            to_go => Err(obstacle.unwrap_or(StepError::NotReached { to_go })),
         }
+    }
+
+    /// The force or energy that is not finite where things stand.
+    fn not_finite(&mut self) -> Option<StepError> {
+        let SystemWorkspace { scratches, rows, .. } = &mut *self.ws;
+        let (system, around) = (self.step.system, &self.step.around);
+        system
+            .first_force_not_finite(rows, self.state, around, scratches)
+            .or_else(|| system.first_energy_not_finite(rows, self.state, around, scratches))
     }
 }
 

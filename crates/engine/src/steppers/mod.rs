@@ -79,7 +79,8 @@ pub enum StepError {
     )]
     NotReached { to_go: f64 },
     #[error(
-        "from {from} s on no equilibrium was found, even in parts of {parts:.1e} s: {error}; the body may buckle, snap or slip free there: damp it, lead it instead of loading it, or take a stepper with inertia"
+        "from {from} s on no equilibrium was found, even in parts of {parts:.1e} s: {error}{}",
+        may_buckle(error)
     )]
     NoEquilibrium {
         /// Seconds up to which there was one.
@@ -89,11 +90,15 @@ pub enum StepError {
         error: Box<StepError>,
     },
     #[error(
-        "force `{force}` is not finite ({value:?} at row {row}, time {time} s): it has no value there; lead or load more slowly, or stay where it has"
+        "force `{force}` is not finite or too large to compute with ({value:?} at row {row}, time {time} s): it has no value there; lead or load more slowly, or stay where it has"
     )]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
     #[error(
-        "the slope of force `{force}` is not finite (at row {row}, time {time} s): it is infinite there, or there is none"
+        "the energy of force `{force}` is not finite where the step leads (time {time} s): it has no value there; lead or load more slowly, or stay where it has"
+    )]
+    EnergyNotFinite { force: String, time: f64 },
+    #[error(
+        "the slope of force `{force}` is not finite or too large to compute with (at row {row}, time {time} s): it is infinite there, or there is none"
     )]
     SlopeNotFinite { force: String, row: usize, time: f64 },
     #[error(
@@ -117,6 +122,19 @@ impl StepError {
         match self {
             Self::NoEquilibrium { error, .. } => error.cause(),
             other => other,
+        }
+    }
+}
+
+/// What else may be the matter where nothing is infinite.
+fn may_buckle(cause: &StepError) -> &'static str {
+    match cause.cause() {
+        StepError::ForceNotFinite { .. }
+        | StepError::EnergyNotFinite { .. }
+        | StepError::SlopeNotFinite { .. } => "",
+        _ => {
+            "; the body may buckle, snap or slip free there: damp it, lead it instead of loading it, or take a stepper \
+             with inertia"
         }
     }
 }

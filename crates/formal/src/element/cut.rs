@@ -138,12 +138,12 @@ fn choices(is_cut: bool, count: usize) -> Vec<Option<usize>> {
 
 /// Which expressions of an element a name is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sort {
+pub enum Derivative {
     Force,
     Differential,
 }
 
-impl Sort {
+impl Derivative {
     fn prefix(self) -> &'static str {
         match self {
             Self::Force => "F",

@@ -14,14 +14,7 @@ pub struct Derived {
     /// `<law>` is not known here: `<element><cut>`, to be put behind the name of a law.
     pub name: String,
     pub cut: Cut,
-    /// Rest positions, by node and direction.
-    pub rest: Vec<Vec<Expr>>,
-    /// Displacements.
-    pub displacements: Vec<Vec<Expr>>,
-    /// What the differential is multiplied with.
-    pub variations: Vec<Vec<Expr>>,
-    /// Material constants of one number.
-    pub parameters: Vec<Expr>,
+    pub symbols: Symbols,
     pub energies: Vec<ElementExpressions>,
     pub forces: Vec<ElementExpressions>,
     pub differentials: Vec<ElementExpressions>,
@@ -117,17 +110,16 @@ pub(super) const WEIGHT: &str = "weight";
 
 pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
     let mut graph = law.graph.clone();
-    let Symbols { rest, displacements, variations, parameters, directions } =
-        Symbols::new(&mut graph, element, law);
+    let symbols = Symbols::new(&mut graph, element, law);
+    let Symbols { rest, displacements, variations, directions, .. } = &symbols;
     let terms = terms(&mut graph, law, cut);
     let cut_variations = cut.has(super::Axis::Nodes) || cut.has(super::Axis::Dimension);
     let mut samples = Vec::with_capacity(element.samples.len());
     for sample in 0..element.samples.len() {
-        let directions = &directions;
-        let mut at = Placing { graph: &mut graph, element, law, sample, rest: &rest, directions };
-        samples.push(at.expressions(&terms, &displacements, &variations, cut_variations)?);
+        let mut at = Placing { graph: &mut graph, element, law, sample, rest, directions };
+        samples.push(at.expressions(&terms, displacements, variations, cut_variations)?);
     }
-    let variables: Vec<Expr> = displacements.iter().chain(&variations).flatten().copied().collect();
+    let variables: Vec<Expr> = displacements.iter().chain(variations).flatten().copied().collect();
     let counts = (terms.len(), samples.len());
     let all_terms = |fragment: Fragment| fragment.term.map_or(0..counts.0, |term| term..term + 1);
     let of_samples = |fragment: Fragment| fragment.sample.map_or(0..counts.1, |sample| sample..sample + 1);
@@ -182,18 +174,7 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
     };
     let (energies, forces, differentials) = (grouped(energies), grouped(forces), grouped(differentials));
     let name = format!("{}{cut}", element.name);
-    Ok(Derived {
-        graph,
-        name,
-        cut,
-        rest,
-        displacements,
-        variations,
-        parameters,
-        energies,
-        forces,
-        differentials,
-    })
+    Ok(Derived { graph, name, cut, symbols, energies, forces, differentials })
 }
 
 /// The terms of the energy times `ω`, or their sum where the law is not cut. The weight is multiplied in before differentiation,

@@ -10,7 +10,7 @@ mod direct;
 mod separable;
 mod steps;
 
-pub use cut::{Axis, Cut, Fragment, Sort};
+pub use cut::{Axis, Cut, Derivative, Fragment};
 pub use derive::{Derived, ElementExpressions, Symbols};
 pub use direct::Direct;
 pub use steps::{Step, Steps};

@@ -54,7 +54,7 @@ struct Tensors {
 
 /// What is computed of a law.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Sort {
+enum Quantity {
     Energy,
     Force,
     /// Of what varies at some nodes in some directions.
@@ -77,25 +77,25 @@ pub(super) fn steps(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Steps {
     let counts = (stepping.terms.len(), element.samples.len());
     let of_forces = Fragment::of_forces(cut, counts.0, counts.1);
     let of_differentials = Fragment::of_differentials(cut, counts, (element.node_count, element.dimension));
-    let mut list = |sort, fragments: &[Fragment]| -> Vec<Step> {
-        fragments.iter().map(|fragment| stepping.step(sort, *fragment)).collect()
+    let mut list = |quantity, fragments: &[Fragment]| -> Vec<Step> {
+        fragments.iter().map(|fragment| stepping.step(quantity, *fragment)).collect()
     };
-    let (energies, forces) = (list(Sort::Energy, &of_forces), list(Sort::Force, &of_forces));
-    let differentials = list(Sort::Differential, &of_differentials);
+    let (energies, forces) = (list(Quantity::Energy, &of_forces), list(Quantity::Force, &of_forces));
+    let differentials = list(Quantity::Differential, &of_differentials);
     Steps { graph: stepping.graph, symbols: stepping.symbols, energies, forces, differentials }
 }
 
 impl Stepping<'_> {
-    fn step(&mut self, sort: Sort, fragment: Fragment) -> Step {
+    fn step(&mut self, quantity: Quantity, fragment: Fragment) -> Step {
         let samples = fragment.sample.map_or(0..self.element.samples.len(), |sample| sample..sample + 1);
         let varied = self.varied(fragment);
         let mut definitions = Vec::new();
         let (mut energies, mut stresses) = (Vec::new(), Vec::new());
         for sample in samples {
             let tensors = self.tensors(sample);
-            let (weight, inverse) = self.deform(sample, tensors, &varied, sort, &mut definitions);
-            let of_law = self.of_law(sort, fragment, weight, tensors);
-            if sort == Sort::Energy {
+            let (weight, inverse) = self.deform(sample, tensors, &varied, quantity, &mut definitions);
+            let of_law = self.of_law(quantity, fragment, weight, tensors);
+            if quantity == Quantity::Energy {
                 energies.push(of_law);
                 continue;
             }
@@ -115,9 +115,11 @@ impl Stepping<'_> {
             let inverse = inverse.unwrap_or_else(|| one(graph));
             stresses.push(SampleStress { sample, inverse, stress });
         }
-        let outputs = match sort {
-            Sort::Energy => vec![self.graph.sum(&energies)],
-            Sort::Force | Sort::Differential => nodal_forces(&mut self.graph, self.element, &stresses),
+        let outputs = match quantity {
+            Quantity::Energy => vec![self.graph.sum(&energies)],
+            Quantity::Force | Quantity::Differential => {
+                nodal_forces(&mut self.graph, self.element, &stresses)
+            }
         };
         self.group(definitions, outputs)
     }
@@ -153,7 +155,7 @@ impl Stepping<'_> {
         sample: usize,
         tensors: Tensors,
         varied: &[Vec<Expr>],
-        sort: Sort,
+        quantity: Quantity,
         definitions: &mut Vec<(Expr, Expr)>,
     ) -> (Expr, Option<Vec<Expr>>) {
         let Symbols { rest, displacements, directions, .. } = &self.symbols;
@@ -161,7 +163,7 @@ impl Stepping<'_> {
         let mut at = Placing { graph: &mut self.graph, element, law, sample, rest, directions };
         let (inverse, determinant) = at.rest_map();
         let mut rates = vec![(tensors.deformation, at.reference_gradient(displacements))];
-        if sort == Sort::Differential {
+        if quantity == Quantity::Differential {
             rates.push((tensors.variation, at.reference_gradient(varied)));
         }
         let graph = &mut self.graph;
@@ -187,18 +189,18 @@ impl Stepping<'_> {
     }
 
     /// `ω Ψ`, `-ω P` or `-ω δP` of the terms of a fragment.
-    fn of_law(&mut self, sort: Sort, fragment: Fragment, weight: Expr, tensors: Tensors) -> Expr {
+    fn of_law(&mut self, quantity: Quantity, fragment: Fragment, weight: Expr, tensors: Tensors) -> Expr {
         let terms = fragment.term.map_or(&self.terms[..], |term| &self.terms[term..=term]);
         let addends: Vec<Expr> = terms
             .iter()
-            .map(|term| match sort {
-                Sort::Energy => term.energy,
-                Sort::Force => term.stress,
-                Sort::Differential => term.differential,
+            .map(|term| match quantity {
+                Quantity::Energy => term.energy,
+                Quantity::Force => term.stress,
+                Quantity::Differential => term.differential,
             })
             .collect();
         let sum = self.graph.sum(&addends);
-        let signed = if sort == Sort::Energy { weight } else { self.graph.negate(weight) };
+        let signed = if quantity == Quantity::Energy { weight } else { self.graph.negate(weight) };
         let symbol = self.graph.own_symbol(WEIGHT);
         let at_sample = HashMap::from([
             (symbol, signed),

@@ -143,7 +143,7 @@ fn forces_are_slopes() {
             let graph = &derived.graph;
             let forces = sum_of(&derived.forces, graph, None);
             let differentials = sum_of(&derived.differentials, graph, None);
-            let variations: Vec<Expr> = derived.variations.iter().flatten().copied().collect();
+            let variations: Vec<Expr> = derived.symbols.variations.iter().flatten().copied().collect();
             let variations = values(graph, &variations, None);
             let mut numeric = vec![0.0; forces.len()];
             for (index, variation) in variations.iter().enumerate() {
@@ -245,9 +245,9 @@ fn fragments_add_up() {
 #[test]
 fn fragments_have_the_names_of_the_source() {
     let cut = Cut::of(&[Axis::Law, Axis::Nodes]);
-    let name = Sort::Differential.constants_name(&format!("HookeHexa8I{cut}"), 4);
+    let name = Derivative::Differential.constants_name(&format!("HookeHexa8I{cut}"), 4);
     assert_eq!(name, "ECR_dFHookeHexa8IDecoupageLN4");
-    let name = Sort::Force.expression_name(&format!("HookeTriangle{}", Cut::NONE), 0, 0, 0);
+    let name = Derivative::Force.expression_name(&format!("HookeTriangle{}", Cut::NONE), 0, 0, 0);
     assert_eq!(name, "FHookeTriangleDecoupageNon0_0x");
 }
 

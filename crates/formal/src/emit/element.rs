@@ -60,7 +60,7 @@ impl Derived {
         let (forces, differentials) =
             (sums(&mut self.graph, &self.forces), sums(&mut self.graph, &self.differentials));
         let variables: Vec<Expr> =
-            self.displacements.iter().chain(&self.variations).flatten().copied().collect();
+            self.symbols.displacements.iter().chain(&self.symbols.variations).flatten().copied().collect();
         // one set of constants for both functions
         let roots: Vec<Expr> = forces.into_iter().chain(differentials).collect();
         let Grouped { constants, varying } = self.graph.group_constants(&roots, &variables);
@@ -72,16 +72,16 @@ impl Derived {
             whole.insert(*symbol, definition);
             definitions.push(definition);
         }
-        let dimension = self.displacements[0].len();
+        let dimension = self.symbols.displacements[0].len();
         let style: &dyn Style = match code {
             ElementCode::Rust => &Rust,
             ElementCode::Wgsl => &Wgsl,
         };
         let shape = Signature {
-            nodes: self.displacements.len(),
+            nodes: self.symbols.displacements.len(),
             dimension,
             constants: constants.len(),
-            parameters: self.parameters.iter().map(|p| symbol(&self.graph, *p, style)).collect(),
+            parameters: self.symbols.parameters.iter().map(|p| symbol(&self.graph, *p, style)).collect(),
         };
         let (forces, differentials) = varying.split_at(width);
         let bodies = [&definitions[..], &self.graph.shared(forces), &self.graph.shared(differentials)]

@@ -181,12 +181,11 @@ impl Graph {
                 let slope = self.power_number(value, -2.0);
                 self.times_number(1.0 / 3.0, slope)
             }
+            // at zero that of one side, so that `|x|²`, which is smooth, keeps its second derivative
             Function::Abs => {
                 let zero = self.number(0.0);
                 let (minus_one, negative) = (self.number(-1.0), self.compare(Comparison::Less, x, zero));
-                let positive = self.compare(Comparison::Less, zero, x);
-                let positive = self.select(positive, one, zero);
-                self.select(negative, minus_one, positive)
+                self.select(negative, minus_one, one)
             }
             // steps are flat
             _ => self.number(0.0),

@@ -179,6 +179,10 @@ impl Graph {
     }
 
     pub fn power(&mut self, base: Expr, exponent: Expr) -> Expr {
+        let exponent = match self.value(exponent) {
+            Some(value) => self.number(fraction(value)),
+            None => exponent,
+        };
         let whole = |value: f64| value.fract() == 0.0;
         match (self.value(base), self.value(exponent)) {
             (_, Some(0.0)) => return self.number(1.0),
@@ -200,6 +204,7 @@ impl Graph {
                         factors.iter().map(|factor| self.power_number(*factor, n)).collect();
                     return self.product(&factors);
                 }
+                Node::Function(Function::Abs, inner) if n % 2.0 == 0.0 => return self.power(inner, exponent),
                 _ => {}
             },
             _ => {}
@@ -266,6 +271,14 @@ impl Comparison {
             Self::Equal => a == b,
         }))
     }
+}
+
+/// The thirds, sevenths, ninths or elevenths that a number is but for what subtractions rounded: `8/3 - 1` is `5/3`.
+fn fraction(value: f64) -> f64 {
+    let rounding = 4.0 * f64::EPSILON * value.abs().max(1.0);
+    let nearest = |below: f64| (value * below).round() / below;
+    let near = [1.0, 3.0, 7.0, 9.0, 11.0].into_iter().map(nearest);
+    near.into_iter().find(|fraction| (fraction - value).abs() <= rounding).unwrap_or(value)
 }
 
 /// `x^y`, small whole powers as products.

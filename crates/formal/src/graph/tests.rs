@@ -25,6 +25,17 @@ fn order_does_not_matter() {
     assert_eq!(graph.product(&[two, square]), graph.product(&[product, two]));
 }
 
+/// `a^(8/3)/a` is `a^(5/3)`, whose exponent is the double next to it.
+#[test]
+fn exponents_stay_fractions() {
+    let mut graph = Graph::new();
+    let [a, ..] = abc(&mut graph);
+    let (power, inverse) = (graph.power_number(a, 8.0 / 3.0), graph.power_number(a, -1.0));
+    assert_ne!(8.0 / 3.0 - 1.0, 5.0 / 3.0);
+    let product = graph.product(&[power, inverse]);
+    assert_eq!(product, graph.power_number(a, 5.0 / 3.0));
+}
+
 /// `(a - b (b + a)²)/(a + b)²`: both squares are one expression.
 #[test]
 fn common_parts_are_shared() {

@@ -8,6 +8,7 @@ mod calls;
 mod check;
 mod domain;
 mod error;
+mod evaluate;
 mod operators;
 mod read;
 mod value;

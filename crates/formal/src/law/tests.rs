@@ -486,9 +486,16 @@ fn stress_ends_where_the_energy_does() {
 fn jumps_are_told() {
     let warned = |energy: &str| {
         let law = EnergyLaw::compile(&text(energy, &[("mu", 2.0)])).expect(energy);
-        law.warnings.iter().find(|warning| warning.contains("jumps")).cloned()
+        law.warnings.iter().find(|warning| warning.contains("jumps by")).cloned()
     };
     for (energy, said) in [
+        // so near rest and so small that no look sees it
+        (
+            "mu*dot(E, E) + if(J > 1.001, 1e-6*mu, 0)",
+            "the energy jumps by 2.000e-6 J/m³ where a cube is pulled along x to 1.0010",
+        ),
+        ("mu*dot(E, E) + mu*max(J - 1.2, 0)", "the stress jumps by"),
+        ("mu*dot(E, E) + mu*(clamp(J, 0.9, 1.1) - 1)^2", "the stress jumps by"),
         ("mu*dot(E, E) + mu*step(1.02, J)", "by 2.000e0 J/m³ where a cube is pulled along x to 1.0200"),
         ("mu*dot(E, E)*if(J < 1.3, 1, 2)", "pulled along x to 1.3000"),
         ("mu*dot(E, E)*(1 + floor(J))", "jumps by"),
@@ -496,9 +503,70 @@ fn jumps_are_told() {
         let warning = warned(energy).unwrap_or_else(|| panic!("{energy}"));
         assert!(warning.contains(said), "{energy}: {warning}");
     }
-    for energy in ["mu*dot(E, E) + mu*max(J - 1.2, 0)^2", "mu*dot(E, E)*if(J < 1.3, 1, 1)", "mu*dot(E, E)"] {
+    for energy in [
+        "mu*dot(E, E) + mu*max(J - 1.2, 0)^2",
+        "mu*dot(E, E)*if(J < 1.3, 1, 1)",
+        "mu*dot(E, E) + mu*abs(J - 1)^3",
+        "mu*dot(E, E)",
+    ] {
         assert_eq!(warned(energy), None, "{energy}");
     }
+}
+
+/// Stiffness that is one thing when a cube begins to swell and another when it begins to shrink is told, and only that.
+#[test]
+fn jumps_of_the_stiffness_at_rest_are_told() {
+    let warned = |energy: &str| {
+        let law = EnergyLaw::compile(&text(energy, &[("mu", 2.0)])).expect(energy);
+        law.warnings.iter().find(|warning| warning.contains("stiffness at rest jumps")).cloned()
+    };
+    // 1/2 |F - I|² of swelling is 3/2, along which J grows by 3: k (J - 1)² bends by 2·9 k / 3
+    let warning = warned("mu*dot(E, E) + 5*mu*max(J - 1, 0)^2").unwrap_or_default();
+    assert!(warning.contains("from 4.000e0 to 6.400e1 Pa where a cube begins to be swollen"), "{warning}");
+    assert!(warned("mu*dot(E, E) + mu*max(I4([1, 0, 0]) - 1, 0)^2").is_some());
+    for energy in
+        ["mu*dot(E, E) + mu*abs(J - 1)^2", "mu*dot(E, E) + 1e4*mu*(J - 1)^3", "mu*(exp(1e4*dot(E, E)) - 1)"]
+    {
+        assert_eq!(warned(energy), None, "{energy}");
+    }
+}
+
+/// `|x|²` is `x²`, whose stiffness does not end where `x` is zero, however it is hidden.
+#[test]
+fn even_powers_of_sizes_are_smooth() {
+    let plain = law("mu*dot(E, E) + k*(J - 1)^2", &[("mu", 2.0), ("k", 30.0)]);
+    for energy in [
+        "mu*dot(E, E) + k*abs(J - 1)^2",
+        "mu*dot(E, E) + k*abs(J - 1)*abs(J - 1)",
+        "mu*dot(E, E) + k*log(cosh(sqrt(2)*abs(J - 1)))",
+    ] {
+        let even = law(energy, &[("mu", 2.0), ("k", 30.0)]);
+        for (a, b) in even.stiffness.iter().zip(plain.stiffness.iter()) {
+            assert!((a - b).abs() < 1e-12 * 60.0, "{energy}: {a} {b}");
+        }
+    }
+}
+
+/// Laws that end are told where.
+#[test]
+fn ends_are_told() {
+    let warned = |energy: &str| {
+        let law = EnergyLaw::compile(&text(energy, &[("mu", 2.0)])).expect(energy);
+        law.warnings.iter().find(|warning| warning.contains("no finite value where")).cloned()
+    };
+    for (energy, said) in [
+        ("mu*dot(E, E) + mu*asin(J - 1)^2", "pulled along x beyond 2.0000"),
+        // E_xx = (s² - 1)/2 = 1
+        ("-mu*log(1 - dot(E, E))", "pulled along x beyond 1.7321"),
+        ("mu*dot(E, E) - mu*log(J - 0.5) + 2*mu*J", "pulled along x below 0.5"),
+    ] {
+        assert!(
+            warned(energy).is_some_and(|warning| warning.contains(said)),
+            "{energy}: {:?}",
+            warned(energy)
+        );
+    }
+    assert_eq!(warned("mu*dot(E, E)"), None);
 }
 
 /// Directions that are written out count as of length one, as those among the parameters do.

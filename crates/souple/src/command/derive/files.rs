@@ -3,20 +3,22 @@
 
 use std::path::Path;
 
-use souple_formal::element::{Derived, ElementExpressions, Sort};
+use souple_formal::element::{Derivative, Derived, ElementExpressions};
 use souple_formal::emit::{Text, symbol, write as written};
 use souple_formal::graph::Expr;
 use souple_io::{IoError, write_file};
 
 /// Writes `ECR_F….txt` and `F…_0x.txt` for every fragment of forces, the same with `dF` for differentials.
 pub fn write(folder: &Path, derived: &Derived, association: &str) -> Result<(), IoError> {
-    for (sort, fragments) in [(Sort::Force, &derived.forces), (Sort::Differential, &derived.differentials)] {
+    for (derivative, fragments) in
+        [(Derivative::Force, &derived.forces), (Derivative::Differential, &derived.differentials)]
+    {
         for (number, fragment) in fragments.iter().enumerate() {
-            let name = sort.constants_name(association, number);
+            let name = derivative.constants_name(association, number);
             put(folder, &name, &constants(derived, fragment))?;
-            let axes = derived.displacements[0].len();
+            let axes = derived.symbols.displacements[0].len();
             for (index, expr) in fragment.grouped.varying.iter().enumerate() {
-                let name = sort.expression_name(association, number, index / axes, index % axes);
+                let name = derivative.expression_name(association, number, index / axes, index % axes);
                 put(folder, &name, &expression(derived, *expr))?;
             }
         }
