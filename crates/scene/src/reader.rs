@@ -255,6 +255,15 @@ impl<'a> Reader<'a> {
         self.read(name, |value, key, expected| value.vector_formula(key.unit, variables, expected))
     }
 
+    /// The same, measured in a unit that depends on other keys.
+    pub fn vector_formula_in(&self, name: &str, unit: &'static str) -> Option<[Formula; 3]> {
+        let Shape::VectorFormula(variables) = self.key(name).shape else {
+            unreachable!("`{name}` is no formula")
+        };
+        let expected = self.key(name).in_unit(unit).expected();
+        self.read(name, |value, _, _| value.vector_formula(unit, variables, &expected))
+    }
+
     pub fn maybe_condition(&self, name: &str) -> Option<Condition> {
         let Shape::Condition(variables) = self.key(name).shape else {
             unreachable!("`{name}` is no condition")

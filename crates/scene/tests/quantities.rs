@@ -73,6 +73,19 @@ fn values_against_a_formula_and_another_body() {
     assert!((value(&mut world, &probes, "speed") - mean * 0.5).length() < 1e-11);
 }
 
+/// Formulas that a probe is held against may be quantities, in the dimension of what is measured.
+#[test]
+fn values_are_held_against_quantities() {
+    let held = probe("gap", "displacement", "against = { formula = [\"1 cm\", 0, 0] }\n")
+        + &probe("speed", "velocity", "against = { formula = [\"1 cm/s\", 0, 0] }\n");
+    let (mut world, probes) = start(&format!("{CUBE}{held}"));
+    // means of values that are all the same, but for the rounding of their sum
+    for name in ["gap", "speed"] {
+        let apart = value(&mut world, &probes, name) - Vec3::new(-0.01, 0.0, 0.0);
+        assert!(apart.length() < 1e-16, "{name}: {apart:?}");
+    }
+}
+
 /// What a probe cannot be held against is refused where it stands.
 #[test]
 fn what_nothing_is_held_against() {
@@ -81,6 +94,11 @@ fn what_nothing_is_held_against() {
     let refusals = [
         ("displacement", "against = { body = \"small\" }", "is outside of body `small`"),
         ("displacement", "against = { body = \"smal\" }", "there is no body `smal` (did you mean `small`?)"),
+        // where it stands
+        ("displacement", "against = { body = \"smal\" }", "probes.gap.against.body: "),
+        ("penetration", "against = { body = \"small\" }", "probes.gap.against.body: "),
+        ("displacement", "against = { formula = [0, \"1/x\", 0] }", "(0, inf, 0) at t = 0"),
+        ("displacement", "against = { formula = [\"1 kg\", 0, 0] }", "a length [m]"),
         ("displacement", "against = {}", "`against` names 0 things"),
         ("displacement", "against = { formula = [0, 0, 0], body = \"small\" }", "`against` names 2 things"),
         ("displacement", "against = { formula = \"[0, w, 0]\" }", "`w`"),

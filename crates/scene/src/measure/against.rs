@@ -7,7 +7,7 @@ use souple_mesh::{Aabb, CellLocator};
 
 use super::{Part, PointValues, part, points};
 use crate::compile::{Draft, Placed};
-use crate::diagnostic::Code;
+use crate::diagnostic::{Code, Site};
 use crate::spec::probe::{Against, Probe};
 use crate::spec::quantity::PointQuantity;
 
@@ -18,7 +18,7 @@ const APART: f64 = 0.21;
 /// Values to take from those of a probe, point by point.
 #[derive(Clone, Debug)]
 pub enum Reference {
-    /// Of `x`, `y`, `z` where a point started [m] and of time [s].
+    /// Of `x`, `y`, `z` where a point rests [m] and of time [s].
     Formula(Box<[Formula; 3]>),
     Body(Carriers),
 }
@@ -33,14 +33,17 @@ pub struct Carriers {
 }
 
 impl Reference {
-    /// `None` where a body is unknown or does not hold the points, which is reported.
+    /// `None` where a formula is not finite at the start, or a body is unknown or does not hold the points, which is reported.
     pub fn compile(against: &Against, probe: &Probe, draft: &Draft) -> Option<Self> {
         match against {
-            Against::Formula(formulas) => Some(Self::Formula(formulas.clone())),
-            Against::Body(name) => {
+            Against::Formula { formulas, site } => {
+                let is_finite = starts_finite(formulas, &part(probe, draft)?, site, draft);
+                is_finite.then(|| Self::Formula(formulas.clone()))
+            }
+            Against::Body { name, site } => {
                 // names of bodies are checked when the scene is read
                 let other = draft.body(name)?;
-                Carriers::compile(other, &part(probe, draft)?, probe, draft).map(Self::Body)
+                Carriers::compile(other, &part(probe, draft)?, site, draft).map(Self::Body)
             }
         }
     }
@@ -68,8 +71,25 @@ impl Reference {
     }
 }
 
+/// Whether formulas are finite at the start for all points; where not, that is reported with the first such point.
+fn starts_finite(formulas: &[Formula; 3], part: &Part, site: &Site, draft: &Draft) -> bool {
+    let at = |rest: &Vec3| {
+        let place = [rest.x, rest.y, rest.z, 0.0];
+        Vec3::from_array([0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&place)))
+    };
+    let bad = part.starts.iter().map(|rest| (rest, at(rest))).find(|(_, value)| !value.is_finite());
+    if let Some((rest, value)) = bad {
+        let message = format!(
+            "what the point that rests at ({}, {}, {}) is held against is ({}, {}, {}) at t = 0",
+            rest.x, rest.y, rest.z, value.x, value.y, value.z
+        );
+        draft.log.add(Code::NotFinite, site, message, "formulas that are finite at the start");
+    }
+    bad.is_none()
+}
+
 impl Carriers {
-    fn compile(other: &Placed, own: &Part, probe: &Probe, draft: &Draft) -> Option<Self> {
+    fn compile(other: &Placed, own: &Part, site: &Site, draft: &Draft) -> Option<Self> {
         let locator = CellLocator::new(&other.mesh);
         let mut places = Vec::with_capacity(own.starts.len());
         for start in &own.starts {
@@ -83,11 +103,11 @@ impl Carriers {
             });
             let Some(carrier) = carrier else {
                 let message = format!(
-                    "the point that starts at ({}, {}, {}) is outside of body `{}`",
+                    "the point that rests at ({}, {}, {}) is outside of body `{}`",
                     start.x, start.y, start.z, other.spec.name
                 );
                 let expected = "a body of the same shape and place, or a `region` within it";
-                draft.log.add(Code::Conflict, &probe.site, message, expected);
+                draft.log.add(Code::Conflict, site, message, expected);
                 return None;
             };
             places.push(carrier);

@@ -10,7 +10,7 @@ use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
 
-/// Variables of formulas of loads (where the point is) and motions (where it started), and time.
+/// Variables of formulas of loads (where the point is) and motions (where it rests), and time.
 pub const LOAD_VARIABLES: &[&str] = &VARIABLES;
 
 pub(crate) static MOTION: Keys = Keys::new(
@@ -18,10 +18,10 @@ pub(crate) static MOTION: Keys = Keys::new(
     "how points are led: key frames (`times` and `offsets`) or a `formula`",
     &[
         Key::new("times", Shape::Numbers, "of the key frames, growing").in_unit("s"),
-        Key::new("offsets", Shape::Vectors, "from where the point started, one for each time").in_unit("m"),
+        Key::new("offsets", Shape::Vectors, "from where the point rests, one for each time").in_unit("m"),
         Key::new("interpolation", Shape::Choice(&["linear", "smooth"]), "between key frames")
             .or(Value::Text("linear")),
-        Key::new("formula", Shape::VectorFormula(LOAD_VARIABLES), "offset from where the point started")
+        Key::new("formula", Shape::VectorFormula(LOAD_VARIABLES), "offset from where the point rests")
             .in_unit("m"),
     ],
 );

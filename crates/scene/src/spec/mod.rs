@@ -259,8 +259,8 @@ impl Spec {
             if let Some(body) = &probe.body {
                 check("body", body, &bodies, &probe.site);
             }
-            if let Some(probe::Against::Body(body)) = &probe.against {
-                check("body", body, &bodies, &probe.site);
+            if let Some(probe::Against::Body { name, site }) = &probe.against {
+                check("body", name, &bodies, site);
             }
         }
         let shapes: Vec<&str> = self.shapes.iter().map(|shape| shape.name.as_str()).collect();

@@ -23,9 +23,9 @@ pub(crate) static AGAINST: Keys = Keys::new(
         Key::new(
             "formula",
             Shape::VectorFormula(LOAD_VARIABLES),
-            "of the place where a point started and of time, in the unit of the quantity",
+            "of the place where a point rests and of time, in the unit of the quantity",
         ),
-        Key::new("body", Shape::Text, "another, whose shape at the start holds the points: its value there"),
+        Key::new("body", Shape::Text, "another, whose shape at rest holds the points: its value there"),
     ],
 );
 
@@ -86,10 +86,10 @@ pub struct Probe {
 /// What the values of a probe are the differences from.
 #[derive(Clone, Debug)]
 pub enum Against {
-    /// Of [`LOAD_VARIABLES`], in the unit of the quantity.
-    Formula(Box<[Formula; 3]>),
-    /// The same quantity of another body, where the points lie in its shape at the start.
-    Body(String),
+    /// Of [`LOAD_VARIABLES`], the place where a point rests and time, in the unit of the quantity.
+    Formula { formulas: Box<[Formula; 3]>, site: Site },
+    /// The same quantity of another body, where the points lie in its shape at rest.
+    Body { name: String, site: Site },
 }
 
 /// One number of a vector.
@@ -118,7 +118,7 @@ impl Component {
 }
 
 impl Against {
-    fn read(reader: &Reader) -> Option<Self> {
+    fn read(reader: &Reader, quantity: Quantity) -> Option<Self> {
         let written = reader.written(&["formula", "body"]);
         let [key] = written.as_slice() else {
             let message = format!("`against` names {} things", written.len());
@@ -131,8 +131,11 @@ impl Against {
             return None;
         };
         match *key {
-            "formula" => reader.maybe_vector_formula(key).map(|formulas| Self::Formula(Box::new(formulas))),
-            _ => reader.maybe_text(key).map(Self::Body),
+            "formula" => {
+                let formulas = reader.vector_formula_in(key, quantity.unit)?;
+                Some(Self::Formula { formulas: Box::new(formulas), site: reader.site_of(key) })
+            }
+            _ => Some(Self::Body { name: reader.maybe_text(key)?, site: reader.site_of(key) }),
         }
     }
 }
@@ -164,7 +167,7 @@ impl Probe {
             region: Region::read(reader, "region"),
             component,
             reduction,
-            against: against.as_ref().and_then(Against::read),
+            against: against.as_ref().and_then(|against| Against::read(against, quantity.build)),
             contact: reader.maybe_text("contact"),
             skin: reader.maybe_text("skin"),
             hand: reader.maybe_text("hand"),
@@ -315,7 +318,9 @@ fn check_against(reader: &Reader, entry: &QuantityEntry) {
     );
     if rank != Rank::Vector || !matches!(subject, Subject::Points(_)) {
         let message = format!("`{}` is no vector at points", entry.name);
-        refuse(reader, "formula", message, "a vector at points, such as \"displacement\"");
+        let site =
+            reader.written(&["formula", "body"]).first().map_or(reader.site(), |key| reader.site_of(key));
+        reader.log().add(Code::Conflict, &site, message, "a vector at points, such as \"displacement\"");
     } else if reader.has("body") && !is_carried {
         let message = format!("`{}` is not carried from point to point by cells", entry.name);
         refuse(reader, "body", message, "displacement, position or velocity, or a `formula`");

@@ -264,7 +264,7 @@ use Reduction::{Max, Mean, Min, Sum};
 const ENTRIES: &[&QuantityEntry] = &[
     &entry(
         "displacement",
-        "from where the points started",
+        "from where the points rest",
         KINEMATICS,
         points("m", Vector, Mean, PointQuantity::Displacement),
     ),
