@@ -514,6 +514,15 @@ impl System {
         }
     }
 
+    /// The first motion that is not finite at a time.
+    pub fn motion_not_finite(&self, time: f64) -> Option<StepError> {
+        self.constraints.iter().find_map(|constraint| {
+            let offset = constraint.motion.as_ref()?.offset(constraint.start, time);
+            let (block, value) = (constraint.block as usize, offset.to_array());
+            (!offset.is_finite()).then_some(StepError::MotionNotFinite { block, value, time })
+        })
+    }
+
     /// How far the block of a constraint is from where it is led: the displacement that [`Kinematics::retract`] takes it
     /// there by, along directions that are left free too.
     pub fn to_go(&self, constraint: &Constraint, q: &[Vec3], time: f64, load: f64) -> Vec3 {

@@ -377,7 +377,22 @@ impl World {
             Err(_) => self.place_all_rows(),
         }
         self.workspace.next = next;
-        stepped.map(|_| ())
+        match stepped {
+            Err(error) if error.error != StepError::Interrupted => {
+                Err(self.led_nowhere(start).unwrap_or(error))
+            }
+            other => other.map(|_| ()),
+        }
+    }
+
+    /// The first motion that is not finite within a period: what a step that failed is about then.
+    fn led_nowhere(&self, start: f64) -> Option<WorldError> {
+        self.model.systems.iter().enumerate().find_map(|(index, system)| {
+            let timestep = self.model.timestep(index);
+            let ends = (1..=system.steps_per_period).map(|step| start + f64::from(step) * timestep);
+            let error = ends.into_iter().find_map(|end| system.motion_not_finite(end))?;
+            Some(WorldError { place: format!("system `{}`", system.name), error })
+        })
     }
 
     /// Systems whose next step reads the committed rows in the place of a copy of the state.

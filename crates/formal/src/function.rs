@@ -122,6 +122,22 @@ pub const FUNCTIONS: &[FunctionEntry] = &[
 /// Constants and their values; a variable of the same name goes before.
 pub const CONSTANTS: &[(&str, f64)] = &[("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
+/// What other languages call functions of this one.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("select", "if"),
+    ("where", "if"),
+    ("cond", "if"),
+    ("power", "pow"),
+    ("sgn", "sign"),
+    ("arctan", "atan"),
+];
+
+/// The function that a name which is none may mean.
+pub(crate) fn nearest_function<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+    let elsewhere = ELSEWHERE.iter().find(|(other, _)| *other == name).map(|(_, here)| *here);
+    elsewhere.or_else(|| souple_table::nearest(name, known)).map(str::to_owned)
+}
+
 impl FunctionEntry {
     /// The function of that name.
     pub fn find(name: &str) -> Option<&'static Self> {

@@ -4,7 +4,7 @@
 //! are evaluated and one is taken. Truth is kept as 1 and 0.
 
 use crate::arithmetic::{self, Number};
-use crate::function::{CONSTANTS, FUNCTIONS, FunctionEntry};
+use crate::function::{CONSTANTS, FUNCTIONS, FunctionEntry, nearest_function};
 use crate::interval::{self, Interval};
 use crate::parser::DEEPEST;
 use crate::{
@@ -63,10 +63,12 @@ impl Program {
         let folds = folds(*range.start(), nodes);
         let mut program = Self { instructions: Vec::new(), stack: 0 };
         for (node, fold) in nodes.iter().zip(folds) {
+            // names first: what an unknown function wants of its arguments is unknown too
+            let instruction = instruction_of(node, variables)?;
             for (position, operand) in node.kind.operands().enumerate() {
                 check_kind(expression.node(operand), wanted_operand(&node.kind, position))?;
             }
-            if let Some(instruction) = instruction_of(node, variables)? {
+            if let Some(instruction) = instruction {
                 program.push(instruction);
             }
             if let Some(function) = fold {
@@ -261,7 +263,7 @@ fn called(
         let known = || FUNCTIONS.iter().map(|entry| entry.name);
         return Err(ParseError::UnknownFunction {
             name: shortened(name),
-            nearest: souple_table::nearest(name, known()).map(str::to_owned),
+            nearest: nearest_function(name, known()),
             known: known().map(str::to_owned).collect(),
             span,
         });

@@ -68,9 +68,9 @@ impl Failure {
             world.model().systems[system].kinematics.row_of_block(block).map(|row| row as usize)
         };
         let row = system.and_then(|system| match error.error.cause() {
-            StepError::NewtonStalled { block, .. } | StepError::Linear { block: Some(block), .. } => {
-                row_of(system, *block)
-            }
+            StepError::NewtonStalled { block, .. }
+            | StepError::Linear { block: Some(block), .. }
+            | StepError::MotionNotFinite { block, .. } => row_of(system, *block),
             StepError::ForceNotFinite { row, .. } | StepError::SlopeNotFinite { row, .. } => Some(*row),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".q") => Some(field.index),
             StepError::StateNotFinite { field, .. } if field.field.ends_with(".v") => {

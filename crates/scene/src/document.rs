@@ -5,6 +5,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Code, Log, Site};
+use crate::layout::Layout;
 use crate::source::{Place, Sources};
 
 /// A value and where it was written.
@@ -14,6 +15,8 @@ pub struct Node {
     pub content: Content,
     /// Whether the text holds parameters put in: such a text may be a formula where a number is wanted.
     pub computed: bool,
+    /// Of a text: where its bytes were written.
+    pub layout: Layout,
 }
 
 /// What a value is.
@@ -27,6 +30,8 @@ pub enum Content {
     Date(String),
     List(Vec<Node>),
     Table(Table),
+    /// What could not be read, as is reported: no more is said of it.
+    Refused,
 }
 
 /// Keys and values in the order they were written.
@@ -74,13 +79,14 @@ impl Content {
             Self::Date(_) => "a date",
             Self::List(_) => "a list",
             Self::Table(_) => "a table",
+            Self::Refused => "refused",
         }
     }
 }
 
 impl Node {
     pub fn new(place: Place, content: Content) -> Self {
-        Self { place, content, computed: false }
+        Self { place, content, computed: false, layout: Layout::default() }
     }
 
     pub fn as_table(&self) -> Option<&Table> {
@@ -101,7 +107,7 @@ pub fn parse(sources: &Sources, source: usize, log: &Log) -> Table {
         let place = Place { source, start: span.start, end: span.end.max(span.start + 1).min(text.len()) };
         report_syntax(log, place, error.message());
     }
-    let mut reader = TomlReader { source, log };
+    let mut reader = TomlReader { source, log, text, offset: 0 };
     reader.table(table.get_ref())
 }
 
@@ -109,12 +115,17 @@ pub fn parse(sources: &Sources, source: usize, log: &Log) -> Table {
 pub fn parse_value(text: &str, source: usize, offset: usize) -> Node {
     let log = Log::default();
     let place = Place { source, start: offset, end: offset + text.len() };
-    let node = DeValue::parse(text.trim())
+    let offset = offset + text.len() - text.trim_start().len();
+    let text = text.trim();
+    let node = DeValue::parse(text)
         .ok()
-        .map(|value| TomlReader { source, log: &log }.value(0..0, value.get_ref()));
+        .map(|value| TomlReader { source, log: &log, text, offset }.value(value.span(), value.get_ref()));
     let mut node = match node {
         Some(node) if log.is_empty() => node,
-        _ => Node::new(place, Content::Text(text.trim().to_owned())),
+        _ => {
+            let layout = Layout::verbatim(Place { source, start: offset, end: offset + text.len() });
+            Node { layout, ..Node::new(place, Content::Text(text.to_owned())) }
+        }
     };
     place_all(&mut node, place);
     node
@@ -141,11 +152,14 @@ fn report_syntax(log: &Log, place: Place, message: &str) {
 struct TomlReader<'a> {
     source: usize,
     log: &'a Log,
+    text: &'a str,
+    /// Where the text begins in the source.
+    offset: usize,
 }
 
 impl TomlReader<'_> {
     fn place(&self, span: Range<usize>) -> Place {
-        Place { source: self.source, start: span.start, end: span.end }
+        Place { source: self.source, start: self.offset + span.start, end: self.offset + span.end }
     }
 
     fn table(&mut self, table: &DeTable) -> Table {
@@ -163,9 +177,13 @@ impl TomlReader<'_> {
     }
 
     fn value(&mut self, span: Range<usize>, value: &DeValue) -> Node {
-        let place = self.place(span);
+        let place = self.place(span.clone());
         let content = match value {
-            DeValue::String(text) => Content::Text(text.to_string()),
+            DeValue::String(text) => {
+                let written = self.text.get(span).unwrap_or_default();
+                let layout = Layout::of_literal(written, text, place);
+                return Node { layout, ..Node::new(place, Content::Text(text.to_string())) };
+            }
             DeValue::Boolean(truth) => Content::Boolean(*truth),
             DeValue::Datetime(date) => Content::Date(date.to_string()),
             DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
@@ -176,7 +194,7 @@ impl TomlReader<'_> {
                         place,
                         "the whole number is too large, expected at most 9223372036854775807",
                     );
-                    Content::Integer(0)
+                    Content::Refused
                 }
             },
             DeValue::Float(float) => match float.as_str().parse::<f64>() {
@@ -187,7 +205,7 @@ impl TomlReader<'_> {
                         place,
                         "this is no number, expected a number such as 0.5 or 1e-3",
                     );
-                    Content::Number(0.0)
+                    Content::Refused
                 }
             },
             DeValue::Array(items) => {

@@ -160,7 +160,8 @@ fn merged(mut base: Table, over: Table) -> Table {
 
 fn merged_node(base: Node, over: Node) -> Node {
     let is_tagged = |table: &Table| TAGS.iter().any(|tag| table.get(tag).is_some());
-    let content = match (base.content, over.content) {
+    let Node { place, content: laid, computed, layout } = over;
+    let content = match (base.content, laid) {
         (Content::Table(base), Content::Table(over)) if !is_tagged(&over) => {
             Content::Table(merged(base, over))
         }
@@ -170,7 +171,7 @@ fn merged_node(base: Node, over: Node) -> Node {
         }
         (_, over) => over,
     };
-    Node { place: over.place, content, computed: over.computed }
+    Node { place, content, computed, layout }
 }
 
 fn is_table_list(items: &[Node]) -> bool {

@@ -11,6 +11,7 @@ mod document;
 mod include;
 pub mod inputs;
 mod keys;
+mod layout;
 mod measure;
 mod modules;
 mod overrides;

@@ -123,9 +123,8 @@ impl Setting<'_> {
                 let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
                 return self.refuse(message, one_of(&names));
             }
-            let content =
-                if rest.is_empty() { value.content.clone() } else { Content::Table(Table::default()) };
-            let node = Node::new(value.place, content);
+            let empty = || Node::new(value.place, Content::Table(Table::default()));
+            let node = if rest.is_empty() { value.clone() } else { empty() };
             table.entries.push(Entry { key: (*name).to_owned(), key_place: self.place, node });
         }
         let Some(node) = table.get_mut(name) else { return };
@@ -172,7 +171,8 @@ impl Setting<'_> {
             // "backward_euler" becomes { name = "backward_euler" } to take a parameter
             (Content::Text(text), [Step::Key(_), ..]) if matches!(shape, Some(Shape::Entry(_))) => {
                 let Some(Shape::Entry(entry)) = shape else { return };
-                let name = Node::new(node.place, Content::Text(std::mem::take(text)));
+                let content = Content::Text(std::mem::take(text));
+                let name = Node { layout: node.layout.clone(), ..Node::new(node.place, content) };
                 let tag = Entry { key: entry.tag.to_owned(), key_place: node.place, node: name };
                 let mut table = Table { entries: vec![tag] };
                 self.set(&mut table, None, steps, value);

@@ -6,11 +6,12 @@
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 
-use souple_formal::{Formula, parse_quantity};
+use souple_formal::{Formula, Span, parse_quantity};
 use souple_table::nearest;
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node, Table};
+use crate::layout::Layout;
 
 /// Parameters within parameters, at most.
 pub(crate) const DEEPEST: usize = 32;
@@ -85,45 +86,59 @@ impl<'a> Substitution<'a> {
             }
             Content::Text(text) if text.contains('$') => {
                 let text = std::mem::take(text);
-                let site = Site { place: node.place, path: path.to_owned() };
-                let (content, computed) = self.text(&text, &site);
-                node.content = content;
-                node.computed = computed;
+                self.text(node, &text, path);
             }
             _ => {}
         }
     }
 
-    /// What a text with `$` in it becomes, and whether it may be a formula.
-    fn text(&self, text: &str, site: &Site) -> (Content, bool) {
+    /// Puts parameters into `text`, the content of `node`.
+    fn text(&self, node: &mut Node, text: &str, path: &str) {
+        let site = |start: usize, end: usize| Site {
+            place: node.layout.place_of(Span::new(start, end)).unwrap_or(node.place),
+            path: path.to_owned(),
+        };
         if let Some(name) = text.strip_prefix('$')
             && name_length(name) == name.len()
         {
-            return match self.value(name, site) {
-                Some(node) => (node.content, node.computed),
-                None => (Content::Text(text.to_owned()), false),
-            };
-        }
-        let mut result = String::new();
-        let mut rest = text;
-        while let Some((before, after)) = rest.split_once('$') {
-            result.push_str(before);
-            let length = name_length(after);
-            let (name, behind) = after.split_at(length);
-            if name.is_empty() {
-                self.log.add(
-                    Code::UnknownParameter,
-                    site,
-                    "`$` without a name",
-                    "`$` and the name of a parameter",
-                );
-            } else if let Some(node) = self.value(name, site) {
-                result.push_str(&self.within(name, &node, site));
+            let whole = Site { place: node.place, path: path.to_owned() };
+            match self.value(name, &whole) {
+                // errors in what stands for the name are shown at the name
+                Some(Node { content, computed, .. }) => {
+                    node.layout = Layout::whole(node.place, text_length(&content));
+                    (node.content, node.computed) = (content, computed);
+                }
+                None => node.content = Content::Refused,
             }
-            rest = behind;
+            return;
         }
-        result.push_str(rest);
-        (Content::Text(result), true)
+        let (mut result, mut layout) = (String::new(), Layout::default());
+        let mut is_whole = true;
+        let mut at = 0;
+        while let Some(before) = text[at..].find('$') {
+            let start = at + before;
+            layout.push_part(&node.layout, at, start);
+            result.push_str(&text[at..start]);
+            let name = &text[start + 1..start + 1 + name_length(&text[start + 1..])];
+            at = start + 1 + name.len();
+            let site = site(start, at);
+            if name.is_empty() {
+                let expected = "`$` and the name of a parameter";
+                self.log.add(Code::UnknownParameter, &site, "`$` without a name", expected);
+            }
+            let value = if name.is_empty() { None } else { self.value(name, &site) };
+            match value.and_then(|value| self.within(name, &value, &site)) {
+                Some(value) => {
+                    layout.push_whole(site.place, value.len());
+                    result.push_str(&value);
+                }
+                None => is_whole = false,
+            }
+        }
+        layout.push_part(&node.layout, at, text.len());
+        result.push_str(&text[at..]);
+        node.content = if is_whole { Content::Text(result) } else { Content::Refused };
+        (node.computed, node.layout) = (true, layout);
     }
 
     /// The parameter's value, parameters in it put in.
@@ -181,9 +196,10 @@ impl<'a> Substitution<'a> {
         node
     }
 
-    /// A parameter as it stands within a longer text: a number in parentheses, or a text as it is.
-    fn within(&self, name: &str, node: &Node, site: &Site) -> String {
-        match &node.content {
+    /// A parameter as it stands within a longer text: a number in parentheses, or a text as it is; `None` of what cannot, which is
+    /// reported.
+    fn within(&self, name: &str, node: &Node, site: &Site) -> Option<String> {
+        Some(match &node.content {
             Content::Integer(number) => format!("({number})"),
             // the exact number again when read: the shortest decimal that rounds to it
             Content::Number(number) => format!("({number:?})"),
@@ -193,14 +209,19 @@ impl<'a> Substitution<'a> {
                 Ok(quantity) => format!("({:?})", quantity.value),
                 Err(_) => text.clone(),
             },
+            Content::Refused => return None,
             other => {
                 let message =
                     format!("parameter `{name}` is {} and cannot stand within a text", other.kind());
                 self.log.add(Code::WrongType, site, message, "a number, a quantity or a text");
-                String::new()
+                return None;
             }
-        }
+        })
     }
+}
+
+fn text_length(content: &Content) -> usize {
+    if let Content::Text(text) = content { text.len() } else { 0 }
 }
 
 /// Bytes of texts and number of values in a node.

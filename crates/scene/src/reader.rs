@@ -4,7 +4,7 @@
 //! the log; what the reader returns in its place only keeps the reading going, since nothing is compiled from a
 //! specification with faults.
 
-use souple_formal::{Condition, Formula};
+use souple_formal::{Condition, Formula, Span};
 use souple_math::Vec3;
 use souple_table::{Entry, Table, Value, Values, counted};
 
@@ -97,6 +97,13 @@ impl<'a> Reader<'a> {
     pub fn site_of(&self, key: &str) -> Site {
         let place = self.table.get(key).map_or_else(|| self.node.place, |node| node.place);
         Site { place, path: self.path_of(key) }
+    }
+
+    /// The place of a part of the text of a key.
+    pub fn site_of_part(&self, key: &str, part: Span) -> Site {
+        let part = self.table.get(key).and_then(|node| node.layout.place_of(part));
+        let whole = self.site_of(key);
+        Site { place: part.unwrap_or(whole.place), ..whole }
     }
 
     fn path_of(&self, key: &str) -> String {
@@ -230,17 +237,23 @@ impl<'a> Reader<'a> {
     }
 
     pub fn numbers(&self, name: &str) -> Vec<f64> {
-        let read = self.read(name, |value, key, expected| {
+        self.maybe_numbers(name).unwrap_or_default()
+    }
+
+    pub fn maybe_numbers(&self, name: &str) -> Option<Vec<f64>> {
+        self.read(name, |value, key, expected| {
             value.list(expected, |item| item.number(key.unit, key.range, expected))
-        });
-        read.unwrap_or_default()
+        })
     }
 
     pub fn vectors(&self, name: &str) -> Vec<Vec3> {
-        let read = self.read(name, |value, key, expected| {
+        self.maybe_vectors(name).unwrap_or_default()
+    }
+
+    pub fn maybe_vectors(&self, name: &str) -> Option<Vec<Vec3>> {
+        self.read(name, |value, key, expected| {
             value.list(expected, |item| item.vector(key.unit, key.range, "three finite numbers"))
-        });
-        read.unwrap_or_default()
+        })
     }
 
     pub fn maybe_formula(&self, name: &str) -> Option<Formula> {

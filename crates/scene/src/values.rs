@@ -2,12 +2,13 @@
 //!
 //! Each function says what is wrong to the log and returns `None` then.
 
-use souple_formal::{Condition, Formula, parse_quantity, quantity_in};
+use souple_formal::{Condition, Formula, ParseError, parse_quantity, quantity_in};
 use souple_math::Vec3;
 use souple_table::{Kind, Parameter, Range, Value, Values, counted, nearest, readable};
 
 use crate::diagnostic::{Code, Log, Site};
 use crate::document::{Content, Node};
+use crate::source::Place;
 
 /// A value being read: where it is, and where errors go.
 #[derive(Clone)]
@@ -31,7 +32,26 @@ impl<'a> Reading<'a> {
         message: impl Into<String>,
         expected: impl Into<String>,
     ) -> Option<T> {
-        self.log.add(code, &self.site(), message, expected);
+        self.refuse_at(self.node.place, code, message, expected)
+    }
+
+    /// What is wrong with a part of the text.
+    fn refuse_part<T>(&self, error: &ParseError, expected: &str) -> Option<T> {
+        let place = self.node.layout.place_of(error.span()).unwrap_or(self.node.place);
+        self.refuse_at(place, Code::BadFormula, error.to_string(), expected)
+    }
+
+    fn refuse_at<T>(
+        &self,
+        place: Place,
+        code: Code,
+        message: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Option<T> {
+        // what is refused already is not refused again for what it is not
+        if !matches!(self.node.content, Content::Refused) {
+            self.log.add(code, &Site { place, path: self.path.clone() }, message, expected);
+        }
         None
     }
 
@@ -66,7 +86,7 @@ impl<'a> Reading<'a> {
     fn computed(&self, text: &str, expected: &str) -> Option<f64> {
         match Formula::compile(text, &[]) {
             Ok(formula) => Some(formula.evaluate(&[])),
-            Err(error) => self.refuse(Code::BadFormula, format!("`{text}`: {error}"), expected),
+            Err(error) => self.refuse_part(&error, expected),
         }
     }
 
@@ -155,7 +175,7 @@ impl<'a> Reading<'a> {
             Err(_) if parse_quantity(text).is_ok() => {
                 self.refuse(Code::WrongUnit, wrong_unit.to_string(), expected)
             }
-            Err(error) => self.refuse(Code::BadFormula, error.to_string(), expected),
+            Err(error) => self.refuse_part(&error, expected),
         }
     }
 
@@ -164,7 +184,7 @@ impl<'a> Reading<'a> {
         if let Content::Text(text) = &self.node.content {
             return match Formula::compile_vector::<3>(text, variables) {
                 Ok(formulas) => Some(formulas),
-                Err(error) => self.refuse(Code::BadFormula, error.to_string(), expected),
+                Err(error) => self.refuse_part(&error, expected),
             };
         }
         let formulas = self.list(expected, |item| item.formula(unit, variables, expected))?;
@@ -183,7 +203,7 @@ impl<'a> Reading<'a> {
         let text = self.text()?;
         match Condition::compile(text, variables) {
             Ok(condition) => Some(condition),
-            Err(error) => self.refuse(Code::BadFormula, error.to_string(), expected),
+            Err(error) => self.refuse_part(&error, expected),
         }
     }
 

@@ -252,3 +252,69 @@ motion = {{ formula = ["t", 0, 0] }}
         }
     }
 }
+
+/// A motion that ends on the way is told as that, with the point that is led, whatever became of the step.
+#[test]
+fn motions_that_end_are_told() {
+    for stepper in ["static", "backward_euler", "symplectic_euler", "rk4"] {
+        let led = "[[bodies.bar.pins]]\nregion = \"x_max\"\nmotion = { formula = [\"1e-6/(t - 0.05) + 2e-5\", 0, 0] }\n";
+        let text = format!("{}{led}", BAR.replace("backward_euler", stepper).replace("10 MPa", "10 kPa"));
+        let scene =
+            read_text("scene.toml", &text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+        let mut world = scene.model.start(scene.state);
+        let error = (0..8).find_map(|_| world.step().err()).expect("a motion without a value");
+        let said = error.to_string();
+        assert!(
+            said.contains("the motion of what is led is not finite ([inf, 0.0, 0.0] at time 0.05"),
+            "{stepper}: {said}"
+        );
+    }
+}
+
+/// A fault within a text points at its character, in every kind of string, behind parameters that were put in, on the command line.
+#[test]
+fn faults_in_texts_point_at_their_characters() {
+    let law = |energy: &str| {
+        BAR.replace(
+            "name = \"neo_hookean\", youngs_modulus = \"10 MPa\", poissons_ratio = 0.3",
+            &format!("name = \"hyperelastic\", energy = {energy}, parameters = {{ mu = \"1 MPa\" }}"),
+        )
+    };
+    let load = |force: &str| format!("{BAR}[[bodies.bar.loads]]\nregion = \"x_max\"\nforce = {force}\n");
+    let parameters = "[parameters]\nbig = 1000\n";
+    for (text, read) in [
+        (law("\"mu*dot(E, E) + mue*tr(E)^2\""), "mue"),
+        (law("'mu*dot(E, E) + mu*lg(J)^2'"), "lg"),
+        (law("\"\"\"\nmu*dot(E, E)\n  + mu*I9^2\"\"\""), "I9"),
+        (law("\"mu*dot(E, E) + mu*\\u0041^2\""), "\\u0041"),
+        (load("[\"1 + 2*sim(t)\", 0, 0]"), "sim"),
+        (load("\"[0, 0, 3*q]\""), "q"),
+        (load("['select(x > 0, 1, 2)', 0, 0]"), "select"),
+        (format!("{}{parameters}", load("[\"$big * sim(t)\", 0, 0]")), "sim"),
+        (format!("{}{parameters}", load("[\"$big * t + $bog\", 0, 0]")), "$bog"),
+    ] {
+        let errors =
+            read_text("scene.toml", &text, Path::new("."), &[]).err().unwrap_or_else(|| panic!("{read}"));
+        let [error] = &errors.0[..] else { panic!("{read}: not one error, but\n{errors}") };
+        let line = text.lines().nth(error.line - 1).unwrap_or_default();
+        let from: String = line.chars().skip(error.column - 1).collect();
+        assert!(from.starts_with(read) && error.value == read, "`{read}`: {errors}");
+    }
+    let set = ["bodies.bar.loads=[{ region = \"x_max\", force = [\"3*q\", 0, 0] }]".to_owned()];
+    let errors = read_text("scene.toml", BAR, Path::new("."), &set).err().expect("no `q`");
+    assert_eq!(errors.0[0].value, "q", "{errors}");
+}
+
+/// What could not be read is told once: nothing is said of what it is not.
+#[test]
+fn faults_are_told_once() {
+    for pins in [
+        "motion = { times = [0, 1], offsets = [[0, 0, 0], [\"1 cm\", \"1 N\", 0]] }",
+        "motion = { formula = [\"$qq\", 0, 0] }",
+        "motion = { times = [0, \"$qq\"], offsets = [[0, 0, 0], [0, 0, 0]] }",
+    ] {
+        let text = format!("{BAR}[[bodies.bar.pins]]\nregion = \"x_max\"\n{pins}\n");
+        let errors = read_text("scene.toml", &text, Path::new("."), &[]).err().expect(pins);
+        assert_eq!(errors.0.len(), 1, "{errors}");
+    }
+}

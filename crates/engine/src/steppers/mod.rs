@@ -93,6 +93,13 @@ pub enum StepError {
         "force `{force}` is not finite or too large to compute with ({value:?} at row {row}, time {time} s): it has no value there; lead or load more slowly, or stay where it has"
     )]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
+    #[error("the motion of what is led is not finite ({value:?} at time {time} s)")]
+    MotionNotFinite {
+        /// The velocity block that is led.
+        block: usize,
+        value: [f64; 3],
+        time: f64,
+    },
     #[error(
         "the energy of force `{force}` is not finite where the step leads (time {time} s): it has no value there; lead or load more slowly, or stay where it has"
     )]

@@ -7,7 +7,7 @@ use super::value::{
     wrong_shape,
 };
 use super::vocabulary::{self, LAW_FUNCTIONS, Word};
-use crate::function::{FUNCTIONS, Function, FunctionEntry};
+use crate::function::{FUNCTIONS, Function, FunctionEntry, nearest_function};
 use crate::graph::{Comparison, Expr, Node, Shape};
 use crate::{ParseError, Span};
 
@@ -27,7 +27,7 @@ impl Reader<'_> {
                 .map(|word| word.name)
                 .chain(FUNCTIONS.iter().map(|entry| entry.name).filter(|name| *name != "atan2"))
                 .collect();
-            let nearest = souple_table::nearest(name, known.iter().copied()).map(str::to_owned);
+            let nearest = nearest_function(name, known.iter().copied());
             let here = Span::new(span.start, span.start + name.len());
             if self.is_value(name) {
                 let problem = ParseError::NotAFunction { name: short(name), span: here };

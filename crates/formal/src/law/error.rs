@@ -45,7 +45,9 @@ pub enum LawProblem {
     NotInFormula { name: String, nearest: Option<String>, known: Vec<String> },
     #[error("`{name}` has a meaning in every law ({meaning}); choose another name")]
     ReservedName { name: String, meaning: String },
-    #[error("`{name}` is no name; a letter followed by letters, digits and `_` is accepted")]
+    #[error(
+        "`{name}` is no name; a letter from a to z or A to Z followed by such letters, digits and `_` is accepted"
+    )]
     BadName { name: String },
     #[error("`{name}` is given twice")]
     GivenTwice { name: String },

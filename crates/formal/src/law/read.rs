@@ -63,13 +63,21 @@ pub(super) fn read(text: &LawText) -> Result<Read, LawError> {
     }
     let given = text.parameters.iter().map(|(name, _)| ("parameter", name));
     let unused = given.chain(text.definitions.iter().map(|(name, _)| ("definition", name)));
-    let warnings = unused
-        .filter(|(_, name)| !reader.used.contains(name))
+    let unused: Vec<(&str, &String)> = unused.filter(|(_, name)| !reader.used.contains(name)).collect();
+    let mut warnings: Vec<String> = unused
+        .iter()
+        .take(UNUSED_TOLD)
         .map(|(kind, name)| format!("the {kind} `{name}` is used nowhere"))
         .collect();
+    if unused.len() > UNUSED_TOLD {
+        warnings.push(format!("{} more are used nowhere", unused.len() - UNUSED_TOLD));
+    }
     let Reader { graph, origins, used, .. } = reader;
     Ok(Read { graph, energy: energy.expr, uses_small_strain, warnings, used, origins })
 }
+
+/// Names that are used nowhere, told one by one.
+const UNUSED_TOLD: usize = 8;
 
 /// A formula of numbers.
 pub(super) struct Numbers {

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use souple_formal::law::{EnergyLaw, LawError, LawParameter, LawText};
 use souple_formal::tape::Tape;
-use souple_formal::{Expression, Formula, parse_quantity};
+use souple_formal::{Expression, Formula, Span, parse_quantity};
 use souple_table::{Entry, Parameter, Value};
 
 use super::{Build, DENSITY, Lame, Material, MaterialLaw, PARAMETERS_MAX};
@@ -54,18 +54,24 @@ pub(super) const ENTRY: Entry<Build> = Entry {
 #[error("{message}")]
 pub struct MaterialError {
     path: Vec<String>,
+    span: Option<Span>,
     message: String,
 }
 
 impl MaterialError {
     /// Of one parameter.
     pub(super) fn of(parameter: &str, message: String) -> Self {
-        Self { path: vec![parameter.to_owned()], message }
+        Self { path: vec![parameter.to_owned()], span: None, message }
     }
 
     /// Keys that lead from the material to what is wrong: `["parameters", "mu"]`.
     pub fn path(&self) -> &[String] {
         &self.path
+    }
+
+    /// The place in the text there.
+    pub fn span(&self) -> Option<Span> {
+        self.span
     }
 }
 
@@ -100,6 +106,7 @@ pub fn law_text(
     for (name, text) in parameters {
         let fail = |error: String| MaterialError {
             path: vec!["parameters".to_owned(), name.clone()],
+            span: None,
             message: format!("`{name}`: {error}"),
         };
         let parameter = if is_list(text) {
@@ -226,19 +233,14 @@ impl TextLaw {
     }
 }
 
-/// The error with the path of its part and the characters marked.
+/// The error with the path of its part and the place in that.
 fn told(text: &LawText, error: &LawError) -> MaterialError {
-    let known = |list: &[&String]| list.contains(&&error.part);
-    let definitions: Vec<&String> = text.definitions.iter().map(|(name, _)| name).collect();
-    let parameters: Vec<&String> = text.parameters.iter().map(|(name, _)| name).collect();
-    let (path, written) = if known(&definitions) {
-        let written =
-            text.definitions.iter().find(|(name, _)| *name == error.part).map(|(_, text)| text.as_str());
-        (vec!["definitions".to_owned(), error.part.clone()], written)
-    } else if known(&parameters) {
-        (vec!["parameters".to_owned(), error.part.clone()], None)
+    let path = if text.definitions.iter().any(|(name, _)| *name == error.part) {
+        vec!["definitions".to_owned(), error.part.clone()]
+    } else if text.parameters.iter().any(|(name, _)| *name == error.part) {
+        vec!["parameters".to_owned(), error.part.clone()]
     } else {
-        (vec!["energy".to_owned()], Some(text.energy.as_str()))
+        vec!["energy".to_owned()]
     };
-    MaterialError { path, message: error.explained(written.unwrap_or_default()) }
+    MaterialError { path, span: error.span, message: error.to_string() }
 }

@@ -366,6 +366,8 @@ pub(super) fn read_material(reader: &Reader) -> Option<Chosen<materials::Build>>
             site.place = node.place;
         }
     }
+    let of_part = node.zip(error.span()).and_then(|(node, span)| node.layout.place_of(span));
+    site.place = of_part.unwrap_or(site.place);
     reader.log().add(
         Code::BadFormula,
         &site,

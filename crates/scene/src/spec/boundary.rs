@@ -217,13 +217,15 @@ impl MotionSpec {
             }
             return reader.maybe_vector_formula("formula").map(Self::Formula);
         }
-        let (times, offsets) = (reader.numbers("times"), reader.vectors("offsets"));
+        let (times, offsets) = (reader.maybe_numbers("times"), reader.maybe_vectors("offsets"));
         if !(reader.has("times") && reader.has("offsets")) {
             return refuse(
                 "a motion says neither how nor when".to_owned(),
                 "`times` and `offsets`, or a `formula`",
             );
         }
+        // what could not be read is reported already
+        let (times, offsets) = (times?, offsets?);
         if times.is_empty() || times.len() != offsets.len() {
             let message = format!("there are {} times and {} offsets", times.len(), offsets.len());
             return refuse(message, "one offset for each time, at least one");

@@ -100,7 +100,12 @@ impl ControlSpec {
         let variables: Vec<&str> = VARIABLES.iter().chain(&names).copied().collect();
         let wrong = |key: &str, error: &ParseError| {
             let expected = format!("a formula of {}", variables.join(", "));
-            reader.log().add(Code::BadFormula, &reader.site_of(key), error.to_string(), expected);
+            reader.log().add(
+                Code::BadFormula,
+                &reader.site_of_part(key, error.span()),
+                error.to_string(),
+                expected,
+            );
         };
         let drives = match reader.written(&["connects", "parameter", "value"])[..] {
             ["connects"] => Condition::compile(&reader.text("connects"), &variables)

@@ -121,9 +121,10 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
                     "a hyperelastic law whose constants are given, as by `--parameter {name}=\"{example}\"` or `--define {name}=TEXT`"
                 )
             }
-            _ => "a hyperelastic law".to_owned(),
+            _ => "an energy per volume whose stress is zero at rest, such as those of `souple list laws`".to_owned(),
         };
-        Refusal::request("law", text.energy.clone(), expected, error.explained(written))
+        let value = error.span.map_or(written, |span| span.of(written));
+        Refusal::request("law", value, expected, error.explained(written)).within(&error, written)
     })?;
     let compiled_seconds = clock.elapsed().as_secs_f64();
     let kind = ElementKind::from_name(element_name).map_err(|unknown| {
@@ -229,6 +230,7 @@ fn group(formula: &str, arguments: &Arguments) -> Result<End, Refusal> {
     };
     let (graph, grouped) = group_constants(formula, &arguments.varying).map_err(|error| {
         Refusal::request("formula", formula, "a formula of numbers", error.explained(formula))
+            .within(&error, formula)
     })?;
     let (symbols, definitions): (Vec<Expr>, Vec<Expr>) = grouped.constants.iter().copied().unzip();
     let roots: Vec<Expr> = definitions.into_iter().chain(grouped.varying).collect();

@@ -26,6 +26,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Parser, Subcommand};
 use serde_json::{Value, json};
+use souple_formal::law::LawError;
 
 /// A simulator of soft things.
 #[derive(Parser)]
@@ -131,6 +132,20 @@ impl Refusal {
             "value": value.into(), "expected": expected.into(), "message": message.into(),
         });
         Self { status, errors: vec![error], text: None }
+    }
+
+    /// At a place in `text`, which is that of the error's part: its name is the path, lines and columns are of the text.
+    fn within(mut self, error: &LawError, text: &str) -> Self {
+        let before = error.span.and_then(|span| text.get(..span.start));
+        for own in &mut self.errors {
+            own["path"] = json!(error.part);
+            if let Some(before) = before {
+                let line = before.rsplit('\n').next().unwrap_or_default();
+                own["line"] = json!(1 + before.matches('\n').count());
+                own["column"] = json!(1 + line.chars().count());
+            }
+        }
+        self
     }
 
     fn print(&self, as_json: bool) {
