@@ -1,13 +1,14 @@
 //! The project's own chores: `cargo xtask test` runs every check.
 //!
 //! A check is a line in [`STEPS`]; quick ones stand first. One of them alone: `cargo xtask test licences`. Pages that
-//! are made by the program are written by `cargo xtask gallery` and `cargo xtask reference`.
+//! are made by the program are written by `cargo xtask gallery`, `cargo xtask reference` and `cargo xtask kernels`.
 
 mod browser;
 mod capabilities;
 mod cargo;
 mod failure;
 mod gallery;
+mod kernels;
 mod licences;
 mod program;
 mod reference;
@@ -56,6 +57,7 @@ const STEPS: &[Step] = &[
     },
     Step { name: "docs", summary: "the documentation of the code builds without warnings", run: cargo::docs },
     Step { name: "reference", summary: "docs/reference is what the tables say", run: reference::check },
+    Step { name: "kernels", summary: "derived laws are what their texts say", run: kernels::check },
     Step {
         name: "browser",
         summary: "the page of the released program in a headless Chromium",
@@ -84,6 +86,7 @@ fn main() -> ExitCode {
         "test" => {}
         "gallery" => return written(gallery::make(&tree, names)),
         "reference" => return written(reference::make(&tree)),
+        "kernels" => return written(kernels::make(&tree)),
         _ => {
             eprintln!("there is no chore `{command}`\n\n{}", usage());
             return ExitCode::from(2);
@@ -113,6 +116,7 @@ fn usage() -> String {
     let mut text = "cargo xtask gallery         docs/gallery.md and its pictures, by the released program\n\
                     cargo xtask gallery NAME…   the pictures of some scenes\n\
                     cargo xtask reference       docs/reference, by the released program\n\
+                    cargo xtask kernels         laws as Rust from their texts, by the released program\n\
                     cargo xtask test            every check, in this order\n\
                     cargo xtask test NAME…      some of them\n\n"
         .to_owned();

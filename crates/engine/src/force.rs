@@ -169,6 +169,11 @@ pub trait Force: Send + Sync {
 
     fn declaration(&self) -> Declaration;
 
+    /// Whether its tangent is that of the material alone, without what its stress adds where it turns.
+    fn leaves_out_stress(&self) -> bool {
+        false
+    }
+
     /// Numbers of memory it keeps in State.
     fn memory_len(&self) -> usize {
         0
@@ -256,8 +261,11 @@ pub trait Force: Send + Sync {
     }
 
     /// What of its memory changes between one step and the next, at the rows that the step came to, whatever the stepper:
-    /// a change of what energy is stored there is a jump at that very state, which can be booked exactly.
-    fn end_step(&self, _positions: &[Vec3], _memory: &mut [f64]) {}
+    /// a change of what energy is stored there is a jump at that very state, which can be booked exactly. Returns whether its
+    /// force has jumped.
+    fn end_step(&self, _positions: &[Vec3], _memory: &mut [f64]) -> bool {
+        false
+    }
 
     /// Numbers of an entry of [`Kept`] of a force that has such; it finds by itself what acts on what, without pairs, and
     /// its [`Force::advance_kept`] is asked in the place of [`Force::advance_memory`].

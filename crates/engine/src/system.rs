@@ -477,8 +477,12 @@ impl System {
 
     /// Lets forces change their memory at the placed rows, those that a step came to.
     pub fn end_step(&self, rows: &Rows, state: &mut SystemState) {
+        let mut jumped = false;
         for (index, force) in self.forces.iter().enumerate().filter(|(_, force)| force.ends_steps()) {
-            force.end_step(&rows.positions, &mut state.memory[self.memory_range(index)]);
+            jumped |= force.end_step(&rows.positions, &mut state.memory[self.memory_range(index)]);
+        }
+        if jumped {
+            self.stepper.forget_forces(state);
         }
     }
 
@@ -517,9 +521,13 @@ impl System {
     /// The first motion that is not finite at a time.
     pub fn motion_not_finite(&self, time: f64) -> Option<StepError> {
         self.constraints.iter().find_map(|constraint| {
-            let offset = constraint.motion.as_ref()?.offset(constraint.start, time);
-            let (block, value) = (constraint.block as usize, offset.to_array());
-            (!offset.is_finite()).then_some(StepError::MotionNotFinite { block, value, time })
+            let motion = constraint.motion.as_ref()?;
+            let offset = motion.offset(constraint.start, time);
+            let velocity = motion.velocity(constraint.start, time);
+            let (what, value) = if is_usable(offset) { ("velocity", velocity) } else { ("motion", offset) };
+            let (block, value) =
+                (constraint.block as usize, (!is_usable(value)).then_some(value.to_array())?);
+            Some(StepError::MotionNotFinite { what, block, value, time })
         })
     }
 

@@ -315,13 +315,15 @@ fn degenerate() -> Vec<Mat3> {
 }
 
 /// Energy, stress, differential and block are finite for every `F` that is not so large that a twelfth power of it
-/// (the energy of an inverted neo-Hookean element) overflows.
+/// (the energy of an inverted neo-Hookean element) overflows; a twentieth under Yeoh's law, which has the third power of an invariant
+/// that grows as the fourth of an inverted element.
 #[test]
 fn degenerate_deformations_stay_finite() {
     for_every_law!(|material, L| {
         let parameters = material.parameters_of::<L>();
         let mut numbers = Numbers(10);
-        for F in degenerate() {
+        let highest = if material.law == MaterialLaw::Known(AnyLaw::Yeoh) { 20 } else { 12 };
+        for F in degenerate().into_iter().filter(|F| F.largest_entry().powi(highest).is_finite()) {
             let point = L::at(&parameters, &F);
             let finite = L::energy_density(&parameters, &F).is_finite()
                 && L::stress(&parameters, &F).is_finite()

@@ -686,3 +686,29 @@ fn displacements_converge_at_the_order_of_the_element() {
         }
     }
 }
+
+/// Of a law that is stiffer along one axis Rayleigh damping is stiffer along it too: `-b K₀ v` with its own stiffness at rest.
+#[test]
+fn rayleigh_damping_is_of_the_law_at_rest() {
+    for element in ["tet4", "hex8"] {
+        let mesh = bar([1.0, 0.4, 0.3], [4.0, 2.0, 2.0], element);
+        let of_cell = vec![0; mesh.cell_count()];
+        let materials = [text("mu*dot(E, E) + lambda/2*(J - 1)^2 + 5*mu*(I4(a) - 1)^2")];
+        let description = describe(&mesh, &materials, &of_cell);
+        let solid = SolidForce::new(&description).unwrap();
+        let damping = RayleighDamping::new(&description, 0.01).unwrap();
+        let v = directions(mesh.points.len());
+        let mut of_rest = vec![Vec3::ZERO; v.len()];
+        let weights = TangentWeights { position: 0.01, velocity: 0.0 };
+        let rest = at(&mesh.points, &v);
+        solid.add_differential(&rest, weights, &v, &mut solid.new_scratch(), &mut of_rest);
+        // wherever the body is
+        let damped = force_at(&damping, &mut damping.new_scratch(), &bent(&mesh), &v);
+        let difference: Vec<Vec3> = damped.iter().zip(&of_rest).map(|(a, b)| *a - *b).collect();
+        assert!(
+            norm(&difference) <= 1e-12 * norm(&of_rest),
+            "{element}: {}",
+            norm(&difference) / norm(&of_rest)
+        );
+    }
+}

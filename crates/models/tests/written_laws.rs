@@ -3,12 +3,13 @@
 #![allow(non_snake_case)]
 
 use souple_formal::element::{Axis, Cut};
+use souple_formal::emit::{Heading, kernel};
 use souple_formal::law::{EnergyLaw, LawParameter};
 use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::ElementKind;
 use souple_models::associations::Association;
 use souple_models::derive::{MapKind, element_data, source_constant_count, source_law_name, source_name};
-use souple_models::materials::{AnyLaw, WRITTEN_LAWS, WrittenLaw, is_parameter, law_text};
+use souple_models::materials::{AnyLaw, DERIVED, WRITTEN_LAWS, WrittenLaw, is_parameter, law_text, lines_of};
 use souple_table::{Value, Values};
 
 /// Principal stretches.
@@ -163,19 +164,21 @@ fn laws_of_the_table_are_the_texts() {
     let isotropic = [("youngs_modulus", number(80e3 / 3.0)), ("poissons_ratio", number(1.0 / 3.0))];
     let mooney = [("c10", number(4e3)), ("c01", number(1e3))];
     let ogden = [("mu", Value::Numbers(&[6e3, -1e3])), ("alpha", Value::Numbers(&[1.8, -2.5]))];
+    let yeoh = [("c1", number(5e3)), ("c2", number(-200.0)), ("c3", number(50.0))];
     for law in AnyLaw::ALL {
         let entry = law.entry();
         let text = compiled(WrittenLaw::find(entry.name).unwrap());
         let (own, has_bulk) = match entry.name {
-            "mooney_rivlin" => (mooney, true),
-            "ogden" => (ogden, true),
-            _ => (isotropic, false),
+            "mooney_rivlin" => (&mooney[..], true),
+            "ogden" => (&ogden[..], true),
+            "yeoh" => (&yeoh[..], true),
+            _ => (&isotropic[..], false),
         };
         let mut values = Values::new().with("density", number(1e3));
         if has_bulk {
             values.set("bulk_modulus", number(100e3));
         }
-        let values = own.into_iter().fold(values, |values, (name, value)| values.with(name, value));
+        let values = own.iter().fold(values, |values, (name, value)| values.with(*name, *value));
         let material = (entry.build)(&entry.values(values).unwrap()).unwrap();
         let scale = text.stiffness.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut state = 1_u64;
@@ -353,4 +356,22 @@ fn names_of_the_source() {
     assert_eq!(source_law_name("st_venant_kirchhoff"), "SaintVenant");
     assert_eq!(source_law_name("mooney_rivlin"), "MooneyRivlin");
     assert!(element_data(ElementKind::Tet4, ElementKind::Tet4.default_rule(), MapKind::Box).is_err());
+}
+
+/// The files of derived laws are what their texts say.
+#[test]
+fn derived_laws_are_their_texts() {
+    for (name, file) in DERIVED {
+        let written = WrittenLaw::find(name).unwrap();
+        let text = written.text().unwrap();
+        let lines = lines_of(&text);
+        let words = name.split('_').map(|word| word[..1].to_uppercase() + &word[1..]);
+        let heading = Heading { name: &words.collect::<String>(), summary: written.summary, written: &lines };
+        let law = EnergyLaw::compile(&text).unwrap().continued();
+        assert_eq!(
+            kernel(&law, &heading).unwrap().trim_end(),
+            file.trim_end(),
+            "{name}: `cargo xtask kernels`"
+        );
+    }
 }

@@ -99,10 +99,15 @@ impl Log {
         self.push(fault);
     }
 
-    /// A fault found twice (by two readers of one value) is kept once.
+    /// A fault found twice (by two readers of one value, or by two uses of a parameter) is kept once.
     pub fn push(&self, fault: Fault) {
         let mut faults = self.0.borrow_mut();
-        if !faults.contains(&fault) {
+        let is_told = |told: &Fault| {
+            let is_of_text = fault.site.place.end > fault.site.place.start;
+            *told == fault
+                || (is_of_text && told.site.place == fault.site.place && told.message == fault.message)
+        };
+        if !faults.iter().any(is_told) {
             faults.push(fault);
         }
     }
@@ -112,7 +117,9 @@ impl Log {
     }
 
     pub fn into_diagnostics(self, sources: &Sources) -> Diagnostics {
-        let faults = self.0.into_inner();
+        let mut faults = self.0.into_inner();
+        // as they stand in the texts
+        faults.sort_by_key(|fault| (fault.site.place.source, fault.site.place.start));
         Diagnostics(faults.into_iter().map(|fault| Diagnostic::new(fault, sources)).collect())
     }
 }

@@ -65,7 +65,7 @@ pub enum StepError {
         block: Option<usize>,
     },
     #[error(
-        "Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take a smaller step, more load steps or `newton = \"one\"`"
+        "Newton's method did not converge in {iterations} iterations: the unbalanced force is {residual:.3e} of what it was, {wanted:.1e} is wanted; take smaller steps, of time or load, or `newton = \"one\"` where the stepper knows it"
     )]
     NewtonStalled {
         iterations: u64,
@@ -93,8 +93,12 @@ pub enum StepError {
         "force `{force}` is not finite or too large to compute with ({value:?} at row {row}, time {time} s): it has no value there; lead or load more slowly, or stay where it has"
     )]
     ForceNotFinite { force: String, row: usize, value: [f64; 3], time: f64 },
-    #[error("the motion of what is led is not finite ({value:?} at time {time} s)")]
+    #[error(
+        "the {what} of what is led is not finite or too large to compute with ({value:?} at time {time} s)"
+    )]
     MotionNotFinite {
+        /// Motion or velocity.
+        what: &'static str,
         /// The velocity block that is led.
         block: usize,
         value: [f64; 3],
@@ -218,6 +222,9 @@ pub trait Stepper: Send + Sync {
     fn solver_settings(&self) -> SolverSettings {
         SolverSettings::default()
     }
+
+    /// Drops what history says of forces, which have jumped at the state that a step came to.
+    fn forget_forces(&self, _state: &mut SystemState) {}
 
     /// Whether it can go on from a [`SystemState::history`] read from a file.
     fn accepts_history(&self, _system: &System, history: &[f64]) -> bool {

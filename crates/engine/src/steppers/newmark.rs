@@ -124,6 +124,11 @@ impl Stepper for Newmark {
         self.solver.clone()
     }
 
+    fn forget_forces(&self, state: &mut SystemState) {
+        // the acceleration is that of the forces before; the next step begins with one of its own
+        state.history.clear();
+    }
+
     fn accepts_history(&self, system: &System, history: &[f64]) -> bool {
         implicit::accepts(&system.kinematics, history, 1)
     }

@@ -4,6 +4,7 @@
 //! styles share one walk over the graph and differ in how they write an operation.
 
 mod element;
+mod kernel;
 mod latex;
 mod rust;
 mod script;
@@ -13,6 +14,7 @@ mod wgsl;
 use std::collections::HashMap;
 
 pub use element::{ElementCode, Emitted};
+pub use kernel::{Heading, NoKernel, kernel};
 pub use latex::Latex;
 pub use rust::Rust;
 pub use script::{maxima, maxima_name};

@@ -39,7 +39,8 @@ impl Graph {
                 (0..symbol.shape.size())
                     .map(|index| {
                         let name = match symbol.shape {
-                            Shape::Vector => format!("{}_{index}", symbol.name),
+                            // by letters: `D_0` is a grouped constant
+                            Shape::Vector => format!("{}_{}", symbol.name, ["x", "y", "z"][index]),
                             _ => format!("{}_{}{}", symbol.name, index % 3, index / 3),
                         };
                         self.own_symbol(&name)

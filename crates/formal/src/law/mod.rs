@@ -6,6 +6,7 @@
 
 mod calls;
 mod check;
+mod continued;
 mod domain;
 mod error;
 mod evaluate;
@@ -14,6 +15,7 @@ mod read;
 mod value;
 mod vocabulary;
 
+pub use continued::SMALLEST_VOLUME;
 pub use error::{LawError, LawProblem, UnitClash, WantedUnits};
 pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};
 
@@ -47,7 +49,7 @@ impl LawParameter {
         }
     }
 
-    fn shape(&self) -> Shape {
+    pub(crate) fn shape(&self) -> Shape {
         match self {
             Self::Number { .. } => Shape::Scalar,
             Self::Direction(_) => Shape::Vector,
@@ -93,6 +95,13 @@ pub(crate) const VARIATION: &str = "dF";
 /// Operands in the derivatives of a law at most; those of the laws that ship have a few hundred.
 const LARGEST_DERIVATIVES: usize = 200_000;
 
+/// `P = ∂Ψ/∂F` and `δP = ∂P/∂F : δF`.
+fn derivatives(graph: &mut Graph, energy: Expr, [deformation, variation]: [Expr; 2]) -> (Expr, Expr) {
+    let stress = graph.gradient(energy, deformation);
+    let seeds = std::collections::HashMap::from([(deformation, variation)]);
+    (stress, graph.differential(stress, &seeds))
+}
+
 impl EnergyLaw {
     /// Mean stress over relative change of volume at rest, `C_iijj / 9` [Pa].
     pub fn bulk_modulus(&self) -> f64 {
@@ -118,9 +127,7 @@ impl EnergyLaw {
         read.graph.allow(Some(LARGEST_DERIVATIVES));
         let deformation = read.graph.symbol(DEFORMATION, Shape::Matrix);
         let variation = read.graph.symbol(VARIATION, Shape::Matrix);
-        let stress = read.graph.gradient(read.energy, deformation);
-        let differential =
-            read.graph.differential(stress, &std::collections::HashMap::from([(deformation, variation)]));
+        let (stress, differential) = derivatives(&mut read.graph, read.energy, [deformation, variation]);
         if read.graph.is_exhausted() {
             return Err(check::too_long(&read));
         }
@@ -141,6 +148,14 @@ impl EnergyLaw {
         };
         check::check(&mut law, &read)?;
         Ok(law)
+    }
+
+    /// Derives stress and differential of the energy anew.
+    fn derive(&mut self) {
+        let by = [self.deformation, self.variation];
+        let (stress, differential) = derivatives(&mut self.graph, self.energy, by);
+        [self.stress, self.differential] =
+            [stress, differential].map(|derivative| self.graph.factored(&[derivative])[0]);
     }
 
     /// The addends of the energy; an offset, which makes no force, is none.

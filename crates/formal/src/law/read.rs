@@ -8,7 +8,7 @@ use super::value::{
 };
 use super::vocabulary::{self, LAW_FUNCTIONS, QUANTITIES, SIGNS_OF_BOOKS, Word};
 use super::{LawError, LawParameter, LawProblem, LawText, UnitClash, WantedUnits};
-use crate::function::CONSTANTS;
+use crate::function::{CONSTANTS, FUNCTIONS};
 use crate::graph::{Expr, Graph, Shape};
 use crate::{
     BinaryOperator, Dimension, Expression, FunctionEntry, NodeId, NodeKind, ParseError, Span, UnaryOperator,
@@ -91,10 +91,16 @@ pub(super) fn read_formula(formula: &str) -> Result<Numbers, LawError> {
     let expression = parsed("formula", formula)?;
     let mut names: Vec<String> = Vec::new();
     for node in expression.nodes() {
-        if let NodeKind::Name(name) = &node.kind
-            && !names.contains(&name.to_string())
-        {
-            names.push(name.to_string());
+        match &node.kind {
+            NodeKind::Name(name) if !names.contains(name) => names.push(name.clone()),
+            // functions of a deformation, of which there is none
+            NodeKind::Call { name, .. } if Word::find(LAW_FUNCTIONS, name).is_some() => {
+                let known = FUNCTIONS.iter().map(|entry| entry.name).collect();
+                let problem = LawProblem::UnknownFunction { name: short(name), nearest: None, known };
+                let here = Span::new(node.span.start, node.span.start + name.len());
+                return Err(LawError::new("formula", Some(here), problem));
+            }
+            _ => {}
         }
     }
     let number = |name: &String| (name.clone(), LawParameter::Number { value: 0.0, dimension: None });

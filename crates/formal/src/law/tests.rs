@@ -552,13 +552,13 @@ fn even_powers_of_sizes_are_smooth() {
 fn ends_are_told() {
     let warned = |energy: &str| {
         let law = EnergyLaw::compile(&text(energy, &[("mu", 2.0)])).expect(energy);
-        law.warnings.iter().find(|warning| warning.contains("no finite value where")).cloned()
+        law.warnings.iter().find(|warning| warning.contains("no finite value beyond")).cloned()
     };
     for (energy, said) in [
-        ("mu*dot(E, E) + mu*asin(J - 1)^2", "pulled along x beyond 2.0000"),
+        ("mu*dot(E, E) + mu*asin(J - 1)^2", "pulled along x to 2.0000"),
         // E_xx = (s² - 1)/2 = 1
-        ("-mu*log(1 - dot(E, E))", "pulled along x beyond 1.7321"),
-        ("mu*dot(E, E) - mu*log(J - 0.5) + 2*mu*J", "pulled along x below 0.5"),
+        ("-mu*log(1 - dot(E, E))", "pulled along x to 1.7321"),
+        ("mu*dot(E, E) - mu*log(J - 0.5) + 2*mu*J", "pulled along x to 0.5"),
     ] {
         assert!(
             warned(energy).is_some_and(|warning| warning.contains(said)),
@@ -580,4 +580,53 @@ fn directions_of_any_length_are_one() {
     for energy in energies {
         assert!((energy - energies[0]).abs() < 1e-14 * energies[0].abs(), "{energies:?}");
     }
+}
+
+/// A law that turns change far from rest alone is refused; one that makes much of roundings there is not.
+#[test]
+fn turns_are_tried_far_from_rest() {
+    let far = "mu/2*(I1 - 3 - 2*log(J)) + mu*max(I1 - 5, 0)^2*(F11 - 1)^2";
+    assert!(matches!(*refused(&text(far, &[("mu", 2.0)])).problem, LawProblem::NotObjective { .. }));
+    for b in ["50", "200", "1000"] {
+        let energy = format!("mu*(I1_bar - 3)*exp({b}*(J - 1)^2) + mu*(J - 1)^2");
+        let read = EnergyLaw::compile(&text(&energy, &[("mu", 2.0)]));
+        assert!(read.is_ok(), "{b}: {:?}", read.err());
+    }
+}
+
+/// Poles, and jumps in shear and far out, are told as jumps of a stretch are.
+#[test]
+fn poles_and_jumps_in_shear_are_told() {
+    let warned = |energy: &str| law(energy, &[("mu", 2.0)]).warnings.join("; ");
+    for (energy, said) in [
+        (
+            "mu*dot(E, E) + mu*(J - 1)^2/(1.3 - J)",
+            "the energy has a pole where a cube is pulled along x to 1.3000",
+        ),
+        (
+            "mu*dot(E, E) + mu*(J - 1)^2*tan(J)",
+            "the energy has a pole where a cube is pulled along x to 1.5708",
+        ),
+        (
+            "mu*dot(E, E) + if(abs(C12) > 0.1, mu, 0)",
+            "the energy jumps by 2.000e0 J/m³ where a cube is sheared by",
+        ),
+        ("mu*dot(E, E) + if(I1_bar > 8, mu, 0)", "the energy jumps by"),
+        (
+            "mu/2*(I1_bar - 3) + mu*(J - 1)^2 - mu*log(1 - (I1_bar - 3)/15)",
+            "no finite value beyond a cube that is pulled along x to 8.5",
+        ),
+    ] {
+        let told = warned(energy);
+        assert!(told.contains(said), "{energy}: {told}");
+    }
+    // an exponential overflows far beyond what it is made for
+    assert!(!warned("mu*(exp(dot(E, E)) - 1)").contains("no finite value"));
+}
+
+/// What takes a deformation is no function of numbers.
+#[test]
+fn formulas_of_numbers_have_no_deformation() {
+    let error = group_constants("I4([1, 0, 0]) + F*x", &["x".to_owned()]).expect_err("a deformation");
+    assert!(error.to_string().contains("there is no function `I4`"), "{error}");
 }

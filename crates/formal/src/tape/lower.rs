@@ -10,14 +10,14 @@ const MOST_MULTIPLIED: f64 = 64.0;
 
 /// A number, or the first of several, within a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Place {
+pub(crate) struct Place {
     pub value: usize,
     pub offset: u32,
 }
 
 /// An instruction before its values have registers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
+pub(crate) struct Step {
     pub code: Code,
     pub entries: u8,
     pub out: Place,
@@ -25,7 +25,7 @@ pub(super) struct Step {
 }
 
 /// What the values of a tape hold.
-pub(super) struct Lowered {
+pub(crate) struct Lowered {
     /// Numbers of each value.
     pub sizes: Vec<usize>,
     /// Steps that need `F` only, then the others.
@@ -34,10 +34,12 @@ pub(super) struct Lowered {
     /// Of the inputs that come first, and of those that vary at the same first ones.
     pub inputs: [Vec<Place>; 2],
     pub outputs: Vec<Place>,
+    /// Where expressions are.
+    pub places: HashMap<Expr, Place>,
 }
 
 /// What a tape is made of.
-pub(super) struct Request<'a> {
+pub(crate) struct Request<'a> {
     pub graph: &'a Graph,
     /// Symbols that vary from lane to lane: those that come first, and those that vary at the same first ones.
     pub inputs: [&'a [Expr]; 2],
@@ -58,13 +60,17 @@ struct Lowering<'a> {
     /// Powers of a base at hand, by exponents that are not whole.
     powers: HashMap<Expr, Vec<(f64, Place)>>,
     numbers: HashMap<u64, Place>,
+    /// Products of two numbers at hand.
+    multiplied: HashMap<(Place, Place), Place>,
+    /// Per value: which list of steps it comes from; the first where it comes from none.
+    part_of: Vec<usize>,
     out: Lowered,
     /// Which list of steps is written to.
     part: usize,
 }
 
 /// `numbers` gives those of symbols that are no inputs.
-pub(super) fn lower<'n>(request: &Request, numbers: impl Fn(&Symbol) -> &'n [f64]) -> Lowered {
+pub(crate) fn lower<'n>(request: &Request, numbers: impl Fn(&Symbol) -> &'n [f64]) -> Lowered {
     let Request { graph, inputs, definitions, outputs } = *request;
     let roots: Vec<Expr> = definitions.iter().map(|(_, of)| *of).chain(outputs.iter().copied()).collect();
     let variables: Vec<Expr> = inputs
@@ -99,22 +105,27 @@ pub(super) fn lower<'n>(request: &Request, numbers: impl Fn(&Symbol) -> &'n [f64
         places: HashMap::new(),
         powers: HashMap::new(),
         numbers: HashMap::new(),
+        multiplied: HashMap::new(),
+        part_of: Vec::new(),
         out: Lowered {
             sizes: Vec::new(),
             steps: [Vec::new(), Vec::new()],
             constants: Vec::new(),
             inputs: [Vec::new(), Vec::new()],
             outputs: Vec::new(),
+            places: HashMap::new(),
         },
         part: 0,
     };
     for (part, inputs) in inputs.into_iter().enumerate() {
         for input in inputs {
+            lowering.part = part;
             let place = lowering.new_value(graph.shape(*input).size());
             lowering.places.insert(*input, place);
             lowering.out.inputs[part].push(place);
         }
     }
+    lowering.part = 0;
     for (symbol, definition) in definitions {
         let place = lowering.place(*definition);
         lowering.places.insert(*symbol, place);
@@ -123,12 +134,13 @@ pub(super) fn lower<'n>(request: &Request, numbers: impl Fn(&Symbol) -> &'n [f64
         let place = lowering.place(*output);
         lowering.out.outputs.push(place);
     }
-    lowering.out
+    Lowered { places: lowering.places, ..lowering.out }
 }
 
 impl Lowering<'_> {
     fn new_value(&mut self, size: usize) -> Place {
         self.out.sizes.push(size);
+        self.part_of.push(self.part);
         Place { value: self.out.sizes.len() - 1, offset: 0 }
     }
 
@@ -137,6 +149,7 @@ impl Lowering<'_> {
             return *place;
         }
         let place = self.new_value(1);
+        self.part_of[place.value] = 0;
         self.out.constants.push((place, value));
         self.numbers.insert(value.to_bits(), place);
         place
@@ -179,6 +192,7 @@ impl Lowering<'_> {
         } else {
             let numbers = self.uniform.of(expr).to_vec();
             let place = self.new_value(numbers.len());
+            self.part_of[place.value] = 0;
             for (offset, value) in numbers.into_iter().enumerate() {
                 self.out.constants.push((Place { offset: offset as u32, ..place }, value));
             }
@@ -284,6 +298,21 @@ impl Lowering<'_> {
         if constant != 1.0 || above.is_empty() || above.len() + below.len() < 2 {
             above.insert(0, self.number(constant));
         }
+        // what varies last is multiplied last
+        above.sort_by_key(|factor| self.part_of[factor.value]);
+        let is_late = |factor: &Place| self.part_of[factor.value] > 0;
+        let late = above.iter().position(is_late).unwrap_or(above.len());
+        if self.part > 0 && late < above.len() && !below.is_empty() && !below.iter().any(is_late) {
+            // one division for all variations
+            let varying = above.split_off(late);
+            let quotient = self.in_first_part(|lowering| {
+                let first =
+                    if above.is_empty() { lowering.number(1.0) } else { lowering.multiply_all(&above) };
+                let below = lowering.multiply_all(&below);
+                lowering.emit(Code::Divide, 1, 1, &[first, below])
+            });
+            return (quotient, self.multiply_all(&varying), false);
+        }
         if below.is_empty() {
             let last = above.pop().unwrap_or_else(|| unreachable!("a product has two factors"));
             let first = self.multiply_all(&above);
@@ -292,12 +321,33 @@ impl Lowering<'_> {
         (self.multiply_all(&above), self.multiply_all(&below), true)
     }
 
+    /// What is emitted to the steps that need no variation.
+    fn in_first_part(&mut self, emit: impl FnOnce(&mut Self) -> Place) -> Place {
+        let outer = std::mem::replace(&mut self.part, 0);
+        let place = emit(self);
+        self.part = outer;
+        place
+    }
+
+    /// The product of factors of which those that vary last stand last.
     fn multiply_all(&mut self, factors: &[Place]) -> Place {
         let mut product = factors[0];
         for factor in &factors[1..] {
-            product = self.emit(Code::Multiply, 1, 1, &[product, *factor]);
+            product = self.multiply_two(product, *factor);
         }
         product
+    }
+
+    fn multiply_two(&mut self, a: Place, b: Place) -> Place {
+        let key = if (a.value, a.offset) <= (b.value, b.offset) { (a, b) } else { (b, a) };
+        if let Some(known) = self.multiplied.get(&key) {
+            return *known;
+        }
+        let multiply = |lowering: &mut Self| lowering.emit(Code::Multiply, 1, 1, &[a, b]);
+        let needs_no_variation = self.part_of[a.value] == 0 && self.part_of[b.value] == 0;
+        let place = if needs_no_variation { self.in_first_part(multiply) } else { multiply(self) };
+        self.multiplied.insert(key, place);
+        place
     }
 
     fn sum(&mut self, terms: &[Expr]) -> Place {

@@ -24,7 +24,7 @@ impl Free {
 }
 
 pub(super) fn assign(lowered: Lowered) -> Tape {
-    let Lowered { sizes, steps, constants, inputs, outputs } = lowered;
+    let Lowered { sizes, steps, constants, inputs, outputs, .. } = lowered;
     let split = steps[0].len();
     let steps: Vec<Step> = steps.into_iter().flatten().collect();
     let mut computed_again = vec![false; sizes.len()];

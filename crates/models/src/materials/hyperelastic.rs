@@ -169,6 +169,8 @@ static KNOWN: Mutex<VecDeque<Arc<TextLaw>>> = Mutex::new(VecDeque::new());
 const KNOWN_MOST: usize = 32;
 /// Of the largest entry of the stiffness at rest: eighty-one of them are summed, each a hundred roundings of the derivation.
 const MODULUS_ROUNDING: f64 = 1e-12;
+/// The same, for entries one by one.
+const ISOTROPY_ROUNDING: f64 = 1e-11;
 
 impl TextLaw {
     /// The law of a text, compiled if it is not among those compiled last.
@@ -221,6 +223,47 @@ impl TextLaw {
         let largest = self.law.stiffness.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
         [self.law.bulk_modulus(), self.law.mean_shear_modulus()]
             .map(|modulus| if modulus.abs() <= MODULUS_ROUNDING * largest { 0.0 } else { modulus })
+    }
+
+    /// The law of small strain with the stiffness at rest, `Ψ = 1/2 ε : C : ε`, where that is not the same in all directions.
+    pub(crate) fn anisotropic_at_rest(&self) -> Option<Arc<Self>> {
+        // entries of `F` by columns that make each strain: three stretches, three shears of two entries each
+        const STRAINS: [(&str, &[usize]); 6] = [
+            ("eps11", &[0]),
+            ("eps22", &[4]),
+            ("eps33", &[8]),
+            ("eps12", &[1, 3]),
+            ("eps13", &[2, 6]),
+            ("eps23", &[5, 7]),
+        ];
+        let Lame { mu, lambda } = self.small_strain();
+        let isotropic = |a: usize, b: usize| {
+            let same = |condition: bool| f64::from(u8::from(condition));
+            let (ra, ca, rb, cb) = (a % 3, a / 3, b % 3, b / 3);
+            lambda * same(ra == ca) * same(rb == cb) + mu * (same(a == b) + same(ra == cb) * same(ca == rb))
+        };
+        let entry = |a: usize, b: usize| self.law.stiffness[9 * a + b];
+        let pairs = || (0..81).map(|index| (index / 9, index % 9));
+        let largest = pairs().fold(0.0, |most: f64, (a, b)| most.max(entry(a, b).abs()));
+        if pairs().all(|(a, b)| (entry(a, b) - isotropic(a, b)).abs() <= ISOTROPY_ROUNDING * largest) {
+            return None;
+        }
+        let (mut terms, mut parameters) = (Vec::new(), Vec::new());
+        for (i, (first, of_first)) in STRAINS.iter().enumerate() {
+            for (second, of_second) in &STRAINS[i..] {
+                let sum: f64 =
+                    of_first.iter().flat_map(|a| of_second.iter().map(move |b| entry(*a, *b))).sum();
+                // pairs of different strains stand twice in the sum
+                let value = if first == second { 0.5 * sum } else { sum };
+                if value.abs() > ISOTROPY_ROUNDING * largest {
+                    let name = format!("c{}", parameters.len());
+                    terms.push(format!("{name}*{first}*{second}"));
+                    parameters.push((name, LawParameter::Number { value, dimension: None }));
+                }
+            }
+        }
+        let text = LawText { energy: terms.join(" + "), definitions: Vec::new(), parameters };
+        Self::known(text).ok()
     }
 
     /// Moduli at rest: of an anisotropic law the mean shear modulus, and the stiffest longitudinal one.

@@ -8,7 +8,7 @@ use souple_math::{Mat3, Real, Vec3};
 /// A hyperelastic law. Implementors are empty types: kernels are instantiated per law.
 ///
 /// `F` is the deformation gradient (no unit, entry `(i, j) = ∂xᵢ/∂Xⱼ`); every function is finite for every
-/// `F`, inverted and singular ones included, as long as a twelfth power of its entries does not overflow.
+/// `F`, inverted and singular ones included, as long as a twelfth power of its entries (a twentieth under Yeoh's law) does not overflow.
 pub trait Law: Copy + Send + Sync + 'static {
     /// The numbers of the law, one set per element.
     type Parameters<R: Real>: Parameters<R>;

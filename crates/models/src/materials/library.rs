@@ -137,3 +137,9 @@ impl WrittenLaw {
         Ok(TextLaw::compile(self.text()?)?.small_strain())
     }
 }
+
+/// A law as its author wrote it, a line for the energy and one for each part.
+pub fn lines_of(text: &LawText) -> Vec<String> {
+    let parts = text.definitions.iter().map(|(name, part)| format!("{name} = {part}"));
+    std::iter::once(format!("Ψ = {}", text.energy)).chain(parts).collect()
+}

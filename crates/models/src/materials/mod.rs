@@ -7,6 +7,7 @@
 #![allow(non_snake_case)]
 
 mod corotational;
+mod derived;
 mod hyperelastic;
 mod invariants;
 mod isochoric;
@@ -18,6 +19,7 @@ mod neo_hookean;
 mod ogden;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
+mod yeoh;
 
 use std::sync::Arc;
 
@@ -26,9 +28,10 @@ use souple_formal::law::Strain;
 use souple_math::Mat3;
 use souple_table::{Entry, Parameter, Range, Table, Values};
 
+pub use derived::DERIVED;
 pub use hyperelastic::{MaterialError, TextLaw, is_parameter, law_text};
 pub use law::{Lame, Law, Parameters};
-pub use library::{WRITTEN_LAWS, WrittenLaw};
+pub use library::{WRITTEN_LAWS, WrittenLaw, lines_of};
 
 /// Writes the table, the choice of a law at run time and its dispatch from one list.
 macro_rules! laws {
@@ -67,6 +70,7 @@ laws! {
     stable_neo_hookean: StableNeoHookean,
     mooney_rivlin: MooneyRivlin,
     ogden: Ogden,
+    yeoh: Yeoh,
 }
 
 /// What an entry makes of its completed values.

@@ -30,6 +30,12 @@ impl RayleighDamping {
     pub fn new(description: &SolidDescription, seconds: f64) -> Result<Self, FlatCell> {
         let linearised = |material: &Material| {
             let mut of_rest = material.clone();
+            if let MaterialLaw::Text(law) = &material.law
+                && let Some(linear) = law.anisotropic_at_rest()
+            {
+                of_rest.law = MaterialLaw::Text(linear);
+                return of_rest;
+            }
             of_rest.law = MaterialLaw::Known(AnyLaw::Linear);
             material.small_strain.pack(|i, number| of_rest.parameters[i] = number);
             of_rest

@@ -12,6 +12,12 @@ pub fn material_of(entry: &Entry<Build>, youngs_modulus: f64, poissons_ratio: f6
             .with("c10", Value::Number(0.4 * lame.mu))
             .with("c01", Value::Number(0.1 * lame.mu))
             .with("bulk_modulus", Value::Number(lame.bulk_modulus())),
+        // shear modulus 2 c₁; stiffer where it is stretched
+        "yeoh" => Values::new()
+            .with("c1", Value::Number(0.5 * lame.mu))
+            .with("c2", Value::Number(-0.02 * lame.mu))
+            .with("c3", Value::Number(0.005 * lame.mu))
+            .with("bulk_modulus", Value::Number(lame.bulk_modulus())),
         // Σ μ α / 2 = μ, three quarters of it by lengths
         "ogden" => Values::new()
             .with("mu", Value::Numbers(&[1.5 / 1.8 * lame.mu, -0.5 / 2.5 * lame.mu]))

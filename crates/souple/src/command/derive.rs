@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde_json::json;
 use souple_formal::element::Cut;
-use souple_formal::emit::{ElementCode, Latex, Style, Text, maxima, symbol, write};
+use souple_formal::emit::{ElementCode, Heading, Latex, Style, Text, kernel, maxima, symbol, write};
 use souple_formal::graph::{Expr, Shape};
 use souple_formal::law::{EnergyLaw, LawProblem, LawText, group_constants};
 use souple_mesh::ElementKind;
@@ -28,7 +28,7 @@ pub struct Arguments {
     #[arg(long, required_unless_present_any = ["list", "check", "group"], allow_hyphen_values = true)]
     law: Option<String>,
     /// An element of surfaces or volumes, such as tri3, hex8 or tet10
-    #[arg(long, required_unless_present_any = ["list", "check", "group"])]
+    #[arg(long)]
     element: Option<String>,
     /// Lists what can be derived: every law on every element under every rule, in every cut
     // what would change nothing is refused, here and below
@@ -89,6 +89,8 @@ enum Emit {
     Wgsl,
     Latex,
     Maxima,
+    /// A law without an element, as Rust over numbers side by side: a file of the program's own table of laws
+    Kernel,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -115,7 +117,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         let definition = text.definitions.iter().find(|(name, _)| *name == error.part);
         let written = definition.map_or(text.energy.as_str(), |(_, text)| text.as_str());
         let expected = match &*error.problem {
-            LawProblem::UnknownName { name, shape, .. } => {
+            LawProblem::UnknownName { name, shape, nearest: None, .. } => {
                 let example = if *shape == Shape::Vector { "[1, 0, 0]" } else { "10 kPa" };
                 format!(
                     "a hyperelastic law whose constants are given, as by `--parameter {name}=\"{example}\"` or `--define {name}=TEXT`"
@@ -127,6 +129,13 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Refusal::request("law", value, expected, error.explained(written)).within(&error, written)
     })?;
     let compiled_seconds = clock.elapsed().as_secs_f64();
+    if arguments.emit == Emit::Kernel {
+        return emit_kernel(&name, &text, &law, arguments);
+    }
+    if arguments.element.is_none() {
+        let message = "a law is derived on an element; of itself it is only written as a kernel".to_owned();
+        return Err(Refusal::request("element", "", "`--element NAME`, or `--emit kernel`", message));
+    }
     let kind = ElementKind::from_name(element_name).map_err(|unknown| {
         let expected = format!("one of {}", unknown.known.join(", "));
         Refusal::request("unknown_element", element_name, expected, unknown.to_string())
@@ -201,8 +210,34 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Emit::Rust => emit_text(&derived.emit(ElementCode::Rust).text, "rust", arguments.json),
         Emit::Wgsl => emit_text(&derived.emit(ElementCode::Wgsl).text, "wgsl", arguments.json),
         Emit::Maxima => emit_text(&maxima(&element, &law, &association), "maxima", arguments.json),
+        Emit::Kernel => unreachable!("written above"),
     }
     Ok(End::Done)
+}
+
+/// A law as a file of the table of laws.
+fn emit_kernel(name: &str, text: &LawText, law: &EnergyLaw, arguments: &Arguments) -> Result<End, Refusal> {
+    if let Some(element) = &arguments.element {
+        let message = "a kernel is of a law alone, whatever the element".to_owned();
+        return Err(Refusal::request("element", element, "`--emit kernel` without `--element`", message));
+    }
+    let written = WrittenLaw::find(name);
+    let summary = written.map_or("A law", |law| law.summary);
+    let lines = souple_models::materials::lines_of(text);
+    let heading = Heading { name: &type_name(name), summary, written: &lines };
+    let source = kernel(&law.continued(), &heading)
+        .map_err(|error| Refusal::request("law", name, "a law of invariants", error.to_string()))?;
+    emit_text(&source, "rust", arguments.json);
+    Ok(End::Done)
+}
+
+/// `holzapfel_gasser_ogden` as `HolzapfelGasserOgden`.
+fn type_name(name: &str) -> String {
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    };
+    name.split('_').map(capital).collect()
 }
 
 fn emit_text(text: &str, language: &str, as_json: bool) {
@@ -221,7 +256,7 @@ fn group(formula: &str, arguments: &Arguments) -> Result<End, Refusal> {
     let style: &dyn Style = match arguments.emit {
         Emit::Stats => &Text,
         Emit::Latex => &Latex,
-        Emit::Rust | Emit::Wgsl | Emit::Maxima => {
+        Emit::Rust | Emit::Wgsl | Emit::Maxima | Emit::Kernel => {
             let message = "code is written of a law on an element; a formula is grouped as text, or as LaTeX";
             let asked = arguments.emit.to_possible_value().map(|value| value.get_name().to_owned());
             let expected = "`--group` without `--emit`, or with `--emit latex`";

@@ -1,8 +1,9 @@
-//! Mooney–Rivlin's and Ogden's rubber in uniaxial and in equibiaxial stretch, against closed forms.
+//! Mooney–Rivlin's, Yeoh's and Ogden's rubber in uniaxial and in equibiaxial stretch, against closed forms.
 //!
 //! With the stretches `s`, `J = s₁ s₂ s₃` and `β_i = Σ_p μ_p (J^(-1/3) s_i)^α_p`, the stress is
 //! `P_i = (β_i - β̄ + k J (J - 1))/s_i`, `β̄` the mean of the three; Mooney–Rivlin's law has the terms `(2 c₁₀, 2)` and
-//! `(-2 c₀₁, -2)`. The stretch along the directions left free is the root of `P = 0` there. References are to 30 digits.
+//! `(-2 c₀₁, -2)`; Yeoh's slope `Σ n c_n x^(n-1)` stands for `c₁₀`. The stretch along the directions left
+//! free is the root of `P = 0` there. References are to 30 digits.
 
 use crate::{Case, Reading, Tolerance};
 
@@ -11,6 +12,7 @@ const STATIC: &str =
 const TO_FOUR: &str = "parameters.stretch=4";
 const TO_LESS: &str = "parameters.stretch=0.6";
 const STRIP_OF_OGDEN: &str = r#"bodies.strip.material={ name = "ogden", mu = [6.3e5, 1.2e3, -1e4], alpha = [1.3, 5, -2], bulk_modulus = 8e6, density = 1000 }"#;
+const STRIP_OF_YEOH: &str = r#"bodies.strip.material={ name = "yeoh", c1 = 2.5e5, c2 = -5e3, c3 = 500, bulk_modulus = 9e6, density = 1000 }"#;
 const SHEET_OF_MOONEY: &str = r#"bodies.sheet.material={ name = "mooney_rivlin", c10 = 2e5, c01 = 5e4, bulk_modulus = 9e6, density = 1000 }"#;
 
 /// Cross-section at rest [m²].
@@ -111,6 +113,20 @@ pub(super) const CASES: &[Case] = &[
         reading: Reading::component("face", 2),
         reference: 0.02 * (0.278_663_655_604_988_7 - 1.0),
         ..SPREAD
+    },
+    Case {
+        id: "yeoh_uniaxial",
+        what: "pull of Yeoh's strip at stretch 2, by a law derived from its text",
+        settings: &[STRIP_OF_YEOH],
+        reference: STRIP * 792_145.189_290_046_7,
+        ..PULLED
+    },
+    Case {
+        id: "yeoh_uniaxial_far",
+        what: "the same at stretch 4, where it has stiffened",
+        settings: &[STRIP_OF_YEOH, TO_FOUR],
+        reference: STRIP * 2_203_301.231_271_049,
+        ..PULLED
     },
     Case {
         id: "mooney_equibiaxial",

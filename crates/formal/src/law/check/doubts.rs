@@ -51,37 +51,77 @@ const STIFFNESS_JUMP: f64 = 1e-3;
 /// body at rest holds for one of them.
 fn stiffness_jump(law: &EnergyLaw) -> Option<String> {
     let ways = ["deformed", "deformed", "stretched along x", "stretched along y", "swollen"];
-    directions().into_iter().zip(ways).rev().find_map(|(direction, way)| {
-        let [before, after] = [-ASIDE, ASIDE].map(|step| {
+    let of_way = |(direction, way): (Mat3, &'static str)| {
+        let stiffness = [-ASIDE, ASIDE].map(|step| {
             let dP = law.differential_at(&(identity() + direction * step), &direction);
             dP.dot(&direction) / direction.dot(&direction)
         });
-        let largest = largest_stiffness(law).max(before.abs()).max(after.abs());
-        ((after - before).abs() > STIFFNESS_JUMP * largest).then(|| {
-            format!(
-                "the stiffness at rest jumps from {before:.3e} to {after:.3e} Pa where a cube begins to be {way}: natural \
-                 frequencies, stable steps and moduli at rest are told for one side"
-            )
-        })
+        (way, stiffness)
+    };
+    let change = |(_, [before, after]): &(&str, [f64; 2])| (after - before).abs();
+    // told of the way along which it jumps most: that of a fibre, not of what lies beside it
+    let (way, [before, after]) =
+        directions().into_iter().zip(ways).map(of_way).max_by(|a, b| change(a).total_cmp(&change(b)))?;
+    let largest = largest_stiffness(law).max(before.abs()).max(after.abs());
+    // what is left of nothing by rounding is nothing
+    let [before, after] =
+        [before, after].map(|stiffness| if stiffness.abs() < ASIDE * largest { 0.0 } else { stiffness });
+    ((after - before).abs() > STIFFNESS_JUMP * largest).then(|| {
+        format!(
+            "the stiffness at rest jumps from {before:.3e} to {after:.3e} Pa where a cube begins to be {way}: natural \
+             frequencies, stable steps and moduli at rest are told for one side"
+        )
     })
 }
 
-/// Stretches along which jumps and ends are looked for, and how finely.
-const STRETCHES: [f64; 2] = [0.2, 3.0];
-const LOOKS: usize = 96;
+/// How many places are looked at along each way.
+const LOOKS: usize = 160;
 /// Halvings that leave two neighbouring numbers of one look.
-const TO_NEIGHBOURS: usize = 52;
+const TO_NEIGHBOURS: usize = 54;
 /// A change between neighbours that is no rounding, next to the numbers at both.
 const JUMP: f64 = 1e-6;
 /// The same, next to the stiffness at rest: where both numbers are small they are roundings.
 const LEAST_JUMP: f64 = 1e-9;
+/// Stretches beyond which an energy that overflows is no news: exponentials of tissue are made for less.
+const FAR: f64 = 3.0;
 
-type Way = (&'static str, fn(f64) -> Vec3);
-const WAYS: [Way; 2] =
-    [("pulled along x", |s| Vec3::new(s, 1.0, 1.0)), ("stretched in all directions", |s| Vec3::new(s, s, s))];
+/// A way to deform a cube, with the ends of what is looked at and where on it the cube is at rest.
+struct Way {
+    /// How the cube is deformed at a place, in words.
+    says: fn(f64) -> String,
+    deformation: fn(f64) -> Mat3,
+    ends: [f64; 2],
+    rest: f64,
+}
 
-fn look(number: usize) -> f64 {
-    STRETCHES[0] + (STRETCHES[1] - STRETCHES[0]) * number as f64 / (LOOKS - 1) as f64
+const WAYS: [Way; 3] = [
+    Way {
+        says: |s| format!("pulled along x to {s:.4} of its length"),
+        deformation: |s| diagonal(Vec3::new(s, 1.0, 1.0)),
+        ends: [0.2, 10.0],
+        rest: 1.0,
+    },
+    Way {
+        says: |s| format!("stretched in all directions to {s:.4} of its length"),
+        deformation: |s| diagonal(Vec3::new(s, s, s)),
+        ends: [0.2, 10.0],
+        rest: 1.0,
+    },
+    Way {
+        says: |s| format!("sheared by {s:.4}"),
+        deformation: |s| identity() + unit(3) * s,
+        ends: [-3.0, 3.0],
+        rest: 0.0,
+    },
+];
+
+impl Way {
+    /// Places, closer to each other where a cube is small.
+    fn look(&self, number: usize) -> f64 {
+        let [low, high] = self.ends;
+        let part = number as f64 / (LOOKS - 1) as f64;
+        if low > 0.0 { low * (high / low).powf(part) } else { low + (high - low) * part }
+    }
 }
 
 /// The two neighbours between `low` and `high` where what is true at `low` ceases to be.
@@ -93,28 +133,22 @@ fn border(mut low: f64, mut high: f64, is_as_low: impl Fn(f64) -> bool) -> [f64;
     [low, high]
 }
 
-/// Where an energy that is made of pieces, or its stress, is not continuous.
+/// Where an energy that is made of pieces, or its stress, is not continuous, or has a pole.
 fn jump(law: &EnergyLaw) -> Option<String> {
     let switches: Vec<Expr> =
         law.graph.reachable(&[law.energy]).into_iter().filter(|expr| is_of_pieces(law, *expr)).collect();
     if switches.is_empty() {
         return None;
     }
-    WAYS.into_iter().find_map(|(way, stretches)| {
-        let F = |s: f64| diagonal(stretches(s));
+    WAYS.iter().find_map(|way| {
+        let F = way.deformation;
         // which piece of each is the one in force
-        let pieces = |s: f64| -> Vec<f64> {
+        let pieces = |s: f64| -> Vec<i8> {
             let values = law.evaluate(&[law.energy], &F(s), &Mat3::ZERO);
-            let piece = |expr: &Expr| match law.graph.node(*expr) {
-                Node::Function(Function::Abs, argument) => {
-                    f64::from(u8::from(values.scalar(*argument) < 0.0))
-                }
-                _ => values.scalar(*expr),
-            };
-            switches.iter().map(piece).collect()
+            switches.iter().map(|expr| piece(law, *expr, |operand| values.scalar(operand))).collect()
         };
         (1..LOOKS).find_map(|number| {
-            let (mut low, high) = (look(number - 1), look(number));
+            let (mut low, high) = (way.look(number - 1), way.look(number));
             let last = pieces(high);
             loop {
                 let of_low = pieces(low);
@@ -123,8 +157,10 @@ fn jump(law: &EnergyLaw) -> Option<String> {
                 }
                 let [below, above] = border(low, high, |s| pieces(s) == of_low);
                 if let Some(what) = jump_between(law, &F(below), &F(above)) {
-                    let place = format!("where a cube is {way} to {above:.4} of its length");
-                    return Some(format!("{what} {place}: what passes there gains or loses it"));
+                    let place = (way.says)(above);
+                    return Some(format!(
+                        "{what} where a cube is {place}: what passes there gains or loses it"
+                    ));
                 }
                 low = above;
             }
@@ -132,12 +168,32 @@ fn jump(law: &EnergyLaw) -> Option<String> {
     })
 }
 
+/// The piece of an expression that is in force: a sign, or a number of a step.
+fn piece(law: &EnergyLaw, expr: Expr, value: impl Fn(Expr) -> f64) -> i8 {
+    let side = |number: f64| i8::from(number < 0.0);
+    match law.graph.node(expr) {
+        Node::Function(Function::Abs, argument) => side(value(*argument)),
+        Node::Function(Function::Tan, argument) => side(value(*argument).cos()),
+        // at zero itself is the pole
+        Node::Power(base, _) => value(*base).partial_cmp(&0.0).map_or(0, |order| order as i8),
+        // steps follow each other: neighbours differ
+        _ => (value(expr).rem_euclid(64.0)) as i8,
+    }
+}
+
 fn is_of_pieces(law: &EnergyLaw, expr: Expr) -> bool {
     match law.graph.node(expr) {
         Node::Compare(..) => true,
+        // a pole where its base is zero
+        Node::Power(_, exponent) => law.graph.value(*exponent).is_some_and(|exponent| exponent < 0.0),
         Node::Function(function, _) => matches!(
             function,
-            Function::Abs | Function::Floor | Function::Ceil | Function::Sign | Function::Step
+            Function::Abs
+                | Function::Floor
+                | Function::Ceil
+                | Function::Sign
+                | Function::Step
+                | Function::Tan
         ),
         _ => false,
     }
@@ -148,6 +204,9 @@ fn jump_between(law: &EnergyLaw, below: &Mat3, above: &Mat3) -> Option<String> {
     let rounding = LEAST_JUMP * largest_stiffness(law);
     let jumps = |change: f64, size: f64| change > JUMP * size && change > rounding;
     let energies = [below, above].map(|F| law.energy_at(F));
+    if energies.iter().any(|energy| !(energy.abs() < largest_stiffness(law) / f64::EPSILON.sqrt())) {
+        return energies[0].is_finite().then(|| "the energy has a pole".to_owned());
+    }
     let change = (energies[1] - energies[0]).abs();
     if jumps(change, energies[0].abs().max(energies[1].abs())) {
         return Some(format!("the energy jumps by {change:.3e} J/m³"));
@@ -160,15 +219,19 @@ fn jump_between(law: &EnergyLaw, below: &Mat3, above: &Mat3) -> Option<String> {
 
 /// Where a law that has a value at rest has none any more, of elements that are not inverted.
 fn end(law: &EnergyLaw) -> Option<String> {
-    WAYS.into_iter().find_map(|(way, stretches)| {
-        let has_value = |s: f64| law.energy_at(&diagonal(stretches(s))).is_finite();
-        let place = |found: Option<f64>| found.map(|without| border(1.0, without, has_value)[0]);
+    WAYS.iter().find_map(|way| {
+        let has_value = |s: f64| {
+            let energy = law.energy_at(&(way.deformation)(s));
+            energy.is_finite() || (energy.is_infinite() && s > FAR)
+        };
+        let place = |found: Option<f64>| found.map(|without| border(way.rest, without, has_value)[0]);
         let is_end = |s: &f64| !has_value(*s);
-        let beyond = place((0..LOOKS).map(look).filter(|s| *s > 1.0).find(is_end)).map(|end| ("beyond", end));
-        let below = || place((0..LOOKS).map(look).rev().filter(|s| *s < 1.0).find(is_end));
-        let (side, end) = beyond.or_else(|| below().map(|end| ("below", end)))?;
+        let looks = || (0..LOOKS).map(|number| way.look(number));
+        let beyond = place(looks().filter(|s| *s > way.rest).find(is_end));
+        let end = beyond.or_else(|| place(looks().rev().filter(|s| *s < way.rest).find(is_end)))?;
+        let place = (way.says)(end);
         Some(format!(
-            "the energy has no finite value where a cube is {way} {side} {end:.4} of its length: a step that leads there is refused"
+            "the energy has no finite value beyond a cube that is {place}: a step that leads there is refused"
         ))
     })
 }

@@ -366,11 +366,12 @@ impl Force for AdaptiveForce {
         true
     }
 
-    fn end_step(&self, positions: &[Vec3], memory: &mut [f64]) {
+    fn end_step(&self, positions: &[Vec3], memory: &mut [f64]) -> bool {
         let count = self.mesh.cell_count();
         // taken out: where threads share the work, this one may be given a part of another's
         let mut excesses = EXCESS.take();
         self.excesses(&memory[..count], positions, &mut excesses);
+        let switches = memory[count + 1];
         let cells = self.solids[0].elements.chunks().flat_map(|(_, chunk)| &chunk.cells);
         for (cell, excess) in cells.map(|cell| *cell as usize).zip(&excesses) {
             let law = usize::from(memory[cell] != 0.0);
@@ -383,6 +384,7 @@ impl Force for AdaptiveForce {
             }
         }
         EXCESS.set(excesses);
+        memory[count + 1] != switches
     }
 
     fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {

@@ -115,9 +115,7 @@ impl<'a> Report<'a> {
     /// What is counted beside the source: the same by tensors, by four loops, and without a reference element.
     fn comparisons(&self, derived: &Derived) -> String {
         let [forces, differential] = self.steps.map(|operations| operations.total());
-        let mut text = format!(
-            "\n  in tensors, as bodies run them: forces {forces}, differential {differential} operations\n"
-        );
+        let mut text = format!("\n  in tensors: forces {forces}, differential {differential} operations\n");
         if let Some([of_forces, of_differential]) = four_loop_operations(self.kind, self.name) {
             let _ = writeln!(
                 text,
@@ -171,7 +169,7 @@ impl<'a> Report<'a> {
         let [forces, differential] = self.steps.map(|operations| operations.total());
         self.derivation(cut)
             + &format!(
-                "  in tensors, as bodies run them: forces {forces}, differential {differential} operations\n  \
+                "  in tensors: forces {forces}, differential {differential} operations\n  \
                  {WithoutFormula}: no constants are grouped, and no code is written but with `--emit maxima`\n"
             )
     }
