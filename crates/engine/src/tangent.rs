@@ -80,6 +80,19 @@ impl Linearisation<'_> {
         }
         self.system.kinematics.velocity_map(free_row, self.q, self.v, self.rates.velocity)
     }
+
+    /// `g` over free rows as turns of rigid frames see it: without forces whose tangent leaves out what stress adds.
+    fn turned_into(&self, scratches: &mut [Scratch], out: &mut [Vec3]) {
+        out.copy_from_slice(self.unbalanced);
+        for (index, force) in self.system.forces.iter().enumerate() {
+            if force.leaves_out_stress() {
+                // g = M a - f
+                let view = self.system.view(index, self.rows, self.state, &self.around);
+                force.add_force(&view, &mut scratches[index], out);
+            }
+        }
+        self.system.kinematics.return_forces(out);
+    }
 }
 
 impl Tangent {
@@ -152,9 +165,8 @@ impl Tangent {
         // ∂(Tᵀ) g
         if kinematics.has_rigid_frames() {
             let mut unbalanced = std::mem::take(&mut self.unbalanced);
-            unbalanced.clear();
-            unbalanced.extend_from_slice(at.unbalanced);
-            kinematics.return_forces(&mut unbalanced);
+            unbalanced.resize(at.unbalanced.len(), Vec3::ZERO);
+            at.turned_into(scratches, &mut unbalanced);
             for (row, g) in unbalanced[..kinematics.free_row_count()].iter().enumerate() {
                 if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
                     add_block(&mut blocks, block as usize, block as usize, &geometric);
@@ -581,7 +593,7 @@ impl OperatorBuffers {
     }
 
     /// What all products at a linearisation have in common.
-    fn prepare(&mut self, at: &Linearisation, part: Part) {
+    fn prepare(&mut self, at: &Linearisation, part: Part, scratches: &mut [Scratch]) {
         let kinematics = &at.system.kinematics;
         if kinematics.is_trivial() {
             return;
@@ -598,8 +610,7 @@ impl OperatorBuffers {
         self.geometric.clear();
         if kinematics.has_rigid_frames() {
             self.geometric.resize(kinematics.block_count(), Mat3::ZERO);
-            self.row_force.copy_from_slice(at.unbalanced);
-            kinematics.return_forces(&mut self.row_force);
+            at.turned_into(scratches, &mut self.row_force);
             for (row, g) in self.row_force[..kinematics.free_row_count()].iter().enumerate() {
                 if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
                     self.geometric[block as usize] += match part {
@@ -643,7 +654,7 @@ impl<'a> TangentOperator<'a> {
         scratches: &'a mut [Scratch],
         buffers: &'a mut OperatorBuffers,
     ) -> Self {
-        buffers.prepare(at, part);
+        buffers.prepare(at, part, scratches);
         Self { at, part, buffers: Mutex::new((scratches, buffers)) }
     }
 

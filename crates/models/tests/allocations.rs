@@ -125,7 +125,7 @@ impl Block {
         let last = mesh.points.len() as u32 - 1;
         let end = mesh.points[last as usize];
         let load = Arc::new(FormulaVector::compile("[1, sin(t), -2]").unwrap());
-        let tie = Link { a: Combination::row(last), b: Combination::row(last - 1), rest_length: 0.05 };
+        let tie = Link::new(Combination::row(last), Combination::row(last - 1), 0.05);
         let spring = GroundSpring { row: last, share: 1.0, anchor: end };
         let mut forces: Vec<Box<dyn Force>> = vec![
             Box::new(SolidForce::new(&description("solid")).unwrap()),

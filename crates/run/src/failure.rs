@@ -46,8 +46,8 @@ pub enum Part {
 impl Part {
     /// The part of a body that a row of its system is of, and the row of its place.
     fn of_row(row: usize, body: &BodyInfo) -> Option<(Self, usize)> {
-        if body.rows.contains(&row) {
-            return Some((Self::Point(row - body.rows.start), row));
+        if let Some(point) = u32::try_from(row).ok().and_then(|row| body.point_of(row)) {
+            return Some((Self::Point(point as usize), row));
         }
         let origins = body.frames.as_ref()?.rows.iter().map(|origin| *origin as usize);
         let of_frame = |(_, origin): &(usize, usize)| (*origin..*origin + ROWS_OF_FRAME).contains(&row);

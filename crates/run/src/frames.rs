@@ -256,8 +256,11 @@ pub fn fields(world: &World, body: &BodyInfo) -> (Vec<Field>, Vec<Field>) {
         Field::new("displacement", 3, flat(&displacements)),
         Field::new("velocity", 3, flat(velocities)),
     ];
-    point_fields
-        .extend(body.frames.as_ref().map(|frames| Field::new("influence", 1, frames.influence.clone())));
+    let influence = body
+        .frames
+        .as_ref()
+        .map(|frames| (0..positions.len()).map(|point| frames.influence(point)).collect());
+    point_fields.extend(influence.map(|influence| Field::new("influence", 1, influence)));
     let levels = body.level_of_point(world);
     point_fields
         .extend(levels.map(|levels| Field::new("level", 1, levels.iter().map(|l| f64::from(*l)).collect())));

@@ -255,6 +255,9 @@ pub fn counts(world: &World, bodies: &[BodyInfo]) -> BTreeMap<String, u64> {
     for block in bodies.iter().flat_map(|body| &body.mesh.blocks) {
         add(block.kind.name(), block.len());
     }
+    for body in bodies.iter().filter(|body| body.hanging_count() > 0) {
+        add("hanging_points", body.hanging_count());
+    }
     counts
 }
 

@@ -401,7 +401,11 @@ pub fn choose<B>(
             let hint = did_you_mean(&item.key, accepted.iter().copied());
             let message = format!("{} `{}` has no key `{}`{hint}", table.kind, entry.name, quoted(&item.key));
             let site = Site { place: item.key_place, path };
-            log.add(Code::UnknownKey, &site, message, format!("one of {}", accepted.join(", ")));
+            let expected = match accepted.is_empty() {
+                true => "its name alone".to_owned(),
+                false => format!("one of {}", accepted.join(", ")),
+            };
+            log.add(Code::UnknownKey, &site, message, expected);
             is_good = false;
             continue;
         };

@@ -16,7 +16,7 @@ use souple_skin::target::Moment;
 use souple_skin::{Polygons, Skin, SkinError};
 
 use crate::adjust::Adjustable;
-use crate::compile::{NetworkInfo, Placed, compile};
+use crate::compile::{NetworkInfo, OwnRows, Placed, compile};
 use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
@@ -68,6 +68,8 @@ pub struct BodyInfo {
     pub system: usize,
     /// Its points among the rows of the system.
     pub rows: Range<usize>,
+    /// Its unknowns, where some of its points hang on other bodies.
+    pub own: Option<OwnRows>,
     /// At rest, placed; point `i` is row `rows.start + i`.
     pub mesh: Mesh,
     /// The boundary of the mesh.
@@ -124,8 +126,20 @@ pub struct FramesInfo {
     pub report: FramesReport,
     /// The number of the frame whose weights are shown.
     pub shown: usize,
-    /// Of each point of the mesh: the weight of the frame that is shown.
-    pub influence: Vec<f64>,
+    /// Of each point of the mesh, the frames that carry it and their weights.
+    weights: Vec<Vec<(u32, f64)>>,
+}
+
+impl FramesInfo {
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The weight of the frame that is shown, of a point of the mesh.
+    pub fn influence(&self, point: usize) -> f64 {
+        let of_shown = |(frame, _): &&(u32, f64)| *frame as usize == self.shown;
+        self.weights[point].iter().find(of_shown).map_or(0.0, |(_, weight)| *weight)
+    }
 }
 
 /// A display surface of a body with levels, and where it is in the state.
@@ -258,9 +272,31 @@ impl BodyInfo {
         if let Some(frames) = &self.frames {
             return frames.rows.clone();
         }
+        if let Some(own) = &self.own {
+            return own.rows().collect();
+        }
         let levels = levels(world, self.system, &self.force);
         let rows = levels.map_or_else(|| self.rows.clone(), |(_, levels)| levels.rows());
         (rows.start as u32..rows.end as u32).collect()
+    }
+
+    /// The row of the unknown that a point is; `None` where it hangs on another body or frames carry it.
+    pub fn own_row(&self, point: u32) -> Option<u32> {
+        match &self.own {
+            Some(own) => own.row_of(point),
+            None => self.frames.is_none().then_some(self.rows.start as u32 + point),
+        }
+    }
+
+    /// The point that a row is, of an unknown or of its own.
+    pub fn point_of(&self, row: u32) -> Option<u32> {
+        let of_unknown = self.own.as_ref().and_then(|own| own.point_of(row));
+        of_unknown.or_else(|| self.rows.contains(&(row as usize)).then(|| row - self.rows.start as u32))
+    }
+
+    /// How many of its points hang on other bodies.
+    pub fn hanging_count(&self) -> usize {
+        self.own.as_ref().map_or(0, |own| self.rows.len() - own.points().len())
     }
 
     /// How many meshes it has, where it has levels.
@@ -269,27 +305,27 @@ impl BodyInfo {
     }
 
     pub(crate) fn new(placed: Placed, radii: Vec<f64>, contours: Vec<ContourInfo>) -> Self {
-        let Placed { spec, system, rows, mesh, frames, materials, .. } = placed;
+        let Placed { spec, system, rows, mesh, frames, materials, hanging, .. } = placed;
         let laws = LawsInfo::new(spec, materials.of_cell);
         let surface = mesh.boundary_surface();
         let force = crate::compile::solid_name(&spec.name);
-        let shown = spec.frames.as_ref().map_or(0, |frames| frames.shown as u32);
+        let shown = spec.frames.as_ref().map_or(0, |frames| frames.shown);
         let frames = frames.map(|frames| {
-            let weight = |carried: &Carried| {
-                let place = carried.frames.binary_search(&shown);
-                place.map_or(0.0, |place| carried.rows[place][0].0)
+            let weights = |carried: &Carried| {
+                carried.frames.iter().zip(&carried.rows).map(|(frame, [(w, _), ..])| (*frame, *w)).collect()
             };
             let is_affine = frames.kind == UnknownKind::AffineFrame;
             FramesInfo {
                 report: FramesReport::new(&frames.frames, &frames.samples, &frames.carried, is_affine),
-                shown: shown as usize,
-                influence: frames.carried_points.iter().map(weight).collect(),
+                shown,
+                weights: frames.carried_points.iter().map(weights).collect(),
                 rest: frames.configuration().collect(),
                 rows: frames.rows,
             }
         });
         let name = spec.name.clone();
-        Self { name, system, rows, mesh, surface, force, laws, frames, dress: None, radii, contours }
+        let own = hanging.map(|hanging| hanging.own);
+        Self { name, system, rows, own, mesh, surface, force, laws, frames, dress: None, radii, contours }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use souple_run::{Control, Options, Status, Trace};
+use souple_run::{Control, Options, Report, Status, Trace};
 use souple_scene::Scene;
 
 use crate::bench::{Clock, with_threads};
@@ -15,6 +15,8 @@ use crate::scenes;
 pub enum Reading {
     /// A number of a run, as `report.json` has it.
     Probe(Observation),
+    /// A component of one probe at the end over that of another, as `report.json` has both.
+    Ratio { of: &'static str, to: &'static str, component: usize },
     /// A natural frequency [Hz] of the first system, the lowest being number 1, as `souple modes` prints it.
     NaturalFrequency(usize),
     /// The highest angular frequency [rad/s] of the first system, as `souple check --json` forecasts it.
@@ -25,6 +27,10 @@ pub enum Reading {
     /// What a step and its probes take of one processor [ms]: `wall_seconds` over `steps` of `report.json` where nothing else works
     /// on the machine.
     StepMilliseconds,
+    /// Newton iterations of a step in the mean: `solver.newton_iterations` over `steps` of `report.json`.
+    NewtonIterations,
+    /// How many steps a run came through, also one that was refused before its end: `steps` of `report.json`.
+    Steps,
     /// A count of a derivation; there is no scene, and settings are arguments of `souple derive`.
     Derived(Count),
 }
@@ -88,10 +94,13 @@ impl Reading {
     pub fn name(&self) -> String {
         match self {
             Self::Probe(observation) => observation.probe.to_owned(),
+            Self::Ratio { of, to, .. } => format!("{of} / {to}"),
             Self::NaturalFrequency(number) => format!("natural frequency {number}"),
             Self::HighestFrequency => "highest frequency".to_owned(),
             Self::MomentCondition(body) => format!("moment_condition of {body}"),
             Self::StepMilliseconds => "wall_seconds / steps".to_owned(),
+            Self::NewtonIterations => "newton_iterations / steps".to_owned(),
+            Self::Steps => "steps".to_owned(),
             Self::Derived(count) => format!("{count:?}").to_lowercase(),
         }
     }
@@ -105,6 +114,7 @@ impl Reading {
             Self::NaturalFrequency(number) => ("modes", format!(" --count {number}")),
             Self::HighestFrequency | Self::MomentCondition(_) => ("check", " --json".to_owned()),
             Self::StepMilliseconds => ("run", " --threads 1 --json".to_owned()),
+            Self::Ratio { .. } | Self::NewtonIterations | Self::Steps => ("run", " --json".to_owned()),
             Self::Derived(_) => return derivation::command(settings),
         };
         let settings: String = settings.iter().map(|setting| format!(" --set '{setting}'")).collect();
@@ -124,6 +134,15 @@ impl Reading {
             .map_err(|diagnostics| diagnostics.to_string())?;
         match self {
             Self::Probe(observation) => observation.read(name, scene),
+            Self::Ratio { of, to, component } => {
+                let report = done(report_of(name, scene)?)?;
+                let value = |probe: &str| {
+                    let found = report.probes.iter().find(|summary| summary.name == probe);
+                    let value = found.and_then(|summary| summary.last.get(*component).copied());
+                    value.ok_or_else(|| format!("the scene has no such probe `{probe}`"))
+                };
+                Ok((value(of)? / value(to)?, ""))
+            }
             Self::NaturalFrequency(number) => {
                 let systems = souple_run::natural_frequencies(scene, *number, 0.0)
                     .map_err(|error| error.to_string())?;
@@ -144,20 +163,33 @@ impl Reading {
                 Ok((frames.ok_or("the scene has no such body of frames")?.report.moment_condition, ""))
             }
             Self::StepMilliseconds => {
-                let options = Options { scene_name: name.to_owned(), ..Options::default() };
                 let run = || {
                     let clock = Clock::start();
-                    let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue);
-                    (outcome, clock.seconds())
+                    (report_of(name, scene), clock.seconds())
                 };
-                let (outcome, seconds) = with_threads(1, run)?;
-                let report = outcome.map_err(|error| error.to_string())?.report;
-                if report.status != Status::Done {
-                    return Err(Problem { message: report.warnings.join("; "), has_run: true });
-                }
-                Ok((1e3 * seconds / report.steps as f64, "ms"))
+                let (report, seconds) = with_threads(1, run)?;
+                Ok((1e3 * seconds / done(report?)?.steps as f64, "ms"))
             }
+            Self::NewtonIterations => {
+                let report = done(report_of(name, scene)?)?;
+                Ok((report.solver.newton_iterations as f64 / report.steps as f64, ""))
+            }
+            Self::Steps => Ok((report_of(name, scene)?.steps as f64, "")),
         }
+    }
+}
+
+fn report_of(name: &str, scene: Scene) -> Result<Report, Problem> {
+    let options = Options { scene_name: name.to_owned(), ..Options::default() };
+    let outcome = souple_run::run(scene, &options, &mut |_| Control::Continue);
+    Ok(outcome.map_err(|error| error.to_string())?.report)
+}
+
+/// Of a run that went to its end.
+fn done(report: Report) -> Result<Report, Problem> {
+    match report.status {
+        Status::Done => Ok(report),
+        _ => Err(Problem { message: report.warnings.join("; "), has_run: true }),
     }
 }
 

@@ -41,6 +41,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("heap_collapses", include_str!("../../../scenes/heap_collapses/scene.toml")),
     ("incline_slides", include_str!("../../../scenes/incline_slides/scene.toml")),
     ("incline_sticks", include_str!("../../../scenes/incline_sticks/scene.toml")),
+    ("joined_halves", include_str!("../../../scenes/joined_halves/scene.toml")),
     ("levels_cube", include_str!("../../../scenes/levels_cube/scene.toml")),
     ("levels_free", include_str!("../../../scenes/levels_free/scene.toml")),
     ("ligament", include_str!("../../../scenes/ligament/scene.toml")),

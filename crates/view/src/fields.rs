@@ -159,8 +159,8 @@ impl Field {
                 Some(points.iter().map(|point| value(world, body, *point as usize) as f32).collect())
             }
             Source::Influence => {
-                let weights = &body.frames.as_ref()?.influence;
-                Some(points.iter().map(|point| weights[*point as usize] as f32).collect())
+                let frames = body.frames.as_ref()?;
+                Some(points.iter().map(|point| frames.influence(*point as usize) as f32).collect())
             }
             Source::Cells(value) => {
                 let (solid, at) = world.force_named(body.system, &body.force)?;

@@ -179,7 +179,7 @@ fn incline(angle: f64, friction: f64, stepper: Box<dyn Stepper>, period: f64) ->
     for a in 0..8 {
         for b in 0..a {
             let rest_length = (positions[a] - positions[b]).length();
-            links.push(Link { a: Combination::row(a as u32), b: Combination::row(b as u32), rest_length });
+            links.push(Link::new(Combination::row(a as u32), Combination::row(b as u32), rest_length));
         }
     }
     let weight = UniformForce(Vec3::new(angle.sin(), -angle.cos(), 0.0) * (9.81 * mass));
@@ -344,7 +344,7 @@ pub(super) fn springs_within(positions: &[Vec3], half: usize) -> Vec<Link> {
     for a in 0..positions.len() {
         for b in (0..a).filter(|b| (*b < half) == (a < half)) {
             let rest_length = (positions[a] - positions[b]).length();
-            links.push(Link { a: Combination::row(a as u32), b: Combination::row(b as u32), rest_length });
+            links.push(Link::new(Combination::row(a as u32), Combination::row(b as u32), rest_length));
         }
     }
     links

@@ -25,7 +25,7 @@ pub enum TangentKind {
     /// The exact one: Newton's method is quadratic.
     #[default]
     Full,
-    /// Without the stiffness of the stress itself.
+    /// Without the stiffness of the stress itself, which laws of small strain have none of.
     Material,
 }
 
@@ -53,6 +53,8 @@ pub struct FramesDescription<'a> {
 pub struct FramesForce {
     name: String,
     laws: Vec<Box<dyn SampleLaw>>,
+    /// Of each law: whether its tangent has a part that stands for the stress itself. `P` of small strain is no `F S`.
+    has_stress_part: Vec<bool>,
     /// By law.
     chunks: Vec<Chunk>,
     law_of_chunk: Vec<usize>,
@@ -64,6 +66,9 @@ pub struct FramesForce {
     material_of_cell: Vec<u16>,
     carried_cells: Vec<Carried>,
     cell_volumes: Vec<f64>,
+    /// Chunk and sample of the samples of each cell, one cell after the other, and where those of each start.
+    of_cells: Vec<(u32, u32)>,
+    cell_starts: Vec<u32>,
     tangent: TangentKind,
 }
 
@@ -133,6 +138,7 @@ impl FramesForce {
         let mut force = Self {
             name,
             laws: Vec::new(),
+            has_stress_part: Vec::new(),
             chunks: Vec::new(),
             law_of_chunk: Vec::new(),
             first_runs: vec![0],
@@ -142,6 +148,8 @@ impl FramesForce {
             material_of_cell: material_of_cell.to_vec(),
             carried_cells: description.carried_cells,
             cell_volumes: description.cell_volumes,
+            of_cells: Vec::new(),
+            cell_starts: vec![0],
             tangent: description.tangent,
         };
         for (index, material) in found.iter().enumerate() {
@@ -150,6 +158,7 @@ impl FramesForce {
             let members: Vec<u32> = (0..samples.len() as u32).filter(is_of).collect();
             let parameters_of = |sample: u32| &material_of(sample).parameters[..count];
             force.laws.push(law);
+            force.has_stress_part.push(material.law.is_objective());
             force.chunks.extend(chunks(&Body { frames, samples, carried }, &members, &parameters_of));
             force.law_of_chunk.resize(force.chunks.len(), index);
         }
@@ -162,13 +171,20 @@ impl FramesForce {
             force.first_runs.push(runs);
         }
         force.pairs = Pairs::new(&force.chunks);
+        force.sort_by_cells();
         force
     }
 
-    /// Frames that reach a sample, on the average of all eights of neighbours: what a step costs grows with its square.
-    pub fn frames_per_sample(&self) -> f64 {
-        let members: usize = self.chunks.iter().map(|chunk| chunk.members.len()).sum();
-        members as f64 / self.chunks.iter().map(|chunk| chunk.block_count).sum::<usize>() as f64
+    fn sort_by_cells(&mut self) {
+        let of_chunk = |(number, chunk): (usize, &Chunk)| {
+            let samples = chunk.cells.iter().enumerate();
+            samples.map(|(sample, cell)| (*cell, number as u32, sample as u32)).collect::<Vec<_>>()
+        };
+        let mut all: Vec<(u32, u32, u32)> = self.chunks.iter().enumerate().flat_map(of_chunk).collect();
+        all.sort_unstable();
+        let end = |cell: usize| all.partition_point(|(of, ..)| *of as usize <= cell) as u32;
+        self.cell_starts.extend((0..self.material_of_cell.len()).map(end));
+        self.of_cells = all.into_iter().map(|(_, chunk, sample)| (chunk, sample)).collect();
     }
 
     fn rows_of<'a>(&'a self, chunk: &'a Chunk) -> impl Iterator<Item = usize> + 'a {
@@ -181,6 +197,11 @@ impl FramesForce {
 
     fn law(&self, chunk: usize) -> &dyn SampleLaw {
         self.laws[self.law_of_chunk[chunk]].as_ref()
+    }
+
+    /// Whether something is taken off the tangent of the law of a chunk.
+    fn leaves_out_stress_of(&self, chunk: usize) -> bool {
+        self.tangent == TangentKind::Material && self.has_stress_part[self.law_of_chunk[chunk]]
     }
 
     /// Where the sums over rows of a chunk start.
@@ -322,7 +343,7 @@ impl Work<'_> {
             self.gather(1, delta);
         }
         let deformation = self.own_deformation(deformation);
-        let wants_material = varies && self.force.tangent == TangentKind::Material;
+        let leaves_out_stress = varies && self.force.leaves_out_stress_of(self.number);
         let (law, chunk) = (self.force.law(self.number), self.chunk);
         let places = law.places(answer);
         let Memory { law: memory, stress, sums, own, .. } = &mut *self.memory;
@@ -332,7 +353,7 @@ impl Work<'_> {
         sums.resize(chunk.frames.len() * MAP_LEN, LaneBlock::default());
         for (run, deformation) in runs(chunk).zip(deformation) {
             let arch = Arch::new();
-            if wants_material {
+            if leaves_out_stress {
                 second_stress(law, &run, deformation, stress);
             }
             give(&run, deformation, &mut memory[places.deformation..]);
@@ -341,7 +362,7 @@ impl Work<'_> {
                 arch.dispatch(Gradients { chunk, run: &run, field, out: &mut *memory, start });
             }
             law.answer(answer, &run, memory);
-            if wants_material {
+            if leaves_out_stress {
                 // the law may have overwritten what it was given
                 let mut variation = [0.0; MATRIX_LEN];
                 let out = &mut variation;
@@ -387,7 +408,7 @@ impl Work<'_> {
 
     fn blocks(self, deformation: &[f64], scale: f64, sums: &mut [f64]) {
         let deformation = self.own_deformation(deformation);
-        let wants_material = self.force.tangent == TangentKind::Material;
+        let leaves_out_stress = self.force.leaves_out_stress_of(self.number);
         let (law, chunk) = (self.force.law(self.number), self.chunk);
         let places = law.places(Answer::Differential);
         let Memory { law: memory, stress, tangents, rates, gradients, .. } = &mut *self.memory;
@@ -398,12 +419,12 @@ impl Work<'_> {
         sums.fill(0.0);
         for (run, deformation) in runs(chunk).zip(deformation) {
             let arch = Arch::new();
-            if wants_material {
+            if leaves_out_stress {
                 second_stress(law, &run, deformation, stress);
             }
             give(&run, deformation, &mut memory[places.deformation..]);
             law.tangents(&run, memory, tangents);
-            if wants_material {
+            if leaves_out_stress {
                 tangents::subtract_from_tangents(bytemuck::cast_slice(stress), tangents, run.lane_count());
             }
             arch.dispatch(Blocks { chunk, run: &run, tangents, scale, rates, gradients, sums });
@@ -430,9 +451,36 @@ fn second_stress(law: &dyn SampleLaw, run: &Run, deformation: &[f64], stress: &m
     tangents::second_stress(deformation, memory, run.lane_count());
 }
 
+impl FramesForce {
+    /// What is read off some samples of one cell: means over their volumes, of the energy too.
+    fn field_of(&self, samples: &[(u32, u32)], material: &Material, positions: &[Vec3]) -> CellField {
+        let (mut maps, mut of_chunk) = (Vec::new(), None);
+        let (mut volume, mut current_volume, mut energy, mut mean) = (0.0, 0.0, 0.0, Mat3::ZERO);
+        for &(number, sample) in samples {
+            let chunk = &self.chunks[number as usize];
+            if of_chunk != Some(number) {
+                maps = chunk.maps_of(self.rows_of(chunk).map(|row| positions[row])).collect();
+                of_chunk = Some(number);
+            }
+            let F = chunk.deformation(sample as usize, &maps);
+            let part = chunk.volume(sample as usize);
+            volume += part;
+            current_volume += part * F.determinant();
+            energy += part * material.energy_density(&F);
+            mean += F * part;
+        }
+        let field = material.field(&(mean * (1.0 / volume)), volume);
+        CellField { energy_density: energy / volume, current_volume, ..field }
+    }
+}
+
 impl Force for FramesForce {
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn leaves_out_stress(&self) -> bool {
+        self.tangent == TangentKind::Material && self.has_stress_part.contains(&true)
     }
 
     fn declaration(&self) -> Declaration {
@@ -528,6 +576,12 @@ impl Force for FramesForce {
 
     fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
         let carried = self.carried_cells.get(cell)?;
+        let material = &self.materials[self.material_of_cell[cell] as usize];
+        let [start, end] = [cell, cell + 1].map(|at| self.cell_starts[at] as usize);
+        if start < end {
+            return Some(self.field_of(&self.of_cells[start..end], material, positions));
+        }
+        // strain is taken elsewhere: there is something to see here, and nothing to sum
         let mut F = Mat3::ZERO;
         for (frame, rows) in carried.frames.iter().zip(&carried.rows) {
             let first = self.row_of_frame[*frame as usize] as usize;
@@ -535,8 +589,8 @@ impl Force for FramesForce {
                 F += position.outer(*gradient);
             }
         }
-        let material = &self.materials[self.material_of_cell[cell] as usize];
-        Some(material.field(&F, self.cell_volumes[cell]))
+        let seen = material.field(&F, self.cell_volumes[cell]);
+        Some(CellField { volume: 0.0, current_volume: 0.0, ..seen })
     }
 
     fn bytes(&self) -> usize {
@@ -549,6 +603,8 @@ impl Force for FramesForce {
                 .map(|c| 4 * c.frames.capacity() + size_of::<[(f64, Vec3); 4]>() * c.rows.capacity())
                 .sum::<usize>()
             + 8 * self.cell_volumes.capacity()
+            + size_of::<(u32, u32)>() * self.of_cells.capacity()
+            + 4 * self.cell_starts.capacity()
             + 2 * self.material_of_cell.capacity()
     }
 

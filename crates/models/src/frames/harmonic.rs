@@ -7,13 +7,15 @@
 //! follow the shape functions, and so do their gradients.
 
 use souple_math::{Mat3, Vec3};
-use souple_mesh::{CellLocator, MAX_NODES, Mesh};
+use souple_mesh::MAX_NODES;
 use souple_solve::precondition::Geometry;
 use souple_solve::{BlockMatrix, Pattern, solvers};
 use souple_table::{Parameter, Range, Value, Values};
 
-use super::FrameError;
+use super::cells::{Cells, NOT_CARRIED, softest};
+use super::ways::{Extent, Ground};
 use super::weights::{Shape, Share, Weights, spacings};
+use super::{Frame, FrameError};
 
 pub const CORE: Parameter = Parameter::number(
     "core",
@@ -33,16 +35,14 @@ pub const LEAST: Parameter = Parameter::number(
 
 /// Weights at the nodes of a mesh.
 struct Harmonic<'a> {
-    mesh: &'a Mesh,
-    locator: CellLocator<'a>,
+    cells: Cells<'a>,
     /// Of each point of the mesh, by ascending frame.
     nodal: Vec<Vec<(u32, f64)>>,
-    /// How far each frame reaches [m].
-    reaches: Vec<f64>,
 }
 
 pub fn build<'a>(values: &Values, shape: &Shape<'a>) -> Result<Box<dyn Weights + 'a>, FrameError> {
-    let owners = owners(shape, values.number("core"))?;
+    let cells = Cells::new(shape.mesh);
+    let owners = owners(shape, &cells.carriers(shape.frames)?, values.number("core"))?;
     let mut matrix = conductivity(shape)?;
     let points = shape.mesh.points.len();
     // what flows from the nodes of frames, before these are taken out
@@ -76,14 +76,7 @@ pub fn build<'a>(values: &Values, shape: &Shape<'a>) -> Result<Box<dyn Weights +
     }
     let least = values.number("least");
     nodal.iter_mut().for_each(|weights| cut(weights, least));
-    let mut reaches = vec![0.0_f64; shape.frames.len()];
-    for (point, weights) in shape.mesh.points.iter().zip(&nodal) {
-        for (frame, _) in weights {
-            let reach = &mut reaches[*frame as usize];
-            *reach = reach.max((*point - shape.frames[*frame as usize].origin).length());
-        }
-    }
-    Ok(Box::new(Harmonic { mesh: shape.mesh, locator: CellLocator::new(shape.mesh), nodal, reaches }))
+    Ok(Box::new(Harmonic { cells, nodal }))
 }
 
 /// Takes `least` off all weights, the greatest apart, drops what is nothing then, and makes the sum one.
@@ -96,17 +89,20 @@ fn cut(weights: &mut Vec<(u32, f64)>, least: f64) {
     weights.iter_mut().for_each(|(_, weight)| *weight /= sum);
 }
 
-/// The frame that each point of the mesh belongs to, where it belongs to one: those in its core, and the nearest.
-fn owners(shape: &Shape, core: f64) -> Result<Vec<Option<u32>>, FrameError> {
+/// The frame that each point of the mesh belongs to, where it belongs to one: those in its core, and the nearest. Both by ways
+/// within the shape from the cell that carries the frame, so that nothing is owned across a slit.
+fn owners(shape: &Shape, carriers: &[u32], core: f64) -> Result<Vec<Option<u32>>, FrameError> {
     let mut owners: Vec<Option<u32>> = vec![None; shape.mesh.points.len()];
+    let ground = Ground::new(shape.mesh, vec![1.0; shape.mesh.cell_count()]);
     let spacings = spacings(shape);
     for (index, frame) in shape.frames.iter().enumerate() {
-        let distance = |point: usize| (shape.mesh.points[point] - frame.origin).length();
-        let all = || 0..shape.mesh.points.len();
-        let Some(nearest) = all().min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else { continue };
         // one frame alone has no neighbour to give a distance
         let radius = if shape.frames.len() == 1 { 0.0 } else { core * spacings[index] };
-        for point in all().filter(|point| *point == nearest || distance(*point) <= radius) {
+        let found = ground.ways_from(frame.origin, carriers[index], &Extent::Way(radius));
+        let ways = || found.iter().enumerate().filter_map(|(point, way)| Some((point, way.as_ref()?.0)));
+        let nearest = ways().min_by(|a, b| a.1.total_cmp(&b.1)).map(|way| way.0);
+        let is_own = |way: &(usize, f64)| way.1 <= radius || Some(way.0) == nearest;
+        for (point, _) in ways().filter(is_own) {
             if let Some(other) = owners[point].replace(index as u32) {
                 return Err(FrameError::OneNode {
                     frames: [other, index as u32],
@@ -121,7 +117,7 @@ fn owners(shape: &Shape, core: f64) -> Result<Vec<Option<u32>>, FrameError> {
 /// `∫ c ∇N_a · ∇N_b dV`, three times side by side; stiffness relative to the softest.
 fn conductivity(shape: &Shape) -> Result<BlockMatrix, FrameError> {
     let mesh = shape.mesh;
-    let softest = shape.stiffness_of_cell.iter().copied().fold(f64::INFINITY, f64::min);
+    let softest = softest(shape.stiffness_of_cell.iter().copied().enumerate())?;
     let cells: Vec<&[u32]> = mesh.cells().map(|cell| cell.nodes).collect();
     let unsolved = |error: souple_solve::SolveError| FrameError::Unsolved(error.to_string());
     let pattern = Pattern::from_cliques(mesh.points.len(), cells).map_err(unsolved)?;
@@ -132,7 +128,9 @@ fn conductivity(shape: &Shape) -> Result<BlockMatrix, FrameError> {
         let corners = mesh.positions_into(cell.nodes, &mut buffer);
         for point in &cell.kind.default_rule().points {
             let jacobian = cell.kind.jacobian(corners, point.position);
-            let Some(inverse) = jacobian.try_inverse() else { continue };
+            let is_flat =
+                || FrameError::FlatCell { cell: index, at: cell.kind.position(corners, point.position) };
+            let inverse = jacobian.try_inverse().ok_or_else(is_flat)?;
             let volume = jacobian.determinant() * point.weight * conductivity;
             let gradients = cell.kind.shape_gradients(point.position);
             let gradients: Vec<Vec3> = gradients.iter().map(|g| inverse.transpose_apply(*g)).collect();
@@ -158,29 +156,23 @@ fn solver(matrix: &BlockMatrix, points: &[Vec3]) -> Result<Box<dyn solvers::Line
 
 impl Weights for Harmonic<'_> {
     fn shares(&self, point: Vec3) -> Vec<Share> {
-        let Some(location) = self.locator.carrier(point) else { return Vec::new() };
-        let Some(cell) = self.mesh.cell(location.cell) else { return Vec::new() };
-        let mut buffer = [Vec3::ZERO; MAX_NODES];
-        let corners = self.mesh.positions_into(cell.nodes, &mut buffer);
-        let inverse = cell.kind.jacobian(corners, location.reference).try_inverse().unwrap_or(Mat3::ZERO);
-        let (values, gradients) =
-            (cell.kind.shape(location.reference), cell.kind.shape_gradients(location.reference));
+        let Some(spot) = self.cells.spot(point) else { return Vec::new() };
         let mut shares: Vec<Share> = Vec::new();
-        for ((node, value), gradient) in cell.nodes.iter().zip(values.iter()).zip(gradients.iter()) {
-            let gradient = inverse.transpose_apply(*gradient);
+        for ((node, value), gradient) in spot.nodes.iter().zip(spot.values.iter()).zip(&spot.gradients) {
             for &(frame, weight) in &self.nodal[*node as usize] {
                 let at = shares.binary_search_by_key(&frame, |share| share.frame).unwrap_or_else(|at| {
                     shares.insert(at, Share { frame, weight: 0.0, gradient: Vec3::ZERO });
                     at
                 });
                 shares[at].weight += value * weight;
-                shares[at].gradient += gradient * weight;
+                shares[at].gradient += *gradient * weight;
             }
         }
         shares
     }
 
-    fn reach(&self, frame: usize) -> f64 {
-        self.reaches[frame]
+    // every part of the mesh holds a frame, and each of its points has a weight
+    fn out_of_reach(&self, _: Vec3, _: &[Frame]) -> String {
+        NOT_CARRIED.to_owned()
     }
 }

@@ -53,10 +53,14 @@ impl Hold {
 
     /// What holds a point, on the point [N].
     pub fn pull(point: &HeldPoint, at: &Configuration) -> Vec3 {
+        Self::apart(point, at) * -point.stiffness
+    }
+
+    /// `S (x - x_led)`
+    fn apart(point: &HeldPoint, at: &Configuration) -> Vec3 {
         let target =
             point.motion.as_ref().map_or(Vec3::ZERO, |motion| motion.offset(point.start, at.time) * at.load);
-        let apart = at.positions[point.row as usize] - point.start - target;
-        Self::projector(point) * (apart * -point.stiffness)
+        Self::projector(point) * (at.positions[point.row as usize] - point.start - target)
     }
 
     fn projector(point: &HeldPoint) -> Mat3 {
@@ -75,7 +79,7 @@ impl Force for Hold {
 
     // E = Σ k/2 |S (x - x_led)|²
     fn energy(&self, at: &Configuration, _: &mut Scratch) -> Energy {
-        let of = |point: &HeldPoint| 0.5 * Self::pull(point, at).length_sq() / point.stiffness;
+        let of = |point: &HeldPoint| 0.5 * point.stiffness * Self::apart(point, at).length_sq();
         Energy { stored: self.points.iter().map(of).sum(), dissipated: 0.0 }
     }
 

@@ -153,7 +153,7 @@ impl WithSimd for Spread<'_> {
                         break;
                     }
                     visits = rest;
-                    let block = usize::from(visit.block);
+                    let block = visit.block as usize;
                     let share = chunk.share(visit.member as usize);
                     let stress = load_matrix(simd, &stresses[run.lane_of(block) + lane..]);
                     let X = load_vector(simd, chunk.points(block), lane);
@@ -166,7 +166,7 @@ impl WithSimd for Spread<'_> {
                         accumulate(&mut turn_sum.columns[J], stress.columns[J], weight);
                     }
                 }
-                let sums = &mut sums[MAP_LEN * usize::from(own)..][..MAP_LEN];
+                let sums = &mut sums[MAP_LEN * own as usize..][..MAP_LEN];
                 add(simd, force_sum, &mut sums[..3], lane);
                 for J in 0..3 {
                     add(simd, turn_sum.columns[J], &mut sums[3 * (J + 1)..3 * (J + 2)], lane);

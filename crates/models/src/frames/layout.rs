@@ -32,8 +32,8 @@ pub struct SingleBlock(pub [f32; LANES]);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Visit {
     /// The chunk's own frame.
-    pub own: u16,
-    pub block: u16,
+    pub own: u32,
+    pub block: u32,
     pub member: u32,
 }
 
@@ -47,7 +47,7 @@ pub struct Chunk {
     /// Where the frames of each block start among the members, and where the last ends.
     pub starts: Vec<u32>,
     /// The chunk's own frame of each (block, frame).
-    pub members: Vec<u16>,
+    pub members: Vec<u32>,
     /// Of each member: its weight, and three components of the gradient of that.
     shares: Vec<SingleBlock>,
     /// Of each run of blocks that a law takes: its members, by own frame.
@@ -58,8 +58,10 @@ pub struct Chunk {
     points: Vec<LaneBlock>,
     /// Own frames at rest, origins counted likewise.
     rest: Vec<Frame>,
+    /// The cell of each sample.
+    pub cells: Vec<u32>,
     /// Pairs `i ≤ j` of own frames that share a block.
-    pub pairs: Vec<[u16; 2]>,
+    pub pairs: Vec<[u32; 2]>,
     /// Of each block's pairs `(a, b)`, `a ≤ b`, of members: the chunk's pair.
     pub places: Vec<u32>,
     pub place_starts: Vec<u32>,
@@ -112,6 +114,27 @@ impl Chunk {
         })
     }
 
+    /// `F` of a sample under maps of own frames: `Σ (o + B P) ⊗ ∇w + w B`.
+    pub fn deformation(&self, sample: usize, maps: &[FrameMap]) -> Mat3 {
+        let (block, lane) = (sample / LANES, sample % LANES);
+        let of = |numbers: &[LaneBlock], axis: usize| numbers[axis].0[lane];
+        let points = self.points(block);
+        let point = Vec3::new(of(points, 0), of(points, 1), of(points, 2));
+        let mut F = Mat3::ZERO;
+        for member in self.members(block) {
+            let FrameMap { origin, turn } = maps[self.members[member] as usize];
+            let number = |index: usize| f64::from(self.share(member)[index].0[lane]);
+            let gradient = Vec3::new(number(1), number(2), number(3));
+            F += (origin + turn * point).outer(gradient) + turn * number(0);
+        }
+        F
+    }
+
+    /// Volume of a sample at rest [m³].
+    pub fn volume(&self, sample: usize) -> f64 {
+        self.samples.volumes(sample / LANES)[sample % LANES]
+    }
+
     /// Forces on the rows of own frame number `own` from those on its map: the transpose of [`Chunk::maps_of`].
     pub fn forces_of(&self, own: usize, on_map: &FrameMap) -> [Vec3; ROWS_OF_FRAME] {
         let (Frame { origin, axes }, FrameMap { origin: force, turn }) = (&self.rest[own], on_map);
@@ -147,7 +170,7 @@ impl Chunk {
             + size_of::<Frame>() * self.rest.len()
             + 4 * (self.frames.len() + self.starts.len() + self.visit_starts.len())
             + 4 * (self.places.len() + self.place_starts.len())
-            + 2 * (self.members.len() + 2 * self.pairs.len())
+            + 4 * (self.members.len() + 2 * self.pairs.len() + self.cells.len())
     }
 }
 
@@ -194,6 +217,7 @@ fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f
         samples: SampleChunk::of_samples(block_count, sample),
         block_count,
         rest: frames.iter().map(from_centre).collect(),
+        cells: order.iter().map(|index| samples[*index as usize].cell).collect(),
         frames,
         starts: vec![0],
         members: Vec::new(),
@@ -207,7 +231,6 @@ fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f
         first_frame: 0,
         first_pair: 0,
     };
-    let own = |frames: &[u32], frame: u32| frames.partition_point(|known| *known < frame) as u16;
     for (block, indices) in order.chunks(LANES).enumerate() {
         // lanes past the last sample stand where it stands, without volume
         let at = |lane: usize| indices[lane.min(indices.len() - 1)];
@@ -219,7 +242,7 @@ fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f
         }
         let reaching = frames_of(indices);
         let first = chunk.shares.len();
-        chunk.members.extend(reaching.iter().map(|frame| own(&chunk.frames, *frame)));
+        chunk.members.extend(reaching.iter().map(|frame| own_frame(&chunk.frames, *frame)));
         chunk.shares.resize(first + reaching.len() * SHARE_LEN, SingleBlock::default());
         for lane in 0..LANES {
             let point = &carried[at(lane) as usize];
@@ -241,6 +264,11 @@ fn lay_out<'p>(body: &Body, order: &[u32], parameters_of: &dyn Fn(u32) -> &'p [f
     chunk
 }
 
+/// A chunk's own number of one of its frames.
+fn own_frame(frames: &[u32], frame: u32) -> u32 {
+    frames.partition_point(|known| *known < frame) as u32
+}
+
 /// Binary digits of a number in single precision, less one for what sums are made up with.
 const DIGITS: i32 = 23;
 
@@ -251,6 +279,8 @@ fn in_units(shares: Vec<[f64; SHARE_LEN]>) -> Vec<[f64; SHARE_LEN]> {
     let Some(main) = (0..shares.len()).max_by(|a, b| shares[*a][0].total_cmp(&shares[*b][0])) else {
         return shares;
     };
+    // what goes to the frame with the greatest weight must be rounding, and not what weights lack
+    debug_assert!((shares.iter().map(|share| share[0]).sum::<f64>() - 1.0).abs() < 1e-9, "{shares:?}");
     for number in 0..SHARE_LEN {
         let most = shares.iter().map(|share| share[number].abs()).fold(0.0, f64::max);
         let unit = libm::ldexp(1.0, libm::frexp(most).1 - DIGITS);
@@ -272,7 +302,7 @@ fn list_visits(chunk: &mut Chunk) {
             let members = chunk.starts[block]..chunk.starts[block + 1];
             chunk.visits.extend(members.map(|member| Visit {
                 own: chunk.members[member as usize],
-                block: block as u16,
+                block: block as u32,
                 member,
             }));
         }
@@ -293,13 +323,20 @@ fn number_pairs(chunk: &mut Chunk) {
     chunk.pairs.clone_from(&ordered);
     chunk.pairs.sort_unstable();
     chunk.pairs.dedup();
-    let place = |pair: &[u16; 2]| chunk.pairs.partition_point(|known| known < pair) as u32;
+    let place = |pair: &[u32; 2]| chunk.pairs.partition_point(|known| known < pair) as u32;
     chunk.places = ordered.iter().map(place).collect();
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// More frames may reach a chunk than sixteen bits count.
+    #[test]
+    fn own_frames_are_numbered_beyond_sixteen_bits() {
+        let frames: Vec<u32> = (0..70_000).map(|frame| 3 * frame).collect();
+        assert_eq!(own_frame(&frames, 3 * 69_999), 69_999);
+    }
 
     /// Shares in units are what single precision holds, sum to one and their gradients to nothing to the last bit, and are off by half
     /// a unit, the greatest number over 2²², that with the greatest weight by as much as all.

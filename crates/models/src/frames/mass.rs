@@ -64,6 +64,43 @@ fn add(mass: &mut Mass, [i, j]: [u32; 2], sums: &[[f64; ROWS_OF_FRAME]; ROWS_OF_
     }
 }
 
+/// Volume, static moment and second moments of the matter of a frame, about the frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Moments {
+    /// [m³]
+    pub volume: f64,
+    first: Vec3,
+    second: Mat3,
+}
+
+impl Moments {
+    const ZERO: Self = Self { volume: 0.0, first: Vec3::ZERO, second: Mat3::ZERO };
+
+    /// Of every frame: each has its share of each point.
+    pub fn of_frames(frames: &[Frame], samples: &[Sample], carried: &[Carried]) -> Vec<Self> {
+        let mut moments = vec![Self::ZERO; frames.len()];
+        for (sample, point) in samples.iter().zip(carried) {
+            for (frame, rows) in point.frames.iter().zip(&point.rows) {
+                let arm = sample.position - frames[*frame as usize].origin;
+                let volume = sample.volume * rows[0].0;
+                let sums = &mut moments[*frame as usize];
+                sums.volume += volume;
+                sums.first += arm * volume;
+                sums.second += arm.outer(arm) * volume;
+            }
+        }
+        moments
+    }
+
+    /// Second moments about the middle of the matter along its own axes, ascending [m⁵].
+    pub fn principal(&self) -> [f64; 3] {
+        let spread = self.second - self.first.outer(self.first) * (1.0 / self.volume);
+        let mut values = eigen_symmetric(&spread).values.to_array();
+        values.sort_by(f64::total_cmp);
+        values
+    }
+}
+
 /// Second moments below this part of the largest count as nothing: rounding of coordinates, squared.
 const FLAT: f64 = 1e-12;
 
@@ -78,28 +115,14 @@ pub fn check_inertia(
     carried: &[Carried],
     is_affine: bool,
 ) -> Result<(), FrameError> {
-    let mut sums = vec![(0.0, Vec3::ZERO, Mat3::ZERO); frames.len()];
-    for (sample, point) in samples.iter().zip(carried) {
-        for (frame, rows) in point.frames.iter().zip(&point.rows) {
-            let arm = sample.position - frames[*frame as usize].origin;
-            let volume = sample.volume * rows[0].0;
-            let (mass, first, second) = &mut sums[*frame as usize];
-            *mass += volume;
-            *first += arm * volume;
-            *second += arm.outer(arm) * volume;
-        }
-    }
-    for (index, (frame, (mass, first, second))) in frames.iter().zip(sums).enumerate() {
+    let moments = Moments::of_frames(frames, samples, carried);
+    for (index, (frame, moments)) in frames.iter().zip(moments).enumerate() {
         let at = frame.origin;
-        if mass <= 0.0 {
+        if moments.volume <= 0.0 {
             return Err(FrameError::NoMatter { frame: index, at });
         }
-        // about the middle of its matter
-        let spread = second - first.outer(first) * (1.0 / mass);
-        let mut moments = eigen_symmetric(&spread).values.to_array();
-        moments.sort_by(f64::total_cmp);
-        let [least, middle, most] = moments;
-        let scale = most.max(second.trace());
+        let [least, middle, most] = moments.principal();
+        let scale = most.max(moments.second.trace());
         let is_nothing = |moment: f64| moment <= FLAT * scale;
         let lies_on = |shape, motions| Err(FrameError::NoInertia { frame: index, at, shape, motions });
         if is_nothing(most) {

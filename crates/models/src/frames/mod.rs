@@ -9,6 +9,7 @@
 //!
 //! Frames may lie on a line or in a plane: each carries a rotation, so that nothing is singular there.
 
+mod cells;
 mod force;
 mod geodesic;
 mod harmonic;
@@ -21,6 +22,7 @@ mod placement;
 mod points;
 mod report;
 mod tangents;
+mod ways;
 mod weights;
 
 use souple_math::{Mat3, Vec3};
@@ -86,6 +88,16 @@ pub enum FrameError {
     NoTriples { key: &'static str, count: usize },
     #[error("`counts` holds {count}; each is a whole number from 1 to 1000")]
     NoGrid { count: f64 },
+    #[error("`counts` makes {places} places; at most {most} are looked at, take smaller ones")]
+    TooManyPlaces { places: usize, most: usize },
+    #[error(
+        "`kept` lists {kept} frames and `count` is {count}, in which those that are kept count; keep fewer, or take a `count` of at least {kept}"
+    )]
+    TooManyKept { kept: usize, count: usize },
+    #[error(
+        "{frames} frames times {points} integration points times {passes} (one, and each of the `iterations` of `lloyd`) are {distances:.1e} distances, and at most {most:.0e} are compared; take fewer of them"
+    )]
+    TooManyDistances { frames: usize, points: usize, passes: usize, distances: f64, most: f64 },
     #[error("there are no frames; place at least one")]
     NoFrames,
     #[error(
@@ -99,34 +111,49 @@ pub enum FrameError {
     )]
     OneNode { frames: [u32; 2], at: Vec3 },
     #[error(
-        "no frame reaches {count} of the body's points, the first at ({}, {}, {}): the nearest frame, {frame}, is {distance:.3e} m away and reaches {reach:.3e} m; take more frames, or a wider support",
+        "no frame reaches {count} of the body's points, the first at ({}, {}, {}): {why}",
         .at.x, .at.y, .at.z
     )]
-    OutOfReach { count: usize, at: Vec3, frame: usize, distance: f64, reach: f64 },
+    OutOfReach { count: usize, at: Vec3, why: String },
     #[error(
-        "frame {frame}, at ({}, {}, {}), reaches no integration point: it would have no mass; take more points, fewer frames, or a wider support",
+        "no cell of the mesh carries frame {frame}, at ({}, {}, {}), and the weights go by the cells; place it in the shape, and mend cells there that are flat",
+        .at.x, .at.y, .at.z
+    )]
+    NotCarried { frame: usize, at: Vec3 },
+    #[error(
+        "no frame is in the part of the mesh with a cell at ({}, {}, {}), and the weights do not leave the part that a frame is in; place a frame there, or join the parts",
+        .at.x, .at.y, .at.z
+    )]
+    PartWithoutFrame { at: Vec3 },
+    #[error("cell {cell} of the mesh is flat at ({}, {}, {}), and the weights are solved on the cells; mend the mesh", .at.x, .at.y, .at.z)]
+    FlatCell { cell: usize, at: Vec3 },
+    #[error(
+        "the material of cell {cell} has a Young's modulus of {stiffness} Pa at rest, with which others cannot be compared; take a material with one above zero, or what does not go by stiffness: `wendland` weights, frames placed `by = \"volume\"`"
+    )]
+    NoStiffness { cell: usize, stiffness: f64 },
+    #[error(
+        "frame {frame}, at ({}, {}, {}), reaches no integration point: it would have no mass; take more points, fewer frames, or a wider support of weights that have one",
         .at.x, .at.y, .at.z
     )]
     NoMatter { frame: usize, at: Vec3 },
     #[error(
-        "the matter of frame {frame}, at ({}, {}, {}), lies on a {shape}: it has no inertia against {motions}; take more integration points there, or a wider support",
+        "the matter of frame {frame}, at ({}, {}, {}), lies on a {shape}: it has no inertia against {motions}; take more integration points there, or a wider support of weights that have one",
         .at.x, .at.y, .at.z
     )]
     NoInertia { frame: usize, at: Vec3, shape: &'static str, motions: &'static str },
-    #[error("the weights could not be solved for: {0}; is a part of the mesh without a frame?")]
+    #[error("the weights could not be solved for: {0}")]
     Unsolved(String),
 }
 
-/// Whether frames are apart and all points are in reach.
+/// Whether all points are in reach of a frame.
 ///
 /// # Errors
-/// The first that is not, in words.
+/// The first that is not, in the words of the weights.
 pub fn check_reach(
     shape: &Shape,
     weights: &dyn Weights,
     points: impl Iterator<Item = Vec3>,
 ) -> Result<(), FrameError> {
-    let distance = |frame: usize, point: Vec3| (shape.frames[frame].origin - point).length();
     let (mut count, mut first) = (0, None);
     for point in points {
         if weights.shares(point).is_empty() {
@@ -134,16 +161,10 @@ pub fn check_reach(
             first.get_or_insert(point);
         }
     }
-    let Some(at) = first else { return Ok(()) };
-    let nearest = (0..shape.frames.len()).min_by(|a, b| distance(*a, at).total_cmp(&distance(*b, at)));
-    let frame = nearest.ok_or(FrameError::NoFrames)?;
-    Err(FrameError::OutOfReach {
-        count,
-        at,
-        frame,
-        distance: distance(frame, at),
-        reach: weights.reach(frame),
-    })
+    match first {
+        Some(at) => Err(FrameError::OutOfReach { count, at, why: weights.out_of_reach(at, shape.frames) }),
+        None => Ok(()),
+    }
 }
 
 /// Distance, relative to the body's size, below which two frames are one.

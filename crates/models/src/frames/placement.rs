@@ -4,6 +4,7 @@ use souple_math::{Mat3, Vec3};
 use souple_mesh::BoundingBox;
 use souple_table::{Entry, Parameter, Range, Table, Value, Values};
 
+use super::cells::softest;
 use super::points::Sample;
 use super::{Frame, FrameError};
 
@@ -39,8 +40,8 @@ pub static PLACEMENTS: Table<BuildPlacement> = Table {
             source: "Gonzalez 1985",
             parameters: &[COUNT, KEPT],
             build: |values, matter| {
-                let kept = places(values.numbers("kept"), "kept")?;
-                Ok(upright(farthest_points(matter.samples, count(values, matter)?, kept)))
+                let (count, kept) = counted(values, matter, 1)?;
+                Ok(upright(farthest_points(matter.samples, count, kept)))
             },
         },
         &Entry {
@@ -60,18 +61,12 @@ pub static PLACEMENTS: Table<BuildPlacement> = Table {
                 KEPT,
             ],
             build: |values, matter| {
-                let kept = places(values.numbers("kept"), "kept")?;
+                let iterations = values.integer("iterations") as usize;
+                let (count, kept) = counted(values, matter, 1 + iterations)?;
+                let masses = if values.text("by") == "compliance" { compliances(matter)? } else { volumes(matter) };
                 let still = kept.len();
-                let mut origins = farthest_points(matter.samples, count(values, matter)?, kept);
-                let by_compliance = values.text("by") == "compliance";
-                let softest = matter.stiffness.iter().copied().fold(f64::INFINITY, f64::min);
-                let masses: Vec<f64> = matter
-                    .samples
-                    .iter()
-                    .zip(matter.stiffness)
-                    .map(|(s, stiffness)| if by_compliance { s.volume * softest / stiffness } else { s.volume })
-                    .collect();
-                for _ in 0..values.integer("iterations") {
+                let mut origins = farthest_points(matter.samples, count, kept);
+                for _ in 0..iterations {
                     move_to_middles(matter.samples, &masses, &mut origins, still);
                 }
                 Ok(upright(origins))
@@ -127,9 +122,39 @@ fn places(numbers: &[f64], key: &'static str) -> Result<Vec<Vec3>, FrameError> {
     Ok(numbers.chunks(3).map(|at| Vec3::new(at[0], at[1], at[2])).collect())
 }
 
-fn count(values: &Values, matter: &Matter) -> Result<usize, FrameError> {
+/// Distances between frames and points that are compared at most, some ten seconds of work.
+const MOST_DISTANCES: f64 = 1e10;
+/// Places of a grid that are looked at at most.
+const MOST_PLACES: usize = 1_000_000;
+
+/// How many frames there shall be, and those among them that are kept where they are put; refused where there are not as many
+/// points, and where `passes` over all of them are too long.
+fn counted(values: &Values, matter: &Matter, passes: usize) -> Result<(usize, Vec<Vec3>), FrameError> {
     let (frames, points) = (values.integer("count") as usize, matter.samples.len());
-    if frames > points { Err(FrameError::MoreThanPoints { frames, points }) } else { Ok(frames) }
+    let kept = places(values.numbers("kept"), "kept")?;
+    if kept.len() > frames {
+        return Err(FrameError::TooManyKept { kept: kept.len(), count: frames });
+    }
+    if frames > points {
+        return Err(FrameError::MoreThanPoints { frames, points });
+    }
+    let distances = frames as f64 * points as f64 * passes as f64;
+    if distances > MOST_DISTANCES {
+        return Err(FrameError::TooManyDistances { frames, points, passes, distances, most: MOST_DISTANCES });
+    }
+    Ok((frames, kept))
+}
+
+fn volumes(matter: &Matter) -> Vec<f64> {
+    matter.samples.iter().map(|sample| sample.volume).collect()
+}
+
+/// Volumes over stiffness, next to the softest.
+fn compliances(matter: &Matter) -> Result<Vec<f64>, FrameError> {
+    let cells = matter.samples.iter().map(|sample| sample.cell as usize);
+    let softest = softest(cells.zip(matter.stiffness.iter().copied()))?;
+    let compliance = |(sample, stiffness): (&Sample, &f64)| sample.volume * softest / stiffness;
+    Ok(matter.samples.iter().zip(matter.stiffness).map(compliance).collect())
 }
 
 /// Where none is `kept`, the first is the farthest from the middle; of several as far, the first in the list.
@@ -182,32 +207,92 @@ fn grid(counts: [f64; 3], matter: &Matter) -> Result<Vec<Frame>, FrameError> {
     {
         return Err(FrameError::NoGrid { count });
     }
+    let places = counts.map(|count| count as usize);
+    let all = places.iter().product();
+    if all > MOST_PLACES {
+        return Err(FrameError::TooManyPlaces { places: all, most: MOST_PLACES });
+    }
     let bounds = matter.bounds;
     let (low, size, middle) = (bounds.low, bounds.size(), bounds.centre());
     let coordinate = |axis: usize, index: usize| {
-        if counts[axis] == 1.0 {
+        if places[axis] == 1 {
             middle[axis]
         } else {
             low[axis] + size[axis] * index as f64 / (counts[axis] - 1.0)
         }
     };
-    let step = Vec3::from_array([0, 1, 2].map(|axis: usize| size[axis] / (counts[axis] - 1.0).max(1.0)));
-    let mut origins = Vec::new();
-    for k in 0..counts[2] as usize {
-        for j in 0..counts[1] as usize {
-            for i in 0..counts[0] as usize {
-                let at = Vec3::new(coordinate(0, i), coordinate(1, j), coordinate(2, k));
-                let holds = |sample: &Sample| {
-                    let apart = sample.position - at;
-                    (0..3).all(|axis: usize| {
-                        apart[axis].abs() <= 0.5 * step[axis] * (1.0 + 1e-9) + 1e-12 * bounds.diagonal()
-                    })
-                };
-                if matter.samples.iter().any(holds) {
-                    origins.push(at);
+    let step = [0, 1, 2].map(|axis: usize| size[axis] / (counts[axis] - 1.0).max(1.0));
+    // along an axis the places that a sample is within half a step of: one, or both where it is in the middle between two
+    let beside = |sample: &Sample, axis: usize| {
+        let x = sample.position[axis];
+        let reach = 0.5 * step[axis] * (1.0 + 1e-9) + 1e-12 * bounds.diagonal();
+        // the first of all where the box is flat: a quotient that is no number counts as zero
+        let last = places[axis] - 1;
+        let nearest = (((x - low[axis]) / step[axis]) as usize).min(last);
+        let near = nearest.saturating_sub(1)..=(nearest + 2).min(last);
+        near.filter(move |index| (x - coordinate(axis, *index)).abs() <= reach)
+    };
+    let mut holds = vec![false; all];
+    for sample in matter.samples {
+        for k in beside(sample, 2) {
+            for j in beside(sample, 1) {
+                for i in beside(sample, 0) {
+                    holds[(k * places[1] + j) * places[0] + i] = true;
                 }
             }
         }
     }
-    Ok(upright(origins))
+    let at = |place: usize| {
+        let (i, j, k) = (place % places[0], place / places[0] % places[1], place / places[0] / places[1]);
+        Vec3::new(coordinate(0, i), coordinate(1, j), coordinate(2, k))
+    };
+    Ok(upright((0..all).filter(|place| holds[*place]).map(at).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grid stands where a sample is within half a step along all axes, borders included, as a search through all samples
+    /// finds; one place along an axis, and a box that is flat, are grids too.
+    #[test]
+    fn grids_stand_where_matter_is() {
+        let place = |i: usize, k: usize| (0.3 * k as f64 + i as f64 * [0.618_034, 0.754_878][k]).fract();
+        for (depth, counts) in [(0.4, [7.0, 5.0, 3.0]), (0.4, [1.0, 9.0, 2.0]), (0.0, [4.0, 4.0, 1.0])] {
+            let bounds = BoundingBox::of([Vec3::ZERO, Vec3::new(2.0, 1.0, depth)]);
+            // on a third of a step, in its middle, and anywhere in the lower half
+            let regular = (0..13).map(|i| Vec3::new(f64::from(i) / 6.0, 0.5, 0.0));
+            let anywhere = (0..20).map(|i| Vec3::new(2.0 * place(i, 0), 0.5 * place(i, 1), 0.5 * depth));
+            let sample = |position: Vec3| Sample { position, volume: 1.0, cell: 0 };
+            let samples: Vec<Sample> = regular.chain(anywhere).map(sample).collect();
+            let found = grid(counts, &Matter { samples: &samples, stiffness: &[], bounds }).unwrap();
+            let coordinates = |axis: usize| {
+                let (count, size) = (counts[axis] as usize, bounds.size()[axis]);
+                let at = move |i: usize| {
+                    if count == 1 { 0.5 * size } else { size * i as f64 / (count - 1) as f64 }
+                };
+                (0..count).map(at)
+            };
+            let mut expected = Vec::new();
+            for z in coordinates(2) {
+                for y in coordinates(1) {
+                    for x in coordinates(0) {
+                        let at = Vec3::new(x, y, z);
+                        let is_within = |sample: &Sample| {
+                            (0..3).all(|axis: usize| {
+                                let step = bounds.size()[axis] / (counts[axis] - 1.0).max(1.0);
+                                (sample.position[axis] - at[axis]).abs() <= 0.5 * step * (1.0 + 1e-9) + 1e-12
+                            })
+                        };
+                        if samples.iter().any(is_within) {
+                            expected.push(at);
+                        }
+                    }
+                }
+            }
+            assert!(expected.len() < counts.iter().product::<f64>() as usize || depth == 0.0);
+            let origins: Vec<Vec3> = found.iter().map(|frame| frame.origin).collect();
+            assert_eq!(origins, expected);
+        }
+    }
 }

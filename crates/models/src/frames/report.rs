@@ -1,8 +1,9 @@
 //! How well the frames of a body serve: how many have a say at a point, how well each can be told from what it carries, and
 //! what moving least squares over the same places would have to invert.
 
-use souple_math::{Mat3, Vec3, eigen_symmetric};
+use souple_math::Vec3;
 
+use super::mass::Moments;
 use super::{Carried, Frame, Sample};
 
 /// The frames of a body in numbers.
@@ -43,28 +44,13 @@ impl FramesReport {
     }
 }
 
-/// Second moments of the matter of each frame about its middle.
 fn inertia_condition(frames: &[Frame], samples: &[Sample], carried: &[Carried], is_affine: bool) -> f64 {
-    let mut sums = vec![(0.0, Vec3::ZERO, Mat3::ZERO); frames.len()];
-    for (sample, point) in samples.iter().zip(carried) {
-        for (frame, rows) in point.frames.iter().zip(&point.rows) {
-            let arm = sample.position - frames[*frame as usize].origin;
-            let volume = sample.volume * rows[0].0;
-            let (mass, first, second) = &mut sums[*frame as usize];
-            *mass += volume;
-            *first += arm * volume;
-            *second += arm.outer(arm) * volume;
-        }
-    }
-    let of_frame = |(mass, first, second): &(f64, Vec3, Mat3)| {
-        let spread = *second - first.outer(*first) * (1.0 / mass);
-        let mut values = eigen_symmetric(&spread).values.to_array();
-        values.sort_by(f64::total_cmp);
-        let [least, middle, most] = values;
+    let of_frame = |moments: Moments| {
+        let [least, middle, most] = moments.principal();
         // about the axis along which it is longest a body turns most easily
         if is_affine { ratio(most, least) } else { ratio(middle + most, least + middle) }
     };
-    sums.iter().map(of_frame).fold(1.0, f64::max)
+    Moments::of_frames(frames, samples, carried).into_iter().map(of_frame).fold(1.0, f64::max)
 }
 
 /// A condition, with what is below rounding taken for rounding.

@@ -2,7 +2,8 @@
 //!
 //! `∂P/∂F : δF = δF S + F (∂S/∂E : δE)` with the second Piola–Kirchhoff stress `S = F⁻¹ P`. The first part makes the
 //! tangent of compressed matter indefinite; without it the tangent is that of the material alone (Bosman, Duriez & Cotin,
-//! eq. 19–21): positive definite wherever the law is, and Newton's method is no longer quadratic.
+//! eq. 19–21): positive definite wherever the law is, and Newton's method is no longer quadratic. Laws of small strain, whose
+//! stress does not turn with the matter, have no such part.
 
 use souple_formal::tape::BATCH;
 use souple_math::{Mat3, Vec3};

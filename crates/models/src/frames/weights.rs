@@ -1,7 +1,9 @@
 //! How much each frame has to say at a material point: the table of weights.
 //!
 //! Weights sum to one wherever a frame reaches (rigid motions ask for that), and gradients are those of the very
-//! function that is used, so that `Σ ∇w = 0` and a deformation gradient is the derivative of the positions.
+//! function that is given, so that `Σ ∇w = 0` and a deformation gradient is the derivative of the positions. Where a body is
+//! strained both are used as single precision holds them (see `layout`), with the same sums: there a deformation gradient is
+//! that derivative to a millionth, while positions and masses are those of the weights as they are given.
 
 use souple_math::Vec3;
 use souple_mesh::Mesh;
@@ -23,8 +25,8 @@ pub struct Share {
 pub trait Weights: Send + Sync {
     /// Shares of the frames that reach a point, by ascending frame; none where no frame does.
     fn shares(&self, point: Vec3) -> Vec<Share>;
-    /// How far a frame reaches [m]; infinite where it reaches everywhere.
-    fn reach(&self, frame: usize) -> f64;
+    /// Why no frame reaches a point, and what to change, in words.
+    fn out_of_reach(&self, point: Vec3, frames: &[Frame]) -> String;
 }
 
 /// What weights are made for.
@@ -173,8 +175,22 @@ impl Weights for Shepard {
         shares
     }
 
-    fn reach(&self, frame: usize) -> f64 {
-        self.centres[frame].1 * self.kernel.end()
+    // not by inverse distance, which reaches everywhere: all others have a support
+    fn out_of_reach(&self, point: Vec3, _: &[Frame]) -> String {
+        let beyond = |(frame, (centre, support)): (usize, &(Vec3, f64))| {
+            (frame, (point - *centre).length(), support * self.kernel.end())
+        };
+        let frames = self.centres.iter().enumerate().map(beyond);
+        let nearest = frames.min_by(|a, b| a.1.total_cmp(&b.1));
+        nearest.map_or_else(
+            || FrameError::NoFrames.to_string(),
+            |(frame, distance, reach)| {
+                format!(
+                    "the nearest frame, {frame}, is {distance:.3e} m away and reaches {reach:.3e} m; take more frames, or a \
+                     wider support"
+                )
+            },
+        )
     }
 }
 

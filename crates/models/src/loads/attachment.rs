@@ -17,6 +17,17 @@ pub struct Link {
     pub b: Combination,
     /// Distance at which it is at rest [m]; zero: the points are pulled onto each other.
     pub rest_length: f64,
+    /// How stiff it is, of what the attachments have: links with more area about them bear more.
+    pub share: f64,
+    /// Pull under which it tears for good [N]; infinite where it never does.
+    pub strength: f64,
+}
+
+impl Link {
+    /// As stiff as the attachments say, for good.
+    pub fn new(a: Combination, b: Combination, rest_length: f64) -> Self {
+        Self { a, b, rest_length, share: 1.0, strength: f64::INFINITY }
+    }
 }
 
 /// With `d = x_a - x_b`, `l = |d|`, `n = d/l` and the rest length `L`, the force on `x_a` is
@@ -29,12 +40,12 @@ pub struct Link {
 pub struct Attachments {
     name: String,
     links: Vec<Link>,
-    /// Per link [N/m].
+    /// Of a link with the share 1 [N/m].
     stiffness: f64,
     /// Per link [N s/m].
     damping: f64,
-    /// Pull under which a link tears for good [N]; infinite where none does.
-    strength: f64,
+    /// Whether any link does.
+    can_tear: bool,
 }
 
 /// How attachments stand.
@@ -61,30 +72,26 @@ impl Attachments {
         }
         for (index, link) in links.iter().enumerate() {
             not_negative(format!("links[{index}].rest_length"), link.rest_length)?;
+            not_negative(format!("links[{index}].share"), link.share)?;
+            if link.strength.is_nan() || link.strength <= 0.0 {
+                let field = format!("links[{index}].strength");
+                return Err(LoadError::Unfit { field, value: link.strength, expected: "a number above 0" });
+            }
         }
         not_negative("stiffness", stiffness)?;
         not_negative("damping", damping)?;
-        Ok(Self { name: name.into(), links, stiffness, damping, strength: f64::INFINITY })
+        let can_tear = links.iter().any(|link| link.strength.is_finite());
+        Ok(Self { name: name.into(), links, stiffness, damping, can_tear })
     }
 
-    /// Links that tear, each for good, once a step has ended with a pull above `strength` [N].
-    ///
-    /// # Errors
-    /// A strength that is not a number above zero.
-    pub fn with_strength(self, strength: f64) -> Result<Self, LoadError> {
-        if strength > 0.0 {
-            return Ok(Self { strength, ..self });
-        }
-        Err(LoadError::Unfit { field: "strength".to_owned(), value: strength, expected: "a number above 0" })
-    }
-
-    fn can_tear(&self) -> bool {
-        self.strength.is_finite()
+    /// [N/m]
+    fn stiffness_of(&self, link: &Link) -> f64 {
+        self.stiffness * link.share
     }
 
     /// Whether a link has torn, by the force's memory.
     pub fn is_torn(&self, link: usize, memory: &[f64]) -> bool {
-        self.can_tear() && memory.get(1 + link).is_some_and(|torn| *torn > 0.0)
+        self.can_tear && memory.get(1 + link).is_some_and(|torn| *torn > 0.0)
     }
 
     /// Links that hold.
@@ -115,15 +122,18 @@ impl Attachments {
     pub fn pull(&self, link: &Link, at: &Configuration) -> Vec3 {
         let Stretch { d, rate, direction } = Stretch::of(link, at);
         match direction {
-            _ if link.rest_length == 0.0 => -(d * self.stiffness + rate * self.damping),
-            Some(n) => -(n * (self.stiffness * (d.dot(n) - link.rest_length) + self.damping * n.dot(rate))),
+            _ if link.rest_length == 0.0 => -(d * self.stiffness_of(link) + rate * self.damping),
+            Some(n) => {
+                let elastic = self.stiffness_of(link) * (d.dot(n) - link.rest_length);
+                -(n * (elastic + self.damping * n.dot(rate)))
+            }
             None => Vec3::ZERO,
         }
     }
 
     /// `a ∂f/∂d + b ∂f/∂ḋ` of a link.
     fn tangent(&self, link: &Link, at: &Configuration, weights: TangentWeights) -> Mat3 {
-        let (k, c) = (self.stiffness * weights.position, self.damping * weights.velocity);
+        let (k, c) = (self.stiffness_of(link) * weights.position, self.damping * weights.velocity);
         let Stretch { d, rate, direction } = Stretch::of(link, at);
         if link.rest_length == 0.0 {
             return Mat3::IDENTITY * -(k + c);
@@ -184,7 +194,7 @@ impl Force for Attachments {
         let whole = |point: &Combination| (point.total_weight() - 1.0).abs() < 1e-12;
         let internal = !across && self.links.iter().all(|link| whole(&link.a) && whole(&link.b));
         Declaration {
-            conservative: !damped && !self.can_tear(),
+            conservative: !damped && !self.can_tear,
             velocity_terms: damped,
             symmetric_tangent: !self.turns_with_damping(),
             internal,
@@ -194,17 +204,17 @@ impl Force for Attachments {
 
     // an account of heat, then 1 for each link that has torn
     fn memory_len(&self) -> usize {
-        if self.can_tear() { 1 + self.links.len() } else { 1 }
+        if self.can_tear { 1 + self.links.len() } else { 1 }
     }
 
     fn tangent_reads_memory(&self) -> bool {
-        self.can_tear()
+        self.can_tear
     }
 
     // E = Σ k/2 (l - L)²
     fn energy(&self, at: &Configuration, _scratch: &mut Scratch) -> Energy {
-        let stretches = self.whole(at.memory).map(|link| stretch(link, at).powi(2));
-        let stored = 0.5 * self.stiffness * stretches.sum::<f64>();
+        let of = |link: &Link| 0.5 * self.stiffness_of(link) * stretch(link, at).powi(2);
+        let stored = self.whole(at.memory).map(of).sum();
         Energy { stored, dissipated: at.memory[0] }
     }
 
@@ -280,14 +290,14 @@ impl Force for Attachments {
         };
         let speeds: f64 = self.whole(memory).map(speed_sq).sum();
         memory[0] += timestep * self.damping * speeds;
-        if !self.can_tear() {
+        if !self.can_tear {
             return;
         }
         for (index, link) in self.links.iter().enumerate() {
-            if memory[1 + index] == 0.0 && self.pull(link, at).length() > self.strength {
+            if memory[1 + index] == 0.0 && self.pull(link, at).length() > link.strength {
                 memory[1 + index] = 1.0;
                 // what it held is given off
-                memory[0] += 0.5 * self.stiffness * stretch(link, at).powi(2);
+                memory[0] += 0.5 * self.stiffness_of(link) * stretch(link, at).powi(2);
             }
         }
     }

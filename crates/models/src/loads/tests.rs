@@ -30,7 +30,7 @@ fn assert_in_motion(force: &dyn Force) {
 fn link(rest_length: f64) -> Link {
     let a = Combination::new(vec![(0, 0.2), (1, 0.5), (2, 0.3)]).unwrap();
     let b = Combination::new(vec![(4, 0.75), (2, 0.25)]).unwrap();
-    Link { a, b, rest_length }
+    Link::new(a, b, rest_length)
 }
 
 fn consistent_mass() -> Mass {
@@ -252,7 +252,7 @@ fn gravity_leaves_axes_alone() {
 /// A link of a rest length that has shrunk to a point gives no force, and nothing that is not finite.
 #[test]
 fn a_link_without_a_direction() {
-    let same = Link { a: Combination::row(0), b: Combination::row(1), rest_length: 1.0 };
+    let same = Link::new(Combination::row(0), Combination::row(1), 1.0);
     let links = Attachments::new("attachment", vec![same], 10.0, 1.0).unwrap();
     let setting = Setting::new(&links, vec![Vec3::X; 2], vec![Vec3::Y, Vec3::ZERO]);
     assert_eq!(setting.force(&links), [Vec3::ZERO; 2]);

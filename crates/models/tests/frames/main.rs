@@ -9,8 +9,8 @@ use souple_engine::{Configuration, Force, Mass, TangentWeights};
 use souple_math::{Mat3, Vec3, eigen_symmetric, exponential};
 use souple_mesh::Mesh;
 use souple_models::frames::{
-    self, Carried, Frame, FramesDescription, FramesForce, POINTS, Sample, Shape, TangentKind, WEIGHTS,
-    Weights,
+    self, Carried, Frame, FramesDescription, FramesForce, HeldPoint, Hold, POINTS, Sample, Shape,
+    TangentKind, WEIGHTS, Weights,
 };
 use souple_models::materials::{self, Material};
 use souple_solve::{BlockMatrix, Pattern};
@@ -45,6 +45,17 @@ fn text_law() -> Material {
     let parameters = [("mu".to_owned(), "8 kPa".to_owned()), ("k".to_owned(), "20 kPa".to_owned())];
     let values = Values::new()
         .with("energy", Value::Text("mu/2*(I1_bar - 3) + k/2*(J - 1)^2"))
+        .with("parameters", Value::Texts(&parameters))
+        .with("density", Value::Number(900.0));
+    (entry.build)(&entry.values(values).unwrap()).unwrap()
+}
+
+/// Of small strain, and not linear.
+fn small_text_law() -> Material {
+    let entry = materials::TABLE.find("hyperelastic").unwrap();
+    let parameters = [("mu".to_owned(), "8 kPa".to_owned()), ("lambda".to_owned(), "20 kPa".to_owned())];
+    let values = Values::new()
+        .with("energy", Value::Text("mu*tr(eps*eps) + lambda/2*tr(eps)^2 + mu*tr(eps*eps)^2"))
         .with("parameters", Value::Texts(&parameters))
         .with("density", Value::Number(900.0));
     (entry.build)(&entry.values(values).unwrap()).unwrap()
@@ -335,6 +346,74 @@ fn material_tangents_stay_positive_under_compression() {
         -change.iter().zip(&sideways).map(|(f, d)| f.dot(*d)).sum::<f64>()
     };
     assert!(curvature(&alone) > 0.0 && curvature(&full) < curvature(&alone));
+}
+
+/// What the tangent of the material alone leaves out is `δF S`, with `S = λ tr(E) I + 2 μ E` of St. Venant–Kirchhoff, and nothing of a
+/// law of small strain beside it, whose stress is no `F S`.
+#[test]
+fn material_tangents_leave_out_the_stress_alone() {
+    let mesh = bar(SIZE, [8.0, 2.0, 2.0], "tet4");
+    let body = Body::new(&mesh, line(4), "wendland");
+    let laws = [material("st_venant_kirchhoff"), material("linear")];
+    let [full, alone] = [TangentKind::Full, TangentKind::Material].map(|kind| body.force(&mesh, &laws, kind));
+    let rows = body.strained();
+    let delta: Vec<Vec3> =
+        (0..rows.len()).map(|row| Vec3::new((row as f64).cos(), (2.0 * row as f64).sin(), 0.4)).collect();
+    let gradient = |carried: &Carried, of: &[Vec3]| {
+        let mut F = Mat3::ZERO;
+        for (frame, gradients) in carried.frames.iter().zip(&carried.rows) {
+            let first = body.rows[*frame as usize] as usize;
+            for (row, (_, gradient)) in of[first..].iter().zip(gradients) {
+                F += row.outer(*gradient);
+            }
+        }
+        F
+    };
+    let moduli = laws[0].small_strain;
+    let mut expected = vec![Vec3::ZERO; rows.len()];
+    for (sample, carried) in body.samples.iter().zip(&body.carried) {
+        // the first half of the cells, see `Body::force`
+        if 2 * sample.cell as usize >= mesh.cell_count() {
+            continue;
+        }
+        let (F, dF) = (gradient(carried, &rows), gradient(carried, &delta));
+        let E = (F.transpose_mul(&F) - Mat3::IDENTITY) * 0.5;
+        let S = Mat3::IDENTITY * (moduli.lambda * E.trace()) + E * (2.0 * moduli.mu);
+        for (frame, gradients) in carried.frames.iter().zip(&carried.rows) {
+            let first = body.rows[*frame as usize] as usize;
+            for (force, (_, gradient)) in expected[first..].iter_mut().zip(gradients) {
+                *force -= dF * (S * *gradient) * sample.volume;
+            }
+        }
+    }
+    let left_out: Vec<Vec3> = differential(&full, &rows, &delta)
+        .iter()
+        .zip(differential(&alone, &rows, &delta))
+        .map(|(full, alone)| *full - alone)
+        .collect();
+    let apart: Vec<Vec3> = left_out.iter().zip(&expected).map(|(a, b)| *a - *b).collect();
+    // shares are kept in single precision: a millionth
+    assert!(norm(&apart) < 1e-5 * norm(&expected), "{} of {}", norm(&apart), norm(&expected));
+    check_blocks(&alone, &rows, &delta);
+    let small = [material("linear"), small_text_law()];
+    let [full, alone] =
+        [TangentKind::Full, TangentKind::Material].map(|kind| body.force(&mesh, &small, kind));
+    assert_eq!(differential(&full, &rows, &delta), differential(&alone, &rows, &delta));
+    check_blocks(&alone, &rows, &delta);
+}
+
+/// A spring without stiffness stores nothing and pulls at nothing; one with it stores `k/2 |S d|²`.
+#[test]
+fn springs_of_pins_store_what_they_pull() {
+    let stored = |stiffness: f64| {
+        let point =
+            HeldPoint { row: 0, stiffness, start: Vec3::X, axes: Vec3::new(1.0, 0.0, 1.0), motion: None };
+        let hold = Hold::new("pins", vec![point]);
+        energy(&hold, &[Vec3::new(1.3, 5.0, -0.4)])
+    };
+    assert_eq!(stored(0.0), 0.0);
+    // 0.3 along x, 0.4 along z: rounding
+    assert!((stored(8.0) - 4.0 * 0.25).abs() < 1e-15);
 }
 
 /// Kinetic energy of rigid and affine motions is that of the points, for consistent and lumped mass alike; of any motion

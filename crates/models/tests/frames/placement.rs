@@ -1,15 +1,14 @@
 //! Where frames are placed, weights that know slits and stiffness, and what bodies of frames cannot be.
 
 use souple_math::{Mat3, Vec3};
+use souple_mesh::Mesh;
 use souple_models::frames::{self, Carried, Frame, PLACEMENTS, POINTS, Sample, Shape, WEIGHTS};
 use souple_table::{Value, Values};
 
 use super::{SIZE, bar, weights_of};
 
-/// Harmonic weights do not cross a slit: two arms that meet at their root only, closer to each other than frames reach.
-#[test]
-fn harmonic_weights_keep_the_sides_of_a_slit_apart() {
-    // a bar of eight by four cells, cut along its middle from x = 0.5 to its end
+/// A plate of 1 m by 0.4 m, slit along its middle from x = 0.5 to its end: two arms that meet at their root only.
+fn slit_plate() -> Mesh {
     let whole = bar([1.0, 0.4, 0.1], [16.0, 8.0, 1.0], "hex8");
     let mut mesh = whole.clone();
     let mut twins = std::collections::BTreeMap::new();
@@ -25,21 +24,75 @@ fn harmonic_weights_keep_the_sides_of_a_slit_apart() {
             nodes.iter_mut().for_each(|node| *node = *twins.get(node).unwrap_or(node));
         }
     }
-    let frame = |x: f64, y: f64| Frame { origin: Vec3::new(x, y, 0.05), axes: Mat3::IDENTITY };
-    let frames = [frame(0.1, 0.2), frame(0.9, 0.1), frame(0.9, 0.3)];
+    mesh
+}
+
+fn frame_of_plate(x: f64, y: f64) -> Frame {
+    Frame { origin: Vec3::new(x, y, 0.05), axes: Mat3::IDENTITY }
+}
+
+/// The sum of the weights of some frames at a point of a mesh of one material.
+fn share(mesh: &Mesh, frames: &[Frame], weights: &str, of: &[u32], point: Vec3) -> f64 {
     let stiffness = vec![1.0; mesh.cell_count()];
-    let shape = Shape { frames: &frames, mesh: &mesh, stiffness_of_cell: &stiffness };
-    let point = Vec3::new(0.85, 0.17, 0.05);
-    let share = |name: &str| {
-        let shares = weights_of(name, &shape).shares(point);
-        shares.iter().find(|share| share.frame == 2).map_or(0.0, |share| share.weight)
-    };
-    assert!(share("wendland") > 0.1, "{}", share("wendland"));
+    let shape = Shape { frames, mesh, stiffness_of_cell: &stiffness };
+    let shares = weights_of(weights, &shape).shares(point);
+    shares.iter().filter(|share| of.contains(&share.frame)).map(|share| share.weight).sum()
+}
+
+/// Harmonic weights do not cross a slit: two arms that meet at their root only, closer to each other than frames reach.
+#[test]
+fn harmonic_weights_keep_the_sides_of_a_slit_apart() {
+    let mesh = slit_plate();
+    let frames = [frame_of_plate(0.1, 0.2), frame_of_plate(0.9, 0.1), frame_of_plate(0.9, 0.3)];
+    let share = |name: &str| share(&mesh, &frames, name, &[2], Vec3::new(0.85, 0.17, 0.05));
     // by way of the root: the arm is three times as long as it is wide
     assert!(share("harmonic") < 0.05, "{}", share("harmonic"));
     // 0.78 round the end of the slit, of supports of twice the 0.81 to the frame of the root: φ of 0.05, 0.48 and 0.47 are 0.98, 0.21
     // and 0.23
     assert!((share("geodesic") - 0.15).abs() < 0.01, "{}", share("geodesic"));
+    // straight across: φ of 0.22, 0.35 and 0.47 are 0.71, 0.43 and 0.23
+    assert!((share("wendland") - 0.31).abs() < 0.01, "{}", share("wendland"));
+}
+
+/// Frames close to a slit say as good as nothing on its other side, by ways within the shape; by distances in space those of the
+/// other side have as much to say as those of the own one.
+#[test]
+fn geodesic_weights_part_the_sides_of_a_slit() {
+    let mesh = slit_plate();
+    let frames = [(0.1, 0.2), (0.6, 0.15), (0.6, 0.25), (0.9, 0.15), (0.9, 0.25)];
+    let frames = frames.map(|(x, y)| frame_of_plate(x, y));
+    for (y, others) in [(0.19, [2, 4]), (0.21, [1, 3])] {
+        let share = |name: &str| share(&mesh, &frames, name, &others, Vec3::new(0.87, y, 0.05));
+        assert!(share("wendland") > 0.3, "{}", share("wendland"));
+        assert!(share("geodesic") < 0.5 * share("wendland"), "{} {}", share("geodesic"), share("wendland"));
+        assert!(share("harmonic") < 0.1, "{}", share("harmonic"));
+    }
+}
+
+/// Cores of harmonic weights and the points nearest to frames are of the side of a slit that the frame is on, though those of the other
+/// side are as near, or nearer.
+#[test]
+fn nothing_is_owned_across_a_slit() {
+    let mesh = slit_plate();
+    let stiffness = vec![1.0; mesh.cell_count()];
+    let share = |frames: &[Frame], core: f64, frame: u32, point: Vec3| {
+        let shape = Shape { frames, mesh: &mesh, stiffness_of_cell: &stiffness };
+        let entry = WEIGHTS.find("harmonic").unwrap();
+        let values = entry.values(Values::new().with("core", Value::Number(core))).unwrap();
+        let shares = (entry.build)(&values, &shape).unwrap().shares(point);
+        shares.iter().find(|share| share.frame == frame).map_or(0.0, |share| share.weight)
+    };
+    // without a core the nearest point alone: at x = 0.875 on the slit, one of two at the same place
+    for (y, other_side) in [(0.199, 0.201), (0.201, 0.199)] {
+        let frames = [frame_of_plate(0.1, 0.2), frame_of_plate(0.874, y)];
+        let across = share(&frames, 0.0, 1, Vec3::new(0.875, other_side, 0.0));
+        let own = share(&frames, 0.0, 1, Vec3::new(0.875, y, 0.0));
+        assert!(own > 0.95 && across < 0.7 * own, "{own} and {across}");
+    }
+    // a core of 0.45 of the 0.35 to the next frame reaches over the other arm
+    let frames = [frame_of_plate(0.1, 0.2), frame_of_plate(0.55, 0.3), frame_of_plate(0.9, 0.19)];
+    let across = share(&frames, 0.45, 2, Vec3::new(0.9, 0.26, 0.05));
+    assert!(share(&frames, 0.45, 2, Vec3::new(0.9, 0.14, 0.05)) > 0.999 && across < 0.5, "{across}");
 }
 
 /// In a convex body of one material the way within is the straight one: `geodesic` weights are Wendland's, and their
@@ -143,6 +196,23 @@ fn placements_spread() {
         assert_eq!(frames.len(), 12);
         assert_eq!(frames[1].origin, Vec3::new(0.51, 0.1, 0.1));
     }
+    // more that are kept than there shall be, and more work than can be waited for
+    let refused = |name: &str, values: Values, matter: &frames::Matter| {
+        let entry = PLACEMENTS.find(name).unwrap();
+        (entry.build)(&entry.values(values).unwrap(), matter).unwrap_err().to_string()
+    };
+    for name in ["farthest_point", "lloyd"] {
+        let values = Values::new().with("count", Value::Integer(1)).with("kept", Value::Numbers(&kept));
+        let error = refused(name, values, &matter);
+        assert!(error.contains("`kept` lists 2 frames") && error.contains("`count` is 1"), "{error}");
+    }
+    let error = refused("grid", Values::new().with("counts", Value::Vector([1000.0; 3])), &matter);
+    assert!(error.contains("1000000000 places; at most 1000000"), "{error}");
+    let many = vec![samples[0]; 4000];
+    let matter_of_many = frames::Matter { samples: &many, ..matter };
+    let values = Values::new().with("count", Value::Integer(4000)).with("iterations", Value::Integer(1000));
+    let error = refused("lloyd", values, &matter_of_many);
+    assert!(error.contains("are 1.6e10 distances, and at most 1e10"), "{error}");
     let soft = place("lloyd", "compliance").iter().filter(|frame| frame.origin.x < 0.5).count();
     assert!(soft >= 8, "{soft} of 12 in the soft half");
 }
@@ -178,4 +248,42 @@ fn faults_are_said_in_words() {
     let carried = [Carried::new(&frames, &shares, sample.position)];
     let error = frames::check_inertia(&frames, &[sample], &carried, false).unwrap_err().to_string();
     assert!(error.contains("lies on a point"), "{error}");
+    // points that no way reaches far enough for: how far the way is, of what reach
+    let unit = vec![1.0; mesh.cell_count()];
+    let said = |name: &str, mesh: &Mesh, stiffness: &[f64], frames: &[Frame]| {
+        let shape = Shape { frames, mesh, stiffness_of_cell: stiffness };
+        let entry = WEIGHTS.find(name).unwrap();
+        let reach = (entry.build)(&entry.values(Values::new()).unwrap(), &shape)
+            .and_then(|weights| frames::check_reach(&shape, weights.as_ref(), mesh.points.iter().copied()));
+        reach.map_or_else(|error| error.to_string(), |()| String::new())
+    };
+    let error = said("geodesic", &mesh, &unit, &[frame(0.0), frame(0.1)]);
+    assert!(error.contains("by ways within the shape") && error.contains("frame, 1, is"), "{error}");
+    assert!(error.contains("reaches 2.000e-1 m; take more frames, or a wider support"), "{error}");
+    assert_eq!(said("inverse_distance", &mesh, &unit, &[frame(0.0), frame(0.1)]), "");
+    // by ways within the shape, and solved on its cells: all of these ask for a mesh that carries frames
+    let mut parts = mesh.clone();
+    let other: Vec<Vec3> = mesh.points.iter().map(|point| *point + Vec3::X * 2.0).collect();
+    parts.points.extend(other);
+    let nodes: Vec<u32> = mesh.blocks[0].nodes.iter().map(|node| node + mesh.points.len() as u32).collect();
+    parts.blocks[0].nodes.extend(nodes);
+    let mut soft = unit.clone();
+    soft[3] = 0.0;
+    let nowhere = Frame { origin: Vec3::new(f64::NAN, 0.0, 0.0), axes: Mat3::IDENTITY };
+    for name in ["geodesic", "harmonic"] {
+        let two = [frame(0.2), frame(0.8)];
+        let error = said(name, &parts, &[&unit[..], &unit].concat(), &two);
+        assert!(error.contains("no frame is in the part of the mesh with a cell at (2."), "{name}: {error}");
+        let error = said(name, &mesh, &soft, &two);
+        assert!(error.contains("cell 3 has a Young's modulus of 0 Pa"), "{name}: {error}");
+        let error = said(name, &mesh, &unit, &[frame(0.2), nowhere]);
+        assert!(error.contains("no cell of the mesh carries frame 1"), "{name}: {error}");
+    }
+    // a cell pressed flat
+    let mut flat = mesh.clone();
+    let middle = flat.points[flat.blocks[0].nodes[0] as usize];
+    let [first, .., last] = [0, 1, 2, 3].map(|k: usize| mesh.blocks[0].nodes[k] as usize);
+    flat.points[last] = middle + (flat.points[mesh.blocks[0].nodes[1] as usize] - flat.points[first]) * 0.5;
+    let error = said("harmonic", &flat, &unit, &[frame(0.6), frame(0.9)]);
+    assert!(error.contains("cell 0 of the mesh is flat"), "{error}");
 }

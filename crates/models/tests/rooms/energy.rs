@@ -92,7 +92,7 @@ fn other_methods_multiply_energy() {
 #[test]
 fn one_solve_is_held_back_where_it_would_gain_energy() {
     let link = |timestep, newton| {
-        let tie = Link { a: Combination::row(0), b: Combination::row(1), rest_length: 1.0 };
+        let tie = Link::new(Combination::row(0), Combination::row(1), 1.0);
         let tie: Box<dyn Force> = Box::new(Attachments::new("tie", vec![tie], 1e4, 0.0).unwrap());
         let (system, q) =
             points(&[Vec3::ZERO, Vec3::X], &[1.0, 1.0], vec![tie], stepper_of("backward_euler", newton));

@@ -31,7 +31,7 @@ const TIGHT: [(&str, f64); 2] = [("newton_tolerance", 1e-13), ("solver_tolerance
 
 /// Two points on springs, one of them led, damped, drawn by a load in time, with a mass that couples them.
 fn chain(stepper: Box<dyn souple_engine::Stepper>, coupling: f64, timestep: f64) -> World {
-    let link = |a: Combination, b: Combination| Link { a, b, rest_length: 0.9 };
+    let link = |a: Combination, b: Combination| Link::new(a, b, 0.9);
     let links =
         vec![link(Combination::row(0), Combination::row(1)), link(Combination::row(1), Combination::row(2))];
     let load = Arc::new(FormulaVector::compile("[0, 3 * sin(4 * t), 0.5 * t]").unwrap());

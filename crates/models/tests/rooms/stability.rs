@@ -38,7 +38,7 @@ fn ground(positions: &[Vec3]) -> ShapeContact {
 fn every_spring_is_in_the_forecast() {
     let positions = [Vec3::Y * 3.0, Vec3::new(1.0, 3.0, 0.0)];
     let spring = GroundSpring { row: 1, share: 1.0, anchor: Vec3::ZERO };
-    let link = Link { a: Combination::row(0), b: Combination::row(1), rest_length: 1.0 };
+    let link = Link::new(Combination::row(0), Combination::row(1), 1.0);
     let coupling = CouplingSpring {
         name: "tie".into(),
         fast_system: 0,
@@ -142,7 +142,7 @@ fn blow_up_is_where_it_is_forecast() {
         for (a, x) in positions.iter().enumerate() {
             for (b, y) in positions[..a].iter().enumerate().filter(|(_, y)| (**y - *x).length() < 0.15) {
                 let (a, b) = (Combination::row(a as u32), Combination::row(b as u32));
-                links.push(Link { a, b, rest_length: (*x - *y).length() });
+                links.push(Link::new(a, b, (*x - *y).length()));
             }
         }
         links

@@ -16,9 +16,10 @@ use souple_models::solids::{
 };
 
 use super::frames::PlacedFrames;
+use super::hanging::Hanging;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, inertial, levels, network, octree, section, shape, start, tissue};
+use super::{Draft, frames, hanging, inertial, levels, network, octree, section, shape, start, tissue};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -38,6 +39,8 @@ pub struct Placed<'a> {
     pub frames: Option<PlacedFrames>,
     /// Coarser meshes of it.
     pub levels: Option<PlacedLevels<'a>>,
+    /// What some of its points hang on.
+    pub hanging: Option<Hanging>,
 }
 
 impl Placed<'_> {
@@ -94,6 +97,10 @@ pub fn place(draft: &mut Draft) -> Option<()> {
     {
         return None;
     }
+    hanging::place(draft);
+    if !draft.log.is_empty() {
+        return None;
+    }
     give_rows(&mut draft.bodies, spec.systems.len());
     Some(())
 }
@@ -123,6 +130,7 @@ fn place_one(draft: &mut Draft, index: usize) {
         links,
         frames: None,
         levels: None,
+        hanging: None,
     };
     if let Some(materials) = materials_of(draft, &placed) {
         placed.materials = materials;
@@ -140,7 +148,7 @@ fn place_one(draft: &mut Draft, index: usize) {
     draft.bodies.push(placed);
 }
 
-/// Rows of unknowns come first: points of meshes, then frames; points that frames carry follow.
+/// Rows of unknowns come first: points of meshes, then frames; points that frames carry follow, then those of bodies that hang.
 fn give_rows(bodies: &mut [Placed], systems: usize) {
     let mut next = vec![0; systems];
     let mut give = |system: usize, count: usize| {
@@ -149,6 +157,11 @@ fn give_rows(bodies: &mut [Placed], systems: usize) {
         first..next[system]
     };
     for body in bodies.iter_mut().filter(|body| body.frames.is_none()) {
+        if let Some(hanging) = &mut body.hanging {
+            let count = hanging.own.points().len();
+            hanging.give_rows(give(body.system, count).start);
+            continue;
+        }
         let rows = give(body.system, body.point_count());
         body.rows = rows.start..rows.start + body.mesh.points.len();
         if let Some(levels) = &mut body.levels {
@@ -163,18 +176,30 @@ fn give_rows(bodies: &mut [Placed], systems: usize) {
     for body in bodies.iter_mut().filter(|body| body.frames.is_some()) {
         body.rows = give(body.system, body.mesh.points.len());
     }
+    for system in 0..systems {
+        for number in hanging::in_order(bodies, system) {
+            bodies[number].rows = give(system, bodies[number].mesh.points.len());
+        }
+    }
 }
 
 /// The unknowns of a system and what hangs on them, in the order of [`give_rows`].
 fn kinematics(draft: &Draft, index: usize) -> Kinematics {
     let bodies = || draft.bodies.iter().filter(|body| body.system == index);
     let mut kinematics = Kinematics::default();
-    let points = bodies().filter(|body| body.frames.is_none()).map(Placed::point_count).sum();
+    let unknowns = |body: &Placed| match &body.hanging {
+        Some(hanging) => hanging.own.points().len(),
+        None => body.point_count(),
+    };
+    let points = bodies().filter(|body| body.frames.is_none()).map(unknowns).sum();
     kinematics.add_unknowns(UnknownKind::Point, points);
     for frames in bodies().filter_map(|body| body.frames.as_ref()) {
         kinematics.add_unknowns(frames.kind, frames.frames.len());
     }
     bodies().filter_map(|body| body.frames.as_ref()).for_each(|frames| frames.add_points(&mut kinematics));
+    for number in hanging::in_order(&draft.bodies, index) {
+        hanging::add_rows(&draft.bodies, number, &mut kinematics);
+    }
     kinematics
 }
 
@@ -485,7 +510,13 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
             Some(frames) => {
                 q[frames.row_range()].iter_mut().zip(frames.configuration()).for_each(|(q, row)| *q = row);
             }
-            None => q[body.rows.clone()].copy_from_slice(&body.mesh.points),
+            None => {
+                for (point, x) in (0..).zip(&body.mesh.points) {
+                    if let Some(row) = body.own_row(point) {
+                        q[row as usize] = *x;
+                    }
+                }
+            }
         }
     }
     let mut state = system.initial_state(q);
@@ -506,8 +537,10 @@ pub fn initial_state(draft: &Draft, system: &System, index: usize) -> SystemStat
                 frames.start_velocity(&system.kinematics, motion, &mut state.v);
             }
             None => {
-                for (row, x) in body.rows.clone().zip(points) {
-                    state.v[row] = velocity + angular_velocity.cross(*x - centre);
+                for (point, x) in (0..).zip(points) {
+                    if let Some(row) = body.own_row(point) {
+                        state.v[row as usize] = velocity + angular_velocity.cross(*x - centre);
+                    }
                 }
             }
         }

@@ -12,13 +12,13 @@ use souple_models::frames::{
 };
 use souple_models::materials::Material;
 use souple_models::solids::{Section, lumped_mass};
-use souple_table::{Entry, Values};
+use souple_table::{Entry, Table, Values, counted};
 
-use super::Draft;
 use super::bodies::{Placed, solid_name};
+use super::{Draft, links};
 use crate::diagnostic::Code;
 use crate::spec::body::{Body, MassKind};
-use crate::spec::frames::FramesSpec;
+use crate::spec::frames::{DEFAULT_POINTS, DEFAULT_WEIGHTS, FramesSpec};
 
 /// The frames of a body and what they have to say at its points.
 pub struct PlacedFrames {
@@ -35,6 +35,9 @@ pub struct PlacedFrames {
 
 /// Frames at a point beyond which steps are slow, which is said.
 const MANY: f64 = 24.0;
+/// Strains that points see for each motion of the frames, below which some motion may go unseen: points see neighbours' strains
+/// again, so that as many strains as motions are not enough.
+const SEEN_AT_LEAST: usize = 3;
 
 impl PlacedFrames {
     /// Rows of all frames.
@@ -126,6 +129,11 @@ fn chosen_or<'a, B: Copy>(
     chosen.as_ref().map_or((default.build, defaults), |chosen| (chosen.entry.build, &chosen.values))
 }
 
+/// An entry that is there.
+fn named<B>(table: &'static Table<B>, name: &str) -> &'static Entry<B> {
+    table.find(name).unwrap_or_else(|_| unreachable!("`{name}` is in its table"))
+}
+
 /// Places the frames of a body; `None` where that was refused.
 pub fn place(
     draft: &Draft,
@@ -153,6 +161,13 @@ pub fn place(
     }
     match placed(spec, mesh, materials, material_of_cell) {
         Ok(placed) => {
+            let count = placed.frames.len();
+            if spec.shown >= count {
+                let message = format!("body `{}` has no frame {}", body.name, spec.shown);
+                draft.log.add(Code::OutOfRange, &spec.shown_site, message, &format!("0 to {}", count - 1));
+                return None;
+            }
+            warnings.extend(too_few_points(draft, body, spec, &placed));
             let per_point = placed.carried.iter().map(|carried| carried.frames.len() as f64).sum::<f64>()
                 / placed.carried.len() as f64;
             if per_point > MANY {
@@ -165,12 +180,50 @@ pub fn place(
             }
             Some(placed)
         }
-        Err(error) => {
-            let expected = "frames that reach all of the body, each with matter of its own";
-            draft.log.add(Code::Conflict, &spec.site, error.to_string(), expected);
+        Err((stage, error)) => {
+            let (site, expected) = match stage {
+                Stage::Points => (
+                    spec.points.as_ref().map(|chosen| &chosen.site),
+                    "points within the body, some for each frame",
+                ),
+                Stage::Placement => (
+                    spec.placement.as_ref().map(|chosen| &chosen.site),
+                    "frames apart from each other, within the body",
+                ),
+                Stage::Weights => (
+                    spec.weights.as_ref().map(|chosen| &chosen.site),
+                    "frames that reach all of the body, each with matter of its own",
+                ),
+            };
+            draft.log.add(Code::Conflict, site.unwrap_or(&spec.site), error.to_string(), expected);
             None
         }
     }
+}
+
+/// What of a body of frames cannot be.
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    Points,
+    Placement,
+    Weights,
+}
+
+/// Points that resist fewer motions than the frames have, in words: what they do not see costs no energy.
+fn too_few_points(draft: &Draft, body: &Body, spec: &FramesSpec, placed: &PlacedFrames) -> Option<String> {
+    // a sample sees six strains, and the body's own six motions strain nothing
+    let seen = 6 * placed.samples.len();
+    let unknowns = 3 * spec.kind.block_count() * placed.frames.len() - 6;
+    (seen < SEEN_AT_LEAST * unknowns).then(|| {
+        format!(
+            "{}: {} integration points see {seen} strains of {unknowns} motions that {} have in body `{}`: frames may turn or \
+             stretch where no point sees it; take a finer mesh (`points` only makes them fewer) or fewer frames",
+            draft.place(&spec.site),
+            placed.samples.len(),
+            counted(placed.frames.len() as u64, "frame"),
+            body.name
+        )
+    })
 }
 
 fn placed(
@@ -178,34 +231,38 @@ fn placed(
     mesh: &Mesh,
     materials: &[Material],
     material_of_cell: &[u16],
-) -> Result<PlacedFrames, FrameError> {
+) -> Result<PlacedFrames, (Stage, FrameError)> {
     let stiffness_of_cell: Vec<f64> = material_of_cell
         .iter()
         .map(|number| materials[usize::from(*number)].small_strain.youngs_modulus())
         .collect();
     let defaults = Values::new();
-    let (build, values) = chosen_or(&spec.points, POINTS.entries[0], &defaults);
+    let of = |stage: Stage| move |error: FrameError| (stage, error);
+    let (build, values) = chosen_or(&spec.points, named(&POINTS, DEFAULT_POINTS), &defaults);
     let samples = build(values, mesh, material_of_cell);
     let stiffness: Vec<f64> = samples.iter().map(|sample| stiffness_of_cell[sample.cell as usize]).collect();
     let matter = Matter { samples: &samples, stiffness: &stiffness, bounds: mesh.bounds() };
-    let placement = spec.placement.as_ref().ok_or(FrameError::NoFrames)?;
-    let frames = (placement.entry.build)(&placement.values, &matter)?;
+    // a placement that was refused is reported
+    let placement = spec.placement.as_ref().ok_or((Stage::Placement, FrameError::NoFrames))?;
+    let frames = (placement.entry.build)(&placement.values, &matter).map_err(of(Stage::Placement))?;
     let shape = Shape { frames: &frames, mesh, stiffness_of_cell: &stiffness_of_cell };
-    frames::check_apart(&shape)?;
+    frames::check_apart(&shape).map_err(of(Stage::Placement))?;
     // the entry's own defaults, which its parameters all have
-    let wendland = WEIGHTS.entries[0].values(Values::new()).unwrap_or_default();
-    let (build, values) = chosen_or(&spec.weights, WEIGHTS.entries[0], &wendland);
-    let weights = build(values, &shape)?;
+    let entry = named(&WEIGHTS, DEFAULT_WEIGHTS);
+    let of_default = entry.values(Values::new()).unwrap_or_default();
+    let (build, values) = chosen_or(&spec.weights, entry, &of_default);
+    let weights = build(values, &shape).map_err(of(Stage::Weights))?;
     let centres = mesh.cell_centres();
     let places = || samples.iter().map(|sample| sample.position).chain(mesh.points.iter().copied());
-    frames::check_reach(&shape, weights.as_ref(), places().chain(centres.iter().copied()))?;
+    frames::check_reach(&shape, weights.as_ref(), places().chain(centres.iter().copied()))
+        .map_err(of(Stage::Weights))?;
     let at = |weights: &dyn Weights, point: Vec3| Carried::new(&frames, &weights.shares(point), point);
     let carried: Vec<Carried> = samples.iter().map(|sample| at(weights.as_ref(), sample.position)).collect();
     let carried_cells = centres.iter().map(|centre| at(weights.as_ref(), *centre)).collect();
     let carried_points = mesh.points.iter().map(|point| at(weights.as_ref(), *point)).collect();
     drop(weights);
     let is_affine = spec.kind == UnknownKind::AffineFrame;
-    frames::check_inertia(&frames, &samples, &carried, is_affine)?;
+    frames::check_inertia(&frames, &samples, &carried, is_affine).map_err(of(Stage::Points))?;
     Ok(PlacedFrames {
         kind: spec.kind,
         frames,
@@ -225,19 +282,25 @@ pub fn hold_name(body: &str) -> String {
 /// A point of the mesh, 1 along its held axes, and how it is led.
 pub type HeldAxes = (u32, Vec3, Option<Arc<dyn Motion>>);
 
-/// Springs that hold the points of a body of frames: each as stiff as a thin layer of the material around it.
-pub fn hold(body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
-    let material =
-        body.spec.material.as_ref().and_then(|chosen| (chosen.entry.build)(&chosen.values).ok())?;
-    let modulus = material.small_strain.youngs_modulus();
+/// Springs that hold the points of a body of frames: each as stiff as a thin layer of the material around it, over the area that
+/// the point has of the faces that are held.
+pub fn hold(draft: &Draft, body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
+    let spec = body.spec.frames.as_ref().filter(|_| !held.is_empty())?;
     let size = body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
-    let areas = cross_sections(&body.mesh);
-    if held.is_empty() {
+    let numbers: Vec<u32> = held.iter().map(|(point, ..)| *point).collect();
+    let (areas, moduli) = (links::areas_held(draft, body, &numbers), links::moduli(body));
+    if let Some((point, ..)) = held.iter().find(|(point, ..)| !(moduli[*point as usize] > 0.0)) {
+        let message = format!(
+            "the matter of body `{}` has a modulus of {} Pa at pinned points: the springs that hold points of frames have no stiffness",
+            body.spec.name, moduli[*point as usize]
+        );
+        let site = body.spec.pins.first().map_or(&spec.site, |pin| &pin.site);
+        draft.log.add(Code::OutOfRange, site, message, "a law that resists at rest, or no pins");
         return None;
     }
     let points = held.into_iter().map(|(point, axes, motion)| HeldPoint {
         row: body.rows.start as u32 + point,
-        stiffness: layer_stiffness(modulus, size) * areas[point as usize],
+        stiffness: layer_stiffness(moduli[point as usize], size) * areas[point as usize],
         start: body.mesh.points[point as usize],
         axes,
         motion,

@@ -133,9 +133,10 @@ fn joints_of(draft: &Draft, system: usize) -> Vec<Joint> {
     for constraint in &draft.systems[system].constraints {
         let Some(row) = kinematics.point_block_row(constraint.block) else { continue };
         // of frames that are led, the points that they reach are the joints
-        if !draft.bodies.iter().any(|body| body.system == system && body.rows.contains(&(row as usize))) {
+        let mut bodies = draft.bodies.iter().filter(|body| body.system == system);
+        let Some(row) = bodies.find_map(|body| Some(body.rows.start as u32 + body.point_of(row)?)) else {
             continue;
-        }
+        };
         let held = constraint.constrained();
         let directions = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| held * axis);
         for direction in directions.into_iter().filter(|direction| *direction != Vec3::ZERO) {

@@ -61,6 +61,7 @@ pub fn place<'a>(
         links: Vec::new(),
         frames: None,
         levels: None,
+        hanging: None,
     };
     let mut placed = Vec::new();
     for mesh in &spec.coarser {

@@ -55,6 +55,13 @@ impl<'a> Needs<'a> {
     }
 }
 
+/// Bytes of what a frame has to say at a point.
+const SHARE: u64 = 16;
+/// Bytes of the place of a pair of frames in a matrix.
+const PLACE: u64 = 4;
+/// Points that share such places.
+const POINTS_OF_BLOCK: u64 = 8;
+
 /// Whether the stepper of a body stores a matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Matrix {
@@ -99,11 +106,20 @@ pub fn check_placed(spec: &Spec, bodies: &[Placed], log: &Log) {
         Needs {
             body: &body.spec.name,
             site: body.spec.mesh.as_ref().map_or(&body.spec.site, MeshSpec::site),
-            bytes: bytes_of(size, CELL, matrix_of(spec, &body.spec.system)),
+            bytes: bytes_of(size, CELL, matrix_of(spec, &body.spec.system))
+                .saturating_add(bytes_of_frames(body)),
             size: counts(size),
         }
     });
     check(&needs.collect::<Vec<_>>(), available_memory(), log);
+}
+
+/// What frames need at the points of a body: four numbers of each frame that reaches a point, and a place in the matrix for each pair
+/// of them, which eight points share.
+fn bytes_of_frames(body: &Placed) -> u64 {
+    let Some(frames) = &body.frames else { return 0 };
+    let reach = frames.carried.iter().map(|carried| carried.frames.len() as u64);
+    reach.map(|count| count * SHARE + count * count * PLACE / POINTS_OF_BLOCK).sum()
 }
 
 /// Links for which there is memory.

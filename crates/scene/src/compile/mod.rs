@@ -9,6 +9,7 @@ mod doubts;
 mod frames;
 mod freedom;
 mod hands;
+mod hanging;
 mod inertial;
 mod levels;
 mod links;
@@ -28,6 +29,7 @@ mod tissue;
 pub(crate) use bodies::{Placed, solid_name};
 pub(crate) use boundary::constant_vector;
 pub(crate) use frames::hold_name;
+pub use hanging::OwnRows;
 pub use network::{LawInfo, NetworkInfo};
 
 use std::collections::BTreeSet;

@@ -38,6 +38,7 @@ pub fn place<'a>(draft: &Draft, body: &'a Body, system: usize, mesh: &Mesh) -> O
             links: Vec::new(),
             frames: None,
             levels: None,
+            hanging: None,
         }
     };
     Some(PlacedLevels { coarser: (0..tree.finest()).map(level).collect() })

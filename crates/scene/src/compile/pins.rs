@@ -10,7 +10,7 @@ use souple_math::{Mat3, Vec3};
 use super::bodies::Placed;
 use super::freedom::Joint;
 use super::motion::{AxisMotions, motion_of_pin};
-use super::{Draft, bones, frames};
+use super::{Draft, bones, frames, hanging};
 use crate::diagnostic::Code;
 use crate::spec::boundary::{MotionSpec, Pin};
 
@@ -58,7 +58,7 @@ pub fn add(draft: &mut Draft) {
             torn.extend(torn_at_start(draft, body, &holds));
         }
         if body.frames.is_some() {
-            let (force, held) = held_by_springs(body, holds);
+            let (force, held) = held_by_springs(draft, body, holds);
             holding.extend(force.map(|force| (body.system, force)));
             joints.extend(held);
             let (led, hindered) = bones::bind(draft, body, &system.kinematics);
@@ -66,14 +66,20 @@ pub fn add(draft: &mut Draft) {
             joints.extend(hindered);
             continue;
         }
+        let asked =
+            holds.iter().filter(|(_, hold)| hold.by.iter().any(Option::is_some)).map(|(point, _)| *point);
+        if hanging::refuse_held(draft, body, asked) {
+            continue;
+        }
         for (point, hold) in holds {
+            let Some(row) = body.own_row(point) else { continue };
             let start = body.mesh.points[point as usize];
             let is_held = |axis: usize| hold.by[axis].is_some() || (is_plane && axis == 2);
             let free = [0, 1, 2].map(|axis| if is_held(axis) { 0.0 } else { 1.0 });
             let motions = hold.by.map(|led| led.and_then(|led| led.motion));
             let leads = motions.iter().any(Option::is_some);
             let motion = leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>);
-            let block = system.kinematics.block_of(body.rows.start as u32 + point);
+            let block = system.kinematics.block_of(row);
             let free = Mat3::from_diagonal(Vec3::from_array(free));
             added.push((body.system, Constraint { free, motion, ..Constraint::pin(block, start) }));
         }
@@ -90,6 +96,7 @@ pub fn add(draft: &mut Draft) {
 
 /// What holds the points of a body of frames, which are no unknowns: stiff springs along the pinned axes.
 fn held_by_springs(
+    draft: &Draft,
     body: &Placed,
     holds: BTreeMap<u32, Hold>,
 ) -> (Option<souple_models::frames::Hold>, Vec<Joint>) {
@@ -106,7 +113,7 @@ fn held_by_springs(
         let leads = motions.iter().any(Option::is_some);
         held.push((point, axes, leads.then(|| Arc::new(AxisMotions(motions)) as Arc<dyn Motion>)));
     }
-    (frames::hold(body, held), joints)
+    (frames::hold(draft, body, held), joints)
 }
 
 /// Pins whose points are elsewhere at the start than at rest, in words: what moves starts at rest all around them.
@@ -278,10 +285,9 @@ fn held_points(draft: &Draft, body: &Placed) -> Vec<bool> {
     let system = &draft.systems[body.system];
     let mut held = vec![false; body.mesh.points.len()];
     for constraint in system.constraints.iter().filter(|constraint| constraint.free == Mat3::ZERO) {
-        if let Some(row) = system.kinematics.point_block_row(constraint.block)
-            && body.rows.contains(&(row as usize))
-        {
-            held[row as usize - body.rows.start] = true;
+        let point = system.kinematics.point_block_row(constraint.block).and_then(|row| body.point_of(row));
+        if let Some(point) = point {
+            held[point as usize] = true;
         }
     }
     held

@@ -81,7 +81,8 @@ impl Selector<'_> {
         (faces, centres)
     }
 
-    fn all_faces(&self) -> Vec<(ElementKind, Vec<u32>)> {
+    /// Faces of the surface; of a membrane its cells.
+    pub fn all_faces(&self) -> Vec<(ElementKind, Vec<u32>)> {
         if matches!(self.section, Section::Membrane { .. }) {
             return self.mesh.cells().map(|cell| (cell.kind, cell.nodes.to_vec())).collect();
         }

@@ -14,7 +14,8 @@ pub fn apply(draft: &Draft, body: &Placed, state: &mut SystemState) {
     let Some(start) = &body.spec.start else { return };
     for (formulas, field) in [(&start.displacement, &mut state.q), (&start.velocity, &mut state.v)] {
         let Some(formulas) = formulas else { continue };
-        for (row, x) in body.rows.clone().zip(&body.mesh.points) {
+        for (point, x) in (0..).zip(&body.mesh.points) {
+            let Some(row) = body.own_row(point) else { continue };
             let value = at(formulas, *x);
             if !value.is_finite() {
                 let message = format!("at {:?} this is {:?}", x.to_array(), value.to_array());
@@ -22,7 +23,7 @@ pub fn apply(draft: &Draft, body: &Placed, state: &mut SystemState) {
                 draft.log.add(Code::NotFinite, &start.site, message, expected);
                 return;
             }
-            field[row] += value;
+            field[row as usize] += value;
         }
     }
 }

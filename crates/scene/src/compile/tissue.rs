@@ -87,6 +87,7 @@ pub fn attachments(draft: &Draft) -> Vec<(String, Link)> {
             from: body.name.clone(),
             region: Some(region),
             to: end.body.clone(),
+            hold: None,
             stiffness: None,
             damping: 0.0,
             strength: tissue.strength,

@@ -123,6 +123,8 @@ impl Carriers {
             contact: None,
             about: None,
             hold: None,
+            held: Vec::new(),
+            hangs: false,
         };
         Some(Self { part, places })
     }

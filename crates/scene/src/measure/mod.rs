@@ -68,6 +68,10 @@ struct Part {
     system: usize,
     /// Among the rows of the system.
     rows: Vec<u32>,
+    /// Rows of the unknowns that the points are, where they are any; else as `rows`.
+    held: Vec<u32>,
+    /// Whether points of the system hang on others.
+    hangs: bool,
     /// Rows of coarser points of a body with levels in the same region, for what holds them.
     coarser: Vec<u32>,
     /// Where the rows started [m].
@@ -274,8 +278,12 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         let points = points.unwrap_or_else(|| (0..level.mesh.points.len() as u32).collect());
         points.into_iter().map(|point| first + point).collect()
     };
+    let own = |point: &u32| body.own_row(*point).unwrap_or(body.rows.start as u32 + point);
+    let hangs = |other: &Placed| other.system == body.system && other.hanging.is_some();
     Some(Part {
         system: body.system,
+        held: points.iter().map(own).collect(),
+        hangs: draft.bodies.iter().any(hangs),
         coarser: body.levels_of().filter(|_| is_held).flat_map(rows_in).collect(),
         rows: points.iter().map(|point| body.rows.start as u32 + point).collect(),
         starts: points.iter().map(|point| body.mesh.points[*point as usize]).collect(),

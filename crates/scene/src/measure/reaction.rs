@@ -6,8 +6,9 @@
 //! them to their free neighbours, whose accelerations follow from the same law. Where a stepper knows no inertia,
 //! `r = −f`.
 
+use souple_engine::inertia::led_accelerations_at;
 use souple_engine::levels::Followers;
-use souple_engine::{System, World};
+use souple_engine::{Surroundings, System, SystemState, SystemWorkspace, World};
 use souple_math::Vec3;
 
 use super::Part;
@@ -32,8 +33,16 @@ pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
         // r = M a − f
         let mut balance: Vec<Vec3> = force.iter().map(|f| -*f).collect();
         if system.stepper.has_inertia() {
-            let accelerations = accelerations(system, force, ws.rows.time, timestep);
+            let accelerations = if part.hangs {
+                accelerations_of_unknowns(system, around, state, ws, timestep)
+            } else {
+                accelerations(system, force, ws.rows.time, timestep)
+            };
             system.mass.add_product(&accelerations, &mut balance);
+        }
+        if part.hangs {
+            // what hangs on a held point is held with it
+            system.kinematics.return_forces(&mut balance);
         }
         let mut reactions = vec![Vec3::ZERO; balance.len()];
         for constraint in &system.constraints {
@@ -47,7 +56,7 @@ pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
             let at = system.view(index, &ws.rows, state, around);
             system.forces[index].add_force(&at, &mut ws.scratches[index], &mut reactions);
         }
-        part.rows.iter().chain(&part.coarser).map(|row| reactions[*row as usize]).collect()
+        part.held.iter().chain(&part.coarser).map(|row| reactions[*row as usize]).collect()
     })
 }
 
@@ -63,6 +72,25 @@ fn accelerations(system: &System, force: &[Vec3], time: f64, timestep: f64) -> V
         add_free_accelerations(system, force, &mut a);
     }
     a
+}
+
+/// The same where rows hang on unknowns: from the law of motion of the unknowns.
+fn accelerations_of_unknowns(
+    system: &System,
+    around: &Surroundings,
+    state: &SystemState,
+    ws: &mut SystemWorkspace,
+    timestep: f64,
+) -> Vec<Vec3> {
+    let time = ws.rows.time;
+    let mut of_blocks = vec![Vec3::ZERO; system.kinematics.block_count()];
+    let mut rows = vec![Vec3::ZERO; system.kinematics.row_count()];
+    // a mass that cannot be solved with was refused by the step before
+    let solved = led_accelerations_at(system, around, (time, timestep), state, ws, &mut of_blocks);
+    if solved.is_ok() {
+        system.kinematics.velocities_into(&state.q, &of_blocks, &mut rows);
+    }
+    rows
 }
 
 /// Solves `M_ff a_f = f_f − M_fc a_c` by conjugate gradients, preconditioned by the diagonal.

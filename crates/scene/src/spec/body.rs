@@ -307,7 +307,9 @@ impl Body {
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             octree: reader.table("octree").map(|table| OctreeSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
+            // lumped, the mass of frames would swing in motions that move no matter
             mass: match reader.choice("mass") {
+                _ if reader.has("frames") && !reader.has("mass") => MassKind::Consistent,
                 "consistent" => MassKind::Consistent,
                 "uniform" => MassKind::Uniform,
                 _ => MassKind::Lumped,

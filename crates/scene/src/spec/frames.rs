@@ -33,6 +33,10 @@ const POINT: EntryShape = EntryShape {
     elsewhere: NOWHERE,
 };
 
+/// Weights and points of bodies that name none.
+pub const DEFAULT_WEIGHTS: &str = "wendland";
+pub const DEFAULT_POINTS: &str = "cells";
+
 pub(crate) static FRAMES: Keys = Keys::new(
     "frames",
     "a few frames that carry the body: its mesh is its shape, and no longer what moves",
@@ -75,6 +79,7 @@ pub struct FramesSpec {
     pub tangent: TangentKind,
     pub bones: Vec<BoundFrames>,
     pub shown: usize,
+    pub shown_site: Site,
     pub site: Site,
 }
 
@@ -119,6 +124,7 @@ impl FramesSpec {
             },
             bones: reader.tables("bones").iter().map(BoundFrames::read).collect(),
             shown: reader.maybe_integer("shown").unwrap_or(0) as usize,
+            shown_site: reader.site_of("shown"),
             site: reader.site(),
         }
     }

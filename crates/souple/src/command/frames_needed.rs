@@ -1,92 +1,130 @@
-//! How many frames an accuracy takes: the softest motions of a body by ever more frames, against those of its own mesh.
+//! How many frames an accuracy takes: the softest motions of a body by ever more frames, against those of its own mesh. All that the body
+//! hangs on is held where it is, so that the motions are its own.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use serde_json::{Value, json};
+use souple_engine::{Constraint, World};
+use souple_math::Vec3;
+use souple_models::frames::ROWS_OF_FRAME;
 use souple_scene::{BodyInfo, Carriers, Scene, read_file_with_carriers};
+use souple_solve::modes::Settings;
 
 /// So many of the lowest frequencies are compared.
 const MOTIONS: usize = 4;
+/// A body that nothing holds has so many motions more, of frequency zero.
+const RIGID_MOTIONS: usize = 6;
 /// What the frames of the scene are multiplied by, one after the other.
 const FACTORS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0];
 /// More frames than this are not tried: factors of their matrices take seconds.
 const MOST_FRAMES: usize = 500;
-/// Frequencies below this part of the greatest are motions of the whole.
-const RIGID: f64 = 1e-3;
+/// Of the body's highest frequency, what is zero to rounding: squares of frequencies are known to 1e-16 of the greatest and some
+/// hundred terms of each sum.
+const ZERO: f64 = 1e-6;
+/// Motions are sought about that of a frequency so far below zero, of the highest: of nothing a stiffness has no factor, and about
+/// what is nearly nothing motions of the whole drown the others.
+const BELOW: f64 = 1e-3;
 
 /// What was tried for a body.
 pub struct Needed {
     pub body: String,
-    /// Frames, and the greatest error of stiffness against the softest motions.
-    pub tried: Vec<(usize, f64)>,
     pub accuracy: f64,
-    /// Why nothing more could be tried.
-    pub note: Option<String>,
+    /// In the order in which they were.
+    tries: Vec<Try>,
+    /// Why nothing could be compared.
+    without: Option<String>,
+}
+
+/// So many times as many frames as the scene has.
+struct Try {
+    times: f64,
+    found: Found,
+}
+
+enum Found {
+    /// Frames, and the greatest error of stiffness against the softest motions.
+    Off { frames: usize, error: f64 },
+    /// They do not carry the body, and why.
+    Refused(String),
 }
 
 impl Needed {
     /// Tries frames of a body until an accuracy is met.
     pub fn of(path: &Path, settings: &[String], body: &BodyInfo, accuracy: f64) -> Self {
-        let mut needed = Self { body: body.name.clone(), tried: Vec::new(), accuracy, note: None };
+        let mut needed = Self { body: body.name.clone(), accuracy, tries: Vec::new(), without: None };
         let softest = |carriers: Carriers| {
             let scene = read_file_with_carriers(path, settings, &body.name, carriers)
                 .map_err(|errors| errors.to_string())?;
-            let frames = scene.bodies.iter().find(|other| other.name == body.name);
-            let count = frames.and_then(|body| body.frames.as_ref()).map_or(0, |frames| frames.rows.len());
-            Ok::<_, String>((count, softest_motions(scene, body.system)?))
+            softest_motions(scene, &body.name)
         };
         let reference = match softest(Carriers::Mesh) {
             Ok((_, reference)) => reference,
             Err(why) => {
-                needed.note = Some(format!("its own mesh has no softest motions to compare with: {why}"));
+                needed.without = Some(first_line(&why));
                 return needed;
             }
         };
-        for factor in FACTORS {
-            match softest(Carriers::Frames(factor)) {
-                Ok((count, _)) if needed.tried.iter().any(|(known, _)| *known == count) => {}
-                Ok((count, found)) => {
-                    let off = |(f, of_mesh): (&f64, &f64)| ((f / of_mesh).powi(2) - 1.0).abs();
-                    let error = found.iter().zip(&reference).map(off).fold(0.0, f64::max);
-                    needed.tried.push((count, error));
-                    if error <= accuracy || count >= MOST_FRAMES {
-                        break;
-                    }
-                }
-                // fewer frames may not reach all of it, more may be more than there are points
-                Err(why) => needed.note = Some(why.lines().next().unwrap_or_default().to_owned()),
+        for times in FACTORS {
+            // fewer frames may not reach all of it, more may be more than there are points
+            let found = match softest(Carriers::Frames(times)) {
+                Ok((frames, _)) if needed.compared().any(|(known, _)| known == frames) => continue,
+                Ok((frames, found)) => Found::Off { frames, error: greatest_error(&found, &reference) },
+                Err(why) => Found::Refused(first_line(&why)),
+            };
+            needed.tries.push(Try { times, found });
+            let last = needed.compared().last();
+            if needed.enough().is_some() || last.is_some_and(|(frames, _)| frames >= MOST_FRAMES) {
+                break;
             }
         }
         needed
     }
 
+    /// Frames and errors of what could be compared.
+    fn compared(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.tries.iter().filter_map(|of| match of.found {
+            Found::Off { frames, error } => Some((frames, error)),
+            Found::Refused(_) => None,
+        })
+    }
+
     /// The fewest tried that meet the accuracy.
     pub fn enough(&self) -> Option<usize> {
-        self.tried.iter().find(|(_, error)| *error <= self.accuracy).map(|(count, _)| *count)
+        self.compared().find(|(_, error)| *error <= self.accuracy).map(|(frames, _)| frames)
     }
 
     pub fn to_json(&self) -> Value {
-        let tried: Vec<Value> =
-            self.tried.iter().map(|(frames, error)| json!({"frames": frames, "error": error})).collect();
-        json!({"accuracy": self.accuracy, "tried": tried, "enough": self.enough(), "note": self.note})
+        let tried = self.tries.iter().map(|Try { times, found }| match found {
+            Found::Off { frames, error } => json!({"times": times, "frames": frames, "error": error}),
+            Found::Refused(why) => json!({"times": times, "refused": why}),
+        });
+        json!({
+            "accuracy": self.accuracy,
+            "tried": tried.collect::<Vec<_>>(),
+            "enough": self.enough(),
+            "without": self.without,
+        })
     }
 
     /// In a line.
     pub fn told(&self) -> String {
-        let tried: Vec<String> = self
-            .tried
-            .iter()
-            .map(|(frames, error)| format!("{frames} are {:.1} % off", 100.0 * error))
-            .collect();
-        let end = match (self.enough(), &self.note) {
-            (Some(count), _) => format!("{:.1} % takes {count}", 100.0 * self.accuracy),
-            (None, Some(note)) => format!("{:.1} % was not met: {note}", 100.0 * self.accuracy),
-            (None, None) => format!("{:.1} % takes more", 100.0 * self.accuracy),
-        };
-        let name = &self.body;
-        if tried.is_empty() {
-            return format!("frames of {name}: {end}");
+        let (name, accuracy) = (&self.body, 100.0 * self.accuracy);
+        if let Some(why) = &self.without {
+            return format!("frames of {name}: its own mesh has no softest motions to compare with: {why}");
         }
+        let tried: Vec<String> = self
+            .tries
+            .iter()
+            .map(|Try { times, found }| match found {
+                Found::Off { frames, error } => format!("{frames} are {:.1} % off", 100.0 * error),
+                Found::Refused(why) => format!("{times} times as many do not do ({why})"),
+            })
+            .collect();
+        let end = match self.enough() {
+            Some(frames) => format!("{accuracy:.1} % takes {frames}"),
+            None => format!("{accuracy:.1} % takes more, or other weights"),
+        };
         format!(
             "frames of {name}: in its {MOTIONS} softest motions, against its own mesh, {}; {end}",
             tried.join(", ")
@@ -94,11 +132,59 @@ impl Needed {
     }
 }
 
-/// The lowest frequencies of a system that are not those of the whole [Hz].
-fn softest_motions(scene: Scene, system: usize) -> Result<Vec<f64>, String> {
-    let found =
-        souple_run::natural_frequencies(scene, MOTIONS + 6, 1.0).map_err(|error| error.to_string())?;
-    let hertz = &found.get(system).ok_or("there is no such system")?.hertz;
-    let least = RIGID * hertz.last().copied().unwrap_or_default();
-    Ok(hertz.iter().copied().filter(|hertz| *hertz > least).take(MOTIONS).collect())
+fn first_line(text: &str) -> String {
+    text.lines().next().unwrap_or_default().to_owned()
+}
+
+/// Of stiffness, which is the square of a frequency.
+fn greatest_error(found: &[f64], reference: &[f64]) -> f64 {
+    let off = |(f, of_mesh): (&f64, &f64)| ((f / of_mesh).powi(2) - 1.0).abs();
+    found.iter().zip(reference).map(off).fold(0.0, f64::max)
+}
+
+/// How many frames carry a body, and the lowest frequencies of it that are not zero [Hz], all else being held.
+fn softest_motions(mut scene: Scene, body: &str) -> Result<(usize, Vec<f64>), String> {
+    let body = scene.bodies.iter().find(|other| other.name == body).ok_or("the body is gone")?;
+    let (frames, index) = (body.frames.as_ref().map_or(0, |frames| frames.rows.len()), body.system);
+    let system = &mut scene.model.systems[index];
+    let kinematics = &system.kinematics;
+    let is_own: Vec<bool> = (0..kinematics.block_count() as u32)
+        .map(|block| kinematics.row_of_block(block).is_some_and(|row| is_of(body, row)))
+        .collect();
+    system.constraints.retain(|constraint| is_own[constraint.block as usize]);
+    let q = &scene.state.systems[index].q;
+    for block in (0..).zip(&is_own).filter(|(_, is_own)| !**is_own).map(|(block, _)| block) {
+        // the turn of a rigid frame has no place
+        let stands = kinematics.point_block_row(block).map_or(Vec3::ZERO, |row| q[row as usize]);
+        system.constraints.push(Constraint::pin(block, stands));
+    }
+    lowest_frequencies(&mut scene.model.start(scene.state), index).map(|hertz| (frames, hertz))
+}
+
+/// Whether a row is one of the body's unknowns.
+fn is_of(body: &BodyInfo, row: u32) -> bool {
+    match &body.frames {
+        Some(frames) => {
+            frames.rows.iter().any(|origin| (*origin..*origin + ROWS_OF_FRAME as u32).contains(&row))
+        }
+        None => body.point_of(row).is_some(),
+    }
+}
+
+fn lowest_frequencies(world: &mut World, system: usize) -> Result<Vec<f64>, String> {
+    world.with_system(system, |system, state, around, ws| {
+        let highest = souple_engine::stability::forecast(system, state, around, ws).highest_frequency;
+        let [zero, below] = [ZERO, BELOW].map(|part| (part * highest).powi(2));
+        let settings = Settings { count: MOTIONS + RIGID_MOTIONS, shift: -below, ..Settings::default() };
+        let modes = souple_engine::modes::lowest(system, state, around, ws, &settings)
+            .map_err(|error| error.to_string())?;
+        if modes.eigenvalues.iter().any(|eigenvalue| *eigenvalue < -zero) {
+            return Err("it does not stand where it begins".to_owned());
+        }
+        let mut elastic: Vec<f64> =
+            modes.eigenvalues.into_iter().filter(|eigenvalue| *eigenvalue > zero).collect();
+        elastic.sort_by(f64::total_cmp);
+        elastic.truncate(MOTIONS);
+        Ok(elastic.into_iter().map(|eigenvalue| eigenvalue.sqrt() / TAU).collect())
+    })
 }

@@ -1,7 +1,11 @@
-//! Steps of a bar that frames carry, with the error of its sag in equilibrium.
+//! Steps of a bar that frames carry, with what one solve a step leaves of the answer, and the error of the bar's sag in equilibrium.
 
-use super::timing::{Held, Timing, as_it_is, scene, with_threads};
-use super::{Effort, Figure, value_of};
+use souple_run::{Control, Options, Status};
+use souple_scene::Scene;
+
+use super::frames_table::row;
+use super::timing::{Held, Timed, Timing, as_it_is, scene, with_threads};
+use super::{Effort, Figure};
 
 /// A bar and its frames.
 #[derive(Clone, Copy)]
@@ -10,87 +14,178 @@ pub struct Size {
     frames: [u32; 3],
     /// Hexahedra along x, y, z, of eight points each.
     cells: [u32; 3],
-    /// Steps a second that are wanted.
-    wanted: f64,
+    /// What is about it, and the steps a second that are wanted there.
+    wanted: &'static [(Around, f64)],
+    /// Steps after which a run is compared with a converged one.
+    compared: u64,
 }
 
 /// 52 frames, 1,024 points.
-pub const SMALL: Size = Size { frames: [13, 2, 2], cells: [32, 2, 2], wanted: 500.0 };
+pub const SMALL: Size = Size {
+    frames: [13, 2, 2],
+    cells: [32, 2, 2],
+    wanted: &[(Around::Nothing, 500.0), (Around::Floor, 60.0)],
+    compared: 20,
+};
 /// 496 frames, 51,200 points.
-pub const LARGE: Size = Size { frames: [31, 4, 4], cells: [100, 8, 8], wanted: 15.0 };
+pub const LARGE: Size =
+    Size { frames: [31, 4, 4], cells: [100, 8, 8], wanted: &[(Around::Nothing, 15.0)], compared: 5 };
 
-/// Tip of the bar in equilibrium, neo-Hookean, by quadratic hexahedra [m].
-const TIP: f64 = -0.144_978_258_526_270_25;
+/// What is about the bar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Around {
+    /// All forces are there from the first step on, and no matrix is assembled.
+    Nothing,
+    /// A floor a centimetre below, with friction, which the bar comes down on after five steps: from there on matrices are
+    /// assembled and factorised.
+    Floor,
+}
+
+/// So many frames have a say at a point, as the source has them.
+const LEAST_EFFECTIVE: f64 = 4.0;
 
 /// The bar of a size in steps of 10 ms, or in equilibrium, by `stepper`.
-fn settings(frames: [u32; 3], cells: [u32; 3], stepper: &str) -> Vec<String> {
+fn settings(frames: [u32; 3], cells: [u32; 3], around: Around, stepper: &str) -> Vec<String> {
     let numbers = |values: [u32; 3]| format!("[{}, {}, {}]", values[0], values[1], values[2]);
-    vec![
+    let mut settings = vec![
         format!("bodies.bar.mesh.cells={}", numbers(cells)),
         format!("bodies.bar.frames.placement={{ name = \"grid\", counts = {} }}", numbers(frames)),
         "bodies.bar.frames.kind=\"rigid\"".to_owned(),
         "bodies.bar.material.name=\"neo_hookean\"".to_owned(),
         "world.period=\"10 ms\"".to_owned(),
         format!("systems.main.stepper={stepper}"),
-    ]
+    ];
+    if around == Around::Floor {
+        settings.extend([
+            "shapes={ floor = { shape = { name = \"plane\", point = [0, -0.01, 0], normal = [0, 1, 0] } } }"
+                .to_owned(),
+            "contacts=[{ body = \"bar\", shape = \"floor\", stiffness = \"1 kN/m\", friction = 0.4 }]"
+                .to_owned(),
+        ]);
+    }
+    settings
 }
 
 const STATIC: &str = "{ name = \"static\", newton_tolerance = 1e-8, solver = \"direct\" }";
-/// One solve leaves a hundredth of what a whole step moves; the tip after twenty steps is that of a tolerance of 1e-10 to 1e-8.
 const ONE_SOLVE: &str = "{ name = \"backward_euler\", newton = \"one\", solver_tolerance = 1e-4 }";
+/// The same steps to their end.
+const CONVERGED: &str = "{ name = \"backward_euler\", newton_tolerance = 1e-8, solver = \"direct\" }";
 
 fn timing(settings: &[String], samples: usize) -> Timing<'_> {
     let scene = "frames_cantilever";
-    Timing { scene, settings, prepare: as_it_is, warm_up: 3, samples, steps_per_sample: 2 }
+    // the floor is touched after five steps
+    Timing { scene, settings, prepare: as_it_is, warm_up: 8, samples, steps_per_sample: 2 }
+}
+
+/// How far the tip is down after so many steps, all of which were made [m].
+pub fn tip_of(scene: Scene, steps: u64) -> Result<f64, String> {
+    let options = Options { steps: Some(steps), ..Options::default() };
+    let outcome =
+        souple_run::run(scene, &options, &mut |_| Control::Continue).map_err(|error| error.to_string())?;
+    if outcome.report.status != Status::Done {
+        return Err(outcome.report.warnings.join("; "));
+    }
+    let trace = outcome.traces.iter().find(|trace| trace.name == "tip").ok_or("the probe is missing")?;
+    trace.last().and_then(|value| value.get(1)).copied().ok_or_else(|| "the probe is empty".to_owned())
 }
 
 pub fn steps(name: &str, size: Size, effort: Effort) -> Result<Vec<Figure>, String> {
-    let at_rest = scene("frames_cantilever", &settings(size.frames, size.cells, STATIC))?;
-    let serving = at_rest.bodies[0].frames.as_ref().map(|frames| frames.report).unwrap_or_default();
-    let tip = value_of(at_rest, 1, "tip", 1)?;
-    let held = Held {
-        error: (tip / TIP - 1.0).abs(),
-        error_of: format!(
-            "tip in equilibrium, FEniCSx, quadratic hexahedra; {:.1} frames have a say at a point",
-            serving.effective
-        ),
-        baseline: Some(size.wanted),
+    let built = |around: Around, stepper: &str| {
+        scene("frames_cantilever", &settings(size.frames, size.cells, around, stepper))
     };
-    let settings = settings(size.frames, size.cells, ONE_SOLVE);
-    let timed = timing(&settings, effort.choose(5, 30)).run()?;
-    Ok(timed.iter().map(|timed| timed.steps_per_second(name, &held)).collect())
+    let at_rest = built(Around::Nothing, STATIC)?;
+    let serving = at_rest.bodies[0].frames.as_ref().map(|frames| frames.report).unwrap_or_default();
+    if serving.effective < LEAST_EFFECTIVE {
+        return Err(format!(
+            "{:.1} frames have a say at a point, {LEAST_EFFECTIVE} are wanted",
+            serving.effective
+        ));
+    }
+    let sag = (tip_of(at_rest, 1)? / row("frames_bar_affine_neo_hookean")?.reference - 1.0).abs();
+    let mut figures = Vec::new();
+    for (around, wanted) in size.wanted {
+        let converged = tip_of(built(*around, CONVERGED)?, size.compared)?;
+        let one_solve = tip_of(built(*around, ONE_SOLVE)?, size.compared)?;
+        let held = Held {
+            error: (one_solve / converged - 1.0).abs(),
+            error_of: format!(
+                "tip after {} steps of one solve to 1e-4 (`solver_tolerance`), next to Newton's method to 1e-8; in equilibrium it is \
+                 {:.1} % off FEniCSx, quadratic hexahedra; {:.1} frames have a say at a point",
+                size.compared,
+                100.0 * sag,
+                serving.effective
+            ),
+            baseline: Some(*wanted),
+        };
+        let name = match around {
+            Around::Nothing => name.to_owned(),
+            Around::Floor => format!("{name}_touching"),
+        };
+        let settings = settings(size.frames, size.cells, *around, ONE_SOLVE);
+        let timed = timing(&settings, effort.choose(5, 30)).run()?;
+        figures.extend(timed.iter().map(|timed| timed.steps_per_second(&name, &held)));
+    }
+    Ok(figures)
 }
 
 /// Cells of the bar along x, y and z, each time twice as many, of eight points each.
 const GROWING: [[u32; 3]; 4] = [[50, 4, 4], [50, 8, 4], [50, 8, 8], [100, 8, 8]];
+/// Time and memory grow as a power of the number of points; this one is nearer to the first than to one and a half.
+const LARGEST_EXPONENT: f64 = 1.25;
 
-/// Time and memory for ever more points, all with the same frames: of a thousand points, and how far from those of the fewest.
+/// Time and memory of a thousand points, for ever more points, all with the same frames, beside those where there are fewest; and the power
+/// at which both grow in all.
 pub fn growth(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let runs: Vec<(f64, Timed)> = GROWING[..effort.choose(2, 4)]
+        .iter()
+        .map(|cells| {
+            let points = 8.0 * f64::from(cells.iter().product::<u32>());
+            let settings = settings([16, 3, 3], *cells, Around::Nothing, ONE_SOLVE);
+            Ok((points, with_threads(1, || timing(&settings, effort.choose(5, 30)).sample(1))??))
+        })
+        .collect::<Result<_, String>>()?;
+    // by time of the processor, where the system tells
+    let seconds = |timed: &Timed| {
+        if timed.processor.is_empty() { timed.seconds.clone() } else { timed.processor.clone() }
+    };
+    let microseconds = |timed: &Timed| seconds(timed).iter().map(|seconds| 1e6 * seconds).collect();
+    let megabytes = |timed: &Timed| vec![1e-6 * timed.bytes as f64];
+    let [times, memories] = [
+        ("time", "us/step of a thousand points", &microseconds as &dyn Fn(&Timed) -> Vec<f64>),
+        ("memory", "MB of a thousand points", &megabytes),
+    ]
+    .map(|(quantity, unit, of)| grown(&format!("{name}_{quantity}"), unit, &runs, of));
+    Ok([times?, memories?].concat())
+}
+
+/// Figures of what grows with the number of points.
+fn grown(
+    name: &str,
+    unit: &'static str,
+    runs: &[(f64, Timed)],
+    of: &dyn Fn(&Timed) -> Vec<f64>,
+) -> Result<Vec<Figure>, String> {
+    let exact = |baseline: Option<f64>| Held { error: 0.0, error_of: String::new(), baseline };
     let mut figures: Vec<Figure> = Vec::new();
-    for cells in &GROWING[..effort.choose(2, 4)] {
-        let thousands = 8e-3 * cells.iter().product::<u32>() as f64;
-        let settings = settings([16, 3, 3], *cells, ONE_SOLVE);
-        let timed = with_threads(1, || timing(&settings, effort.choose(5, 30)).sample(1))??;
-        let figure =
-            |quantity: &str, values: Vec<f64>, (unit, higher): (&'static str, bool), known: Option<f64>| {
-                let held = Held { error: 0.0, error_of: String::new(), baseline: None };
-                let mut figure = timed.figure(
-                    &format!("{name}_{quantity}.{:.0}", 1e3 * thousands),
-                    values,
-                    &held,
-                    (unit, higher),
-                );
-                let of_fewest = known.unwrap_or(figure.value);
-                figure.error = figure.value / of_fewest - 1.0;
-                "of a thousand of the fewest points".clone_into(&mut figure.error_of);
-                figure
-            };
-        let first = |of: usize| figures.get(of).map(|figure| figure.value);
-        let times = timed.seconds.iter().map(|seconds| 1e6 * seconds / thousands).collect();
-        let time = figure("time", times, ("us/step of a thousand points", false), first(0));
-        let memory = vec![1e-6 * timed.bytes as f64 / thousands];
-        let memory = figure("memory", memory, ("MB of a thousand points", false), first(1));
-        figures.extend([time, memory]);
+    for (points, timed) in runs {
+        let values = of(timed).iter().map(|value| 1e3 * value / points).collect();
+        let of_fewest = exact(figures.first().map(|figure| figure.value));
+        figures.push(timed.figure(&format!("{name}.{points:.0}"), values, &of_fewest, (unit, false)));
     }
+    let ([(fewest, _), .., (most, timed)], [first, .., last]) = (runs, figures.as_slice()) else {
+        return Err("growth takes two runs".to_owned());
+    };
+    let exponent = 1.0 + (last.value / first.value).ln() / (most / fewest).ln();
+    if exponent > LARGEST_EXPONENT {
+        return Err(format!(
+            "{name} grows as the number of points to the power {exponent:.2}, {LARGEST_EXPONENT} is borne"
+        ));
+    }
+    figures.push(timed.figure(
+        &format!("{name}_exponent"),
+        vec![exponent],
+        &exact(Some(1.0)),
+        ("of points", false),
+    ));
     Ok(figures)
 }

@@ -34,6 +34,11 @@ pub enum Wish {
     Colour(Option<String>),
     /// Shows vectors of this name as arrows; none.
     Arrows(Option<String>),
+    /// The frame of a body whose weights `influence` shows to all pages.
+    Influence {
+        body: usize,
+        frame: usize,
+    },
     /// Whether the page looks inside bodies.
     Inside(bool),
     /// Takes hold of points of a body's surface.
@@ -95,6 +100,7 @@ impl Wish {
             Self::Set { .. } => "set",
             Self::Colour(_) => "colour",
             Self::Arrows(_) => "arrows",
+            Self::Influence { .. } => "influence",
             Self::Inside(_) => "inside",
             Self::Grab { .. } => "grab",
             Self::Touch { .. } => "touch",
@@ -127,6 +133,7 @@ impl Wish {
             "arrows" if wish["of"].is_null() => Self::Arrows(None),
             "arrows" => Self::Arrows(Some(read.text("of")?)),
             "inside" => Self::Inside(wish["is_shown"].as_bool().ok_or("`is_shown` must be true or false")?),
+            "influence" => Self::Influence { body: read.index("body")?, frame: read.index("frame")? },
             "touch" => Self::Touch {
                 hand: read.hand()?,
                 tool: read.text("tool")?,
@@ -226,6 +233,7 @@ mod tests {
             (r#"{"do": "move", "hand": 1, "offset": [0, 0]}"#, "three numbers"),
             (r#"{"do": "move", "hand": 1, "offset": [0, 2e9, 0]}"#, "from -1e9 to 1e9"),
             (r#"{"do": "throw", "body": 0, "velocity": [2e6, 0, 0]}"#, "to 1e6"),
+            (r#"{"do": "influence", "body": 0, "frame": 0.5}"#, "`frame` must be"),
             (r#"{"do": "pin", "body": -1, "points": [1]}"#, "`body` must be"),
             (r#"{"do": "pin", "body": 0, "points": []}"#, "`points` must be"),
         ] {

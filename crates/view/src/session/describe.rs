@@ -43,6 +43,7 @@ impl Stage {
         self.tools().into_iter().for_each(&mut binary);
         tell(self.adjustables());
         tell(self.pins());
+        tell(self.influence());
     }
 
     /// The cells of all bodies that have any inside, to those who look there and have not been told of them.
@@ -136,16 +137,28 @@ impl Stage {
         document("adjustables", command)
     }
 
+    /// Of each body how many frames carry it and whose weights are shown; null where none do.
+    pub fn influence(&self) -> Outgoing {
+        let of_body = |body: &BodyInfo| {
+            let frames = body.frames.as_ref();
+            frames.map(|frames| json!({"frames": frames.count(), "shown": frames.shown}))
+        };
+        let session = self.session();
+        let title = FIELDS.entries.iter().find_map(|field| field.build.title(session));
+        let bodies: Vec<Option<Value>> = session.bodies.iter().map(of_body).collect();
+        document("influence", json!({"bodies": bodies, "title": title}))
+    }
+
     /// Which of the points shown are held.
     pub fn pins(&self) -> Outgoing {
         let world = &self.session().world;
         let of_body = |(body, shown): (&BodyInfo, &super::Shown)| -> Vec<u32> {
             let system = &world.model().systems[body.system];
-            let row = |block: u32| system.kinematics.point_block_row(block).map(|row| row as usize);
+            let row = |block: u32| system.kinematics.point_block_row(block);
             let mut held = vec![false; body.mesh.points.len()];
             for row in system.constraints.iter().filter_map(|constraint| row(constraint.block)) {
-                if body.rows.contains(&row) {
-                    held[row - body.rows.start] = true;
+                if let Some(point) = body.point_of(row) {
+                    held[point as usize] = true;
                 }
             }
             let points = shown.points[..shown.outer_count].iter().enumerate();

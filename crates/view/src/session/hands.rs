@@ -226,8 +226,8 @@ pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo, shown: &Shown) -> R
     let system = body.system;
     let kinematics = &world.model().systems[system].kinematics;
     let blocks = |points: &[u32]| {
-        let row = |point: &u32| body.rows.start as u32 + shown.points[*point as usize];
-        points.iter().map(row).filter_map(|row| kinematics.point_block(row)).collect::<Vec<u32>>()
+        let row = |point: &u32| body.own_row(shown.points[*point as usize]);
+        points.iter().filter_map(row).filter_map(|row| kinematics.point_block(row)).collect::<Vec<u32>>()
     };
     Ok(match wish {
         Wish::Pin { .. } if body.frames.is_some() => {
@@ -239,6 +239,9 @@ pub fn edits_of(wish: &Wish, world: &World, body: &BodyInfo, shown: &Shown) -> R
         Wish::Pin { .. } if body.level_count(world).is_some() => {
             let why = "points of its other meshes would go on without those seen";
             return Err(format!("body `{}` has levels: {why}; hold it by a hand", body.name));
+        }
+        Wish::Pin { points, .. } if blocks(points).is_empty() => {
+            return Err(format!("these points of body `{}` hang on another body; pin that one", body.name));
         }
         Wish::Pin { points, .. } => {
             blocks(points).into_iter().map(|block| Edit::Pin { system, block }).collect()

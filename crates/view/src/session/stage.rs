@@ -9,8 +9,8 @@ use souple_engine::obstacle::{Form, Obstacle};
 use souple_engine::{Edit, Interruption, Model, StageTimes, Tool};
 use souple_run::show::obstacles_of;
 use souple_run::{Options, Session, Stepped};
-use souple_scene::Scene;
 use souple_scene::spec::picture::PictureView;
+use souple_scene::{BodyInfo, Scene};
 use souple_table::Table;
 
 use super::Shown;
@@ -176,6 +176,36 @@ impl Stage {
     pub fn begin_anew(&mut self, before: &Stage) {
         self.view = before.view;
         self.origin = before.origin.clone();
+        self.show_influence_of(&before.influence_shown());
+    }
+
+    /// Of each body the frame whose weights are shown.
+    fn influence_shown(&self) -> Vec<Option<usize>> {
+        self.session.bodies.iter().map(|body| Some(body.frames.as_ref()?.shown)).collect()
+    }
+
+    fn show_influence_of(&mut self, shown: &[Option<usize>]) {
+        let frames = self.session.bodies.iter_mut().map(|body| body.frames.as_mut());
+        for (frames, shown) in frames.zip(shown) {
+            if let (Some(frames), Some(shown)) = (frames, shown)
+                && *shown < frames.count()
+            {
+                frames.shown = *shown;
+            }
+        }
+    }
+
+    fn choose_influence(&mut self, body: usize, frame: usize) -> Result<(), String> {
+        self.check_points(body, &[])?;
+        let BodyInfo { name, frames, .. } = &mut self.session.bodies[body];
+        let Some(frames) = frames else {
+            return Err(format!("no frames carry `{name}`"));
+        };
+        if frame >= frames.count() {
+            return Err(format!("`{name}` has no frame {frame}; it has {}, the first is 0", frames.count()));
+        }
+        frames.shown = frame;
+        Ok(())
     }
 
     pub fn obstacles(&self) -> &[Obstacle] {
@@ -326,6 +356,10 @@ impl Stage {
         match &wish {
             Wish::Colour(name) => choose(&FIELDS, name.as_deref(), page, &mut self.looks.fields)?,
             Wish::Arrows(name) => choose(&ARROWS, name.as_deref(), page, &mut self.looks.arrows)?,
+            Wish::Influence { body, frame } => {
+                self.choose_influence(*body, *frame)?;
+                hub.tell_all(&self.influence());
+            }
             Wish::Inside(true) => {
                 self.looks.inside.insert(page);
                 self.describe_inside(hub);
@@ -453,7 +487,9 @@ impl Stage {
     /// The scene is another world now; this one goes on as it was.
     pub fn change(&mut self, scene: Scene, setting: &str, hub: &Hub) -> Result<(), String> {
         let told = self.session.warnings.len();
+        let influence = self.influence_shown();
         self.session.take_over(scene, setting).map_err(|error| error.to_string())?;
+        self.show_influence_of(&influence);
         for warning in &self.session.warnings[told..] {
             hub.tell_all(&document("warning", json!({"message": self.origin.told(warning)})));
         }

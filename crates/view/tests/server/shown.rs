@@ -151,6 +151,23 @@ fn frames_are_shown() {
     let titles: Vec<_> = fields.iter().filter(|field| !field["title"].is_null()).collect();
     assert!(titles.len() == 1 && titles[0]["title"] == "influence of frame 0", "{titles:?}");
     page.wish(json!({"do": "colour", "field": "influence"}));
+    let of_first = page.frame_where(|frame| frame.field_count == 1).values[0].clone();
+    page.wish(json!({"do": "influence", "body": 0, "frame": 1}));
+    let told = page.document_where("influence", |told| told["bodies"][0]["shown"] == 1);
+    assert_eq!((&told["title"], &told["bodies"][0]["frames"]), (&json!("influence of frame 1"), &json!(2)));
+    // of two frames each has what the other leaves
+    let is_rest = |(one, other): (&f32, &f32)| (one + other - 1.0).abs() < 1e-6;
+    page.frame_where(|frame| frame.values[0].iter().zip(&of_first).all(is_rest));
+    for (wish, reason) in [
+        (json!({"do": "influence", "body": 0, "frame": 2}), "has no frame 2; it has 2"),
+        (json!({"do": "influence", "body": 1, "frame": 0}), "no body 1"),
+    ] {
+        page.wish(wish);
+        let refused = page.document_where("refused", |refused| refused["about"] == "influence");
+        assert!(refused["message"].as_str().unwrap().contains(reason), "{refused}");
+    }
+    page.wish(json!({"do": "reset"}));
+    page.document_where("influence", |told| told["bodies"][0]["shown"] == 1);
     page.wish(json!({"do": "arrows", "of": "velocity"}));
     page.wish(json!({"do": "arrows", "of": "nothing"}));
     let refused = page.document_where("refused", |refused| refused["about"] == "arrows");

@@ -50,6 +50,7 @@ class Page {
   private readonly display = new Display(() => this.applyLook(), {
     fit: () => this.picture.fit(),
     theme: () => this.chooseDark(!this.dark),
+    influence: (body, frame) => this.send({ do: "influence", body, frame }),
   });
   private readonly hand = new HandPanel(
     (handling) => {
@@ -203,6 +204,11 @@ class Page {
         break;
       case "pins":
         message.pins.forEach((points, body) => this.picture.setPins(body, points));
+        break;
+      case "influence":
+        this.display.setInfluence(message, this.info?.bodies ?? []);
+        for (const field of this.info?.fields ?? []) if (field.title !== null) field.title = message.title;
+        this.repaint();
         break;
       case "status":
         this.setStatus(message);

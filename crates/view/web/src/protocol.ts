@@ -143,6 +143,15 @@ export interface Pins {
   pins: number[][];
 }
 
+/** Whose weights the field `influence` shows. */
+export interface Influence {
+  kind: "influence";
+  /** Of each body; null: no frames carry it. */
+  bodies: ({ frames: number; shown: number } | null)[];
+  /** Of the legend. */
+  title: string | null;
+}
+
 export interface Status {
   kind: "status";
   mode: "waiting" | "playing" | "paused" | "stepping" | "failed";
@@ -163,7 +172,7 @@ export interface Warning {
   message: string;
 }
 
-export type Document = Hello | SceneInfo | Adjustables | Pins | Status | Warning | Refused;
+export type Document = Hello | SceneInfo | Adjustables | Pins | Influence | Status | Warning | Refused;
 
 export type Wish =
   | { do: "seen" | "play" | "pause" | "step" | "reset" }
@@ -173,6 +182,7 @@ export type Wish =
   | { do: "set"; path: string; value: string }
   | { do: "colour"; field: string | null }
   | { do: "arrows"; of: string | null }
+  | { do: "influence"; body: number; frame: number }
   | { do: "inside"; is_shown: boolean }
   | { do: "grab"; hand: number; body: number; points: number[]; strength: number }
   | { do: "touch"; hand: number; tool: string; size: number; place: Vector; direction: Vector; strength: number }

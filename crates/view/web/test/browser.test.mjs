@@ -430,6 +430,73 @@ function sleepy() {
   Object.defineProperty(document, "hidden", { get: () => state === "hidden" });
 }
 
+describe("two organs tied by tissue", () => {
+  let world;
+  let page;
+  before(async () => {
+    world = await Program.open("scenes/tied_organs");
+    page = await open(browser, world.url);
+  });
+  after(() => world?.close());
+
+  test("run in real time, and the lower one follows the upper one", async () => {
+    // while the upper one is led up by 20 mm; factors over a second, of which a browser beside takes its part
+    const factors = await page.evaluate(async () => {
+      const seen = [];
+      while (Number(document.body.dataset.time) < 2) {
+        seen.push(Number(document.body.dataset.factor));
+        await new Promise(requestAnimationFrame);
+      }
+      return seen.sort((a, b) => a - b);
+    });
+    const middle = factors[factors.length >> 1];
+    assert.ok(middle > 0.95, `${middle} x real time`);
+    const [, lower] = await trial.plotted(page, "lower");
+    assert.ok(lower > 5e-3, `the lower one has risen by ${lower} m`);
+  });
+
+  test("move each other where one is pulled by the mouse", async () => {
+    await page.selectOption("#field", "displacement");
+    await settled(page);
+    const places = async () => [await trial.plotted(page, "lower"), await trial.plotted(page, "upper")].map(([x, y, z]) => [x, y, z]);
+    const before = await places();
+    const [x, y] = await onBody(page);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 120, y, { steps: 3 });
+    await page.locator(".force").waitFor();
+    const deadline = Date.now() + trial.PATIENCE;
+    const moved = async () => (await places()).map((now, body) => Math.hypot(...now.map((c, axis) => c - before[body][axis])));
+    for (let now = await moved(); now.some((length) => length < 1e-4); now = await moved()) {
+      assert.ok(Date.now() < deadline, `they have moved by ${now} m`);
+      await page.evaluate(() => new Promise(requestAnimationFrame));
+    }
+    await photograph(page, "tied_organs");
+    await page.mouse.up();
+  });
+
+  test("are coloured by the weight of the frame that is chosen", async () => {
+    await page.selectOption("#field", "influence");
+    const titled = (frame) => page.waitForFunction((frame) => document.querySelector("#legend .title")?.textContent === `influence of frame ${frame}`, frame);
+    await titled(0);
+    const first = await seen(page);
+    const frame = page.locator("#influence input");
+    await frame.fill("13");
+    await frame.press("Enter");
+    await titled(13);
+    await looks(page, (now) => now.print !== first.print, "the colours do not change");
+    await photograph(page, "influence");
+    // what there is not becomes what there is
+    await frame.fill("99");
+    await frame.press("Enter");
+    await titled(17);
+    assert.equal(await frame.inputValue(), "17");
+    await page.selectOption("#field", "");
+    assert.ok(await page.locator("#influence").isHidden());
+    assert.deepEqual(page.errors, []);
+  });
+});
+
 describe("small worlds", () => {
   let world;
   let page;

@@ -1,6 +1,6 @@
 // How the world is drawn: what colours it, edges, a cut, light or dark.
 
-import type { ArrowInfo, ColourMap, FieldInfo, SceneInfo } from "../protocol";
+import type { ArrowInfo, BodyInfo, ColourMap, FieldInfo, Influence, SceneInfo } from "../protocol";
 import { label } from "../format";
 import type { Cut } from "../view/picture";
 import type { Style } from "../view/body";
@@ -31,6 +31,9 @@ const AXES: [string, string][] = [
   ["2", "Across z"],
 ];
 
+const row = (text: string, control: HTMLElement): HTMLElement =>
+  element("label", { class: "row" }, element("span", {}, text), control);
+
 export class Display {
   readonly root: HTMLElement;
   readonly look: Look = {
@@ -45,6 +48,8 @@ export class Display {
   };
   private readonly field = element("select", { id: "field" });
   private readonly map = element("select", { id: "map" });
+  /** The frame whose weights colour each body. */
+  private readonly influence = element("div", { id: "influence" });
   private readonly style = element("select", { id: "style" });
   private readonly axis = element("select", { id: "cut" });
   private readonly otherHalf = element("input", { type: "checkbox", id: "other-half" });
@@ -60,7 +65,7 @@ export class Display {
 
   constructor(
     private readonly changed: () => void,
-    actions: { fit: () => void; theme: () => void },
+    private readonly actions: { fit: () => void; theme: () => void; influence: (body: number, frame: number) => void },
   ) {
     const options = (select: HTMLSelectElement, entries: [string, string][]) =>
       select.append(...entries.map(([value, text]) => element("option", { value }, text)));
@@ -72,8 +77,6 @@ export class Display {
       control.addEventListener("change", () => this.read());
     }
     for (const control of [this.place, this.explode]) control.addEventListener("input", () => this.read());
-    const row = (text: string, control: HTMLElement): HTMLElement =>
-      element("label", { class: "row" }, element("span", {}, text), control);
     this.styleRow = row("Surface", this.style);
     this.explodeRow = row("Cells apart", this.explode);
     this.otherHalfRow = row("Other half", this.otherHalf);
@@ -82,6 +85,7 @@ export class Display {
       "Display",
       true,
       row("Colour", this.field),
+      this.influence,
       row("Colour map", this.map),
       this.styleRow,
       row("Cut", this.axis),
@@ -98,7 +102,26 @@ export class Display {
         element("button", { click: actions.theme, title: "Light or dark" }, "Light / dark"),
       ),
     );
-    this.place.hidden = this.otherHalfRow.hidden = true;
+    this.place.hidden = this.otherHalfRow.hidden = this.influence.hidden = true;
+  }
+
+  /** Whose weights are shown: a row for each body that frames carry. */
+  setInfluence({ bodies }: Influence, infos: BodyInfo[]): void {
+    const carried = bodies.flatMap((body, index) => (body ? [{ ...body, index }] : []));
+    const rows = carried.map(({ frames, shown, index }) => {
+      const input = element("input", { type: "number", min: 0, max: frames - 1, step: 1, value: shown });
+      input.addEventListener("change", () => {
+        const frame = Math.min(Math.max(Math.round(Number(input.value) || 0), 0), frames - 1);
+        input.value = String(frame);
+        this.actions.influence(index, frame);
+      });
+      return row(carried.length > 1 ? `Frame of ${infos[index]?.name ?? index}` : "Frame", input);
+    });
+    // a field that somebody types into is not taken away by its own answer
+    const before = [...this.influence.querySelectorAll("input")];
+    const isSame = before.length === carried.length && before.every((input, i) => input.max === String(carried[i]!.frames - 1));
+    if (isSame) before.forEach((input, i) => (input.value = String(carried[i]!.shown)));
+    else this.influence.replaceChildren(...rows);
   }
 
   setMaps(maps: ColourMap[]): void {
@@ -136,6 +159,7 @@ export class Display {
   private read(): void {
     const { look } = this;
     look.field = this.field.value || null;
+    this.influence.hidden = look.field !== "influence";
     look.map = this.map.value || "sequential";
     look.style = this.style.value as Style;
     // what is chosen for other scenes is kept, and does nothing where it cannot be seen
