@@ -164,7 +164,7 @@ pub fn place(
             let count = placed.frames.len();
             if spec.shown >= count {
                 let message = format!("body `{}` has no frame {}", body.name, spec.shown);
-                draft.log.add(Code::OutOfRange, &spec.shown_site, message, &format!("0 to {}", count - 1));
+                draft.log.add(Code::OutOfRange, &spec.shown_site, message, format!("0 to {}", count - 1));
                 return None;
             }
             warnings.extend(too_few_points(draft, body, spec, &placed));
@@ -289,7 +289,8 @@ pub fn hold(draft: &Draft, body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
     let size = body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
     let numbers: Vec<u32> = held.iter().map(|(point, ..)| *point).collect();
     let (areas, moduli) = (links::areas_held(draft, body, &numbers), links::moduli(body));
-    if let Some((point, ..)) = held.iter().find(|(point, ..)| !(moduli[*point as usize] > 0.0)) {
+    let resists_nothing = |modulus: f64| modulus.is_nan() || modulus <= 0.0;
+    if let Some((point, ..)) = held.iter().find(|(point, ..)| resists_nothing(moduli[*point as usize])) {
         let message = format!(
             "the matter of body `{}` has a modulus of {} Pa at pinned points: the springs that hold points of frames have no stiffness",
             body.spec.name, moduli[*point as usize]

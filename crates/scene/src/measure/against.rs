@@ -20,7 +20,7 @@ const APART: f64 = 0.21;
 pub enum Reference {
     /// Of `x`, `y`, `z` where a point rests [m] and of time [s].
     Formula(Box<[Formula; 3]>),
-    Body(Carriers),
+    Body(Box<Carriers>),
 }
 
 /// A body whose cells at the start hold the points of a probe.
@@ -43,7 +43,8 @@ impl Reference {
             Against::Body { name, site } => {
                 // names of bodies are checked when the scene is read
                 let other = draft.body(name)?;
-                Carriers::compile(other, &part(probe, draft)?, site, draft).map(Self::Body)
+                Carriers::compile(other, &part(probe, draft)?, site, draft)
+                    .map(|carriers| Self::Body(Box::new(carriers)))
             }
         }
     }

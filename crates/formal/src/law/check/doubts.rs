@@ -204,7 +204,8 @@ fn jump_between(law: &EnergyLaw, below: &Mat3, above: &Mat3) -> Option<String> {
     let rounding = LEAST_JUMP * largest_stiffness(law);
     let jumps = |change: f64, size: f64| change > JUMP * size && change > rounding;
     let energies = [below, above].map(|F| law.energy_at(F));
-    if energies.iter().any(|energy| !(energy.abs() < largest_stiffness(law) / f64::EPSILON.sqrt())) {
+    let most = largest_stiffness(law) / f64::EPSILON.sqrt();
+    if energies.iter().any(|energy| energy.is_nan() || energy.abs() >= most) {
         return energies[0].is_finite().then(|| "the energy has a pole".to_owned());
     }
     let change = (energies[1] - energies[0]).abs();
