@@ -52,9 +52,11 @@ pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
     };
     line(&format!("//! {summary}; derived from its text by `cargo xtask kernels`, and not changed by hand."));
     line("//!");
+    line("//! ```text");
     for text in written {
-        line(&format!("//!     {text}"));
+        line(&format!("//! {text}"));
     }
+    line("//! ```");
     line("");
     let vectors = if uses("Vec3") || parameters.iter().any(|(_, shape)| *shape == Shape::Vector) {
         ", Vec3"

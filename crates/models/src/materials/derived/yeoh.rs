@@ -1,7 +1,9 @@
 //! rubber that stiffens: cubic in the first invariant; derived from its text by `cargo xtask kernels`, and not changed by hand.
 //!
-//!     Ψ = c1*x + c2*x^2 + c3*x^3 + k/2*(J - 1)^2
-//!     x = I1_bar - 3
+//! ```text
+//! Ψ = c1*x + c2*x^2 + c3*x^3 + k/2*(J - 1)^2
+//! x = I1_bar - 3
+//! ```
 
 use souple_math::{Mat3, Real};
 
