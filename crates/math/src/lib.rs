@@ -20,6 +20,6 @@ pub use dual::Dual;
 pub use lanes::Lanes;
 pub use matrix::Mat3;
 pub use padded::{Padded, prefetch};
-pub use real::Real;
+pub use real::{Real, whole_power};
 pub use rotation::{exponential, logarithm, orthonormalised};
 pub use vector::Vec3;

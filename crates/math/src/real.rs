@@ -57,6 +57,20 @@ pub trait Real:
     }
 }
 
+/// `baseⁿ` by squares.
+#[inline(always)]
+pub fn whole_power<R: Real>(base: R, exponent: u8) -> R {
+    let (mut remaining, mut square, mut product) = (exponent, base, base.one());
+    while remaining > 0 {
+        if remaining % 2 == 1 {
+            product = product * square;
+        }
+        remaining /= 2;
+        square = square * square;
+    }
+    product
+}
+
 impl Real for f64 {
     type Number = Self;
 

@@ -7,7 +7,7 @@
 #![allow(non_snake_case)]
 
 use pulp::{Simd, WithSimd};
-use souple_math::{Lanes, Mat3, Real, Vec3, svd};
+use souple_math::{Lanes, Mat3, Real, Vec3, svd, whole_power};
 
 use super::{BATCH, Code, Instruction, Part, Tape};
 use crate::graph::{Comparison, EQUAL_STRETCHES};
@@ -238,19 +238,6 @@ fn cross<R: Real>(A: &Mat3<R>, B: &Mat3<R>) -> Mat3<R> {
 fn scaled_columns<R: Real>(A: &Mat3<R>, g: Vec3<R>) -> Mat3<R> {
     let [a, b, c] = A.columns;
     Mat3::from_columns(a * g.x, b * g.y, c * g.z)
-}
-
-#[inline(always)]
-fn whole_power<R: Real>(base: R, exponent: u8) -> R {
-    let (mut remaining, mut square, mut product) = (exponent, base, base.one());
-    while remaining > 0 {
-        if remaining % 2 == 1 {
-            product = product * square;
-        }
-        remaining /= 2;
-        square = square * square;
-    }
-    product
 }
 
 /// Number after number, as all transcendental functions: the bits must not depend on the width.

@@ -156,6 +156,14 @@ fn with_matter(
     let smallest =
         |body: &Placed| body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
     let size = sides.iter().map(|(body, _)| smallest(body)).fold(f64::INFINITY, f64::min);
+    if sides.is_empty() {
+        let message = format!(
+            "neither `{}` nor `{}` has matter from which a stiffness would follow",
+            link.from, link.to
+        );
+        draft.log.add(Code::MissingKey, &link.site, message, "a `stiffness` of the springs");
+        return None;
+    }
     let mut stiffnesses = Vec::with_capacity(springs.len());
     for spring in &springs {
         let mut softness = 0.0;
@@ -173,14 +181,6 @@ fn with_matter(
                 return None;
             }
             softness += 1.0 / modulus;
-        }
-        if sides.is_empty() {
-            let message = format!(
-                "neither `{}` nor `{}` has matter from which a stiffness would follow",
-                link.from, link.to
-            );
-            draft.log.add(Code::MissingKey, &link.site, message, "a `stiffness` of the springs");
-            return None;
         }
         stiffnesses.push(layer_stiffness(sides.len() as f64 / softness, size) * area(spring));
     }

@@ -9,24 +9,10 @@
 
 pub mod yeoh;
 
-use souple_math::Real;
+use souple_math::{Real, whole_power};
 
 /// Laws of [`super::WRITTEN_LAWS`] that have a file here, with their texts.
 pub const DERIVED: &[(&str, &str)] = &[("yeoh", include_str!("yeoh.rs"))];
-
-/// `baseⁿ` of a whole number from 2 on.
-#[inline(always)]
-fn whole_power<R: Real>(base: R, exponent: u8) -> R {
-    let (mut remaining, mut square, mut product) = (exponent, base, base.one());
-    while remaining > 0 {
-        if remaining % 2 == 1 {
-            product = product * square;
-        }
-        remaining /= 2;
-        square = square * square;
-    }
-    product
-}
 
 /// `baseⁿ` of a base above zero.
 #[inline(always)]
