@@ -56,6 +56,29 @@ pub fn led_accelerations_at(
     Ok(report)
 }
 
+/// The accelerations of all rows: of unknowns as in [`led_accelerations_at`], of axes with their turning, of rows that hang on others with
+/// these.
+///
+/// # Errors
+/// As [`accelerations_at`].
+pub fn row_accelerations_at(
+    system: &System,
+    around: &Surroundings,
+    when: (f64, f64),
+    state: &SystemState,
+    ws: &mut SystemWorkspace,
+    out: &mut [Vec3],
+) -> Result<(), StepError> {
+    let mut of_blocks = vec![Vec3::ZERO; system.kinematics.block_count()];
+    led_accelerations_at(system, around, when, state, ws, &mut of_blocks)?;
+    system.kinematics.velocities_into(&state.q, &of_blocks, out);
+    if system.kinematics.has_rigid_frames() {
+        bias_into(system, state, &ws.rows, &mut ws.row_scratch);
+        reduce::add_scaled(out, 1.0, &ws.row_scratch);
+    }
+    Ok(())
+}
+
 /// Sums forces over the rows placed at the state.
 fn sum_forces(
     system: &System,
@@ -97,7 +120,8 @@ fn from_forces(
     out: &mut [Vec3],
 ) -> Result<StepReport, StepError> {
     if system.kinematics.has_rigid_frames() {
-        subtract_bias(system, state, &ws.rows, &mut ws.row_scratch, &mut ws.row_force);
+        bias_into(system, state, &ws.rows, &mut ws.row_scratch);
+        system.mass.add_scaled_product(-1.0, &ws.row_scratch, &mut ws.row_force);
     }
     solve_mass(system, &state.q, ws, out)
 }
@@ -193,9 +217,8 @@ pub fn add_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatri
     }
 }
 
-/// `f -= M ẍ_bias`, the acceleration rows have while velocity blocks stay as they are: `ω × (ω × a)` on the
-/// axes of rigid frames.
-fn subtract_bias(system: &System, state: &SystemState, rows: &Rows, bias: &mut [Vec3], force: &mut [Vec3]) {
+/// `ẍ_bias`, the acceleration rows have while velocity blocks stay as they are: `ω × (ω × a)` on the axes of rigid frames.
+fn bias_into(system: &System, state: &SystemState, rows: &Rows, bias: &mut [Vec3]) {
     bias.fill(Vec3::ZERO);
     let mut row = 0;
     for (kind, blocks) in system.kinematics.unknowns() {
@@ -208,5 +231,4 @@ fn subtract_bias(system: &System, state: &SystemState, rows: &Rows, bias: &mut [
         row += kind.row_count();
     }
     system.kinematics.derive_rows(bias);
-    system.mass.add_scaled_product(-1.0, bias, force);
 }

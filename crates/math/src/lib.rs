@@ -21,5 +21,5 @@ pub use lanes::Lanes;
 pub use matrix::Mat3;
 pub use padded::{Padded, prefetch};
 pub use real::{Real, whole_power};
-pub use rotation::{exponential, logarithm, orthonormalised};
+pub use rotation::{axes_along, exponential, logarithm, orthonormalised};
 pub use vector::Vec3;

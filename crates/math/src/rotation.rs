@@ -43,9 +43,38 @@ pub fn orthonormalised(rotation: &Mat3) -> Mat3 {
     *rotation * (gram * -0.5).plus_diagonal(1.5)
 }
 
+/// A component below this part of a direction is rounding.
+const NOTHING: f64 = 1e-9;
+
+/// The rotation whose first axis is along `x` and whose second one lies on the side of `y`, any across `x` where that has no part
+/// there; `None` where `x` has no direction.
+pub fn axes_along(x: Vec3, y: Vec3) -> Option<Mat3> {
+    let first = x.try_normalised()?;
+    let across = y - first * first.dot(y);
+    let has_part = across.length() > NOTHING * y.length();
+    let second = if has_part { across.try_normalised()? } else { first.any_orthogonal() };
+    Some(Mat3::from_columns(first, second, first.cross(second)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Axes are a rotation, along the one and on the side of the other; without a side any.
+    #[test]
+    fn axes_are_a_rotation() {
+        let (x, y) = (Vec3::new(0.3, -2.0, 0.7), Vec3::new(1.0, 1.0, 1.0));
+        for side in [y, Vec3::ZERO, x * -2.0] {
+            let axes = axes_along(x, side).unwrap();
+            assert!((axes.transpose_mul(&axes) - Mat3::IDENTITY).largest_entry() < 1e-15);
+            assert!((axes.determinant() - 1.0).abs() < 1e-15);
+            assert!((axes.columns[0] * x.length() - x).length() < 1e-15);
+        }
+        let axes = axes_along(x, y).unwrap();
+        assert!(axes.columns[1].dot(y) > 0.0 && axes.columns[2].dot(y).abs() < 1e-15);
+        assert_eq!(axes_along(Vec3::ZERO, y), None);
+        assert_eq!(axes_along(Vec3::new(f64::NAN, 0.0, 0.0), y), None);
+    }
 
     /// `log(exp(θ)) = θ` for every angle below π, small ones and almost π included.
     #[test]

@@ -5,7 +5,7 @@
 //! first patch is carried along the way between the two until it meets the second. Ends stand on the surfaces themselves,
 //! so that what is attached there is in touch.
 
-use souple_math::{Mat3, Vec3, eigen_symmetric};
+use souple_math::{Mat3, Vec3, axes_along, eigen_symmetric};
 
 use crate::{ElementKind, Group, Mesh, closest_point_on_triangle};
 
@@ -50,8 +50,19 @@ pub enum TissueError {
         .at.x, .at.y, .at.z
     )]
     NoWidth { at: Vec3, width: f64 },
+    #[error(
+        "the region at ({}, {}, {}) is {width:.3e} m wide there across the way to the other, and {thickness:.3e} m are wanted",
+        .at.x, .at.y, .at.z
+    )]
+    TooThick { at: Vec3, width: f64, thickness: f64 },
+    #[error(
+        "the ends are {apart:.3e} m apart, less than {thickness:.3e} m, and neither region holds a whole face that would be as wide"
+    )]
+    ThickerThanLong { apart: f64, thickness: f64 },
     #[error("a pad begins on faces, and the first region has none")]
     NoFaces,
+    #[error("the faces of the {which} region look away from the other region, at ({}, {}, {}): the tissue would go through the body", .at.x, .at.y, .at.z)]
+    FacesAway { which: &'static str, at: Vec3 },
     #[error("no face of the first region has the second one before it{}", .nearest.map(|gap| format!(" within {thickness:.3e} m: the narrowest gap is {gap:.3e} m")).unwrap_or_default())]
     NoGap { thickness: f64, nearest: Option<f64> },
 }
@@ -62,6 +73,11 @@ impl TissueError {
         match self {
             Self::NoWay { .. } => "regions of the two bodies that are apart",
             Self::NoWidth { .. } => "regions with points beside each other, or a ligament",
+            Self::TooThick { .. } => "a smaller `thickness`, or a wider region",
+            Self::ThickerThanLong { .. } => {
+                "a `thickness` below the distance of the ends, or regions that hold whole faces"
+            }
+            Self::FacesAway { .. } => "faces of each body that look at the other",
             Self::NoFaces => "a region that holds whole faces of the surface, or a ligament",
             Self::NoGap { .. } => "regions that face each other, or a greater `thickness`",
         }
@@ -92,9 +108,31 @@ impl Patch {
         places.min_by(|a, b| (*a - point).length_sq().total_cmp(&(*b - point).length_sq())).unwrap_or(point)
     }
 
-    /// How far from a point its faces are along a direction of length one.
+    /// How far from a point its faces that look towards it are along a direction of length one.
     fn distance_along(&self, point: Vec3, direction: Vec3) -> Option<f64> {
-        self.triangles().filter_map(|corners| ray_meets(point, direction, corners)).min_by(f64::total_cmp)
+        let facing = self.triangles().filter(|corners| normal(corners).dot(direction) < 0.0);
+        facing.filter_map(|corners| ray_meets(point, direction, corners)).min_by(f64::total_cmp)
+    }
+
+    /// Where a line meets its faces, nearest to a point of it; the nearest place where it passes them by.
+    fn met_along(&self, point: Vec3, direction: Vec3) -> Vec3 {
+        let distances = self.triangles().flat_map(|corners| {
+            let before = ray_meets(point, direction, corners);
+            let behind = ray_meets(point, -direction, corners).map(|distance| -distance);
+            before.into_iter().chain(behind)
+        });
+        let nearest = distances.min_by(|a, b| a.abs().total_cmp(&b.abs()));
+        nearest.map_or_else(|| self.nearest(point), |distance| point + direction * distance)
+    }
+
+    /// Where all its faces look the other way, if there are any: a place on one. Faces along the way look at nothing.
+    fn away_from(&self, direction: Vec3) -> Option<Vec3> {
+        let looks_away = |corners: &[Vec3; 3]| {
+            let normal = normal(corners);
+            normal.dot(direction) < -NOTHING * normal.length()
+        };
+        let first = self.triangles().next()?;
+        self.triangles().all(|corners| looks_away(&corners)).then_some(first[0])
     }
 
     /// How it spreads about its middle.
@@ -102,6 +140,11 @@ impl Patch {
         let middle = self.middle();
         self.points.iter().fold(Mat3::ZERO, |sum, point| sum + (*point - middle).outer(*point - middle))
     }
+}
+
+/// Outward, as long as twice its area.
+fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
+    (*b - *a).cross(*c - *a)
 }
 
 /// Where a ray meets a triangle, its edges included [m]: Möller & Trumbore 1997, for points behind by no more than
@@ -134,40 +177,56 @@ pub fn tissue(from: &Patch, to: &Patch, wanted: &Tissue) -> Result<Mesh, TissueE
         return Err(TissueError::NoWay { at: start });
     }
     let direction = way / way.length();
+    for (which, patch, towards) in [("first", from, direction), ("second", to, -direction)] {
+        if let Some(at) = patch.away_from(towards) {
+            return Err(TissueError::FacesAway { which, at });
+        }
+    }
     match wanted.form {
         TissueForm::Pad => pad(from, to, direction, wanted),
         TissueForm::Ligament => {
             // any direction across will do for a square
-            let least = direction.to_array().map(f64::abs);
-            let axis = (0..3).min_by(|a, b| least[*a].total_cmp(&least[*b])).unwrap_or(0);
-            let across = direction.cross(Vec3::AXES[axis]);
-            let across = across / across.length();
+            let across = direction.any_orthogonal();
             let half = 0.5 * wanted.thickness;
-            let ends = [from, to].map(|patch| (patch, across, [-half, half]));
-            Ok(loft(ends, direction, wanted))
+            let ends = [from, to].map(|patch| End { patch, axis: across, ends: [-half, half] });
+            loft(ends, direction, wanted)
         }
         TissueForm::Sheet => {
-            let first = width(from, direction, None, size)?;
-            let second = width(to, direction, Some(first.0), size)?;
-            Ok(loft([(from, first.0, first.1), (to, second.0, second.1)], direction, wanted))
+            let first = widest(from, direction, None, size)?;
+            let second = widest(to, direction, Some(first.axis), size)?;
+            loft([first, second], direction, wanted)
         }
     }
 }
 
-/// The direction in which a patch is widest across the way, and where it begins and ends along it [m]; on the side of
-/// `like`.
-fn width(
-    patch: &Patch,
+/// Where tissue of one width ends: the direction of that, and where it begins and ends along it [m].
+#[derive(Clone, Copy)]
+struct End<'a> {
+    patch: &'a Patch,
+    axis: Vec3,
+    ends: [f64; 2],
+}
+
+/// Spreads that differ by less than this part are as wide one way as the other.
+const AS_WIDE: f64 = 1e-6;
+
+/// The direction in which a patch is widest across the way, on the side of `like`; of a patch that is as wide in all directions, that of
+/// `like` itself, or across the way and an axis.
+fn widest<'a>(
+    patch: &'a Patch,
     direction: Vec3,
     like: Option<Vec3>,
     size: f64,
-) -> Result<(Vec3, [f64; 2]), TissueError> {
+) -> Result<End<'a>, TissueError> {
     let middle = patch.middle();
     let flat = Mat3::IDENTITY - direction.outer(direction);
     let eigen = eigen_symmetric(&(flat * patch.spread() * flat));
     let values = eigen.values.to_array();
-    let widest = (0..3).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
-    let mut axis = eigen.vectors.columns[widest];
+    let mut order = [0, 1, 2];
+    order.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
+    let is_square = values[order[0]] - values[order[1]] <= AS_WIDE * values[order[0]];
+    let mut axis =
+        if is_square { like.unwrap_or_else(|| direction.any_orthogonal()) } else { eigen.vectors.columns[order[0]] };
     // of two signs the one that does not twist the sheet, or the one along the axes
     let reference = like.unwrap_or(Vec3::new(1.0, 1e-3, 1e-6));
     if axis.dot(reference) < 0.0 {
@@ -178,23 +237,41 @@ fn width(
     if ends[1] - ends[0] <= NOTHING * size {
         return Err(TissueError::NoWidth { at: middle, width: ends[1] - ends[0] });
     }
-    Ok((axis, ends))
+    Ok(End { patch, axis, ends })
 }
 
-/// Hexahedra between two sections, each of a patch, the direction of its width and the ends of that.
-fn loft(ends: [(&Patch, Vec3, [f64; 2]); 2], direction: Vec3, wanted: &Tissue) -> Mesh {
+/// Part of a thickness that a section may lose where its corners pass a region by, as at the round ends of a width.
+const CUT: f64 = 0.1;
+
+/// Hexahedra between two sections.
+///
+/// # Errors
+/// A region is narrower than the tissue is thick.
+fn loft(ends: [End; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh, TissueError> {
     let Tissue { along, across, through, thickness, .. } = *wanted;
-    let section = |(patch, axis, [low, high]): (&Patch, Vec3, [f64; 2])| -> Vec<Vec3> {
+    let apart = (ends[1].patch.middle() - ends[0].patch.middle()).length();
+    if ends.iter().all(|end| end.patch.faces.is_empty()) && thickness > apart {
+        return Err(TissueError::ThickerThanLong { apart, thickness });
+    }
+    let section = |End { patch, axis, ends: [low, high] }: End| -> Result<Vec<Vec3>, TissueError> {
         let normal = direction.cross(axis);
         let normal = normal / normal.length();
         let place = |j: usize, k: usize| {
             let u = low + (high - low) * j as f64 / across as f64;
             let v = thickness * (k as f64 / through as f64 - 0.5);
-            patch.nearest(patch.middle() + axis * u + normal * v)
+            patch.met_along(patch.middle() + axis * u + normal * v, direction)
         };
-        (0..=through).flat_map(|k| (0..=across).map(move |j| (j, k))).map(|(j, k)| place(j, k)).collect()
+        for j in 0..=across {
+            let (below, above) = (place(j, 0), place(j, through));
+            let width = (above - below).dot(normal);
+            if width < (1.0 - CUT) * thickness {
+                return Err(TissueError::TooThick { at: (below + above) * 0.5, width, thickness });
+            }
+        }
+        Ok((0..=through).flat_map(|k| (0..=across).map(move |j| (j, k))).map(|(j, k)| place(j, k)).collect())
     };
-    let [first, last] = ends.map(section);
+    let [first, last] = ends;
+    let (first, last) = (section(first)?, section(last)?);
     let mut points = Vec::new();
     for layer in 0..=along {
         let part = layer as f64 / along as f64;
@@ -214,7 +291,7 @@ fn loft(ends: [(&Patch, Vec3, [f64; 2]); 2], direction: Vec3, wanted: &Tissue) -
         }
     }
     name_ends(&mut mesh, first.len());
-    mesh
+    Ok(mesh)
 }
 
 /// Cells between faces of a patch and where they meet the other.
@@ -227,7 +304,8 @@ fn pad(from: &Patch, to: &Patch, direction: Vec3, wanted: &Tissue) -> Result<Mes
     let mut feet: Vec<(Vec3, f64)> = Vec::new();
     let mut known = std::collections::HashMap::new();
     let mut faces: Vec<Vec<u32>> = Vec::new();
-    for face in &from.faces {
+    let looks_there = |face: &&Vec<Vec3>| normal(&[face[0], face[1], face[2]]).dot(direction) > 0.0;
+    for face in from.faces.iter().filter(looks_there) {
         let gaps: Vec<Option<f64>> =
             face.iter().map(|corner| to.distance_along(*corner, direction)).collect();
         for gap in gaps.iter().flatten() {
@@ -269,6 +347,28 @@ fn pad(from: &Patch, to: &Patch, direction: Vec3, wanted: &Tissue) -> Result<Mes
     Ok(mesh)
 }
 
+/// The axes of each cell of tissue, as columns: from the first end to the second, across that along the width, and through the
+/// thickness. A pad, which has no width, has one direction across for all of its cells.
+pub fn cell_axes(mesh: &Mesh, form: TissueForm) -> Vec<Mat3> {
+    let along = |cell: &crate::Cell| {
+        let half = cell.kind.corner_count() / 2;
+        let at = |node: usize| mesh.points[cell.nodes[node] as usize];
+        (0..half).map(|node| at(half + node) - at(node)).sum::<Vec3>()
+    };
+    let whole = mesh.cells().map(|cell| along(&cell)).sum::<Vec3>();
+    let beside = |cell: &crate::Cell| {
+        let half = cell.kind.corner_count() / 2;
+        let at = |node: usize| mesh.points[cell.nodes[node] as usize];
+        match form {
+            TissueForm::Pad => whole.any_orthogonal(),
+            // the first edge of both ends
+            TissueForm::Ligament | TissueForm::Sheet => at(1) - at(0) + at(half + 1) - at(half),
+        }
+    };
+    let of = |cell: crate::Cell| axes_along(along(&cell), beside(&cell));
+    mesh.cells().map(|cell| of(cell).unwrap_or(Mat3::IDENTITY)).collect()
+}
+
 /// Groups of the first and the last so many points.
 fn name_ends(mesh: &mut Mesh, of_end: usize) {
     let (all, of_end) = (mesh.points.len() as u32, of_end as u32);
@@ -281,7 +381,7 @@ fn name_ends(mesh: &mut Mesh, of_end: usize) {
 mod tests {
     use super::*;
 
-    /// A square of so many faces in the plane of a height, from `low` to `high` in x and z.
+    /// A square of so many faces that look up, at a height, from `low` to `high` in x and z.
     fn square(low: f64, high: f64, height: impl Fn(f64) -> f64, faces: usize) -> Patch {
         let at = |i: usize| low + (high - low) * i as f64 / faces as f64;
         let corner = |i: usize, j: usize| Vec3::new(at(i), height(at(i)), at(j));
@@ -294,6 +394,12 @@ mod tests {
         }
     }
 
+    /// The same from below.
+    fn from_below(patch: Patch) -> Patch {
+        let turned = |face: Vec<Vec3>| face.into_iter().rev().collect();
+        Patch { faces: patch.faces.into_iter().map(turned).collect(), ..patch }
+    }
+
     fn volume(mesh: &mut Mesh) -> f64 {
         mesh.validate().expect("a mesh that can be computed on");
         mesh.volume()
@@ -304,7 +410,8 @@ mod tests {
     /// A pad fills what lies between two surfaces where they face each other, and no more.
     #[test]
     fn pads_fill_gaps() {
-        let (floor, slope) = (square(0.0, 4.0, |_| 0.0, 4), square(1.0, 3.0, |x| 1.0 + 0.1 * (x - 2.0), 3));
+        let floor = square(0.0, 4.0, |_| 0.0, 4);
+        let slope = from_below(square(1.0, 3.0, |x| 1.0 + 0.1 * (x - 2.0), 3));
         let mut pad = tissue(&floor, &slope, &PAD).unwrap();
         // two by two under a slope of mean height one
         assert!((volume(&mut pad) - 4.0).abs() < 1e-12);
@@ -316,6 +423,36 @@ mod tests {
         let far = Tissue { thickness: 0.5, ..PAD };
         assert!(matches!(tissue(&floor, &slope, &far), Err(TissueError::NoGap { nearest: Some(_), .. })));
         assert!(matches!(tissue(&floor, &floor, &PAD), Err(TissueError::NoWay { .. })));
+        // through the matter below the floor, or above the slope
+        let below = from_below(floor.clone());
+        assert!(matches!(tissue(&below, &slope, &PAD), Err(TissueError::FacesAway { which: "first", .. })));
+        let above = from_below(slope);
+        assert!(matches!(tissue(&floor, &above, &PAD), Err(TissueError::FacesAway { which: "second", .. })));
+    }
+
+    /// Axes run from the first end to the second, the second one along the width; of triangles too.
+    #[test]
+    fn axes_run_from_end_to_end() {
+        let (floor, roof) = (square(0.0, 4.0, |_| 0.0, 2), from_below(square(0.0, 4.0, |x| 1.0 + 0.1 * x, 2)));
+        let halves = |patch: &Patch| {
+            let faces = patch.faces.iter();
+            let cut = faces.flat_map(|f| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]]).collect();
+            Patch { faces: cut, ..patch.clone() }
+        };
+        let sheet = Tissue { form: TissueForm::Sheet, thickness: 0.5, ..PAD };
+        for (from, wanted) in [(&floor, PAD), (&halves(&floor), PAD), (&floor, sheet)] {
+            let mut mesh = tissue(from, &roof, &wanted).unwrap();
+            mesh.validate().unwrap();
+            let all = cell_axes(&mesh, wanted.form);
+            assert_eq!(all.len(), mesh.cell_count());
+            let leans = Vec3::new(0.0, 1.2, 0.0).try_normalised().unwrap();
+            for axes in all {
+                assert!((axes.columns[0] - leans).length() < 1e-12, "{axes:?}");
+                // a width along z, a thickness along x; a pad takes what is across the way and x
+                assert!((axes.columns[1].z.abs() - 1.0).abs() < 1e-12, "{axes:?}");
+                assert!((axes.determinant() - 1.0).abs() < 1e-12);
+            }
+        }
     }
 
     /// Ligaments and sheets begin and end on the surfaces, with the section that was asked for.
@@ -333,7 +470,14 @@ mod tests {
         let sheet = Tissue { form: TissueForm::Sheet, thickness: 0.5, ..PAD };
         let mut mesh = tissue(&edge(0.0), &edge(3.0), &sheet).unwrap();
         assert!((volume(&mut mesh) - 3.0 * 4.0 * 0.5).abs() < 1e-12);
+        // on squares it runs along a side, and not along the diagonal
+        let mut mesh = tissue(&floor, &roof, &sheet).unwrap();
+        assert!((volume(&mut mesh) - 3.0 * 4.0 * 0.5).abs() < 1e-12);
+        let thick = Tissue { thickness: 4.5, ..ligament };
+        assert!(matches!(tissue(&floor, &roof, &thick), Err(TissueError::TooThick { .. })));
         let point = Patch { points: vec![Vec3::new(2.0, 3.0, 2.0)], faces: Vec::new() };
+        let other = Patch { points: vec![Vec3::new(2.0, 0.0, 2.0)], faces: Vec::new() };
+        assert!(matches!(tissue(&other, &point, &thick), Err(TissueError::ThickerThanLong { .. })));
         assert!(matches!(tissue(&edge(0.0), &point, &sheet), Err(TissueError::NoWidth { .. })));
     }
 }

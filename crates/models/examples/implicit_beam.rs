@@ -57,6 +57,7 @@ impl Bar {
             first_row: 0,
             materials: &[material],
             material_of_cell: &vec![0; mesh.cell_count()],
+            axes: &[],
             quadrature: Default::default(),
             section: Default::default(),
         };

@@ -46,6 +46,7 @@ fn main() {
             first_row: 0,
             materials: &[material],
             material_of_cell: &material_of_cell,
+            axes: &[],
             quadrature: Default::default(),
             section: Default::default(),
         };

@@ -65,6 +65,7 @@ fn solid(mesh: &Mesh, energy: &str) -> SolidForce {
         first_row: 0,
         materials: &[material(energy)],
         material_of_cell: &vec![0; mesh.cell_count()],
+        axes: &[],
         quadrature: Default::default(),
         section: Default::default(),
     })

@@ -343,6 +343,7 @@ impl Cell {
             first_row: 0,
             materials: std::slice::from_ref(material),
             material_of_cell: &[0],
+            axes: &[],
             quadrature: Quadrature::Default.with(self.kind, rule),
             section,
         });

@@ -111,6 +111,7 @@ impl Block {
             first_row: 0,
             materials: &materials,
             material_of_cell: &material_of_cell,
+            axes: &[],
             quadrature: Default::default(),
             section: Default::default(),
         };

@@ -73,6 +73,7 @@ fn build_with(
         first_row: 0,
         materials: std::slice::from_ref(material),
         material_of_cell: &of_cell,
+        axes: &[],
         quadrature: Quadrature::Default,
         section: Section::Solid,
     };

@@ -94,6 +94,7 @@ impl Block {
             first_row: 0,
             materials: &[material],
             material_of_cell: &vec![0; mesh.cell_count()],
+            axes: &[],
             quadrature: Default::default(),
             section: Default::default(),
         };

@@ -82,6 +82,7 @@ fn force_by(mesh: &Mesh, material: &Material, section: Section, quadrature: Quad
         first_row: 0,
         materials: std::slice::from_ref(material),
         material_of_cell: &of_cell,
+        axes: &[],
         quadrature,
         section,
     })

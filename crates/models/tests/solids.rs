@@ -88,6 +88,7 @@ fn describe<'a>(mesh: &'a Mesh, materials: &'a [Material], of_cell: &'a [u16]) -
         first_row: 0,
         materials,
         material_of_cell: of_cell,
+        axes: &[],
         quadrature,
         section: Section::Solid,
     }

@@ -50,6 +50,7 @@ fn force(number: usize, mesh: &Mesh) -> Box<dyn Force> {
         first_row: 0,
         materials: &material,
         material_of_cell: &of_cell,
+        axes: &[],
         quadrature: Quadrature::Default,
         section: Section::Solid,
     };

@@ -1,4 +1,5 @@
-//! The frames of a run: a series of files for ParaView per body, per skin and per contour, and a skin's surface in other formats.
+//! The frames of a run: a series of files for ParaView per body, per skin, per contour and per body's frames that carry it, and a skin's
+//! surface in other formats.
 
 use std::path::{Path, PathBuf};
 
@@ -20,6 +21,8 @@ pub struct Frames {
     dresses: Vec<Series>,
     /// Of all bodies, one after the other.
     contours: Vec<Series>,
+    /// Of bodies that frames carry, with their numbers.
+    carriers: Vec<(usize, Series)>,
     /// Steps between frames.
     every: u64,
     last_written: Option<u64>,
@@ -36,7 +39,7 @@ impl Frames {
         steps: u64,
     ) -> Result<Self, OutputError> {
         let (mut bodies, mut skins) = (Vec::new(), Vec::new());
-        let (mut dresses, mut contours) = (Vec::new(), Vec::new());
+        let (mut dresses, mut contours, mut carriers) = (Vec::new(), Vec::new(), Vec::new());
         let mut path = PathBuf::new();
         if let Some(folder) = folder.filter(|_| count > 0) {
             path = folder.frames()?;
@@ -46,6 +49,9 @@ impl Frames {
             let worn = session.bodies.iter().filter_map(|body| body.dress.as_ref());
             dresses = worn.map(|dress| Series::new(&path, worn_by(&dress.body))).collect();
             contours = names_of_contours(&session.bodies).map(|name| Series::new(&path, name)).collect();
+            let carried = session.bodies.iter().enumerate().filter(|(_, body)| body.frames.is_some());
+            let series = |(index, body): (usize, &BodyInfo)| (index, Series::new(&path, carriers_of(&body.name)));
+            carriers = carried.map(series).collect();
         }
         let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };
         Ok(Self {
@@ -54,6 +60,7 @@ impl Frames {
             skins,
             dresses,
             contours,
+            carriers,
             every,
             last_written: None,
             step: 0,
@@ -146,6 +153,18 @@ impl Frames {
             };
             push(folder, series, moment.time, &output)?;
         }
+        for (index, series) in &mut self.carriers {
+            let (mesh, fields) = mesh_of_carriers(&moment.bodies[*index].frames);
+            let output = Output {
+                mesh: &mesh,
+                positions: None,
+                point_fields: &fields,
+                cell_fields: &[],
+                facets: Facets::LeftOut,
+                precision: precision_for(&mesh.points),
+            };
+            push(folder, series, moment.time, &output)?;
+        }
         if moment.is_drawable() {
             self.drawable = Some(moment);
         }
@@ -170,6 +189,35 @@ fn push(
 /// The name of the files of the skin that a body wears.
 pub fn worn_by(body: &str) -> String {
     format!("{body}.skin")
+}
+
+/// The name of the files of the frames that carry a body.
+pub fn carriers_of(body: &str) -> String {
+    format!("{body}.frames")
+}
+
+/// Fields of the points of these files.
+const AXES: [&str; 3] = ["axis_x", "axis_y", "axis_z"];
+
+/// Frames as points with their axes.
+fn mesh_of_carriers(frames: &[[Vec3; 4]]) -> (Mesh, Vec<Field>) {
+    let mesh = Mesh { points: frames.iter().map(|frame| frame[0]).collect(), ..Mesh::default() };
+    let axis = |(k, name): (usize, &&str)| {
+        let axes: Vec<Vec3> = frames.iter().map(|frame| frame[k + 1]).collect();
+        Field::new(*name, 3, flat(&axes))
+    };
+    (mesh, AXES.iter().enumerate().map(axis).collect())
+}
+
+/// Frames from points with their axes; none where fields of the axes are missing.
+pub fn carriers_from(points: &[Vec3], fields: &[Field]) -> Vec<[Vec3; 4]> {
+    let axis = |name: &str| {
+        let field = fields.iter().find(|field| field.name == name && field.components == 3)?;
+        Some(field.values.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2])).collect::<Vec<_>>())
+    };
+    let [Some(x), Some(y), Some(z)] = AXES.map(axis) else { return Vec::new() };
+    let axes = x.into_iter().zip(y).zip(z);
+    points.iter().zip(axes).map(|(origin, ((x, y), z))| [*origin, x, y, z]).collect()
 }
 
 /// The name of a skin's files: its own, `NAME.skin` for that of a body.

@@ -191,8 +191,17 @@ fn output_folder(
 ) -> Result<Option<OutputFolder>, RunError> {
     let Some(out) = &options.out else { return Ok(None) };
     let (bodies, skins, probes) = (&session.bodies, &session.skins, &session.probes);
+    let names: Vec<String> = bodies
+        .iter()
+        .flat_map(|body| {
+            let carriers = body.frames.as_ref().map(|_| frames::carriers_of(&body.name));
+            let worn = body.dress.as_ref().map(|dress| frames::worn_by(&dress.body));
+            [Some(body.name.clone()), carriers, worn].into_iter().flatten()
+        })
+        .chain(frames::names_of_contours(bodies))
+        .collect();
     let is_frame = |file: &str| {
-        bodies.iter().any(|body| frames::is_frame_of(&body.name, "vtu", file))
+        names.iter().any(|name| frames::is_frame_of(name, "vtu", file))
             || skins.iter().any(|skin| {
                 let name = frames::name_of_skin(skin, bodies);
                 let formats = skin.formats.iter().map(String::as_str);

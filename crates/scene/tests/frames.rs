@@ -374,7 +374,7 @@ fn faults_of_frames_are_said_with_what_to_change() {
     };
     // points outside every support
     let apart = "placement={ name = \"given\", at = [0.02, 0.005, 0.005, 0.03, 0.005, 0.005] }";
-    told(&frames(apart), &["no frame reaches", "reaches 2.000e-2 m", "take more frames, or a wider support"]);
+    told(&frames(apart), &["no frame reaches", "reaches 2.000e-2 m", "place frames there, or take a `support` above"]);
     // frames on top of each other
     let twice = "placement={ name = \"given\", at = [0.02, 0.005, 0.005, 0.02, 0.005, 0.005] }";
     told(&frames(twice), &["frames 0 and 1 are on top of each other", "take fewer frames or move one"]);
@@ -392,7 +392,7 @@ fn faults_of_frames_are_said_with_what_to_change() {
     told(&refusal("ligament", &thin), &["lies on a line", "take more integration points there"]);
     // weights that do not reach: a part of the shape that no frame is in
     let far = refusal("fork", &["bodies.fork.frames.placement.at=[0.39, 0.05, 0, 0.3, 0.05, 0]"]);
-    told(&far, &["no frame reaches", "wider support"]);
+    told(&far, &["no frame reaches", "take a `support` above"]);
     // bones that are not there, frames that are not, and two for one
     let bound = |bones: &str| refusal("frames_led", &[&format!("bodies.bar.frames.bones={bones}")]);
     told(&bound("[{ bone = \"hnad\", frames = [0] }]"), &["no bone `hnad`", "did you mean `hand`?"]);
@@ -416,6 +416,126 @@ fn tissue_without_room_is_refused() {
     assert!(knot.contains("waits for it"), "{knot}");
     let line = pad("bodies.sheet.mesh.from_region={ nearest = [0.1, 0.04, 0.05] }");
     assert!(line.contains("has no width there"), "{line}");
+    // thicker than the region is wide; a pad that would go through the organ; a bone to end on
+    let thick = ["bodies.ligament.mesh.thickness=\"12 cm\"", "bodies.ligament.mesh.from_region=\"y_max\""];
+    let thick = refusal("tissues", &thick);
+    assert!(thick.contains("a wider region"), "{thick}");
+    let stout = pad("bodies.ligament.mesh.thickness=\"6 cm\"");
+    assert!(stout.contains("below the distance of the ends"), "{stout}");
+    for away in ["bodies.pad.mesh.from_region=\"y_min\"", "bodies.pad.mesh.to_region=\"y_max\""] {
+        let through = pad(away);
+        assert!(through.contains("the tissue would go through the body"), "{away}: {through}");
+    }
+    let bone = refusal("tissues", &["bones={ hand = {} }", "bodies.pad.mesh.to=\"hand\""]);
+    assert!(bone.contains("`hand` is a bone or a shape, and no body"), "{bone}");
+}
+
+/// What a bone does to some frames of a body is what changes the momentum of the whole, with the mass that couples these to the others.
+#[test]
+fn the_force_of_a_bone_changes_the_momentum() {
+    for kind in ["rigid", "affine"] {
+        let settings = [
+            format!("bodies.bar.frames.kind=\"{kind}\""),
+            "bodies.bar.frames.bones[0].frames=[0, 1, 2, 3]".to_owned(),
+            "bones.hand={ motion = { formula = \"[0, t^2, 0]\" } }".to_owned(),
+            "world.period=\"1 ms\"".to_owned(),
+        ];
+        let settings: Vec<&str> = settings.iter().map(String::as_str).collect();
+        let scene = scene("frames_led", &settings);
+        let force = scene.probes.iter().find(|probe| probe.name == "force").unwrap().clone();
+        let mut world = scene.model.start(scene.state);
+        let (mut given, mut largest) = (Vec3::ZERO, 0.0_f64);
+        for _ in 0..200 {
+            steps(&mut world, 1).unwrap();
+            let now = Vec3::from_array(force.measure(&mut world).numbers().try_into().unwrap());
+            given += now * 1e-3;
+            largest = largest.max(now.length());
+        }
+        let (momentum, _) = momentum(&world);
+        // a sum by ends of intervals is off by half a step of what changes
+        assert!((momentum - given).length() < 1e-3 * largest, "{kind}: {momentum:?} for {given:?}");
+    }
+}
+
+/// One linearised step that a bent body shortens leaves other bodies their momentum, and is counted.
+#[test]
+fn shortened_steps_leave_momentum_to_others() {
+    let text = r#"
+format = 1
+[world]
+period = "10 ms"
+[systems.main]
+stepper = { name = "backward_euler", newton = "one", solver = "direct" }
+[bodies.free]
+mesh = { generate = "bar", size = [0.1, 0.1, 0.1], cells = [2, 2, 2], element = "hex8" }
+material = { name = "stable_neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
+velocity = [1, 0, 0]
+[bones.hand]
+pivot = [1, 0, 0]
+rotation = { formula = "[0, 0, 20 * t]" }
+[bodies.bar]
+mesh = { generate = "bar", size = [0.5, 0.1, 0.1], cells = [10, 2, 2], element = "hex8", origin = [1, 0, 0] }
+material = { name = "stable_neo_hookean", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
+[bodies.bar.frames]
+placement = { name = "grid", counts = [4, 2, 2] }
+weights = { name = "wendland", support = 3 }
+bones = [{ bone = "hand", frames = [0, 4, 8, 12] }]
+[probes.momentum]
+body = "free"
+quantity = "momentum"
+"#;
+    let scene = souple_scene::read_text("scene.toml", text, std::path::Path::new("."), &[]).unwrap();
+    let probe = scene.probes[0].clone();
+    let mut world = scene.model.start(scene.state);
+    let mut shortened = 0;
+    for _ in 0..30 {
+        steps(&mut world, 1).unwrap();
+        shortened += world.last_report().shortened;
+    }
+    let momentum = probe.measure(&mut world).numbers()[0];
+    assert!(shortened > 0);
+    // 1 kg at 1 m/s
+    assert!((momentum - 1.0).abs() < 1e-9, "{momentum}");
+}
+
+/// Bones are looked at whether anybody follows them or not, and faults stand where they are written.
+#[test]
+fn faults_of_bones_are_said_where_they_are() {
+    for (settings, wanted, place) in [
+        (&["bones.hand.follows=\"hand\""][..], "bone `hand` follows itself", "bones.hand.follows"),
+        (&["bones.hand={ follows = \"elbow\" }"], "there is no bone `elbow`", "bones.hand.follows"),
+        (
+            &["bones={ hand = {}, arm = { follows = \"leg\" }, leg = { follows = \"arm\" } }"],
+            "bone `leg` follows itself",
+            "bones.leg.follows",
+        ),
+        (
+            &["bones={ hand = {}, arm = { motion = { formula = \"[log(t - 0.05), 0, 0]\" } } }"],
+            "at t = 0",
+            "bones.arm",
+        ),
+        (&["shapes={ hand = { shape = \"plane\" } }"], "there is a shape `hand` too", "bones.hand"),
+        (&["probes.force.bone=\"hands\""], "no frame of body `bar` follows a bone `hands`", "probes.force"),
+    ] {
+        let said = refusal("frames_led", settings);
+        assert!(said.contains(wanted) && said.contains(place), "{settings:?}: {said}");
+    }
+}
+
+/// Axes are asked for where a law knows directions, and point somewhere in every cell.
+#[test]
+fn faults_of_material_axes_are_said() {
+    let tube = |setting: &str| refusal("fibre_tube", &[setting]);
+    let middle = tube("bodies.tube.material_axes={ x = \"[0, 0, y - y]\" }");
+    assert!(middle.contains("an x that is zero in no cell"), "{middle}");
+    let infinite = tube("bodies.tube.material_axes={ x = \"[0, 1/(x - x), 0]\" }");
+    assert!(infinite.contains("in cell 0 of body `tube`"), "{infinite}");
+    let none = refusal("twisted_bar", &["bodies.bar.material_axes={ x = [1, 0, 0] }"]);
+    assert!(none.contains("no law of body `bar` knows directions"), "{none}");
+    let law = r#"bodies.sheet.material={ name = "hyperelastic", energy = "mu*dot(E, E) + mu*(I4(a) - 1)^2", parameters = { mu = "1 MPa", a = [1, 0, 0] }, density = 1000 }"#;
+    let section = r#"bodies.sheet.section={ name = "plane_stress", thickness = "10 mm" }"#;
+    let plate = refusal("harmonic_sheet", &[law, section, "bodies.sheet.material_axes={ x = [1, 0, 0] }"]);
+    assert!(plate.contains("which takes the axes of the world"), "{plate}");
 }
 
 /// Frames on a bone are where it takes them at the end of every step, rigid or affine, by any stepper that takes frames, and so

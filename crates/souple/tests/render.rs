@@ -167,6 +167,26 @@ fn blown_up_runs_are_drawn_as_they_were() {
     assert_ne!(read("a.png"), read("b.png"));
 }
 
+/// A run of a body that frames carry keeps them: pictures of its files are those of the run.
+#[test]
+fn frames_that_carry_a_body_are_drawn_from_files() {
+    let folder = Folder::new("carriers");
+    let frames = "[bodies.cube.frames]\nplacement = { name = \"grid\", counts = [2, 2, 2] }\n[bodies.cube]";
+    folder.write("scene.toml", CUBE.replace("[bodies.cube]", frames));
+    souple_in(folder.path(), ["run", "scene.toml", "--out", "run", "--quiet", "--frames", "2"]).ends(0);
+    render(&folder, "run", "files.png", &[]).ends(0);
+    let read = |file: &str| std::fs::read(folder.path().join(file)).expect("a picture");
+    let with = read("files.png");
+    for file in std::fs::read_dir(folder.path().join("run/frames")).expect("frames") {
+        let path = file.expect("an entry").path();
+        if path.to_string_lossy().contains("cube.frames") {
+            std::fs::remove_file(path).expect("a series of frames");
+        }
+    }
+    render(&folder, "run", "without.png", &[]).ends(0);
+    assert_ne!(with, read("without.png"));
+}
+
 /// Frames that are not shown are not read: a run of which most are gone is drawn where it is whole.
 #[test]
 fn frames_that_are_not_shown_are_not_read() {

@@ -246,8 +246,9 @@ impl NewtonProblem for ImplicitProblem<'_, '_> {
         Ok(has_potential.then(|| self.step.merit(self.state, self.ws, self.buffers)))
     }
 
+    // along a turn at a constant rate the slope is the torque about it, and what inertia adds to that is of the size of the turn
     fn is_gradient(&self) -> bool {
-        self.step.is_symmetric()
+        self.step.is_symmetric() || self.step.turns_alone_break_symmetry()
     }
 
     fn residual_scale(&mut self) -> Option<f64> {

@@ -124,6 +124,8 @@ impl Step<'_> {
         if let Some(prepare) = prepare {
             let ImplicitBuffers { v_start, velocity_offset, coasting, .. } = buffers;
             prepare(next, Before { v: v_start, velocity_offset, coasting });
+        }
+        if rates.has_velocity() {
             implicit.lead_constrained(timestep, buffers);
         }
         let report = match newton {

@@ -38,6 +38,8 @@ pub struct StepReport {
     pub linear_iterations: u64,
     /// Linear solves whose matrix was not definite and was made so ([`crate::Force::add_definite_blocks`]).
     pub made_definite: u64,
+    /// Linearised steps that were taken in part, since the whole would have raised the step's potential.
+    pub shortened: u64,
     /// Largest relative residual among the linear solves.
     pub linear_residual: f64,
     /// Norm of the remaining unbalanced force over that at the start; 0 for explicit steppers.
@@ -50,6 +52,7 @@ impl StepReport {
         self.newton_iterations += other.newton_iterations;
         self.linear_iterations += other.linear_iterations;
         self.made_definite += other.made_definite;
+        self.shortened += other.shortened;
         self.linear_residual = self.linear_residual.max(other.linear_residual);
         self.newton_residual = self.newton_residual.max(other.newton_residual);
     }

@@ -32,6 +32,19 @@ pub struct LawText {
     pub parameters: Vec<(String, LawParameter)>,
 }
 
+impl LawText {
+    /// Whether it may tell directions apart: it names some, or single entries of tensors.
+    pub fn names_directions(&self) -> bool {
+        let has_direction =
+            self.parameters.iter().any(|(_, parameter)| matches!(parameter, LawParameter::Direction(_)));
+        let texts = self.definitions.iter().map(|(_, text)| text).chain([&self.energy]);
+        let mut words = texts.flat_map(|text| text.split(|c: char| !(c.is_alphanumeric() || c == '_')));
+        // vectors may be written out
+        let has_vector = self.energy.contains('[') || self.definitions.iter().any(|(_, text)| text.contains('['));
+        has_direction || has_vector || words.any(|word| vocabulary::entry_of(word).is_some())
+    }
+}
+
 /// A material constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LawParameter {

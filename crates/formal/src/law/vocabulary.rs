@@ -123,7 +123,7 @@ pub(crate) fn quantity(graph: &mut Graph, name: &str) -> Option<Expr> {
 }
 
 /// `C12` is the entry (0, 1) of `C`.
-fn entry_of(name: &str) -> Option<(&str, usize, usize)> {
+pub(crate) fn entry_of(name: &str) -> Option<(&str, usize, usize)> {
     let tensor = ["eps", "F", "C", "B", "E"].into_iter().find(|tensor| name.starts_with(tensor))?;
     match &name.as_bytes()[tensor.len()..] {
         [row @ b'1'..=b'3', column @ b'1'..=b'3'] => {

@@ -2,22 +2,23 @@
 
 use std::any::Any;
 use std::cell::RefCell;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use pulp::Arch;
 use souple_engine::state::Pair;
-use souple_engine::{CellField, Configuration, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights};
 use souple_formal::tape::BATCH;
 use souple_math::{Mat3, Vec3};
-use souple_solve::BlockMatrix;
+use souple_solve::{BlockMatrix, dense};
 
 use super::kernel::{Blocks, Gradients, MAP_LEN, PAIR_LEN, RATES_LEN, Spread};
 use super::layout::{Body, Chunk, FrameMap, chunks};
 use super::matrix::{Pairs, Slots};
 use super::{Carried, Frame, ROWS_OF_FRAME, Sample, tangents};
-use crate::materials::Material;
+use crate::materials::{Material, MaterialLaw, Oriented};
 use crate::solids::layout::{LANES, LaneBlock};
 use crate::solids::sample_law::{Answer, ROWS, Run, SampleLaw, TANGENT_LEN};
-use crate::solids::{law_of_samples, parallel};
+use crate::solids::{law_of_samples, parallel, turned};
 
 /// Which derivative of the force implicit steps see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +47,8 @@ pub struct FramesDescription<'a> {
     pub materials: &'a [Material],
     /// Index into `materials` for each cell.
     pub material_of_cell: &'a [u16],
+    /// The axes of the law of each cell as columns; none: those of the world. Laws without directions do not read them.
+    pub axes: &'a [Mat3],
     pub tangent: TangentKind,
 }
 
@@ -64,6 +67,7 @@ pub struct FramesForce {
     row_of_frame: Vec<u32>,
     materials: Vec<Material>,
     material_of_cell: Vec<u16>,
+    axes: Vec<Mat3>,
     carried_cells: Vec<Carried>,
     cell_volumes: Vec<f64>,
     /// Chunk and sample of the samples of each cell, one cell after the other, and where those of each start.
@@ -102,6 +106,7 @@ struct Memory {
     tangents: Vec<LaneBlock>,
     rates: Vec<f64>,
     gradients: Vec<LaneBlock>,
+    definite: dense::Workspace,
     sums: Vec<LaneBlock>,
     /// Maps of a chunk's own frames.
     own: [Vec<FrameMap>; 2],
@@ -124,8 +129,10 @@ impl FramesForce {
             carried,
             materials,
             material_of_cell,
+            axes,
             ..
         } = description;
+        let numbers_of_axes: Vec<_> = axes.iter().map(turned::numbers).collect();
         let material_of =
             |sample: u32| &materials[material_of_cell[samples[sample as usize].cell as usize] as usize];
         // materials of one law share its loops, with numbers of their own
@@ -146,6 +153,7 @@ impl FramesForce {
             row_of_frame: row_of_frame.to_vec(),
             materials: materials.to_vec(),
             material_of_cell: material_of_cell.to_vec(),
+            axes: axes.to_vec(),
             carried_cells: description.carried_cells,
             cell_volumes: description.cell_volumes,
             of_cells: Vec::new(),
@@ -153,10 +161,16 @@ impl FramesForce {
             tangent: description.tangent,
         };
         for (index, material) in found.iter().enumerate() {
-            let (law, count) = law_of_samples(&material.law);
+            let (law, count) = law_of_samples(&material.law, !axes.is_empty());
             let is_of = |sample: &u32| material_of(*sample).law == material.law;
             let members: Vec<u32> = (0..samples.len() as u32).filter(is_of).collect();
-            let parameters_of = |sample: u32| &material_of(sample).parameters[..count];
+            let parameters_of = |sample: u32| match &material_of(sample).law {
+                MaterialLaw::Known(_) => &material_of(sample).parameters[..count],
+                MaterialLaw::Text(_) => {
+                    let axes = numbers_of_axes.get(samples[sample as usize].cell as usize);
+                    axes.map_or(&[][..], |axes| &axes[..])
+                }
+            };
             force.laws.push(law);
             force.has_stress_part.push(material.law.is_objective());
             force.chunks.extend(chunks(&Body { frames, samples, carried }, &members, &parameters_of));
@@ -406,17 +420,19 @@ impl Work<'_> {
         sum
     }
 
-    fn blocks(self, deformation: &[f64], scale: f64, sums: &mut [f64]) {
+    /// Whether some of it was turned round to be definite.
+    fn blocks(self, deformation: &[f64], curvature: Curvature, scale: f64, sums: &mut [f64]) -> bool {
         let deformation = self.own_deformation(deformation);
         let leaves_out_stress = self.force.leaves_out_stress_of(self.number);
         let (law, chunk) = (self.force.law(self.number), self.chunk);
         let places = law.places(Answer::Differential);
-        let Memory { law: memory, stress, tangents, rates, gradients, .. } = &mut *self.memory;
+        let Memory { law: memory, stress, tangents, rates, gradients, definite, .. } = &mut *self.memory;
         let memory = lanes_of(memory, places.memory_len);
         law.prepare(Answer::Differential, memory);
         let tangents = lanes_of(tangents, TANGENT_LEN * BATCH);
         rates.resize(RATES_LEN, 0.0);
         sums.fill(0.0);
+        let mut turned = false;
         for (run, deformation) in runs(chunk).zip(deformation) {
             let arch = Arch::new();
             if leaves_out_stress {
@@ -427,9 +443,37 @@ impl Work<'_> {
             if leaves_out_stress {
                 tangents::subtract_from_tangents(bytemuck::cast_slice(stress), tangents, run.lane_count());
             }
+            if curvature == Curvature::Definite {
+                turned |= make_definite(&run, tangents, definite);
+            }
             arch.dispatch(Blocks { chunk, run: &run, tangents, scale, rates, gradients, sums });
         }
+        turned
     }
+}
+
+/// Turns round the negative eigenvalues of `∂P/∂F` at the samples of a run; whether there were any.
+fn make_definite(run: &Run, tangents: &mut [f64], workspace: &mut dense::Workspace) -> bool {
+    let mut turned = false;
+    let lanes = run.rows().flat_map(|row| (0..LANES).map(move |lane| (row, lane)));
+    for (row, lane) in lanes {
+        // lanes without a sample have no volume, and nothing to say
+        if run.chunk.volumes(row)[lane] == 0.0 {
+            continue;
+        }
+        let place = |entry: usize| entry * BATCH + run.lane_of(row) + lane;
+        let mut of_sample: [f64; TANGENT_LEN] = std::array::from_fn(|entry| tangents[place(entry)]);
+        if dense::take_absolute(9, &mut of_sample, workspace) {
+            turned = true;
+            // symmetric to the last bit
+            for (row, column) in (0..9).flat_map(|row| (row..9).map(move |column| (row, column))) {
+                let number = of_sample[9 * row + column];
+                tangents[place(9 * row + column)] = number;
+                tangents[place(9 * column + row)] = number;
+            }
+        }
+    }
+    turned
 }
 
 /// Gives a law the deformation gradients of a run, at the head of `memory`.
@@ -452,8 +496,48 @@ fn second_stress(law: &dyn SampleLaw, run: &Run, deformation: &[f64], stress: &m
 }
 
 impl FramesForce {
+    /// Adds the blocks of all pairs of frames; whether something was turned round to be definite, sample by sample.
+    fn assemble(
+        &self,
+        curvature: Curvature,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) -> bool {
+        if weights.position == 0.0 {
+            return false;
+        }
+        let turned = AtomicBool::new(false);
+        let scratch = FramesScratch::of(scratch);
+        self.place(at.positions, scratch);
+        let FramesScratch { deformation, parts, pairs: sums, slots, .. } = scratch;
+        sums.clear();
+        sums.resize(self.pairs.frames.len() * PAIR_LEN, 0.0);
+        // a few chunks at once: the pairs of all would take more memory than all else
+        for first in (0..self.chunks.len()).step_by(CHUNKS_AT_ONCE) {
+            let some = first..self.chunks.len().min(first + CHUNKS_AT_ONCE);
+            let start_of = |chunk: usize| self.first_pair(chunk) - self.first_pair(first);
+            let wanted = start_of(some.end);
+            if parts.len() < wanted {
+                parts.resize(wanted, 0.0);
+            }
+            parallel::fill(some.clone(), 2, &mut parts[..wanted], &start_of, &|number, parts| {
+                MEMORY.with_borrow_mut(|memory| {
+                    let work = Work { force: self, number, chunk: &self.chunks[number], memory };
+                    if work.blocks(deformation, curvature, -weights.position, parts) {
+                        turned.store(true, Ordering::Relaxed);
+                    }
+                });
+            });
+            self.pairs.add_parts(self.first_pair(some.start) / PAIR_LEN, &parts[..wanted], sums);
+        }
+        slots.scatter(&self.pairs, &self.row_of_frame, sums, matrix);
+        turned.into_inner()
+    }
+
     /// What is read off some samples of one cell: means over their volumes, of the energy too.
-    fn field_of(&self, samples: &[(u32, u32)], material: &Material, positions: &[Vec3]) -> CellField {
+    fn field_of(&self, samples: &[(u32, u32)], material: Oriented, positions: &[Vec3]) -> CellField {
         let (mut maps, mut of_chunk) = (Vec::new(), None);
         let (mut volume, mut current_volume, mut energy, mut mean) = (0.0, 0.0, 0.0, Mat3::ZERO);
         for &(number, sample) in samples {
@@ -547,36 +631,23 @@ impl Force for FramesForce {
         scratch: &mut Scratch,
         matrix: &mut BlockMatrix,
     ) {
-        if weights.position == 0.0 {
-            return;
-        }
-        let scratch = FramesScratch::of(scratch);
-        self.place(at.positions, scratch);
-        let FramesScratch { deformation, parts, pairs: sums, slots, .. } = scratch;
-        sums.clear();
-        sums.resize(self.pairs.frames.len() * PAIR_LEN, 0.0);
-        // a few chunks at once: the pairs of all would take more memory than all else
-        for first in (0..self.chunks.len()).step_by(CHUNKS_AT_ONCE) {
-            let some = first..self.chunks.len().min(first + CHUNKS_AT_ONCE);
-            let start_of = |chunk: usize| self.first_pair(chunk) - self.first_pair(first);
-            let wanted = start_of(some.end);
-            if parts.len() < wanted {
-                parts.resize(wanted, 0.0);
-            }
-            parallel::fill(some.clone(), 2, &mut parts[..wanted], &start_of, &|number, parts| {
-                MEMORY.with_borrow_mut(|memory| {
-                    let work = Work { force: self, number, chunk: &self.chunks[number], memory };
-                    work.blocks(deformation, -weights.position, parts);
-                });
-            });
-            self.pairs.add_parts(self.first_pair(some.start) / PAIR_LEN, &parts[..wanted], sums);
-        }
-        slots.scatter(&self.pairs, &self.row_of_frame, sums, matrix);
+        self.assemble(Curvature::Exact, at, weights, scratch, matrix);
+    }
+
+    fn add_definite_blocks(
+        &self,
+        at: &Configuration,
+        weights: TangentWeights,
+        scratch: &mut Scratch,
+        matrix: &mut BlockMatrix,
+    ) -> bool {
+        self.assemble(Curvature::Definite, at, weights, scratch, matrix)
     }
 
     fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
         let carried = self.carried_cells.get(cell)?;
-        let material = &self.materials[self.material_of_cell[cell] as usize];
+        let material =
+            self.materials[self.material_of_cell[cell] as usize].along(self.axes.get(cell));
         let [start, end] = [cell, cell + 1].map(|at| self.cell_starts[at] as usize);
         if start < end {
             return Some(self.field_of(&self.of_cells[start..end], material, positions));
@@ -606,6 +677,7 @@ impl Force for FramesForce {
             + size_of::<(u32, u32)>() * self.of_cells.capacity()
             + 4 * self.cell_starts.capacity()
             + 2 * self.material_of_cell.capacity()
+            + size_of::<Mat3>() * self.axes.capacity()
     }
 
     fn scratch_bytes(&self, scratch: &Scratch) -> usize {

@@ -9,7 +9,7 @@ use souple_table::Values;
 
 use super::cells::{Cells, NOT_CARRIED, softest};
 use super::ways::{Extent, Ground, Source};
-use super::weights::{Kernel, SUPPORT, Shape, Share, Weights};
+use super::weights::{Kernel, SUPPORT, Shape, Share, Weights, too_far};
 use super::{Frame, FrameError};
 
 /// What a frame is to a point of the mesh.
@@ -29,6 +29,8 @@ struct Geodesic<'a> {
     carriers: Vec<u32>,
     /// How far each frame reaches, as ways count [m].
     supports: Vec<f64>,
+    /// In distances to the nearest neighbour.
+    support: f64,
 }
 
 pub fn build<'a>(values: &Values, shape: &Shape<'a>) -> Result<Box<dyn Weights + 'a>, FrameError> {
@@ -53,7 +55,7 @@ pub fn build<'a>(values: &Values, shape: &Shape<'a>) -> Result<Box<dyn Weights +
             ways.extend(way.map(|(distance, source)| Way { frame: index as u32, distance, source }));
         }
     }
-    Ok(Box::new(Geodesic { cells, ground, ways, carriers, supports }))
+    Ok(Box::new(Geodesic { cells, ground, ways, carriers, supports, support }))
 }
 
 impl Weights for Geodesic<'_> {
@@ -108,11 +110,8 @@ impl Weights for Geodesic<'_> {
         let nearest = frames.iter().enumerate().filter_map(way).min_by(|a, b| a.1.total_cmp(&b.1));
         let (frame, distance) =
             nearest.unwrap_or_else(|| unreachable!("every part of the mesh holds a frame"));
-        format!(
-            "by ways within the shape, shorter through what is stiff, the nearest frame, {frame}, is {distance:.3e} m away and \
-             reaches {:.3e} m; take more frames, or a wider support",
-            self.supports[frame]
-        )
+        let words = too_far(frame, distance, self.supports[frame], self.support);
+        format!("by ways within the shape, shorter through what is stiff, {words}")
     }
 }
 

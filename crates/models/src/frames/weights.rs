@@ -134,6 +134,8 @@ impl Kernel {
 /// `w_i = φ(|P - X_i|/h_i) / Σ_j φ(|P - X_j|/h_j)`.
 struct Shepard {
     kernel: Kernel,
+    /// In distances to the nearest neighbour.
+    support: f64,
     /// Origin and support of each frame [m].
     centres: Vec<(Vec3, f64)>,
 }
@@ -143,7 +145,7 @@ impl Shepard {
         let spacings = spacings(shape);
         let centres = shape.frames.iter().zip(spacings);
         let centres = centres.map(|(frame, spacing)| (frame.origin, support * spacing)).collect();
-        Box::new(Self { kernel, centres })
+        Box::new(Self { kernel, support, centres })
     }
 }
 
@@ -184,14 +186,19 @@ impl Weights for Shepard {
         let nearest = frames.min_by(|a, b| a.1.total_cmp(&b.1));
         nearest.map_or_else(
             || FrameError::NoFrames.to_string(),
-            |(frame, distance, reach)| {
-                format!(
-                    "the nearest frame, {frame}, is {distance:.3e} m away and reaches {reach:.3e} m; take more frames, or a \
-                     wider support"
-                )
-            },
+            |(frame, distance, reach)| too_far(frame, distance, reach, self.support),
         )
     }
+}
+
+/// That the nearest frame does not reach, and what would [m].
+pub(super) fn too_far(frame: usize, distance: f64, reach: f64, support: f64) -> String {
+    // rounded upwards
+    let wider = (100.0 * support * distance / reach).ceil() / 100.0;
+    format!(
+        "the nearest frame, {frame}, is {distance:.3e} m away and reaches {reach:.3e} m; place frames there, or take a `support` above \
+         {wider}, counted in distances between frames: more of them on a line reach less far across it"
+    )
 }
 
 /// Distance of each frame to its nearest neighbour; that of a lone frame is the size of the body [m].

@@ -158,6 +158,7 @@ fn symmetric_blocks_are_the_symmetric_part() {
         first_row: 0,
         materials: &[],
         material_of_cell: &[0],
+        axes: &[],
         quadrature: Quadrature::Default,
         section: Section::Solid,
     };

@@ -199,6 +199,11 @@ impl TextLaw {
         Ok(Self { text, law, energy, stress, differential })
     }
 
+    /// Whether it may tell directions apart.
+    pub fn knows_directions(&self) -> bool {
+        self.text.names_directions()
+    }
+
     pub fn law(&self) -> &EnergyLaw {
         &self.law
     }

@@ -219,6 +219,51 @@ impl Material {
         }
     }
 
+    /// This material with its law's axes as the columns of a rotation; `None`: those of the world.
+    pub fn along(&self, axes: Option<&Mat3>) -> Oriented<'_> {
+        Oriented { material: self, axes: axes.copied() }
+    }
+
+    /// Whether its law may tell directions apart.
+    pub fn knows_directions(&self) -> bool {
+        match &self.law {
+            MaterialLaw::Known(_) => false,
+            MaterialLaw::Text(law) => law.knows_directions(),
+        }
+    }
+
+    /// What is legal in the law and doubtful.
+    pub fn warnings(&self) -> &[String] {
+        match &self.law {
+            MaterialLaw::Known(_) => &[],
+            MaterialLaw::Text(law) => &law.law().warnings,
+        }
+    }
+}
+
+/// A material whose law's axes are the columns of a rotation `Q`: `Ψ(F) = Ψ'(Qᵀ F Q)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Oriented<'a> {
+    material: &'a Material,
+    axes: Option<Mat3>,
+}
+
+impl Oriented<'_> {
+    fn seen(&self, F: &Mat3) -> Mat3 {
+        self.axes.map_or(*F, |Q| Q.transpose_mul(&(*F * Q)))
+    }
+
+    /// [J/m³]
+    pub fn energy_density(&self, F: &Mat3) -> f64 {
+        self.material.energy_density(&self.seen(F))
+    }
+
+    /// First Piola–Kirchhoff [Pa].
+    pub fn stress(&self, F: &Mat3) -> Mat3 {
+        let P = self.material.stress(&self.seen(F));
+        self.axes.map_or(P, |Q| (Q * P).mul_transpose(&Q))
+    }
+
     /// What is read off matter of `volume` [m³] at rest that is deformed by `F`.
     pub fn field(&self, F: &Mat3, volume: f64) -> CellField {
         let stress = self.stress(F);
@@ -231,14 +276,6 @@ impl Material {
             energy_density: self.energy_density(F),
             volume,
             current_volume: volume * F.determinant(),
-        }
-    }
-
-    /// What is legal in the law and doubtful.
-    pub fn warnings(&self) -> &[String] {
-        match &self.law {
-            MaterialLaw::Known(_) => &[],
-            MaterialLaw::Text(law) => &law.law().warnings,
         }
     }
 }

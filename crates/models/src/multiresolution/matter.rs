@@ -119,7 +119,7 @@ impl Matter {
                 }
                 slots.push((place < members.len()).then(|| samples[member(place)]));
             }
-            let (law, count) = law_of_samples(law);
+            let (law, count) = law_of_samples(law, false);
             let chunk = Chunk::of_samples(block_count, |block, lane| {
                 let sample = &samples[member(block * LANES + lane)];
                 (sample.volume, &self.material(sample).parameters[..count])

@@ -386,7 +386,7 @@ impl Force for LevelsForce {
         let material = &self.matter.materials[usize::from(self.matter.material_of_cell[cell])];
         // rows of the finest mesh are enough
         let F = tet.gradient(&positions[self.first_row..]);
-        Some(material.field(&F, tet.volume))
+        Some(material.along(None).field(&F, tet.volume))
     }
 
     fn levels(&self) -> Option<&dyn Levels> {

@@ -22,6 +22,7 @@ mod section;
 mod section_kernel;
 mod staged;
 mod stiffness;
+pub(crate) mod turned;
 mod viscosity;
 mod viscous_kernel;
 
@@ -34,11 +35,11 @@ use souple_engine::state::Pair;
 use souple_engine::{
     CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights,
 };
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_mesh::{ElementKind, MAX_NODES, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
-use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Parameters};
+use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Oriented, Parameters};
 use assembly::{Assembly, Symmetry};
 use eight_samples::EightSamples;
 use elements::{Batch, Elements, Sorting};
@@ -51,6 +52,7 @@ use sample_law::{Compiled, SampleLaw, Taped};
 use section_kernel::SectionKernel;
 use staged::Staged;
 use stiffness::{Shapes, Stiffness};
+use turned::{AXES_LEN, TurnedRows, TurnedSamples};
 
 pub use adaptive::{Adaptation, AdaptiveForce, Criterion};
 pub use difference::DifferencedForce;
@@ -78,6 +80,8 @@ pub struct SolidForce {
     section: Section,
     /// The laws of the materials, for what is read off single cells.
     row_laws: Vec<Box<dyn RowLaw>>,
+    /// Of each cell, where they are not those of the world.
+    axes: Vec<Mat3>,
     declaration: Declaration,
     /// Where its points rest, if its kernels take displacements in the place of positions [m]; else empty.
     rest: Vec<Vec3>,
@@ -93,6 +97,8 @@ pub struct SolidDescription<'a> {
     pub materials: &'a [Material],
     /// Index into `materials` for each cell.
     pub material_of_cell: &'a [u16],
+    /// The axes of the law of each cell as columns; none: those of the world. Laws without directions do not read them.
+    pub axes: &'a [Mat3],
     pub quadrature: Quadrature,
     /// What its cells are sections of.
     pub section: Section,
@@ -161,6 +167,8 @@ struct ByLaw<'a> {
     class_of_cell: Vec<u32>,
     materials: &'a [Material],
     material_of_cell: &'a [u16],
+    /// Of each cell, as the laws' numbers; none: those of the world.
+    axes: Vec<[f64; AXES_LEN]>,
     section: Section,
 }
 
@@ -168,13 +176,14 @@ impl<'a> ByLaw<'a> {
     /// # Errors
     /// A cell with a stiffness is flat or inverted at rest.
     fn new(description: &SolidDescription<'a>, shapes: &Shapes) -> Result<Self, FlatCell> {
-        let SolidDescription { mesh, first_row, materials, material_of_cell, quadrature, section, .. } =
+        let SolidDescription { mesh, first_row, materials, material_of_cell, axes, quadrature, section, .. } =
             description;
         let mut sorting = Self {
             classes: Vec::new(),
             class_of_cell: Vec::with_capacity(mesh.cell_count()),
             materials,
             material_of_cell,
+            axes: axes.iter().map(turned::numbers).collect(),
             section: *section,
         };
         // cells of one shape have one material
@@ -205,12 +214,12 @@ impl<'a> ByLaw<'a> {
     /// The kernel that evaluates a law at every sample.
     fn of_samples(&self, kind: ElementKind, rule: &QuadratureRule, law: &MaterialLaw) -> Box<dyn Kernel> {
         if self.section != Section::Solid {
-            let (law, nodes) = (row_law(law), kind.node_count());
+            let (law, nodes) = (rows_along(law, !self.axes.is_empty()), kind.node_count());
             return Box::new(SectionKernel { law, section: self.section, nodes });
         }
         match law {
             MaterialLaw::Known(law) => law.visit(MakeKernel(kind, rule)),
-            MaterialLaw::Text(law) => staged(kind, rule, Box::new(Taped(Arc::clone(law)))),
+            MaterialLaw::Text(_) => staged(kind, rule, law_of_samples(law, !self.axes.is_empty()).0),
         }
     }
 }
@@ -227,8 +236,7 @@ impl<'a> Sorting for ByLaw<'a> {
         let material = &self.materials[self.material_of_cell[cell] as usize];
         let count = match &material.law {
             MaterialLaw::Known(law) => law.visit(ParameterCount),
-            // its numbers are constants of its tape
-            MaterialLaw::Text(_) => 0,
+            MaterialLaw::Text(_) => return self.axes.get(cell).map_or(&[], |axes| &axes[..]),
         };
         &material.parameters[..count]
     }
@@ -272,7 +280,7 @@ impl SolidForce {
         description: &SolidDescription,
         sorting: &impl Sorting<Kernel = Box<dyn Kernel>>,
     ) -> Result<Self, FlatCell> {
-        let SolidDescription { name, mesh, materials, material_of_cell, quadrature, section, .. } =
+        let SolidDescription { name, mesh, materials, material_of_cell, axes, quadrature, section, .. } =
             description;
         let elements = Elements::new(description, sorting)?;
         // small strain knows a rest orientation: a rotated body feels a torque
@@ -286,7 +294,8 @@ impl SolidForce {
             material_of_cell: material_of_cell.to_vec(),
             quadrature: *quadrature,
             section: *section,
-            row_laws: materials.iter().map(|material| row_law(&material.law)).collect(),
+            row_laws: materials.iter().map(|material| rows_along(&material.law, !axes.is_empty())).collect(),
+            axes: axes.to_vec(),
             declaration: Declaration { internal: is_objective, ..Declaration::ELASTIC },
             rest: Vec::new(),
         })
@@ -315,8 +324,14 @@ impl SolidForce {
     }
 }
 
-/// A law that knows no elements, and how many numbers it has at each sample.
-pub(crate) fn law_of_samples(law: &MaterialLaw) -> (Box<dyn SampleLaw>, usize) {
+/// The law of a material for rows; of one that may know directions, along axes of each cell.
+fn rows_along(law: &MaterialLaw, has_axes: bool) -> Box<dyn RowLaw> {
+    let rows = row_law(law);
+    if has_axes && matches!(law, MaterialLaw::Text(_)) { Box::new(TurnedRows(rows)) } else { rows }
+}
+
+/// A law that knows no elements, and how many numbers it has at each sample: those of the axes, where it may know directions and has some.
+pub(crate) fn law_of_samples(law: &MaterialLaw, has_axes: bool) -> (Box<dyn SampleLaw>, usize) {
     struct Make;
     impl LawVisitor for Make {
         type Output = Box<dyn SampleLaw>;
@@ -327,7 +342,10 @@ pub(crate) fn law_of_samples(law: &MaterialLaw) -> (Box<dyn SampleLaw>, usize) {
     match law {
         MaterialLaw::Known(law) => (law.visit(Make), law.visit(ParameterCount)),
         // its numbers are constants of its tape
-        MaterialLaw::Text(law) => (Box::new(Taped(Arc::clone(law))), 0),
+        MaterialLaw::Text(law) => {
+            let law = Box::new(Taped(Arc::clone(law)));
+            if has_axes { (Box::new(TurnedSamples(law)), AXES_LEN) } else { (law, 0) }
+        }
     }
 }
 
@@ -500,5 +518,10 @@ impl SolidForce {
     /// The material of a cell.
     pub fn material(&self, cell: usize) -> &Material {
         &self.materials[self.material_of_cell[cell] as usize]
+    }
+
+    /// The material of a cell along its axes.
+    fn oriented(&self, cell: usize) -> Oriented<'_> {
+        self.material(cell).along(self.axes.get(cell))
     }
 }

@@ -7,15 +7,15 @@ use souple_mesh::Order;
 use super::geometry::{AnyElement, Geometry};
 use super::layout::LANES;
 use super::section::Completed;
-use super::{Section, SolidForce};
-use crate::materials::{cauchy_stress, von_mises};
+use super::{Section, SolidForce, turned};
+use crate::materials::{MaterialLaw, cauchy_stress, von_mises};
 
 impl SolidForce {
     /// Fields of one cell at row positions.
     pub(super) fn field_of_cell(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
         let (batch, chunk, slot) = self.place(cell)?;
         let kind = batch.kind;
-        let material = self.material(cell);
+        let material = self.oriented(cell);
         let rows = chunk.rows_of(slot, kind.node_count());
         let now: Vec<Vec3> = rows.map(|row| positions[row as usize]).collect();
         let mut sum = CellField {
@@ -82,8 +82,11 @@ impl SolidForce {
             return (F, false);
         }
         let number = usize::from(self.material_of_cell[cell]);
-        let parameters: Vec<f64> =
-            self.materials[number].parameters.iter().flat_map(|number| [*number; LANES]).collect();
+        let numbers = match (&self.materials[number].law, self.axes.get(cell)) {
+            (MaterialLaw::Text(_), Some(axes)) => turned::numbers(axes).to_vec(),
+            _ => self.materials[number].parameters.to_vec(),
+        };
+        let parameters: Vec<f64> = numbers.iter().flat_map(|number| [*number; LANES]).collect();
         let entries: [f64; 9] = std::array::from_fn(|e| F.columns[e / 3].to_array()[e % 3]);
         let row = entries.map(|entry| [entry; LANES]);
         let completed = Completed::new(self.section, self.row_laws[number].as_ref(), &parameters, row);

@@ -116,7 +116,7 @@ impl<L: Law> SampleLaw for Compiled<L> {
 
 /// A register's worth of samples and the place of its first lane.
 #[inline(always)]
-fn group<'a, S: Simd>(simd: S, run: &Run<'a>, row: usize, lane: usize) -> (Group<'a, S, 0>, usize) {
+pub fn group<'a, S: Simd>(simd: S, run: &Run<'a>, row: usize, lane: usize) -> (Group<'a, S, 0>, usize) {
     let (samples, block) = (run.per_block, row / run.per_block);
     (Group { simd, chunk: run.chunk, nodes: 0, samples, block, lane }, run.lane_of(row) + lane)
 }

@@ -19,6 +19,7 @@ use super::group::{Group, for_each_group};
 use super::kernel::Kernel;
 use super::layout::{self, Body, Chunk, FlatCell, LANES};
 use super::{Section, SolidDescription};
+use crate::materials::MaterialLaw;
 
 /// Fewer cells of one shape are not worth a batch of their own, which has chunks of its own and ends each with lanes that are not full.
 const LEAST_CELLS: usize = 8 * LANES;
@@ -50,8 +51,13 @@ type Key = (ElementKind, u16, Vec<i64>);
 impl Shapes {
     /// Of the cells whose law is linear.
     pub fn of_linear(description: &SolidDescription) -> Self {
-        let SolidDescription { mesh, materials, material_of_cell, section, .. } = description;
-        let is_linear: Vec<bool> = materials.iter().map(|material| material.law.is_linear()).collect();
+        let SolidDescription { mesh, materials, material_of_cell, axes, section, .. } = description;
+        // cells of one shape may have different axes
+        let is_alike = |law: &MaterialLaw| axes.is_empty() || matches!(law, MaterialLaw::Known(_));
+        let is_linear: Vec<bool> = materials
+            .iter()
+            .map(|material| material.law.is_linear() && is_alike(&material.law))
+            .collect();
         if *section != Section::Solid || !is_linear.contains(&true) {
             return Self::default();
         }

@@ -13,7 +13,7 @@ use souple_models::frames::{
     TangentKind, WEIGHTS, Weights,
 };
 use souple_models::materials::{self, Material};
-use souple_solve::{BlockMatrix, Pattern};
+use souple_solve::{BlockMatrix, Pattern, PatternBuilder, dense};
 use souple_table::{Value, Values};
 
 fn bar(size: [f64; 3], cells: [f64; 3], element: &'static str) -> Mesh {
@@ -105,6 +105,7 @@ impl Body {
             cell_volumes: mesh.cell_volumes(),
             materials,
             material_of_cell: &material_of_cell,
+            axes: &[],
             tangent,
         })
     }
@@ -294,7 +295,7 @@ fn energy_is_that_of_the_points() {
                     F += row.outer(*gradient);
                 }
             }
-            law.field(&F, 1.0).energy_density
+            law.along(None).field(&F, 1.0).energy_density
         };
         let points = body.samples.iter().zip(&body.carried);
         let expected: f64 = points.map(|(sample, carried)| sample.volume * density(carried)).sum();
@@ -346,6 +347,41 @@ fn material_tangents_stay_positive_under_compression() {
         -change.iter().zip(&sideways).map(|(f, d)| f.dot(*d)).sum::<f64>()
     };
     assert!(curvature(&alone) > 0.0 && curvature(&full) < curvature(&alone));
+}
+
+/// Made definite sample by sample a tangent has no negative curvature where compression gives it some, and is the exact one, bit for bit,
+/// where it has none.
+#[test]
+fn tangents_are_made_definite() {
+    let mesh = bar(SIZE, [8.0, 2.0, 2.0], "tet4");
+    let body = Body::new(&mesh, line(5), "wendland");
+    let laws = [material("neo_hookean")];
+    let force = body.force(&mesh, &laws, TangentKind::Full);
+    let stiffness = |rows: &[Vec3], definite: bool| {
+        let mut pattern = PatternBuilder::new(rows.len());
+        force.visit_cliques(&[], &mut |clique| pattern.add_clique(clique).unwrap());
+        let mut matrix = BlockMatrix::zeros(std::sync::Arc::new(pattern.build().unwrap()));
+        let weights = TangentWeights { position: -1.0, velocity: 0.0 };
+        let scratch = &mut force.new_scratch();
+        let turned = if definite {
+            force.add_definite_blocks(&at(rows), weights, scratch, &mut matrix)
+        } else {
+            force.add_blocks(&at(rows), weights, scratch, &mut matrix);
+            false
+        };
+        (turned, matrix.to_dense().concat())
+    };
+    let is_indefinite = |matrix: &[f64]| {
+        let n = matrix.len().isqrt();
+        dense::take_absolute(n, &mut matrix.to_vec(), &mut dense::Workspace::default())
+    };
+    let rest = body.moved(&Mat3::IDENTITY, Vec3::ZERO);
+    assert_eq!(stiffness(&rest, true), (false, stiffness(&rest, false).1));
+    let mut short = rest;
+    let shrink = Mat3::from_diagonal(Vec3::new(0.6, 1.0, 1.0));
+    short.iter_mut().skip(FIRST as usize).for_each(|row| *row = shrink * *row);
+    let (exact, (turned, definite)) = (stiffness(&short, false).1, stiffness(&short, true));
+    assert!(is_indefinite(&exact) && turned && !is_indefinite(&definite));
 }
 
 /// What the tangent of the material alone leaves out is `δF S`, with `S = λ tr(E) I + 2 μ E` of St. Venant–Kirchhoff, and nothing of a
@@ -407,7 +443,7 @@ fn material_tangents_leave_out_the_stress_alone() {
 fn springs_of_pins_store_what_they_pull() {
     let stored = |stiffness: f64| {
         let point =
-            HeldPoint { row: 0, stiffness, start: Vec3::X, axes: Vec3::new(1.0, 0.0, 1.0), motion: None };
+            HeldPoint { row: 0, stiffness, start: Vec3::X, axes: [true, false, true], motion: None };
         let hold = Hold::new("pins", vec![point]);
         energy(&hold, &[Vec3::new(1.3, 5.0, -0.4)])
     };

@@ -236,7 +236,7 @@ fn faults_are_said_in_words() {
     };
     assert!(said(&[]).contains("there are no frames"));
     assert!(said(&[frame(0.2), frame(0.2)]).contains("frames 0 and 1 are on top of each other"));
-    assert!(said(&[frame(0.0), frame(0.1)]).contains("wider support"));
+    assert!(said(&[frame(0.0), frame(0.1)]).contains("a `support` above"));
     let shape = Shape { frames: &[frame(0.5), frame(0.51)], mesh: &mesh, stiffness_of_cell: &unit };
     let entry = WEIGHTS.find("harmonic").unwrap();
     let error = (entry.build)(&entry.values(Values::new()).unwrap(), &shape).err().unwrap().to_string();
@@ -259,7 +259,7 @@ fn faults_are_said_in_words() {
     };
     let error = said("geodesic", &mesh, &unit, &[frame(0.0), frame(0.1)]);
     assert!(error.contains("by ways within the shape") && error.contains("frame, 1, is"), "{error}");
-    assert!(error.contains("reaches 2.000e-1 m; take more frames, or a wider support"), "{error}");
+    assert!(error.contains("reaches 2.000e-1 m; place frames there, or take a `support` above"), "{error}");
     assert_eq!(said("inverse_distance", &mesh, &unit, &[frame(0.0), frame(0.1)]), "");
     // by ways within the shape, and solved on its cells: all of these ask for a mesh that carries frames
     let mut parts = mesh.clone();

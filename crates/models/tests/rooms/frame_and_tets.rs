@@ -54,6 +54,7 @@ fn system(tolerance: f64) -> (System, Vec<Vec3>) {
         first_row: 0,
         materials: &[material],
         material_of_cell: &[0; 5],
+        axes: &[],
         quadrature: Default::default(),
         section: Default::default(),
     };

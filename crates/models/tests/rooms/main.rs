@@ -12,6 +12,7 @@ mod frame_and_tets;
 mod ghosts;
 mod implicit_formulas;
 mod interruption;
+mod material_axes;
 mod plastic_link;
 mod stability;
 mod sticking_pair;

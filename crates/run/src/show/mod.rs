@@ -57,7 +57,7 @@ pub struct BodyMoment {
     pub positions: Vec<Vec3>,
     pub point_fields: Vec<Field>,
     pub cell_fields: Vec<Field>,
-    /// Origin and axes of the frames that carry it, where they are known: files of a run hold points alone.
+    /// Origin and axes of the frames that carry it.
     pub frames: Vec<[Vec3; 4]>,
 }
 

@@ -179,8 +179,17 @@ impl Reel {
                         before.and_then(|moment| moment.bodies.iter().find(|b| b.name == series.name));
                     BodyMoment::of_file(&series.name, &series.files[index], known.map(|body| &body.mesh))
                 };
-                let bodies: Result<_, _> = takes.iter().map(body).collect();
-                Moment { time: self.times[index], bodies: bodies? }
+                let is_drawn = |series: &&Series| carried_by(takes, series).is_none();
+                let bodies: Result<_, _> = takes.iter().filter(is_drawn).map(body).collect();
+                let mut moment = Moment { time: self.times[index], bodies: bodies? };
+                for series in takes {
+                    let Some(carried) = carried_by(takes, series) else { continue };
+                    let read = body(series)?;
+                    let frames = crate::frames::carriers_from(&read.positions, &read.point_fields);
+                    let of = moment.bodies.iter_mut().find(|body| body.name == carried.name);
+                    of.into_iter().for_each(|body| body.frames.clone_from(&frames));
+                }
+                moment
             }
         };
         if let Some(other) = &self.against {
@@ -217,6 +226,11 @@ impl Reel {
         }
         Ok(Show { stage: self.stage.clone(), moments })
     }
+}
+
+/// The body whose frames a series holds, if it does.
+fn carried_by<'a>(takes: &'a [Series], series: &Series) -> Option<&'a Series> {
+    takes.iter().find(|body| crate::frames::carriers_of(&body.name) == series.name)
 }
 
 /// What differs between the times of a body and those of another.

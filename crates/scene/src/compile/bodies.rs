@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use souple_engine::steppers::Stability;
 use souple_engine::{Force, Kinematics, Mass, System, SystemState, UnknownKind};
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_mesh::{Mesh, TriangleSurface};
 use souple_models::frames::ROWS_OF_FRAME;
 use souple_models::loads::{Drag, LoadError, MassDamping};
@@ -19,7 +19,7 @@ use super::frames::PlacedFrames;
 use super::hanging::Hanging;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, frames, hanging, inertial, levels, network, octree, section, shape, start, tissue};
+use super::{Draft, axes, frames, hanging, inertial, levels, network, octree, section, shape, start, tissue};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -33,6 +33,8 @@ pub struct Placed<'a> {
     /// The number that each point had in its file, ascending.
     pub point_numbers: Vec<u32>,
     pub materials: BodyMaterials,
+    /// The axes of the law of each cell as columns; none: those of the world.
+    pub axes: Vec<Mat3>,
     /// Which masses the links of a network join, table after table.
     pub links: Vec<PlacedLinks>,
     /// What carries it, where that is not its points.
@@ -127,6 +129,7 @@ fn place_one(draft: &mut Draft, index: usize) {
         mesh,
         point_numbers,
         materials,
+        axes: Vec::new(),
         links,
         frames: None,
         levels: None,
@@ -134,6 +137,7 @@ fn place_one(draft: &mut Draft, index: usize) {
     };
     if let Some(materials) = materials_of(draft, &placed) {
         placed.materials = materials;
+        placed.axes = axes::of_cells(draft, &placed);
     }
     if body.frames.is_some() {
         let mut warnings = Vec::new();
@@ -224,7 +228,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
         check_together(draft, body.spec);
         if let (Some(frames), Some(spec)) = (&body.frames, &body.spec.frames) {
             frames.add_mass(body.spec.mass, &density, &mut mass);
-            forces.push(frames.force(body, spec, &materials.all, &materials.of_cell));
+            forces.push(frames.force(body, spec));
             continue;
         }
         match body.spec.mass {
@@ -246,6 +250,7 @@ pub fn system(draft: &Draft, index: usize, spec: &SystemSpec) -> Option<System> 
             first_row: body.rows.start,
             materials: &materials.all,
             material_of_cell: &materials.of_cell,
+            axes: &body.axes,
             quadrature: body.spec.quadrature,
             section,
         };

@@ -12,35 +12,85 @@ use super::freedom::Joint;
 use super::motion::motion;
 use crate::diagnostic::{Code, Log, Site};
 use crate::spec::Spec;
+use crate::spec::bone::BoneSpec;
 use crate::spec::boundary::MotionSpec;
 
-/// The motion of a bone, or of a shape, by name; `None` where it was refused. `site` is that of who follows.
+/// Reports bones that follow nobody there is, or themselves, that have the name of a shape, or that are nowhere at the start.
+pub fn check(spec: &Spec, log: &Log) {
+    for bone in &spec.bones {
+        if spec.shapes.iter().any(|shape| shape.name == bone.name) {
+            let message = format!("there is a shape `{}` too, and a shape is a bone", bone.name);
+            log.add(Code::Conflict, &bone.site, message, "names that differ");
+        }
+        let leader = bone.follows.as_deref();
+        if let Some(name) = leader.filter(|name| !is_known(spec, name)) {
+            report_unknown(log, spec, name, &bone.follows_site);
+        } else if follows_itself(spec, bone) {
+            let message = format!("bone `{}` follows itself", bone.name);
+            log.add(Code::Conflict, &bone.follows_site, message, "a bone that nobody leads at the end of the chain");
+        }
+    }
+    if !log.is_empty() {
+        return;
+    }
+    for bone in &spec.bones {
+        let Some(motion) = motion_of(log, spec, &bone.name, &bone.site) else { continue };
+        let place = bone.pivot + motion.offset(bone.pivot, 0.0);
+        let numbers = [place, motion.velocity(bone.pivot, 0.0), motion.spin(0.0)].map(Vec3::to_array);
+        if !(numbers.iter().flatten().all(|number| number.is_finite()) && motion.turn(0.0).is_finite()) {
+            let [place, velocity, spin] = numbers;
+            let message = format!(
+                "at t = 0 the pivot of the bone is at {place:?} m, moves by {velocity:?} m/s and turns by {spin:?} rad/s"
+            );
+            log.add(Code::NotFinite, &bone.site, message, "formulas that are finite at the start");
+        }
+    }
+}
+
+fn is_known(spec: &Spec, name: &str) -> bool {
+    spec.bones.iter().any(|bone| bone.name == name) || spec.shapes.iter().any(|shape| shape.name == name)
+}
+
+fn follows_itself(spec: &Spec, bone: &BoneSpec) -> bool {
+    let leader = |bone: &&'_ BoneSpec| {
+        let name = bone.follows.as_deref()?;
+        spec.bones.iter().find(|other| other.name == name)
+    };
+    let chain = std::iter::successors(leader(&bone), leader).take(spec.bones.len());
+    chain.into_iter().any(|other| other.name == bone.name)
+}
+
+fn report_unknown(log: &Log, spec: &Spec, name: &str, site: &Site) {
+    let bones = spec.bones.iter().map(|bone| bone.name.as_str());
+    let known: Vec<&str> = bones.chain(spec.shapes.iter().map(|shape| shape.name.as_str())).collect();
+    let hint = crate::keys::did_you_mean(name, known.iter().copied());
+    let message = format!("there is no bone `{name}`{hint}");
+    let expected = if known.is_empty() {
+        "[bones.NAME] with its motion".to_owned()
+    } else {
+        format!("one of {}", known.join(", "))
+    };
+    log.add(Code::UnknownName, site, message, expected);
+}
+
+/// The motion of a bone, or of a shape, by name, where chains of bones end; `None` where it was refused. `site` is that of who
+/// follows.
 pub fn motion_of(log: &Log, spec: &Spec, name: &str, site: &Site) -> Option<Arc<dyn Motion>> {
     let mut found: Option<Arc<dyn Motion>> = None;
-    let (mut next, mut followed) = (Some(name.to_owned()), 0);
+    let mut next = Some(name);
     while let Some(name) = next {
         let bone = spec.bones.iter().find(|bone| bone.name == name);
         let shape = spec.shapes.iter().find(|shape| shape.name == name);
         let (own, leader) = match (bone, shape) {
             (Some(bone), _) => {
                 let own = rigid(log, [&bone.motion, &bone.rotation], bone.pivot, &bone.site)?;
-                (own, bone.follows.clone())
+                (own, bone.follows.as_deref())
             }
             (None, Some(shape)) => {
                 (rigid(log, [&shape.motion, &shape.rotation], shape.pivot, &shape.site)?, None)
             }
             (None, None) => {
-                let bones = spec.bones.iter().map(|bone| bone.name.as_str());
-                let known: Vec<&str> =
-                    bones.chain(spec.shapes.iter().map(|shape| shape.name.as_str())).collect();
-                let hint = crate::keys::did_you_mean(&name, known.iter().copied());
-                let message = format!("there is no bone `{name}`{hint}");
-                let expected = if known.is_empty() {
-                    "[bones.NAME] with its motion".to_owned()
-                } else {
-                    format!("one of {}", known.join(", "))
-                };
-                log.add(Code::UnknownName, site, message, expected);
+                report_unknown(log, spec, name, site);
                 return None;
             }
         };
@@ -48,12 +98,6 @@ pub fn motion_of(log: &Log, spec: &Spec, name: &str, site: &Site) -> Option<Arc<
             Some(inner) => Arc::new(NestedMotion { inner, outer: own }),
             None => own,
         });
-        followed += 1;
-        if leader.is_some() && followed > spec.bones.len() {
-            let message = format!("bone `{name}` follows itself");
-            log.add(Code::Conflict, site, message, "a bone that nobody leads at the end of the chain");
-            return None;
-        }
         next = leader;
     }
     found

@@ -7,6 +7,7 @@ use souple_mesh::{Order, USUAL_SIZES};
 use souple_models::materials::{Build, Material};
 use souple_table::{Value, four_digits, readable};
 
+use super::bodies::Placed;
 use super::{Draft, contact};
 use crate::diagnostic::Code;
 use crate::reader::Chosen;
@@ -49,7 +50,7 @@ pub fn warn(draft: &mut Draft) {
         }
         let is_linear = body.mesh.blocks.iter().any(|block| block.kind.order() == Order::Linear);
         for (chosen, material) in materials(body.spec) {
-            let doubts = of_material(&material, is_linear);
+            let doubts = of_material(&material, locking_of(body, is_linear));
             warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", draft.place(&chosen.site))));
         }
     }
@@ -135,8 +136,19 @@ fn materials(body: &Body) -> Vec<(&Chosen<Build>, Material)> {
     chosen.filter_map(|chosen| Some((chosen, (chosen.entry.build)(&chosen.values).ok()?))).collect()
 }
 
-/// `is_linear`: some of its elements have linear shape functions.
-fn of_material(material: &Material, is_linear: bool) -> impl Iterator<Item = String> {
+/// What is too stiff of a body that keeps its volume almost, and what to compare with; nothing of elements that are not linear.
+fn locking_of(body: &Placed, is_linear: bool) -> Option<&'static str> {
+    match (&body.frames, is_linear) {
+        (Some(_), _) => Some("a few frames have fewer freedoms than there are volumes to keep: compare with more frames"),
+        (None, true) => Some(
+            "linear elements lock, and the body may be too stiff, tetrahedra most of all; compare with quadratic elements, a finer mesh",
+        ),
+        (None, false) => None,
+    }
+}
+
+/// `locking`: what would be too stiff, and what to compare with.
+fn of_material(material: &Material, locking: Option<&'static str>) -> impl Iterator<Item = String> {
     let (density, modulus) = (material.density, material.small_strain.youngs_modulus());
     let [bulk, shear] = material.bulk_and_shear();
     let ratio = bulk / shear - 2.0 / 3.0;
@@ -148,13 +160,12 @@ fn of_material(material: &Material, is_linear: bool) -> impl Iterator<Item = Str
         let hint = if density < DENSITIES[0] { "did you mean g/cm^3?" } else { "did you mean kg/m^3?" };
         format!("the density is {density:.3e} kg/m³: {hint}")
     });
-    let locking = (is_linear && ratio > LOCKING).then(|| {
+    let locking = locking.filter(|_| ratio > LOCKING).map(|locking| {
         // ν = λ / (2 (λ + μ))
         let poisson = 0.5 * ratio / (ratio + 1.0);
         format!(
-            "nearly incompressible, with a Poisson's ratio of {poisson:.4} or a bulk modulus of {:.0} shear moduli: linear \
-             elements lock, and the body may be too stiff, tetrahedra most of all; compare with quadratic elements, a finer mesh, or at \
-             most 0.475, 20 shear moduli",
+            "nearly incompressible, with a Poisson's ratio of {poisson:.4} or a bulk modulus of {:.0} shear moduli: {locking}, or at most \
+             0.475, 20 shear moduli",
             ratio + 2.0 / 3.0
         )
     });

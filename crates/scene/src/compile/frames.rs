@@ -85,8 +85,6 @@ impl PlacedFrames {
         &self,
         body: &Placed,
         spec: &FramesSpec,
-        materials: &[Material],
-        material_of_cell: &[u16],
     ) -> Box<dyn Force> {
         Box::new(FramesForce::new(FramesDescription {
             name: solid_name(&body.spec.name),
@@ -96,8 +94,9 @@ impl PlacedFrames {
             carried: &self.carried,
             carried_cells: self.carried_cells.clone(),
             cell_volumes: body.mesh.cell_volumes(),
-            materials,
-            material_of_cell,
+            materials: &body.materials.all,
+            material_of_cell: &body.materials.of_cell,
+            axes: &body.axes,
             tangent: spec.tangent,
         }))
     }
@@ -279,16 +278,16 @@ pub fn hold_name(body: &str) -> String {
     format!("{body}.pins")
 }
 
-/// A point of the mesh, 1 along its held axes, and how it is led.
-pub type HeldAxes = (u32, Vec3, Option<Arc<dyn Motion>>);
+/// A point of the mesh, along which axes it is held, and how it is led.
+pub type HeldAxes = (u32, [bool; 3], Option<Arc<dyn Motion>>);
 
 /// Springs that hold the points of a body of frames: each as stiff as a thin layer of the material around it, over the area that
 /// the point has of the faces that are held.
 pub fn hold(draft: &Draft, body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
     let spec = body.spec.frames.as_ref().filter(|_| !held.is_empty())?;
-    let size = body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
     let numbers: Vec<u32> = held.iter().map(|(point, ..)| *point).collect();
     let (areas, moduli) = (links::areas_held(draft, body, &numbers), links::moduli(body));
+    let depth = links::depth(body, numbers.iter().map(|point| areas[*point as usize]).sum());
     let resists_nothing = |modulus: f64| modulus.is_nan() || modulus <= 0.0;
     if let Some((point, ..)) = held.iter().find(|(point, ..)| resists_nothing(moduli[*point as usize])) {
         let message = format!(
@@ -301,7 +300,7 @@ pub fn hold(draft: &Draft, body: &Placed, held: Vec<HeldAxes>) -> Option<Hold> {
     }
     let points = held.into_iter().map(|(point, axes, motion)| HeldPoint {
         row: body.rows.start as u32 + point,
-        stiffness: layer_stiffness(moduli[point as usize], size) * areas[point as usize],
+        stiffness: layer_stiffness(moduli[point as usize], depth) * areas[point as usize],
         start: body.mesh.points[point as usize],
         axes,
         motion,

@@ -58,6 +58,7 @@ pub fn place<'a>(
         mesh,
         point_numbers,
         materials: BodyMaterials::default(),
+        axes: Vec::new(),
         links: Vec::new(),
         frames: None,
         levels: None,

@@ -131,6 +131,14 @@ fn with_matter(
     [from, to]: [&Placed; 2],
     mut springs: Vec<LoadLink>,
 ) -> Option<(Vec<LoadLink>, f64)> {
+    if from.spec.network.is_some() && (link.stiffness.is_none() || link.strength.is_finite()) {
+        let message = format!(
+            "the masses of `{}` have no area, from which a stiffness or the force of a strength would follow",
+            link.from
+        );
+        draft.log.add(Code::MissingKey, &link.site, message, "a `stiffness`, no `strength`, or the other body as `from`");
+        return None;
+    }
     let held: Vec<u32> = springs
         .iter()
         .flat_map(|spring| spring.a.rows())
@@ -153,9 +161,8 @@ fn with_matter(
         .filter(|body| body.spec.network.is_none())
         .map(|body| (body, moduli(body)))
         .collect();
-    let smallest =
-        |body: &Placed| body.mesh.bounds().size().to_array().into_iter().fold(f64::INFINITY, f64::min);
-    let size = sides.iter().map(|(body, _)| smallest(body)).fold(f64::INFINITY, f64::min);
+    let held_area: f64 = springs.iter().map(area).sum();
+    let depth = sides.iter().map(|(body, _)| depth(body, held_area)).fold(f64::INFINITY, f64::min);
     if sides.is_empty() {
         let message = format!(
             "neither `{}` nor `{}` has matter from which a stiffness would follow",
@@ -182,13 +189,19 @@ fn with_matter(
             }
             softness += 1.0 / modulus;
         }
-        stiffnesses.push(layer_stiffness(sides.len() as f64 / softness, size) * area(spring));
+        stiffnesses.push(layer_stiffness(sides.len() as f64 / softness, depth) * area(spring));
     }
     let mean = stiffnesses.iter().sum::<f64>() / stiffnesses.len() as f64;
     for (spring, stiffness) in springs.iter_mut().zip(&stiffnesses) {
         spring.share = stiffness / mean;
     }
     Some((springs, mean))
+}
+
+/// How deep a body is behind an area that is held [m]: its volume over that, and no more than it is long.
+pub(super) fn depth(body: &Placed, held_area: f64) -> f64 {
+    let longest = body.mesh.bounds().size().to_array().into_iter().fold(0.0, f64::max);
+    (body.mesh.volume() / held_area).min(longest)
 }
 
 /// Young's modulus at rest about each point of a body: the mean over its cells [Pa]; zero where matter has none.

@@ -1,5 +1,6 @@
 //! From a specification to a model and a state.
 
+mod axes;
 mod bodies;
 mod bones;
 mod boundary;
@@ -111,6 +112,7 @@ pub fn compile(spec: &Spec, sources: &Sources, log: &Log) -> Option<Scene> {
         dresses: Vec::new(),
         hands: Vec::new(),
     };
+    bones::check(spec, log);
     network::fill_all(&mut draft);
     memory::check_specified(spec, sources, log);
     if !log.is_empty() {

@@ -35,6 +35,7 @@ pub fn place<'a>(draft: &Draft, body: &'a Body, system: usize, mesh: &Mesh) -> O
             mesh: Mesh { points, groups, ..Mesh::default() },
             point_numbers,
             materials: BodyMaterials::default(),
+            axes: Vec::new(),
             links: Vec::new(),
             frames: None,
             levels: None,

@@ -103,7 +103,7 @@ fn held_by_springs(
     let mut joints = Vec::new();
     let mut held = Vec::new();
     for (point, Hold { by }) in holds {
-        let axes = Vec3::from_array([0, 1, 2].map(|axis: usize| if by[axis].is_some() { 1.0 } else { 0.0 }));
+        let axes = [0, 1, 2].map(|axis: usize| by[axis].is_some());
         let ends = vec![(body.rows.start as u32 + point, 1.0)];
         for axis in (0..3).filter(|axis| by[*axis].is_some()) {
             let direction = Some(Vec3::AXES[axis]);

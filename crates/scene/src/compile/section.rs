@@ -4,7 +4,7 @@
 
 use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::Mesh;
-use souple_models::materials::{Material, MaterialLaw};
+use souple_models::materials::Material;
 use souple_models::solids::Section;
 
 use super::Draft;
@@ -48,15 +48,14 @@ pub fn suits(draft: &Draft, body: &Placed, materials: &[Material]) -> bool {
 
 /// What of the cells the law leans against, if it does: mirrored there, or turned about the bar, its energy is another.
 fn leans(material: &Material, section: Section, mesh: &Mesh) -> Option<String> {
-    // laws compiled ahead are isotropic
-    if !matches!(material.law, MaterialLaw::Text(_)) {
+    if !material.knows_directions() {
         return None;
     }
     let is_changed = |symmetry: &Mat3| {
         DEFORMATIONS.iter().any(|rows| {
             let F = Mat3::from_rows(*rows);
             let (before, after) =
-                (material.energy_density(&F), material.energy_density(&(F * symmetry.transpose())));
+                (material.energy_density(&F), material.along(Some(symmetry)).energy_density(&F));
             // what has no value there is told by other checks
             (before - after).abs() > ROUNDING * (before.abs() + after.abs())
         })
@@ -90,8 +89,9 @@ fn half_turn(n: Vec3) -> Mat3 {
     n.outer(n) * 2.0 - Mat3::IDENTITY
 }
 
-/// Deformations without symmetry.
-const DEFORMATIONS: [[[f64; 3]; 3]; 2] = [
+/// Deformations without symmetry; the last one large enough for fibres that bear from some stretch on.
+const DEFORMATIONS: [[[f64; 3]; 3]; 3] = [
     [[1.15, 0.08, -0.05], [0.11, 0.93, 0.07], [-0.04, 0.12, 1.06]],
     [[0.9, -0.1, 0.14], [0.03, 1.12, -0.09], [0.16, -0.02, 1.2]],
+    [[2.7, 0.4, -0.3], [0.2, 2.1, 0.5], [-0.6, 0.3, 3.2]],
 ];

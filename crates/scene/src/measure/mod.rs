@@ -24,7 +24,7 @@ use crate::diagnostic::Code;
 use crate::scene::{DressInfo, HandInfo, SkinInfo};
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
-    BodyQuantity, CellQuantity, ContourQuantity, HandQuantity, LevelsQuantity, MassesQuantity, Momentum,
+    BodyQuantity, BoneQuantity, CellQuantity, ContourQuantity, HandQuantity, LevelsQuantity, MassesQuantity, Momentum,
     PointQuantity, Rank, Reduction, SkinQuantity, Subject, WorldQuantity,
 };
 
@@ -57,6 +57,7 @@ enum Target {
     Skin(SkinQuantity, SkinInfo),
     Levels(LevelsQuantity, LevelsPart),
     Hand(HandQuantity, HandInfo),
+    Bone(BoneQuantity, BonePart),
     Contour(ContourQuantity, usize, [ContourInfo; 2]),
     /// With the distance within which masses are neighbours [m].
     Masses(MassesQuantity, Part, f64),
@@ -84,6 +85,16 @@ struct Part {
     about: Option<Vec3>,
     /// The force that holds its pinned points, of a body of frames.
     hold: Option<String>,
+}
+
+/// Frames that follow a bone.
+#[derive(Clone, Debug)]
+struct BonePart {
+    system: usize,
+    /// Rows of their origins.
+    frames: Vec<u32>,
+    /// The place that torques are taken about [m].
+    about: Vec3,
 }
 
 /// Cells of the solid of this name.
@@ -156,6 +167,7 @@ impl ProbeInfo {
                 let name = probe.hand.as_deref()?;
                 Target::Hand(quantity, draft.hands.iter().find(|hand| hand.name == name)?.clone())
             }
+            (Subject::Bone(quantity), _) => Target::Bone(quantity, bone_part(probe, draft)?),
             (Subject::BodyOrWorld(momentum), None) => {
                 Target::WorldMomentum(momentum, probe.about.unwrap_or(Vec3::ZERO))
             }
@@ -212,6 +224,7 @@ impl ProbeInfo {
                 Measurement::Vector(vector) => self.vector(vector),
                 number => number,
             },
+            Target::Bone(quantity, part) => self.vector(reaction::of_bone(*quantity, part, world)),
             Target::WorldMomentum(momentum, about) => {
                 let (linear, angular) = world.momentum();
                 self.vector(match momentum {
@@ -313,6 +326,26 @@ fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
         return None;
     }
     Some(Part { rows: body.mass_rows().map(|row| row as u32).collect(), ..part })
+}
+
+/// The frames of a body that follow a bone; `None` where none does, which is reported.
+fn bone_part(probe: &Probe, draft: &Draft) -> Option<BonePart> {
+    let body = draft.body(probe.body.as_deref()?)?;
+    let name = probe.bone.as_deref()?;
+    let bound = body.spec.frames.iter().flat_map(|frames| &frames.bones);
+    let followed: Vec<&str> = bound.clone().map(|bound| bound.bone.as_str()).collect();
+    let numbers = bound.filter(|bound| bound.bone == name).flat_map(|bound| &bound.frames);
+    let rows = body.frames.as_ref().map_or(&[][..], |frames| &frames.rows);
+    // numbers of frames that are not there are reported where they are bound
+    let frames: Vec<u32> =
+        numbers.filter_map(|number| rows.get(*number as usize)).copied().collect();
+    if frames.is_empty() {
+        let hint = crate::keys::did_you_mean(name, followed.iter().copied());
+        let message = format!("no frame of body `{}` follows a bone `{name}`{hint}", body.spec.name);
+        draft.log.add(Code::UnknownName, &probe.site, message, "a bone that `frames.bones` of the body names");
+        return None;
+    }
+    Some(BonePart { system: body.system, frames, about: probe.about.unwrap_or(Vec3::ZERO) })
 }
 
 /// The levels that a probe is of; `None` where its body has not so many, which is reported.

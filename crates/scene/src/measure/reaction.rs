@@ -2,16 +2,19 @@
 //!
 //! Newton's law of a held point, along the held directions: `M a = f + r`, so the reaction is `r = M a − f` with the
 //! sum `f` of all other forces. It is the force of the pin *on the body*: under gravity a pinned body feels a reaction
-//! that points up. The acceleration `a` of held points is that of their prescribed motion; a consistent mass couples
+//! that points up. What bones do to the frames that follow them is read likewise, on origins and axes, whose forces `g_k` are
+//! together a torque `Σ a_k × g_k` about the origin. The acceleration `a` of held points is that of their prescribed motion; a consistent mass couples
 //! them to their free neighbours, whose accelerations follow from the same law. Where a stepper knows no inertia,
 //! `r = −f`.
 
-use souple_engine::inertia::led_accelerations_at;
+use souple_engine::inertia::row_accelerations_at;
 use souple_engine::levels::Followers;
 use souple_engine::{Surroundings, System, SystemState, SystemWorkspace, World};
 use souple_math::Vec3;
+use souple_models::frames::ROWS_OF_FRAME;
 
-use super::Part;
+use super::{BonePart, Part};
+use crate::spec::quantity::BoneQuantity;
 
 /// Tolerance of the accelerations of free points, relative: far below what a probe is read to. A consistent mass is
 /// as well conditioned as its elements are shaped, so this takes tens of iterations.
@@ -22,28 +25,7 @@ const MOST_ITERATIONS: usize = 500;
 pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
     let timestep = world.model().timestep(part.system);
     world.with_system(part.system, |system: &System, state, around, ws| {
-        system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
-        // what acts on points that follow acts on those that they follow
-        for (index, levels) in
-            system.forces.iter().enumerate().filter_map(|(index, force)| Some((index, force.levels()?)))
-        {
-            levels.give_back(Followers::All, &ws.scratches[index], &mut ws.row_force);
-        }
-        let force = &ws.row_force;
-        // r = M a − f
-        let mut balance: Vec<Vec3> = force.iter().map(|f| -*f).collect();
-        if system.stepper.has_inertia() {
-            let accelerations = if part.hangs {
-                accelerations_of_unknowns(system, around, state, ws, timestep)
-            } else {
-                accelerations(system, force, ws.rows.time, timestep)
-            };
-            system.mass.add_product(&accelerations, &mut balance);
-        }
-        if part.hangs {
-            // what hangs on a held point is held with it
-            system.kinematics.return_forces(&mut balance);
-        }
+        let balance = balance(system, state, around, ws, timestep, part.hangs);
         let mut reactions = vec![Vec3::ZERO; balance.len()];
         for constraint in &system.constraints {
             if let Some(row) = system.kinematics.point_block_row(constraint.block) {
@@ -58,6 +40,57 @@ pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
         }
         part.held.iter().chain(&part.coarser).map(|row| reactions[*row as usize]).collect()
     })
+}
+
+/// What a bone does to the frames that follow it: the force [N], or the torque about a place [N m].
+pub fn of_bone(quantity: BoneQuantity, part: &BonePart, world: &mut World) -> Vec3 {
+    let timestep = world.model().timestep(part.system);
+    world.with_system(part.system, |system: &System, state, around, ws| {
+        let balance = balance(system, state, around, ws, timestep, true);
+        let of_frame = |row: &u32| {
+            let row = *row as usize;
+            let x = &ws.rows.positions[row..row + ROWS_OF_FRAME];
+            let (force, on_axes) = (balance[row], &balance[row + 1..row + ROWS_OF_FRAME]);
+            let torque: Vec3 = x[1..].iter().zip(on_axes).map(|(axis, force)| axis.cross(*force)).sum();
+            match quantity {
+                BoneQuantity::Force => force,
+                BoneQuantity::Torque => (x[0] - part.about).cross(force) + torque,
+            }
+        };
+        part.frames.iter().map(of_frame).sum()
+    })
+}
+
+/// `r = M a − f` of all rows; with `joined`, of unknowns with what hangs on them.
+fn balance(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &mut SystemWorkspace,
+    timestep: f64,
+    joined: bool,
+) -> Vec<Vec3> {
+    system.sum_row_forces(&ws.rows, state, around, &mut ws.scratches, &mut ws.row_force);
+    // what acts on points that follow acts on those that they follow
+    for (index, levels) in
+        system.forces.iter().enumerate().filter_map(|(index, force)| Some((index, force.levels()?)))
+    {
+        levels.give_back(Followers::All, &ws.scratches[index], &mut ws.row_force);
+    }
+    let mut balance: Vec<Vec3> = ws.row_force.iter().map(|f| -*f).collect();
+    if system.stepper.has_inertia() {
+        let accelerations = if joined {
+            accelerations_of_unknowns(system, around, state, ws, timestep)
+        } else {
+            accelerations(system, &ws.row_force, ws.rows.time, timestep)
+        };
+        system.mass.add_product(&accelerations, &mut balance);
+    }
+    if joined {
+        // what hangs on a held point is held with it
+        system.kinematics.return_forces(&mut balance);
+    }
+    balance
 }
 
 /// Accelerations of all rows: prescribed along held directions, free ones only where held ones need them.
@@ -82,15 +115,13 @@ fn accelerations_of_unknowns(
     ws: &mut SystemWorkspace,
     timestep: f64,
 ) -> Vec<Vec3> {
-    let time = ws.rows.time;
-    let mut of_blocks = vec![Vec3::ZERO; system.kinematics.block_count()];
+    let when = (ws.rows.time, timestep);
     let mut rows = vec![Vec3::ZERO; system.kinematics.row_count()];
     // a mass that cannot be solved with was refused by the step before
-    let solved = led_accelerations_at(system, around, (time, timestep), state, ws, &mut of_blocks);
-    if solved.is_ok() {
-        system.kinematics.velocities_into(&state.q, &of_blocks, &mut rows);
+    match row_accelerations_at(system, around, when, state, ws, &mut rows) {
+        Ok(()) => rows,
+        Err(_) => vec![Vec3::ZERO; system.kinematics.row_count()],
     }
-    rows
 }
 
 /// Solves `M_ff a_f = f_f − M_fc a_c` by conjugate gradients, preconditioned by the diagonal.

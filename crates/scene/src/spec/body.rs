@@ -1,7 +1,9 @@
 //! Bodies: shape, material, damping, where they start, what holds and loads them.
 
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_models::materials::{self, WrittenLaw};
+use souple_models::multiresolution::PLACE_VARIABLES;
 use souple_models::solids::{BuildFormulation, BuildSection, FORMULATIONS, Quadrature, SECTIONS, Section};
 use souple_table::{Range, Value};
 
@@ -88,6 +90,24 @@ pub(crate) static BODY_REGION: Keys = Keys::new(
     ],
 );
 
+pub(crate) static MATERIAL_AXES: Keys = Keys::new(
+    "material_axes",
+    "the axes of the law at each place of a body, for laws that know directions: numbers, or formulas of `x`, `y`, `z`",
+    &[
+        Key::new(
+            "x",
+            Shape::VectorFormula(&PLACE_VARIABLES),
+            "where the law's x points at rest, of any length: the way of fibres [1, 0, 0]",
+        )
+        .required(),
+        Key::new(
+            "y",
+            Shape::VectorFormula(&PLACE_VARIABLES),
+            "on the side of which the law's y lies, across its x; any where left out",
+        ),
+    ],
+);
+
 pub(crate) static BODY: Keys = Keys::new(
     "body",
     "a soft solid",
@@ -106,6 +126,7 @@ pub(crate) static BODY: Keys = Keys::new(
             Shape::Table(&OCTREE),
             "its points as particles, grouped by eight where little happens",
         ),
+        Key::new("material_axes", Shape::Table(&MATERIAL_AXES), "directions of its law, from place to place"),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
         Key::new(
             "mass",
@@ -171,6 +192,8 @@ pub struct Body {
     pub levels: Option<LevelsSpec>,
     /// Its points as particles of several levels.
     pub octree: Option<OctreeSpec>,
+    /// Directions of its law; those of the world, or of tissue its own, where left out.
+    pub axes: Option<AxesSpec>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
@@ -196,6 +219,22 @@ pub struct Body {
     /// Masses and links in place of a mesh and its material.
     pub network: Option<Network>,
     pub site: Site,
+}
+
+/// Where the axes of a law point.
+pub struct AxesSpec {
+    /// Of [`PLACE_VARIABLES`].
+    pub x: [Formula; 3],
+    /// Of the same; `None`: any direction across.
+    pub y: Option<[Formula; 3]>,
+    pub site: Site,
+}
+
+impl AxesSpec {
+    fn read(reader: &Reader) -> Option<Self> {
+        let y = reader.maybe_vector_formula("y");
+        Some(Self { x: reader.maybe_vector_formula("x")?, y, site: reader.site() })
+    }
 }
 
 /// A part of another material.
@@ -306,6 +345,7 @@ impl Body {
             frames: reader.table("frames").map(|table| FramesSpec::read(&table)),
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             octree: reader.table("octree").map(|table| OctreeSpec::read(&table)),
+            axes: reader.table("material_axes").and_then(|table| AxesSpec::read(&table)),
             regions: reader.named("regions").into_iter().map(region).collect(),
             // lumped, the mass of frames would swing in motions that move no matter
             mass: match reader.choice("mass") {

@@ -40,6 +40,7 @@ pub struct BoneSpec {
     /// [m]
     pub pivot: Vec3,
     pub follows: Option<String>,
+    pub follows_site: Site,
     pub site: Site,
 }
 
@@ -60,6 +61,7 @@ impl BoneSpec {
             rotation: motion("rotation"),
             pivot: reader.vector("pivot"),
             follows: reader.maybe_text("follows"),
+            follows_site: reader.site_of("follows"),
             site: reader.site(),
         }
     }

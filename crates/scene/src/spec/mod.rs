@@ -234,8 +234,17 @@ impl Spec {
     fn check_names(&self, log: &Log) {
         let bodies: Vec<&str> = self.bodies.iter().map(|body| body.name.as_str()).collect();
         let systems: Vec<&str> = self.systems.iter().map(|system| system.name.as_str()).collect();
+        let is_led = |name: &str| {
+            self.bones.iter().any(|bone| bone.name == name) || self.shapes.iter().any(|shape| shape.name == name)
+        };
         let check = |kind: &str, name: &str, known: &[&str], site: &Site| {
-            if !known.contains(&name) && !name.is_empty() {
+            if kind == "body" && is_led(name) && !known.contains(&name) {
+                let message = format!("`{name}` is a bone or a shape, and no body");
+                let expected = format!(
+                    "a body, such as one with `bone = \"{name}\"` in `pins` of all its points, or in `frames.bones` of all its frames"
+                );
+                log.add(Code::UnknownName, site, message, expected);
+            } else if !known.contains(&name) && !name.is_empty() {
                 let hint = crate::keys::did_you_mean(name, known.iter().copied());
                 let message = format!("there is no {kind} `{name}`{hint}");
                 log.add(Code::UnknownName, site, message, format!("one of {}", known.join(", ")));
@@ -307,6 +316,13 @@ impl Spec {
                     NOT_IN_FILE_NAMES.iter().collect::<String>()
                 );
                 log.add(Code::BadName, site, message, expected);
+            }
+        }
+        for body in self.bodies.iter().filter(|body| body.frames.is_some()) {
+            let own = format!("{}.frames", body.name);
+            for other in self.bodies.iter().filter(|other| other.name == own) {
+                let message = format!("files of the name `{own}` are those of the frames of body `{}`", body.name);
+                log.add(Code::BadName, &other.site, message, "another name");
             }
         }
     }

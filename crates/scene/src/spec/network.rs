@@ -377,6 +377,7 @@ impl Network {
             mesh: None,
             material: None,
             section: None,
+            axes: None,
             regions: Vec::new(),
             mass: MassKind::Lumped,
             quadrature: Quadrature::Default,

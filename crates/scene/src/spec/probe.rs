@@ -46,6 +46,7 @@ pub(crate) static PROBE: Keys = Keys::new(
         Key::new("skin", Shape::Text, "whose, for quantities of skins; a body's skin has the body's name"),
         Key::new("contact", Shape::Text, "only what this contact does (for quantities of contacts)"),
         Key::new("hand", Shape::Text, "whose, for quantities of hands and their tools"),
+        Key::new("bone", Shape::Text, "which of those that frames of the body follow, for quantities of bones"),
         Key::integer(
             "level",
             Range::NOT_NEGATIVE,
@@ -71,6 +72,7 @@ pub struct Probe {
     pub contact: Option<String>,
     pub skin: Option<String>,
     pub hand: Option<String>,
+    pub bone: Option<String>,
     /// Only this level of a body.
     pub level: Option<usize>,
     /// The place that moments are taken about [m]; the centre of mass where `None`.
@@ -171,6 +173,7 @@ impl Probe {
             contact: reader.maybe_text("contact"),
             skin: reader.maybe_text("skin"),
             hand: reader.maybe_text("hand"),
+            bone: reader.maybe_text("bone"),
             level: reader.maybe_integer("level").map(|level| level as usize),
             about: reader.maybe_vector("about"),
             contour: reader.maybe_text("contour"),
@@ -231,7 +234,7 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
                 );
             }
         }
-        Subject::Levels(_) | Subject::Contour(_) if reader.has("region") => {
+        Subject::Levels(_) | Subject::Contour(_) | Subject::Bone(_) if reader.has("region") => {
             refuse(reader, "region", format!("`{name}` is of a whole body"), "no region");
         }
         Subject::Points(_)
@@ -239,6 +242,7 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
         | Subject::Body(_)
         | Subject::Levels(_)
         | Subject::Masses(_)
+        | Subject::Bone(_)
         | Subject::Contour(_) => {
             if !reader.has("body") {
                 refuse(
@@ -276,6 +280,14 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             format!("`{name}` is of no hand"),
             "a quantity of hands, such as \"hand.force\"",
         );
+    }
+    let is_of_bone = matches!(quantity.subject, Subject::Bone(_));
+    if reader.has("bone") != is_of_bone {
+        let (key, message) = match is_of_bone {
+            true => ("quantity", format!("`{name}` is of a bone, and none is named")),
+            false => ("bone", format!("`{name}` is of no bone")),
+        };
+        refuse(reader, key, message, "`bone` with bone.force and bone.torque only");
     }
     if reader.has("level") && !matches!(quantity.subject, Subject::Levels(_)) {
         refuse(

@@ -53,6 +53,8 @@ pub enum Subject {
     /// One value of a body with levels, or of one of its levels.
     Levels(LevelsQuantity),
     Hand(HandQuantity),
+    /// What a bone does to the frames of a body that follow it.
+    Bone(BoneQuantity),
     /// One value of the masses of a region, which count as near when they are within a distance that the probe tells.
     Masses(MassesQuantity),
     /// One value of a contour of a network.
@@ -73,6 +75,12 @@ pub enum MassesQuantity {
     Neighbours,
     Spacing,
     Pairs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoneQuantity {
+    Force,
+    Torque,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,6 +182,7 @@ impl Quantity {
             self.subject,
             Subject::Points(PointQuantity::Torque | PointQuantity::ContactTorque)
                 | Subject::BodyOrWorld(Momentum::Angular)
+                | Subject::Bone(BoneQuantity::Torque)
         )
     }
 
@@ -246,6 +255,10 @@ const fn hand(unit: &'static str, rank: Rank, quantity: HandQuantity) -> Quantit
     Quantity::of(unit, rank, Reduction::Sum, Subject::Hand(quantity))
 }
 
+const fn bone(unit: &'static str, quantity: BoneQuantity) -> Quantity {
+    Quantity::of(unit, Rank::Vector, Reduction::Sum, Subject::Bone(quantity))
+}
+
 const fn masses(unit: &'static str, quantity: MassesQuantity) -> Quantity {
     Quantity::of(unit, Rank::Number, Reduction::Sum, Subject::Masses(quantity))
 }
@@ -286,6 +299,18 @@ const ENTRIES: &[&QuantityEntry] = &[
         "moment of the reactions on the body, about the key `about` or its centre of mass",
         MECHANICS,
         points("N m", Vector, Sum, PointQuantity::Torque),
+    ),
+    &entry(
+        "bone.force",
+        "force of a bone on the frames of the body that follow it: mass times acceleration, less all other forces on them",
+        MECHANICS,
+        bone("N", BoneQuantity::Force),
+    ),
+    &entry(
+        "bone.torque",
+        "torque of a bone on these frames, about the key `about` or the origin",
+        MECHANICS,
+        bone("N m", BoneQuantity::Torque),
     ),
     &entry(
         "contact_force",

@@ -91,6 +91,7 @@ impl AdaptiveForce {
         let under = |law| SolidDescription {
             materials: std::slice::from_ref(law),
             material_of_cell: &material_of_cell,
+            axes: &[],
             section: Section::Solid,
             ..description.clone()
         };

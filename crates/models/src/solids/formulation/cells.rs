@@ -39,7 +39,7 @@ impl Cells {
         let rest = edges(&self.rest);
         let F = edges(&positions[self.first_row..]) * rest.try_inverse()?;
         let material = &self.materials[usize::from(self.material_of_cell[cell])];
-        Some(material.field(&F, rest.determinant() / 6.0))
+        Some(material.along(None).field(&F, rest.determinant() / 6.0))
     }
 
     pub fn bytes(&self) -> usize {
