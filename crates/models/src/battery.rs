@@ -16,7 +16,7 @@ use souple_math::{Vec3, exponential};
 use souple_mesh::{ElementKind, Mesh, Order, QuadratureRule};
 use souple_table::{Value, Values};
 
-use crate::derive::{MapKind, element_data, usual_rule};
+use crate::derive::{MapKind, element_data};
 use crate::materials::{self, Material, WrittenLaw};
 use crate::solids::{Quadrature, Section, SolidDescription, SolidForce};
 
@@ -158,7 +158,7 @@ enum Form {
 fn forms(kind: ElementKind, rule: &QuadratureRule) -> Vec<(MapKind, Form)> {
     let mut forms = vec![(MapKind::General, Form::Tensors)];
     // written out, elements of second order are as long as a book
-    let is_usual = rule.name == usual_rule(kind).name && kind.element().order == Order::Linear;
+    let is_usual = rule.name == kind.default_rule().name && kind.element().order == Order::Linear;
     if is_usual {
         forms.push((MapKind::General, Form::Numbers));
     }

@@ -9,7 +9,7 @@ use souple_formal::law::{EnergyLaw, group_constants};
 use souple_mesh::ElementKind;
 use souple_models::associations::{Association, variants};
 use souple_models::battery::{Battery, Trying};
-use souple_models::derive::{MapKind, element_data, four_loop_operations, usual_rule};
+use souple_models::derive::{MapKind, element_data, four_loop_operations};
 use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
 
 /// What is read.
@@ -119,7 +119,7 @@ impl Settings {
         let kind = self.kind()?;
         let rule = match &self.rule {
             Some(name) => kind.rule(name).map_err(|unknown| unknown.to_string())?,
-            None => usual_rule(kind),
+            None => kind.default_rule(),
         };
         let map = match self.map.as_deref() {
             None | Some("general") => MapKind::General,

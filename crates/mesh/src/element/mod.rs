@@ -182,6 +182,18 @@ impl ElementKind {
         self.corners().node_count()
     }
 
+    /// Nodes at the least and at the greatest corner of the reference cell, where that is a box whose corners are all nodes there are:
+    /// cells of one that lie along the axes of the world are mapped by three numbers.
+    pub fn box_corners(self) -> Option<[usize; 2]> {
+        let Element { dimension, nodes, .. } = self.element();
+        let of_box = |node: &[f64; 3]| node[..*dimension].iter().all(|coordinate| coordinate.abs() == 1.0);
+        let is_box = *dimension > 1 && nodes.len() == 1 << dimension && nodes.iter().all(of_box);
+        let at = |corner: f64| {
+            nodes.iter().position(|node| node[..*dimension].iter().all(|coordinate| *coordinate == corner))
+        };
+        is_box.then_some([at(-1.0)?, at(1.0)?])
+    }
+
     /// The element of the same corners and of another order.
     pub fn of_order(self, order: Order) -> Self {
         let same = |kind: &&Self| kind.corners() == self.corners() && kind.order() == order;
@@ -362,12 +374,14 @@ impl Element {
 
     /// The face of given corners, of this element's order.
     fn face(&self, corners: &[u8]) -> Face {
-        let linear = match corners.len() {
-            2 => ElementKind::Edge2,
-            3 => ElementKind::Tri3,
-            _ => ElementKind::Quad4,
+        let is_linear_face = |kind: &&ElementKind| {
+            let element = kind.element();
+            element.order == Order::Linear
+                && element.dimension + 1 == self.dimension
+                && element.nodes.len() == corners.len()
         };
-        let kind = linear.of_order(self.order);
+        let linear = ElementKind::ALL.iter().find(is_linear_face);
+        let kind = linear.expect("faces of elements are elements of the table").of_order(self.order);
         Face { kind, nodes: self.nodes_of(kind, corners) }
     }
 

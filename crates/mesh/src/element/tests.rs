@@ -25,6 +25,51 @@ fn table_agrees_with_the_kinds() {
     assert_eq!(ElementKind::from_name("tet5").unwrap_err().nearest.as_deref(), Some("tet4"));
 }
 
+/// What is told of an element follows from its data: boxes are quadrilaterals and hexahedra of first order, and a
+/// pressure on a flat or curved side is integrated exactly by the rule of its mass.
+#[test]
+fn uses_follow_from_the_data() {
+    for &kind in ElementKind::ALL {
+        let element = kind.element();
+        let name = kind.name();
+        assert_eq!(kind.box_corners().is_some(), ["quad4", "hex8"].contains(&name), "{name}");
+        if let Some(corners) = kind.box_corners() {
+            for (corner, at) in corners.into_iter().zip([-1.0, 1.0]) {
+                assert!(element.nodes[corner][..element.dimension].iter().all(|x| *x == at), "{name}");
+            }
+        }
+        if element.dimension != 2 {
+            continue;
+        }
+        // a curved side: N (x_ξ × x_η) by the rule of the mass and by the finest
+        let bent = |node: usize| {
+            let [x, y, _] = element.nodes[node];
+            Vec3::new(x + 0.1 * y * y, y - 0.2 * x * y, 0.3 * x * x - 0.15 * y * y + 0.2 * x * y)
+        };
+        let integral = |rule: &QuadratureRule| -> Vec<Vec3> {
+            let mut sums = vec![Vec3::ZERO; kind.node_count()];
+            for point in &rule.points {
+                let (shape, gradients) = (kind.shape(point.position), kind.shape_gradients(point.position));
+                let along = |axis: fn(&Vec3) -> f64| {
+                    (0..kind.node_count())
+                        .map(|node| bent(node) * axis(&gradients[node]))
+                        .fold(Vec3::ZERO, |a, b| a + b)
+                };
+                let normal = along(|g| g.x).cross(along(|g| g.y));
+                for (node, sum) in sums.iter_mut().enumerate() {
+                    *sum += normal * (shape[node] * point.weight);
+                }
+            }
+            sums
+        };
+        let finest = kind.rules().last().expect("an element has rules");
+        for (ours, exact) in integral(kind.mass_rule()).into_iter().zip(integral(finest)) {
+            // a few tens of products of numbers near one
+            assert!((ours - exact).length() < 1e-13, "{name}: {ours:?} {exact:?}");
+        }
+    }
+}
+
 /// `N_a(ξ_b) = δ_ab`.
 #[test]
 fn shape_functions_are_one_at_their_node() {

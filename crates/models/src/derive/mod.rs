@@ -12,8 +12,14 @@ pub use source::{
 
 /// Why an element cannot be derived so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0} has no box map; hex8 and quad4 have one")]
+#[error("{kind} has no box map; {boxes} have one", kind = .0, boxes = with_box())]
 pub struct NoBox(pub ElementKind);
+
+/// Names of the elements that can be boxes.
+fn with_box() -> String {
+    let boxes = ElementKind::ALL.iter().filter(|kind| kind.box_corners().is_some());
+    boxes.map(|kind| kind.name()).collect::<Vec<_>>().join(" and ")
+}
 
 /// How the rest shape is mapped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,23 +33,18 @@ pub enum MapKind {
 /// The data of an element under a rule of quadrature.
 ///
 /// # Errors
-/// Only hexahedra and quadrilaterals can be boxes.
+/// The element can be no box.
 pub fn element_data(kind: ElementKind, rule: &QuadratureRule, map: MapKind) -> Result<ElementData, NoBox> {
     let samples = rule.points.iter().map(|point| {
         let gradients = kind.shape_gradients(point.position).iter().map(|gradient| tidy(*gradient)).collect();
         Sample { position: point.position.to_array(), weight: point.weight, gradients }
     });
-    let map = match (map, kind) {
-        (MapKind::General, _) => RestMap::Nodes,
-        (MapKind::Box, ElementKind::Hex8 | ElementKind::Quad4) => {
-            let flat = if kind.dimension() == 2 { 0.0 } else { 1.0 };
-            let node_at = |c: f64| {
-                let values = kind.shape(Vec3::new(c, c, c * flat));
-                values.iter().position(|value| (value - 1.0).abs() < 1e-12).unwrap_or_default()
-            };
-            RestMap::Box { low: node_at(-1.0), high: node_at(1.0) }
+    let map = match map {
+        MapKind::General => RestMap::Nodes,
+        MapKind::Box => {
+            let [low, high] = kind.box_corners().ok_or(NoBox(kind))?;
+            RestMap::Box { low, high }
         }
-        (MapKind::Box, _) => return Err(NoBox(kind)),
     };
     Ok(ElementData {
         name: source_name(kind).to_owned(),
@@ -53,11 +54,6 @@ pub fn element_data(kind: ElementKind, rule: &QuadratureRule, map: MapKind) -> R
         samples: samples.collect(),
         map,
     })
-}
-
-/// The rule that a derivation takes where none is named: the source integrates triangles with constant strain by one sample.
-pub fn usual_rule(kind: ElementKind) -> &'static QuadratureRule {
-    if kind == ElementKind::Tri3 { &kind.rules()[0] } else { kind.default_rule() }
 }
 
 /// What rounding leaves of a zero is a zero: a term that need not be computed.

@@ -9,7 +9,7 @@ use souple_engine::tangent::add_block;
 use souple_engine::{Configuration, Declaration, Energy, Force, Pair, Scratch, TangentWeights};
 use souple_formal::Formula;
 use souple_math::{Mat3, Vec3};
-use souple_mesh::{ElementKind, QuadratureRule};
+use souple_mesh::ElementKind;
 use souple_solve::BlockMatrix;
 
 use super::{LoadError, finite};
@@ -58,15 +58,8 @@ struct Sample {
 
 impl Samples {
     fn of(kind: ElementKind) -> Self {
-        // N (x_ξ × x_η): linear on a triangle, of degree 2 along each side of a quadrilateral; of total degree 4 on the
-        // quadratic triangle, of degree 5 along each side of the quadratic quadrilateral
-        let degree = match kind {
-            ElementKind::Tri3 => 2,
-            ElementKind::Quad4 => 3,
-            ElementKind::Tri6 => 4,
-            _ => 5,
-        };
-        let rule: &QuadratureRule = kind.rule_of_degree(degree).unwrap_or_else(|| kind.default_rule());
+        // N (x_ξ × x_η) has no higher degree than that rule integrates: `uses_follow_from_the_data` in the room of the elements
+        let rule = kind.mass_rule();
         let sample = |point: &souple_mesh::QuadraturePoint| {
             let (shape, gradients) = (kind.shape(point.position), kind.shape_gradients(point.position));
             let mut sample = Sample {

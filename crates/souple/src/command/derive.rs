@@ -14,7 +14,7 @@ use souple_formal::graph::{Expr, Shape};
 use souple_formal::law::{EnergyLaw, LawProblem, LawText, group_constants};
 use souple_mesh::ElementKind;
 use souple_models::associations::Association;
-use souple_models::derive::{MapKind, element_data, source_law_name, usual_rule};
+use souple_models::derive::{MapKind, element_data, source_law_name};
 use souple_models::materials::{WRITTEN_LAWS, WrittenLaw, is_parameter, law_text};
 
 use super::{End, Refusal, did_you_mean, print_json, print_line, print_note};
@@ -145,7 +145,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         return Err(Refusal::request("element", element_name, "an element of surfaces or volumes", message));
     }
     let rule = match &arguments.rule {
-        None => usual_rule(kind),
+        None => kind.default_rule(),
         Some(name) => kind.rule(name).map_err(|unknown| {
             let expected = format!("one of {}", unknown.known.join(", "));
             Refusal::request("unknown_rule", name, expected, unknown.to_string())
