@@ -28,6 +28,7 @@ mod trace;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use souple_engine::steppers::Stability;
 use souple_engine::{Interruption, World};
 use souple_scene::spec::sound::Sound;
 use souple_scene::{BodyInfo, Scene, SkinInfo};
@@ -113,10 +114,16 @@ pub enum RunError {
     #[error("the recording is lost: {0}")]
     Recording(souple_io::IoError),
     #[error(
-        "the simulation has blown up: body `{body}` is {} times as large as at rest; take shorter steps, an implicit stepper, or more damping",
-        readable(format!("{growth:.0e}").parse().unwrap_or(*growth))
+        "the simulation has blown up: body `{body}` is {} times as large as at rest; take shorter steps{}, or more damping",
+        readable(format!("{growth:.0e}").parse().unwrap_or(*growth)),
+        if *stability == Stability::Unconditional { "" } else { ", an implicit stepper" }
     )]
-    BlownUp { body: String, growth: f64 },
+    BlownUp {
+        body: String,
+        growth: f64,
+        /// Of its stepper.
+        stability: Stability,
+    },
     #[error(
         "a duration of {} s is {share:.3e} of a period of {} s: no step would be made; a run lasts at least half a period",
         readable(*.duration), readable(*.period)
@@ -229,7 +236,7 @@ pub fn forecast_warnings(world: &mut World) -> Vec<String> {
     for index in 0..world.model().systems.len() {
         let stepper = &world.model().systems[index].stepper;
         let timestep = stepper.interval(world.model().timestep(index));
-        if stepper.stability() == souple_engine::steppers::Stability::Unconditional {
+        if stepper.stability() == Stability::Unconditional {
             continue;
         }
         let (name, stepper, forecast) = world.with_system(index, |system, state, around, ws| {

@@ -178,7 +178,8 @@ impl Session {
             let positions = &self.world.rows(body.system).positions[body.rows.clone()];
             let growth = growth(&body.mesh.points, positions);
             if growth > MOST_GROWTH {
-                return Err(RunError::BlownUp { body: body.name.clone(), growth });
+                let stability = self.world.model().systems[body.system].stepper.stability();
+                return Err(RunError::BlownUp { body: body.name.clone(), growth, stability });
             }
         }
         Ok(())

@@ -138,7 +138,19 @@ fn blown_up_solids_are_failures() {
     let blown = reports.iter().find(|(_, report)| report["error"].to_string().contains("has blown up"));
     let (_, report) = blown.unwrap_or_else(|| panic!("{reports:#?}"));
     assert_eq!(report["status"], "failed");
-    assert!(report["error"]["message"].to_string().contains("body `cube`"), "{report:#}");
+    let message = report["error"]["message"].to_string();
+    assert!(message.contains("body `cube`") && message.contains("an implicit stepper"), "{report:#}");
+    // one that is torn apart by its spin, under a stepper that is implicit already
+    let text = CUBE.replace(
+        "[bodies.cube]",
+        "[systems.main]\nstepper = { name = \"backward_euler\", newton = \"one\" }\n[bodies.cube]",
+    );
+    let text =
+        text.replace("20 kPa", "1 Pa").replace("material =", "angular_velocity = [0, 3e5, 0]\nmaterial =");
+    let scene = folder.write("implicit.toml", text);
+    let report = souple(["run", &scene, "--json", "--quiet", "--steps", "3"]).ends(1).json();
+    let message = report["error"]["message"].to_string();
+    assert!(message.contains("has blown up") && !message.contains("an implicit stepper"), "{report:#}");
 }
 
 /// Surfaces that enclose nothing, files of another scale and sizes that contradict each other are told as such.
