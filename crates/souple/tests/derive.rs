@@ -31,6 +31,54 @@ fn counts_stand_beside_those_of_the_source() {
     }
 }
 
+/// The counts that the theory tells are those that are printed: written out and in tensors.
+#[test]
+fn counts_are_those_of_the_theory() {
+    let theory = include_str!("../../../docs/theory.md");
+    let with_commas = |count: u64| match count {
+        1000.. => format!("{},{:03}", count / 1000, count % 1000),
+        _ => count.to_string(),
+    };
+    let counts = |law: &str, element: &str, more: &[&str]| {
+        let call = ["derive", "--law", law, "--element", element, "--json"];
+        let document = souple(call.iter().chain(more)).ends(0).json();
+        let of = |value: &serde_json::Value| value.as_u64().map(with_commas).expect("a count");
+        let (whole, tensors) = (&document["on_element"], &document["in_tensors"]);
+        let written = |quantity: &str| of(&whole[quantity]["operations_per_step"]);
+        let constants = of(&tensors["constants"]);
+        [
+            written("forces"),
+            written("differential"),
+            of(&tensors["forces"]),
+            of(&tensors["differential"]),
+            constants,
+        ]
+    };
+    let law = "st_venant_kirchhoff";
+    let tet = counts(law, "tet4", &[]);
+    let others = [
+        counts(law, "pyramid5", &["--rule", "gauss_5"]),
+        counts(law, "hex8", &["--map", "box"]),
+        counts(law, "prism6", &[]),
+    ];
+    let of = |index: usize| others.each_ref().map(|counts| counts[index].clone());
+    let [pyramid, hex, prism] = of(1);
+    let [pyramid_run, hex_run, prism_run] = of(3);
+    for sentence in [
+        format!(
+            "takes {} operations on a tetrahedron, {pyramid} on a pyramid of five samples, {hex} on a box of eight and {prism} on a prism of six",
+            tet[1]
+        ),
+        format!("these are {}, {pyramid_run}, {hex_run} and {prism_run}", tet[3]),
+        format!("forces of a tetrahedron take {} operations written out and {} in tensors", tet[0], tet[2]),
+    ] {
+        let words = theory.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(&sentence), "{sentence}");
+    }
+    // nine of the map, and λ, μ and twice μ with the weight
+    assert_eq!(tet[4], "12");
+}
+
 /// One file for the constants of each fragment and one for each node and axis, with the source's names; the fragments of the
 /// differential are cut along nodes and directions too.
 #[test]

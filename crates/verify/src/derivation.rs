@@ -1,9 +1,10 @@
 //! What is read of derivations: counts and errors, as `souple derive` prints them.
 
+use std::collections::BTreeSet;
 use std::sync::Mutex;
 
 use rayon::prelude::*;
-use souple_formal::element::{Cut, Derived, ElementData, ElementExpressions};
+use souple_formal::element::{Cut, Derived, ElementData, ElementExpressions, Step, Steps};
 use souple_formal::emit::ElementCode;
 use souple_formal::law::{EnergyLaw, group_constants};
 use souple_mesh::ElementKind;
@@ -17,12 +18,16 @@ use souple_models::materials::{WRITTEN_LAWS, WrittenLaw};
 pub enum Count {
     /// Grouped constants of the energy, added up over its fragments.
     Constants,
+    /// Constants of an element that forces and differential read, as bodies run them.
+    StepConstants,
     /// Fragments of the differential.
     Fragments,
     /// Operations of the differential at every step, written out in numbers.
     DifferentialOperations,
     /// The same over those on another element; settings, apart by spaces, that make it another.
     DifferentialOperationsOver(&'static str),
+    /// The same in tensors, as bodies run them.
+    TensorOperationsOver(&'static str),
     /// How many times the operations of forces in tensors those of the four loops are.
     FourLoopForces,
     /// The same of the differential.
@@ -148,11 +153,18 @@ pub fn count(count: Count, given: &[String]) -> Result<f64, String> {
         }
         Count::Fragments => settings.derived()?.differentials.len(),
         Count::DifferentialOperations => settings.differential_operations()?,
+        Count::StepConstants => {
+            let places = settings.steps()?.constant_places();
+            places.forces.iter().chain(&places.differentials).flatten().collect::<BTreeSet<_>>().len()
+        }
         Count::DifferentialOperationsOver(other) => {
-            let other: Vec<String> =
-                given.iter().cloned().chain(other.split(' ').map(str::to_owned)).collect();
-            let other = Settings::read(&other)?.differential_operations()?;
+            let other = settings_on(given, other)?.differential_operations()?;
             return Ok(settings.differential_operations()? as f64 / other as f64);
+        }
+        Count::TensorOperationsOver(other) => {
+            let of =
+                |settings: &Settings| settings.steps().map(|steps| operations(&steps, &steps.differentials));
+            return Ok(of(&settings)? as f64 / of(&settings_on(given, other)?)? as f64);
         }
         Count::CodeBytes => settings.derived()?.emit(ElementCode::Rust).text.len(),
         Count::Associations => {
@@ -184,7 +196,23 @@ pub fn count(count: Count, given: &[String]) -> Result<f64, String> {
     Ok(number as f64)
 }
 
+/// The settings, and behind them others that are apart by spaces.
+fn settings_on(given: &[String], others: &str) -> Result<Settings, String> {
+    let all: Vec<String> = given.iter().cloned().chain(others.split(' ').map(str::to_owned)).collect();
+    Settings::read(&all)
+}
+
+fn operations(steps: &Steps, of: &[Step]) -> usize {
+    of.iter().map(|step| step.operations(&steps.graph).total()).sum()
+}
+
 impl Settings {
+    /// As bodies run them.
+    fn steps(&self) -> Result<Steps, String> {
+        let cut = Cut::from_name(self.cut.as_deref().unwrap_or("none")).ok_or("there is no such cut")?;
+        Ok(self.element()?.steps(&self.law()?, cut))
+    }
+
     /// Operations of the differential at every step, written out in numbers.
     fn differential_operations(&self) -> Result<usize, String> {
         let derived = self.derived()?;
@@ -197,11 +225,9 @@ impl Settings {
         let (kind, name) = (self.kind()?, self.law.as_deref().unwrap_or_default());
         let loops = four_loop_operations(kind, name)
             .ok_or_else(|| format!("the four loops know no {name} on {kind}"))?;
-        let cut = Cut::from_name(self.cut.as_deref().unwrap_or("none")).ok_or("there is no such cut")?;
-        let steps = self.element()?.steps(&self.law()?, cut);
+        let steps = self.steps()?;
         let ours = if is_differential { &steps.differentials } else { &steps.forces };
-        let ours: usize = ours.iter().map(|step| step.operations(&steps.graph).total()).sum();
-        Ok(loops[usize::from(is_differential)] as f64 / ours as f64)
+        Ok(loops[usize::from(is_differential)] as f64 / operations(&steps, ours) as f64)
     }
 
     /// The worst of all associations that are named, or of all; rows of one battery read it together.

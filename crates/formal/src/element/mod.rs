@@ -13,7 +13,7 @@ mod steps;
 pub use cut::{Axis, Cut, Derivative, Fragment};
 pub use derive::{Derived, ElementExpressions, Symbols};
 pub use direct::Direct;
-pub use steps::{Step, Steps};
+pub use steps::{ConstantPlaces, Step, Steps};
 
 use crate::graph::WithoutFormula;
 

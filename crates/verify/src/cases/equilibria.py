@@ -164,7 +164,8 @@ def cube():
         load = np.zeros(points.shape)
         load[:, 1] = -9.81 * part * mass
         u, _ = equilibrium(points, hexes, law, load.ravel(), fixed, 0.0, u)
-    print(f"free face of the hanging cube: {u[3 * far + 1].mean():.12f} m")
+    along, down = u[3 * far].mean(), u[3 * far + 1].mean()
+    print(f"free face of the hanging cube: {along:.12f} m along it, {down:.12f} m upward")
 
 
 bar()

@@ -1,5 +1,6 @@
 //! What `souple derive` tells: the steps of the derivation, counts of operations and grouped constants, sizes of the code.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
@@ -24,6 +25,8 @@ pub struct Report<'a> {
     pub map: MapKind,
     /// As bodies run them, in tensors: forces and differential.
     steps: [Operations; 2],
+    /// Constants of an element that those read, and all that it stores, those of the energy too.
+    constants: [usize; 2],
     /// Operands of the differential written out that is derived in physical coordinates; of boxes.
     direct: Option<f64>,
 }
@@ -109,13 +112,26 @@ impl<'a> Report<'a> {
         let steps =
             [&derived.forces[0], &derived.differentials[0]].map(|step| step.operations(&derived.graph));
         let direct = element.derive_directly(law).ok().flatten().map(|direct| direct.operands());
-        Self { law, name, element, kind, map, steps, direct }
+        let places = derived.constant_places();
+        let of_steps: BTreeSet<&usize> =
+            places.forces.iter().chain(&places.differentials).flatten().collect();
+        let constants = [of_steps.len(), places.count];
+        Self { law, name, element, kind, map, steps, constants, direct }
+    }
+
+    /// Operations and constants in tensors.
+    fn in_tensors(&self) -> String {
+        let [forces, differential] = self.steps.map(|operations| operations.total());
+        let [of_steps, all] = self.constants;
+        format!(
+            "  in tensors: forces {forces}, differential {differential} operations with {of_steps} constants; {all} with those of the energy\n"
+        )
     }
 
     /// What is counted beside the source: the same by tensors, by four loops, and without a reference element.
     fn comparisons(&self, derived: &Derived) -> String {
         let [forces, differential] = self.steps.map(|operations| operations.total());
-        let mut text = format!("\n  in tensors: forces {forces}, differential {differential} operations\n");
+        let mut text = format!("\n{}", self.in_tensors());
         if let Some([of_forces, of_differential]) = four_loop_operations(self.kind, self.name) {
             let _ = writeln!(
                 text,
@@ -166,11 +182,10 @@ impl<'a> Report<'a> {
 
     /// Of a law in principal stretches, which has tensors alone: there is nothing to write out and to count.
     pub fn without_code(&self, cut: Cut) -> String {
-        let [forces, differential] = self.steps.map(|operations| operations.total());
         self.derivation(cut)
+            + &self.in_tensors()
             + &format!(
-                "  in tensors: forces {forces}, differential {differential} operations\n  \
-                 {WithoutFormula}: no constants are grouped, and no code is written but with `--emit maxima`\n"
+                "  {WithoutFormula}: no constants are grouped, and no code is written but with `--emit maxima`\n"
             )
     }
 
@@ -252,6 +267,8 @@ impl<'a> Report<'a> {
             "in_tensors": {
                 "forces": self.steps[0].total(),
                 "differential": self.steps[1].total(),
+                "constants": self.constants[0],
+                "constants_with_energy": self.constants[1],
                 "four_loops": four_loop_operations(self.kind, self.name),
             },
             "operands_in_physical_coordinates": self.direct,
