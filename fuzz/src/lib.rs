@@ -4,6 +4,8 @@ pub mod law;
 
 use std::path::Path;
 
+use souple_formal::law::EnergyLaw;
+use souple_formal::tape::{Part, Tape};
 use souple_formal::{Condition, Formula, parse_quantity, parse_unit};
 use souple_io::{FORMATS, Output, read_dataset_bytes, read_particle_bytes, read_series_bytes};
 use souple_sweep::Study;
@@ -136,4 +138,23 @@ pub fn read_law(content: &[u8]) {
     if let Ok(text) = std::str::from_utf8(content) {
         law::try_law(text);
     }
+}
+
+/// Takes a content for a kept tape; one that is taken runs within its memory.
+pub fn run_tape(mut content: &[u8]) {
+    let Ok(tape) = Tape::restore(&mut content, [&[9], &[9]], &[9]) else { return };
+    let mut memory = vec![0.5; tape.memory_len()];
+    tape.prepare(&mut memory);
+    tape.run_here(Part::All, 8, &mut memory);
+}
+
+/// Stress of each law of [`law::LAW_SEEDS`], as a kept tape.
+pub fn tape_seeds() -> Vec<Vec<u8>> {
+    let laws = law::LAW_SEEDS.iter().filter_map(|text| EnergyLaw::compile(&law::law_of_lines(text)).ok());
+    laws.map(|law| {
+        let mut bytes = Vec::new();
+        Tape::compile(&law, &[law.stress]).store(&mut bytes);
+        bytes
+    })
+    .collect()
 }

@@ -51,6 +51,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (index, law) in souple_fuzz::law::LAW_SEEDS.iter().enumerate() {
         std::fs::write(laws.join(index.to_string()), law)?;
     }
+    let tapes = Path::new(&folder).join("tape");
+    std::fs::create_dir_all(&tapes)?;
+    for (index, bytes) in souple_fuzz::tape_seeds().into_iter().enumerate() {
+        std::fs::write(tapes.join(index.to_string()), bytes)?;
+    }
     let mut words = Vec::new();
     collect_words(&souple_scene::schema(), &mut words);
     words.sort();

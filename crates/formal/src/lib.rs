@@ -38,3 +38,6 @@ pub use function::{ArgumentCount, CONSTANTS, FUNCTIONS, Function, FunctionEntry}
 pub use quantity::{Quantity, parse_quantity, quantity_in};
 pub use span::Span;
 pub use unit::{Unit, UnitEntry, UnitError, parse_unit, units};
+
+/// The version of what derives and compiles: what it made is the same whenever this is.
+pub const DERIVATION: &str = concat!(env!("CARGO_PKG_VERSION"), " ", env!("SOUPLE_DERIVATION"));

@@ -1,4 +1,4 @@
-//! The functions of the fuzz targets of skins, which the nightly compiler runs for hours, on a few hundred mutated contents.
+//! The functions of the fuzz targets of skins and of kept tapes, which the nightly compiler runs for hours, on a few hundred mutated contents.
 
 #[path = "../../../fuzz/src/lib.rs"]
 #[expect(dead_code, reason = "the readers of meshes, scenes and studies have tests of their own")]
@@ -27,6 +27,16 @@ fn mutated_particles_are_dressed_or_refused() {
     repeat(600, |seed| {
         let content = Mutator::new(seed ^ (1 << 42), words()).mutated(&seeds);
         guard(seed, &content, 20.0, || targets::dress_particles(&content));
+    });
+}
+
+/// Kept tapes whose bytes have changed are refused, or run within their memory.
+#[test]
+fn mutated_tapes_run_or_are_refused() {
+    let seeds = targets::tape_seeds();
+    repeat(2000, |seed| {
+        let content = Mutator::new(seed ^ (1 << 44), Vec::new()).mutated(&seeds);
+        guard(seed, &content, 20.0, || targets::run_tape(&content));
     });
 }
 

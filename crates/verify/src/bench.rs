@@ -264,6 +264,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| laws::law_text("law_text_scalar", laws::Writing::Scalars, 2.5, effort),
     },
     Bench {
+        name: "law_ready",
+        what: "from text to a program, for every law that ships [ms], and the same from the file where it was kept before",
+        run: laws::law_ready,
+    },
+    Bench {
         name: "tet4_forces",
         what: "forces alone of tetrahedra, St. Venant-Kirchhoff, bent [elements/s], and a derivative product [x force]",
         run: |effort| laws::forces("tet4_forces", "tet4", 12, laws::Wanted::Steps, effort),

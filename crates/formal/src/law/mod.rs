@@ -115,20 +115,20 @@ fn derivatives(graph: &mut Graph, energy: Expr, [deformation, variation]: [Expr;
     (stress, graph.differential(stress, &seeds))
 }
 
+/// Mean stress over relative change of volume at rest, `C_iijj / 9` [Pa].
+pub fn bulk_modulus(stiffness: &[f64; 81]) -> f64 {
+    let diagonal = [0, 4, 8];
+    let entries = diagonal.iter().flat_map(|a| diagonal.iter().map(move |b| 9 * a + b));
+    entries.map(|entry| stiffness[entry]).sum::<f64>() / 9.0
+}
+
+/// Shear modulus at rest, its mean over all directions, `(C_ijij - C_iijj / 3) / 10` (Voigt 1928) [Pa].
+pub fn mean_shear_modulus(stiffness: &[f64; 81]) -> f64 {
+    let trace: f64 = (0..9).map(|a| stiffness[9 * a + a]).sum();
+    (trace - 3.0 * bulk_modulus(stiffness)) / 10.0
+}
+
 impl EnergyLaw {
-    /// Mean stress over relative change of volume at rest, `C_iijj / 9` [Pa].
-    pub fn bulk_modulus(&self) -> f64 {
-        let diagonal = [0, 4, 8];
-        let entries = diagonal.iter().flat_map(|a| diagonal.iter().map(move |b| 9 * a + b));
-        entries.map(|entry| self.stiffness[entry]).sum::<f64>() / 9.0
-    }
-
-    /// Shear modulus at rest, its mean over all directions, `(C_ijij - C_iijj / 3) / 10` (Voigt 1928) [Pa].
-    pub fn mean_shear_modulus(&self) -> f64 {
-        let trace: f64 = (0..9).map(|a| self.stiffness[9 * a + a]).sum();
-        (trace - 3.0 * self.bulk_modulus()) / 10.0
-    }
-
     /// Reads, derives and tries a law.
     ///
     /// # Errors

@@ -61,8 +61,8 @@ impl<S: Simd> Registers<S> {
     #[inline(always)]
     fn load(&self, operand: usize, entry: usize, group: usize) -> Lanes<S> {
         let at = (self.at.operands[operand] as usize + entry) * BATCH + group * S::F64_LANES;
-        // SAFETY: `run` has asserted that the memory holds all registers the tape was assigned, `group` lies within the
-        // batch, and unaligned reads of any `f64` bits are valid lanes
+        // SAFETY: `run` has asserted that the memory holds all registers the tape was assigned or, if it was restored, found to
+        // use; `group` lies within the batch, and unaligned reads of any `f64` bits are valid lanes
         Lanes::new(self.simd, unsafe { self.memory.add(at).cast::<S::f64s>().read_unaligned() })
     }
 

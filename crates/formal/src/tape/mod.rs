@@ -8,10 +8,13 @@
 pub(crate) mod lower;
 mod machine;
 mod registers;
+mod stored;
 
 use crate::Function;
 use crate::graph::{Comparison, Expr, Graph, Symbol};
 use crate::law::{EnergyLaw, LawParameter};
+
+pub use stored::NoTape;
 
 /// Lanes of one run.
 pub const BATCH: usize = 64;
@@ -67,7 +70,7 @@ pub(crate) enum Code {
 }
 
 /// Registers of one instruction, by their first number.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Instruction {
     pub code: Code,
     /// Entries of what is worked on entry by entry.
@@ -77,7 +80,7 @@ pub(crate) struct Instruction {
 }
 
 /// A compiled law: some of its expressions as functions of `F`, or of `F` and `δF`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Tape {
     instructions: Vec<Instruction>,
     /// Instructions before it need `F` only.

@@ -104,3 +104,36 @@ fn tapes_are_short() {
     let tape = Tape::compile(&law, &[law.stress]);
     assert!(tape.len() <= 9, "{:#?}", tape.instructions);
 }
+
+/// A tape that is stored and restored is the same, and what is cut off, lengthened or changed anywhere is none or stays within its
+/// memory.
+#[test]
+fn stored_tapes_are_restored() {
+    let shapes: [&[usize]; 2] = [&[9], &[9]];
+    for energy in LAWS {
+        let law = compiled(energy);
+        let tape = Tape::compile(&law, &[law.energy, law.stress, law.differential]);
+        let outputs = [1, 9, 9];
+        let mut bytes = Vec::new();
+        tape.store(&mut bytes);
+        let mut rest = &bytes[..];
+        assert_eq!(Tape::restore(&mut rest, shapes, &outputs).as_ref(), Ok(&tape), "{energy}");
+        assert!(rest.is_empty());
+        for len in 0..bytes.len() {
+            assert_eq!(Tape::restore(&mut &bytes[..len], shapes, &outputs), Err(NoTape), "{energy}: {len}");
+        }
+        let mut memory = Vec::new();
+        for place in 0..bytes.len() {
+            for bit in 0..8 {
+                let mut changed = bytes.clone();
+                changed[place] ^= 1 << bit;
+                if let Ok(tape) = Tape::restore(&mut &changed[..], shapes, &outputs) {
+                    assert!(tape.registers <= bytes.len());
+                    memory.resize(tape.memory_len(), 0.0);
+                    tape.prepare(&mut memory);
+                    tape.run_here(Part::All, 8, &mut memory);
+                }
+            }
+        }
+    }
+}

@@ -4,15 +4,17 @@
 //! compiled ahead. Outside the range where its formula has a value (`log(J)` of inverted elements) such a law has none:
 //! the step is refused. The compiled laws are continued there on purpose.
 
+use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use souple_formal::law::{EnergyLaw, LawError, LawParameter, LawText};
-use souple_formal::tape::Tape;
+use souple_formal::law::{self, EnergyLaw, LawError, LawParameter, LawText, Strain};
+use souple_formal::tape::{Part, Tape};
 use souple_formal::{Expression, Formula, Span, parse_quantity};
+use souple_math::{Mat3, Vec3};
 use souple_table::{Entry, Parameter, Value};
 
-use super::{Build, DENSITY, Lame, Material, MaterialLaw, PARAMETERS_MAX};
+use super::{Build, DENSITY, KeptLaws, Lame, Material, MaterialLaw, PARAMETERS_MAX};
 
 pub(super) const ENTRY: Entry<Build> = Entry {
     name: "hyperelastic",
@@ -79,10 +81,22 @@ impl MaterialError {
 #[derive(Debug)]
 pub struct TextLaw {
     text: LawText,
-    law: EnergyLaw,
-    energy: Tape,
-    stress: Tape,
-    differential: Tape,
+    derived: Derived,
+    /// Its expressions, which only a few need; not there before that where the law was kept.
+    expressions: OnceLock<EnergyLaw>,
+}
+
+/// What a run needs of a law: all of it fits into a file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Derived {
+    pub energy: Tape,
+    pub stress: Tape,
+    pub differential: Tape,
+    pub strain: Strain,
+    pub is_linear: bool,
+    pub warnings: Vec<String>,
+    /// As [`EnergyLaw::stiffness`].
+    pub stiffness: Box<[f64; 81]>,
 }
 
 /// The same text with the same parameters.
@@ -167,6 +181,8 @@ fn direction(text: &str) -> Result<[f64; 3], String> {
 static KNOWN: Mutex<VecDeque<Arc<TextLaw>>> = Mutex::new(VecDeque::new());
 /// How many of them.
 const KNOWN_MOST: usize = 32;
+/// Where laws are kept between runs; nowhere, if nobody says.
+static KEPT: Mutex<Option<KeptLaws>> = Mutex::new(None);
 /// Of the largest entry of the stiffness at rest: eighty-one of them are summed, each a hundred roundings of the derivation.
 const MODULUS_ROUNDING: f64 = 1e-12;
 /// The same, for entries one by one.
@@ -182,10 +198,32 @@ impl TextLaw {
         if let Some(law) = known().iter().find(|law| law.text == text) {
             return Ok(Arc::clone(law));
         }
-        let law = Arc::new(Self::compile(text)?);
+        let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let law = Arc::new(match kept {
+            Some(kept) => Self::kept(text, &kept)?,
+            None => Self::compile(text)?,
+        });
         let mut known = known();
         known.truncate(KNOWN_MOST - 1);
         known.push_front(Arc::clone(&law));
+        Ok(law)
+    }
+
+    /// From now on laws that are not among those compiled last are looked for there, and left there for later runs.
+    pub fn keep_in(kept: Option<KeptLaws>) {
+        *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = kept;
+    }
+
+    /// The law of a text as it was kept, and else compiled and kept: the same bits.
+    ///
+    /// # Errors
+    /// As [`Self::compile`].
+    pub fn kept(text: LawText, kept: &KeptLaws) -> Result<Self, MaterialError> {
+        if let Some(derived) = kept.find(&text) {
+            return Ok(Self { text, derived, expressions: OnceLock::new() });
+        }
+        let law = Self::compile(text)?;
+        kept.keep(&law.text, &law.derived);
         Ok(law)
     }
 
@@ -195,8 +233,16 @@ impl TextLaw {
         let mut law = EnergyLaw::compile(&text).map_err(|error| told(&text, &error))?;
         let stress = law.guarded_stress();
         let tape = |output| Tape::compile(&law, &[output]);
-        let (energy, stress, differential) = (tape(law.energy), tape(stress), tape(law.differential));
-        Ok(Self { text, law, energy, stress, differential })
+        let derived = Derived {
+            energy: tape(law.energy),
+            stress: tape(stress),
+            differential: tape(law.differential),
+            strain: law.strain,
+            is_linear: law.is_linear(),
+            warnings: law.warnings.clone(),
+            stiffness: law.stiffness.clone(),
+        };
+        Ok(Self { text, derived, expressions: OnceLock::from(law) })
     }
 
     /// Whether it may tell directions apart.
@@ -204,29 +250,74 @@ impl TextLaw {
         self.text.names_directions()
     }
 
-    pub fn law(&self) -> &EnergyLaw {
-        &self.law
+    /// The law as expressions, derived now if it was kept.
+    ///
+    /// # Errors
+    /// As [`Self::compile`].
+    pub fn expressions(&self) -> Result<&EnergyLaw, MaterialError> {
+        if let Some(law) = self.expressions.get() {
+            return Ok(law);
+        }
+        let law = EnergyLaw::compile(&self.text).map_err(|error| told(&self.text, &error))?;
+        Ok(self.expressions.get_or_init(|| law))
+    }
+
+    /// Whether both have the same instructions, constants and numbers at rest.
+    pub fn is_same_program(&self, other: &Self) -> bool {
+        self.derived == other.derived
+    }
+
+    /// A parameter of the text.
+    pub fn parameter(&self, name: &str) -> Option<&LawParameter> {
+        self.text.parameters.iter().find(|(known, _)| known == name).map(|(_, parameter)| parameter)
+    }
+
+    /// Whether its stress is linear in `F - I`.
+    pub fn is_linear(&self) -> bool {
+        self.derived.is_linear
+    }
+
+    pub fn strain(&self) -> Strain {
+        self.derived.strain
+    }
+
+    /// What is legal and doubtful.
+    pub fn warnings(&self) -> &[String] {
+        &self.derived.warnings
+    }
+
+    /// `Ψ(F)` [J/m³].
+    pub fn energy_at(&self, F: &Mat3) -> f64 {
+        let [energy] = at(self.energy(), F);
+        energy
+    }
+
+    /// `P(F)`, which is no number where the energy is none [Pa].
+    pub fn stress_at(&self, F: &Mat3) -> Mat3 {
+        let [a, b, c, d, e, f, g, h, i] = at(self.stress(), F);
+        Mat3::from_columns(Vec3::new(a, b, c), Vec3::new(d, e, f), Vec3::new(g, h, i))
     }
 
     /// `F` to `Ψ`.
     pub(crate) fn energy(&self) -> &Tape {
-        &self.energy
+        &self.derived.energy
     }
 
     /// `F` to `P`, which is no number where the energy is none.
     pub(crate) fn stress(&self) -> &Tape {
-        &self.stress
+        &self.derived.stress
     }
 
     /// `F`, `δF` to `δP`.
     pub(crate) fn differential(&self) -> &Tape {
-        &self.differential
+        &self.derived.differential
     }
 
     /// Bulk modulus at rest and, over all directions, the mean shear modulus [Pa]; what is nothing but rounding is zero.
     pub(crate) fn bulk_and_shear(&self) -> [f64; 2] {
-        let largest = self.law.stiffness.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
-        [self.law.bulk_modulus(), self.law.mean_shear_modulus()]
+        let stiffness = &self.derived.stiffness;
+        let largest = stiffness.iter().fold(0.0, |most: f64, entry| most.max(entry.abs()));
+        [law::bulk_modulus(stiffness), law::mean_shear_modulus(stiffness)]
             .map(|modulus| if modulus.abs() <= MODULUS_ROUNDING * largest { 0.0 } else { modulus })
     }
 
@@ -247,7 +338,7 @@ impl TextLaw {
             let (ra, ca, rb, cb) = (a % 3, a / 3, b % 3, b / 3);
             lambda * same(ra == ca) * same(rb == cb) + mu * (same(a == b) + same(ra == cb) * same(ca == rb))
         };
-        let entry = |a: usize, b: usize| self.law.stiffness[9 * a + b];
+        let entry = |a: usize, b: usize| self.derived.stiffness[9 * a + b];
         let pairs = || (0..81).map(|index| (index / 9, index % 9));
         let largest = pairs().fold(0.0, |most: f64, (a, b)| most.max(entry(a, b).abs()));
         if pairs().all(|(a, b)| (entry(a, b) - isotropic(a, b)).abs() <= ISOTROPY_ROUNDING * largest) {
@@ -273,12 +364,30 @@ impl TextLaw {
 
     /// Moduli at rest: of an anisotropic law the mean shear modulus, and the stiffest longitudinal one.
     pub(crate) fn small_strain(&self) -> Lame {
-        let entry = |a: usize, b: usize| self.law.stiffness[9 * a + b];
+        let entry = |a: usize, b: usize| self.derived.stiffness[9 * a + b];
         // entries (0,1), (1,2), (2,0) of F lie at 3, 7, 2
         let mu = (entry(3, 3) + entry(7, 7) + entry(2, 2)) / 3.0;
         let longitudinal = [0, 4, 8].map(|a| entry(a, a)).into_iter().fold(f64::NEG_INFINITY, f64::max);
         Lame { mu, lambda: longitudinal - 2.0 * mu }
     }
+}
+
+/// What a tape gives at one deformation, by columns.
+fn at<const N: usize>(tape: &Tape, F: &Mat3) -> [f64; N] {
+    thread_local! {
+        static MEMORY: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+    }
+    MEMORY.with_borrow_mut(|memory| {
+        if memory.len() < tape.memory_len() {
+            memory.resize(tape.memory_len(), 0.0);
+        }
+        tape.prepare(memory);
+        for (entry, number) in F.columns.iter().flat_map(|column| column.to_array()).enumerate() {
+            memory[tape.deformation(entry)] = number;
+        }
+        tape.run_here(Part::All, 1, memory);
+        std::array::from_fn(|entry| memory[tape.output(0, entry)])
+    })
 }
 
 /// The error with the path of its part and the place in that.

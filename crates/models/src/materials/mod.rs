@@ -11,6 +11,7 @@ mod derived;
 mod hyperelastic;
 mod invariants;
 mod isochoric;
+mod kept;
 mod law;
 mod library;
 mod linear;
@@ -30,6 +31,7 @@ use souple_table::{Entry, Parameter, Range, Table, Values};
 
 pub use derived::DERIVED;
 pub use hyperelastic::{MaterialError, TextLaw, is_parameter, law_text};
+pub use kept::KeptLaws;
 pub use law::{Lame, Law, Parameters};
 pub use library::{WRITTEN_LAWS, WrittenLaw, lines_of};
 
@@ -106,7 +108,7 @@ impl MaterialLaw {
         }
         match self {
             Self::Known(law) => law.visit(IsLinear),
-            Self::Text(law) => law.law().is_linear(),
+            Self::Text(law) => law.is_linear(),
         }
     }
 
@@ -121,7 +123,7 @@ impl MaterialLaw {
         }
         match self {
             Self::Known(law) => law.visit(IsObjective),
-            Self::Text(law) => law.law().strain == Strain::Finite,
+            Self::Text(law) => law.strain() == Strain::Finite,
         }
     }
 }
@@ -200,7 +202,7 @@ impl Material {
         }
         match &self.law {
             MaterialLaw::Known(law) => law.visit(Energy(self, F)),
-            MaterialLaw::Text(law) => law.law().energy_at(F),
+            MaterialLaw::Text(law) => law.energy_at(F),
         }
     }
 
@@ -215,7 +217,7 @@ impl Material {
         }
         match &self.law {
             MaterialLaw::Known(law) => law.visit(Stress(self, F)),
-            MaterialLaw::Text(law) => law.law().stress_at(F),
+            MaterialLaw::Text(law) => law.stress_at(F),
         }
     }
 
@@ -236,7 +238,7 @@ impl Material {
     pub fn warnings(&self) -> &[String] {
         match &self.law {
             MaterialLaw::Known(_) => &[],
-            MaterialLaw::Text(law) => &law.law().warnings,
+            MaterialLaw::Text(law) => law.warnings(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Commands: one file each.
 
 mod bench;
+mod cache;
 mod check;
 mod compare;
 mod derive;
@@ -27,6 +28,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::{Parser, Subcommand};
 use serde_json::{Value, json};
 use souple_formal::law::LawError;
+use souple_models::materials::TextLaw;
 
 /// A simulator of soft things.
 #[derive(Parser)]
@@ -254,6 +256,10 @@ impl From<souple_run::RunError> for Refusal {
 
 /// Runs a command and gives its exit status.
 pub fn execute(cli: Cli) -> ExitCode {
+    // benchmarks time what is derived
+    if !matches!(cli.command, Some(Command::Bench(_))) {
+        TextLaw::keep_in(cache::kept_laws());
+    }
     let Some(command) = cli.command else {
         // without the page the scene runs headless
         return match souple_view::missing_page() {

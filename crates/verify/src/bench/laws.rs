@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use souple_engine::{TangentWeights, World};
 use souple_math::Vec3;
+use souple_models::materials::{KeptLaws, TextLaw, WRITTEN_LAWS};
 
 use super::timing::{Clock, Held, Timed, Timing, bend, median, over, scene, thread_counts, with_threads};
 use super::{Effort, Figure};
@@ -13,6 +14,9 @@ const TENSORS: &str = "mu/2*(I1 - 3) - mu*log(J) + lambda/2*log(J)^2";
 /// The same by entries: nothing of it is a tensor operation.
 const SCALARS: &str = "mu/2*(F11^2 + F12^2 + F13^2 + F21^2 + F22^2 + F23^2 + F31^2 + F32^2 + F33^2 - 3) - mu*log(D) + lambda/2*log(D)^2";
 const DETERMINANT: &str = "F11*(F22*F33 - F23*F32) - F12*(F21*F33 - F23*F31) + F13*(F21*F32 - F22*F31)";
+
+/// Milliseconds within which a law is to be ready.
+const READY: f64 = 50.0;
 
 /// How a law is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -148,12 +152,61 @@ fn ready(name: &str, writing: Writing, effort: Effort) -> Result<Figure, String>
         higher_is_better: false,
         error: 0.0,
         error_of: "nothing: the text is compiled".to_owned(),
-        baseline: Some(50.0),
+        baseline: Some(READY),
         threads: 1,
         samples: count,
         spread,
         bytes,
     })
+}
+
+/// How long every law that ships takes until it can run, derived and from its file, which must not take longer.
+pub fn law_ready(effort: Effort) -> Result<Vec<Figure>, String> {
+    let folder = std::env::temp_dir().join(format!("souple_bench_laws_{}", std::process::id()));
+    let kept = KeptLaws::new(&folder);
+    let measured = WRITTEN_LAWS.iter().map(|written| {
+        let text = written.text().map_err(|error| error.to_string())?;
+        let samples = effort.choose(5, 31);
+        let mut medians = Vec::new();
+        let mut figures = Vec::new();
+        for (name, file, wanted) in [("derived", None, Some(READY)), ("kept", Some(&kept), None)] {
+            let (mut seconds, mut processor) = (Vec::new(), Vec::new());
+            // the first of each writes the file, and fills caches
+            for _ in 0..=samples {
+                let clock = Clock::start();
+                let law = match file {
+                    Some(kept) => TextLaw::kept(text.clone(), kept),
+                    None => TextLaw::compile(text.clone()),
+                };
+                law.map_err(|error| error.to_string())?;
+                clock.stop(&mut seconds, &mut processor, 1);
+            }
+            let milliseconds =
+                |times: Vec<f64>| times.into_iter().skip(1).map(|time| 1e3 * time).collect::<Vec<f64>>();
+            let by_processor = milliseconds(processor);
+            let (value, spread) = median(milliseconds(seconds));
+            figures.push(Figure {
+                by_processor: (!by_processor.is_empty()).then(|| median(by_processor).0),
+                name: format!("law_ready_{}_{name}", written.name),
+                value,
+                unit: "ms",
+                higher_is_better: false,
+                error: 0.0,
+                error_of: "nothing: the same program".to_owned(),
+                baseline: wanted.or(medians.first().copied()),
+                threads: 1,
+                samples,
+                spread,
+                bytes: std::fs::metadata(kept.file_of(&text)).map_or(0, |data| data.len() as usize),
+            });
+            medians.push(value);
+        }
+        Ok::<_, String>(figures)
+    });
+    let measured: Result<Vec<Vec<Figure>>, String> = measured.collect();
+    // what cannot be removed lies where things are removed
+    drop(std::fs::remove_dir_all(folder));
+    Ok(measured?.concat())
 }
 
 /// The elastic force of the bent bar alone, and its derivative along a direction.

@@ -7,14 +7,14 @@ use souple_math::{Mat3, Vec3, eigen_symmetric};
 use super::{directions, identity, unit};
 use crate::Function;
 use crate::graph::{Expr, Node};
-use crate::law::EnergyLaw;
 use crate::law::evaluate::entries;
+use crate::law::{EnergyLaw, bulk_modulus};
 
 /// Warnings about a law that is one.
 pub(super) fn doubts(law: &EnergyLaw) -> Vec<String> {
     let mut doubts = Vec::new();
     let largest = largest_stiffness(law);
-    let (shear, volume) = (least_shear(law), law.bulk_modulus());
+    let (shear, volume) = (least_shear(law), bulk_modulus(&law.stiffness));
     if volume < -1e-9 * largest || shear < -1e-9 * largest {
         doubts.push("at rest the stiffness is negative: the body leaves its rest shape by itself");
     } else if volume <= 1e-9 * largest {

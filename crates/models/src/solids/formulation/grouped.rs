@@ -1,6 +1,6 @@
 //! The tensor-mass method as it is derived by machine: energy, forces and differentials of each kind of element and law as
 //! expressions of displacements, with everything that depends on rest positions and material grouped into constants that
-//! are computed once (Faure 2014). Hexahedra that are boxes along the axes take the shorter map.
+//! are computed once (Faure 2014). Cells that are boxes along the axes take the shorter map.
 
 mod expressions;
 
@@ -85,8 +85,9 @@ impl ByAssociation {
             if found.is_none() {
                 known.push(key);
                 let law = energy_law(law)?;
-                let element = element_data(key.1, quadrature.rule(key.1), key.2)
-                    .unwrap_or_else(|error| unreachable!("only hexahedra are found to be boxes: {error}"));
+                let element = element_data(key.1, quadrature.rule(key.1), key.2).unwrap_or_else(|error| {
+                    unreachable!("only elements that can be boxes are found to be some: {error}")
+                });
                 let steps = element.steps(&law, cut);
                 sorting.kernels.push(Arc::new(Expressions::new(&steps, &law, cell.kind.node_count())));
             }
@@ -109,7 +110,7 @@ fn refused(law: &MaterialLaw) -> FormulationError {
 fn energy_law(law: &MaterialLaw) -> Result<EnergyLaw, FormulationError> {
     let MaterialLaw::Known(known) = law else {
         let MaterialLaw::Text(text) = law else { unreachable!("a law is known or text") };
-        return Ok(text.law().clone());
+        return text.expressions().cloned().map_err(|_| refused(law));
     };
     let written = WrittenLaw::find(known.entry().name).and_then(|written| written.text().ok());
     let compiled = written.and_then(|text| EnergyLaw::compile(&text).ok()).ok_or_else(|| refused(law))?;
@@ -129,11 +130,11 @@ impl LawVisitor for Names {
     }
 }
 
-/// Off-diagonal part of `∂X/∂ξ`, relative, below which a hexahedron is a box along the axes.
+/// Off-diagonal part of `∂X/∂ξ`, relative, below which a cell is a box along the axes.
 const BOX_TOLERANCE: f64 = 1e-12;
 
 fn map_of(mesh: &Mesh, cell: &Cell) -> MapKind {
-    if cell.kind != ElementKind::Hex8 {
+    if cell.kind.box_corners().is_none() {
         return MapKind::General;
     }
     let corners: Vec<Vec3> = cell.nodes.iter().map(|node| mesh.points[*node as usize]).collect();

@@ -1,7 +1,6 @@
 //! Derived expressions at work: tapes over lanes of elements. What several fragments hold as a constant is stored once.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -14,7 +13,7 @@ use souple_math::{Lanes, Padded, Vec3};
 use souple_mesh::Mesh;
 
 use super::Names;
-use crate::materials::{Material, MaterialLaw};
+use crate::materials::{Material, MaterialLaw, TextLaw};
 use crate::solids::group::Group;
 use crate::solids::kernel::Kernel;
 use crate::solids::layout::{Chunk, LANES};
@@ -56,20 +55,10 @@ impl Expressions {
         let mut given = flat(&symbols.rest);
         given.extend(&symbols.parameters);
         let (displacements, variations) = (flat(&symbols.displacements), flat(&symbols.variations));
-        // energy, forces and differential hold much the same constants: each has one place
-        let mut place_of: HashMap<Expr, usize> = HashMap::new();
-        let mut whole_graph = graph.clone();
-        let mut fragment = |of: &Step, varied: &[Expr]| {
+        let of_element = steps.constant_places();
+        let fragment = |(of, places): (&Step, Vec<usize>), varied: &[Expr]| {
             let (constants, values): (Vec<Expr>, Vec<Expr>) = of.constants.iter().copied().unzip();
             let inputs: Vec<Expr> = displacements.iter().chain(&constants).copied().collect();
-            let mut whole: HashMap<Expr, Expr> = HashMap::new();
-            let mut places = Vec::with_capacity(constants.len());
-            for (symbol, definition) in &of.constants {
-                let definition = whole_graph.substitute(*definition, &whole);
-                whole.insert(*symbol, definition);
-                let next = place_of.len();
-                places.push(*place_of.entry(definition).or_insert(next));
-            }
             let directions = &law.parameters;
             let step =
                 Tape::of_expressions(graph, [&inputs, varied], &of.definitions, &of.outputs, directions);
@@ -82,27 +71,26 @@ impl Expressions {
                 step,
             }
         };
-        let mut fragments = |all: &[Step], varied: &[Expr]| -> Vec<Fragment> {
-            all.iter().map(|of| fragment(of, varied)).collect()
+        let fragments = |all: &[Step], places: Vec<Vec<usize>>, varied: &[Expr]| -> Vec<Fragment> {
+            all.iter().zip(places).map(|of| fragment(of, varied)).collect()
         };
-        let energy = fragments(&steps.energies, &[]);
-        let forces = fragments(&steps.forces, &[]);
-        let differential = fragments(&steps.differentials, &variations);
+        let energy = fragments(&steps.energies, of_element.energies, &[]);
+        let forces = fragments(&steps.forces, of_element.forces, &[]);
+        let differential = fragments(&steps.differentials, of_element.differentials, &variations);
         let parameters =
             law.parameters.iter().filter(|(_, value)| matches!(value, LawParameter::Number { .. }));
         let parameters = parameters.map(|(name, _)| name.clone()).collect();
-        let constant_count = place_of.len();
-        Self { nodes, parameters, energy, forces, differential, constant_count }
+        Self { nodes, parameters, energy, forces, differential, constant_count: of_element.count }
     }
 
     /// The numbers of a material in the order of the law's.
     pub fn numbers_of(&self, material: &Material) -> Vec<f64> {
-        let of_text = |law: &EnergyLaw, name: &String| match law.parameter(name) {
+        let of_text = |law: &TextLaw, name: &String| match law.parameter(name) {
             Some(LawParameter::Number { value, .. }) => *value,
             _ => unreachable!("the text that the association was derived from"),
         };
         let number = |name: &String| match &material.law {
-            MaterialLaw::Text(text) => of_text(text.law(), name),
+            MaterialLaw::Text(text) => of_text(text, name),
             MaterialLaw::Known(law) => {
                 let index = law.visit(Names).iter().position(|known| known == name);
                 material.parameters[index.unwrap_or_else(|| unreachable!("checked when it was derived"))]
