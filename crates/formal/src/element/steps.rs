@@ -1,8 +1,8 @@
 //! What an element computes at each step, in tensors: the same forces as [`super::derive`], not spelled out.
 //!
-//! At a sample `X = X_ξ⁻¹` is grouped into nine constants and the weight with the moduli into one each, which are the eleven
-//! of the source for a tetrahedron; then `F = I + U_ξ X`, `H = -ω P(F) Xᵀ`, `f_n = H ∂N_n/∂ξ`; the map of a box is three
-//! numbers, which scale columns. Spelled out the same takes fewer operations, by a fifth on a tetrahedron, because zeros and
+//! At a sample `X = X_ξ⁻¹` is grouped into nine constants and the weight with the moduli into one each: for the energy of a
+//! tetrahedron the eleven of the source, for its forces one more, twice a modulus; then `F = I + U_ξ X`, `H = -ω P(F) Xᵀ`,
+//! `f_n = H ∂N_n/∂ξ`; the map of a box is three numbers, which scale columns. Spelled out the same takes fewer operations, by a fifth on a tetrahedron, because zeros and
 //! ones of the shape functions go into them; in tensors it takes a few instructions in the place of hundreds, each of which has
 //! to be looked at, and laws in principal stretches have no other form.
 
