@@ -237,7 +237,7 @@ impl WithSimd for KickAndDrift<'_> {
             simd.add_f64s(v, simd.mul_f64s(simd.mul_f64s(f, inverse), h))
         };
         let drifted = |q: S::f64s, v: S::f64s| simd.add_f64s(q, simd.mul_f64s(v, h));
-        // a velocity that is not finite makes a position that is none
+        // a velocity that is not finite makes a position that is none; what was computed is written twice, never read back
         let mut zeros = zero;
         let points = q.iter_mut().zip(v).zip(to_q.iter_mut().zip(to_v)).zip(forces);
         let first = masses.first().copied().unwrap_or(1.0);
@@ -246,10 +246,11 @@ impl WithSimd for KickAndDrift<'_> {
         if differing == 0 {
             let inverse = simd.splat_f64s(1.0 / first);
             for (((q, v), (to_q, to_v)), f) in points {
-                *v = kicked(*v, *f, inverse);
-                *q = drifted(*q, *v);
-                (*to_q, *to_v) = (*q, *v);
-                zeros = simd.mul_add_e_f64s(*q, zero, zeros);
+                let faster = kicked(*v, *f, inverse);
+                let further = drifted(*q, faster);
+                (*v, *to_v) = (faster, faster);
+                (*q, *to_q) = (further, further);
+                zeros = simd.mul_add_e_f64s(further, zero, zeros);
             }
         } else {
             // 1/m three times over
@@ -259,10 +260,11 @@ impl WithSimd for KickAndDrift<'_> {
                 three.fill(1.0 / mass);
             }
             for ((((q, v), (to_q, to_v)), f), inverse) in points.zip(S::as_simd_f64s(inverses).0) {
-                *v = kicked(*v, *f, *inverse);
-                *q = drifted(*q, *v);
-                (*to_q, *to_v) = (*q, *v);
-                zeros = simd.mul_add_e_f64s(*q, zero, zeros);
+                let faster = kicked(*v, *f, *inverse);
+                let further = drifted(*q, faster);
+                (*v, *to_v) = (faster, faster);
+                (*q, *to_q) = (further, further);
+                zeros = simd.mul_add_e_f64s(further, zero, zeros);
             }
         }
         let done = 3 * masses.len() - q_rest.len();
