@@ -11,7 +11,7 @@ use souple_solve::BlockMatrix;
 
 use crate::Obstacle;
 use crate::hand::InHand;
-use crate::kept::{Kept, KeptRef, Summed};
+use crate::kept::{Kept, KeptRef};
 use crate::levels::Levels;
 use crate::state::{FieldState, Pair};
 
@@ -273,13 +273,16 @@ pub trait Force: Send + Sync {
         None
     }
 
-    /// Moves memory on, and writes what it keeps after this step behind the entries of other forces, by ascending keys. What
-    /// it kept before is in `at`.
+    /// Brings its scratch to what a sum of forces at `at` leaves there, for a stepper that summed them elsewhere: what was kept is
+    /// read here for the last time.
+    fn look_at_kept(&self, _at: &Configuration, _scratch: &mut Scratch) {}
+
+    /// Moves memory on, and writes what it keeps after this step behind the entries of other forces, by ascending keys, from
+    /// what the sum of forces left in its scratch. There is nothing kept in `at`: what is written takes its place.
     fn advance_kept(
         &self,
         _at: &Configuration,
         _scratch: &mut Scratch,
-        _summed: Summed,
         _memory: &mut [f64],
         _kept: &mut Kept,
     ) {

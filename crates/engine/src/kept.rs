@@ -44,15 +44,26 @@ impl Kept {
         self.numbers.clear();
     }
 
+    /// Room for so many entries more, with so many numbers in all.
+    pub fn make_room(&mut self, keys: usize, numbers: usize) {
+        make_room(&mut self.keys, keys);
+        make_room(&mut self.numbers, numbers);
+    }
+
     pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.clear();
+        self.make_room(other.keys.len(), other.numbers.len());
         self.counts.clone_from(&other.counts);
         self.keys.clone_from(&other.keys);
         self.numbers.clone_from(&other.numbers);
     }
+}
 
-    /// Bytes held.
-    pub(crate) fn bytes(&self) -> usize {
-        8 * (self.counts.capacity() + self.keys.capacity() + self.numbers.capacity())
+/// Room for `more` entries behind those of a list, and a sixteenth beyond where there was too little: a long list that grows
+/// a little every now and then is neither doubled, as lists are by themselves, nor moved each time.
+pub fn make_room<T>(list: &mut Vec<T>, more: usize) {
+    if list.capacity() - list.len() < more {
+        list.reserve_exact(more + (list.len() + more) / 16);
     }
 }
 

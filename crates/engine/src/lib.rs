@@ -41,7 +41,7 @@ pub use force::{
 pub use hand::{Grip, Hand, Held, InHand};
 pub use hash::Fingerprint;
 pub use interruption::Interruption;
-pub use kept::{Kept, KeptRef, Summed};
+pub use kept::{Kept, KeptRef, Summed, make_room};
 pub use kinematics::{DerivedRow, Feedback, Kinematics, KinematicsError, UnknownKind, UnknownRange};
 pub use levels::{Census, Levels};
 pub use mass::Mass;

@@ -143,7 +143,6 @@ impl SystemWorkspace {
             + size_of::<Pair>()
                 * (self.found_pairs.capacity() + self.mark.pairs.capacity() + self.before.pairs.capacity())
             + 8 * self.before.memory.capacity()
-            + self.before.kept.bytes()
             + self.tangent.bytes()
             + self.linear.bytes()
             + self.implicit.as_ref().map_or(0, ImplicitBuffers::bytes)
@@ -451,8 +450,14 @@ impl System {
         let before = &mut ws.before;
         before.memory.clone_from(&state.memory);
         before.pairs.clone_from(&state.pairs);
-        // what is kept is written anew
-        std::mem::swap(&mut before.kept, &mut state.kept);
+        // what is kept is written anew over what was, which sums of forces have read
+        if summed == Summed::Elsewhere {
+            for (index, force) in
+                self.forces.iter().enumerate().filter(|(_, force)| force.kept_len().is_some())
+            {
+                force.look_at_kept(&self.view(index, &ws.rows, state, around), &mut ws.scratches[index]);
+            }
+        }
         state.kept.clear();
         for (index, force) in self.forces.iter().enumerate() {
             let at = self.view(index, &ws.rows, before, around);
@@ -461,7 +466,7 @@ impl System {
                 let Kept { counts, keys, .. } = &mut state.kept;
                 let first = keys.len();
                 counts.resize(index + 1, 0);
-                force.advance_kept(&at, &mut ws.scratches[index], summed, memory, &mut state.kept);
+                force.advance_kept(&at, &mut ws.scratches[index], memory, &mut state.kept);
                 state.kept.counts[index] = (state.kept.keys.len() - first) as u64;
                 continue;
             }

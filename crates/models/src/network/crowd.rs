@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use souple_engine::{
-    Configuration, ContactPoint, Declaration, Energy, Force, Kept, Pair, Scratch, Summed, TangentWeights,
+    Configuration, ContactPoint, Declaration, Energy, Force, Kept, Pair, Scratch, TangentWeights,
 };
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, reduce};
@@ -381,19 +381,14 @@ impl Force for Crowd {
         (self.0.listing == Listing::Own).then(|| self.own_len())
     }
 
-    fn advance_kept(
-        &self,
-        at: &Configuration,
-        scratch: &mut Scratch,
-        summed: Summed,
-        memory: &mut [f64],
-        kept: &mut Kept,
-    ) {
-        let work = Work::of(scratch);
-        if summed == Summed::Elsewhere {
-            self.pass(at, work);
+    fn look_at_kept(&self, at: &Configuration, scratch: &mut Scratch) {
+        if self.0.listing == Listing::Own {
+            self.pass(at, Work::of(scratch));
         }
-        memory[0] += work.pass.keep(kept);
+    }
+
+    fn advance_kept(&self, _: &Configuration, scratch: &mut Scratch, memory: &mut [f64], kept: &mut Kept) {
+        memory[0] += Work::of(scratch).pass.keep(kept);
     }
 
     fn accepts_key(&self, key: u64) -> bool {

@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use souple_engine::make_room;
 use souple_math::Vec3;
 use souple_solve::reduce;
 
@@ -115,6 +116,7 @@ impl Neighbours {
             starts[ball + 1] += starts[ball];
         }
         others.clear();
+        make_room(others, starts[count] as usize);
         found.iter().for_each(|found| others.extend_from_slice(found));
     }
 
@@ -129,6 +131,8 @@ impl Neighbours {
             turned_starts[ball + 1] += turned_starts[ball];
         }
         // each start moves on to the next while its ball is given slots, and back at the end
+        let more = others.len().saturating_sub(turned.len());
+        make_room(turned, more);
         turned.resize(others.len(), 0);
         for (slot, row) in others.iter().enumerate() {
             let start = &mut turned_starts[(row - first) as usize];

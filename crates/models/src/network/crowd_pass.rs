@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use souple_engine::{Configuration, Kept, KeptRef};
+use souple_engine::{Configuration, Kept, KeptRef, make_room};
 use souple_math::Vec3;
 use souple_solve::reduce;
 
@@ -14,8 +14,10 @@ use super::friction::{Friction, Hook, Phase};
 use super::kernel::LinkKernel;
 use super::layout::LANES;
 
-/// Balls of the first group that a thread takes at once.
+/// Balls of the first group that a thread takes at once, at least.
 const TOGETHER: usize = 512;
+/// Tasks that are enough for any number of threads: each has buffers of its own.
+const TASKS: usize = 256;
 /// Balls whose pairs are looked at together: their numbers stay near the processor.
 const AT_HAND: usize = 32;
 
@@ -207,11 +209,14 @@ impl Pass {
     ) {
         let Evaluation { groups, list, law, friction, range, timestep, kept_len } = *with;
         let (count, first_row) = (groups.first.len(), groups.first.start);
+        let together = count.div_ceil(TASKS).max(1).next_multiple_of(TOGETHER);
+        let more = list.slot_count().saturating_sub(self.forces.len());
+        make_room(&mut self.forces, more);
         self.forces.resize(list.slot_count(), Vec3::ZERO);
-        self.tasks.resize_with(count.div_ceil(TOGETHER), Task::default);
-        let start_of = |task: usize| list.start((task * TOGETHER).min(count));
+        self.tasks.resize_with(count.div_ceil(together), Task::default);
+        let start_of = |task: usize| list.start((task * together).min(count));
         each(0, &mut self.tasks, &mut self.forces, &start_of, &|number, task, forces| {
-            let balls = number * TOGETHER..((number + 1) * TOGETHER).min(count);
+            let balls = number * together..((number + 1) * together).min(count);
             let mut known = Known::from(at.kept, kept_len, first_row + balls.start as u32);
             task.keys.clear();
             task.numbers.clear();
@@ -261,8 +266,8 @@ impl Pass {
 
     /// Writes what is remembered, and gives the heat [J].
     pub fn keep(&self, kept: &mut Kept) -> f64 {
-        kept.keys.reserve(self.tasks.iter().map(|task| task.keys.len()).sum());
-        kept.numbers.reserve(self.tasks.iter().map(|task| task.numbers.len()).sum());
+        let sum = |len: fn(&Task) -> usize| self.tasks.iter().map(len).sum();
+        kept.make_room(sum(|task| task.keys.len()), sum(|task| task.numbers.len()));
         for task in &self.tasks {
             kept.keys.extend_from_slice(&task.keys);
             kept.numbers.extend_from_slice(&task.numbers);

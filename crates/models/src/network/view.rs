@@ -7,7 +7,7 @@ use std::any::Any;
 
 use souple_engine::tangent::add_block;
 use souple_engine::{
-    Configuration, Curvature, Declaration, Energy, Force, Kept, Pair, Scratch, Summed, TangentWeights,
+    Configuration, Curvature, Declaration, Energy, Force, Kept, Pair, Scratch, TangentWeights,
 };
 use souple_math::{Mat3, Vec3};
 use souple_solve::BlockMatrix;
@@ -264,14 +264,7 @@ impl Force for ViewedLinks {
         (self.links.memory_len() > 0).then_some(0)
     }
 
-    fn advance_kept(
-        &self,
-        at: &Configuration,
-        scratch: &mut Scratch,
-        _summed: Summed,
-        memory: &mut [f64],
-        _kept: &mut Kept,
-    ) {
+    fn advance_kept(&self, at: &Configuration, scratch: &mut Scratch, memory: &mut [f64], _kept: &mut Kept) {
         let seen = seen(scratch);
         self.look(at, seen);
         let inner = Configuration { positions: &seen.positions, velocities: &seen.velocities, ..*at };
