@@ -82,14 +82,23 @@ pub fn farthest(lines: &[Vec<Place>], other: &[Vec<Place>]) -> f64 {
         let t = t.clamp(0.0, 1.0);
         length(minus(from, [along[0] * t, along[1] * t]))
     };
-    let nearest = |p: Place| {
-        other
-            .iter()
-            .flat_map(|line| segments(line))
-            .map(|segment| to_segment(p, segment))
-            .fold(f64::INFINITY, f64::min)
-    };
-    lines.iter().flatten().map(|place| nearest(*place)).fold(0.0, f64::max)
+    let segments: Vec<[Place; 2]> = other.iter().flat_map(|line| segments(line)).collect();
+    let (mut most, mut last) = (0.0_f64, 0);
+    for place in lines.iter().flatten() {
+        // from the segment that was near the place before: one no farther than the farthest known is enough
+        let mut nearest = f64::INFINITY;
+        for number in (last..segments.len()).chain(0..last) {
+            let distance = to_segment(*place, segments[number]);
+            if distance < nearest {
+                (nearest, last) = (distance, number);
+            }
+            if nearest <= most {
+                break;
+            }
+        }
+        most = most.max(nearest);
+    }
+    most
 }
 
 /// Balls by the cells of a grid.
@@ -131,34 +140,24 @@ pub struct Frontier {
 
 impl Frontier {
     /// `Σ max(0, S - |x - P_i|)`, `S = R + R_probe`, less the `R_probe` of a single touch.
-    fn excess(&self, balls: &Balls, place: Place) -> f64 {
+    fn excess(&self, near: &[Place], place: Place) -> f64 {
         let reach = self.radius + self.probe;
-        balls.near(place).map(|ball| reach - length(minus(place, ball))).sum::<f64>() - self.probe
+        near.iter().map(|ball| (reach - length(minus(place, *ball))).max(0.0)).sum::<f64>() - self.probe
     }
 
     /// The lines where the sum is that of a single touch, by marching squares over cells near the balls.
     pub fn lines(&self, places: &[Place]) -> Lines {
-        let balls = Balls::new(places, self.radius + self.probe);
-        let reach = ((self.radius + self.probe) / self.cell).ceil() as i64 + 1;
-        let cell_of = |place: Place| place.map(|x| (x / self.cell).floor() as i64);
-        let mut corners: HashMap<[i64; 2], f64> = HashMap::new();
-        let mut squares: Vec<[i64; 2]> = Vec::new();
-        for place in places {
-            let [x, y] = cell_of(*place);
-            squares.extend((-reach..=reach).flat_map(|j| (-reach..=reach).map(move |i| [x + i, y + j])));
-        }
-        squares.sort_unstable();
-        squares.dedup();
-        let mut value = |corner: [i64; 2]| {
-            let place = corner.map(|x| x as f64 * self.cell);
-            *corners.entry(corner).or_insert_with(|| self.excess(&balls, place))
-        };
+        let values = Values::of(self, places);
+        // those that reach any place of an edge from either end
+        let balls = Balls::new(places, self.radius + self.probe + 2.0 * self.cell);
+        let squares = values.squares_on_the_way();
         // from the edge where a line enters a square to that where it leaves, inside on its left
         let mut next: HashMap<Edge, Edge> = HashMap::new();
         let mut starts = Vec::new();
         for [x, y] in squares {
-            let ring = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
-            let values = ring.map(&mut value);
+            let (right, up) = (x.saturating_add(1), y.saturating_add(1));
+            let ring = [[x, y], [right, y], [right, up], [x, up]];
+            let values = ring.map(|corner| values.at(corner));
             let is_in = values.map(|value| value > 0.0);
             let edges: [Edge; 4] =
                 std::array::from_fn(|side| Edge::between(ring[side], ring[(side + 1) % 4]));
@@ -180,10 +179,11 @@ impl Frontier {
         // by halves: out of reach the sum is constant, and no straight line leads to where it is zero
         let cross = |edge: Edge| {
             let [a, b] = edge.ends();
+            let near: Vec<Place> = balls.near(a.map(|x| x as f64 * self.cell)).collect();
             let at = |share: f64| {
                 [0, 1].map(|axis: usize| (a[axis] as f64 + share * (b[axis] - a[axis]) as f64) * self.cell)
             };
-            let is_in = |share| self.excess(&balls, at(share)) > 0.0;
+            let is_in = |share| self.excess(&near, at(share)) > 0.0;
             let (mut low, mut high, first) = (0.0, 1.0, is_in(0.0));
             for _ in 0..HALVES {
                 let middle = 0.5 * (low + high);
@@ -207,6 +207,96 @@ impl Frontier {
     }
 }
 
+/// Corners of the grid along each edge of a tile.
+const TILE: usize = 32;
+
+/// What [`Frontier::excess`] is at the corners of a grid, tile by tile where there are balls; elsewhere none reaches.
+struct Values {
+    tiles: HashMap<[i64; 2], Box<[f64]>>,
+    nothing: f64,
+}
+
+impl Values {
+    /// Ball by ball, each at the corners that it reaches.
+    fn of(frontier: &Frontier, places: &[Place]) -> Self {
+        let (reach, cell) = (frontier.radius + frontier.probe, frontier.cell);
+        let mut tiles: HashMap<[i64; 2], Box<[f64]>> = HashMap::new();
+        let tile = TILE as i64;
+        for place in places {
+            let low = place.map(|x| ((x - reach) / cell).floor() as i64);
+            let high = place.map(|x| ((x + reach) / cell).ceil() as i64);
+            let [columns, rows] = [0, 1].map(|i: usize| low[i].div_euclid(tile)..=high[i].div_euclid(tile));
+            for [i, j] in rows.flat_map(|j| columns.clone().map(move |i| [i, j])) {
+                let values = tiles
+                    .entry([i, j])
+                    .or_insert_with(|| vec![-frontier.probe; TILE * TILE].into_boxed_slice());
+                let within = |axis: usize, number: i64| {
+                    let first = number * tile;
+                    low[axis].max(first)..=high[axis].min(first + tile - 1)
+                };
+                for y in within(1, j) {
+                    let up = y as f64 * cell - place[1];
+                    for x in within(0, i) {
+                        let along = x as f64 * cell - place[0];
+                        let index = (y - j * tile) as usize * TILE + (x - i * tile) as usize;
+                        values[index] += (reach - (along * along + up * up).sqrt()).max(0.0);
+                    }
+                }
+            }
+        }
+        Self { tiles, nothing: -frontier.probe }
+    }
+
+    fn at(&self, [x, y]: [i64; 2]) -> f64 {
+        let tile = TILE as i64;
+        let values = self.tiles.get(&[x.div_euclid(tile), y.div_euclid(tile)]);
+        let index = y.rem_euclid(tile) as usize * TILE + x.rem_euclid(tile) as usize;
+        values.map_or(self.nothing, |values| values[index])
+    }
+
+    /// Squares with corners on both sides, by their lower corners, in order.
+    fn squares_on_the_way(&self) -> Vec<[i64; 2]> {
+        let tile = TILE as i64;
+        let mut squares = Vec::new();
+        for ([i, j], values) in &self.tiles {
+            let is_in = |x: usize, y: usize| {
+                if x < TILE && y < TILE {
+                    values[y * TILE + x] > 0.0
+                } else {
+                    // grids end with the whole numbers
+                    self.at([(i * tile).saturating_add(x as i64), (j * tile).saturating_add(y as i64)]) > 0.0
+                }
+            };
+            for (y, x) in (0..TILE).flat_map(|y| (0..TILE).map(move |x| (y, x))) {
+                let first = is_in(x, y);
+                if is_in(x + 1, y) != first || is_in(x, y + 1) != first || is_in(x + 1, y + 1) != first {
+                    squares.push([i * tile + x as i64, j * tile + y as i64]);
+                }
+            }
+            // squares of tiles without balls to the left and below, whose upper corners are in this one
+            for (di, dj) in [(-1, 0), (0, -1), (-1, -1)] {
+                if self.tiles.contains_key(&[i + di, j + dj]) {
+                    continue;
+                }
+                let columns = if di == 0 { 0..tile } else { -1..0 };
+                let rows = if dj == 0 { 0..tile } else { -1..0 };
+                for [x, y] in rows.flat_map(|y| {
+                    columns.clone().map(move |x| [(i * tile).saturating_add(x), (j * tile).saturating_add(y)])
+                }) {
+                    let (right, up) = (x.saturating_add(1), y.saturating_add(1));
+                    let corners = [[x, y], [right, y], [x, up], [right, up]];
+                    if corners.into_iter().any(|corner| self.at(corner) > 0.0) {
+                        squares.push([x, y]);
+                    }
+                }
+            }
+        }
+        squares.sort_unstable();
+        squares.dedup();
+        squares
+    }
+}
+
 /// Of an edge of the grid, until a crossing is found.
 const HALVES: usize = 24;
 
@@ -221,7 +311,7 @@ impl Edge {
 
     fn ends(self) -> [[i64; 2]; 2] {
         let Self([x, y], is_second) = self;
-        [[x, y], if is_second { [x, y + 1] } else { [x + 1, y] }]
+        [[x, y], if is_second { [x, y.saturating_add(1)] } else { [x.saturating_add(1), y] }]
     }
 }
 
