@@ -259,6 +259,15 @@ fn fruit(more: &str) -> String {
     )
 }
 
+/// What layers save is told: of two masses each, core and flesh act on each other, flesh on itself and on the floor; the core
+/// alone does not meet it.
+#[test]
+fn saved_pairs_are_told() {
+    let told = |more: &str| scene(&fruit(more)).unwrap().networks[0].pairs();
+    assert_eq!(told(""), [4 + 1 + 4, 4 + 1 + 8]);
+    assert_eq!(told("breakable = true"), [4 + 1 + 8; 2]);
+}
+
 /// Layers become crowds of their groups; things meet by their outermost layers alone, unless they may break.
 #[test]
 fn objects_become_crowds() {

@@ -302,6 +302,8 @@ pub struct CrowdSpec {
     pub law: Option<Chosen<BuildLink>>,
     /// Names of groups: none, one or two.
     pub of: Vec<String>,
+    /// Groups that would meet beside these if layers did not keep them from it.
+    pub kept_apart: Vec<[String; 2]>,
     /// That of the law where `None` [m].
     pub range: Option<f64>,
     pub friction: Option<FrictionSpec>,
@@ -691,6 +693,7 @@ impl CrowdSpec {
             name: None,
             law: reader.entry("law", &LINKS),
             of,
+            kept_apart: Vec::new(),
             range: reader.maybe_number("range"),
             friction,
             site: reader.site(),

@@ -334,6 +334,8 @@ fn network_to_json(network: &NetworkInfo, costs: &[f64]) -> Value {
             "force": law.force,
             "law": law.law,
             "links": law.links,
+            "pairs": law.pairs,
+            "saved_pairs": law.saved,
             "state_dimension": law.remembers,
             "stiffest": law.stiffest,
             "parameters": parameters.collect::<Map<_, _>>(),
@@ -344,6 +346,8 @@ fn network_to_json(network: &NetworkInfo, costs: &[f64]) -> Value {
         "masses": network.masses,
         "fixed": network.fixed,
         "links": network.link_count(),
+        "pairs": network.pairs()[0],
+        "pairs_of_all_layers": network.pairs()[1],
         "numbers_remembered": network.memory(),
         "category": network.category(),
         "timestep_seconds": network.timestep,
@@ -367,11 +371,21 @@ fn print_network(network: &NetworkInfo, costs: &[f64]) {
         let algorithmic = mass / network.timestep.powi(2);
         print_line(format_args!("    lightest mass m = {mass:.4e} kg, M = m/Te² = {algorithmic:.4e} N/m"));
     }
+    if let [pairs, all] = network.pairs()
+        && pairs < all
+    {
+        print_line(format_args!(
+            "    crowds join {}, where all layers would {}: {:.2} times as many",
+            souple_table::counted(pairs, "pair"),
+            souple_table::counted(all, "pair"),
+            all as f64 / pairs as f64,
+        ));
+    }
     for (law, seconds) in network.laws.iter().zip(costs) {
-        let links = if law.links > 0 {
-            format!("{}, ", souple_table::counted(law.links as u64, "link"))
-        } else {
-            String::new()
+        let links = match (law.links as u64, law.pairs) {
+            (0, 0) => String::new(),
+            (0, pairs) => format!("{}, ", souple_table::counted(pairs, "pair")),
+            (links, _) => format!("{}, ", souple_table::counted(links, "link")),
         };
         let stiffest = law.stiffest.map(|h| format!("takes {h:.4e} N/m of 4M, ")).unwrap_or_default();
         print_line(format_args!(

@@ -29,6 +29,10 @@ pub struct LawInfo {
     pub law: &'static str,
     /// Links; 0 of crowds, whose pairs come and go.
     pub links: usize,
+    /// Of crowds: every two masses that it would join, were it made of links.
+    pub pairs: u64,
+    /// Of encounters: those that there would be more if all layers met.
+    pub saved: u64,
     /// Numbers that each remembers: the dimension of its state.
     pub remembers: usize,
     /// What a link takes of the bound `4M`: `K + 2Z` of a spring and damper [N/m]; none of crowds.
@@ -45,6 +49,12 @@ impl NetworkInfo {
     /// Numbers that all links remember.
     pub fn memory(&self) -> usize {
         self.laws.iter().map(|law| law.links * law.remembers).sum()
+    }
+
+    /// Every two masses that are looked at, and how many there would be if all layers of objects met.
+    pub fn pairs(&self) -> [u64; 2] {
+        let pairs = self.laws.iter().map(|law| law.pairs).sum();
+        [pairs, pairs + self.laws.iter().map(|law| law.saved).sum::<u64>()]
     }
 
     /// Where it stands between multitudes of points under simple laws and few points under laws that do much.
@@ -87,18 +97,32 @@ pub fn networks(draft: &Draft) -> Vec<NetworkInfo> {
                 Some(LawInfo {
                     law: law.entry.name,
                     links: links.ends.len(),
+                    pairs: 0,
+                    saved: 0,
                     remembers: of.remembered_len(),
                     stiffest: Some(of.stiffest()),
                     parameters: parameters(law),
                     force,
                 })
             });
+            let all = body.mesh.points.len() as u64;
+            let count = |group: &str| network.numbers_of(group).map_or(0, |masses| masses.len() as u64);
+            let pairs = |of: &[&str]| match of {
+                [a, b] => count(a) * count(b),
+                [of] => count(of) * count(of).saturating_sub(1) / 2,
+                _ => all * all.saturating_sub(1) / 2,
+            };
             let crowds = network.crowds.iter().enumerate().filter_map(|(index, crowd)| {
                 let law = crowd.law.as_ref()?;
                 Some(LawInfo {
-                    force: format!("{}.crowds[{index}]", body.spec.name),
+                    force: crowd
+                        .name
+                        .clone()
+                        .unwrap_or_else(|| format!("{}.crowds[{index}]", body.spec.name)),
                     law: law.entry.name,
                     links: 0,
+                    pairs: pairs(&crowd.of.iter().map(String::as_str).collect::<Vec<_>>()),
+                    saved: crowd.kept_apart.iter().map(|of| pairs(&of.each_ref().map(String::as_str))).sum(),
                     remembers: 0,
                     stiffest: None,
                     parameters: parameters(law),

@@ -170,7 +170,15 @@ fn encounter(name: &str, table: &Reader, objects: &[Object]) -> Vec<CrowdSpec> {
     for (index, first) in meeting.iter().enumerate() {
         for second in &meeting[index + 1..] {
             let (own, other) = (first.surface(layers), second.surface(layers));
-            crowds.extend(between(&own, &other).into_iter().map(|[a, b]| law.of(name.to_owned(), a, b)));
+            let meet = between(&own, &other);
+            let [inner, outer] = [first, second].map(|object| object.layers.concat());
+            let all = between(&inner, &outer).into_iter().filter(|pair| !meet.contains(pair));
+            let kept_apart: Vec<[String; 2]> = all.map(|pair| pair.map(String::clone)).collect();
+            let known = crowds.len();
+            crowds.extend(meet.iter().map(|[a, b]| law.of(name.to_owned(), a, b)));
+            if let Some(crowd) = crowds.get_mut(known) {
+                crowd.kept_apart = kept_apart;
+            }
         }
     }
     numbered(crowds)
@@ -206,6 +214,7 @@ impl Between {
             name: Some(name),
             law: Some(self.law.clone()),
             of,
+            kept_apart: Vec::new(),
             range: self.range,
             friction: self.friction.clone(),
             site: self.site.clone(),
