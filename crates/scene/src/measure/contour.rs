@@ -80,6 +80,11 @@ pub(super) fn measure(quantity: ContourQuantity, positions: &[Vec3], [own, from]
         ContourQuantity::Length => contour::total_length(&lines),
         ContourQuantity::Area => contour::enclosed_area(&lines),
         ContourQuantity::Lines => lines.len() as f64,
+        ContourQuantity::Roundness => {
+            // of no length, as of no lines, it is none
+            let square = contour::total_length(&lines).powi(2).max(f64::MIN_POSITIVE);
+            4.0 * std::f64::consts::PI * contour::enclosed_area(&lines) / square
+        }
         ContourQuantity::Apart => contour::farthest(&lines, &from.lines(positions)),
     }
 }

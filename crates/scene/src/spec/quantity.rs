@@ -67,6 +67,7 @@ pub enum ContourQuantity {
     Area,
     Lines,
     Apart,
+    Roundness,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -543,6 +544,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "how far the contour is from the one that the key `from` names, at most",
         OUTLINE,
         contour("m", ContourQuantity::Apart),
+    ),
+    &entry(
+        "contour.roundness",
+        "4 pi A/L^2 of its area and length: 1 for a circle, less for all else",
+        OUTLINE,
+        contour("", ContourQuantity::Roundness),
     ),
     &entry(
         "levels.active",

@@ -19,6 +19,7 @@ mod implicit;
 mod levels;
 mod loads;
 mod long_beam;
+mod material_tests;
 mod matter;
 mod mixed_models;
 mod motion;
@@ -75,6 +76,7 @@ pub const TABLES: &[&[Case]] = &[
     rheology::CASES,
     conditional::CASES,
     matter::CASES,
+    material_tests::CASES,
     views::CASES,
     frames::CASES,
     octree::CASES,

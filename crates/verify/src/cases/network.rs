@@ -20,6 +20,11 @@ pub(super) const OSCILLATOR: Case = Case {
 
 const UNDAMPED: &str = "networks.oscillator.links[0].law.damping=0";
 
+/// A mass that nothing holds.
+const FREE: &str = r#"networks.oscillator.links[0].law={ name = "spring", stiffness = 0 }"#;
+const IMPULSE: &str =
+    r#"networks.oscillator.loads=[{ region = "bob", force = ["if(t > 0.15 and t < 0.25, 10, 0)", 0, 0] }]"#;
+
 const MODE: Case = Case {
     scene: "vibrating_modes",
     reading: Reading::last("line").after(1000),
@@ -52,6 +57,61 @@ pub(super) const CASES: &[Case] = &[
         reference: -0.980_999_999_307_826_8,
         source: "V' = (1 - z Te/m) V + g Te",
         mutation: "networks.rain.masses.braked.drag=20.1",
+        ..OSCILLATOR
+    },
+    Case {
+        id: "impulse_is_not_seen_at_once",
+        capabilities: &["JIM-3"],
+        what: "displacement of a mass at the very step, the second, at which 10 N act on it for a step",
+        settings: &[FREE, IMPULSE],
+        reading: Reading::component("place", 0).after(2),
+        reference: 0.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification §2.2: outputs that result from inputs appear exactly one period later",
+        mutation: r#"networks.oscillator.loads[0].force=["if(t > 0.05 and t < 0.15, 10, 0)", 0, 0]"#,
+        ..OSCILLATOR
+    },
+    Case {
+        id: "impulse_is_seen_a_step_later",
+        capabilities: &["JIM-3"],
+        what: "the same at the next step: F Te²/m",
+        settings: &[FREE, IMPULSE],
+        reading: Reading::component("place", 0).after(3),
+        reference: 0.1,
+        source: "specification §2.2: outputs that result from inputs appear exactly one period later",
+        mutation: r#"networks.oscillator.loads[0].force=["if(t > 0.25 and t < 0.35, 10, 0)", 0, 0]"#,
+        ..OSCILLATOR
+    },
+    Case {
+        id: "motion_is_seen_a_step_later",
+        capabilities: &["JIM-3"],
+        what: "displacement of a mass on a spring of 4 N/m at the step after its other end was led on by a centimetre: k d Te²/m",
+        settings: &[
+            r#"networks.oscillator.links[0].law={ name = "spring", stiffness = 4 }"#,
+            "networks.oscillator.links[0].rest_length=1.1",
+            "networks.oscillator.masses.ground.fixed=false",
+            r#"networks.oscillator.pins=[{ region = "ground", motion = { formula = ["if(t > 0.15, 0.01, 0)", 0, 0] } }]"#,
+        ],
+        reading: Reading::component("place", 0).after(3),
+        reference: 4e-4,
+        // places of a metre
+        tolerance: Tolerance::Absolute(1e-15),
+        source: "specification §2.2: outputs that result from inputs appear exactly one period later",
+        mutation: r#"networks.oscillator.pins[0].motion.formula[0]="if(t > 0.25, 0.01, 0)""#,
+        ..OSCILLATOR
+    },
+    Case {
+        id: "swirl_from_outside",
+        capabilities: &["JIM-15"],
+        what: "place across of a mass that a force from outside turns, 4 N/m times its place turned by a right angle: no energy has it, no link gives it",
+        settings: &[
+            FREE,
+            r#"networks.oscillator.loads=[{ region = "bob", force = ["-4 * y", "4 * x", 0] }]"#,
+        ],
+        reading: Reading::component("place", 1),
+        reference: 2_249.737_100_069_97,
+        source: "z' = (2 + i k Te²/m) z - z_before from rest at 1.1 m, in the plane of complex numbers; extra-physical modules (specification §2.18)",
+        mutation: r#"networks.oscillator.loads[0].force=["-4 * y", "4.001 * x", 0]"#,
         ..OSCILLATOR
     },
     Case {
