@@ -23,7 +23,8 @@ fn main() {
 fn hash(path: &Path, hasher: &mut DefaultHasher) {
     let Ok(folder) = fs::read_dir(path) else {
         path.file_name().hash(hasher);
-        fs::read(path).unwrap_or_default().hash(hasher);
+        let content = fs::read(path);
+        content.unwrap_or_else(|error| panic!("{}: {error}", path.display())).hash(hasher);
         return;
     };
     let mut entries: Vec<PathBuf> = folder.flatten().map(|entry| entry.path()).collect();

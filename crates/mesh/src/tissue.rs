@@ -114,6 +114,12 @@ impl Patch {
         facing.filter_map(|corners| ray_meets(point, direction, corners)).min_by(f64::total_cmp)
     }
 
+    /// Whether a line through a point meets its faces.
+    fn is_met_along(&self, point: Vec3, direction: Vec3) -> bool {
+        let mut both = [direction, -direction].into_iter();
+        both.any(|way| self.triangles().any(|corners| ray_meets(point, way, corners).is_some()))
+    }
+
     /// Where a line meets its faces, nearest to a point of it; the nearest place where it passes them by.
     fn met_along(&self, point: Vec3, direction: Vec3) -> Vec3 {
         let distances = self.triangles().flat_map(|corners| {
@@ -194,7 +200,8 @@ pub fn tissue(from: &Patch, to: &Patch, wanted: &Tissue) -> Result<Mesh, TissueE
         TissueForm::Sheet => {
             let first = widest(from, direction, None, size)?;
             let second = widest(to, direction, Some(first.axis), size)?;
-            loft([first, second], direction, wanted)
+            let ends = [first, second].map(|end| end.within_its_faces(direction, wanted.thickness));
+            loft(ends, direction, wanted)
         }
     }
 }
@@ -205,6 +212,39 @@ struct End<'a> {
     patch: &'a Patch,
     axis: Vec3,
     ends: [f64; 2],
+}
+
+/// Halvings between a place that is within a region and one that is not.
+const HALVES: usize = 40;
+
+impl End<'_> {
+    /// No wider than its faces are at least as wide across it as the tissue is thick: round regions end in tips.
+    fn within_its_faces(self, direction: Vec3, thickness: f64) -> Self {
+        let normal = direction.cross(self.axis);
+        let normal = normal / normal.length();
+        let fits = |u: f64| {
+            [-0.5, 0.5].into_iter().all(|half| {
+                let corner = self.patch.middle() + self.axis * u + normal * (half * thickness);
+                self.patch.is_met_along(corner, direction)
+            })
+        };
+        // where the middle does not fit either, that is told as what it is
+        if self.patch.faces.is_empty() || !fits(0.0) {
+            return self;
+        }
+        let ends = self.ends.map(|end| {
+            if fits(end) {
+                return end;
+            }
+            let (mut inside, mut outside) = (0.0, end);
+            for _ in 0..HALVES {
+                let middle = 0.5 * (inside + outside);
+                *(if fits(middle) { &mut inside } else { &mut outside }) = middle;
+            }
+            inside
+        });
+        Self { ends, ..self }
+    }
 }
 
 /// Spreads that differ by less than this part are as wide one way as the other.
@@ -225,8 +265,11 @@ fn widest<'a>(
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
     let is_square = values[order[0]] - values[order[1]] <= AS_WIDE * values[order[0]];
-    let mut axis =
-        if is_square { like.unwrap_or_else(|| direction.any_orthogonal()) } else { eigen.vectors.columns[order[0]] };
+    let mut axis = if is_square {
+        like.unwrap_or_else(|| direction.any_orthogonal())
+    } else {
+        eigen.vectors.columns[order[0]]
+    };
     // of two signs the one that does not twist the sheet, or the one along the axes
     let reference = like.unwrap_or(Vec3::new(1.0, 1e-3, 1e-6));
     if axis.dot(reference) < 0.0 {
@@ -433,7 +476,8 @@ mod tests {
     /// Axes run from the first end to the second, the second one along the width; of triangles too.
     #[test]
     fn axes_run_from_end_to_end() {
-        let (floor, roof) = (square(0.0, 4.0, |_| 0.0, 2), from_below(square(0.0, 4.0, |x| 1.0 + 0.1 * x, 2)));
+        let (floor, roof) =
+            (square(0.0, 4.0, |_| 0.0, 2), from_below(square(0.0, 4.0, |x| 1.0 + 0.1 * x, 2)));
         let halves = |patch: &Patch| {
             let faces = patch.faces.iter();
             let cut = faces.flat_map(|f| [vec![f[0], f[1], f[2]], vec![f[0], f[2], f[3]]]).collect();
@@ -455,10 +499,32 @@ mod tests {
         }
     }
 
+    /// On round regions a sheet is as thick as it was asked for where it ends, too.
+    #[test]
+    fn sheets_on_round_regions_are_of_one_thickness() {
+        let disc = |height: f64| {
+            let corner = |i: usize| {
+                let angle = i as f64 / 24.0 * std::f64::consts::TAU;
+                Vec3::new(angle.cos(), height, -angle.sin())
+            };
+            let middle = Vec3::new(0.0, height, 0.0);
+            Patch {
+                points: (0..24).map(corner).chain([middle]).collect(),
+                faces: (0..24).map(|i| vec![middle, corner(i), corner(i + 1)]).collect(),
+            }
+        };
+        let sheet = Tissue { form: TissueForm::Sheet, thickness: 0.5, ..PAD };
+        let mut mesh = tissue(&disc(0.0), &from_below(disc(3.0)), &sheet).unwrap();
+        // as wide as two chords half a thickness from the middle are, of a polygon
+        let width = volume(&mut mesh) / (3.0 * 0.5);
+        let of_circle = 2.0 * (1.0_f64 - 0.0625).sqrt();
+        assert!(width < of_circle && width > 0.98 * of_circle, "{width} of {of_circle}");
+    }
+
     /// Ligaments and sheets begin and end on the surfaces, with the section that was asked for.
     #[test]
     fn ligaments_and_sheets_reach_from_one_to_the_other() {
-        let (floor, roof) = (square(0.0, 4.0, |_| 0.0, 4), square(0.0, 4.0, |_| 3.0, 4));
+        let (floor, roof) = (square(0.0, 4.0, |_| 0.0, 4), from_below(square(0.0, 4.0, |_| 3.0, 4)));
         let ligament = Tissue { form: TissueForm::Ligament, thickness: 0.5, ..PAD };
         let mut mesh = tissue(&floor, &roof, &ligament).unwrap();
         assert!((volume(&mut mesh) - 3.0 * 0.25).abs() < 1e-12);

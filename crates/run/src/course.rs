@@ -10,6 +10,7 @@ use souple_engine::{Command, World};
 use souple_scene::spec::expect::Expect;
 use souple_scene::spec::picture::PictureView;
 use souple_scene::spec::sound::Sound;
+use souple_table::counted;
 
 use crate::expect::Span;
 use crate::frames::Frames;
@@ -172,6 +173,14 @@ impl Course {
         let (sounds, said): (Vec<_>, Vec<_>) =
             sounds.map(|sound| Rendered::new(sound, traces, rounding)).unzip();
         session.warnings.extend(said.into_iter().flatten());
+        if session.solver.shortened > 0 {
+            session.warnings.push(format!(
+                "{} of one linearised solve went up in potential and {} taken in part, which costs momentum and energy: take shorter steps, or \
+                 `newton = \"full\"`",
+                counted(session.solver.shortened, "step"),
+                if session.solver.shortened == 1 { "was" } else { "were" },
+            ));
+        }
         let mut report = Report {
             probes: traces.iter().map(Trace::summary).collect(),
             sounds: sounds.iter().flatten().map(|sound| sound.summary().clone()).collect(),

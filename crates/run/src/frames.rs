@@ -50,7 +50,8 @@ impl Frames {
             dresses = worn.map(|dress| Series::new(&path, worn_by(&dress.body))).collect();
             contours = names_of_contours(&session.bodies).map(|name| Series::new(&path, name)).collect();
             let carried = session.bodies.iter().enumerate().filter(|(_, body)| body.frames.is_some());
-            let series = |(index, body): (usize, &BodyInfo)| (index, Series::new(&path, carriers_of(&body.name)));
+            let series =
+                |(index, body): (usize, &BodyInfo)| (index, Series::new(&path, carriers_of(&body.name)));
             carriers = carried.map(series).collect();
         }
         let every = if count > 0 { steps.div_ceil(count).max(1) } else { u64::MAX };

@@ -42,7 +42,7 @@ pub struct Session {
     recording: Recording,
     skin_changes: Vec<SkinChange>,
     places: BTreeMap<PathBuf, PathBuf>,
-    solver: StepReport,
+    pub(crate) solver: StepReport,
     energy_at_start: souple_engine::EnergyReport,
     momentum_at_start: (souple_math::Vec3, souple_math::Vec3),
 }

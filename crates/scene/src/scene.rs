@@ -357,6 +357,10 @@ pub fn read_file_with_carriers(
     carriers: Carriers,
 ) -> Result<Scene, Diagnostics> {
     let change = |spec: &mut Spec| {
+        // what is measured may ask for the very frames that are gone
+        spec.probes.clear();
+        spec.expects.clear();
+        spec.sounds.clear();
         for body in spec.bodies.iter_mut().filter(|other| other.name == body) {
             match carriers {
                 Carriers::Mesh => body.frames = None,

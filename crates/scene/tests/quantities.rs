@@ -323,7 +323,8 @@ fn what_is_led_takes_along_what_its_mass_couples() {
         "\"bdf2\"",
         "\"newmark\"",
     ] {
-        let text = CUBE.replace("neo_hookean", "linear").replace("poissons_ratio = 0.3", "poissons_ratio = 0");
+        let text =
+            CUBE.replace("neo_hookean", "linear").replace("poissons_ratio = 0.3", "poissons_ratio = 0");
         let text = text.replace("gravity = [0, -10, 0]", "").replace("[2, 2, 2]", "[1, 1, 1]");
         let text = format!(
             r#"{text}mass = "consistent"
@@ -369,12 +370,16 @@ stepper = { name = "static", newton_tolerance = 1e-11, solver = "direct" }
     for kind in ["rigid", "affine"] {
         let (mut world, probes) = start(&format!("{CUBE}{ON_A_BONE}{probes}").replace("rigid", kind));
         world.step().unwrap();
-        let [force, torque, centre] = ["force", "torque", "centre"].map(|name| value(&mut world, &probes, name));
+        let [force, torque, centre] =
+            ["force", "torque", "centre"].map(|name| value(&mut world, &probes, name));
         let weight = Vec3::new(0.0, -1e4, 0.0);
         // what is left unbalanced of the weight
         assert!((force + weight).length() < 1e-6 * weight.length(), "{kind}: {force:?}");
         let of_weight = (centre - Vec3::new(0.2, 1.0, -0.7)).cross(weight);
-        assert!((torque + of_weight).length() < 1e-6 * of_weight.length(), "{kind}: {torque:?} for {of_weight:?}");
+        assert!(
+            (torque + of_weight).length() < 1e-6 * of_weight.length(),
+            "{kind}: {torque:?} for {of_weight:?}"
+        );
     }
 }
 

@@ -31,8 +31,6 @@ pub use rates::Rates;
 
 /// Halvings of a direction before what is left of it is taken.
 const MAX_HALVINGS: u32 = 30;
-/// Halvings of a step towards where inertia leads: behind them nothing of the solve is left.
-const COASTING_HALVINGS: u32 = 10;
 /// Potentials are sums of terms that cancel: what rises by less than this share of them is not held back.
 const POTENTIAL_ROUNDING: f64 = 1e-10;
 
@@ -178,20 +176,13 @@ struct Wanted {
     tolerance: f64,
 }
 
-/// Where a shortened step is taken from.
+/// The velocity of constrained components at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum From {
-    /// Where the step begins.
-    Start,
-    /// Where inertia leads.
-    Coasting,
-}
-
-/// A part of the way from there to the end of a linearised solve.
-#[derive(Clone, Copy, Debug)]
-struct Shortened {
-    from: From,
-    fraction: f64,
+pub enum LedVelocity {
+    /// That of their motion.
+    Exact,
+    /// As that of what is free beside them, half a step late: no rate of strain comes between them.
+    Difference,
 }
 
 /// What came of a linear solve.
@@ -210,16 +201,19 @@ impl ImplicitStep<'_> {
         buffers.coasting.copy_from_slice(&next.v);
     }
 
-    /// `v₀` and `p` of constrained components such that they end with the velocity and the acceleration of their motion. State holds their
-    /// exact velocity, so that the difference quotients of one step see half of their acceleration, and those of two steps follow late, or
-    /// swing about it.
-    pub fn lead_constrained(&self, timestep: f64, buffers: &mut ImplicitBuffers) {
+    /// `v₀` and `p` of constrained components such that they end with the acceleration of their motion, and with the velocity that is wanted.
+    /// State holds their exact velocity, from which a difference quotient of one step sees half of their acceleration, and formulas of two
+    /// steps follow late, or swing about it.
+    pub fn lead_constrained(&self, timestep: f64, led: LedVelocity, buffers: &mut ImplicitBuffers) {
         for constraint in &self.system.constraints {
             let (block, constrained) = (constraint.block as usize, constraint.constrained());
             let d = self.system.to_go(constraint, &buffers.q_start, self.end, self.around.load);
-            let velocity = constraint.velocity(self.end);
             let acceleration = constraint.mean_acceleration(self.end, timestep);
             let offset = &mut buffers.velocity_offset[block];
+            let velocity = match led {
+                LedVelocity::Exact => constraint.velocity(self.end),
+                LedVelocity::Difference => d * self.rates.velocity + *offset,
+            };
             *offset += constrained * (velocity - d * self.rates.velocity - *offset);
             let coasting = &mut buffers.coasting[block];
             *coasting +=
@@ -351,14 +345,16 @@ impl ImplicitStep<'_> {
         if wanted.constrained == Constrained::Led {
             self.lift_prescribed(state, ws, buffers);
         }
-        // part by part a matrix is made definite in the scale of each; shifted as a whole, or stopped on the way, it would be in that of the
-        // stiffest, and what is soft beside it would creep
-        let has_parts = !ws.linear.is_matrix_free()
+        // places and axes of frames have no scale in common: part by part a matrix is made definite in the scale of each, where shifted as a
+        // whole, or stopped on the way, it would be so in that of the stiffest, and what is soft beside it would creep
+        let has_parts = self.system.kinematics.has_frames()
+            && !ws.linear.is_matrix_free()
             && wanted.used_as == Use::Direction
             && (self.is_symmetric() || self.turns_alone_break_symmetry());
         let first = if has_parts { Wanted { indefinite: Indefinite::Refuse, ..wanted } } else { wanted };
         let mut attempt = self.attempt(Curvature::Exact, state, ws, buffers, first);
-        let is_indefinite = |attempt: &Attempt| attempt.solved.as_ref().is_err_and(LinearError::may_be_indefinite);
+        let is_indefinite =
+            |attempt: &Attempt| attempt.solved.as_ref().is_err_and(LinearError::may_be_indefinite);
         if !ws.linear.is_matrix_free() && is_indefinite(&attempt) {
             // a direction in which the potential falls, where there is one; Newton's method judges it by the residual
             let second = if has_parts { first } else { wanted };
@@ -602,10 +598,10 @@ impl ImplicitStep<'_> {
         let indefinite = if is_matrix_free { Indefinite::Solve } else { Indefinite::Refuse };
         let wanted = Wanted { constrained, indefinite, used_as: Use::Answer, tolerance: 0.0 };
         let (solved, _) = self.solve(state, ws, buffers, wanted)?;
-        let part = self.hold_back(state, q, ws, buffers);
-        self.go(q, part, buffers);
+        let fraction = self.hold_back(state, q, ws, buffers);
+        self.go(q, fraction, buffers);
         Ok(StepReport {
-            shortened: u64::from(part.fraction < 1.0),
+            shortened: u64::from(fraction < 1.0),
             newton_iterations: 1,
             linear_iterations: u64::from(solved.iterations),
             made_definite: u64::from(solved.made_definite),
@@ -614,86 +610,61 @@ impl ImplicitStep<'_> {
         })
     }
 
-    /// Moves `q` by a part of a linearised solve, along the turns of frames first; constrained components go where they are led.
-    fn go(&self, q: &mut [Vec3], Shortened { from, fraction }: Shortened, buffers: &mut ImplicitBuffers) {
-        let ImplicitBuffers { direction, prescribed, turns, rhs, coasting, velocity_offset, .. } = buffers;
+    /// Moves `q` by the fraction of a linearised solve, along the turns of frames first; constrained components go where they are led.
+    fn go(&self, q: &mut [Vec3], fraction: f64, buffers: &mut ImplicitBuffers) {
+        let ImplicitBuffers { direction, prescribed, turns, rhs, .. } = buffers;
         let kinematics = &self.system.kinematics;
-        let coasts = from == From::Coasting;
         if !turns.is_empty() {
-            kinematics.retract_scaled(q, turns, if coasts { 1.0 } else { fraction });
+            kinematics.retract_scaled(q, turns, fraction);
         }
         // the right-hand side has served
-        rhs.copy_from_slice(prescribed);
-        if coasts {
-            let drift = coasting.iter().zip(velocity_offset.iter());
-            for (block, (first, (p, offset))) in rhs.iter_mut().zip(drift).enumerate() {
-                // turns have gone already
-                if turns.get(block).is_none_or(|turn| *turn == Vec3::ZERO) {
-                    *first = (*p - *offset) * (1.0 / self.rates.velocity);
-                }
-            }
-            self.system.project_free(rhs);
-            rhs.iter_mut().zip(prescribed.iter()).for_each(|(first, led)| *first += *led);
-        }
-        for (part, whole) in rhs.iter_mut().zip(direction.iter()) {
-            *part += (*whole - *part) * fraction;
+        for ((part, whole), led) in rhs.iter_mut().zip(direction.iter()).zip(prescribed.iter()) {
+            *part = *led + (*whole - *led) * fraction;
         }
         kinematics.retract(q, rhs);
     }
 
-    /// How much of a linearised solve is taken: all of it, or the most, by halves, at which the step's potential, less the work of forces
-    /// that have none, is no higher than at `q`, where it begins; energy cannot grow then. That of a linear system never is at the whole; of
-    /// one that is bent so much that the solve knows nothing of its end, it may be by any amount. What is shortened ends between where inertia
-    /// leads and the end of the solve, so that what nothing holds keeps its momentum; only where that is no lower either it stays behind, and
-    /// momentum is lost with the energy.
+    /// The fraction of a linearised solve, 1 or halves of it, at which the step's potential, less the work of forces that have none, is
+    /// no higher than where it begins, at `q`. That of a linear system never is at 1; of one that is bent so much that the solve knows
+    /// nothing of its end, it may be by any amount. What is shortened stays behind where inertia leads, so that momentum is lost with
+    /// the energy, of all bodies of the system: such steps are counted, and told at the end of a run.
     fn hold_back(
         &self,
         state: &SystemState,
         q: &[Vec3],
         ws: &mut SystemWorkspace,
         buffers: &mut ImplicitBuffers,
-    ) -> Shortened {
-        let place = |part: Shortened, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers| {
+    ) -> f64 {
+        let place = |fraction: f64, ws: &mut SystemWorkspace, buffers: &mut ImplicitBuffers| {
             let mut at = std::mem::take(&mut buffers.q_trial);
             at.copy_from_slice(q);
-            self.go(&mut at, part, buffers);
+            self.go(&mut at, fraction, buffers);
             buffers.q_trial = at;
             let ImplicitBuffers { q_trial, v_trial, q_start, velocity_offset, .. } = &mut *buffers;
             self.velocity_into(q_trial, q_start, velocity_offset, v_trial);
             self.place_trial(ws, buffers);
             self.merit(state, ws, buffers)
         };
-        let begin = Shortened { from: From::Start, fraction: 0.0 };
-        let whole = Shortened { fraction: 1.0, ..begin };
-        let start = place(begin, ws, buffers);
-        let end = place(whole, ws, buffers);
+        let start = place(0.0, ws, buffers);
+        let mut fraction = 1.0;
+        let mut end = place(fraction, ws, buffers);
         let allowed = start + POTENTIAL_ROUNDING * start.abs();
         // what is no number is no less
         let is_higher = |end: f64, work: f64| end.is_nan() || end - work > allowed;
-        if !is_higher(end, 0.0) {
-            return whole;
-        }
-        place(begin, ws, buffers);
-        let turns = buffers.turns.iter().copied().chain(std::iter::repeat(Vec3::ZERO));
-        let way: Vec<Vec3> = buffers.direction.iter().zip(turns).map(|(way, turn)| *way + turn).collect();
-        let work = self.work_without_potential(state, q, ws, &way);
-        if !is_higher(end, work) {
-            return whole;
-        }
-        let halves = |most: u32| (1..=most).map(|halvings| 0.5_f64.powi(halvings as i32));
-        let coasting = halves(if self.rates.has_inertia() { COASTING_HALVINGS } else { 0 });
-        let parts = coasting
-            .map(|fraction| Shortened { from: From::Coasting, fraction })
-            .chain(halves(MAX_HALVINGS).map(|fraction| Shortened { from: From::Start, fraction }));
-        let mut last = begin;
-        for part in parts {
-            last = part;
-            let end = place(part, ws, buffers);
-            if !is_higher(end, part.fraction * work) {
-                break;
+        if is_higher(end, 0.0) {
+            place(0.0, ws, buffers);
+            let turns = buffers.turns.iter().copied().chain(std::iter::repeat(Vec3::ZERO));
+            let way: Vec<Vec3> = buffers.direction.iter().zip(turns).map(|(way, turn)| *way + turn).collect();
+            let work = self.work_without_potential(state, q, ws, &way);
+            for _ in 0..MAX_HALVINGS {
+                end = place(fraction, ws, buffers);
+                if !is_higher(end, fraction * work) {
+                    break;
+                }
+                fraction *= 0.5;
             }
         }
-        last
+        fraction
     }
 
     /// What forces without a potential do on the way along a direction, as they are at the placed rows [J].

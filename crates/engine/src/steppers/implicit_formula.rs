@@ -3,7 +3,7 @@
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value, Values};
 
-use crate::implicit::{ImplicitBuffers, ImplicitStep, Lent, NewtonSettings, Rates};
+use crate::implicit::{ImplicitBuffers, ImplicitStep, LedVelocity, Lent, NewtonSettings, Rates};
 use crate::kept::Summed;
 use crate::state::SystemState;
 use crate::system::{System, SystemWorkspace};
@@ -126,7 +126,8 @@ impl Step<'_> {
             prepare(next, Before { v: v_start, velocity_offset, coasting });
         }
         if rates.has_velocity() {
-            implicit.lead_constrained(timestep, buffers);
+            let led = if prepare.is_some() { LedVelocity::Exact } else { LedVelocity::Difference };
+            implicit.lead_constrained(timestep, led, buffers);
         }
         let report = match newton {
             NewtonMode::One => {

@@ -40,7 +40,8 @@ impl LawText {
         let texts = self.definitions.iter().map(|(_, text)| text).chain([&self.energy]);
         let mut words = texts.flat_map(|text| text.split(|c: char| !(c.is_alphanumeric() || c == '_')));
         // vectors may be written out
-        let has_vector = self.energy.contains('[') || self.definitions.iter().any(|(_, text)| text.contains('['));
+        let has_vector =
+            self.energy.contains('[') || self.definitions.iter().any(|(_, text)| text.contains('['));
         has_direction || has_vector || words.any(|word| vocabulary::entry_of(word).is_some())
     }
 }

@@ -6,7 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use pulp::Arch;
 use souple_engine::state::Pair;
-use souple_engine::{CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights};
+use souple_engine::{
+    CellField, Configuration, Curvature, Declaration, Energy, Force, Scratch, TangentWeights,
+};
 use souple_formal::tape::BATCH;
 use souple_math::{Mat3, Vec3};
 use souple_solve::{BlockMatrix, dense};
@@ -646,8 +648,7 @@ impl Force for FramesForce {
 
     fn cell_field(&self, cell: usize, positions: &[Vec3]) -> Option<CellField> {
         let carried = self.carried_cells.get(cell)?;
-        let material =
-            self.materials[self.material_of_cell[cell] as usize].along(self.axes.get(cell));
+        let material = self.materials[self.material_of_cell[cell] as usize].along(self.axes.get(cell));
         let [start, end] = [cell, cell + 1].map(|at| self.cell_starts[at] as usize);
         if start < end {
             return Some(self.field_of(&self.of_cells[start..end], material, positions));

@@ -7,6 +7,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process;
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 
@@ -47,7 +48,9 @@ impl KeptLaws {
     /// What a text was derived to, if that is here.
     pub(super) fn find(&self, text: &LawText) -> Option<Derived> {
         let key = key_of(text);
-        let file = fs::read(self.folder.join(name_of(&key))).ok()?;
+        let path = self.folder.join(name_of(&key));
+        // what is no file may never end
+        let file = path.metadata().is_ok_and(|data| data.is_file()).then(|| fs::read(path).ok()).flatten()?;
         let (magic, file) = file.split_first_chunk()?;
         let (hash, content) = file.split_first_chunk::<HASH_LEN>()?;
         if *magic != MAGIC || Sha256::digest(content).as_slice() != hash {
@@ -103,12 +106,28 @@ impl KeptLaws {
 /// Whether a file is one of these, or what a process that was ended left beside one.
 fn is_of_laws(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    name.trim_start_matches('.').split('.').nth(1) == Some(EXTENSION)
+    let (beside, name) = match name.strip_prefix('.') {
+        Some(name) => (true, name),
+        None => (false, &*name),
+    };
+    let parts: Vec<&str> = name.split('.').collect();
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let is_hash = |part: &str| part.len() == DIGITS && part.bytes().all(|byte| byte.is_ascii_hexdigit());
+    match parts[..] {
+        [hash, EXTENSION] => !beside && is_hash(hash),
+        [hash, EXTENSION, process, number] => {
+            beside && is_hash(hash) && is_number(process) && is_number(number)
+        }
+        _ => false,
+    }
 }
+
+/// Digits of a hash in a name.
+const DIGITS: usize = 32;
 
 fn name_of(key: &[u8]) -> String {
     let hash = Sha256::digest(key);
-    let digits: String = hash.iter().take(16).map(|byte| format!("{byte:02x}")).collect();
+    let digits: String = hash.iter().take(DIGITS / 2).map(|byte| format!("{byte:02x}")).collect();
     format!("{digits}.{EXTENSION}")
 }
 
@@ -116,7 +135,14 @@ fn name_of(key: &[u8]) -> String {
 fn key_of(text: &LawText) -> Vec<u8> {
     let LawText { energy, definitions, parameters } = text;
     let mut key = Vec::new();
-    for said in [DERIVATION, std::env::consts::ARCH, energy] {
+    // what makes programs of derivations, and lays them out here
+    static MAKERS: LazyLock<String> = LazyLock::new(|| {
+        let mut hash = Sha256::new();
+        hash.update(include_bytes!("hyperelastic.rs"));
+        hash.update(include_bytes!("kept.rs"));
+        format!("{:x}", hash.finalize())
+    });
+    for said in [DERIVATION, MAKERS.as_str(), std::env::consts::ARCH, energy] {
         put_text(said, &mut key);
     }
     put_count(definitions.len(), &mut key);

@@ -26,7 +26,7 @@ use std::sync::Arc;
 
 use souple_engine::CellField;
 use souple_formal::law::Strain;
-use souple_math::Mat3;
+use souple_math::{Mat3, Vec3};
 use souple_table::{Entry, Parameter, Range, Table, Values};
 
 pub use derived::DERIVED;
@@ -83,6 +83,9 @@ pub trait LawVisitor {
     type Output;
     fn visit<L: Law>(self, law: L) -> Self::Output;
 }
+
+/// Small enough for a law to be what it is at rest, and far above rounding.
+const SMALL_STRETCH: f64 = 1e-4;
 
 /// The most numbers a law may have: the width of [`Material::parameters`].
 pub const PARAMETERS_MAX: usize = 8;
@@ -232,6 +235,26 @@ impl Material {
             MaterialLaw::Known(_) => false,
             MaterialLaw::Text(law) => law.knows_directions(),
         }
+    }
+
+    /// Young's modulus at rest; of a law that knows directions more in proportion, as the direction that resists a small stretch or
+    /// shortening most does to one that goes by the moduli [Pa]. Fibres that bear on one side of rest alone are seen so.
+    pub fn stiffest_modulus(&self) -> f64 {
+        let Lame { lambda, mu } = self.small_strain;
+        let modulus = self.small_strain.youngs_modulus();
+        if !self.knows_directions() {
+            return modulus;
+        }
+        let numbers = || [-1.0, 0.0, 1.0].into_iter();
+        let ways =
+            numbers().flat_map(|x| numbers().flat_map(move |y| numbers().map(move |z| Vec3::new(x, y, z))));
+        let resisted = ways.filter_map(Vec3::try_normalised).flat_map(|n| {
+            [SMALL_STRETCH, -SMALL_STRETCH].map(|stretch| {
+                let F = Mat3::IDENTITY + n.outer(n) * stretch;
+                n.dot(self.stress(&F) * n) / stretch
+            })
+        });
+        modulus * resisted.map(|along| along / (lambda + 2.0 * mu)).fold(1.0, f64::max)
     }
 
     /// What is legal in the law and doubtful.

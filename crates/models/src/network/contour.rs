@@ -184,7 +184,9 @@ impl Frontier {
                 [0, 1].map(|axis: usize| (a[axis] as f64 + share * (b[axis] - a[axis]) as f64) * self.cell)
             };
             let is_in = |share| self.excess(&near, at(share)) > 0.0;
-            let (mut low, mut high, first) = (0.0, 1.0, is_in(0.0));
+            // as the squares have it: a corner on the line is in or out by its last bit, and both must say the same
+            let first = values.at(a) > 0.0;
+            let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..HALVES {
                 let middle = 0.5 * (low + high);
                 if is_in(middle) == first { low = middle } else { high = middle }
@@ -232,7 +234,7 @@ impl Values {
                     .or_insert_with(|| vec![-frontier.probe; TILE * TILE].into_boxed_slice());
                 let within = |axis: usize, number: i64| {
                     let first = number * tile;
-                    low[axis].max(first)..=high[axis].min(first + tile - 1)
+                    low[axis].max(first)..=high[axis].min(first + (tile - 1))
                 };
                 for y in within(1, j) {
                     let up = y as f64 * cell - place[1];

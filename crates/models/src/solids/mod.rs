@@ -176,8 +176,9 @@ impl<'a> ByLaw<'a> {
     /// # Errors
     /// A cell with a stiffness is flat or inverted at rest.
     fn new(description: &SolidDescription<'a>, shapes: &Shapes) -> Result<Self, FlatCell> {
-        let SolidDescription { mesh, first_row, materials, material_of_cell, axes, quadrature, section, .. } =
-            description;
+        let SolidDescription {
+            mesh, first_row, materials, material_of_cell, axes, quadrature, section, ..
+        } = description;
         let mut sorting = Self {
             classes: Vec::new(),
             class_of_cell: Vec::with_capacity(mesh.cell_count()),

@@ -54,10 +54,8 @@ impl Shapes {
         let SolidDescription { mesh, materials, material_of_cell, axes, section, .. } = description;
         // cells of one shape may have different axes
         let is_alike = |law: &MaterialLaw| axes.is_empty() || matches!(law, MaterialLaw::Known(_));
-        let is_linear: Vec<bool> = materials
-            .iter()
-            .map(|material| material.law.is_linear() && is_alike(&material.law))
-            .collect();
+        let is_linear: Vec<bool> =
+            materials.iter().map(|material| material.law.is_linear() && is_alike(&material.law)).collect();
         if *section != Section::Solid || !is_linear.contains(&true) {
             return Self::default();
         }

@@ -61,7 +61,8 @@ impl SampleLaw for TurnedSamples {
             turn(variation, Way::In);
         }
         self.0.answer(answer, run, memory);
-        let mut turn = |at: usize| Arch::new().dispatch(TurnRun { run, memory: &mut memory[at..], way: Way::Out });
+        let mut turn =
+            |at: usize| Arch::new().dispatch(TurnRun { run, memory: &mut memory[at..], way: Way::Out });
         if answer != Answer::Energy {
             turn(result);
         }

@@ -442,8 +442,7 @@ fn material_tangents_leave_out_the_stress_alone() {
 #[test]
 fn springs_of_pins_store_what_they_pull() {
     let stored = |stiffness: f64| {
-        let point =
-            HeldPoint { row: 0, stiffness, start: Vec3::X, axes: [true, false, true], motion: None };
+        let point = HeldPoint { row: 0, stiffness, start: Vec3::X, axes: [true, false, true], motion: None };
         let hold = Hold::new("pins", vec![point]);
         energy(&hold, &[Vec3::new(1.3, 5.0, -0.4)])
     };

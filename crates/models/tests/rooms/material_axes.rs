@@ -156,8 +156,11 @@ fn axes_are_directions_of_the_law_in_plane_strain() {
         quadrature: Quadrature::Default,
         section: Section::PlaneStrain { thickness: 0.1 },
     };
-    let x: Vec<Vec3> =
-        mesh.points.iter().map(|p| *p + Vec3::new((4.0 * p.y).sin(), (5.0 * p.x).cos(), 0.0) * 0.02).collect();
+    let x: Vec<Vec3> = mesh
+        .points
+        .iter()
+        .map(|p| *p + Vec3::new((4.0 * p.y).sin(), (5.0 * p.x).cos(), 0.0) * 0.02)
+        .collect();
     let [own, other] = [describe(&along, &axes[..]), describe(&in_world, &[])]
         .map(|description| said(&SolidForce::new(&description).unwrap(), &x, cells));
     assert_same(&own, &other, "plane strain");
@@ -182,14 +185,16 @@ fn axes_are_directions_of_the_law_in_frames() {
     let rows: Vec<u32> = (0..4).map(|frame| 4 * frame).collect();
     let of_cell: Vec<u16> = (0..cells).map(|cell| (cell % 2) as u16).collect();
     let axes: Vec<Mat3> = of_cell.iter().map(|number| turns()[usize::from(*number)]).collect();
-    let mut x: Vec<Vec3> = frames.iter().flat_map(|frame| [frame.origin, Vec3::X, Vec3::Y, Vec3::Z]).collect();
+    let mut x: Vec<Vec3> =
+        frames.iter().flat_map(|frame| [frame.origin, Vec3::X, Vec3::Y, Vec3::Z]).collect();
     for (row, position) in x.iter_mut().enumerate() {
         let number = |k: f64| (row as f64 * 1.7 + k).sin();
         *position += Vec3::new(number(0.0), number(1.0), number(2.0)) * 0.03;
     }
-    for (energy, tangent) in LAWS.into_iter().flat_map(|law| {
-        [TangentKind::Full, TangentKind::Material].map(|tangent| (law, tangent))
-    }) {
+    for (energy, tangent) in LAWS
+        .into_iter()
+        .flat_map(|law| [TangentKind::Full, TangentKind::Material].map(|tangent| (law, tangent)))
+    {
         let force = |materials: &[Material], material_of_cell: &[u16], axes: &[Mat3]| {
             FramesForce::new(FramesDescription {
                 name: "bar".into(),

@@ -27,7 +27,12 @@ pub fn check(spec: &Spec, log: &Log) {
             report_unknown(log, spec, name, &bone.follows_site);
         } else if follows_itself(spec, bone) {
             let message = format!("bone `{}` follows itself", bone.name);
-            log.add(Code::Conflict, &bone.follows_site, message, "a bone that nobody leads at the end of the chain");
+            log.add(
+                Code::Conflict,
+                &bone.follows_site,
+                message,
+                "a bone that nobody leads at the end of the chain",
+            );
         }
     }
     if !log.is_empty() {

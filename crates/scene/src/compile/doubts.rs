@@ -139,7 +139,9 @@ fn materials(body: &Body) -> Vec<(&Chosen<Build>, Material)> {
 /// What is too stiff of a body that keeps its volume almost, and what to compare with; nothing of elements that are not linear.
 fn locking_of(body: &Placed, is_linear: bool) -> Option<&'static str> {
     match (&body.frames, is_linear) {
-        (Some(_), _) => Some("a few frames have fewer freedoms than there are volumes to keep: compare with more frames"),
+        (Some(_), _) => {
+            Some("a few frames have fewer freedoms than there are volumes to keep: compare with more frames")
+        }
         (None, true) => Some(
             "linear elements lock, and the body may be too stiff, tetrahedra most of all; compare with quadratic elements, a finer mesh",
         ),

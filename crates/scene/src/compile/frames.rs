@@ -81,11 +81,7 @@ impl PlacedFrames {
     }
 
     /// The elastic force of the body.
-    pub fn force(
-        &self,
-        body: &Placed,
-        spec: &FramesSpec,
-    ) -> Box<dyn Force> {
+    pub fn force(&self, body: &Placed, spec: &FramesSpec) -> Box<dyn Force> {
         Box::new(FramesForce::new(FramesDescription {
             name: solid_name(&body.spec.name),
             frames: &self.frames,

@@ -5,6 +5,7 @@ use souple_math::Vec3;
 use souple_mesh::CellLocator;
 use souple_models::frames::layer_stiffness;
 use souple_models::loads::{Attachments, Combination, Link as LoadLink};
+use souple_models::materials::Material;
 use souple_table::counted;
 
 use super::bodies::Placed;
@@ -136,7 +137,12 @@ fn with_matter(
             "the masses of `{}` have no area, from which a stiffness or the force of a strength would follow",
             link.from
         );
-        draft.log.add(Code::MissingKey, &link.site, message, "a `stiffness`, no `strength`, or the other body as `from`");
+        draft.log.add(
+            Code::MissingKey,
+            &link.site,
+            message,
+            "a `stiffness`, no `strength`, or the other body as `from`",
+        );
         return None;
     }
     let held: Vec<u32> = springs
@@ -204,14 +210,15 @@ pub(super) fn depth(body: &Placed, held_area: f64) -> f64 {
     (body.mesh.volume() / held_area).min(longest)
 }
 
-/// Young's modulus at rest about each point of a body: the mean over its cells [Pa]; zero where matter has none.
+/// The stiffest modulus at rest about each point of a body: the mean over its cells [Pa]; zero where matter has none.
 pub(super) fn moduli(body: &Placed) -> Vec<f64> {
     let mut sums = vec![(0.0, 0_u32); body.mesh.points.len()];
     if body.materials.all.is_empty() {
         return vec![0.0; sums.len()];
     }
-    for (number, cell) in body.mesh.cells().enumerate() {
-        let modulus = body.materials.of(number).small_strain.youngs_modulus();
+    let of_materials: Vec<f64> = body.materials.all.iter().map(Material::stiffest_modulus).collect();
+    for (material, cell) in body.materials.of_cell.iter().zip(body.mesh.cells()) {
+        let modulus = of_materials[usize::from(*material)];
         for node in cell.nodes {
             let (sum, count) = &mut sums[*node as usize];
             *sum += modulus;

@@ -24,8 +24,8 @@ use crate::diagnostic::Code;
 use crate::scene::{DressInfo, HandInfo, SkinInfo};
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
-    BodyQuantity, BoneQuantity, CellQuantity, ContourQuantity, HandQuantity, LevelsQuantity, MassesQuantity, Momentum,
-    PointQuantity, Rank, Reduction, SkinQuantity, Subject, WorldQuantity,
+    BodyQuantity, BoneQuantity, CellQuantity, ContourQuantity, HandQuantity, LevelsQuantity, MassesQuantity,
+    Momentum, PointQuantity, Rank, Reduction, SkinQuantity, Subject, WorldQuantity,
 };
 
 /// A probe that knows where to read.
@@ -337,12 +337,16 @@ fn bone_part(probe: &Probe, draft: &Draft) -> Option<BonePart> {
     let numbers = bound.filter(|bound| bound.bone == name).flat_map(|bound| &bound.frames);
     let rows = body.frames.as_ref().map_or(&[][..], |frames| &frames.rows);
     // numbers of frames that are not there are reported where they are bound
-    let frames: Vec<u32> =
-        numbers.filter_map(|number| rows.get(*number as usize)).copied().collect();
+    let frames: Vec<u32> = numbers.filter_map(|number| rows.get(*number as usize)).copied().collect();
     if frames.is_empty() {
         let hint = crate::keys::did_you_mean(name, followed.iter().copied());
         let message = format!("no frame of body `{}` follows a bone `{name}`{hint}", body.spec.name);
-        draft.log.add(Code::UnknownName, &probe.site, message, "a bone that `frames.bones` of the body names");
+        draft.log.add(
+            Code::UnknownName,
+            &probe.site,
+            message,
+            "a bone that `frames.bones` of the body names",
+        );
         return None;
     }
     Some(BonePart { system: body.system, frames, about: probe.about.unwrap_or(Vec3::ZERO) })

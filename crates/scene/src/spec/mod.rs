@@ -235,7 +235,8 @@ impl Spec {
         let bodies: Vec<&str> = self.bodies.iter().map(|body| body.name.as_str()).collect();
         let systems: Vec<&str> = self.systems.iter().map(|system| system.name.as_str()).collect();
         let is_led = |name: &str| {
-            self.bones.iter().any(|bone| bone.name == name) || self.shapes.iter().any(|shape| shape.name == name)
+            self.bones.iter().any(|bone| bone.name == name)
+                || self.shapes.iter().any(|shape| shape.name == name)
         };
         let check = |kind: &str, name: &str, known: &[&str], site: &Site| {
             if kind == "body" && is_led(name) && !known.contains(&name) {
@@ -321,7 +322,8 @@ impl Spec {
         for body in self.bodies.iter().filter(|body| body.frames.is_some()) {
             let own = format!("{}.frames", body.name);
             for other in self.bodies.iter().filter(|other| other.name == own) {
-                let message = format!("files of the name `{own}` are those of the frames of body `{}`", body.name);
+                let message =
+                    format!("files of the name `{own}` are those of the frames of body `{}`", body.name);
                 log.add(Code::BadName, &other.site, message, "another name");
             }
         }

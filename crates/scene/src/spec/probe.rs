@@ -46,13 +46,21 @@ pub(crate) static PROBE: Keys = Keys::new(
         Key::new("skin", Shape::Text, "whose, for quantities of skins; a body's skin has the body's name"),
         Key::new("contact", Shape::Text, "only what this contact does (for quantities of contacts)"),
         Key::new("hand", Shape::Text, "whose, for quantities of hands and their tools"),
-        Key::new("bone", Shape::Text, "which of those that frames of the body follow, for quantities of bones"),
+        Key::new(
+            "bone",
+            Shape::Text,
+            "which of those that frames of the body follow, for quantities of bones",
+        ),
         Key::integer(
             "level",
             Range::NOT_NEGATIVE,
             "of a body with levels: only this one, counted from 0, the coarsest",
         ),
-        Key::vector("about", "m", "the place that moments are taken about"),
+        Key::vector(
+            "about",
+            "m",
+            "the place that moments are taken about; the centre of mass of the body where left out, of a bone the origin",
+        ),
         Key::new("contour", Shape::Text, "of the network, for quantities of contours"),
         Key::new("from", Shape::Text, "the contour that `contour.apart` is counted from"),
         Key::number("within", "m", Range::POSITIVE, "how far apart masses count as neighbours"),
