@@ -40,10 +40,13 @@ pub struct Shape<'a> {
 /// Makes the weights of completed values.
 pub type BuildWeights = for<'a> fn(&Values, &Shape<'a>) -> Result<Box<dyn Weights + 'a>, FrameError>;
 
+/// The widest support that is taken, in distances to the nearest neighbour.
+const MOST_SUPPORT: f64 = 100.0;
+
 pub(super) const SUPPORT: Parameter = Parameter::number(
     "support",
     "",
-    Range::closed(1.0, 100.0),
+    Range::closed(1.0, MOST_SUPPORT),
     "how far a frame reaches, in distances to its nearest neighbour",
 )
 .or(Value::Number(2.0));
@@ -195,9 +198,14 @@ impl Weights for Shepard {
 pub(super) fn too_far(frame: usize, distance: f64, reach: f64, support: f64) -> String {
     // rounded upwards
     let wider = (100.0 * support * distance / reach).ceil() / 100.0;
+    let told = format!(
+        "the nearest frame, {frame}, is {distance:.3e} m away and reaches {reach:.3e} m; place frames there"
+    );
+    if wider > MOST_SUPPORT || wider.is_nan() {
+        return told;
+    }
     format!(
-        "the nearest frame, {frame}, is {distance:.3e} m away and reaches {reach:.3e} m; place frames there, or take a `support` above \
-         {wider}, counted in distances between frames: more of them on a line reach less far across it"
+        "{told}, or take a `support` above {wider}, counted in distances between frames: more of them on a line reach less far across it"
     )
 }
 

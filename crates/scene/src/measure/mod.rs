@@ -336,8 +336,12 @@ fn bone_part(probe: &Probe, draft: &Draft) -> Option<BonePart> {
     let followed: Vec<&str> = bound.clone().map(|bound| bound.bone.as_str()).collect();
     let numbers = bound.filter(|bound| bound.bone == name).flat_map(|bound| &bound.frames);
     let rows = body.frames.as_ref().map_or(&[][..], |frames| &frames.rows);
-    // numbers of frames that are not there are reported where they are bound
-    let frames: Vec<u32> = numbers.filter_map(|number| rows.get(*number as usize)).copied().collect();
+    let numbers: Vec<u32> = numbers.copied().collect();
+    let frames: Vec<u32> = numbers.iter().filter_map(|number| rows.get(*number as usize)).copied().collect();
+    if frames.len() < numbers.len() {
+        // frames that are not there are reported where they are bound
+        return None;
+    }
     if frames.is_empty() {
         let hint = crate::keys::did_you_mean(name, followed.iter().copied());
         let message = format!("no frame of body `{}` follows a bone `{name}`{hint}", body.spec.name);
