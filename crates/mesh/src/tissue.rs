@@ -114,19 +114,18 @@ impl Patch {
         facing.filter_map(|corners| ray_meets(point, direction, corners)).min_by(f64::total_cmp)
     }
 
-    /// Whether a line through a point meets its faces.
-    fn is_met_along(&self, point: Vec3, direction: Vec3) -> bool {
-        let mut both = [direction, -direction].into_iter();
-        both.any(|way| self.triangles().any(|corners| ray_meets(point, way, corners).is_some()))
+    /// How far from a point of a line, before it or behind, the line meets its faces.
+    fn distances_on_line(&self, point: Vec3, direction: Vec3) -> impl Iterator<Item = f64> + '_ {
+        self.triangles().flat_map(move |corners| {
+            let before = ray_meets(point, direction, corners);
+            let behind = ray_meets(point, -direction, corners).map(|distance| -distance);
+            before.into_iter().chain(behind)
+        })
     }
 
     /// Where a line meets its faces, nearest to a point of it; the nearest place where it passes them by.
     fn met_along(&self, point: Vec3, direction: Vec3) -> Vec3 {
-        let distances = self.triangles().flat_map(|corners| {
-            let before = ray_meets(point, direction, corners);
-            let behind = ray_meets(point, -direction, corners).map(|distance| -distance);
-            before.into_iter().chain(behind)
-        });
+        let distances = self.distances_on_line(point, direction);
         let nearest = distances.min_by(|a, b| a.abs().total_cmp(&b.abs()));
         nearest.map_or_else(|| self.nearest(point), |distance| point + direction * distance)
     }
@@ -225,7 +224,7 @@ impl End<'_> {
         let fits = |u: f64| {
             [-0.5, 0.5].into_iter().all(|half| {
                 let corner = self.patch.middle() + self.axis * u + normal * (half * thickness);
-                self.patch.is_met_along(corner, direction)
+                self.patch.distances_on_line(corner, direction).next().is_some()
             })
         };
         // where the middle does not fit either, that is told as what it is

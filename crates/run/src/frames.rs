@@ -119,58 +119,38 @@ impl Frames {
                 folder.claim(&format!("{FRAMES}/{name}"))?;
                 write_mesh(&self.folder.join(Path::new(&name)), &mesh)?;
             }
-            let output = Output {
-                mesh: &mesh,
-                positions: None,
-                point_fields: &[normal_field(&normals)],
-                cell_fields: &[],
-                facets: Facets::LeftOut,
-                precision: precision_for(&mesh.points),
-            };
-            push(folder, series, moment.time, &output)?;
+            push(folder, series, moment.time, &as_it_stands(&mesh, &[normal_field(&normals)]))?;
         }
         let worn = session.bodies.iter().filter_map(|body| body.dress.as_ref());
         for (series, dress) in self.dresses.iter_mut().zip(worn) {
             let (mesh, fields) = mesh_of_dress(dress, &session.world);
-            let output = Output {
-                mesh: &mesh,
-                positions: None,
-                point_fields: &fields,
-                cell_fields: &[],
-                facets: Facets::LeftOut,
-                precision: precision_for(&mesh.points),
-            };
-            push(folder, series, moment.time, &output)?;
+            push(folder, series, moment.time, &as_it_stands(&mesh, &fields))?;
         }
         let own = moment.bodies.iter().rev().take(self.contours.len()).rev();
         for (series, contour) in self.contours.iter_mut().zip(own) {
-            let output = Output {
-                mesh: &contour.mesh,
-                positions: None,
-                point_fields: &[],
-                cell_fields: &[],
-                facets: Facets::LeftOut,
-                precision: precision_for(&contour.positions),
-            };
-            push(folder, series, moment.time, &output)?;
+            push(folder, series, moment.time, &as_it_stands(&contour.mesh, &[]))?;
         }
         for (index, series) in &mut self.carriers {
             let (mesh, fields) = mesh_of_carriers(&moment.bodies[*index].frames);
-            let output = Output {
-                mesh: &mesh,
-                positions: None,
-                point_fields: &fields,
-                cell_fields: &[],
-                facets: Facets::LeftOut,
-                precision: precision_for(&mesh.points),
-            };
-            push(folder, series, moment.time, &output)?;
+            push(folder, series, moment.time, &as_it_stands(&mesh, &fields))?;
         }
         if moment.is_drawable() {
             self.drawable = Some(moment);
         }
         self.last_written = Some(self.step);
         Ok(())
+    }
+}
+
+/// A mesh whose own points are where it stands.
+fn as_it_stands<'a>(mesh: &'a Mesh, point_fields: &'a [Field]) -> Output<'a> {
+    Output {
+        mesh,
+        positions: None,
+        point_fields,
+        cell_fields: &[],
+        facets: Facets::LeftOut,
+        precision: precision_for(&mesh.points),
     }
 }
 

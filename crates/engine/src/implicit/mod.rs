@@ -357,8 +357,7 @@ impl ImplicitStep<'_> {
             |attempt: &Attempt| attempt.solved.as_ref().is_err_and(LinearError::may_be_indefinite);
         if !ws.linear.is_matrix_free() && is_indefinite(&attempt) {
             // a direction in which the potential falls, where there is one; Newton's method judges it by the residual
-            let second = if has_parts { first } else { wanted };
-            attempt = self.attempt(Curvature::Definite, state, ws, buffers, second);
+            attempt = self.attempt(Curvature::Definite, state, ws, buffers, first);
         }
         if has_parts && is_indefinite(&attempt) {
             attempt = self.attempt(Curvature::Exact, state, ws, buffers, wanted);

@@ -1,6 +1,5 @@
 //! The axes of laws that know directions, cell by cell.
 
-use souple_formal::Formula;
 use souple_math::{Mat3, Vec3, axes_along};
 use souple_mesh::tissue::cell_axes;
 use souple_models::materials::Material;
@@ -8,6 +7,7 @@ use souple_models::solids::Section;
 
 use super::Draft;
 use super::bodies::Placed;
+use super::start::at;
 use crate::diagnostic::Code;
 use crate::spec::body::AxesSpec;
 
@@ -50,9 +50,6 @@ pub fn of_cells(draft: &Draft, body: &Placed) -> Vec<Mat3> {
 }
 
 fn along_formulas(draft: &Draft, body: &Placed, spec: &AxesSpec) -> Vec<Mat3> {
-    let at = |formulas: &[Formula; 3], place: Vec3| {
-        Vec3::from_array([0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&place.to_array())))
-    };
     let mut axes = Vec::with_capacity(body.mesh.cell_count());
     for (cell, centre) in body.mesh.cell_centres().into_iter().enumerate() {
         let x = at(&spec.x, centre);

@@ -34,6 +34,7 @@ pub fn places(start: Option<&StartSpec>, points: &[Vec3]) -> Vec<Vec3> {
     points.iter().map(|x| displacement.map_or(*x, |formulas| *x + at(formulas, *x))).collect()
 }
 
-fn at(formulas: &[Formula; 3], x: Vec3) -> Vec3 {
+/// Formulas of a place, there.
+pub fn at(formulas: &[Formula; 3], x: Vec3) -> Vec3 {
     Vec3::from_array([0, 1, 2].map(|axis: usize| formulas[axis].evaluate(&x.to_array())))
 }

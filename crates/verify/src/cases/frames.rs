@@ -70,7 +70,7 @@ const LIGAMENT: Case = Case {
 /// Without what leads the end of the ligament, five frames on a line.
 const FIVE: Case = Case { settings: &[FIVE_FRAMES, UNTURNED, SHORTER], ..LIGAMENT };
 const FIVE_FRAMES: &str = "bodies.ligament.frames.placement.count=5";
-/// Where what is led stops at once, Newton's method with five frames creeps at 10 ms: lines are searched in steps of a twentieth.
+/// Half of the scene's own.
 const SHORTER: &str = r#"world.period="5 ms""#;
 const UNTURNED: &str = "bodies.ligament.pins[1].rotation.offsets[2]=[0, 0, 0]";
 
