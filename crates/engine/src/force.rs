@@ -255,6 +255,12 @@ pub trait Force: Send + Sync {
     /// Moves memory and pair states on by one step that ended (implicit) or started (explicit) at `at`.
     fn advance_memory(&self, _at: &Configuration, _timestep: f64, _memory: &mut [f64], _pairs: &mut [Pair]) {}
 
+    /// Breaks at once what bears more than it can where the rows stand, in its memory; whether anything broke. For steppers that know
+    /// equilibrium alone, which seek it again then; what does not answer here breaks in [`Force::advance_memory`], when the step has ended.
+    fn give_way(&self, _at: &Configuration, _memory: &mut [f64]) -> bool {
+        false
+    }
+
     /// Whether its [`Force::end_step`] does anything.
     fn ends_steps(&self) -> bool {
         false

@@ -17,6 +17,8 @@ pub struct Forecast {
     pub highest_damping: f64,
     /// The longest stable step of the system's stepper [s]; infinite where any step is stable.
     pub longest_step: f64,
+    /// The force that has the most to say in what the longest step is of, the fastest oscillation or the strongest damping, by its number.
+    pub stiffest: Option<usize>,
 }
 
 /// Growth of the fastest oscillation that is borne of methods without a stable step [1/s].
@@ -39,10 +41,11 @@ pub fn forecast(
 ) -> Forecast {
     let stiffness = TangentWeights { position: -1.0, velocity: 0.0 };
     let damping = TangentWeights { position: 0.0, velocity: -1.0 };
-    let highest_frequency = highest_eigenvalue(system, state, around, ws, stiffness).sqrt();
+    let (highest, of_stiffness) = highest_eigenvalue(system, state, around, ws, stiffness);
+    let highest_frequency = highest.sqrt();
     let is_damped = system.forces.iter().any(|force| force.declaration().velocity_terms);
-    let highest_damping =
-        if is_damped { highest_eigenvalue(system, state, around, ws, damping) } else { 0.0 };
+    let (highest_damping, of_damping) =
+        if is_damped { highest_eigenvalue(system, state, around, ws, damping) } else { (0.0, None) };
     let longest_step = match system.stepper.stability() {
         Stability::Unconditional => f64::INFINITY,
         Stability::Limited(limit) => 0.95 * longest_step(highest_frequency / limit, highest_damping),
@@ -52,7 +55,20 @@ pub fn forecast(
             slow.min(0.95 * longest_step(0.0, highest_damping))
         }
     };
-    Forecast { highest_frequency, highest_damping, longest_step }
+    // of the equation of the longest step, the greater term
+    let is_of_damping = match system.stepper.stability() {
+        Stability::Unconditional => false,
+        Stability::Limited(limit) => {
+            0.5 * longest_step * highest_damping > (longest_step * highest_frequency / limit).powi(2)
+        }
+        Stability::Growing { .. } => 0.5 * longest_step * highest_damping > 0.5,
+    };
+    Forecast {
+        highest_frequency,
+        highest_damping,
+        longest_step,
+        stiffest: if is_of_damping { of_damping } else { of_stiffness },
+    }
 }
 
 /// The step at which `(h ω / limit)² + h γ / 2 = 1`: exact for symplectic Euler, whose force sees the velocity
@@ -63,14 +79,15 @@ fn longest_step(frequency: f64, damping: f64) -> f64 {
     2.0 / (half + (half * half + 4.0 * frequency * frequency).sqrt())
 }
 
-/// Highest eigenvalue of `(TᵀMT)⁻¹ Tᵀ (weights · tangent) T` by the power method over velocity blocks.
+/// Highest eigenvalue of `(TᵀMT)⁻¹ Tᵀ (weights · tangent) T` by the power method over velocity blocks, and the force with the greatest
+/// part in it.
 fn highest_eigenvalue(
     system: &System,
     state: &SystemState,
     around: &Surroundings,
     ws: &mut SystemWorkspace,
     weights: TangentWeights,
-) -> f64 {
+) -> (f64, Option<usize>) {
     let kinematics = &system.kinematics;
     let touching: Vec<_> = system
         .forces
@@ -82,25 +99,25 @@ fn highest_eigenvalue(
     let mut accelerations = vec![Vec3::ZERO; blocks];
     let mut moved = vec![Vec3::ZERO; kinematics.row_count()];
     let mut eigenvalue = 0.0;
+    let add_product =
+        |index: usize, moved: &[Vec3], ws: &mut SystemWorkspace, product: &mut [Vec3]| match &touching[index]
+        {
+            Some(stiffness) => stiffness
+                .iter()
+                .map(|&(row, k)| (row as usize, k))
+                .for_each(|(row, k)| product[row] += moved[row] * (-weights.position * k)),
+            None => {
+                let at = system.view(index, &ws.rows, state, around);
+                system.forces[index].add_differential(&at, weights, moved, &mut ws.scratches[index], product);
+            }
+        };
     for _ in 0..ITERATIONS {
         system.project_free(&mut direction);
         kinematics.velocities_into(&state.q, &direction, &mut moved);
         // Rayleigh quotient (δ·K δ) / (δ·M δ)
         let mut product = std::mem::take(&mut ws.row_force);
         product.fill(Vec3::ZERO);
-        for (index, force) in system.forces.iter().enumerate() {
-            match &touching[index] {
-                Some(stiffness) => stiffness
-                    .iter()
-                    .map(|&(row, k)| (row as usize, k))
-                    .for_each(|(row, k)| product[row] += moved[row] * (-weights.position * k)),
-                None => {
-                    let at = system.view(index, &ws.rows, state, around);
-                    let scratch = &mut ws.scratches[index];
-                    force.add_differential(&at, weights, &moved, scratch, &mut product);
-                }
-            }
-        }
+        (0..system.forces.len()).for_each(|index| add_product(index, &moved, ws, &mut product));
         let tangent: f64 = moved.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum();
         let mass = 2.0 * system.mass.kinetic_energy(&moved);
         ws.row_force = product;
@@ -118,7 +135,16 @@ fn highest_eigenvalue(
         }
         direction.iter_mut().zip(&accelerations).for_each(|(d, a)| *d = *a * (1.0 / largest));
     }
-    eigenvalue
+    let mut product = std::mem::take(&mut ws.row_force);
+    let mut part = |index: usize| -> f64 {
+        product.fill(Vec3::ZERO);
+        add_product(index, &moved, ws, &mut product);
+        moved.iter().zip(&product).map(|(d, k)| d.dot(*k)).sum()
+    };
+    let parts: Vec<f64> = (0..system.forces.len()).map(&mut part).collect();
+    ws.row_force = product;
+    let stiffest = (0..parts.len()).filter(|index| parts[*index] > 0.0);
+    (eigenvalue, stiffest.max_by(|a, b| parts[*a].total_cmp(&parts[*b])))
 }
 
 /// A fixed vector without symmetry: components from a multiplicative hash of the index.

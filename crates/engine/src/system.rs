@@ -475,6 +475,25 @@ impl System {
         }
     }
 
+    /// Breaks what bears too much at the placed rows; names of the forces of which something broke.
+    pub fn give_way(
+        &self,
+        ws: &mut SystemWorkspace,
+        state: &mut SystemState,
+        around: &Surroundings,
+    ) -> Vec<String> {
+        ws.before.memory.clone_from(&state.memory);
+        ws.before.pairs.clone_from(&state.pairs);
+        let mut broke = Vec::new();
+        for (index, force) in self.forces.iter().enumerate() {
+            let at = self.view(index, &ws.rows, &ws.before, around);
+            if force.give_way(&at, &mut state.memory[self.memory_range(index)]) {
+                broke.push(force.name().to_owned());
+            }
+        }
+        broke
+    }
+
     /// Whether forces change their memory between steps.
     pub fn ends_steps(&self) -> bool {
         self.forces.iter().any(|force| force.ends_steps())

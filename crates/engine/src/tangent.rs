@@ -10,7 +10,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use souple_math::{Mat3, Vec3};
+use souple_math::{Mat3, Vec3, eigen_symmetric};
 use souple_solve::{BlockMatrix, LinearOperator, Pattern, PatternBuilder};
 
 use crate::force::{Configuration, Declaration, Force, Scratch, TangentWeights};
@@ -46,7 +46,7 @@ pub struct Tangent {
 pub enum Curvature {
     /// As it is.
     Exact,
-    /// With what is negative of it turned round, part by part ([`Force::add_definite_blocks`]).
+    /// With what is negative of it turned round, part by part ([`Force::add_definite_blocks`]), or left out, of what turns of frames add.
     Definite,
 }
 
@@ -93,6 +93,24 @@ impl Linearisation<'_> {
         }
         self.system.kinematics.return_forces(out);
     }
+}
+
+/// Adds what the forces on a turning frame add to the tangent, of a definite one the part that pulls back into the turn; whether any was left out.
+fn add_geometric(of_frame: Option<(u32, Mat3)>, curvature: Curvature, blocks: &mut BlockMatrix) -> bool {
+    let Some((block, geometric)) = of_frame else { return false };
+    let (part, is_cut) = match curvature {
+        Curvature::Exact => (geometric, false),
+        Curvature::Definite => {
+            let eigen = eigen_symmetric(&geometric.symmetric_part());
+            let values = eigen.values.to_array();
+            let rounding = f64::EPSILON * values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            let kept = Mat3::from_diagonal(Vec3::from_array(values.map(|value| value.max(0.0))));
+            let axes = &eigen.vectors;
+            (*axes * kept * axes.transpose(), values.iter().any(|value| *value < -rounding))
+        }
+    };
+    add_block(blocks, block as usize, block as usize, &part);
+    is_cut
 }
 
 impl Tangent {
@@ -167,11 +185,19 @@ impl Tangent {
             let mut unbalanced = std::mem::take(&mut self.unbalanced);
             unbalanced.resize(at.unbalanced.len(), Vec3::ZERO);
             at.turned_into(scratches, &mut unbalanced);
+            // rows of a frame follow each other
+            let mut of_frame: Option<(u32, Mat3)> = None;
             for (row, g) in unbalanced[..kinematics.free_row_count()].iter().enumerate() {
-                if let Some((block, geometric)) = kinematics.geometric_block(row as u32, at.q, *g) {
-                    add_block(&mut blocks, block as usize, block as usize, &geometric);
-                }
+                let Some((block, part)) = kinematics.geometric_block(row as u32, at.q, *g) else { continue };
+                of_frame = match of_frame {
+                    Some((last, sum)) if last == block => Some((last, sum + part)),
+                    done => {
+                        turned |= add_geometric(done, curvature, &mut blocks);
+                        Some((block, part))
+                    }
+                };
             }
+            turned |= add_geometric(of_frame, curvature, &mut blocks);
             self.unbalanced = unbalanced;
         }
         constrain(system, &mut blocks);

@@ -3,7 +3,8 @@
 //! A ligament has a square section and goes from the middle of one patch to that of the other. A sheet is as wide as the
 //! patches are across the way between them, and follows them where they turn. A pad fills the gap: every face of the
 //! first patch is carried along the way between the two until it meets the second. Ends stand on the surfaces themselves,
-//! so that what is attached there is in touch.
+//! so that what is attached there is in touch. A strap lies on outer faces of both, as a collateral ligament does on the sides of a joint: over all
+//! of the first region, over what is between, and over all of the second.
 
 use souple_math::{Mat3, Vec3, axes_along, eigen_symmetric};
 
@@ -15,6 +16,7 @@ pub enum TissueForm {
     Ligament,
     Sheet,
     Pad,
+    Strap,
 }
 
 /// A part of a surface that tissue ends on.
@@ -30,13 +32,13 @@ pub struct Patch {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tissue {
     pub form: TissueForm,
-    /// Of a ligament its sides, of a sheet that of it, of a pad the widest gap that is filled [m].
+    /// Of a ligament its sides, of a sheet or strap that of it, of a pad the widest gap that is filled [m].
     pub thickness: f64,
-    /// Cells from one end to the other.
+    /// Cells from one end to the other; of a strap shared out over its parts on the first body, between and on the second, one each at least.
     pub along: usize,
-    /// Of a ligament or sheet, over its width.
+    /// Of all but a pad, over its width.
     pub across: usize,
-    /// Of a ligament or sheet, through its thickness.
+    /// Of all but a pad, through its thickness.
     pub through: usize,
 }
 
@@ -59,10 +61,26 @@ pub enum TissueError {
         "the ends are {apart:.3e} m apart, less than {thickness:.3e} m, and neither region holds a whole face that would be as wide"
     )]
     ThickerThanLong { apart: f64, thickness: f64 },
-    #[error("a pad begins on faces, and the first region has none")]
-    NoFaces,
+    #[error("a {what} lies on faces, and the {which} region has none")]
+    NoFaces { what: &'static str, which: &'static str },
     #[error("the faces of the {which} region look away from the other region, at ({}, {}, {}): the tissue would go through the body", .at.x, .at.y, .at.z)]
     FacesAway { which: &'static str, at: Vec3 },
+    #[error(
+        "the faces of the {which} region lie along the way to the other, at ({}, {}, {}), and do not look at it",
+        .at.x, .at.y, .at.z
+    )]
+    FacesAcross { which: &'static str, at: Vec3 },
+    #[error(
+        "the faces of the {which} region look at the other, or look to no one side, at ({}, {}, {}): there is no side that a strap would lie on",
+        .at.x, .at.y, .at.z
+    )]
+    NoSide { which: &'static str, at: Vec3 },
+    #[error(
+        "the regions overlap along the way between them by {by:.3e} m: a strap runs from one to the other"
+    )]
+    NoLength { by: f64 },
+    #[error("the region is narrower at ({}, {}, {}) than elsewhere: a strap is as wide from one end to the other", .at.x, .at.y, .at.z)]
+    Narrow { at: Vec3 },
     #[error("no face of the first region has the second one before it{}", .nearest.map(|gap| format!(" within {thickness:.3e} m: the narrowest gap is {gap:.3e} m")).unwrap_or_default())]
     NoGap { thickness: f64, nearest: Option<f64> },
 }
@@ -78,7 +96,15 @@ impl TissueError {
                 "a `thickness` below the distance of the ends, or regions that hold whole faces"
             }
             Self::FacesAway { .. } => "faces of each body that look at the other",
-            Self::NoFaces => "a region that holds whole faces of the surface, or a ligament",
+            Self::FacesAcross { .. } => {
+                "faces of each body that look at the other, or `tissue = \"strap\"`, which lies on such as these"
+            }
+            Self::NoSide { .. } => {
+                "faces along the way, on one side of both bodies; or a ligament or sheet between faces that look at each other"
+            }
+            Self::NoLength { .. } => "regions that are apart along the line between their middles",
+            Self::Narrow { .. } => "a region with square ends, as a box cuts it out",
+            Self::NoFaces { .. } => "a region that holds whole faces of the surface, or a ligament",
             Self::NoGap { .. } => "regions that face each other, or a greater `thickness`",
         }
     }
@@ -89,6 +115,8 @@ pub const ENDS: [&str; 2] = ["from_end", "to_end"];
 
 /// Lengths below this part of the size of the patches count as nothing: rounding of coordinates.
 const NOTHING: f64 = 1e-9;
+/// Cosine of the angle to the way below which a normal counts as across it.
+const ALONG: f64 = 0.1;
 
 impl Patch {
     fn middle(&self) -> Vec3 {
@@ -123,11 +151,46 @@ impl Patch {
         })
     }
 
-    /// Where a line meets its faces, nearest to a point of it; the nearest place where it passes them by.
-    fn met_along(&self, point: Vec3, direction: Vec3) -> Vec3 {
-        let distances = self.distances_on_line(point, direction);
-        let nearest = distances.min_by(|a, b| a.abs().total_cmp(&b.abs()));
-        nearest.map_or_else(|| self.nearest(point), |distance| point + direction * distance)
+    /// Where a line leaves it towards a side: the last of its faces that look there. Where it meets none of those, the nearest place to a
+    /// point of it.
+    fn met_along(&self, point: Vec3, towards: Vec3) -> Vec3 {
+        let looking = Self { points: Vec::new(), faces: self.faces_towards(towards) };
+        let last = looking.distances_on_line(point, towards).max_by(f64::total_cmp);
+        last.map_or_else(|| self.nearest(point), |distance| point + towards * distance)
+    }
+
+    /// Its faces that look to a side.
+    fn faces_towards(&self, towards: Vec3) -> Vec<Vec<Vec3>> {
+        let looks = |face: &&Vec<Vec3>| {
+            let normal = normal(&[face[0], face[1], face[2]]);
+            normal.dot(towards) > NOTHING * normal.length()
+        };
+        self.faces.iter().filter(looks).cloned().collect()
+    }
+
+    /// Where all its faces lie along the way, within a tenth: a place on one.
+    fn along(&self, direction: Vec3) -> Option<Vec3> {
+        let lies_along = |corners: [Vec3; 3]| {
+            let normal = normal(&corners);
+            normal.dot(direction).abs() <= ALONG * normal.length()
+        };
+        let first = self.triangles().next()?;
+        self.triangles().all(lies_along).then_some(first[0])
+    }
+
+    /// The side that its faces look to, of length one; `None` where they look to no one side.
+    fn side(&self) -> Option<Vec3> {
+        let (sum, area) = self.triangles().fold((Vec3::ZERO, 0.0), |(sum, area), corners| {
+            let normal = normal(&corners);
+            (sum + normal, area + normal.length())
+        });
+        (sum.length() > 0.5 * area).then(|| sum / sum.length())
+    }
+
+    /// Where it begins and ends along a direction, from a place [m].
+    fn extent(&self, place: Vec3, direction: Vec3) -> [f64; 2] {
+        let along = self.points.iter().map(|point| (*point - place).dot(direction));
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 
     /// Where all its faces look the other way, if there are any: a place on one. Faces along the way look at nothing.
@@ -182,12 +245,11 @@ pub fn tissue(from: &Patch, to: &Patch, wanted: &Tissue) -> Result<Mesh, TissueE
         return Err(TissueError::NoWay { at: start });
     }
     let direction = way / way.length();
-    for (which, patch, towards) in [("first", from, direction), ("second", to, -direction)] {
-        if let Some(at) = patch.away_from(towards) {
-            return Err(TissueError::FacesAway { which, at });
-        }
+    if wanted.form != TissueForm::Strap {
+        looks_over([from, to], direction)?;
     }
     match wanted.form {
+        TissueForm::Strap => strap([from, to], direction, wanted),
         TissueForm::Pad => pad(from, to, direction, wanted),
         TissueForm::Ligament => {
             // any direction across will do for a square
@@ -203,6 +265,22 @@ pub fn tissue(from: &Patch, to: &Patch, wanted: &Tissue) -> Result<Mesh, TissueE
             loft(ends, direction, wanted)
         }
     }
+}
+
+/// Whether each of two patches looks at the other, with some of its faces.
+///
+/// # Errors
+/// One that does not.
+fn looks_over([from, to]: [&Patch; 2], direction: Vec3) -> Result<(), TissueError> {
+    for (which, patch, towards) in [("first", from, direction), ("second", to, -direction)] {
+        if let Some(at) = patch.away_from(towards) {
+            return Err(TissueError::FacesAway { which, at });
+        }
+        if let Some(at) = patch.along(direction) {
+            return Err(TissueError::FacesAcross { which, at });
+        }
+    }
+    Ok(())
 }
 
 /// Where tissue of one width ends: the direction of that, and where it begins and ends along it [m].
@@ -246,8 +324,9 @@ impl End<'_> {
     }
 }
 
-/// Spreads that differ by less than this part are as wide one way as the other.
-const AS_WIDE: f64 = 1e-6;
+/// Spreads that differ by less than this part are as wide one way as the other: of squares and discs whose points are not in rows they differ
+/// by some percent, in a direction that the mesh alone knows.
+const AS_WIDE: f64 = 0.05;
 
 /// The direction in which a patch is widest across the way, on the side of `like`; of a patch that is as wide in all directions, that of
 /// `like` itself, or across the way and an axis.
@@ -295,13 +374,15 @@ fn loft(ends: [End; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh, Tissue
     if ends.iter().all(|end| end.patch.faces.is_empty()) && thickness > apart {
         return Err(TissueError::ThickerThanLong { apart, thickness });
     }
-    let section = |End { patch, axis, ends: [low, high] }: End| -> Result<Vec<Vec3>, TissueError> {
+    let section = |End { patch, axis, ends: [low, high] }: End,
+                   towards: Vec3|
+     -> Result<Vec<Vec3>, TissueError> {
         let normal = direction.cross(axis);
         let normal = normal / normal.length();
         let place = |j: usize, k: usize| {
             let u = low + (high - low) * j as f64 / across as f64;
             let v = thickness * (k as f64 / through as f64 - 0.5);
-            patch.met_along(patch.middle() + axis * u + normal * v, direction)
+            patch.met_along(patch.middle() + axis * u + normal * v, towards)
         };
         for j in 0..=across {
             let (below, above) = (place(j, 0), place(j, through));
@@ -313,15 +394,22 @@ fn loft(ends: [End; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh, Tissue
         Ok((0..=through).flat_map(|k| (0..=across).map(move |j| (j, k))).map(|(j, k)| place(j, k)).collect())
     };
     let [first, last] = ends;
-    let (first, last) = (section(first)?, section(last)?);
-    let mut points = Vec::new();
-    for layer in 0..=along {
+    let (first, last) = (section(first, direction)?, section(last, -direction)?);
+    let sections = (0..=along).map(|layer| {
         let part = layer as f64 / along as f64;
-        points.extend(first.iter().zip(&last).map(|(a, b)| *a * (1.0 - part) + *b * part));
-    }
-    let number = |i: usize, j: usize, k: usize| (i * first.len() + k * (across + 1) + j) as u32;
-    let mut mesh = Mesh { points, ..Mesh::default() };
-    for i in 0..along {
+        first.iter().zip(&last).map(|(a, b)| *a * (1.0 - part) + *b * part).collect()
+    });
+    let mut mesh = between(&sections.collect::<Vec<_>>(), [across, through]);
+    name_ends(&mut mesh, first.len());
+    Ok(mesh)
+}
+
+/// Hexahedra between sections, one after the other, each of points over its width, layer upon layer.
+fn between(sections: &[Vec<Vec3>], [across, through]: [usize; 2]) -> Mesh {
+    let of_section = (across + 1) * (through + 1);
+    let number = |i: usize, j: usize, k: usize| (i * of_section + k * (across + 1) + j) as u32;
+    let mut mesh = Mesh { points: sections.concat(), ..Mesh::default() };
+    for i in 0..sections.len() - 1 {
         for k in 0..through {
             for j in 0..across {
                 let ring = |i: usize| {
@@ -332,14 +420,81 @@ fn loft(ends: [End; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh, Tissue
             }
         }
     }
-    name_ends(&mut mesh, first.len());
+    mesh
+}
+
+/// Hexahedra that lie on both patches and go straight between them; ends are what lies on each.
+///
+/// # Errors
+/// The patches have no side in common, or are not one behind the other.
+fn strap(patches: [&Patch; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh, TissueError> {
+    let Tissue { across, through, thickness, .. } = *wanted;
+    let side = |patch: &Patch, which: &'static str| -> Result<Vec3, TissueError> {
+        if patch.faces.is_empty() {
+            return Err(TissueError::NoFaces { what: "strap", which });
+        }
+        let side = patch.side().map(|side| side - direction * side.dot(direction));
+        // a side that looks at the other, or away from it, has little left across the way
+        let side = side.filter(|side| side.length() > 0.5);
+        side.and_then(Vec3::try_normalised).ok_or(TissueError::NoSide { which, at: patch.middle() })
+    };
+    let sides = [side(patches[0], "first")?, side(patches[1], "second")?];
+    if sides[0].dot(sides[1]) <= 0.0 {
+        return Err(TissueError::NoSide { which: "second", at: patches[1].middle() });
+    }
+    let start = patches[0].middle();
+    let [[begin, leave], [meet, end]] = patches.map(|patch| patch.extent(start, direction));
+    if leave >= meet {
+        return Err(TissueError::NoLength { by: leave - meet });
+    }
+    let parts = [leave - begin, meet - leave, end - meet];
+    let counts = parts.map(|part| {
+        let share = wanted.along as f64 * part / (end - begin);
+        share.round().max(1.0) as usize
+    });
+    let lying = [0, 1]
+        .map(|which: usize| Patch { points: Vec::new(), faces: patches[which].faces_towards(sides[which]) });
+    // a section at a place along the way, on a patch
+    let section = |which: usize, u: f64| -> Result<Vec<Vec3>, TissueError> {
+        let (patch, side) = (&lying[which], sides[which]);
+        let beside = side.cross(direction);
+        let [low, high] = patches[which].extent(start, beside);
+        let foot = |j: usize| {
+            let v = low + (high - low) * j as f64 / across as f64;
+            let at = start + direction * u + beside * v;
+            let last = patch.distances_on_line(at, side).max_by(f64::total_cmp);
+            last.map(|distance| at + side * distance).ok_or(TissueError::Narrow { at: patch.nearest(at) })
+        };
+        let feet = (0..=across).map(foot).collect::<Result<Vec<Vec3>, _>>()?;
+        let layer = |k: usize| side * (thickness * k as f64 / through as f64);
+        Ok((0..=through).flat_map(|k| feet.iter().map(move |foot| *foot + layer(k))).collect())
+    };
+    let at = |which: usize, [low, high]: [f64; 2], count: usize| -> Result<Vec<Vec<Vec3>>, TissueError> {
+        (0..=count).map(|i| section(which, low + (high - low) * i as f64 / count as f64)).collect()
+    };
+    let (first, last) = (at(0, [begin, leave], counts[0])?, at(1, [meet, end], counts[2])?);
+    let (edge, other) = (&first[counts[0]], &last[0]);
+    let bridge = (1..counts[1]).map(|i| {
+        let part = i as f64 / counts[1] as f64;
+        edge.iter().zip(other).map(|(a, b)| *a * (1.0 - part) + *b * part).collect()
+    });
+    let sections: Vec<Vec<Vec3>> = first.iter().cloned().chain(bridge).chain(last.iter().cloned()).collect();
+    let mut mesh = between(&sections, [across, through]);
+    let of_section = sections[0].len();
+    let feet = |sections: std::ops::Range<usize>| -> Vec<u32> {
+        sections.flat_map(|i| (0..=across).map(move |j| (i * of_section + j) as u32)).collect()
+    };
+    let ends = [feet(0..first.len()), feet(sections.len() - last.len()..sections.len())];
+    for (name, points) in ENDS.into_iter().zip(ends) {
+        mesh.groups.insert(name.to_owned(), Group { points, ..Group::default() });
+    }
     Ok(mesh)
 }
 
 /// Cells between faces of a patch and where they meet the other.
 fn pad(from: &Patch, to: &Patch, direction: Vec3, wanted: &Tissue) -> Result<Mesh, TissueError> {
     if from.faces.is_empty() {
-        return Err(TissueError::NoFaces);
+        return Err(TissueError::NoFaces { what: "pad", which: "first" });
     }
     let Tissue { along, thickness, .. } = *wanted;
     let mut narrowest: Option<f64> = None;
@@ -404,7 +559,9 @@ pub fn cell_axes(mesh: &Mesh, form: TissueForm) -> Vec<Mat3> {
         match form {
             TissueForm::Pad => whole.any_orthogonal(),
             // the first edge of both ends
-            TissueForm::Ligament | TissueForm::Sheet => at(1) - at(0) + at(half + 1) - at(half),
+            TissueForm::Ligament | TissueForm::Sheet | TissueForm::Strap => {
+                at(1) - at(0) + at(half + 1) - at(half)
+            }
         }
     };
     let of = |cell: crate::Cell| axes_along(along(&cell), beside(&cell));
@@ -518,6 +675,68 @@ mod tests {
         let width = volume(&mut mesh) / (3.0 * 0.5);
         let of_circle = 2.0 * (1.0_f64 - 0.0625).sqrt();
         assert!(width < of_circle && width > 0.98 * of_circle, "{width} of {of_circle}");
+    }
+
+    /// A strap lies on both of two faces beside each other, over all of each and what is between; faces that look at each other have no side, and
+    /// what goes from face to face does not begin on such as lie along the way.
+    #[test]
+    fn straps_lie_along_faces() {
+        let floor = square(0.0, 1.0, |_| 0.0, 2);
+        let beside = |by: f64| {
+            let moved = |points: &[Vec3]| points.iter().map(|point| *point + Vec3::X * by).collect();
+            Patch {
+                points: moved(&floor.points),
+                faces: floor.faces.iter().map(|face| moved(face)).collect(),
+            }
+        };
+        let wanted = Tissue { form: TissueForm::Strap, thickness: 0.5, along: 8, across: 2, through: 2 };
+        let mut mesh = tissue(&floor, &beside(3.0), &wanted).unwrap();
+        assert!((volume(&mut mesh) - 4.0 * 0.5).abs() < 1e-12);
+        assert_eq!(mesh.cell_count(), 8 * 2 * 2);
+        for (end, [low, high]) in ENDS.into_iter().zip([[0.0, 1.0], [3.0, 4.0]]) {
+            let points = &mesh.groups[end].points;
+            assert_eq!(points.len(), 3 * 3);
+            for point in points {
+                let x = mesh.points[*point as usize];
+                assert!(x.y.abs() < 1e-12 && x.x > low - 1e-12 && x.x < high + 1e-12, "{x:?}");
+            }
+        }
+        let axes = cell_axes(&mesh, TissueForm::Strap);
+        assert!(axes.iter().all(|axes| (axes.columns[0] - Vec3::X).length() < 1e-12));
+        let refused = |to: &Patch, wanted: &Tissue| tissue(&floor, to, wanted).unwrap_err();
+        assert!(matches!(refused(&beside(0.5), &wanted), TissueError::NoLength { .. }));
+        let corner = |a: f64| Vec3::new(4.0 + a.cos(), 0.0, 0.5 - a.sin());
+        let round = Patch {
+            points: (0..24).map(|i| corner(f64::from(i) / 24.0 * std::f64::consts::TAU)).collect(),
+            faces: (1..23)
+                .map(|i| [0, i, i + 1].map(|i| corner(f64::from(i) / 24.0 * std::f64::consts::TAU)).to_vec())
+                .collect(),
+        };
+        assert!(matches!(refused(&round, &wanted), TissueError::Narrow { .. }));
+        let roof = from_below(square(0.0, 1.0, |_| 3.0, 2));
+        assert!(matches!(refused(&roof, &wanted), TissueError::NoSide { which: "first", .. }));
+        let point = Patch { points: vec![Vec3::new(3.0, 0.0, 0.5)], faces: Vec::new() };
+        assert!(matches!(refused(&point, &wanted), TissueError::NoFaces { which: "second", .. }));
+        let ligament = Tissue { form: TissueForm::Ligament, ..wanted };
+        assert!(matches!(refused(&beside(3.0), &ligament), TissueError::FacesAcross { which: "first", .. }));
+    }
+
+    /// A region that goes all round a body ends where that looks at the other: no tissue goes through.
+    #[test]
+    fn tissue_of_whole_bodies_stays_outside() {
+        // a cube of 2 m about the origin, faces outward
+        let corner = |i: usize| {
+            let side = |bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+            Vec3::new(side(0), side(1), side(2))
+        };
+        let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let cube = |by: Vec3| Patch {
+            points: (0..8).map(|i| corner(i) + by).collect(),
+            faces: sides.iter().map(|side| side.iter().map(|i| corner(*i) + by).collect()).collect(),
+        };
+        let wanted = Tissue { form: TissueForm::Ligament, thickness: 0.5, ..PAD };
+        let mut mesh = tissue(&cube(Vec3::ZERO), &cube(Vec3::X * 5.0), &wanted).unwrap();
+        assert!((volume(&mut mesh) - 3.0 * 0.25).abs() < 1e-12, "from face to face");
     }
 
     /// Ligaments and sheets begin and end on the surfaces, with the section that was asked for.

@@ -12,6 +12,7 @@ use souple_scene::spec::picture::PictureView;
 use souple_scene::spec::sound::Sound;
 use souple_table::counted;
 
+use crate::doubts;
 use crate::expect::Span;
 use crate::frames::Frames;
 use crate::output::{OutputError, OutputFolder};
@@ -173,6 +174,8 @@ impl Course {
         let (sounds, said): (Vec<_>, Vec<_>) =
             sounds.map(|sound| Rendered::new(sound, traces, rounding)).unzip();
         session.warnings.extend(said.into_iter().flatten());
+        session.warnings.extend(doubts::of_traces(traces));
+        session.warnings.extend(doubts::of_bodies(session));
         if session.solver.shortened > 0 {
             session.warnings.push(format!(
                 "{} of one linearised solve went up in potential and {} taken in part, which costs momentum and energy: take shorter steps, or \

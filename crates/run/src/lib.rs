@@ -5,6 +5,7 @@
 
 mod command;
 mod course;
+mod doubts;
 mod duration;
 mod expect;
 mod failure;
@@ -239,13 +240,14 @@ pub fn forecast_warnings(world: &mut World) -> Vec<String> {
         if stepper.stability() == Stability::Unconditional {
             continue;
         }
-        let (name, stepper, forecast) = world.with_system(index, |system, state, around, ws| {
+        let (name, stepper, forecast, stiffest) = world.with_system(index, |system, state, around, ws| {
             let forecast = souple_engine::stability::forecast(system, state, around, ws);
-            (system.name.clone(), system.stepper.name(), forecast)
+            let stiffest = forecast.stiffest.map(|force| format!(", of `{}`", system.forces[force].name()));
+            (system.name.clone(), system.stepper.name(), forecast, stiffest.unwrap_or_default())
         });
         if timestep > forecast.longest_step {
             warnings.push(format!(
-                "system `{name}`: a step of {timestep:.3e} s is longer than {stepper} bears at rest, {:.3e} s (highest frequency {:.4e} rad/s); shorten the period, raise steps_per_period, or take an implicit stepper",
+                "system `{name}`: a step of {timestep:.3e} s is longer than {stepper} bears at rest, {:.3e} s (highest frequency {:.4e} rad/s{stiffest}); shorten the period, raise steps_per_period, or take an implicit stepper",
                 forecast.longest_step, forecast.highest_frequency
             ));
         }

@@ -140,6 +140,7 @@ impl Report {
                 "newton_iterations": self.solver.newton_iterations,
                 "linear_iterations": self.solver.linear_iterations,
                 "made_definite": self.solver.made_definite,
+                "gone_on": self.solver.gone_on,
                 "shortened": self.solver.shortened,
                 "largest_linear_residual": self.solver.linear_residual,
                 "largest_newton_residual": self.solver.newton_residual,

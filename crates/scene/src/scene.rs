@@ -346,7 +346,8 @@ pub enum Carriers {
     Frames(f64),
 }
 
-/// The same with other carriers of one body, to compare them.
+/// The same with other carriers of one body, to compare them; none of them follows a bone, since a mesh has nothing that would be led
+/// as a frame is.
 ///
 /// # Errors
 /// Everything that is wrong with it then.
@@ -366,6 +367,7 @@ pub fn read_file_with_carriers(
                 Carriers::Mesh => body.frames = None,
                 Carriers::Frames(times) => {
                     if let Some(frames) = &mut body.frames {
+                        frames.bones.clear();
                         frames.multiply(times);
                     }
                 }

@@ -159,3 +159,34 @@ fn what_cannot_hang_is_refused() {
     assert!(read(&springs).is_ok_and(|(_, bodies)| bodies.iter().all(|body| body.hanging_count() == 0)));
     assert!(read(&text).is_ok_and(|(_, bodies)| bodies[1].hanging_count() == 9));
 }
+
+/// In equilibrium nothing bears more than it can: what would is gone within the step, and each half hangs on what is left; where nothing
+/// is left there is no rest.
+#[test]
+fn what_tears_in_statics_is_gone_at_once() {
+    let scene = |strength: f64, more: &str| {
+        let stepper = r#"{ name = "static", newton_tolerance = 1e-11, solver = "direct" }"#;
+        let halves = halves(stepper, [[4, 2, 2], [4, 2, 2]], "")
+            .replace("[systems", "gravity = [0, -9.81, 0]\n[systems");
+        let probes = "[probes.carried]\nbody = \"first\"\nregion = \"x_min\"\nquantity = \"reaction\"\ncomponent = \"y\"\n";
+        format!(
+            "{halves}hold = \"springs\"\nstrength = {strength:?}\n[[bodies.first.pins]]\nregion = \"x_min\"\n{more}{probes}"
+        )
+    };
+    let below = "[[bodies.second.springs]]\nregion = \"x_max\"\nstiffness = 1000\ndistribution = \"total\"\n";
+    // 1000 kg/m³ of 0.4 x 0.2 x 0.2 m, with what of the other half hangs on the joint
+    let weight = 16.0 * 9.81;
+    for (strength, holds) in [(1e9, true), (1.0, false)] {
+        let text = scene(strength, below);
+        let scene = read_text("torn", &text, Path::new("."), &[]).unwrap_or_else(|faults| panic!("{faults}"));
+        let probe = scene.probes[0].clone();
+        let mut world = scene.model.start(scene.state);
+        world.step().unwrap();
+        let carried = probe.measure(&mut world).numbers()[0];
+        let own = (carried - weight).abs() < 1e-6 * weight;
+        assert_eq!(own, !holds, "{carried} N of {weight}");
+    }
+    let (mut world, _) = read(&scene(1.0, "")).unwrap();
+    let refused = world.step().unwrap_err().to_string();
+    assert!(refused.contains("`attachments[0]` gave way"), "{refused}");
+}

@@ -367,8 +367,15 @@ quantity = "centre_of_mass"
 [systems.main]
 stepper = { name = "static", newton_tolerance = 1e-11, solver = "direct" }
 "#;
-    for kind in ["rigid", "affine"] {
-        let (mut world, probes) = start(&format!("{CUBE}{ON_A_BONE}{probes}").replace("rigid", kind));
+    let pinned = "[[bodies.cube.pins]]\nregion = \"x_min\"\nbone = \"hand\"\n";
+    let carried = [
+        ("rigid", ON_A_BONE.to_owned()),
+        ("affine", ON_A_BONE.replace("rigid", "affine")),
+        ("pinned", format!("[bones.hand]\n{pinned}")),
+        ("both", format!("{ON_A_BONE}{pinned}")),
+    ];
+    for (kind, carried) in carried {
+        let (mut world, probes) = start(&format!("{CUBE}{carried}{probes}"));
         world.step().unwrap();
         let [force, torque, centre] =
             ["force", "torque", "centre"].map(|name| value(&mut world, &probes, name));

@@ -17,6 +17,7 @@ pub const SCENES: &[(&str, &str)] = &[
     ("character", include_str!("../../../scenes/character/scene.toml")),
     ("clay_sticks_again", include_str!("../../../scenes/clay_sticks_again/scene.toml")),
     ("cohesive_heap", include_str!("../../../scenes/cohesive_heap/scene.toml")),
+    ("collateral", include_str!("../../../scenes/collateral/scene.toml")),
     ("collision", include_str!("../../../scenes/collision/scene.toml")),
     ("dough", include_str!("../../../scenes/dough/scene.toml")),
     ("drum", include_str!("../../../scenes/drum/scene.toml")),

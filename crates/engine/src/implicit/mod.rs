@@ -58,6 +58,8 @@ pub struct NewtonSettings {
 pub struct ImplicitBuffers {
     /// Configuration and velocity at the start of the step.
     pub q_start: Vec<Vec3>,
+    /// Where a linearised solve that was taken in part leads.
+    pub shortened: Vec<Vec3>,
     pub v_start: Vec<Vec3>,
     /// `v₀` of [`Rates`].
     pub velocity_offset: Vec<Vec3>,
@@ -115,6 +117,7 @@ impl ImplicitBuffers {
             inertia: Vec::new(),
             inertia_residual: Vec::new(),
             at_offset: Vec::new(),
+            shortened: Vec::new(),
             damping: Vec::new(),
             block_positions: Vec::new(),
             operator: OperatorBuffers::new(system),
@@ -148,6 +151,7 @@ impl ImplicitBuffers {
             &self.inertia,
             &self.inertia_residual,
             &self.at_offset,
+            &self.shortened,
             &self.damping,
             &self.block_positions,
         ];
@@ -601,6 +605,7 @@ impl ImplicitStep<'_> {
         self.go(q, fraction, buffers);
         Ok(StepReport {
             shortened: u64::from(fraction < 1.0),
+            gone_on: 0,
             newton_iterations: 1,
             linear_iterations: u64::from(solved.iterations),
             made_definite: u64::from(solved.made_definite),

@@ -16,7 +16,8 @@ pub enum NewtonMode {
     /// One linearisation about the start (Baraff & Witkin 1998): the force at the end is `f + K Δq`, wrong by
     /// `½ ∂²f/∂q² Δq²`, of second order in the step, so that no method loses its order. Exact where forces are linear.
     /// Elsewhere there is no bound on energy: a law that stiffens along the step rises above the parabola that was
-    /// minimised, and long steps may gain. What does not touch at the start of a step is not felt in it.
+    /// minimised, and long steps may gain: a step whose end is higher than its start is solved by Newton's method in its place, loosely, and
+    /// where that fails taken in part. What does not touch at the start of a step is not felt in it.
     One,
     /// To the tolerance, with line search. Under backward Euler, where the potential is convex from the start of a step to
     /// its end, `E' ≤ E - ½ M |v' - v|²` to the tolerance: energy does not grow.
@@ -26,7 +27,7 @@ pub enum NewtonMode {
 pub(super) const NEWTON: Parameter = Parameter::choice(
     "newton",
     &["full", "one"],
-    "`full`: to the tolerance, with line search; `one`: a single linearised solve per step",
+    "`full`: to the tolerance, with line search; `one`: a single linearised solve per step, and more of a step that it would take uphill",
 )
 .or(Value::Text("full"));
 
@@ -82,6 +83,39 @@ pub(super) fn settle(
     Err(StepError::PairsUnsettled { searches: MAX_SEARCHES })
 }
 
+/// Newton's method where one solve does not do: to a thousandth of the unbalanced force, as much as one solve leaves of a step that turns what it moves by a
+/// twentieth, `½ (1/20)²`.
+const LOOSE: NewtonSettings = NewtonSettings { tolerance: 1e-3, max_iterations: 12 };
+
+/// One linearised solve, or several where its whole would raise the step's potential: what is shortened stays behind where inertia leads. Where Newton's
+/// method fails, for whatever reason, the shortened step stands.
+fn one_or_as_many(
+    implicit: &ImplicitStep,
+    lent: &Lent,
+    q: &mut [Vec3],
+    ws: &mut SystemWorkspace,
+    buffers: &mut ImplicitBuffers,
+) -> Result<StepReport, StepError> {
+    let mut report = implicit.solve_once(lent, q, ws, buffers)?;
+    if report.shortened == 0 {
+        return Ok(report);
+    }
+    let mut shortened = std::mem::take(&mut buffers.shortened);
+    shortened.clear();
+    shortened.extend_from_slice(q);
+    q.copy_from_slice(&buffers.q_start);
+    match implicit.solve_newton(LOOSE, lent, q, ws, buffers) {
+        Ok(more) => {
+            report.shortened = 0;
+            report.merge(&StepReport { gone_on: 1, ..more });
+        }
+        Err(StepError::Interrupted) => return Err(StepError::Interrupted),
+        Err(_) => q.copy_from_slice(&shortened),
+    }
+    buffers.shortened = shortened;
+    Ok(report)
+}
+
 /// The mode that a stepper's completed values ask for.
 pub(super) fn newton_mode(values: &Values) -> NewtonMode {
     if values.text("newton") == "one" { NewtonMode::One } else { NewtonMode::Full(newton_settings(values)) }
@@ -132,7 +166,7 @@ impl Step<'_> {
         let report = match newton {
             NewtonMode::One => {
                 let lent = Lent::from(next);
-                let solved = implicit.solve_once(&lent, &mut next.q, ws, buffers);
+                let solved = one_or_as_many(&implicit, &lent, &mut next.q, ws, buffers);
                 lent.give_back(next);
                 solved
             }

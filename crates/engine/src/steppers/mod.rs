@@ -40,6 +40,8 @@ pub struct StepReport {
     pub made_definite: u64,
     /// Linearised steps that were taken in part, since the whole would have raised the step's potential.
     pub shortened: u64,
+    /// Steps of one linearised solve that Newton's method went on with for that reason.
+    pub gone_on: u64,
     /// Largest relative residual among the linear solves.
     pub linear_residual: f64,
     /// Norm of the remaining unbalanced force over that at the start; 0 for explicit steppers.
@@ -53,6 +55,7 @@ impl StepReport {
         self.linear_iterations += other.linear_iterations;
         self.made_definite += other.made_definite;
         self.shortened += other.shortened;
+        self.gone_on += other.gone_on;
         self.linear_residual = self.linear_residual.max(other.linear_residual);
         self.newton_residual = self.newton_residual.max(other.newton_residual);
     }
@@ -90,6 +93,12 @@ pub enum StepError {
         from: f64,
         /// The shortest step tried [s].
         parts: f64,
+        error: Box<StepError>,
+    },
+    #[error("{} gave way, and no rest of what is left was found: {error}", .forces.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "))]
+    GaveWay {
+        /// Names of the forces of which something broke.
+        forces: Vec<String>,
         error: Box<StepError>,
     },
     #[error(
@@ -134,7 +143,7 @@ impl StepError {
     /// What the innermost attempt failed of.
     pub fn cause(&self) -> &Self {
         match self {
-            Self::NoEquilibrium { error, .. } => error.cause(),
+            Self::NoEquilibrium { error, .. } | Self::GaveWay { error, .. } => error.cause(),
             other => other,
         }
     }

@@ -1,4 +1,4 @@
-//! Statics: `f(q) = 0`, reached over load steps.
+//! Statics: `f(q) = 0`, reached over load steps; attachments that tear there are gone before the step ends.
 
 use souple_math::Vec3;
 use souple_table::{Parameter, Range, Value};
@@ -77,6 +77,36 @@ impl StaticEquilibrium {
     }
 }
 
+impl StaticEquilibrium {
+    /// Equilibrium of what is left, as long as anything bears more than it can; all that does gives way at once, since in statics nothing comes first.
+    fn settle_what_gives_way(
+        &self,
+        step: &Step,
+        report: StepReport,
+        next: &mut SystemState,
+        ws: &mut SystemWorkspace,
+        buffers: &mut ImplicitBuffers,
+    ) -> Result<StepReport, StepError> {
+        let Step { system, around, .. } = *step;
+        let (mut report, mut all) = (report, Vec::new());
+        loop {
+            system.place_rows(&next.q, &next.v, step.end(), &mut ws.rows);
+            let broke = system.give_way(ws, next, around);
+            // what is whole grows less each time
+            if broke.is_empty() {
+                return Ok(report);
+            }
+            all.extend(broke);
+            all.sort();
+            all.dedup();
+            match self.equilibrate(system, *around, step.end(), next, ws, buffers) {
+                Ok(again) => report.merge(&again),
+                Err(error) => return Err(StepError::GaveWay { forces: all, error: Box::new(error) }),
+            }
+        }
+    }
+}
+
 impl Stepper for StaticEquilibrium {
     fn name(&self) -> &'static str {
         ENTRY.name
@@ -113,8 +143,11 @@ impl Stepper for StaticEquilibrium {
             let around = Surroundings { load: if start == 0.0 { part.end } else { 1.0 }, ..*around };
             self.equilibrate(system, around, step.end(), next, ws, &mut buffers)
         });
+        let report = outcome.map_err(|stuck| stuck.error);
+        let report =
+            report.and_then(|report| self.settle_what_gives_way(step, report, next, ws, &mut buffers));
         ws.implicit = Some(buffers);
-        let report = outcome.map_err(|stuck| stuck.error)?;
+        let report = report?;
         next.v.fill(Vec3::ZERO);
         system.place_rows(&next.q, &next.v, step.end(), &mut ws.rows);
         system.advance_memory(ws, next, around, timestep, Summed::Elsewhere);

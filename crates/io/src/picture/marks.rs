@@ -20,6 +20,24 @@ pub struct Marks {
     pub scale_bar: bool,
 }
 
+/// Text about a place of what is seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// [m]
+    pub at: Vec3,
+    pub text: String,
+}
+
+impl Label {
+    /// A little above and to the right of the place; `None` of one that is not in front of the camera.
+    pub(super) fn mark(&self, camera: &Camera, letter: f64, palette: &Palette) -> Option<Mark> {
+        let seen = camera.project(self.at);
+        let place = [seen.x + 0.6 * letter, seen.y - 0.4 * letter];
+        let text = (self.text.clone(), place, palette.ink);
+        (seen.inverse_depth > 0.0).then(|| Mark { lines: Vec::new(), texts: vec![text] })
+    }
+}
+
 /// Colours of x, y, z.
 const AXES: [([u8; 3], &str); 3] = [([200, 48, 48], "x"), ([40, 150, 70], "y"), ([50, 90, 210], "z")];
 /// Length of an axis that lies in the picture, in heights of letters.

@@ -49,7 +49,7 @@ pub use image::Image;
 pub(crate) use image::{Anchor, Canvas};
 pub use images::{ImageFile, Images};
 pub(crate) use legend::{labels, ticks};
-pub use marks::{ArrowKey, LEGEND, Marks, MarksStrip};
+pub use marks::{ArrowKey, LEGEND, Label, Marks, MarksStrip};
 pub use mesh_surface::{Between, Cut, MeshSurface};
 pub use surface::{EdgeStyle, Faces, Paint, Stroke, StrokeShape, Surface};
 
@@ -79,6 +79,8 @@ pub struct Picture {
     pub colours: ColourMap,
     pub scale: ColourScale,
     pub marks: Marks,
+    /// Text over all else, beside where a place is seen.
+    pub labels: Vec<Label>,
     /// What the length of arrows means.
     pub key: Option<ArrowKey>,
     /// Height of letters, in those of a picture that is looked at by itself.
@@ -146,6 +148,7 @@ impl Default for Picture {
             colours: ColourMap::default(),
             scale: ColourScale::default(),
             marks: Marks::default(),
+            labels: Vec::new(),
             key: None,
             letters: 1.0,
         }
@@ -244,6 +247,11 @@ impl Picture {
         layout.write(self, &scene.palette, &mut canvas);
         let marks = Placed::of(self, &scene.camera, &layout, &scene.palette);
         marks.write(layout.letter, &scene.palette, &mut canvas);
+        for mark in
+            self.labels.iter().filter_map(|label| label.mark(&scene.camera, layout.letter, &scene.palette))
+        {
+            mark.write(layout.letter, &scene.palette, &mut canvas);
+        }
         Ok(canvas.finish())
     }
 
@@ -289,6 +297,7 @@ impl Picture {
         let mut near = self.clone();
         let points = near.surfaces.iter_mut().flat_map(|surface| &mut surface.points);
         let points = points.chain(near.strokes.iter_mut().flat_map(|stroke| stroke.shape.points_mut()));
+        let points = points.chain(near.labels.iter_mut().map(|label| &mut label.at));
         let points = points.chain(near.framed.iter_mut().map(|ball| &mut ball.centre));
         let points = points.chain(near.ground.iter_mut().map(|ground| &mut ground.point));
         points.chain(near.view.eye.iter_mut()).for_each(|point| *point += by);

@@ -22,6 +22,7 @@ mod placement;
 mod points;
 mod report;
 mod tangents;
+mod unseen;
 mod ways;
 mod weights;
 
@@ -33,6 +34,7 @@ pub use mass::{check_inertia, consistent_mass, lumped_mass};
 pub use placement::{BuildPlacement, Matter, PLACEMENTS};
 pub use points::{BuildPoints, POINTS, Sample};
 pub use report::FramesReport;
+pub use unseen::{FramesAtRest, Unseen};
 pub use weights::{BuildWeights, Shape, Share, WEIGHTS, Weights, spacings};
 
 /// A frame at rest.

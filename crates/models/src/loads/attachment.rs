@@ -149,6 +149,20 @@ impl Attachments {
         elastic - turning
     }
 
+    /// Tears the links that bear more than they can; whether any did.
+    fn tear(&self, at: &Configuration, memory: &mut [f64]) -> bool {
+        let mut tore = false;
+        for (index, link) in self.links.iter().enumerate().filter(|_| self.can_tear) {
+            if memory[1 + index] == 0.0 && self.pull(link, at).length() > link.strength {
+                memory[1 + index] = 1.0;
+                // what it held is given off
+                memory[0] += 0.5 * self.stiffness_of(link) * stretch(link, at).powi(2);
+                tore = true;
+            }
+        }
+        tore
+    }
+
     fn turns_with_damping(&self) -> bool {
         self.damping > 0.0 && self.links.iter().any(|link| link.rest_length > 0.0)
     }
@@ -290,16 +304,11 @@ impl Force for Attachments {
         };
         let speeds: f64 = self.whole(memory).map(speed_sq).sum();
         memory[0] += timestep * self.damping * speeds;
-        if !self.can_tear {
-            return;
-        }
-        for (index, link) in self.links.iter().enumerate() {
-            if memory[1 + index] == 0.0 && self.pull(link, at).length() > link.strength {
-                memory[1 + index] = 1.0;
-                // what it held is given off
-                memory[0] += 0.5 * self.stiffness_of(link) * stretch(link, at).powi(2);
-            }
-        }
+        self.tear(at, memory);
+    }
+
+    fn give_way(&self, at: &Configuration, memory: &mut [f64]) -> bool {
+        self.tear(at, memory)
     }
 
     fn editable(&self) -> Vec<Editable> {

@@ -9,8 +9,8 @@ use souple_engine::{Configuration, Force, Mass, TangentWeights};
 use souple_math::{Mat3, Vec3, eigen_symmetric, exponential};
 use souple_mesh::Mesh;
 use souple_models::frames::{
-    self, Carried, Frame, FramesDescription, FramesForce, HeldPoint, Hold, POINTS, Sample, Shape,
-    TangentKind, WEIGHTS, Weights,
+    self, Carried, Frame, FramesAtRest, FramesDescription, FramesForce, HeldPoint, Hold, POINTS, Sample,
+    Shape, TangentKind, WEIGHTS, Weights,
 };
 use souple_models::materials::{self, Material};
 use souple_solve::{BlockMatrix, Pattern, PatternBuilder, dense};
@@ -540,6 +540,45 @@ fn frames_on_a_line_and_in_a_plane_are_well_posed() {
         assert!(values[5].abs() < 1e-10 * most, "six motions cost nothing: {:?}", &values[..8]);
         assert!(values[6] > 1e-6 * most, "all others do: {:?}", &values[..8]);
     }
+}
+
+/// Frames that points tell apart strain nothing unseen; of more than there are cells along the bar some motion strains between points alone, and
+/// more frames at the same points are told of all the more; frames that are led do not move.
+#[test]
+fn motions_that_points_do_not_see_are_found() {
+    let unseen = |cells: [f64; 3], element, frames: Vec<Frame>, is_affine: bool, led: &[u32]| {
+        let mesh = bar(SIZE, cells, element);
+        let body = Body::new(&mesh, frames, "wendland");
+        let stiffness = vec![1.0; mesh.cell_count()];
+        let shape = Shape { frames: &body.frames, mesh: &mesh, stiffness_of_cell: &stiffness };
+        let weights = weights_of("wendland", &shape);
+        let carried = |points: &[Vec3]| -> Vec<Carried> {
+            points.iter().map(|point| Carried::new(&body.frames, &weights.shares(*point), *point)).collect()
+        };
+        let (points, centres) = (carried(&mesh.points), carried(&mesh.cell_centres()));
+        let volumes = mesh.cell_volumes();
+        let alike = vec![mesh.volume() / mesh.points.len() as f64; mesh.points.len()];
+        let of_mesh = [(&centres[..], &volumes[..]), (&points[..], &alike[..])];
+        let (frames, samples, carried) = (&body.frames, &body.samples, &body.carried);
+        FramesAtRest { frames, is_affine, led, samples, carried, of_mesh }.unseen()
+    };
+    for is_affine in [false, true] {
+        for element in ["tet4", "hex8"] {
+            assert_eq!(
+                unseen([16.0, 3.0, 3.0], element, line(5), is_affine, &[]),
+                None,
+                "{element} {is_affine}"
+            );
+        }
+    }
+    for count in [12, 16, 24, 32] {
+        let found = unseen([7.0, 1.0, 1.0], "hex8", line(count), false, &[]);
+        assert!(found.is_some_and(|unseen| unseen.times > 3.0), "{count}: {found:?}");
+        let found = unseen([7.0, 1.0, 1.0], "hex8", line(count), true, &[]);
+        assert!(found.is_some_and(|unseen| unseen.times > 3.0), "{count} affine: {found:?}");
+    }
+    let all: Vec<u32> = (0..12).collect();
+    assert_eq!(unseen([7.0, 1.0, 1.0], "hex8", line(12), false, &all), None);
 }
 
 /// Eigenvalues of a symmetric matrix, by cyclic Jacobi.

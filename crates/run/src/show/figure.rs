@@ -3,7 +3,8 @@
 use souple_io::gltf::{Animation, MovingSurface};
 use souple_io::picture::{
     ArrowKey, Backdrop, Between, Colour, ColourMap, ColourScale, Cut, ELEMENT_KINDS, EdgeStyle, Ground,
-    Legend, LegendPlace, Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme, View,
+    Label, Legend, LegendPlace, Marks, MeshSurface, Paint, Picture, Stroke, StrokeShape, Surface, Theme,
+    View,
 };
 use souple_math::Vec3;
 use souple_scene::spec::picture::PictureView;
@@ -43,6 +44,7 @@ pub struct Figure {
     pub shrink: f64,
     pub arrows: Option<Arrows>,
     pub edges: EdgeStyle,
+    pub frame_axes: FrameAxes,
     pub worn: Worn,
     /// Height of letters, in those of a picture that is looked at by itself.
     pub letters: f64,
@@ -55,6 +57,17 @@ pub enum Floor {
     None,
     /// A floor a little below the bodies, which touches nothing and is in the picture alone.
     Below,
+}
+
+/// How the frames that carry a body are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FrameAxes {
+    /// Three arrows each.
+    #[default]
+    Drawn,
+    /// With their numbers, as `frames.bones` and `frames.shown` of a scene name them.
+    Numbered,
+    Hidden,
 }
 
 /// How much is seen of a body that wears a skin.
@@ -99,6 +112,7 @@ impl Default for Figure {
             shrink: 0.0,
             arrows: None,
             edges: EdgeStyle::Drawn,
+            frame_axes: FrameAxes::default(),
             worn: Worn::default(),
             letters: 1.0,
         }
@@ -173,7 +187,7 @@ impl Figure {
     /// The picture of one moment of several, in the frame and the range of all.
     pub fn picture_in(&self, stage: &Stage, moment: &Moment, common: &Common) -> Picture {
         let mut surfaces = Vec::new();
-        let mut strokes = Vec::new();
+        let (mut strokes, mut labels) = (Vec::new(), Vec::new());
         let mut has_dots = false;
         let all = moment.bodies.iter().filter(|body| body.is_drawable());
         for body in all {
@@ -183,7 +197,16 @@ impl Figure {
         let seen = moment.bodies.iter().filter(|body| !self.hides(moment, body)).enumerate();
         for (index, body) in seen.filter(|(_, body)| body.is_drawable()) {
             surfaces.extend(self.surfaces(body, index, common));
-            strokes.extend(axes_of(body, AXIS * common.bounds.diagonal()));
+            for (number, frame) in
+                body.frames.iter().enumerate().filter(|(_, [origin, ..])| self.is_left(*origin))
+            {
+                if self.frame_axes != FrameAxes::Hidden {
+                    strokes.extend(axes_of(frame, AXIS * common.bounds.diagonal()));
+                }
+                if self.frame_axes == FrameAxes::Numbered {
+                    labels.push(Label { at: frame[0], text: number.to_string() });
+                }
+            }
             let dots = self.dots_of(body, index, common.range);
             has_dots |= !dots.is_empty();
             strokes.extend(dots);
@@ -227,6 +250,7 @@ impl Figure {
             colours: self.colours,
             scale: self.scale,
             marks: self.marks,
+            labels,
             key,
             letters: self.letters,
         }
@@ -479,15 +503,13 @@ fn colour_of(body: usize, state: u8) -> Colour {
     Colour::from_screen(of_state.unwrap_or(BODIES[body % BODIES.len()]))
 }
 
-/// The frames that carry a body, as three arrows each.
-fn axes_of(body: &BodyMoment, length: f64) -> impl Iterator<Item = Stroke> + '_ {
-    body.frames.iter().flat_map(move |[origin, axes @ ..]| {
-        axes.iter().zip(AXES).map(move |(axis, colour)| Stroke {
-            shape: StrokeShape::Arrow(*origin, *origin + *axis * length),
-            colour: Colour::from_screen(colour),
-            width: 2.0,
-            // they are inside it
-            through: Stroke::PLAINLY,
-        })
+/// A frame that carries a body: three arrows.
+fn axes_of([origin, axes @ ..]: &[Vec3; 4], length: f64) -> impl Iterator<Item = Stroke> + '_ {
+    axes.iter().zip(AXES).map(move |(axis, colour)| Stroke {
+        shape: StrokeShape::Arrow(*origin, *origin + *axis * length),
+        colour: Colour::from_screen(colour),
+        width: 2.0,
+        // they are inside it
+        through: Stroke::PLAINLY,
     })
 }

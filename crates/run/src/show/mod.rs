@@ -23,7 +23,7 @@ use souple_scene::{BodyInfo, DressInfo, SkinInfo};
 use crate::Session;
 
 pub use common::{Common, Gathering};
-pub use figure::{Arrows, Figure, Floor, Worn};
+pub use figure::{Arrows, Figure, Floor, FrameAxes, Worn};
 pub use film::{FilmError, write_film};
 pub use gap::GAP;
 pub use quantity::number_of;

@@ -49,18 +49,22 @@ pub fn of_cells(draft: &Draft, body: &Placed) -> Vec<Mat3> {
     }
 }
 
+/// Sine of the angle between two directions below which they count as one.
+const PARALLEL: f64 = 1e-6;
+
 fn along_formulas(draft: &Draft, body: &Placed, spec: &AxesSpec) -> Vec<Mat3> {
     let mut axes = Vec::with_capacity(body.mesh.cell_count());
     for (cell, centre) in body.mesh.cell_centres().into_iter().enumerate() {
         let x = at(&spec.x, centre);
         let y = spec.y.as_ref().map_or(Vec3::ZERO, |formulas| at(formulas, centre));
-        let found = axes_along(x, y).filter(|_| y.is_finite());
+        let leans = spec.y.is_none() || x.cross(y).length() > PARALLEL * x.length() * y.length();
+        let found = axes_along(x, y).filter(|_| y.is_finite() && leans);
         let Some(found) = found else {
             let message = format!(
                 "in cell {cell} of body `{}`, at ({}, {}, {}), x is ({}, {}, {}) and y ({}, {}, {})",
                 body.spec.name, centre.x, centre.y, centre.z, x.x, x.y, x.z, y.x, y.y, y.z
             );
-            let expected = "finite numbers, and an x that is zero in no cell";
+            let expected = "finite numbers, an x that is zero in no cell, and a `y` that leans from it";
             draft.log.add(Code::NotFinite, &spec.site, message, expected);
             return Vec::new();
         };

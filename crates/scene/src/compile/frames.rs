@@ -7,8 +7,8 @@ use souple_engine::{DerivedRow, Feedback, Force, Kinematics, Mass, Motion, Unkno
 use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_models::frames::{
-    self, Carried, Frame, FrameError, FramesDescription, FramesForce, HeldPoint, Hold, Matter, POINTS,
-    ROWS_OF_FRAME, Sample, Shape, WEIGHTS, Weights, layer_stiffness,
+    self, Carried, Frame, FrameError, FramesAtRest, FramesDescription, FramesForce, HeldPoint, Hold, Matter,
+    POINTS, ROWS_OF_FRAME, Sample, Shape, Unseen, WEIGHTS, Weights, layer_stiffness,
 };
 use souple_models::materials::Material;
 use souple_models::solids::{Section, lumped_mass};
@@ -35,9 +35,6 @@ pub struct PlacedFrames {
 
 /// Frames at a point beyond which steps are slow, which is said.
 const MANY: f64 = 24.0;
-/// Strains that points see for each motion of the frames, below which some motion may go unseen: points see neighbours' strains
-/// again, so that as many strains as motions are not enough.
-const SEEN_AT_LEAST: usize = 3;
 
 impl PlacedFrames {
     /// Rows of all frames.
@@ -162,7 +159,7 @@ pub fn place(
                 draft.log.add(Code::OutOfRange, &spec.shown_site, message, format!("0 to {}", count - 1));
                 return None;
             }
-            warnings.extend(too_few_points(draft, body, spec, &placed));
+            warnings.extend(unseen(draft, body, spec, &placed, mesh));
             let per_point = placed.carried.iter().map(|carried| carried.frames.len() as f64).sum::<f64>()
                 / placed.carried.len() as f64;
             if per_point > MANY {
@@ -204,21 +201,40 @@ enum Stage {
     Weights,
 }
 
-/// Points that resist fewer motions than the frames have, in words: what they do not see costs no energy.
-fn too_few_points(draft: &Draft, body: &Body, spec: &FramesSpec, placed: &PlacedFrames) -> Option<String> {
-    // a sample sees six strains, and the body's own six motions strain nothing
-    let seen = 6 * placed.samples.len();
-    let unknowns = 3 * spec.kind.block_count() * placed.frames.len() - 6;
-    (seen < SEEN_AT_LEAST * unknowns).then(|| {
-        format!(
-            "{}: {} integration points see {seen} strains of {unknowns} motions that {} have in body `{}`: frames may turn or \
-             stretch where no point sees it; take a finer mesh (`points` only makes them fewer) or fewer frames",
-            draft.place(&spec.site),
-            placed.samples.len(),
-            counted(placed.frames.len() as u64, "frame"),
-            body.name
-        )
-    })
+/// A motion of the frames that no point sees, in words: it costs no energy.
+fn unseen(
+    draft: &Draft,
+    body: &Body,
+    spec: &FramesSpec,
+    placed: &PlacedFrames,
+    mesh: &Mesh,
+) -> Option<String> {
+    let cell_volumes = mesh.cell_volumes();
+    let mut of_points = Mass::new(mesh.points.len());
+    lumped_mass(mesh, 0, &|_| 1.0, &mut of_points);
+    // cells and points stand for half of the volume each
+    let half = |volumes: &[f64]| -> Vec<f64> { volumes.iter().map(|volume| 0.5 * volume).collect() };
+    let (of_cells, of_points) = (half(&cell_volumes), half(&of_points.diagonal));
+    let led: Vec<u32> = spec.bones.iter().flat_map(|bound| bound.frames.iter().copied()).collect();
+    let at_rest = FramesAtRest {
+        frames: &placed.frames,
+        is_affine: spec.kind == UnknownKind::AffineFrame,
+        led: &led,
+        samples: &placed.samples,
+        carried: &placed.carried,
+        of_mesh: [(&placed.carried_cells, &of_cells), (&placed.carried_points, &of_points)],
+    };
+    let Unseen { frame, times } = at_rest.unseen()?;
+    let strain = if times < 1e4 { format!("{times:.0} times as much") } else { "by any amount".to_owned() };
+    let most = frame.map_or_else(String::new, |frame| format!(", frame {frame} the most,"));
+    Some(format!(
+        "{}: the {} of body `{}` may move{most} so that its matter strains {strain} between the {} integration points as at them: hardly \
+         anything resists that; take a finer mesh (`points` only makes them fewer) or fewer frames",
+        draft.place(&spec.site),
+        counted(placed.frames.len() as u64, "frame"),
+        body.name,
+        placed.samples.len(),
+    ))
 }
 
 fn placed(

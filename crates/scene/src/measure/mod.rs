@@ -15,6 +15,8 @@ mod reaction;
 mod skin;
 
 pub use contour::ContourInfo;
+use std::collections::BTreeMap;
+
 use souple_engine::{Force, World};
 use souple_math::Vec3;
 
@@ -87,14 +89,30 @@ struct Part {
     hold: Option<String>,
 }
 
-/// Frames that follow a bone.
+/// What of a body follows a bone.
 #[derive(Clone, Debug)]
 struct BonePart {
     system: usize,
-    /// Rows of their origins.
+    /// Rows of the origins of frames.
     frames: Vec<u32>,
+    /// Pinned points: their rows, those of the unknowns that they are, and the axes along which the bone leads them.
+    pinned: Vec<PinnedPoint>,
+    /// Whether points of the system hang on others.
+    hangs: bool,
+    /// The force that holds pinned points, of a body of frames.
+    hold: Option<String>,
     /// The place that torques are taken about [m].
     about: Vec3,
+}
+
+/// A point that a pin holds.
+#[derive(Clone, Copy, Debug)]
+struct PinnedPoint {
+    row: u32,
+    /// That of the unknown which it is.
+    held: u32,
+    /// Ones along the axes that are held.
+    axes: Vec3,
 }
 
 /// Cells of the solid of this name.
@@ -328,32 +346,53 @@ fn matter(probe: &Probe, draft: &Draft) -> Option<Part> {
     Some(Part { rows: body.mass_rows().map(|row| row as u32).collect(), ..part })
 }
 
-/// The frames of a body that follow a bone; `None` where none does, which is reported.
+/// What of a body follows a bone: frames, and what its pins hold; `None` where nothing does, which is reported.
 fn bone_part(probe: &Probe, draft: &Draft) -> Option<BonePart> {
     let body = draft.body(probe.body.as_deref()?)?;
     let name = probe.bone.as_deref()?;
     let bound = body.spec.frames.iter().flat_map(|frames| &frames.bones);
-    let followed: Vec<&str> = bound.clone().map(|bound| bound.bone.as_str()).collect();
+    let of_pins = body.spec.pins.iter().filter_map(|pin| pin.bone.as_deref());
+    let followed: Vec<&str> = bound.clone().map(|bound| bound.bone.as_str()).chain(of_pins).collect();
+    if !followed.contains(&name) {
+        let hint = crate::keys::did_you_mean(name, followed.iter().copied());
+        let message = format!("nothing of body `{}` follows a bone `{name}`{hint}", body.spec.name);
+        let expected = "a bone that pins of the body name, or its `frames.bones`";
+        draft.log.add(Code::UnknownName, &probe.site, message, expected);
+        return None;
+    }
     let numbers = bound.filter(|bound| bound.bone == name).flat_map(|bound| &bound.frames);
     let rows = body.frames.as_ref().map_or(&[][..], |frames| &frames.rows);
-    let numbers: Vec<u32> = numbers.copied().collect();
-    let frames: Vec<u32> = numbers.iter().filter_map(|number| rows.get(*number as usize)).copied().collect();
-    if frames.len() < numbers.len() {
-        // frames that are not there are reported where they are bound
-        return None;
+    // frames that are not there are reported where they are bound
+    let frames = numbers.map(|number| rows.get(*number as usize).copied()).collect::<Option<_>>()?;
+    let hangs = |other: &Placed| other.system == body.system && other.hanging.is_some();
+    Some(BonePart {
+        system: body.system,
+        frames,
+        pinned: body.levels_of().chain([body]).flat_map(|level| pinned_to(name, level, draft)).collect(),
+        hangs: draft.bodies.iter().any(hangs),
+        hold: body.frames.is_some().then(|| hold_name(&body.spec.name)),
+        about: probe.about.unwrap_or(Vec3::ZERO),
+    })
+}
+
+/// Points of a body that its pins tie to a bone, along the axes that no pin before them holds.
+fn pinned_to(bone: &str, body: &Placed, draft: &Draft) -> Vec<PinnedPoint> {
+    let mut taken: BTreeMap<u32, [bool; 3]> = BTreeMap::new();
+    let mut pinned = Vec::new();
+    for pin in &body.spec.pins {
+        let Some(region) = &pin.region else { continue };
+        for point in draft.selector(body).points(region) {
+            let taken = taken.entry(point).or_default();
+            let own: [bool; 3] = std::array::from_fn(|axis| pin.axes[axis] && !taken[axis]);
+            (0..3).for_each(|axis| taken[axis] |= own[axis]);
+            if pin.bone.as_deref() == Some(bone) {
+                let row = body.rows.start as u32 + point;
+                let axes = Vec3::from_array(own.map(|held| if held { 1.0 } else { 0.0 }));
+                pinned.push(PinnedPoint { row, held: body.own_row(point).unwrap_or(row), axes });
+            }
+        }
     }
-    if frames.is_empty() {
-        let hint = crate::keys::did_you_mean(name, followed.iter().copied());
-        let message = format!("no frame of body `{}` follows a bone `{name}`{hint}", body.spec.name);
-        draft.log.add(
-            Code::UnknownName,
-            &probe.site,
-            message,
-            "a bone that `frames.bones` of the body names",
-        );
-        return None;
-    }
-    Some(BonePart { system: body.system, frames, about: probe.about.unwrap_or(Vec3::ZERO) })
+    pinned
 }
 
 /// The levels that a probe is of; `None` where its body has not so many, which is reported.

@@ -2,7 +2,7 @@
 //!
 //! Newton's law of a held point, along the held directions: `M a = f + r`, so the reaction is `r = M a − f` with the
 //! sum `f` of all other forces. It is the force of the pin *on the body*: under gravity a pinned body feels a reaction
-//! that points up. What bones do to the frames that follow them is read likewise, on origins and axes, whose forces `g_k` are
+//! that points up. What bones do is that on the points pinned to them, and on the frames that follow them, read likewise on origins and axes, whose forces `g_k` are
 //! together a torque `Σ a_k × g_k` about the origin. The acceleration `a` of held points is that of their prescribed motion; a consistent mass couples
 //! them to their free neighbours, whose accelerations follow from the same law. Where a stepper knows no inertia,
 //! `r = −f`.
@@ -10,7 +10,7 @@
 use souple_engine::inertia::row_accelerations_at;
 use souple_engine::levels::Followers;
 use souple_engine::{Surroundings, System, SystemState, SystemWorkspace, World};
-use souple_math::Vec3;
+use souple_math::{Mat3, Vec3};
 use souple_models::frames::ROWS_OF_FRAME;
 
 use super::{BonePart, Part};
@@ -26,39 +26,63 @@ pub fn reactions(part: &Part, world: &mut World) -> Vec<Vec3> {
     let timestep = world.model().timestep(part.system);
     world.with_system(part.system, |system: &System, state, around, ws| {
         let balance = balance(system, state, around, ws, timestep, part.hangs);
-        let mut reactions = vec![Vec3::ZERO; balance.len()];
-        for constraint in &system.constraints {
-            if let Some(row) = system.kinematics.point_block_row(constraint.block) {
-                reactions[row as usize] = constraint.constrained() * balance[row as usize];
-            }
-        }
-        // points that frames carry are held by springs: what these pull with is the reaction
-        let hold = part.hold.as_ref().and_then(|name| system.forces.iter().position(|f| f.name() == name));
-        if let Some(index) = hold {
-            let at = system.view(index, &ws.rows, state, around);
-            system.forces[index].add_force(&at, &mut ws.scratches[index], &mut reactions);
-        }
+        let reactions = of_pins(system, state, around, ws, &balance, part.hold.as_deref());
         part.held.iter().chain(&part.coarser).map(|row| reactions[*row as usize]).collect()
     })
 }
 
-/// What a bone does to the frames that follow it: the force [N], or the torque about a place [N m].
+/// What a bone does to the frames and the pinned points that follow it: the force [N], or the torque about a place [N m].
 pub fn of_bone(quantity: BoneQuantity, part: &BonePart, world: &mut World) -> Vec3 {
     let timestep = world.model().timestep(part.system);
     world.with_system(part.system, |system: &System, state, around, ws| {
-        let balance = balance(system, state, around, ws, timestep, true);
-        let of_frame = |row: &u32| {
-            let row = *row as usize;
-            let x = &ws.rows.positions[row..row + ROWS_OF_FRAME];
-            let (force, on_axes) = (balance[row], &balance[row + 1..row + ROWS_OF_FRAME]);
-            let torque: Vec3 = x[1..].iter().zip(on_axes).map(|(axis, force)| axis.cross(*force)).sum();
-            match quantity {
+        let mut sum = Vec3::ZERO;
+        let mut add = |force: Vec3, place: Vec3, torque: Vec3| {
+            sum += match quantity {
                 BoneQuantity::Force => force,
-                BoneQuantity::Torque => (x[0] - part.about).cross(force) + torque,
-            }
+                BoneQuantity::Torque => (place - part.about).cross(force) + torque,
+            };
         };
-        part.frames.iter().map(of_frame).sum()
+        if !part.frames.is_empty() {
+            let balance = balance(system, state, around, ws, timestep, true);
+            for row in &part.frames {
+                let row = *row as usize;
+                let x = &ws.rows.positions[row..row + ROWS_OF_FRAME];
+                let (force, on_axes) = (balance[row], &balance[row + 1..row + ROWS_OF_FRAME]);
+                add(force, x[0], x[1..].iter().zip(on_axes).map(|(axis, force)| axis.cross(*force)).sum());
+            }
+        }
+        if !part.pinned.is_empty() {
+            let balance = balance(system, state, around, ws, timestep, part.hangs);
+            let reactions = of_pins(system, state, around, ws, &balance, part.hold.as_deref());
+            for point in &part.pinned {
+                let force = Mat3::from_diagonal(point.axes) * reactions[point.held as usize];
+                add(force, ws.rows.positions[point.row as usize], Vec3::ZERO);
+            }
+        }
+        sum
     })
+}
+
+/// What pins do to each row [N]: `balance` along constraints, and the pull of the springs that hold points which frames carry.
+fn of_pins(
+    system: &System,
+    state: &SystemState,
+    around: &Surroundings,
+    ws: &mut SystemWorkspace,
+    balance: &[Vec3],
+    hold: Option<&str>,
+) -> Vec<Vec3> {
+    let mut reactions = vec![Vec3::ZERO; balance.len()];
+    for constraint in &system.constraints {
+        if let Some(row) = system.kinematics.point_block_row(constraint.block) {
+            reactions[row as usize] = constraint.constrained() * balance[row as usize];
+        }
+    }
+    if let Some(index) = hold.and_then(|name| system.forces.iter().position(|force| force.name() == name)) {
+        let at = system.view(index, &ws.rows, state, around);
+        system.forces[index].add_force(&at, &mut ws.scratches[index], &mut reactions);
+    }
+    reactions
 }
 
 /// `r = M a − f` of all rows; with `joined`, of unknowns with what hangs on them.

@@ -4,7 +4,7 @@ use souple_math::Vec3;
 use souple_table::Value;
 
 use super::boundary::{MOTION, MotionSpec, TURNING};
-use crate::diagnostic::Site;
+use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
 
@@ -71,7 +71,19 @@ impl BoundFrames {
     pub(crate) fn read(reader: &Reader) -> Self {
         Self {
             bone: reader.text("bone"),
-            frames: reader.maybe_indices("frames").unwrap_or_default(),
+            frames: {
+                let frames = reader.maybe_indices("frames").unwrap_or_default();
+                if reader.has("frames") && frames.is_empty() {
+                    let message = "no frame is named";
+                    reader.log().add(
+                        Code::OutOfRange,
+                        &reader.site_of("frames"),
+                        message,
+                        "numbers of frames, such as [0]",
+                    );
+                }
+                frames
+            },
             site: reader.site(),
         }
     }

@@ -71,9 +71,9 @@ static MESH_TISSUE: Keys = Keys::new(
     &[
         Key::new(
             "tissue",
-            Shape::Choice(&["ligament", "sheet", "pad"]),
+            Shape::Choice(&["ligament", "sheet", "pad", "strap"]),
             "ligament: of square section, from the middle of one region to that of the other; sheet: as wide as the regions; \
-             pad: fills the gap before the faces of the first",
+             pad: fills the gap before the faces of the first; strap: lies on outer faces of both, over all of each region and between",
         )
         .required(),
         Key::new("from", Shape::Text, "the body that it begins on").required(),
@@ -84,13 +84,13 @@ static MESH_TISSUE: Keys = Keys::new(
             "thickness",
             "m",
             Range::POSITIVE,
-            "of a ligament its sides, of a sheet that of it, of a pad the widest gap that it fills",
+            "of a ligament its sides, of a sheet or strap that of it, of a pad the widest gap that it fills",
         )
         .required(),
         Key::integer("along", CELLS_OF_TISSUE, "cells from one end to the other").or(Value::Integer(4)),
-        Key::integer("across", CELLS_OF_TISSUE, "cells over the width of a ligament or sheet")
+        Key::integer("across", CELLS_OF_TISSUE, "cells over the width; not of a pad")
             .or(Value::Integer(2)),
-        Key::integer("through", CELLS_OF_TISSUE, "cells through the thickness of a ligament or sheet")
+        Key::integer("through", CELLS_OF_TISSUE, "cells through the thickness; not of a pad")
             .or(Value::Integer(2)),
         Key::number(
             "strength",
@@ -254,8 +254,15 @@ fn read_tissue(table: &Reader, site: Site) -> Option<TissueSpec> {
     let form = match table.choice("tissue") {
         "sheet" => TissueForm::Sheet,
         "pad" => TissueForm::Pad,
+        "strap" => TissueForm::Strap,
         _ => TissueForm::Ligament,
     };
+    if form == TissueForm::Pad {
+        for key in ["across", "through"].into_iter().filter(|key| table.has(key)) {
+            let message = format!("a pad has the cells of the faces that it begins on, and no `{key}`");
+            table.log().add(Code::Conflict, &table.site_of(key), message, "`along` alone");
+        }
+    }
     let shape = Tissue {
         form,
         thickness: table.maybe_number("thickness")?,

@@ -303,13 +303,13 @@ const ENTRIES: &[&QuantityEntry] = &[
     ),
     &entry(
         "bone.force",
-        "force of a bone on the frames of the body that follow it: mass times acceleration, less all other forces on them",
+        "force of a bone on what of the body follows it, frames and pinned points: mass times acceleration, less all other forces on that",
         MECHANICS,
         bone("N", BoneQuantity::Force),
     ),
     &entry(
         "bone.torque",
-        "torque of a bone on these frames, about the key `about` or the origin",
+        "torque of a bone on these, about the key `about` or the origin, which stays where it is",
         MECHANICS,
         bone("N m", BoneQuantity::Torque),
     ),

@@ -10,6 +10,7 @@ use souple_scene::{BodyInfo, LawInfo, NetworkInfo, SkinInfo};
 use souple_skin::Cost;
 
 use super::frames_needed::Needed;
+use super::progress::Pulse;
 use super::{End, Refusal, print_json, print_line, print_note, read_scene, scene_path};
 
 #[derive(clap::Args)]
@@ -43,6 +44,7 @@ fn share(text: &str) -> Result<f64, String> {
 }
 
 pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
+    let pulse = Pulse::new("checking", arguments.quiet || arguments.json);
     let scene = read_scene(&arguments.scene, &arguments.settings)?;
     let (title, bodies, probes) = (scene.title.clone(), scene.bodies.clone(), scene.probes);
     let known_skins = scene.skins.clone();
@@ -63,6 +65,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
                 "velocity_blocks": system.kinematics.block_count(),
                 "forces": system.forces.iter().map(|force| force.name().to_owned()).collect::<Vec<_>>(),
                 "highest_frequency_rad_per_second": forecast.highest_frequency,
+                "stiffest_force": forecast.stiffest.map(|force| system.forces[force].name().to_owned()),
                 "longest_stable_step_seconds": forecast.longest_step.is_finite().then_some(forecast.longest_step),
             })
         });
@@ -107,6 +110,7 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     let needed: Vec<Needed> = arguments
         .accuracy
         .map_or_else(Vec::new, |accuracy| carried.map(|body| of_body(body, accuracy)).collect());
+    drop(pulse);
     let document = json!({
         "scene": scene_path(&arguments.scene).display().to_string(),
         "title": title,
@@ -151,8 +155,11 @@ pub fn check(arguments: &Arguments) -> Result<End, Refusal> {
     }
     for system in &systems {
         let longest = system["longest_stable_step_seconds"].as_f64();
-        let stable = longest
-            .map_or("any step is stable".to_owned(), |step| format!("longest stable step {step:.3e} s"));
+        let stable = longest.map_or("any step is stable".to_owned(), |step| {
+            let of =
+                system["stiffest_force"].as_str().map_or_else(String::new, |name| format!(", by `{name}`"));
+            format!("longest stable step {step:.3e} s{of}")
+        });
         print_line(format_args!(
             "  system {}: {} at {:.3e} s; {stable}",
             system["name"].as_str().unwrap_or_default(),

@@ -1,8 +1,9 @@
 //! How many frames an accuracy takes: the softest motions of a body by ever more frames, against those of its own mesh. All that the body
-//! hangs on is held where it is, so that the motions are its own.
+//! hangs on is held where it is, so that the motions are its own; so that both hang alike, no frame follows a bone.
 
 use std::f64::consts::TAU;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use souple_engine::{Constraint, World};
@@ -19,6 +20,10 @@ const RIGID_MOTIONS: usize = 6;
 const FACTORS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0];
 /// More frames than this are not tried: factors of their matrices take seconds.
 const MOST_FRAMES: usize = 500;
+/// Residual of the motions, of which stiffnesses are off by the square: far below what is told.
+const KNOWN: f64 = 1e-4;
+/// After so long no more are begun.
+const PATIENCE: Duration = Duration::from_secs(20);
 /// Of the body's highest frequency, what is zero to rounding: squares of frequencies are known to 1e-16 of the greatest and some
 /// hundred terms of each sum.
 const ZERO: f64 = 1e-6;
@@ -34,6 +39,8 @@ pub struct Needed {
     tries: Vec<Try>,
     /// Why nothing could be compared.
     without: Option<String>,
+    /// Whether it took too long to try more.
+    gave_up: bool,
 }
 
 /// So many times as many frames as the scene has.
@@ -43,7 +50,7 @@ struct Try {
 }
 
 enum Found {
-    /// Frames, and the greatest error of stiffness against the softest motions.
+    /// Frames, and the greatest error of stiffness against the softest motions, below zero where they are too soft.
     Off { frames: usize, error: f64 },
     /// They do not carry the body, and why.
     Refused(String),
@@ -52,10 +59,12 @@ enum Found {
 impl Needed {
     /// Tries frames of a body until an accuracy is met.
     pub fn of(path: &Path, settings: &[String], body: &BodyInfo, accuracy: f64) -> Self {
-        let mut needed = Self { body: body.name.clone(), accuracy, tries: Vec::new(), without: None };
+        let start = Instant::now();
+        let mut needed =
+            Self { body: body.name.clone(), accuracy, tries: Vec::new(), without: None, gave_up: false };
         let softest = |carriers: Carriers| {
             let scene = read_file_with_carriers(path, settings, &body.name, carriers)
-                .map_err(|errors| errors.to_string())?;
+                .map_err(|errors| errors.0.first().map_or_else(String::new, |first| first.message.clone()))?;
             softest_motions(scene, &body.name)
         };
         let reference = match softest(Carriers::Mesh) {
@@ -69,12 +78,23 @@ impl Needed {
             // fewer frames may not reach all of it, more may be more than there are points
             let found = match softest(Carriers::Frames(times)) {
                 Ok((frames, _)) if needed.compared().any(|(known, _)| known == frames) => continue,
-                Ok((frames, found)) => Found::Off { frames, error: greatest_error(&found, &reference) },
+                Ok((frames, found))
+                    if found.free > reference.free || found.hertz.len() < reference.hertz.len() =>
+                {
+                    Found::Refused(format!("nothing resists some motions of {frames}"))
+                }
+                Ok((frames, found)) => {
+                    Found::Off { frames, error: greatest_error(&found.hertz, &reference.hertz) }
+                }
                 Err(why) => Found::Refused(first_line(&why)),
             };
             needed.tries.push(Try { times, found });
             let last = needed.compared().last();
-            if needed.enough().is_some() || last.is_some_and(|(frames, _)| frames >= MOST_FRAMES) {
+            needed.gave_up = needed.enough().is_none() && start.elapsed() > PATIENCE;
+            if needed.enough().is_some()
+                || needed.gave_up
+                || last.is_some_and(|(frames, _)| frames >= MOST_FRAMES)
+            {
                 break;
             }
         }
@@ -91,7 +111,7 @@ impl Needed {
 
     /// The fewest tried that meet the accuracy.
     pub fn enough(&self) -> Option<usize> {
-        self.compared().find(|(_, error)| *error <= self.accuracy).map(|(frames, _)| frames)
+        self.compared().find(|(_, error)| error.abs() <= self.accuracy).map(|(frames, _)| frames)
     }
 
     pub fn to_json(&self) -> Value {
@@ -104,6 +124,7 @@ impl Needed {
             "tried": tried.collect::<Vec<_>>(),
             "enough": self.enough(),
             "without": self.without,
+            "gave_up": self.gave_up,
         })
     }
 
@@ -117,12 +138,21 @@ impl Needed {
             .tries
             .iter()
             .map(|Try { times, found }| match found {
-                Found::Off { frames, error } => format!("{frames} are {:.1} % off", 100.0 * error),
+                Found::Off { frames, error } => {
+                    let way = if *error < 0.0 { "soft" } else { "stiff" };
+                    format!("{frames} are {:.1} % too {way}", 100.0 * error.abs())
+                }
                 Found::Refused(why) => format!("{times} times as many do not do ({why})"),
             })
             .collect();
         let end = match self.enough() {
             Some(frames) => format!("{accuracy:.1} % takes {frames}"),
+            None if self.gave_up => {
+                format!(
+                    "{accuracy:.1} % takes more or other weights, and no more were tried after {} s",
+                    PATIENCE.as_secs()
+                )
+            }
             None => format!("{accuracy:.1} % takes more, or other weights"),
         };
         format!(
@@ -132,18 +162,26 @@ impl Needed {
     }
 }
 
+/// The softest motions of a body.
+struct Softest {
+    /// So many of those looked at that nothing resists.
+    free: usize,
+    /// Frequencies of the others, from the lowest [Hz].
+    hertz: Vec<f64>,
+}
+
 fn first_line(text: &str) -> String {
     text.lines().next().unwrap_or_default().to_owned()
 }
 
 /// Of stiffness, which is the square of a frequency.
 fn greatest_error(found: &[f64], reference: &[f64]) -> f64 {
-    let off = |(f, of_mesh): (&f64, &f64)| ((f / of_mesh).powi(2) - 1.0).abs();
-    found.iter().zip(reference).map(off).fold(0.0, f64::max)
+    let off = |(f, of_mesh): (&f64, &f64)| (f / of_mesh).powi(2) - 1.0;
+    found.iter().zip(reference).map(off).max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 
 /// How many frames carry a body, and the lowest frequencies of it that are not zero [Hz], all else being held.
-fn softest_motions(mut scene: Scene, body: &str) -> Result<(usize, Vec<f64>), String> {
+fn softest_motions(mut scene: Scene, body: &str) -> Result<(usize, Softest), String> {
     let body = scene.bodies.iter().find(|other| other.name == body).ok_or("the body is gone")?;
     let (frames, index) = (body.frames.as_ref().map_or(0, |frames| frames.rows.len()), body.system);
     let system = &mut scene.model.systems[index];
@@ -158,7 +196,7 @@ fn softest_motions(mut scene: Scene, body: &str) -> Result<(usize, Vec<f64>), St
         let stands = kinematics.point_block_row(block).map_or(Vec3::ZERO, |row| q[row as usize]);
         system.constraints.push(Constraint::pin(block, stands));
     }
-    lowest_frequencies(&mut scene.model.start(scene.state), index).map(|hertz| (frames, hertz))
+    lowest_frequencies(&mut scene.model.start(scene.state), index).map(|softest| (frames, softest))
 }
 
 /// Whether a row is one of the body's unknowns.
@@ -171,20 +209,27 @@ fn is_of(body: &BodyInfo, row: u32) -> bool {
     }
 }
 
-fn lowest_frequencies(world: &mut World, system: usize) -> Result<Vec<f64>, String> {
+fn lowest_frequencies(world: &mut World, system: usize) -> Result<Softest, String> {
     world.with_system(system, |system, state, around, ws| {
         let highest = souple_engine::stability::forecast(system, state, around, ws).highest_frequency;
         let [zero, below] = [ZERO, BELOW].map(|part| (part * highest).powi(2));
-        let settings = Settings { count: MOTIONS + RIGID_MOTIONS, shift: -below, ..Settings::default() };
+        let settings = Settings {
+            count: MOTIONS + RIGID_MOTIONS,
+            shift: -below,
+            tolerance: KNOWN,
+            ..Settings::default()
+        };
         let modes = souple_engine::modes::lowest(system, state, around, ws, &settings)
             .map_err(|error| error.to_string())?;
         if modes.eigenvalues.iter().any(|eigenvalue| *eigenvalue < -zero) {
             return Err("it does not stand where it begins".to_owned());
         }
+        let sought = modes.eigenvalues.len();
         let mut elastic: Vec<f64> =
             modes.eigenvalues.into_iter().filter(|eigenvalue| *eigenvalue > zero).collect();
         elastic.sort_by(f64::total_cmp);
+        let free = sought - elastic.len();
         elastic.truncate(MOTIONS);
-        Ok(elastic.into_iter().map(|eigenvalue| eigenvalue.sqrt() / TAU).collect())
+        Ok(Softest { free, hertz: elastic.into_iter().map(|eigenvalue| eigenvalue.sqrt() / TAU).collect() })
     })
 }

@@ -88,6 +88,9 @@ pub struct Arguments {
     /// Edges of the mesh: drawn, hidden, wireframe; drawn if left out
     #[arg(long)]
     edges: Option<String>,
+    /// Axes of the frames that carry bodies: drawn, numbered, hidden; drawn if left out
+    #[arg(long)]
+    frame_axes: Option<String>,
     /// From the eye towards the bodies, everything in the picture; the scene's if left out
     #[arg(long, value_name = "X,Y,Z", value_parser = list::<3>, allow_hyphen_values = true)]
     direction: Option<[f64; 3]>,

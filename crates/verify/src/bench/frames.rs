@@ -133,10 +133,10 @@ const GROWING: [[u32; 3]; 4] = [[50, 4, 4], [50, 8, 4], [50, 8, 8], [100, 8, 8]]
 /// Time and memory grow as a power of the number of points; this one is nearer to the first than to one and a half.
 const LARGEST_EXPONENT: f64 = 1.25;
 
-/// Time and memory of a thousand points, for ever more points, all with the same frames, beside those where there are fewest; and the power
-/// at which both grow in all.
+/// Time of a thousand points and memory of a thousand points more, for ever more points, all with the same frames, beside those where there
+/// are fewest; and the power at which both grow.
 pub fn growth(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
-    let runs: Vec<(f64, Timed)> = GROWING[..effort.choose(2, 4)]
+    let runs: Vec<(f64, Timed)> = GROWING[..effort.choose(3, 4)]
         .iter()
         .map(|cells| {
             let points = 8.0 * f64::from(cells.iter().product::<u32>());
@@ -149,30 +149,34 @@ pub fn growth(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
         if timed.processor.is_empty() { timed.seconds.clone() } else { timed.processor.clone() }
     };
     let microseconds = |timed: &Timed| seconds(timed).iter().map(|seconds| 1e6 * seconds).collect();
-    let megabytes = |timed: &Timed| vec![1e-6 * timed.bytes as f64];
-    let [times, memories] = [
-        ("time", "us/step of a thousand points", &microseconds as &dyn Fn(&Timed) -> Vec<f64>),
-        ("memory", "MB of a thousand points", &megabytes),
-    ]
-    .map(|(quantity, unit, of)| grown(&format!("{name}_{quantity}"), unit, &runs, of));
-    Ok([times?, memories?].concat())
+    let times: Vec<Grown> =
+        runs.iter().map(|(points, timed)| (*points, *points, microseconds(timed), timed)).collect();
+    // frames and their matrix, which are the same for all, are no memory of points
+    let memories: Vec<Grown> = runs
+        .windows(2)
+        .map(|pair| {
+            let [(fewer, before), (more, timed)] = pair else { unreachable!("windows of two") };
+            (*more, more - fewer, vec![1e-6 * (timed.bytes as f64 - before.bytes as f64)], timed)
+        })
+        .collect();
+    let times = grown(&format!("{name}_time"), "us/step of a thousand points", &times)?;
+    let memories = grown(&format!("{name}_memory"), "MB of a thousand points more", &memories)?;
+    Ok([times, memories].concat())
 }
 
+/// Points in all, those that values are of, the values, and the run.
+type Grown<'a> = (f64, f64, Vec<f64>, &'a Timed);
+
 /// Figures of what grows with the number of points.
-fn grown(
-    name: &str,
-    unit: &'static str,
-    runs: &[(f64, Timed)],
-    of: &dyn Fn(&Timed) -> Vec<f64>,
-) -> Result<Vec<Figure>, String> {
+fn grown(name: &str, unit: &'static str, runs: &[Grown]) -> Result<Vec<Figure>, String> {
     let exact = |baseline: Option<f64>| Held { error: 0.0, error_of: String::new(), baseline };
     let mut figures: Vec<Figure> = Vec::new();
-    for (points, timed) in runs {
-        let values = of(timed).iter().map(|value| 1e3 * value / points).collect();
+    for (points, of, values, timed) in runs {
+        let values = values.iter().map(|value| 1e3 * value / of).collect();
         let of_fewest = exact(figures.first().map(|figure| figure.value));
         figures.push(timed.figure(&format!("{name}.{points:.0}"), values, &of_fewest, (unit, false)));
     }
-    let ([(fewest, _), .., (most, timed)], [first, .., last]) = (runs, figures.as_slice()) else {
+    let ([(fewest, ..), .., (most, _, _, timed)], [first, .., last]) = (runs, figures.as_slice()) else {
         return Err("growth takes two runs".to_owned());
     };
     let exponent = 1.0 + (last.value / first.value).ln() / (most / fewest).ln();

@@ -5,7 +5,7 @@ use souple_io::picture::{
     View,
 };
 use souple_math::Vec3;
-use souple_run::show::{Arrows, Figure, Floor, Stage, Worn, map_of, unit_of};
+use souple_run::show::{Arrows, Figure, Floor, FrameAxes, Stage, Worn, map_of, unit_of};
 use souple_scene::spec::picture::PictureSpec;
 
 use super::{Arguments, Kind};
@@ -50,6 +50,15 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
                 "drawn, hidden or wireframe",
                 format!("edges cannot be `{other}`"),
             ));
+        }
+    };
+    let frame_axes = match arguments.frame_axes.as_deref().unwrap_or("drawn") {
+        "drawn" => FrameAxes::Drawn,
+        "numbered" => FrameAxes::Numbered,
+        "hidden" => FrameAxes::Hidden,
+        other => {
+            let message = format!("axes of frames cannot be `{other}`");
+            return Err(Refusal::request("frame-axes", other, "drawn, numbered or hidden", message));
         }
     };
     if let Some([low, high]) = range
@@ -103,6 +112,7 @@ pub fn figure(arguments: &Arguments, kind: Kind) -> Result<Figure, Refusal> {
             .as_ref()
             .map(|field| Arrows { field: field.clone(), scale: arguments.arrow_scale }),
         edges,
+        frame_axes,
         worn: worn(arguments),
         letters: 1.0,
         floor: if arguments.floor { Floor::Below } else { Floor::None },

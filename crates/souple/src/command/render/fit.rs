@@ -67,6 +67,7 @@ const OPTIONS: &[Limited] = &[
     limited("shrink", DRAWN, |given| given.shrink != 0.0),
     limited("arrows", DRAWN, |given| given.arrows.is_some()),
     limited("edges", DRAWN, |given| given.edges.is_some()),
+    limited("frame-axes", DRAWN, |given| given.frame_axes.is_some()),
     limited("direction", DRAWN, |given| given.direction.is_some()),
     limited("position", DRAWN, |given| given.position.is_some()),
     limited("up", DRAWN, |given| given.up.is_some()),
