@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::tree::{Tree, run};
 
-const TOOLCHAIN: &str = "install Rust with its usual components: `rustup component add clippy rustfmt`";
+/// What is to be there.
+pub const TOOLCHAIN: &str = "install Rust with its usual components: `rustup component add clippy rustfmt`";
 
 pub fn format(tree: &Tree) -> Result<(), Failure> {
     run(&mut tree.cargo(&["fmt", "--all", "--check"]), TOOLCHAIN)

@@ -68,12 +68,19 @@ const STEPS: &[Step] = &[
     Step { name: "mutations", summary: "every validation case fails where it must", run: program::mutations },
 ];
 
-/// Checks that are made only by name: they last an hour.
-const BY_NAME: &[Step] = &[Step {
-    name: "soak",
-    summary: "neither program nor page grows while it is looked at (SOUPLE_SOAK_MINUTES)",
-    run: browser::soak,
-}];
+/// Checks that are made only by name: they last long, or want a machine for themselves.
+const BY_NAME: &[Step] = &[
+    Step {
+        name: "soak",
+        summary: "neither program nor page grows while it is looked at (SOUPLE_SOAK_MINUTES)",
+        run: browser::soak,
+    },
+    Step {
+        name: "speed",
+        summary: "laws and elements of the released program are as fast as they must be",
+        run: program::speed,
+    },
+];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

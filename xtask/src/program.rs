@@ -46,6 +46,24 @@ pub fn mutations(tree: &Tree) -> Result<(), Failure> {
     rows(tree, &["verify", "--mutations", "--json"], |rows| rows.iter().filter_map(blindness).collect())
 }
 
+/// Benches whose baselines are promises about laws and elements.
+const SPEED: [&str; 9] = [
+    "law_text_tensor",
+    "law_text_scalar",
+    "law_ready",
+    "tet4_forces",
+    "hex8_forces",
+    "prism6_forces",
+    "pyramid5_forces",
+    "tangents",
+    "formal",
+];
+
+/// Every figure of these benches is as good as its baseline.
+pub fn speed(tree: &Tree) -> Result<(), Failure> {
+    run(souple(tree, &["bench", "--hold"]).args(SPEED), REMEDY)
+}
+
 /// Runs cases and asks for the faults of their rows.
 fn rows(
     tree: &Tree,

@@ -7,9 +7,12 @@ use std::sync::Arc;
 
 use souple_engine::{Configuration, Force, TangentWeights};
 use souple_formal::element::{Axis, Cut};
+use souple_formal::law::EnergyLaw;
 use souple_math::{Mat3, Vec3, exponential};
 use souple_mesh::{ElementKind, Mesh};
-use souple_models::materials::{self, Material};
+use souple_models::derive::{MapKind, element_kernel};
+use souple_models::materials::{self, Material, WrittenLaw};
+use souple_models::solids::derived::{DERIVED, Derived};
 use souple_models::solids::{
     DifferencedForce, FORMULATIONS, FormulationError, Quadrature, Section, SolidDescription,
 };
@@ -34,6 +37,21 @@ fn crooked(element: &str) -> Mesh {
     for p in &mut mesh.points {
         let s = *p;
         *p += Vec3::new((7.0 * s.y + s.z).sin(), (5.0 * s.x).cos(), (3.0 * s.x - 9.0 * s.y).sin()) * 0.01;
+    }
+    mesh
+}
+
+/// A strip in the plane, likewise.
+fn crooked_sheet(element: &str) -> Mesh {
+    let values = Values::new()
+        .with("length", Value::Number(1.0))
+        .with("width", Value::Number(0.4))
+        .with("cells_along", Value::Number(4.0))
+        .with("cells_across", Value::Number(3.0))
+        .with("element", Value::Text(element));
+    let mut mesh = souple_mesh::generate("sheet", values).unwrap();
+    for p in &mut mesh.points {
+        *p += Vec3::new((7.0 * p.y).sin(), (5.0 * p.x).cos(), 0.0) * 0.01;
     }
     mesh
 }
@@ -66,6 +84,16 @@ fn build_with(
     mesh: &Mesh,
     material: &Material,
 ) -> Result<Box<dyn Force>, FormulationError> {
+    build_section(formulation, values, mesh, material, Section::Solid)
+}
+
+fn build_section(
+    formulation: &str,
+    values: Values,
+    mesh: &Mesh,
+    material: &Material,
+    section: Section,
+) -> Result<Box<dyn Force>, FormulationError> {
     let of_cell = vec![0; mesh.cell_count()];
     let description = SolidDescription {
         name: "bar".into(),
@@ -75,7 +103,7 @@ fn build_with(
         material_of_cell: &of_cell,
         axes: &[],
         quadrature: Quadrature::Default,
-        section: Section::Solid,
+        section,
     };
     let entry = FORMULATIONS.find(formulation).unwrap();
     (entry.build)(&description, &entry.values(values).unwrap())
@@ -177,6 +205,62 @@ fn grouped_constants_are_the_law() {
             let samples = build("samples", mesh, material).unwrap();
             assert_same(&name, samples.as_ref(), grouped.as_ref(), &bent(mesh));
         }
+    }
+}
+
+/// Kernels that are derived and compiled with the program are the law at the samples, and what is derived of the same text at run time:
+/// every pair of law and element that has a file, crooked cells and boxes.
+#[test]
+fn derived_kernels_are_the_law() {
+    for Derived { law, element, map, .. } in DERIVED {
+        let material = material(law.entry().name);
+        let name = format!("{} on {element}, {map:?}", law.entry().name);
+        if element.dimension() == 2 {
+            let mesh = crooked_sheet(element.name());
+            let [samples, derived] = ["samples", "derived"].map(|formulation| {
+                let section = Section::PlaneStrain { thickness: 0.2 };
+                build_section(formulation, Values::new(), &mesh, &material, section).unwrap()
+            });
+            let in_plane = |p: &Vec3| *p + Vec3::new((7.0 * p.y).sin(), (5.0 * p.x).cos(), 0.0) * 0.02;
+            let x: Vec<Vec3> = mesh.points.iter().map(in_plane).collect();
+            assert_same(&name, samples.as_ref(), derived.as_ref(), &x);
+            continue;
+        }
+        let mesh = if *map == MapKind::Box { bar(element.name()) } else { crooked(element.name()) };
+        let [samples, taped, derived] = ["samples", "grouped_constants", "derived"]
+            .map(|formulation| build(formulation, &mesh, &material).unwrap());
+        assert_same(&name, samples.as_ref(), derived.as_ref(), &bent(&mesh));
+        assert_same(&name, taped.as_ref(), derived.as_ref(), &bent(&mesh));
+    }
+}
+
+/// Where there is no file, the law, the element and what there is are named.
+#[test]
+fn what_is_not_derived_is_refused() {
+    for (law, element, named) in [
+        ("neo_hookean", "tet4", "neo_hookean"),
+        ("linear", "tet10", "tet10"),
+        ("corotational", "hex8", "hex8"),
+    ] {
+        let error = build("derived", &bar(element), &material(law)).err().unwrap().to_string();
+        assert!(error.contains(named) && error.contains("st_venant_kirchhoff on tri3"), "{error}");
+    }
+}
+
+/// The files of derived kernels are what their laws and elements say, but for the layout of lines.
+#[test]
+fn derived_kernels_are_their_texts() {
+    let words = |text: &str| -> String {
+        let bare: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
+        bare.replace(",]", "]").replace(",)", ")").replace(",}", "}")
+    };
+    for Derived { law, element, map, text, .. } in DERIVED {
+        let name = law.entry().name;
+        let written = WrittenLaw::find(name).unwrap().text().unwrap();
+        let compiled = EnergyLaw::compile(&written).unwrap();
+        let rule = element.default_rule();
+        let derived = element_kernel(name, &written, &compiled, *element, (rule, *map)).unwrap();
+        assert!(words(&derived) == words(text), "{name} on {element}: `cargo xtask kernels`");
     }
 }
 

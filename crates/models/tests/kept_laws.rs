@@ -169,6 +169,28 @@ fn a_folder_that_cannot_be_used_is_none() {
     assert!(TextLaw::kept(wrong.clone(), &kept).is_err() && !kept.file_of(&wrong).exists());
 }
 
+/// A law that was written long ago and is used stays; one that was written since, and not used, goes.
+#[test]
+fn what_is_used_stays() {
+    let (_folder, kept) = folder();
+    TextLaw::kept(text(0.0), &kept).expect("a law");
+    let file = kept.file_of(&text(0.0));
+    let folder = file.parent().expect("a folder");
+    let made_at = |name: &str, age: u64| {
+        let file = fs::File::options().create(true).write(true).truncate(false).open(folder.join(name));
+        let modified = SystemTime::now() - Duration::from_secs(age);
+        file.and_then(|file| file.set_modified(modified)).expect("a file and its time");
+    };
+    made_at(&file.file_name().expect("a name").to_string_lossy(), 900_000);
+    for number in 0..511 {
+        made_at(&format!("{number:032x}.law"), 800_000 - number);
+    }
+    TextLaw::kept(text(0.0), &kept).expect("a law");
+    TextLaw::kept(text(1.0), &kept).expect("a law");
+    assert!(file.exists() && kept.file_of(&text(1.0)).exists());
+    assert!(!folder.join(format!("{:032x}.law", 0)).exists());
+}
+
 /// A folder holds so many laws, and the oldest go; files of others stay.
 #[test]
 fn the_oldest_are_forgotten() {

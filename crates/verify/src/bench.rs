@@ -341,6 +341,19 @@ impl Figure {
     }
 }
 
+impl Figure {
+    /// Whether it is worse than what it is held against: by the time of the processor where that is known, for what others do on a
+    /// machine is no fault of a figure.
+    pub fn misses(&self) -> bool {
+        let value = self.by_processor.unwrap_or(self.value);
+        self.baseline.is_some_and(
+            |baseline| {
+                if self.higher_is_better { value < baseline } else { value > baseline }
+            },
+        )
+    }
+}
+
 impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(

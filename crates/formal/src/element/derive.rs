@@ -87,7 +87,7 @@ impl Symbols {
 }
 
 /// `ω Ψ` and its derivatives for one term of the law, `ω` being a symbol.
-pub(super) struct Term {
+pub(crate) struct Term {
     pub energy: Expr,
     pub stress: Expr,
     pub differential: Expr,
@@ -106,7 +106,7 @@ struct AtSample {
 }
 
 /// Name of the weight `ω` while a law is differentiated.
-pub(super) const WEIGHT: &str = "weight";
+pub(crate) const WEIGHT: &str = "weight";
 
 pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result<Derived, WithoutFormula> {
     let mut graph = law.graph.clone();
@@ -179,7 +179,7 @@ pub(super) fn derive(element: &ElementData, law: &EnergyLaw, cut: Cut) -> Result
 
 /// The terms of the energy times `ω`, or their sum where the law is not cut. The weight is multiplied in before differentiation,
 /// so that it meets the material constants and is grouped with them.
-pub(super) fn terms(graph: &mut Graph, law: &EnergyLaw, cut: Cut) -> Vec<Term> {
+pub(crate) fn terms(graph: &mut Graph, law: &EnergyLaw, cut: Cut) -> Vec<Term> {
     let weight = graph.own_symbol(WEIGHT);
     let seeds = HashMap::from([(law.deformation, law.variation)]);
     let mut energies = Vec::new();

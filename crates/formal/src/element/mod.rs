@@ -12,6 +12,7 @@ mod steps;
 
 pub use cut::{Axis, Cut, Derivative, Fragment};
 pub use derive::{Derived, ElementExpressions, Symbols};
+pub(crate) use derive::{WEIGHT, terms};
 pub use direct::Direct;
 pub use steps::{ConstantPlaces, Step, Steps};
 

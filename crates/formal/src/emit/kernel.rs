@@ -31,6 +31,12 @@ pub struct Heading<'a> {
 #[error("a law with {0} is not written as a kernel")]
 pub struct NoKernel(String);
 
+impl NoKernel {
+    pub(super) fn of(what: &str) -> Self {
+        Self(what.to_owned())
+    }
+}
+
 /// The file of a law: its numbers, and energy, stress and differential as functions of them.
 ///
 /// # Errors
@@ -113,7 +119,7 @@ pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
 }
 
 /// `impl Parameters`.
-fn packing(parameters: &[(&str, Shape)]) -> String {
+pub(super) fn packing(parameters: &[(&str, Shape)]) -> String {
     let numbers = parameters.iter().flat_map(|(name, shape)| match shape {
         Shape::Vector => ["x", "y", "z"].map(|axis| format!("{name}.{axis}")).to_vec(),
         _ => vec![(*name).to_owned()],
@@ -177,24 +183,7 @@ impl Functions<'_> {
             texts.insert(place.value, format!("p.{name}"));
         }
         texts.insert(lowered.inputs[1][0].value, "dF".to_owned());
-        let mut numbers: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        for (place, value) in &lowered.constants {
-            let entries = numbers.entry(place.value).or_insert_with(|| vec![0.0; lowered.sizes[place.value]]);
-            entries[place.offset as usize] = *value;
-        }
-        let graph = &self.law.graph;
-        let meant = lowered.places.iter().filter(|(_, place)| place.offset == 0);
-        let meant = meant.map(|(expr, place)| (place.value, *expr)).collect();
-        Writer {
-            graph,
-            lowered,
-            texts,
-            numbers,
-            meant,
-            compared: HashMap::new(),
-            packed: HashMap::new(),
-            counts: [0; 3],
-        }
+        Writer::new(&self.law.graph, lowered, texts)
     }
 
     /// The body of a function of `F` and the parameters.
@@ -273,13 +262,15 @@ fn plus(text: &str, number: f64) -> String {
 }
 
 /// A body with its beginning: matrices by value, and a one to make constants beside.
-fn finished(body: &str, end: &str, matrices: &[&str]) -> String {
+pub(super) fn finished(body: &str, end: &str, matrices: &[&str]) -> String {
     let mut begin = String::new();
     for matrix in matrices {
         let _ = writeln!(begin, "        let {matrix} = *{matrix};");
     }
     if body.contains("one.") || body.contains("one /") || end.contains("one.") {
-        let _ = writeln!(begin, "        let one = {}.columns[0].x.one();", matrices[0]);
+        let like =
+            matrices.first().map_or_else(|| "volume".to_owned(), |matrix| format!("{matrix}.columns[0].x"));
+        let _ = writeln!(begin, "        let one = {like}.one();");
     }
     // what was named last is what is returned
     let last = body.trim_end().rsplit_once('\n').map_or(("", body), |(before, last)| (before, last));
@@ -292,7 +283,7 @@ fn finished(body: &str, end: &str, matrices: &[&str]) -> String {
 }
 
 /// The steps without those whose results nothing reads.
-fn needed<'l>(steps: &[&'l Step], outputs: &[Place]) -> Vec<&'l Step> {
+pub(super) fn needed<'l>(steps: &[&'l Step], outputs: &[Place]) -> Vec<&'l Step> {
     let mut read: HashSet<usize> = outputs.iter().map(|place| place.value).collect();
     let mut kept: Vec<&Step> = Vec::new();
     for step in steps.iter().rev() {
@@ -305,7 +296,7 @@ fn needed<'l>(steps: &[&'l Step], outputs: &[Place]) -> Vec<&'l Step> {
     kept
 }
 
-struct Writer<'l> {
+pub(super) struct Writer<'l> {
     graph: &'l Graph,
     lowered: &'l Lowered,
     /// Names of values.
@@ -322,8 +313,29 @@ struct Writer<'l> {
     counts: [usize; 3],
 }
 
-impl Writer<'_> {
-    fn body(&mut self, steps: &[&Step]) -> Result<String, NoKernel> {
+impl<'l> Writer<'l> {
+    /// Of values that have names in `texts` already.
+    pub fn new(graph: &'l Graph, lowered: &'l Lowered, texts: BTreeMap<usize, String>) -> Self {
+        let mut numbers: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for (place, value) in &lowered.constants {
+            let entries = numbers.entry(place.value).or_insert_with(|| vec![0.0; lowered.sizes[place.value]]);
+            entries[place.offset as usize] = *value;
+        }
+        let meant = lowered.places.iter().filter(|(_, place)| place.offset == 0);
+        let meant = meant.map(|(expr, place)| (place.value, *expr)).collect();
+        Self {
+            graph,
+            lowered,
+            texts,
+            numbers,
+            meant,
+            compared: HashMap::new(),
+            packed: HashMap::new(),
+            counts: [0; 3],
+        }
+    }
+
+    pub fn body(&mut self, steps: &[&Step]) -> Result<String, NoKernel> {
         let mut out = String::new();
         for step in steps {
             if let Some(value) = self.value(step)? {
@@ -360,7 +372,7 @@ impl Writer<'_> {
     }
 
     /// `size` numbers from a place on.
-    fn read(&self, place: Place, size: usize) -> String {
+    pub fn read(&self, place: Place, size: usize) -> String {
         if let Some(numbers) = self.numbers.get(&place.value) {
             let constant =
                 |offset: usize| format!("one.splat({:?})", numbers[place.offset as usize + offset]);

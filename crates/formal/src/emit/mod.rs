@@ -4,6 +4,7 @@
 //! styles share one walk over the graph and differ in how they write an operation.
 
 mod element;
+mod fused;
 mod kernel;
 mod latex;
 mod rust;
@@ -14,6 +15,7 @@ mod wgsl;
 use std::collections::HashMap;
 
 pub use element::{ElementCode, Emitted};
+pub use fused::{ElementHeading, element_kernel};
 pub use kernel::{Heading, NoKernel, kernel};
 pub use latex::Latex;
 pub use rust::Rust;

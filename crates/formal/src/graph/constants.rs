@@ -48,6 +48,34 @@ impl Graph {
         Grouped { constants, varying }
     }
 
+    /// The same with one constant for all that differ by a number, which stays in the code: twice a modulus is no constant of its own.
+    pub(crate) fn without_multiples(&mut self, grouped: Grouped) -> Grouped {
+        let (mut whole, mut replaced) = (HashMap::new(), HashMap::new());
+        let mut kept: Vec<(Expr, Expr)> = Vec::new();
+        for (symbol, definition) in grouped.constants {
+            let definition = self.substitute(definition, &whole);
+            whole.insert(symbol, definition);
+            let (number, rest) = self.without_number(definition);
+            let known = kept.iter().find(|(_, known)| *known == rest).map(|(symbol, _)| *symbol);
+            if known.is_none() {
+                kept.push((symbol, rest));
+            }
+            replaced.insert(symbol, self.times_number(number, known.unwrap_or(symbol)));
+        }
+        let varying = grouped.varying.iter().map(|expr| self.substitute(*expr, &replaced)).collect();
+        let constants = self.nest(kept);
+        Grouped { constants, varying }
+    }
+
+    /// A product as its number and the rest.
+    fn without_number(&mut self, expr: Expr) -> (f64, Expr) {
+        let Node::Product(factors) = self.node(expr).clone() else { return (1.0, expr) };
+        let (numbers, others): (Vec<Expr>, Vec<Expr>) =
+            factors.iter().partition(|factor| self.value(**factor).is_some());
+        let number = numbers.iter().filter_map(|factor| self.value(*factor)).product();
+        (number, self.product(&others))
+    }
+
     /// Writes constants with the earlier ones they contain.
     fn nest(&mut self, constants: Vec<(Expr, Expr)>) -> Vec<(Expr, Expr)> {
         let mut symbols: HashMap<Expr, Expr> = HashMap::new();

@@ -19,8 +19,8 @@ pub use continued::SMALLEST_VOLUME;
 pub use error::{LawError, LawProblem, UnitClash, WantedUnits};
 pub use vocabulary::{LAW_FUNCTIONS, QUANTITIES, Word};
 
-use crate::Dimension;
 use crate::graph::{Expr, Graph, Grouped, Node, Shape};
+use crate::{Dimension, Expression, NodeKind};
 
 /// A law as written.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,14 +35,22 @@ pub struct LawText {
 impl LawText {
     /// Whether it may tell directions apart: it names some, or single entries of tensors.
     pub fn names_directions(&self) -> bool {
-        let has_direction =
-            self.parameters.iter().any(|(_, parameter)| matches!(parameter, LawParameter::Direction(_)));
-        let texts = self.definitions.iter().map(|(_, text)| text).chain([&self.energy]);
-        let mut words = texts.flat_map(|text| text.split(|c: char| !(c.is_alphanumeric() || c == '_')));
-        // vectors may be written out
-        let has_vector =
-            self.energy.contains('[') || self.definitions.iter().any(|(_, text)| text.contains('['));
-        has_direction || has_vector || words.any(|word| vocabulary::entry_of(word).is_some())
+        let is_direction = |name: &str| {
+            let has_name = |(known, parameter): &(String, LawParameter)| {
+                known == name && matches!(parameter, LawParameter::Direction(_))
+            };
+            vocabulary::entry_of(name).is_some() || self.parameters.iter().any(has_name)
+        };
+        let names_one = |text: &String| {
+            let nodes = Expression::parse(text).map(|expression| expression.nodes().to_vec());
+            nodes.unwrap_or_default().iter().any(|node| match &node.kind {
+                NodeKind::Name(name) => is_direction(name),
+                // directions may be written out
+                NodeKind::Vector(_) => true,
+                _ => false,
+            })
+        };
+        self.definitions.iter().map(|(_, text)| text).chain([&self.energy]).any(names_one)
     }
 }
 

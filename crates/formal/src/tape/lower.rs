@@ -229,7 +229,11 @@ impl Lowering<'_> {
                 _ => self.emit_of(Code::Apply, 3, 3, &[matrix, vector]),
             },
             Node::Transpose(a) => self.emit_of(Code::Transpose, 9, 9, &[a]),
-            Node::Dot(a, b) => self.emit_of(Code::Dot, self.graph.shape(a).size(), 1, &[a, b]),
+            Node::Dot(a, b) => match self.product_of_transpose(a, b) {
+                // A:B is the trace of Aᵀ B, where that is wanted anyway
+                Some(product) => self.emit_of(Code::Trace, 9, 1, &[product]),
+                None => self.emit_of(Code::Dot, self.graph.shape(a).size(), 1, &[a, b]),
+            },
             Node::Trace(a) => self.emit_of(Code::Trace, 9, 1, &[a]),
             Node::Determinant(a) => {
                 // the first columns of A and cof A give the determinant, where the cofactor is wanted anyway
@@ -270,10 +274,40 @@ impl Lowering<'_> {
     fn multiply(&mut self, a: Expr, b: Expr) -> Place {
         match (self.graph.node(a).clone(), self.graph.node(b).clone()) {
             (Node::Transpose(inner), _) if inner == b => self.emit_of(Code::Gram, 9, 9, &[b]),
-            (Node::Transpose(inner), _) => self.emit_of(Code::TransposeProduct, 9, 9, &[inner, b]),
+            (Node::Transpose(inner), _) => match self.transposed(inner, b) {
+                Some(place) => self.emit(Code::Transpose, 9, 9, &[place]),
+                None => self.emit_of(Code::TransposeProduct, 9, 9, &[inner, b]),
+            },
             (_, Node::Transpose(inner)) => self.emit_of(Code::ProductTranspose, 9, 9, &[a, inner]),
             _ => self.emit_of(Code::Product, 9, 9, &[a, b]),
         }
+    }
+
+    /// `Aᵀ B` or `Bᵀ A`, if it is among what is computed.
+    fn product_of_transpose(&self, a: Expr, b: Expr) -> Option<Expr> {
+        if self.graph.shape(a) != Shape::Matrix {
+            return None;
+        }
+        let of_transpose = |expr: Expr| match *self.graph.node(expr) {
+            Node::Multiply(left, right) => match *self.graph.node(left) {
+                Node::Transpose(inner) => Some((inner, right)),
+                _ => None,
+            },
+            _ => None,
+        };
+        // of several the same one every time, whatever order sets have
+        let wanted = |expr: &Expr| of_transpose(*expr).is_some_and(|pair| pair == (a, b) || pair == (b, a));
+        self.reachable.iter().copied().filter(wanted).min_by_key(|expr| expr.index())
+    }
+
+    /// Where `Bᵀ A` is, of which `Aᵀ B` is the transpose, if it is computed already.
+    fn transposed(&self, a: Expr, b: Expr) -> Option<Place> {
+        let is_transposed = |expr: &Expr| match *self.graph.node(*expr) {
+            Node::Multiply(left, right) => right == a && *self.graph.node(left) == Node::Transpose(b),
+            _ => false,
+        };
+        let found = self.reachable.iter().copied().find(is_transposed)?;
+        self.places.get(&found).copied()
     }
 
     /// The two operands of the last operation of a product, and whether it divides.
@@ -457,6 +491,11 @@ impl Lowering<'_> {
             let power = self.whole_power(at, value.abs() as u8);
             return if value < 0.0 { self.reciprocal(power) } else { power };
         }
+        // (b^e)ⁿ of a power that is wanted anyway costs no transcendental function of its own
+        if let Some((root, times)) = self.root_of(base, value) {
+            let root = self.place(root);
+            return self.whole_power(root, times);
+        }
         // powers of one base that differ by whole exponents cost one transcendental function: that of the exponent nearest to
         // zero, and from there away from it, so that zero to the power of a half is not zero over zero
         let nearest = self.nearest_to_zero(base, value);
@@ -479,6 +518,20 @@ impl Lowering<'_> {
         let power = self.whole_power(at, (value - start).abs() as u8);
         let code = if value < 0.0 { Code::Divide } else { Code::Multiply };
         self.emit(code, 1, 1, &[place, power])
+    }
+
+    /// A power of `base` among what is computed whose exponent is a small whole part of `value`, and which part: the least exponent.
+    fn root_of(&self, base: Expr, value: f64) -> Option<(Expr, u8)> {
+        let part = |expr: &Expr| match *self.graph.node(*expr) {
+            Node::Power(other, exponent) if other == base => {
+                let exponent = self.graph.value(exponent).filter(|exponent| exponent.fract() != 0.0)?;
+                let times = value / exponent;
+                let is_whole = (times - times.round()).abs() <= f64::EPSILON * times.abs();
+                (is_whole && (2.0..=4.0).contains(&times.round())).then_some((*expr, times.round() as u8))
+            }
+            _ => None,
+        };
+        self.reachable.iter().filter_map(part).max_by_key(|(_, times)| *times)
     }
 
     /// Of the exponents of `base` that differ from `value` by a small whole number and have its sign, the least.

@@ -8,7 +8,7 @@ use crate::FUNCTIONS;
 use crate::graph::Comparison;
 
 /// Codes without a detail; a code is written as its place here.
-const PLAIN: [Code; 29] = [
+pub(super) const PLAIN: [Code; 29] = [
     Code::Copy,
     Code::Add,
     Code::Multiply,
@@ -43,7 +43,8 @@ const PLAIN: [Code; 29] = [
 const WHOLE_POWER: u8 = 100;
 const CALL: u8 = 101;
 const COMPARE: u8 = 102;
-const COMPARISONS: [Comparison; 3] = [Comparison::Less, Comparison::LessOrEqual, Comparison::Equal];
+pub(super) const COMPARISONS: [Comparison; 3] =
+    [Comparison::Less, Comparison::LessOrEqual, Comparison::Equal];
 
 /// Entries of a matrix.
 const MATRIX: u32 = 9;
@@ -170,7 +171,7 @@ fn lies_within(instruction: &Instruction, registers: usize) -> bool {
 }
 
 /// Numbers that an instruction writes, and that it reads of each operand.
-fn sizes(code: Code, entries: u32) -> (u32, [u32; 5]) {
+pub(super) fn sizes(code: Code, entries: u32) -> (u32, [u32; 5]) {
     let vector = 3;
     // two rotations, and three stretches behind them
     let (rotations, decomposition) = (2 * MATRIX, 2 * MATRIX + vector);

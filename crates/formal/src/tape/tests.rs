@@ -4,7 +4,9 @@
 
 use souple_math::{Mat3, Vec3};
 
+use super::stored::{COMPARISONS, PLAIN, sizes};
 use super::*;
+use crate::FUNCTIONS;
 use crate::law::{LawParameter, LawText};
 
 fn compiled(energy: &str) -> EnergyLaw {
@@ -133,6 +135,79 @@ fn stored_tapes_are_restored() {
                     tape.prepare(&mut memory);
                     tape.run_here(Part::All, 8, &mut memory);
                 }
+            }
+        }
+    }
+}
+
+/// What restored instructions are held against is what the machine does: each code writes exactly the registers that it is said to, and
+/// reads none but those it is said to. Between operands, which are numbers, there is none.
+#[test]
+fn registers_of_instructions_are_those_of_the_machine() {
+    let with_entries = [Code::Copy, Code::Add, Code::Scale, Code::ScaleAdd, Code::Combine];
+    let plain = PLAIN.into_iter().flat_map(|code| {
+        let entries: &[u8] = match code {
+            Code::Dot => &[3, 9],
+            Code::Decompose => &[21],
+            _ if with_entries.contains(&code) => &[1, 3, 9],
+            _ => &[9],
+        };
+        entries.iter().map(move |entries| (code, *entries))
+    });
+    let functions = FUNCTIONS.iter().filter(|entry| entry.arguments.accepts(1));
+    let others = functions
+        .map(|entry| Code::Call(entry.function))
+        .chain(COMPARISONS.map(Code::Compare))
+        .chain([2, 3, 64].map(Code::WholePower));
+    for (code, entries) in plain.chain(others.map(|code| (code, 1))) {
+        let (written, read) = sizes(code, u32::from(entries));
+        // a gap, then an operand, a gap, …, then what is written, and a gap
+        let (mut operands, mut next, mut is_number) = ([0; 5], 1, vec![false]);
+        for (operand, len) in operands.iter_mut().zip(read) {
+            *operand = next;
+            next += len + 1;
+            is_number.extend(std::iter::repeat_n(true, len as usize));
+            is_number.push(false);
+        }
+        let registers = (next + written + 1) as usize;
+        let instruction = Instruction { code, entries, out: next, operands };
+        let tape = Tape {
+            instructions: vec![instruction],
+            split: 0,
+            registers,
+            constants: Vec::new(),
+            inputs: [Vec::new(), Vec::new()],
+            outputs: Vec::new(),
+        };
+        let number = |register: usize, lane: usize| {
+            // functions from a half on, or from one on where that is their domain
+            let shift = match code {
+                Code::Call(function) if !crate::arithmetic::of_one(function, 0.5).is_finite() => 1.0,
+                _ => 0.0,
+            };
+            shift + 0.3 + 0.5 * (1.7 * register as f64 + 0.1 * lane as f64).sin().abs()
+        };
+        let before: Vec<f64> = (0..registers * BATCH)
+            .map(|at| {
+                let register = at / BATCH;
+                let holds = is_number.get(register).is_some_and(|holds| *holds);
+                if holds { number(register, at % BATCH) } else { f64::NAN }
+            })
+            .collect();
+        let mut after = before.clone();
+        tape.run_here(Part::All, BATCH, &mut after);
+        for register in 0..registers {
+            let lanes = register * BATCH..(register + 1) * BATCH;
+            let is_out = (next..next + written).contains(&(register as u32));
+            let name = format!("{code:?} of {entries}, register {register} of {registers}");
+            if is_out {
+                assert!(
+                    after[lanes].iter().all(|number| number.is_finite()),
+                    "{name} is written from numbers"
+                );
+            } else {
+                let same = after[lanes.clone()].iter().zip(&before[lanes]);
+                assert!(same.into_iter().all(|(a, b)| a.to_bits() == b.to_bits()), "{name} is left alone");
             }
         }
     }

@@ -1,11 +1,13 @@
 //! Elements of the mesh room as data for the derivation of laws on elements.
 
+mod kernels;
 mod source;
 
 use souple_formal::element::{ElementData, RestMap, Sample};
 use souple_math::Vec3;
 use souple_mesh::{ElementKind, QuadratureRule};
 
+pub use kernels::{element_kernel, law_kernel};
 pub use source::{
     four_loop_operations, source_constant_count, source_fragment_counts, source_law_name, source_name,
 };
@@ -22,7 +24,7 @@ fn with_box() -> String {
 }
 
 /// How the rest shape is mapped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MapKind {
     /// By the shape functions: any shape.
     General,

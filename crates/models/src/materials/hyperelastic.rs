@@ -198,8 +198,7 @@ impl TextLaw {
         if let Some(law) = known().iter().find(|law| law.text == text) {
             return Ok(Arc::clone(law));
         }
-        let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let law = Arc::new(match kept {
+        let law = Arc::new(match Self::folder() {
             Some(kept) => Self::kept(text, &kept)?,
             None => Self::compile(text)?,
         });
@@ -207,6 +206,16 @@ impl TextLaw {
         known.truncate(KNOWN_MOST - 1);
         known.push_front(Arc::clone(&law));
         Ok(law)
+    }
+
+    /// Where laws are kept between runs, and what else is derived.
+    pub(crate) fn folder() -> Option<KeptLaws> {
+        KEPT.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// As written.
+    pub(crate) fn text(&self) -> &LawText {
+        &self.text
     }
 
     /// From now on laws that are not among those compiled last are looked for there, and left there for later runs.

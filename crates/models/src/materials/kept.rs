@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::LazyLock;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use sha2::{Digest, Sha256};
 use souple_formal::DERIVATION;
@@ -27,6 +27,9 @@ const EXTENSION: &str = "law";
 /// Files and bytes that a folder holds at most; the oldest go. A law takes some kilobytes, the largest less than a megabyte.
 const MOST_FILES: usize = 512;
 const MOST_BYTES: u64 = 32 << 20;
+
+/// For how long a file is as good as just used: reading one is to write nothing, most times.
+const FRESH: Duration = Duration::from_secs(3600);
 
 /// A folder of derived laws.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,26 +50,50 @@ impl KeptLaws {
 
     /// What a text was derived to, if that is here.
     pub(super) fn find(&self, text: &LawText) -> Option<Derived> {
-        let key = key_of(text);
-        let path = self.folder.join(name_of(&key));
+        self.find_as(&key_of(text), read)
+    }
+
+    /// Keeps what a text was derived to.
+    pub(super) fn keep(&self, text: &LawText, derived: &Derived) {
+        self.keep_as(key_of(text), |bytes| write(derived, bytes));
+    }
+
+    /// What is here under a key, if `read` takes all of it.
+    pub(crate) fn find_as<T>(&self, key: &[u8], read: impl FnOnce(&mut &[u8]) -> Option<T>) -> Option<T> {
+        let path = self.folder.join(name_of(key));
         // what is no file may never end
-        let file = path.metadata().is_ok_and(|data| data.is_file()).then(|| fs::read(path).ok()).flatten()?;
+        let data = path.metadata().ok().filter(fs::Metadata::is_file)?;
+        let file = fs::read(&path).ok()?;
         let (magic, file) = file.split_first_chunk()?;
         let (hash, content) = file.split_first_chunk::<HASH_LEN>()?;
         if *magic != MAGIC || Sha256::digest(content).as_slice() != hash {
             return None;
         }
-        let mut rest = content.strip_prefix(key.as_slice())?;
-        let derived = read(&mut rest)?;
-        rest.is_empty().then_some(derived)
+        let mut rest = content.strip_prefix(key)?;
+        let found = read(&mut rest)?;
+        if !rest.is_empty() {
+            return None;
+        }
+        // those go first that nobody has used for the longest
+        let now = SystemTime::now();
+        let is_old = data
+            .modified()
+            .ok()
+            .and_then(|time| now.duration_since(time).ok())
+            .is_some_and(|age| age > FRESH);
+        if is_old && let Ok(file) = fs::File::options().write(true).open(&path) {
+            // what may only be read keeps its time
+            drop(file.set_modified(now));
+        }
+        Some(found)
     }
 
-    /// Keeps what a text was derived to.
-    pub(super) fn keep(&self, text: &LawText, derived: &Derived) {
+    /// Keeps what `write` appends under a key, which it stands behind.
+    pub(crate) fn keep_as(&self, key: Vec<u8>, write: impl FnOnce(&mut Vec<u8>)) {
         static WRITTEN: AtomicU64 = AtomicU64::new(0);
-        let mut content = key_of(text);
+        let mut content = key;
         let name = name_of(&content);
-        write(derived, &mut content);
+        write(&mut content);
         let file = [&MAGIC[..], Sha256::digest(&content).as_slice(), &content].concat();
         let number = WRITTEN.fetch_add(1, Ordering::Relaxed);
         let beside = self.folder.join(format!(".{name}.{}.{number}", process::id()));
@@ -132,7 +159,7 @@ fn name_of(key: &[u8]) -> String {
 }
 
 /// All that a derivation depends on, without a doubt where one part ends.
-fn key_of(text: &LawText) -> Vec<u8> {
+pub(crate) fn key_of(text: &LawText) -> Vec<u8> {
     let LawText { energy, definitions, parameters } = text;
     let mut key = Vec::new();
     // what makes programs of derivations, and lays them out here
@@ -169,26 +196,26 @@ fn key_of(text: &LawText) -> Vec<u8> {
     key
 }
 
-fn put_count(count: usize, bytes: &mut Vec<u8>) {
+pub(crate) fn put_count(count: usize, bytes: &mut Vec<u8>) {
     bytes.extend((count as u32).to_le_bytes());
 }
 
-fn put_text(text: &str, bytes: &mut Vec<u8>) {
+pub(crate) fn put_text(text: &str, bytes: &mut Vec<u8>) {
     put_count(text.len(), bytes);
     bytes.extend(text.as_bytes());
 }
 
-fn put_numbers(numbers: &[f64], bytes: &mut Vec<u8>) {
+pub(crate) fn put_numbers(numbers: &[f64], bytes: &mut Vec<u8>) {
     numbers.iter().for_each(|number| bytes.extend(number.to_bits().to_le_bytes()));
 }
 
-fn take_count(bytes: &mut &[u8]) -> Option<usize> {
+pub(crate) fn take_count(bytes: &mut &[u8]) -> Option<usize> {
     let (count, rest) = bytes.split_first_chunk()?;
     *bytes = rest;
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-fn take_text(bytes: &mut &[u8]) -> Option<String> {
+pub(crate) fn take_text(bytes: &mut &[u8]) -> Option<String> {
     let len = take_count(bytes)?;
     let (text, rest) = bytes.split_at_checked(len)?;
     *bytes = rest;

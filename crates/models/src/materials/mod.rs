@@ -11,7 +11,7 @@ mod derived;
 mod hyperelastic;
 mod invariants;
 mod isochoric;
-mod kept;
+pub(crate) mod kept;
 mod law;
 mod library;
 mod linear;

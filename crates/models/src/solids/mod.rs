@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod assembly;
+pub mod derived;
 mod difference;
 mod eight_samples;
 mod elements;
@@ -39,8 +40,10 @@ use souple_math::{Mat3, Vec3};
 use souple_mesh::{ElementKind, MAX_NODES, Mesh, QuadratureRule};
 use souple_solve::BlockMatrix;
 
+use crate::derive::MapKind;
 use crate::materials::{Law, LawVisitor, Material, MaterialLaw, Oriented, Parameters};
 use assembly::{Assembly, Symmetry};
+use derived::Wanted;
 use eight_samples::EightSamples;
 use elements::{Batch, Elements, Sorting};
 use geometry::{AnyElement, Tetrahedron};
@@ -153,12 +156,22 @@ struct Class<'a> {
     law: &'a MaterialLaw,
     shape: Option<u32>,
     stiffness: Option<Arc<Stiffness>>,
+    /// How the rest shape is mapped, where a derived kernel reads it.
+    map: MapKind,
 }
 
 impl PartialEq for Class<'_> {
     fn eq(&self, other: &Self) -> bool {
-        (self.law, self.shape) == (other.law, other.shape)
+        (self.law, self.shape, self.map) == (other.law, other.shape, other.map)
     }
+}
+
+/// Which kernels cells without a stiffness of their own have.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kernels {
+    /// Derived ones where they are faster, else by samples.
+    Fastest,
+    Samples,
 }
 
 /// Elements by law and by shape, with the law's numbers.
@@ -170,12 +183,13 @@ struct ByLaw<'a> {
     /// Of each cell, as the laws' numbers; none: those of the world.
     axes: Vec<[f64; AXES_LEN]>,
     section: Section,
+    kernels: Kernels,
 }
 
 impl<'a> ByLaw<'a> {
     /// # Errors
     /// A cell with a stiffness is flat or inverted at rest.
-    fn new(description: &SolidDescription<'a>, shapes: &Shapes) -> Result<Self, FlatCell> {
+    fn new(description: &SolidDescription<'a>, shapes: &Shapes, kernels: Kernels) -> Result<Self, FlatCell> {
         let SolidDescription {
             mesh, first_row, materials, material_of_cell, axes, quadrature, section, ..
         } = description;
@@ -186,18 +200,22 @@ impl<'a> ByLaw<'a> {
             material_of_cell,
             axes: axes.iter().map(turned::numbers).collect(),
             section: *section,
+            kernels,
         };
         // cells of one shape have one material
-        let mut known: HashMap<(u16, Option<u32>), u32> = HashMap::new();
+        let mut known: HashMap<(u16, Option<u32>, MapKind), u32> = HashMap::new();
         for (index, (cell, material)) in mesh.cells().zip(*material_of_cell).enumerate() {
             let shape = shapes.of_cell(index);
+            let law = &materials[usize::from(*material)].law;
+            let reads_map =
+                shape.is_none() && kernels == Kernels::Fastest && derived::has_box(law, cell.kind);
+            let map = if reads_map { derived::map_of(mesh, &cell) } else { MapKind::General };
             let next = sorting.classes.len() as u32;
-            let class = *known.entry((*material, shape)).or_insert(next);
+            let class = *known.entry((*material, shape, map)).or_insert(next);
             sorting.class_of_cell.push(class);
             if class < next {
                 continue;
             }
-            let law = &materials[usize::from(*material)].law;
             let stiffness = if shape.is_some() && law.is_linear() {
                 let rule = quadrature.rule(cell.kind);
                 let body = layout::Body { mesh, first_row: *first_row, rule, measure: section.measure() };
@@ -207,7 +225,7 @@ impl<'a> ByLaw<'a> {
             } else {
                 None
             };
-            sorting.classes.push(Class { law, shape, stiffness });
+            sorting.classes.push(Class { law, shape, stiffness, map });
         }
         Ok(sorting)
     }
@@ -222,6 +240,19 @@ impl<'a> ByLaw<'a> {
             MaterialLaw::Known(law) => law.visit(MakeKernel(kind, rule)),
             MaterialLaw::Text(_) => staged(kind, rule, law_of_samples(law, !self.axes.is_empty()).0),
         }
+    }
+}
+
+impl ByLaw<'_> {
+    /// The kernel of cells that have no stiffness of their own.
+    fn of_cells(&self, kind: ElementKind, rule: &QuadratureRule, class: &Class) -> Box<dyn Kernel> {
+        let samples = || self.of_samples(kind, rule, class.law);
+        let takes_derived = self.kernels == Kernels::Fastest
+            && matches!(self.section, Section::Solid | Section::PlaneStrain { .. });
+        let derived = takes_derived
+            .then(|| derived::kernel(class.law, (kind, class.map), rule, Wanted::Fastest, samples))
+            .flatten();
+        derived.unwrap_or_else(samples)
     }
 }
 
@@ -245,7 +276,7 @@ impl<'a> Sorting for ByLaw<'a> {
     fn kernel(&self, kind: ElementKind, rule: &QuadratureRule, class: &Class) -> Box<dyn Kernel> {
         match &class.stiffness {
             Some(stiffness) => stiffness::kernel(Arc::clone(stiffness)),
-            None => self.of_samples(kind, rule, class.law),
+            None => self.of_cells(kind, rule, class),
         }
     }
 
@@ -255,12 +286,13 @@ impl<'a> Sorting for ByLaw<'a> {
 }
 
 impl SolidForce {
-    /// The fastest that is exact: cells of linear laws by their stiffness where many have one shape, others by samples.
+    /// The fastest that is exact: cells of linear laws by their stiffness where many have one shape, others by a kernel derived for
+    /// their law and kind where that is faster, and by samples.
     ///
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn new(description: &SolidDescription) -> Result<Self, FlatCell> {
-        Self::of_shapes(description, &Shapes::of_linear(description))
+        Self::of_shapes(description, &Shapes::of_linear(description), Kernels::Fastest)
     }
 
     /// Every cell by its samples.
@@ -268,12 +300,16 @@ impl SolidForce {
     /// # Errors
     /// A cell is flat or inverted at rest.
     pub fn of_samples(description: &SolidDescription) -> Result<Self, FlatCell> {
-        Self::of_shapes(description, &Shapes::default())
+        Self::of_shapes(description, &Shapes::default(), Kernels::Samples)
     }
 
     /// With a batch for each shape, of all laws.
-    fn of_shapes(description: &SolidDescription, shapes: &Shapes) -> Result<Self, FlatCell> {
-        Self::sorted_by(description, &ByLaw::new(description, shapes)?)
+    fn of_shapes(
+        description: &SolidDescription,
+        shapes: &Shapes,
+        kernels: Kernels,
+    ) -> Result<Self, FlatCell> {
+        Self::sorted_by(description, &ByLaw::new(description, shapes, kernels)?)
     }
 
     /// With the kernels of another formulation.

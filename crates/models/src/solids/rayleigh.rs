@@ -10,7 +10,7 @@ use souple_solve::BlockMatrix;
 use super::elements::Elements;
 use super::kernel::Kernel;
 use super::stiffness::Shapes;
-use super::{ByLaw, FlatCell, SolidDescription, SolidScratch};
+use super::{ByLaw, FlatCell, Kernels, SolidDescription, SolidScratch};
 use crate::materials::{AnyLaw, Material, MaterialLaw, Parameters};
 
 /// `f = -β K₀ v` with the stiffness of small strain at rest: linear and symmetric. A rotating body is damped
@@ -42,7 +42,8 @@ impl RayleighDamping {
         };
         let materials: Vec<Material> = description.materials.iter().map(linearised).collect();
         let linear = SolidDescription { materials: &materials, ..description.clone() };
-        let elements = Elements::new(&linear, &ByLaw::new(&linear, &Shapes::of_linear(&linear))?)?;
+        let elements =
+            Elements::new(&linear, &ByLaw::new(&linear, &Shapes::of_linear(&linear), Kernels::Samples)?)?;
         Ok(Self { name: description.name.clone(), elements, seconds })
     }
 

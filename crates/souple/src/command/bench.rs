@@ -3,7 +3,7 @@
 use serde_json::Value;
 use souple_verify::bench::{BENCHES, Effort, Figure, benches};
 
-use super::{End, Refusal, did_you_mean, print_json, print_line};
+use super::{End, Refusal, did_you_mean, print_json, print_line, print_note};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -14,6 +14,9 @@ pub struct Arguments {
     /// Fewer samples
     #[arg(long)]
     quick: bool,
+    /// Fails where a figure is worse than its baseline, by time of the processor where that is known
+    #[arg(long, conflicts_with = "list")]
+    hold: bool,
     #[arg(long)]
     pub json: bool,
 }
@@ -46,5 +49,7 @@ pub fn bench(arguments: &Arguments) -> Result<End, Refusal> {
     if arguments.json {
         print_json(&Value::Array(figures.iter().map(Figure::to_json).collect()));
     }
-    Ok(End::Done)
+    let missed: Vec<&Figure> = figures.iter().filter(|figure| arguments.hold && figure.misses()).collect();
+    missed.iter().for_each(|figure| print_note(format_args!("worse than its baseline: {figure}")));
+    if missed.is_empty() { Ok(End::Done) } else { Ok(End::Failed) }
 }

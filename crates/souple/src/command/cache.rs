@@ -21,7 +21,8 @@ pub fn kept_laws() -> Option<KeptLaws> {
 /// The folder of what programs may lose; a path that is not absolute is none (XDG Base Directory Specification).
 fn user_cache() -> Option<PathBuf> {
     let named = |variable: &str| env::var_os(variable).map(PathBuf::from);
-    let in_home = |folder: &str| env::home_dir().map(|home| home.join(folder));
+    // whose home is not there, as accounts of services have it, gets none made
+    let in_home = |folder: &str| env::home_dir().filter(|home| home.is_dir()).map(|home| home.join(folder));
     let folder = if cfg!(windows) {
         named("LOCALAPPDATA")
     } else if cfg!(target_os = "macos") {

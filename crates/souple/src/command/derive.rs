@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde_json::json;
 use souple_formal::element::Cut;
-use souple_formal::emit::{ElementCode, Heading, Latex, Style, Text, kernel, maxima, symbol, write};
+use souple_formal::emit::{ElementCode, Latex, Style, Text, maxima, symbol, write};
 use souple_formal::graph::{Expr, Shape};
 use souple_formal::law::{EnergyLaw, LawProblem, LawText, group_constants};
 use souple_mesh::ElementKind;
@@ -89,7 +89,7 @@ enum Emit {
     Wgsl,
     Latex,
     Maxima,
-    /// A law without an element, as Rust over numbers side by side: a file of the program's own table of laws
+    /// Rust over numbers side by side, a file of the program's own: of a law alone, or on an element with all its samples
     Kernel,
 }
 
@@ -129,7 +129,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Refusal::request("law", value, expected, error.explained(written)).within(&error, written)
     })?;
     let compiled_seconds = clock.elapsed().as_secs_f64();
-    if arguments.emit == Emit::Kernel {
+    if arguments.emit == Emit::Kernel && arguments.element.is_none() {
         return emit_kernel(&name, &text, &law, arguments);
     }
     if arguments.element.is_none() {
@@ -165,7 +165,7 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     for warning in law.warnings.iter().filter(|_| name == TEXT) {
         print_note(format_args!("warning: {warning}"));
     }
-    let is_code = matches!(arguments.emit, Emit::Rust | Emit::Wgsl | Emit::Maxima);
+    let is_code = matches!(arguments.emit, Emit::Rust | Emit::Wgsl | Emit::Maxima | Emit::Kernel);
     if is_code && arguments.out.is_none() && cut != Cut::NONE {
         let message = "emitted code holds the whole sum, whatever expressions are cut into".to_owned();
         return Err(Refusal::request(
@@ -179,6 +179,14 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
     // another system derives it: nothing has to be derived here
     if arguments.emit == Emit::Maxima && arguments.out.is_none() {
         emit_text(&maxima(&element, &law, &association), "maxima", arguments.json);
+        return Ok(End::Done);
+    }
+    if arguments.emit == Emit::Kernel && arguments.out.is_none() {
+        let written = souple_models::derive::element_kernel(&name, &text, &law, kind, (rule, map));
+        let source = written.map_err(|error| {
+            Refusal::request("law", &name, "a law of invariants without directions", error.to_string())
+        })?;
+        emit_text(&source, "rust", arguments.json);
         return Ok(End::Done);
     }
     let is_report = matches!(arguments.emit, Emit::Stats) && !arguments.json && arguments.out.is_none();
@@ -210,34 +218,18 @@ pub fn derive(arguments: &Arguments) -> Result<End, Refusal> {
         Emit::Rust => emit_text(&derived.emit(ElementCode::Rust).text, "rust", arguments.json),
         Emit::Wgsl => emit_text(&derived.emit(ElementCode::Wgsl).text, "wgsl", arguments.json),
         Emit::Maxima => emit_text(&maxima(&element, &law, &association), "maxima", arguments.json),
-        Emit::Kernel => unreachable!("written above"),
+        // its expressions are the files
+        Emit::Kernel => {}
     }
     Ok(End::Done)
 }
 
 /// A law as a file of the table of laws.
 fn emit_kernel(name: &str, text: &LawText, law: &EnergyLaw, arguments: &Arguments) -> Result<End, Refusal> {
-    if let Some(element) = &arguments.element {
-        let message = "a kernel is of a law alone, whatever the element".to_owned();
-        return Err(Refusal::request("element", element, "`--emit kernel` without `--element`", message));
-    }
-    let written = WrittenLaw::find(name);
-    let summary = written.map_or("A law", |law| law.summary);
-    let lines = souple_models::materials::lines_of(text);
-    let heading = Heading { name: &type_name(name), summary, written: &lines };
-    let source = kernel(&law.continued(), &heading)
+    let source = souple_models::derive::law_kernel(name, text, law)
         .map_err(|error| Refusal::request("law", name, "a law of invariants", error.to_string()))?;
     emit_text(&source, "rust", arguments.json);
     Ok(End::Done)
-}
-
-/// `holzapfel_gasser_ogden` as `HolzapfelGasserOgden`.
-fn type_name(name: &str) -> String {
-    let capital = |word: &str| {
-        let mut letters = word.chars();
-        letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-    };
-    name.split('_').map(capital).collect()
 }
 
 fn emit_text(text: &str, language: &str, as_json: bool) {

@@ -285,12 +285,23 @@ pub fn off(a: &[Vec3], b: &[Vec3]) -> f64 {
     (distance / a.iter().map(|a| a.length_sq()).sum::<f64>()).sqrt()
 }
 
-/// Settings of a bar of an element under a law.
+/// Settings of a bar of an element under a law; of triangles a strip of the same length and height.
 pub fn bar(element: &str, cells: u32, law: &str) -> Vec<String> {
+    let material = format!("bodies.bar.material.name=\"{law}\"");
+    if element.starts_with("tri") {
+        let (along, width) = (10 * cells, "length = 1, width = 0.1");
+        return vec![
+            format!(
+                "bodies.bar.mesh={{ generate = \"sheet\", {width}, cells_along = {along}, cells_across = {cells}, element = \"{element}\" }}"
+            ),
+            "bodies.bar.section={ name = \"plane_strain\", thickness = 0.1 }".to_owned(),
+            material,
+        ];
+    }
     vec![
         format!("bodies.bar.mesh.cells=[{}, {cells}, {cells}]", 10 * cells),
         format!("bodies.bar.mesh.element=\"{element}\""),
-        format!("bodies.bar.material.name=\"{law}\""),
+        material,
     ]
 }
 

@@ -1,10 +1,13 @@
 //! One bar by every formulation of its forces, held against independent codes; and tangents that are stored, and taken by
 //! differences.
 
-use super::bar::{COROTATIONAL, N3, ST_VENANT_KIRCHHOFF};
+use super::bar::{
+    COROTATIONAL, DEFAULT_RULE, HEX8, LINEAR, N1, N2, N3, PRISM6, PYRAMID5, ST_VENANT_KIRCHHOFF,
+};
 use crate::{Case, Reading, Tolerance};
 
 const GROUPED_CONSTANTS: &str = r#"bodies.bar.formulation={ name = "grouped_constants" }"#;
+const DERIVED: &str = r#"bodies.bar.formulation={ name = "derived" }"#;
 const TENSOR_MASS: &str = r#"bodies.bar.formulation={ name = "tensor_mass" }"#;
 const FOUR_LOOPS: &str = r#"bodies.bar.formulation={ name = "four_loops" }"#;
 const ELEMENT_COROTATIONAL: &str = r#"bodies.bar.formulation={ name = "element_corotational" }"#;
@@ -44,6 +47,41 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["FAU-9", "FAU-10", "FAU-22"],
         what: "tip of the clamped bar by derived expressions with grouped constants",
         settings: &[N3, ST_VENANT_KIRCHHOFF, GROUPED_CONSTANTS],
+        ..AT_REST
+    },
+    Case {
+        id: "cantilever_derived_tet4",
+        capabilities: &["FAU-9", "FAU-10", "FAU-22", "FAU-29"],
+        what: "the same by the kernel derived for St. Venant-Kirchhoff's law on tetrahedra and compiled with the program",
+        settings: &[N3, ST_VENANT_KIRCHHOFF, DERIVED],
+        ..AT_REST
+    },
+    Case {
+        id: "cantilever_derived_hex8",
+        capabilities: &["FAU-4", "FAU-9", "FAU-10", "FAU-29"],
+        what: "the same of Hooke's law on boxes of eight samples, n = 2",
+        settings: &[N2, HEX8, LINEAR, DEFAULT_RULE, DERIVED],
+        reference: -0.12876284033785645,
+        tolerance: Tolerance::Relative(1e-6),
+        source: "GetFEM, full integration",
+        ..AT_REST
+    },
+    Case {
+        id: "cantilever_derived_prism6",
+        what: "the same on prisms of six samples, n = 1",
+        settings: &[N1, PRISM6, LINEAR, DEFAULT_RULE, DERIVED],
+        reference: -0.09023659182761375,
+        tolerance: Tolerance::Relative(1e-6),
+        source: "GetFEM, full integration",
+        ..AT_REST
+    },
+    Case {
+        id: "cantilever_derived_pyramid5",
+        what: "the same on pyramids, n = 1",
+        settings: &[N1, PYRAMID5, LINEAR, DEFAULT_RULE, DERIVED],
+        reference: -0.07844287526143434,
+        tolerance: Tolerance::Relative(1e-6),
+        source: "GetFEM, full integration",
         ..AT_REST
     },
     Case {

@@ -32,7 +32,7 @@ use super::kernel::Kernel;
 use super::layout::{Chunk, LANES};
 use super::parallel;
 use super::stiffness::Shapes;
-use super::{FlatCell, Section, SolidDescription, SolidForce};
+use super::{FlatCell, Kernels, Section, SolidDescription, SolidForce};
 use crate::materials::Material;
 
 /// When elements change their law.
@@ -100,7 +100,7 @@ impl AdaptiveForce {
         let is_shared = |law: &&Material| law.law.is_linear();
         let linear = laws.iter().find(is_shared).unwrap_or(first);
         let shapes = Shapes::of_linear(&under(linear));
-        let solid = |law| SolidForce::of_shapes(&under(law), &shapes);
+        let solid = |law| SolidForce::of_shapes(&under(law), &shapes, Kernels::Samples);
         let (solids, mesh) = ([solid(first)?, solid(second)?], description.mesh.clone());
         let chunks = || solids[0].elements.chunks().map(|(_, chunk)| chunk);
         let at_rest = |row: &u32| Padded::from(mesh.points[*row as usize - description.first_row]);

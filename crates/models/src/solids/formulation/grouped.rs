@@ -6,15 +6,17 @@ mod expressions;
 
 use std::sync::Arc;
 
-use souple_formal::element::Cut;
-use souple_formal::law::{EnergyLaw, LawParameter};
-use souple_math::Vec3;
-use souple_mesh::{Cell, ElementKind, Mesh, QuadratureRule};
+use sha2::{Digest, Sha256};
+use souple_formal::element::{Cut, ElementData};
+use souple_formal::law::{EnergyLaw, LawParameter, LawText};
+use souple_mesh::{ElementKind, QuadratureRule};
 use souple_table::{Entry, Parameter, Value};
 
 use super::{BuildFormulation, FormulationError, check_cells, name_of};
 use crate::derive::{MapKind, element_data};
-use crate::materials::{Law, LawVisitor, MaterialLaw, Parameters, WrittenLaw};
+use crate::materials::kept::key_of;
+use crate::materials::{Law, LawVisitor, MaterialLaw, Parameters, TextLaw, WrittenLaw};
+use crate::solids::derived::map_of;
 use crate::solids::elements::Sorting;
 use crate::solids::kernel::Kernel;
 use crate::solids::{SolidDescription, SolidForce};
@@ -84,12 +86,10 @@ impl ByAssociation {
             sorting.of_cell.push(found.unwrap_or(known.len()));
             if found.is_none() {
                 known.push(key);
-                let law = energy_law(law)?;
                 let element = element_data(key.1, quadrature.rule(key.1), key.2).unwrap_or_else(|error| {
                     unreachable!("only elements that can be boxes are found to be some: {error}")
                 });
-                let steps = element.steps(&law, cut);
-                sorting.kernels.push(Arc::new(Expressions::new(&steps, &law, cell.kind.node_count())));
+                sorting.kernels.push(Arc::new(expressions(law, &element, cut)?));
             }
         }
         for (association, kernel) in sorting.kernels.iter().enumerate() {
@@ -99,6 +99,35 @@ impl ByAssociation {
             kernel.compute_constants(mesh, &cells, &numbers, &mut sorting.constants);
         }
         Ok(sorting)
+    }
+}
+
+/// What is derived of a law on an element, if it was not kept by an earlier run.
+fn expressions(law: &MaterialLaw, element: &ElementData, cut: Cut) -> Result<Expressions, FormulationError> {
+    let derive = || {
+        let law = energy_law(law)?;
+        Ok(Expressions::new(&element.steps(&law, cut), &law, element.node_count))
+    };
+    let kept = TextLaw::folder().zip(law_text_of(law));
+    let Some((folder, text)) = kept else { return derive() };
+    // all that it is made of, and what makes it
+    let makers = [include_str!("grouped.rs"), include_str!("grouped/expressions.rs")].concat();
+    let key = [key_of(&text), format!("{makers}{cut}{element:?}").into_bytes()].concat();
+    let key = Sha256::digest(&key).to_vec();
+    let found = folder.find_as(&key, |bytes| Expressions::restore(bytes, element.node_count));
+    if let Some(found) = found {
+        return Ok(found);
+    }
+    let derived = derive()?;
+    folder.keep_as(key, |bytes| derived.store(bytes));
+    Ok(derived)
+}
+
+/// The text that a law is derived from.
+fn law_text_of(law: &MaterialLaw) -> Option<LawText> {
+    match law {
+        MaterialLaw::Text(text) => Some(text.text().clone()),
+        MaterialLaw::Known(known) => WrittenLaw::find(known.entry().name)?.text().ok(),
     }
 }
 
@@ -127,25 +156,5 @@ impl LawVisitor for Names {
 
     fn visit<L: Law>(self, _: L) -> Self::Output {
         <L::Parameters<f64> as Parameters<f64>>::NAMES
-    }
-}
-
-/// Off-diagonal part of `∂X/∂ξ`, relative, below which a cell is a box along the axes.
-const BOX_TOLERANCE: f64 = 1e-12;
-
-fn map_of(mesh: &Mesh, cell: &Cell) -> MapKind {
-    if cell.kind.box_corners().is_none() {
-        return MapKind::General;
-    }
-    let corners: Vec<Vec3> = cell.nodes.iter().map(|node| mesh.points[*node as usize]).collect();
-    let is_diagonal = |xi: Vec3| {
-        let jacobian = cell.kind.jacobian(&corners, xi);
-        let off = jacobian - souple_math::Mat3::from_diagonal(jacobian.diagonal());
-        off.largest_entry() < BOX_TOLERANCE * jacobian.largest_entry()
-    };
-    if cell.kind.default_rule().points.iter().all(|point| is_diagonal(point.position)) {
-        MapKind::Box
-    } else {
-        MapKind::General
     }
 }

@@ -1,11 +1,12 @@
 //! Ways to evaluate the forces of a solid, side by side: what the others are held against.
 //!
-//! Bodies take forces sample by sample, and of linear laws by a stiffness that elements of one shape share, unless their scene
-//! says otherwise ([`crate::solids::SolidForce`]); that is exact for every law on every element. The formulations here are those of the literature: exact ones that arrange the same
+//! Bodies take forces by derived kernels or sample by sample, whichever is faster, and of linear laws by a stiffness that elements of
+//! one shape share, unless their scene says otherwise ([`crate::solids::SolidForce`]); that is exact for every law on every element. The formulations here are those of the literature: exact ones that arrange the same
 //! numbers otherwise, and approximations that were made for speed. `souple bench formal` prints time and error of all.
 
 mod cells;
 mod corotated;
+mod derived;
 mod edge_tensors;
 mod four_loops;
 mod gauss_voronoi;
@@ -50,12 +51,13 @@ pub static FORMULATIONS: Table<BuildFormulation> = Table {
         },
         &Entry {
             name: "shared_stiffness",
-            summary: "one stiffness for all elements of a linear law that have the same shape and material, samples elsewhere: \
-                      exact, and what bodies do where nothing is said",
+            summary: "one stiffness for all elements of a linear law that have the same shape and material, derived kernels or \
+                      samples elsewhere, whichever is faster: exact, and what bodies do where nothing is said",
             source: "Hughes 2000, The Finite Element Method, §3.3",
             parameters: &[],
             build: |description, _| Ok(Box::new(SolidForce::new(description)?)),
         },
+        &derived::ENTRY,
         &grouped::ENTRY,
         &tensor_mass::ENTRY,
         &four_loops::ENTRY,
@@ -77,6 +79,14 @@ pub enum FormulationError {
     Element { formulation: &'static str, kind: ElementKind, accepted: &'static str },
     #[error("`{formulation}` cannot take the law `{law}`; it takes {accepted}")]
     Law { formulation: &'static str, law: String, accepted: &'static str },
+    #[error("`{formulation}` has no file of `{law}` on {kind} under `{rule}`; it has {accepted}")]
+    Underived {
+        formulation: &'static str,
+        law: String,
+        kind: ElementKind,
+        rule: &'static str,
+        accepted: &'static str,
+    },
     #[error("there is no cut `{name}`; it is none, all, or letters of L, G, N, D")]
     Cut { name: String },
     #[error("`{formulation}` is of volumes, and the body has a section")]

@@ -13,6 +13,7 @@ use souple_math::{Lanes, Padded, Vec3};
 use souple_mesh::Mesh;
 
 use super::Names;
+use crate::materials::kept::{put_count, put_text, take_count, take_text};
 use crate::materials::{Material, MaterialLaw, TextLaw};
 use crate::solids::group::Group;
 use crate::solids::kernel::Kernel;
@@ -48,7 +49,76 @@ thread_local! {
     static MEMORY: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
 
+impl Fragment {
+    /// `counts` are those of displacements, of variations and of outputs.
+    fn new(constants: Tape, step: Tape, places: Vec<usize>, counts: [usize; 3]) -> Self {
+        Self {
+            displacements: (0..counts[0]).map(|input| step.input(input)).collect(),
+            variations: (0..counts[1]).map(|input| step.varied(input)).collect(),
+            outputs: (0..counts[2]).map(|output| step.output(output, 0)).collect(),
+            constants,
+            places,
+            step,
+        }
+    }
+
+    fn store(&self, bytes: &mut Vec<u8>) {
+        put_count(self.places.len(), bytes);
+        self.places.iter().for_each(|place| put_count(*place, bytes));
+        self.constants.store(bytes);
+        self.step.store(bytes);
+    }
+
+    /// One whose tape of constants takes `given` numbers, and whose constants have places below `constant_count`.
+    fn restore(
+        bytes: &mut &[u8],
+        (given, constant_count): (usize, usize),
+        counts: [usize; 3],
+    ) -> Option<Self> {
+        let len = take_count(bytes).filter(|len| *len <= constant_count)?;
+        let places: Vec<usize> = (0..len).map(|_| take_count(bytes)).collect::<Option<_>>()?;
+        if places.iter().any(|place| *place >= constant_count) {
+            return None;
+        }
+        let numbers = |count: usize| vec![1; count];
+        let constants = Tape::restore(bytes, [&numbers(given), &[]], &numbers(len)).ok()?;
+        let [displacements, variations, outputs] = counts;
+        let inputs = [numbers(displacements + len), numbers(variations)];
+        let step = Tape::restore(bytes, [&inputs[0], &inputs[1]], &numbers(outputs)).ok()?;
+        Some(Self::new(constants, step, places, counts))
+    }
+}
+
 impl Expressions {
+    /// Appends all of it to `bytes`.
+    pub fn store(&self, bytes: &mut Vec<u8>) {
+        put_count(self.constant_count, bytes);
+        put_count(self.parameters.len(), bytes);
+        self.parameters.iter().for_each(|name| put_text(name, bytes));
+        for fragments in [&self.energy, &self.forces, &self.differential] {
+            put_count(fragments.len(), bytes);
+            fragments.iter().for_each(|fragment| fragment.store(bytes));
+        }
+    }
+
+    /// What [`Self::store`] appended, of an element of so many nodes.
+    pub fn restore(bytes: &mut &[u8], nodes: usize) -> Option<Self> {
+        // every place is named in four bytes at least
+        let constant_count = take_count(bytes).filter(|count| 4 * count <= bytes.len())?;
+        let names = take_count(bytes)?;
+        let parameters = (0..names).map(|_| take_text(bytes)).collect::<Option<Vec<String>>>()?;
+        let width = 3 * nodes;
+        let given = (width + names, constant_count);
+        let mut fragments = |variations: usize, outputs: usize| {
+            let count = take_count(bytes)?;
+            let counts = [width, variations, outputs];
+            (0..count).map(|_| Fragment::restore(bytes, given, counts)).collect::<Option<Vec<Fragment>>>()
+        };
+        let (energy, forces) = (fragments(0, 1)?, fragments(0, width)?);
+        let differential = fragments(width, width)?;
+        Some(Self { nodes, parameters, energy, forces, differential, constant_count })
+    }
+
     pub fn new(steps: &Steps, law: &EnergyLaw, nodes: usize) -> Self {
         let Steps { graph, symbols, .. } = steps;
         let flat = |list: &[Vec<Expr>]| list.iter().flatten().copied().collect::<Vec<Expr>>();
@@ -62,14 +132,8 @@ impl Expressions {
             let directions = &law.parameters;
             let step =
                 Tape::of_expressions(graph, [&inputs, varied], &of.definitions, &of.outputs, directions);
-            Fragment {
-                constants: Tape::of_expressions(graph, [&given, &[]], &of.constants, &values, directions),
-                places,
-                displacements: (0..displacements.len()).map(|input| step.input(input)).collect(),
-                variations: (0..varied.len()).map(|input| step.varied(input)).collect(),
-                outputs: (0..of.outputs.len()).map(|output| step.output(output, 0)).collect(),
-                step,
-            }
+            let constants = Tape::of_expressions(graph, [&given, &[]], &of.constants, &values, directions);
+            Fragment::new(constants, step, places, [displacements.len(), varied.len(), of.outputs.len()])
         };
         let fragments = |all: &[Step], places: Vec<Vec<usize>>, varied: &[Expr]| -> Vec<Fragment> {
             all.iter().zip(places).map(|of| fragment(of, varied)).collect()

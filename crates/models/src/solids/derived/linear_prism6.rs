@@ -1,0 +1,250 @@
+//! Hooke's law of small strain, on `prism6`; derived by `cargo xtask kernels`, and not changed by hand.
+//!
+//! ```text
+//! Ψ = lambda/2*tr(eps)^2 + mu*dot(eps, eps)
+//! ```
+//!
+//! Grouped constants at each of 6 samples: `X = X_ξ⁻¹`, 9, and moduli times the volume, 2: 11.
+
+use souple_math::{Mat3, Real, Vec3};
+
+use crate::materials::Parameters;
+use crate::solids::derived::{DerivedElement, RestSamples, weighted};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearPrism6;
+
+/// The law's numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers<R> {
+    pub lambda: R,
+    pub mu: R,
+}
+
+impl<R: Copy> Parameters<R> for Numbers<R> {
+    const NAMES: &'static [&'static str] = &["lambda", "mu"];
+
+    #[inline(always)]
+    fn unpack(mut number: impl FnMut(usize) -> R) -> Self {
+        Self { lambda: number(0), mu: number(1) }
+    }
+
+    #[inline(always)]
+    fn pack(self, mut put: impl FnMut(usize, R)) {
+        put(0, self.lambda);
+        put(1, self.mu);
+    }
+}
+
+/// Moduli times the volume of a sample.
+#[derive(Clone, Copy, Debug)]
+struct Constants<R> {
+    /// `lambda*volume`
+    d0: R,
+    /// `mu*volume`
+    d1: R,
+}
+
+impl<R: Real> Constants<R> {
+    #[inline(always)]
+    fn of(p: &Numbers<R>, volume: R) -> Self {
+        let s1 = p.lambda * volume; // lambda*volume
+        let s2 = p.mu * volume; // mu*volume
+        Self { d0: s1, d1: s2 }
+    }
+}
+
+/// Of `∂N/∂ξ` at the samples, without signs.
+const C: [f64; 4] = [0.7886751345948129, 0.33333333333333337, 0.21132486540518713, 0.08333333333333333];
+
+/// `ω Ψ`.
+#[inline(always)]
+fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
+    let F = *F;
+    let one = F.columns[0].x.one();
+    let s1 = F.trace(); // tr(F)
+    let s2 = s1 - 3.0; // tr(F) - 3
+    let s3 = s2 * s2; // (tr(F) - 3)^2
+    let s4 = s3 * 0.5;
+    let M1 = F.transpose(); // transpose(F)
+    let M2 = F + M1; // F + transpose(F)
+    let M3 = M2 * 0.5;
+    let M4 = M3.plus_diagonal(one.splat(-1.0)); // 0.5*(F + transpose(F)) - I
+    let s5 = M4.dot(&M4);
+    let s6 = s4 * D.d0;
+    s5.mul_add(D.d1, s6)
+}
+
+/// `ω P`.
+#[inline(always)]
+fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
+    let F = *F;
+    let M1 = F.transpose(); // transpose(F)
+    let M2 = F.scaled(D.d1) + M1.scaled(D.d1);
+    let s1 = F.trace(); // tr(F)
+    let s2 = s1 - 3.0; // tr(F) - 3
+    let s3 = D.d1 * -2.0;
+    let s4 = s2.mul_add(D.d0, s3); // (tr(F) - 3)*d0 - 2*d1
+    M2.plus_diagonal(s4)
+}
+
+/// `ω δP`.
+#[inline(always)]
+fn differential_of<R: Real>(D: &Constants<R>, dF: &Mat3<R>) -> Mat3<R> {
+    let dF = *dF;
+    let M1 = dF.transpose(); // transpose(dF)
+    let M2 = dF + M1; // dF + transpose(dF)
+    let M3 = M2.scaled(D.d1);
+    let s1 = dF.trace(); // tr(dF)
+    let s2 = D.d0 * s1; // tr(dF)*d0
+    M3.plus_diagonal(s2)
+}
+
+/// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
+#[inline(always)]
+fn columns<R: Real>(x: &[Vec3<R>; 6]) -> [Vec3<R>; 7] {
+    let e1_0 = x[1] - x[0];
+    let e4_3 = x[4] - x[3];
+    let e2_0 = x[2] - x[0];
+    let e5_3 = x[5] - x[3];
+    let e3_0 = x[3] - x[0];
+    let e4_1 = x[4] - x[1];
+    let e5_2 = x[5] - x[2];
+    [
+        weighted([(e1_0, C[0]), (e4_3, C[2])]),
+        weighted([(e2_0, C[0]), (e5_3, C[2])]),
+        weighted([(e3_0, C[1]), (e4_1 + e5_2, C[3])]),
+        weighted([(e4_1, C[1]), (e3_0 + e5_2, C[3])]),
+        weighted([(e5_2, C[1]), (e3_0 + e4_1, C[3])]),
+        weighted([(e4_3, C[0]), (e1_0, C[2])]),
+        weighted([(e5_3, C[0]), (e2_0, C[2])]),
+    ]
+}
+
+/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
+#[inline(always)]
+fn to_nodes<R: Real>(s: &[Vec3<R>; 7]) -> [Vec3<R>; 6] {
+    let t1_0 = weighted([(s[0], C[0]), (s[5], C[2])]);
+    let t4_3 = weighted([(s[5], C[0]), (s[0], C[2])]);
+    let t2_0 = weighted([(s[1], C[0]), (s[6], C[2])]);
+    let t5_3 = weighted([(s[6], C[0]), (s[1], C[2])]);
+    let t3_0 = weighted([(s[2], C[1]), (s[3] + s[4], C[3])]);
+    let t4_1 = weighted([(s[3], C[1]), (s[2] + s[4], C[3])]);
+    let t5_2 = weighted([(s[4], C[1]), (s[2] + s[3], C[3])]);
+    [t1_0 + t2_0 + t3_0, t4_1 - t1_0, t5_2 - t2_0, t4_3 + t5_3 - t3_0, -(t4_3 + t4_1), -(t5_3 + t5_2)]
+}
+
+impl DerivedElement<6> for LinearPrism6 {
+    const SAMPLES: usize = 6;
+    type Numbers<R: Real> = Numbers<R>;
+
+    #[inline(always)]
+    fn energy<R: Real>(p: &Numbers<R>, x: &[Vec3<R>; 6], at: &impl RestSamples<R>) -> R {
+        let c = columns(x);
+        let (X, volume) = at.sample(0);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[2]) * X;
+        let w0 = energy_of(&D, &F);
+        let (X, volume) = at.sample(1);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[3]) * X;
+        let w1 = energy_of(&D, &F);
+        let (X, volume) = at.sample(2);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[4]) * X;
+        let w2 = energy_of(&D, &F);
+        let (X, volume) = at.sample(3);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[5], c[6], c[2]) * X;
+        let w3 = energy_of(&D, &F);
+        let (X, volume) = at.sample(4);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[5], c[6], c[3]) * X;
+        let w4 = energy_of(&D, &F);
+        let (X, volume) = at.sample(5);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[5], c[6], c[4]) * X;
+        let w5 = energy_of(&D, &F);
+        w0 + w1 + w2 + w3 + w4 + w5
+    }
+
+    #[inline(always)]
+    fn forces<R: Real>(p: &Numbers<R>, x: &[Vec3<R>; 6], at: &impl RestSamples<R>) -> [Vec3<R>; 6] {
+        let c = columns(x);
+        let (X, volume) = at.sample(0);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[2]) * X;
+        let [h0_0, h0_1, h0_2] = stress_of(&D, &F).mul_transpose(&X).columns;
+        let (X, volume) = at.sample(1);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[3]) * X;
+        let [h1_0, h1_1, h1_2] = stress_of(&D, &F).mul_transpose(&X).columns;
+        let (X, volume) = at.sample(2);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[4]) * X;
+        let [h2_0, h2_1, h2_2] = stress_of(&D, &F).mul_transpose(&X).columns;
+        let s0 = h0_0 + h1_0 + h2_0;
+        let s1 = h0_1 + h1_1 + h2_1;
+        let (X, volume) = at.sample(3);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[5], c[6], c[2]) * X;
+        let [h3_0, h3_1, h3_2] = stress_of(&D, &F).mul_transpose(&X).columns;
+        let s2 = h0_2 + h3_2;
+        let (X, volume) = at.sample(4);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[5], c[6], c[3]) * X;
+        let [h4_0, h4_1, h4_2] = stress_of(&D, &F).mul_transpose(&X).columns;
+        let s3 = h1_2 + h4_2;
+        let (X, volume) = at.sample(5);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[5], c[6], c[4]) * X;
+        let [h5_0, h5_1, h5_2] = stress_of(&D, &F).mul_transpose(&X).columns;
+        let s5 = h3_0 + h4_0 + h5_0;
+        let s6 = h3_1 + h4_1 + h5_1;
+        let s4 = h2_2 + h5_2;
+        to_nodes(&[s0, s1, s2, s3, s4, s5, s6])
+    }
+
+    #[inline(always)]
+    fn differential<R: Real>(
+        p: &Numbers<R>,
+        _: &[Vec3<R>; 6],
+        dx: &[Vec3<R>; 6],
+        at: &impl RestSamples<R>,
+    ) -> [Vec3<R>; 6] {
+        let dc = columns(dx);
+        let (X, volume) = at.sample(0);
+        let D = Constants::of(p, volume);
+        let dF = Mat3::from_columns(dc[0], dc[1], dc[2]) * X;
+        let [h0_0, h0_1, h0_2] = differential_of(&D, &dF).mul_transpose(&X).columns;
+        let (X, volume) = at.sample(1);
+        let D = Constants::of(p, volume);
+        let dF = Mat3::from_columns(dc[0], dc[1], dc[3]) * X;
+        let [h1_0, h1_1, h1_2] = differential_of(&D, &dF).mul_transpose(&X).columns;
+        let (X, volume) = at.sample(2);
+        let D = Constants::of(p, volume);
+        let dF = Mat3::from_columns(dc[0], dc[1], dc[4]) * X;
+        let [h2_0, h2_1, h2_2] = differential_of(&D, &dF).mul_transpose(&X).columns;
+        let s0 = h0_0 + h1_0 + h2_0;
+        let s1 = h0_1 + h1_1 + h2_1;
+        let (X, volume) = at.sample(3);
+        let D = Constants::of(p, volume);
+        let dF = Mat3::from_columns(dc[5], dc[6], dc[2]) * X;
+        let [h3_0, h3_1, h3_2] = differential_of(&D, &dF).mul_transpose(&X).columns;
+        let s2 = h0_2 + h3_2;
+        let (X, volume) = at.sample(4);
+        let D = Constants::of(p, volume);
+        let dF = Mat3::from_columns(dc[5], dc[6], dc[3]) * X;
+        let [h4_0, h4_1, h4_2] = differential_of(&D, &dF).mul_transpose(&X).columns;
+        let s3 = h1_2 + h4_2;
+        let (X, volume) = at.sample(5);
+        let D = Constants::of(p, volume);
+        let dF = Mat3::from_columns(dc[5], dc[6], dc[4]) * X;
+        let [h5_0, h5_1, h5_2] = differential_of(&D, &dF).mul_transpose(&X).columns;
+        let s5 = h3_0 + h4_0 + h5_0;
+        let s6 = h3_1 + h4_1 + h5_1;
+        let s4 = h2_2 + h5_2;
+        to_nodes(&[s0, s1, s2, s3, s4, s5, s6])
+    }
+}

@@ -1,0 +1,153 @@
+//! Hooke's law of small strain, on `tet4`; derived by `cargo xtask kernels`, and not changed by hand.
+//!
+//! ```text
+//! Ψ = lambda/2*tr(eps)^2 + mu*dot(eps, eps)
+//! ```
+//!
+//! Grouped constants: `X = X_ξ⁻¹`, 9, and moduli times the volume, 2: 11.
+
+use souple_math::{Mat3, Real, Vec3};
+
+use crate::materials::Parameters;
+use crate::solids::derived::{DerivedElement, RestSamples};
+
+/// See the module.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearTet4;
+
+/// The law's numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Numbers<R> {
+    pub lambda: R,
+    pub mu: R,
+}
+
+impl<R: Copy> Parameters<R> for Numbers<R> {
+    const NAMES: &'static [&'static str] = &["lambda", "mu"];
+
+    #[inline(always)]
+    fn unpack(mut number: impl FnMut(usize) -> R) -> Self {
+        Self { lambda: number(0), mu: number(1) }
+    }
+
+    #[inline(always)]
+    fn pack(self, mut put: impl FnMut(usize, R)) {
+        put(0, self.lambda);
+        put(1, self.mu);
+    }
+}
+
+/// Moduli times the volume of a sample.
+#[derive(Clone, Copy, Debug)]
+struct Constants<R> {
+    /// `lambda*volume`
+    d0: R,
+    /// `mu*volume`
+    d1: R,
+}
+
+impl<R: Real> Constants<R> {
+    #[inline(always)]
+    fn of(p: &Numbers<R>, volume: R) -> Self {
+        let s1 = p.lambda * volume; // lambda*volume
+        let s2 = p.mu * volume; // mu*volume
+        Self { d0: s1, d1: s2 }
+    }
+}
+
+/// `ω Ψ`.
+#[inline(always)]
+fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
+    let F = *F;
+    let one = F.columns[0].x.one();
+    let s1 = F.trace(); // tr(F)
+    let s2 = s1 - 3.0; // tr(F) - 3
+    let s3 = s2 * s2; // (tr(F) - 3)^2
+    let s4 = s3 * 0.5;
+    let M1 = F.transpose(); // transpose(F)
+    let M2 = F + M1; // F + transpose(F)
+    let M3 = M2 * 0.5;
+    let M4 = M3.plus_diagonal(one.splat(-1.0)); // 0.5*(F + transpose(F)) - I
+    let s5 = M4.dot(&M4);
+    let s6 = s4 * D.d0;
+    s5.mul_add(D.d1, s6)
+}
+
+/// `ω P`.
+#[inline(always)]
+fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
+    let F = *F;
+    let M1 = F.transpose(); // transpose(F)
+    let M2 = F.scaled(D.d1) + M1.scaled(D.d1);
+    let s1 = F.trace(); // tr(F)
+    let s2 = s1 - 3.0; // tr(F) - 3
+    let s3 = D.d1 * -2.0;
+    let s4 = s2.mul_add(D.d0, s3); // (tr(F) - 3)*d0 - 2*d1
+    M2.plus_diagonal(s4)
+}
+
+/// `ω δP`.
+#[inline(always)]
+fn differential_of<R: Real>(D: &Constants<R>, dF: &Mat3<R>) -> Mat3<R> {
+    let dF = *dF;
+    let M1 = dF.transpose(); // transpose(dF)
+    let M2 = dF + M1; // dF + transpose(dF)
+    let M3 = M2.scaled(D.d1);
+    let s1 = dF.trace(); // tr(dF)
+    let s2 = D.d0 * s1; // tr(dF)*d0
+    M3.plus_diagonal(s2)
+}
+
+/// `∂x/∂ξ` at the samples, by axes: columns that several of them share.
+#[inline(always)]
+fn columns<R: Real>(x: &[Vec3<R>; 4]) -> [Vec3<R>; 3] {
+    let e1_0 = x[1] - x[0];
+    let e2_0 = x[2] - x[0];
+    let e3_0 = x[3] - x[0];
+    [e1_0, e2_0, e3_0]
+}
+
+/// Forces on nodes from `ω P X_ξ⁻ᵀ` by columns, the transpose of [`columns`].
+#[inline(always)]
+fn to_nodes<R: Real>(s: &[Vec3<R>; 3]) -> [Vec3<R>; 4] {
+    [s[0] + s[1] + s[2], -s[0], -s[1], -s[2]]
+}
+
+impl DerivedElement<4> for LinearTet4 {
+    const SAMPLES: usize = 1;
+    type Numbers<R: Real> = Numbers<R>;
+
+    #[inline(always)]
+    fn energy<R: Real>(p: &Numbers<R>, x: &[Vec3<R>; 4], at: &impl RestSamples<R>) -> R {
+        let c = columns(x);
+        let (X, volume) = at.sample(0);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[2]) * X;
+        energy_of(&D, &F)
+    }
+
+    #[inline(always)]
+    fn forces<R: Real>(p: &Numbers<R>, x: &[Vec3<R>; 4], at: &impl RestSamples<R>) -> [Vec3<R>; 4] {
+        let c = columns(x);
+        let (X, volume) = at.sample(0);
+        let D = Constants::of(p, volume);
+        let F = Mat3::from_columns(c[0], c[1], c[2]) * X;
+        let [h0_0, h0_1, h0_2] = stress_of(&D, &F).mul_transpose(&X).columns;
+        to_nodes(&[h0_0, h0_1, h0_2])
+    }
+
+    #[inline(always)]
+    fn differential<R: Real>(
+        p: &Numbers<R>,
+        _: &[Vec3<R>; 4],
+        dx: &[Vec3<R>; 4],
+        at: &impl RestSamples<R>,
+    ) -> [Vec3<R>; 4] {
+        let dc = columns(dx);
+        let (X, volume) = at.sample(0);
+        let D = Constants::of(p, volume);
+        let dF = Mat3::from_columns(dc[0], dc[1], dc[2]) * X;
+        let [h0_0, h0_1, h0_2] = differential_of(&D, &dF).mul_transpose(&X).columns;
+        to_nodes(&[h0_0, h0_1, h0_2])
+    }
+}
