@@ -54,6 +54,12 @@ pub(crate) fn did_you_mean(nearest: &Option<String>) -> String {
 }
 
 impl ParseError {
+    /// The message without the place, for those who show it.
+    pub fn without_place(&self) -> String {
+        let span = self.span();
+        self.to_string().replace(&format!(" (at {span})"), "").replace(&format!(" at {span}"), "")
+    }
+
     /// The place in the text that was read.
     pub fn span(&self) -> Span {
         match self {

@@ -20,7 +20,7 @@ pub struct LawError {
 /// What is wrong with a law.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LawProblem {
-    #[error("{0}")]
+    #[error("{}", .0.without_place())]
     Syntax(#[from] ParseError),
     #[error("`{read}` is no sign of this language; `{meant}` is written `{written_here}`")]
     SignOfBooks { read: &'static str, meant: &'static str, written_here: &'static str },

@@ -118,15 +118,16 @@ pub fn law_text(
 ) -> Result<LawText, MaterialError> {
     let mut read = Vec::with_capacity(parameters.len());
     for (name, text) in parameters {
-        let fail = |error: String| MaterialError {
+        let fail = |(error, span): (String, Option<Span>)| MaterialError {
             path: vec!["parameters".to_owned(), name.clone()],
-            span: None,
+            span,
             message: format!("`{name}`: {error}"),
         };
         let parameter = if is_list(text) {
             LawParameter::Direction(direction(text).map_err(fail)?)
         } else {
-            let quantity = parse_quantity(text).map_err(|error| fail(error.to_string()))?;
+            let quantity =
+                parse_quantity(text).map_err(|error| fail((error.to_string(), Some(error.span()))))?;
             // a bare number is taken in the unit that is wanted
             let bare = text.trim().parse::<f64>().is_ok();
             LawParameter::Number { value: quantity.value, dimension: (!bare).then_some(quantity.dimension) }
@@ -157,14 +158,16 @@ fn is_list(text: &str) -> bool {
     are_three || text.starts_with('[') || (text.starts_with('(') && text.contains(','))
 }
 
-/// `[x, y, z]`, made one long.
-fn direction(text: &str) -> Result<[f64; 3], String> {
+/// `[x, y, z]`, made one long; or what is wrong, and where.
+fn direction(text: &str) -> Result<[f64; 3], (String, Option<Span>)> {
     let wanted = "three numbers in brackets are accepted, as in [1, 0, 0]";
     if !text.trim_start().starts_with('[') {
-        return Err(format!("`{text}` is no direction; {wanted}"));
+        return Err((format!("`{text}` is no direction; {wanted}"), None));
     }
-    let components = Formula::compile_vector::<3>(text, &[])
-        .map_err(|error| format!("`{text}` is no direction: {error}; {wanted}"))?;
+    let components = Formula::compile_vector::<3>(text, &[]).map_err(|error| {
+        let message = format!("`{text}` is no direction: {}; {wanted}", error.without_place());
+        (message, Some(error.span()))
+    })?;
     let vector = components.map(|component| component.evaluate(&[]));
     let largest = vector.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
     // what is zero or no number goes on, to be refused with its name

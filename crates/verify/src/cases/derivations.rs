@@ -73,8 +73,8 @@ const DIFFERENTIAL: Case = Case {
 const STEPS: Case = Case {
     reading: Reading::Derived(Count::StepConstants),
     source: "Faure 2014, Tables 3.4 to 3.7; specification, EXP-2: Hooke and St. Venant-Kirchhoff alike",
-    // samples of several weights
-    mutation: "rule=gauss_14",
+    // samples of several maps
+    mutation: "element=prism6",
     ..DERIVED
 };
 

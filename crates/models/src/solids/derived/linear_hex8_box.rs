@@ -80,12 +80,13 @@ fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
 #[inline(always)]
 fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
+    let one = F.columns[0].x.one();
     let M1 = F.transpose(); // transpose(F)
     let M2 = F.scaled(D.d1) + M1.scaled(D.d1);
     let s1 = F.trace(); // tr(F)
     let s2 = s1 - 3.0; // tr(F) - 3
-    let s3 = D.d1 * -2.0;
-    let s4 = s2.mul_add(D.d0, s3); // (tr(F) - 3)*d0 - 2*d1
+    let s3 = s2 * D.d0;
+    let s4 = D.d1.mul_add(one.splat(-2.0), s3); // (tr(F) - 3)*D_0 - 2*D_1
     M2.plus_diagonal(s4)
 }
 
@@ -97,7 +98,7 @@ fn differential_of<R: Real>(D: &Constants<R>, dF: &Mat3<R>) -> Mat3<R> {
     let M2 = dF + M1; // dF + transpose(dF)
     let M3 = M2.scaled(D.d1);
     let s1 = dF.trace(); // tr(dF)
-    let s2 = D.d0 * s1; // tr(dF)*d0
+    let s2 = D.d0 * s1; // tr(dF)*D_0
     M3.plus_diagonal(s2)
 }
 

@@ -77,14 +77,14 @@ fn energy_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> R {
 fn stress_of<R: Real>(D: &Constants<R>, F: &Mat3<R>) -> Mat3<R> {
     let F = *F;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*d1
+    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
     let M2 = M1 * 0.5;
     let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
     let M4 = M3.scaled(s1);
     let s2 = M1.trace(); // dot(F, F)
     let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*d0
+    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
     let M5 = M4.plus_diagonal(s4);
     F * M5
 }
@@ -95,21 +95,21 @@ fn differential_of<R: Real>(D: &Constants<R>, F: &Mat3<R>, dF: &Mat3<R>) -> Mat3
     let F = *F;
     let dF = *dF;
     let one = F.columns[0].x.one();
-    let s1 = D.d1 * 2.0; // 2*d1
+    let s1 = D.d1 * 2.0; // 2*D_1
     let M1 = F.gram(); // transpose(F)*F
     let M2 = M1 * 0.5;
     let M3 = M2.plus_diagonal(one.splat(-0.5)); // 0.5*transpose(F)*F - 0.5*I
     let M4 = M3.scaled(s1);
     let s2 = M1.trace(); // dot(F, F)
     let s3 = s2.mul_add(one.splat(0.5), one.splat(-1.5)); // 0.5*dot(F, F) - 1.5
-    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*d0
+    let s4 = s3 * D.d0; // (0.5*dot(F, F) - 1.5)*D_0
     let M5 = M4.plus_diagonal(s4);
     let M6 = dF.transpose_mul(&F); // transpose(dF)*F
     let M7 = M6.transpose(); // transpose(F)*dF
     let M8 = M6 + M7; // transpose(dF)*F + transpose(F)*dF
     let M9 = M8.scaled(D.d1);
     let s5 = M6.trace(); // dot(F, dF)
-    let s6 = D.d0 * s5; // dot(F, dF)*d0
+    let s6 = D.d0 * s5; // dot(F, dF)*D_0
     let M10 = M9.plus_diagonal(s6);
     let M11 = F * M10;
     let M12 = dF * M5;
