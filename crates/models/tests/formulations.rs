@@ -46,8 +46,8 @@ fn crooked_sheet(element: &str) -> Mesh {
     let values = Values::new()
         .with("length", Value::Number(1.0))
         .with("width", Value::Number(0.4))
-        .with("cells_along", Value::Number(4.0))
-        .with("cells_across", Value::Number(3.0))
+        .with("cells_along", Value::Integer(4))
+        .with("cells_across", Value::Integer(3))
         .with("element", Value::Text(element));
     let mut mesh = souple_mesh::generate("sheet", values).unwrap();
     for p in &mut mesh.points {

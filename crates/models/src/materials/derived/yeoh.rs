@@ -50,29 +50,29 @@ pub struct Point<R> {
     s24: R,
     s29: R,
     s31: R,
-    s37: R,
+    s36: R,
+    s38: R,
     s39: R,
-    s40: R,
-    s45: R,
-    s48: R,
-    s51: R,
+    s44: R,
+    s47: R,
+    s50: R,
+    s55: R,
     s56: R,
-    s57: R,
-    s59: R,
-    s63: R,
-    s68: R,
-    s70: R,
-    s75: R,
-    s80: R,
-    s85: R,
-    s89: R,
+    s58: R,
+    s62: R,
+    s67: R,
+    s69: R,
+    s74: R,
+    s79: R,
+    s84: R,
+    s88: R,
+    s93: R,
     s94: R,
-    s95: R,
-    s98: R,
-    s100: R,
-    s103: R,
-    s106: R,
-    s112: R,
+    s97: R,
+    s99: R,
+    s102: R,
+    s105: R,
+    s111: R,
 }
 
 impl Law for Yeoh {
@@ -115,87 +115,86 @@ impl Law for Yeoh {
         let s29 = s28 * s26;
         let s30 = F.dot(&F); // dot(F, F)
         let s31 = one.splat(-1.0) / s9;
-        let s32 = s12 * s12;
-        let s33 = s13 / s32;
-        let s34 = p.c1 * 1.1111111111111112;
-        let s35 = s34 * s30;
-        let s36 = s35 * s26;
-        let s37 = s36 * s33;
-        let s38 = s19 * 2.0;
-        let s39 = s38 * s15;
-        let s40 = s38 * s22;
-        let s41 = super::whole_power(s9, 3);
-        let s42 = one / s41;
-        let s43 = s4 * 0.4;
-        let s44 = s43 * s22;
-        let s45 = s44 * s42;
-        let s46 = s4 * -80.0;
-        let s47 = s46 * s19;
-        let s48 = s47 * s15;
-        let s49 = p.c1 * -0.6666666666666666;
-        let s50 = s49 * s30;
-        let s51 = s50 * s14;
-        let s52 = s30.mul_add(s13, one.splat(-3.0));
-        let s53 = p.c2 * -2.6666666666666665;
-        let s54 = s53 * s52;
-        let s55 = s54 * s14;
-        let s56 = s55 * s26;
-        let s57 = s13 * 2.0;
-        let s58 = s30 * -0.6666666666666666;
-        let s59 = s58 * s14;
-        let s60 = s30 * -1.3333333333333333;
-        let s61 = s60 * p.c2;
-        let s62 = s61 * s14;
-        let s63 = s62 * s26;
-        let s64 = s30 * 2.2222222222222223;
-        let s65 = s64 * p.c2;
-        let s66 = s65 * s52;
-        let s67 = s66 * s26;
-        let s68 = s67 * s33;
-        let s69 = s61 * s52;
-        let s70 = s69 * s14;
-        let s71 = s52 * s52;
-        let s72 = p.c3 * -4.0;
-        let s73 = s72 * s71;
-        let s74 = s73 * s14;
-        let s75 = s74 * s26;
-        let s76 = s30 * -4.0;
-        let s77 = s76 * p.c3;
-        let s78 = s77 * s52;
-        let s79 = s78 * s14;
-        let s80 = s79 * s26;
-        let s81 = s30 * 3.3333333333333335;
-        let s82 = s81 * p.c3;
-        let s83 = s82 * s71;
-        let s84 = s83 * s26;
-        let s85 = s84 * s33;
-        let s86 = s30 * -2.0;
-        let s87 = s86 * p.c3;
-        let s88 = s87 * s71;
-        let s89 = s88 * s14;
-        let s90 = s1 - 1.0; // det(F) - 1
-        let s91 = p.k * s90;
-        let s92 = s51.mul_add(s26, s91);
-        let s93 = s70.mul_add(s26, s92);
-        let s94 = s89.mul_add(s26, s93);
-        let s95 = s49 * s14;
-        let s96 = p.c2 * -1.3333333333333333;
-        let s97 = s96 * s52;
-        let s98 = s97 * s14;
-        let s99 = p.c2 * 2.0;
-        let s100 = s99 * s13;
-        let s101 = p.c3 * -2.0;
-        let s102 = s101 * s71;
-        let s103 = s102 * s14;
-        let s104 = p.c3 * 6.0;
-        let s105 = s104 * s13;
-        let s106 = s105 * s52;
-        let s107 = p.c3 * 3.0;
-        let s108 = s107 * s13;
-        let s109 = p.c1 * s13;
-        let s110 = s100.mul_add(s52, s109);
-        let s111 = s108.mul_add(s71, s110);
-        let s112 = s111 * 2.0;
+        let s32 = super::whole_power(s13, 4);
+        let s33 = p.c1 * 1.1111111111111112;
+        let s34 = s33 * s30;
+        let s35 = s34 * s26;
+        let s36 = s35 * s32;
+        let s37 = s19 * 2.0;
+        let s38 = s37 * s15;
+        let s39 = s37 * s22;
+        let s40 = super::whole_power(s9, 3);
+        let s41 = one / s40;
+        let s42 = s4 * 0.4;
+        let s43 = s42 * s22;
+        let s44 = s43 * s41;
+        let s45 = s4 * -80.0;
+        let s46 = s45 * s19;
+        let s47 = s46 * s15;
+        let s48 = p.c1 * -0.6666666666666666;
+        let s49 = s48 * s30;
+        let s50 = s49 * s14;
+        let s51 = s30.mul_add(s13, one.splat(-3.0));
+        let s52 = p.c2 * -2.6666666666666665;
+        let s53 = s52 * s51;
+        let s54 = s53 * s14;
+        let s55 = s54 * s26;
+        let s56 = s13 * 2.0;
+        let s57 = s30 * -0.6666666666666666;
+        let s58 = s57 * s14;
+        let s59 = s30 * -1.3333333333333333;
+        let s60 = s59 * p.c2;
+        let s61 = s60 * s14;
+        let s62 = s61 * s26;
+        let s63 = s30 * 2.2222222222222223;
+        let s64 = s63 * p.c2;
+        let s65 = s64 * s51;
+        let s66 = s65 * s26;
+        let s67 = s66 * s32;
+        let s68 = s60 * s51;
+        let s69 = s68 * s14;
+        let s70 = s51 * s51;
+        let s71 = p.c3 * -4.0;
+        let s72 = s71 * s70;
+        let s73 = s72 * s14;
+        let s74 = s73 * s26;
+        let s75 = s30 * -4.0;
+        let s76 = s75 * p.c3;
+        let s77 = s76 * s51;
+        let s78 = s77 * s14;
+        let s79 = s78 * s26;
+        let s80 = s30 * 3.3333333333333335;
+        let s81 = s80 * p.c3;
+        let s82 = s81 * s70;
+        let s83 = s82 * s26;
+        let s84 = s83 * s32;
+        let s85 = s30 * -2.0;
+        let s86 = s85 * p.c3;
+        let s87 = s86 * s70;
+        let s88 = s87 * s14;
+        let s89 = s1 - 1.0; // det(F) - 1
+        let s90 = p.k * s89;
+        let s91 = s50.mul_add(s26, s90);
+        let s92 = s69.mul_add(s26, s91);
+        let s93 = s88.mul_add(s26, s92);
+        let s94 = s48 * s14;
+        let s95 = p.c2 * -1.3333333333333333;
+        let s96 = s95 * s51;
+        let s97 = s96 * s14;
+        let s98 = p.c2 * 2.0;
+        let s99 = s98 * s13;
+        let s100 = p.c3 * -2.0;
+        let s101 = s100 * s70;
+        let s102 = s101 * s14;
+        let s103 = p.c3 * 6.0;
+        let s104 = s103 * s13;
+        let s105 = s104 * s51;
+        let s106 = p.c3 * 3.0;
+        let s107 = s106 * s13;
+        let s108 = p.c1 * s13;
+        let s109 = s99.mul_add(s51, s108);
+        let s110 = s107.mul_add(s70, s109);
+        let s111 = s110 * 2.0;
         Point {
             F,
             M1,
@@ -204,29 +203,29 @@ impl Law for Yeoh {
             s24,
             s29,
             s31,
-            s37,
+            s36,
+            s38,
             s39,
-            s40,
-            s45,
-            s48,
-            s51,
+            s44,
+            s47,
+            s50,
+            s55,
             s56,
-            s57,
-            s59,
-            s63,
-            s68,
-            s70,
-            s75,
-            s80,
-            s85,
-            s89,
+            s58,
+            s62,
+            s67,
+            s69,
+            s74,
+            s79,
+            s84,
+            s88,
+            s93,
             s94,
-            s95,
-            s98,
-            s100,
-            s103,
-            s106,
-            s112,
+            s97,
+            s99,
+            s102,
+            s105,
+            s111,
         }
     }
 
@@ -325,42 +324,42 @@ impl Law for Yeoh {
     fn stress_differential<R: Real>(p: &Numbers<R>, point: &Point<R>, dF: &Mat3<R>) -> Mat3<R> {
         let dF = *dF;
         let one = dF.columns[0].x.one();
-        let s113 = dF.dot(&point.M1); // dot(dF, cof(F))
-        let s114 = point.F.dot(&dF); // dot(F, dF)
-        let s115 = point.s1.select_less(one.splat(0.05), s113, one.splat(0.0)); // if(det(F) < 0.05, dot(dF, cof(F)), 0)
-        let s116 = s115 * -20.0;
-        let s117 = point.s20.mul_add(s115, s116);
-        let s118 = point.s31 * s115;
-        let s119 = point.s24.mul_add(s117, s118);
-        let s120 = point.s1.select_less(one.splat(0.05), s119, s113);
-        let s121 = point.s39 * s117;
-        let s122 = point.s40.mul_add(s115, s121);
-        let s123 = point.s45.mul_add(s117, s122);
-        let s124 = point.s48.mul_add(s115, s123);
-        let s125 = point.s1.select_less(one.splat(0.05), s124, one.splat(0.0));
-        let s126 = point.s57 * s114;
-        let s127 = point.s59.mul_add(s120, s126);
-        let s128 = p.k * s113;
-        let s129 = point.s29.mul_add(s114, s128);
-        let s130 = point.s37.mul_add(s120, s129);
-        let s131 = point.s51.mul_add(s125, s130);
-        let s132 = point.s56.mul_add(s114, s131);
-        let s133 = point.s63.mul_add(s127, s132);
-        let s134 = point.s68.mul_add(s120, s133);
-        let s135 = point.s70.mul_add(s125, s134);
-        let s136 = point.s75.mul_add(s114, s135);
-        let s137 = point.s80.mul_add(s127, s136);
-        let s138 = point.s85.mul_add(s120, s137);
-        let s139 = point.s89.mul_add(s125, s138);
+        let s112 = dF.dot(&point.M1); // dot(dF, cof(F))
+        let s113 = point.F.dot(&dF); // dot(F, dF)
+        let s114 = point.s1.select_less(one.splat(0.05), s112, one.splat(0.0)); // if(det(F) < 0.05, dot(dF, cof(F)), 0)
+        let s115 = s114 * -20.0;
+        let s116 = point.s20.mul_add(s114, s115);
+        let s117 = point.s31 * s114;
+        let s118 = point.s24.mul_add(s116, s117);
+        let s119 = point.s1.select_less(one.splat(0.05), s118, s112);
+        let s120 = point.s38 * s116;
+        let s121 = point.s39.mul_add(s114, s120);
+        let s122 = point.s44.mul_add(s116, s121);
+        let s123 = point.s47.mul_add(s114, s122);
+        let s124 = point.s1.select_less(one.splat(0.05), s123, one.splat(0.0));
+        let s125 = point.s56 * s113;
+        let s126 = point.s58.mul_add(s119, s125);
+        let s127 = p.k * s112;
+        let s128 = point.s29.mul_add(s113, s127);
+        let s129 = point.s36.mul_add(s119, s128);
+        let s130 = point.s50.mul_add(s124, s129);
+        let s131 = point.s55.mul_add(s113, s130);
+        let s132 = point.s62.mul_add(s126, s131);
+        let s133 = point.s67.mul_add(s119, s132);
+        let s134 = point.s69.mul_add(s124, s133);
+        let s135 = point.s74.mul_add(s113, s134);
+        let s136 = point.s79.mul_add(s126, s135);
+        let s137 = point.s84.mul_add(s119, s136);
+        let s138 = point.s88.mul_add(s124, s137);
         let M2 = cofactor_differential(&point.F, &dF); // cross(F, dF)
-        let s140 = point.s95 * s120;
-        let s141 = point.s98.mul_add(s120, s140);
-        let s142 = point.s100.mul_add(s127, s141);
-        let s143 = point.s103.mul_add(s120, s142);
-        let s144 = point.s106.mul_add(s127, s143);
-        let s145 = s144 * 2.0;
-        let M3 = point.M1.scaled(s139) + M2.scaled(point.s94);
-        let M4 = point.F.scaled(s145) + M3;
-        dF.scaled(point.s112) + M4
+        let s139 = point.s94 * s119;
+        let s140 = point.s97.mul_add(s119, s139);
+        let s141 = point.s99.mul_add(s126, s140);
+        let s142 = point.s102.mul_add(s119, s141);
+        let s143 = point.s105.mul_add(s126, s142);
+        let s144 = s143 * 2.0;
+        let M3 = point.M1.scaled(s138) + M2.scaled(point.s93);
+        let M4 = point.F.scaled(s144) + M3;
+        dF.scaled(point.s111) + M4
     }
 }
