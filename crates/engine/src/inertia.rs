@@ -43,7 +43,8 @@ pub fn led_accelerations_at(
     let led =
         |constraint: &Constraint| constraint.constrained() * constraint.mean_acceleration(time, timestep);
     // f - M a over what is led
-    ws.row_scratch.fill(Vec3::ZERO);
+    ws.row_scratch.clear();
+    ws.row_scratch.resize(ws.rows.positions.len(), Vec3::ZERO);
     for constraint in &system.constraints {
         system.add_led(constraint, led(constraint), &state.q, &mut ws.row_scratch);
     }
@@ -183,7 +184,8 @@ pub fn take_along(
     if system.mass.is_lumped() || system.constraints.iter().all(|constraint| constraint.motion.is_none()) {
         return Ok(StepReport::default());
     }
-    ws.row_scratch.fill(Vec3::ZERO);
+    ws.row_scratch.clear();
+    ws.row_scratch.resize(ws.rows.positions.len(), Vec3::ZERO);
     for constraint in &system.constraints {
         let change = constraint.velocity(to) - constraint.velocity(from);
         system.add_led(constraint, constraint.constrained() * change, q, &mut ws.row_scratch);
@@ -218,8 +220,9 @@ pub fn add_generalised_mass(system: &System, q: &[Vec3], matrix: &mut BlockMatri
 }
 
 /// `ẍ_bias`, the acceleration rows have while velocity blocks stay as they are: `ω × (ω × a)` on the axes of rigid frames.
-fn bias_into(system: &System, state: &SystemState, rows: &Rows, bias: &mut [Vec3]) {
-    bias.fill(Vec3::ZERO);
+fn bias_into(system: &System, state: &SystemState, rows: &Rows, bias: &mut Vec<Vec3>) {
+    bias.clear();
+    bias.resize(rows.positions.len(), Vec3::ZERO);
     let mut row = 0;
     for (kind, blocks) in system.kinematics.unknowns() {
         if kind == UnknownKind::RigidFrame {

@@ -49,6 +49,7 @@ pub struct SystemWorkspace {
     /// The rows are those of the committed state.
     pub(crate) rows_are_committed: bool,
     pub row_force: Vec<Vec3>,
+    /// Where steppers read no cliques, who takes it gives it the number of rows.
     pub row_scratch: Vec<Vec3>,
     /// Buffers for steppers in the size of the velocity; who takes one gives it that size.
     pub blocks: [Vec<Vec3>; 6],
@@ -203,7 +204,8 @@ impl System {
             state_is_finite: false,
             rows_are_committed: false,
             row_force: zeros(rows),
-            row_scratch: zeros(rows),
+            // explicit methods seldom need it
+            row_scratch: zeros(if self.stepper.reads_cliques() { rows } else { 0 }),
             blocks: Default::default(),
             taken_along: Vec::new(),
             configuration: Vec::new(),

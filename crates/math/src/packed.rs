@@ -179,6 +179,44 @@ impl<S: Simd> Lanes<S> {
         out
     }
 
+    /// `to[lane] - from[lane]` side by side: first numbers, then second ones.
+    ///
+    /// # Panics
+    /// There are fewer than `S::F64_LANES` of either.
+    #[inline(always)]
+    pub fn differences_in_order(simd: S, to: &[[f64; 2]], from: &[[f64; 2]]) -> [Self; 2] {
+        let (to, from) = (&to[..S::F64_LANES], &from[..S::F64_LANES]);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = four_or_eight_wide(&simd) {
+            // two lanes: (a.0 a.1 b.0 b.1)
+            let two = |lane: usize| {
+                let of = |values: &[[f64; 2]]| bytemuck::cast([values[lane], values[lane + 1]]);
+                v3.avx._mm256_sub_pd(of(to), of(from))
+            };
+            let four = |first: usize| -> [[f64; 4]; 2] {
+                let (ab, cd) = (two(first), two(first + 2));
+                let ac = v3.avx._mm256_permute2f128_pd::<0x20>(ab, cd);
+                let bd = v3.avx._mm256_permute2f128_pd::<0x31>(ab, cd);
+                [
+                    bytemuck::cast(v3.avx._mm256_unpacklo_pd(ac, bd)),
+                    bytemuck::cast(v3.avx._mm256_unpackhi_pd(ac, bd)),
+                ]
+            };
+            if S::F64_LANES == 4 {
+                return four(0).map(|numbers| Self::load(simd, &numbers));
+            }
+            let ([a, c], [b, d]) = (four(0), four(4));
+            let eight = |low: [f64; 4], high: [f64; 4]| -> [f64; 8] { bytemuck::cast([low, high]) };
+            return [Self::load(simd, &eight(a, b)), Self::load(simd, &eight(c, d))];
+        }
+        let mut out = [Self::constant(simd, 0.0); 2];
+        for lane in 0..S::F64_LANES {
+            out[0].as_mut_slice()[lane] = to[lane][0] - from[lane][0];
+            out[1].as_mut_slice()[lane] = to[lane][1] - from[lane][1];
+        }
+        out
+    }
+
     /// `sums[to[lane]] += self`, `sums[from[lane]] -= self`, lane after lane.
     ///
     /// # Safety
@@ -237,6 +275,18 @@ mod tests {
                 // SAFETY: as above
                 let [x, y] = unsafe { Lanes::gather_differences(simd, &pairs, &to, &from) };
                 assert_eq!((x.as_slice(), y.as_slice()), (difference.x.as_slice(), difference.y.as_slice()));
+                let in_order = |first: usize| -> Vec<u32> {
+                    (0..S::F64_LANES as u32).map(|lane| first as u32 + lane).collect()
+                };
+                let (first, second) = (shift % (COUNT - 7), (shift + 3) % (COUNT - 7));
+                // SAFETY: as above, for there are no more than eight lanes
+                let expected_in_order =
+                    unsafe { Lanes::gather_differences(simd, &pairs, &in_order(first), &in_order(second)) };
+                let found = Lanes::differences_in_order(simd, &pairs[first..], &pairs[second..]);
+                assert_eq!(
+                    found.map(|lanes| lanes.as_slice().to_vec()),
+                    expected_in_order.map(|lanes| lanes.as_slice().to_vec())
+                );
                 let mut sums = vec![0.0; COUNT];
                 // SAFETY: as above
                 unsafe { y.scatter_pair(&mut sums, &to, &from) };

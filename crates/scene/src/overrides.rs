@@ -1,9 +1,9 @@
 //! Values set from the command line: `--set bodies.bar.material.youngs_modulus="2 MPa"`.
 //!
 //! A path names keys by `.` and items of lists by `[index]`. A value is read as TOML, or as text where it is none
-//! (`5ms`, `linear`). Keys that may be written can be set even where the scene leaves them out; bodies, systems
-//! and the like must be there, except the system `main` that a scene has where it writes none. Files are relative to
-//! the current folder, as everything on the command line is.
+//! (`5ms`, `linear`). Keys that may be written can be set even where the scene leaves them out, and a whole item behind the
+//! last one of a list; bodies, systems and the like must be there, except the system `main` that a scene has where it writes
+//! none. Files are relative to the current folder, as everything on the command line is.
 
 use std::path::PathBuf;
 
@@ -144,9 +144,13 @@ impl Setting<'_> {
                         };
                         self.set_within(item, shape, rest, value);
                     }
+                    None if *index == count && rest.is_empty() => items.push(value),
                     None => self.refuse(
                         format!("the list in `{}` has {count} items, none of number {index}", self.path),
-                        format!("an index below {count}"),
+                        match rest {
+                            [] => format!("an index below {count}, or {count} for one more"),
+                            _ => format!("an index below {count}"),
+                        },
                     ),
                 }
             }

@@ -189,6 +189,11 @@ pub const BENCHES: &[Bench] = &[
         run: |effort| balls::scaling("balls_scaling", effort),
     },
     Bench {
+        name: "contours_500",
+        what: "a step of five hundred balls with their frontier, the trace of a probe and how far these are apart, in a 25th of a second (EXP-48) [ms]",
+        run: |effort| balls::contours("contours_500", effort),
+    },
+    Bench {
         name: "resolution",
         what: "how alike one cube swings on meshes of three resolutions, by every model [Hz], with the spread of each model",
         run: resolution::table,

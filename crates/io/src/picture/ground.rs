@@ -3,6 +3,7 @@
 use souple_math::Vec3;
 use souple_mesh::BoundingBox;
 
+use super::balls::Ball;
 use super::camera::Camera;
 use super::colour::Colour;
 use super::surface::Surface;
@@ -81,6 +82,9 @@ impl ShadedGround {
                 let above = corners.map(|corner| self.normal.dot(corner - self.origin));
                 self.drop_triangle(corners.map(|corner| self.place(corner)), above, &mut heights);
             }
+            for ball in surface.balls.iter().filter(|ball| ball.is_finite()) {
+                self.drop_ball(ball, &mut heights);
+            }
         }
         let shade = |height: f32| libm::exp(-(f64::from(height).max(0.0) / (0.13 * size))) as f32;
         let mut map: Vec<f32> = heights.into_iter().map(shade).collect();
@@ -89,6 +93,27 @@ impl ShadedGround {
             map = box_blur(&map, MAP_SIDE, 1);
         }
         map
+    }
+
+    fn drop_ball(&self, ball: &Ball, heights: &mut [f32]) {
+        let above = self.normal.dot(ball.centre - self.origin);
+        let (centre, metre) = (self.place(ball.centre), self.side / MAP_SIDE as f64);
+        let range = |axis: usize| {
+            let clip = |value: f64| value.clamp(0.0, MAP_SIDE as f64) as usize;
+            let reach = ball.radius / metre + 0.5;
+            clip((centre[axis] - reach).floor())..clip((centre[axis] + reach).ceil())
+        };
+        for row in range(1) {
+            for column in range(0) {
+                let off = [column, row].map(|cell| cell as f64 + 0.5);
+                let (x, y) = ((off[0] - centre[0]) * metre, (off[1] - centre[1]) * metre);
+                let half = ball.radius * ball.radius - x * x - y * y;
+                if half >= 0.0 {
+                    let slot = &mut heights[row * MAP_SIDE + column];
+                    *slot = slot.min((above - half.sqrt()) as f32);
+                }
+            }
+        }
     }
 
     fn drop_triangle(&self, [a, b, c]: [[f64; 2]; 3], above: [f64; 3], heights: &mut [f32]) {

@@ -35,10 +35,11 @@ use layout::Layout;
 use light::Lamps;
 use marks::Placed;
 use near::Corner;
-use raster::{PaintAt, Painted, Samples};
+use raster::{BallPaint, PaintAt, Painted, Samples};
 use shadow::Shadow;
 
 pub use animated_png::write_animated_png;
+pub use balls::Ball;
 pub use camera::{Framed, View};
 pub use colour::Colour;
 pub use colour_map::{COLOUR_MAPS, ColourMap, ELEMENT_KINDS};
@@ -218,11 +219,19 @@ impl Picture {
         let bounds = self.bounds();
         let camera = self.camera(bounds, &layout);
         let triangles = self.painted(&camera, range);
+        let draw_balls = |samples: &mut Samples, of: fn(&Surface) -> bool| {
+            for surface in self.surfaces.iter().filter(|surface| of(surface)) {
+                for (ball, paint) in self.painted_balls(surface, range) {
+                    samples.draw_ball(&camera, &ball, &paint);
+                }
+            }
+        };
         let ground = self.ground.and_then(|ground| ShadedGround::of(ground, &self.surfaces, bounds));
 
         let mut whole = Samples::new(width, height, 0, 1);
         // what is seen through shades no corners
         triangles.iter().filter(|triangle| !triangle.see_through).for_each(|triangle| whole.draw(triangle));
+        draw_balls(&mut whole, |surface| !surface.see_through);
         let open = light::openness(&whole, &camera, 0.09 * bounds.diagonal().max(f64::MIN_POSITIVE));
         let strokes = stroke::prepared(&self.strokes, &camera, &whole);
         drop(whole);
@@ -241,7 +250,16 @@ impl Picture {
         let mut canvas = Canvas::new(width, height);
         for top in (0..height).step_by(BAND) {
             let mut samples = Samples::new(width, BAND.min(height - top), top, self.samples_per_pixel);
-            triangles.iter().for_each(|triangle| samples.draw(triangle));
+            triangles
+                .iter()
+                .filter(|triangle| !triangle.see_through)
+                .for_each(|triangle| samples.draw(triangle));
+            draw_balls(&mut samples, |surface| !surface.see_through);
+            triangles
+                .iter()
+                .filter(|triangle| triangle.see_through)
+                .for_each(|triangle| samples.draw(triangle));
+            draw_balls(&mut samples, |surface| surface.see_through);
             scene.develop(&samples, &mut canvas);
         }
         layout.write(self, &scene.palette, &mut canvas);
@@ -295,7 +313,9 @@ impl Picture {
             return None;
         }
         let mut near = self.clone();
-        let points = near.surfaces.iter_mut().flat_map(|surface| &mut surface.points);
+        let points = near.surfaces.iter_mut().flat_map(|surface| {
+            surface.points.iter_mut().chain(surface.balls.iter_mut().map(|ball| &mut ball.centre))
+        });
         let points = points.chain(near.strokes.iter_mut().flat_map(|stroke| stroke.shape.points_mut()));
         let points = points.chain(near.labels.iter_mut().map(|label| &mut label.at));
         let points = points.chain(near.framed.iter_mut().map(|ball| &mut ball.centre));
@@ -312,7 +332,9 @@ impl Picture {
             surface.triangles.iter().flatten().map(|corner| surface.points[*corner as usize])
         });
         let strokes = self.strokes.iter().flat_map(|stroke| stroke.shape.points());
-        corners.chain(strokes).filter(|point| point.is_finite())
+        let balls = self.surfaces.iter().flat_map(|surface| &surface.balls);
+        let balls = balls.flat_map(|ball| ball.extremes([Vec3::X, Vec3::Y, Vec3::Z]));
+        corners.chain(balls).chain(strokes).filter(|point| point.is_finite())
     }
 
     fn bounds(&self) -> BoundingBox {
@@ -383,6 +405,25 @@ impl Picture {
             }
         }
         painted
+    }
+}
+
+impl Picture {
+    fn painted_balls<'a>(
+        &'a self,
+        surface: &'a Surface,
+        range: (f64, f64),
+    ) -> impl Iterator<Item = (Ball, BallPaint)> + 'a {
+        surface.balls.iter().enumerate().map(move |(number, ball)| {
+            let share = |value: f64| PaintAt::Value(self.scale.share(value, range) as f32);
+            let paint = match &surface.paint {
+                Paint::Plain(colour) => PaintAt::Colour(*colour),
+                Paint::PointScalar(values) => share(values[surface.points.len() + number]),
+                // of triangles
+                Paint::TriangleScalar(_) => share(f64::NAN),
+            };
+            (*ball, BallPaint { paint, map: self.colours, see_through: surface.see_through })
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Triangles and strokes into samples, the nearest one wins.
 
-use super::camera::Projected;
+use super::balls::Ball;
+use super::camera::{Camera, Projected};
 use super::colour::Colour;
 use super::colour_map::ColourMap;
 use super::surface::Faces;
@@ -159,6 +160,54 @@ impl Samples {
                 if on_edge && !triangle.wireframe {
                     slot.albedo = slot.albedo.scaled(EDGE_SHADE);
                 }
+            }
+        }
+    }
+}
+
+/// What a ball is drawn with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BallPaint {
+    pub paint: PaintAt,
+    pub map: ColourMap,
+    pub see_through: bool,
+}
+
+impl Samples {
+    /// Draws a ball that stands before the eye as a whole.
+    pub fn draw_ball(&mut self, camera: &Camera, ball: &Ball, with: &BallPaint) {
+        let depth = camera.depth(ball.centre);
+        if !(ball.is_finite() && depth.is_finite()) || depth - ball.radius <= camera.near {
+            return;
+        }
+        let middle = camera.project(ball.centre);
+        // of what is nearer than the centre, and beside the axis of the camera
+        let stretched = camera.ray(middle.x, middle.y).length() / (depth - ball.radius);
+        let reach = camera.focal() * ball.radius * stretched;
+        let columns = self.span(middle.x - reach, middle.x + reach, 0.0, self.width);
+        let rows = self.span(middle.y - reach, middle.y + reach, self.top as f64, self.height);
+        for row in rows {
+            for column in columns.clone() {
+                let (x, y) = self.position(column, row);
+                // the ray is one long along the axis of the camera: its length to the ball is the depth
+                let Some((depth, normal)) = ball.met_by(camera.eye, camera.ray(x, y)) else { continue };
+                let inverse_depth = (1.0 / depth) as f32;
+                let is_kept = with.see_through && self.is_of_pattern(row, column);
+                let slot = &mut self.samples[row * self.width + column];
+                if inverse_depth <= slot.inverse_depth || (is_kept && slot.shows_through) {
+                    continue;
+                }
+                let albedo = match with.paint {
+                    PaintAt::Colour(colour) => colour,
+                    PaintAt::Value(at) => with.map.colour(f64::from(at)),
+                };
+                *slot = Sample {
+                    inverse_depth,
+                    normal: normal.to_array().map(|component| component as f32),
+                    albedo,
+                    inside: false,
+                    shows_through: !with.see_through,
+                };
             }
         }
     }

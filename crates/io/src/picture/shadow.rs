@@ -33,8 +33,10 @@ impl Shadow {
         let axes = [across, towards.cross(across), towards];
         // containers, of which only the inside is seen, would leave everything in the dark
         let casting = || surfaces.iter().filter(|surface| surface.faces == Faces::Both);
-        let points = casting()
+        let corners = casting()
             .flat_map(|surface| surface.triangles.iter().flatten().map(|c| surface.points[*c as usize]));
+        let balls = casting().flat_map(|surface| &surface.balls);
+        let points = corners.chain(balls.flat_map(|ball| ball.extremes(axes)));
         let place = |x: Vec3| Vec3::new(axes[0].dot(x), axes[1].dot(x), axes[2].dot(x));
         let bounds = BoundingBox::of(points.filter(|x| x.is_finite()).map(place));
         let size = bounds.size();
@@ -50,6 +52,9 @@ impl Shadow {
         for surface in casting() {
             for corners in &surface.triangles {
                 shadow.draw(corners.map(|corner| place(surface.points[corner as usize])));
+            }
+            for ball in &surface.balls {
+                shadow.draw_ball(place(ball.centre), ball.radius);
             }
         }
         shadow
@@ -81,6 +86,29 @@ impl Shadow {
                     let height = u * corners[0].z + v * corners[1].z + (1.0 - u - v) * corners[2].z;
                     let slot = &mut self.heights[row * SIDE + column];
                     *slot = slot.max(height as f32);
+                }
+            }
+        }
+    }
+
+    /// A ball, its centre along the axes.
+    fn draw_ball(&mut self, centre: Vec3, radius: f64) {
+        if !(centre.is_finite() && radius.is_finite()) {
+            return;
+        }
+        let range = |along: f64, axis: usize| {
+            let clip = |value: f64| value.clamp(0.0, SIDE as f64) as usize;
+            clip((self.cell(along - radius, axis) - 0.5).floor())
+                ..clip((self.cell(along + radius, axis) + 0.5).ceil())
+        };
+        let (columns, rows) = (range(centre.x, 0), range(centre.y, 1));
+        let metre = |cell: usize, axis: usize| self.low[axis] + (cell as f64 + 0.5) / SIDE as f64 * self.side;
+        for (row, y) in rows.map(|row| (row, metre(row, 1) - centre.y)) {
+            for (column, x) in columns.clone().map(|column| (column, metre(column, 0) - centre.x)) {
+                let half = radius * radius - x * x - y * y;
+                if half >= 0.0 {
+                    let slot = &mut self.heights[row * SIDE + column];
+                    *slot = slot.max((centre.z + half.sqrt()) as f32);
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use souple_math::Vec3;
 
+use super::balls::Ball;
 use super::colour::Colour;
 use super::colour_scale::ColourScale;
 use crate::IoError;
@@ -16,6 +17,8 @@ pub struct Surface {
     /// For each triangle whether its edges 01, 12, 20 are edges of the mesh, and drawn where edges are; empty:
     /// all are.
     pub edges: Vec<[bool; 3]>,
+    /// Spheres beside the triangles.
+    pub balls: Vec<Ball>,
     pub paint: Paint,
     pub edge_style: EdgeStyle,
     pub faces: Faces,
@@ -36,7 +39,7 @@ pub enum Faces {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Paint {
     Plain(Colour),
-    /// Values on the points, painted by the colour map; NaN is grey.
+    /// Values on the points, then on the balls, painted by the colour map; NaN is grey.
     PointScalar(Vec<f64>),
     /// Values on the triangles.
     TriangleScalar(Vec<f64>),
@@ -115,8 +118,9 @@ impl Surface {
             return refuse("the number of edge marks", self.edges.len(), format!("{}", self.triangles.len()));
         }
         match &self.paint {
-            Paint::PointScalar(values) if values.len() != count => {
-                refuse("the number of values", values.len(), format!("{count}, one for each point"))
+            Paint::PointScalar(values) if values.len() != count + self.balls.len() => {
+                let expected = format!("{}, one for each point and ball", count + self.balls.len());
+                refuse("the number of values", values.len(), expected)
             }
             Paint::TriangleScalar(values) if values.len() != self.triangles.len() => {
                 let expected = format!("{}, one for each triangle", self.triangles.len());

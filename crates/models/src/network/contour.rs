@@ -433,6 +433,10 @@ mod tests {
             (0..12).map(|i| (f64::from(i) * PI / 6.0).sin_cos()).map(|(s, c)| [3.0 * c, 3.0 * s]).collect();
         let lines = frontier.lines(&ring);
         assert_eq!(lines.len(), 2);
+        // at the ends of the grid, which are those of whole numbers
+        for far in [1e300, -1e300] {
+            assert!(frontier.lines(&[[far, 0.0], [0.0, far]]).len() <= 2);
+        }
         // the hole counts off: less than the outer disc, more than the chain of discs
         assert!(enclosed_area(&lines) < PI * 16.0 - PI * 3.0, "{}", enclosed_area(&lines));
     }

@@ -101,6 +101,16 @@ impl Crowd {
         Self(description)
     }
 
+    /// Beyond it there is no force [m].
+    pub fn range(&self) -> f64 {
+        self.0.range
+    }
+
+    /// Rows of the first group and of the second, which is the first again where there is one.
+    pub fn rows(&self) -> [Range<u32>; 2] {
+        [self.0.first.clone(), self.0.second.clone()]
+    }
+
     /// What a pair takes of the bound `4M` on its masses (see [`super::LinkLaw::stiffest`]) [N/m].
     pub fn stiffest(&self) -> f64 {
         let hook =
@@ -206,8 +216,8 @@ impl Crowd {
         act.axial + act.across
     }
 
-    /// Evaluates all pairs that are not in State.
-    fn pass(&self, at: &Configuration, work: &mut Work) {
+    /// Evaluates all pairs that are not in State; forces are added to `out`.
+    fn pass(&self, at: &Configuration, work: &mut Work, out: Option<&mut [Vec3]>) {
         let CrowdDescription { law, range, friction, timestep, .. } = &self.0;
         let groups = self.groups();
         work.list.bring_up_to_date(groups, at.positions, *range);
@@ -223,7 +233,7 @@ impl Crowd {
         let act = |pair, ways, known: Option<&[f64]>, task: &mut Task| {
             self.act_alone(at.time, (pair, ways), known, task)
         };
-        work.pass.run(&with, at, &act);
+        work.pass.run(&with, at, out, &act);
     }
 
     /// Calls `visit` for every pair that may be in range, with what it remembers, in the order of rows.
@@ -242,8 +252,8 @@ impl Crowd {
         work.list.bring_up_to_date(self.groups(), at.positions, self.0.range);
         let mut known = Known::from(at.kept, self.own_len(), self.0.first.start);
         for (ball, row) in self.0.first.clone().enumerate() {
-            for slot in work.list.start(ball)..work.list.start(ball + 1) {
-                let standing = self.standing([row, work.list.other(slot) as u32], at);
+            for other in work.list.others(ball) {
+                let standing = self.standing([row, *other], at);
                 if standing.reach.length < self.0.range {
                     let known = known.find(key(standing.pair));
                     visit(&standing, &self.recalled(known, standing.reach.length));
@@ -317,9 +327,7 @@ impl Force for Crowd {
 
     fn add_force(&self, at: &Configuration, scratch: &mut Scratch, out: &mut [Vec3]) {
         if self.0.listing == Listing::Own {
-            let work = Work::of(scratch);
-            self.pass(at, work);
-            work.pass.add_to(self.groups(), &work.list, out);
+            self.pass(at, Work::of(scratch), Some(out));
             return;
         }
         let forces = &mut Work::of(scratch).forces;
@@ -383,7 +391,7 @@ impl Force for Crowd {
 
     fn look_at_kept(&self, at: &Configuration, scratch: &mut Scratch) {
         if self.0.listing == Listing::Own {
-            self.pass(at, Work::of(scratch));
+            self.pass(at, Work::of(scratch), None);
         }
     }
 
@@ -410,10 +418,9 @@ impl Force for Crowd {
         let Some(list) = held.or(made.as_ref()) else { return };
         let range_sq = self.0.range * self.0.range;
         for (ball, row) in self.0.first.clone().enumerate() {
-            for slot in list.start(ball)..list.start(ball + 1) {
-                let other = list.other(slot);
-                if (at.positions[row as usize] - at.positions[other]).length_sq() < range_sq {
-                    visit([row, other as u32]);
+            for other in list.others(ball) {
+                if (at.positions[row as usize] - at.positions[*other as usize]).length_sq() < range_sq {
+                    visit([row, *other]);
                 }
             }
         }
@@ -442,7 +449,7 @@ impl Force for Crowd {
             for a in start..(start + SEARCHED_TOGETHER).min(first.end as usize) {
                 let own = pairs.len();
                 let above = if is_one { a as u32 } else { 0 };
-                grid.visit_near(at.positions[a], |b| {
+                grid.visit_near(at.positions[a], at.positions, |b| {
                     if !is_one || b > above {
                         pairs.push([a as u32, b]);
                     }

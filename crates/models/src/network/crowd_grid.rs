@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use souple_engine::make_room;
 use souple_math::Vec3;
 
 /// Cells for each ball that are worth a table of all of them; fewer balls than that in a wide space are found by bisection.
@@ -13,10 +14,8 @@ pub struct Grid {
     /// Of a cell, which is the range [m].
     size: f64,
     rows: Vec<u32>,
-    /// Of the balls in this order [m].
-    places: Vec<Vec3>,
     table: Table,
-    /// `(cell, row)` while they are sorted.
+    /// `(cell, row)` in this order, where cells are too many for a table.
     cells: Vec<([i32; 3], u32)>,
 }
 
@@ -44,52 +43,52 @@ impl Grid {
         self.size = range;
         let cell = |row: u32| cell(positions[row as usize], range);
         let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
-        self.cells.clear();
-        for row in rows {
+        for row in rows.clone() {
             let cell = cell(row);
             low = std::array::from_fn(|i| low[i].min(cell[i]));
             high = std::array::from_fn(|i| high[i].max(cell[i]));
-            self.cells.push((cell, row));
         }
-        let count = self.cells.len();
+        let count = rows.len();
         let counts: [u64; 3] =
             std::array::from_fn(|i| (i64::from(high[i]) - i64::from(low[i])).max(0) as u64 + 1);
         let most = CELLS_OF_BALL * count as u64 + 64;
         let total = counts.iter().try_fold(1_u64, |product, count| product.checked_mul(*count));
         self.table.starts.clear();
+        self.cells.clear();
         self.rows.clear();
         match total.filter(|total| *total <= most && count > 0) {
             Some(total) => {
                 (self.table.low, self.table.counts) = (low, counts);
-                self.count(total as usize);
+                self.count(total as usize, rows, cell);
             }
             None => {
+                self.cells.extend(rows.map(|row| (cell(row), row)));
                 self.cells.sort_unstable();
                 self.rows.extend(self.cells.iter().map(|(_, row)| *row));
             }
         }
-        self.places.clear();
-        self.places.extend(self.rows.iter().map(|row| positions[*row as usize]));
     }
 
     /// Sorts by counting.
-    fn count(&mut self, total: usize) {
+    fn count(&mut self, total: usize, rows: Range<u32>, cell: impl Fn(u32) -> [i32; 3]) {
         let table = &mut self.table;
+        let more = (total + 1).saturating_sub(table.starts.len());
+        make_room(&mut table.starts, more);
         table.starts.resize(total + 1, 0);
         let index =
-            |table: &Table, cell: [i32; 3]| table.index(cell).unwrap_or_else(|| unreachable!("within"));
-        for (cell, _) in &self.cells {
-            let at = index(table, *cell);
+            |table: &Table, row: u32| table.index(cell(row)).unwrap_or_else(|| unreachable!("within"));
+        for row in rows.clone() {
+            let at = index(table, row);
             table.starts[at + 1] += 1;
         }
         for at in 0..total {
             table.starts[at + 1] += table.starts[at];
         }
         // each start moves on to the next while its cell fills, and back at the end
-        self.rows.resize(self.cells.len(), 0);
-        for (cell, row) in &self.cells {
-            let at = index(table, *cell);
-            self.rows[table.starts[at] as usize] = *row;
+        self.rows.resize(rows.len(), 0);
+        for row in rows {
+            let at = index(table, row);
+            self.rows[table.starts[at] as usize] = row;
             table.starts[at] += 1;
         }
         table.starts.copy_within(0..total, 1);
@@ -116,20 +115,19 @@ impl Grid {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         4 * (self.rows.capacity() + self.table.starts.capacity())
-            + size_of::<Vec3>() * self.places.capacity()
             + size_of::<([i32; 3], u32)>() * self.cells.capacity()
     }
 
-    /// Visits the balls that are nearer than the range.
-    pub fn visit_near(&self, place: Vec3, mut visit: impl FnMut(u32)) {
+    /// Visits the balls that are nearer than the range, of the positions that were sorted.
+    pub fn visit_near(&self, place: Vec3, positions: &[Vec3], mut visit: impl FnMut(u32)) {
         let [i, j, k] = cell(place, self.size);
         let range_sq = self.size * self.size;
         for (di, dj) in (0..9).map(|n| (n % 3 - 1, n / 3 - 1)) {
             // there are no cells beyond the whole numbers
             let (Some(i), Some(j)) = (i.checked_add(di), j.checked_add(dj)) else { continue };
-            for at in self.run([i, j, k]) {
-                if (self.places[at] - place).length_sq() < range_sq {
-                    visit(self.rows[at]);
+            for row in &self.rows[self.run([i, j, k])] {
+                if (positions[*row as usize] - place).length_sq() < range_sq {
+                    visit(*row);
                 }
             }
         }
@@ -157,7 +155,7 @@ mod tests {
             grid.sort(20..200, &places, 1.0);
             for place in &places {
                 let mut found = Vec::new();
-                grid.visit_near(*place, |row| found.push(row));
+                grid.visit_near(*place, &places, |row| found.push(row));
                 found.sort_unstable();
                 let near = |row: &u32| (places[*row as usize] - *place).length_sq() < 1.0;
                 let expected: Vec<u32> = (20..200).filter(near).collect();

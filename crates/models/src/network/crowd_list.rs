@@ -15,8 +15,8 @@ use super::crowd_grid::Grid;
 /// How much further than forces lists reach, as a share of the range.
 const SKIN: f64 = 0.15;
 
-/// Balls of the first group whose neighbours are found by one thread.
-const LISTED_TOGETHER: usize = 512;
+/// Balls of the first group whose neighbours are found by one thread, and stand together.
+pub const LISTED_TOGETHER: usize = 512;
 
 /// Balls of two groups, or twice of one, by their rows.
 #[derive(Clone, Copy, Debug)]
@@ -45,12 +45,13 @@ pub struct Neighbours {
     listed_at: [Vec<Vec3>; 2],
     /// Slots of each ball of the first group.
     starts: Vec<u32>,
-    /// Row of each slot, ascending for each ball.
-    others: Vec<u32>,
+    /// Of each so many balls the row of each slot, ascending for each ball.
+    others: Vec<Vec<u32>>,
+    /// Of each so many balls the highest of these rows.
+    highest: Vec<u32>,
     /// Slots by the ball of the second group that they name, and where those of each begin.
     turned: Vec<u32>,
     turned_starts: Vec<u32>,
-    found: Vec<Vec<u32>>,
 }
 
 impl Neighbours {
@@ -85,39 +86,40 @@ impl Neighbours {
     }
 
     fn list(&mut self, groups: Groups, positions: &[Vec3], reach: f64) {
-        let Self { grid, starts, others, found, .. } = self;
+        let Self { grid, starts, others, highest, .. } = self;
         grid.sort(groups.second.clone(), positions, reach);
         let count = groups.first.len();
         starts.clear();
         starts.resize(count + 1, 0);
-        found.resize_with(count.div_ceil(LISTED_TOGETHER), Vec::new);
+        others.resize_with(count.div_ceil(LISTED_TOGETHER), Vec::new);
         let is_one = groups.is_one();
-        let list = |(chunk, (found, counts)): (usize, (&mut Vec<u32>, &mut [u32]))| {
-            found.clear();
+        let list = |(chunk, (others, counts)): (usize, (&mut Vec<u32>, &mut [u32]))| {
+            others.clear();
             for (index, count) in counts.iter_mut().enumerate() {
-                let (row, own) = (groups.first.start + (chunk * LISTED_TOGETHER + index) as u32, found.len());
-                grid.visit_near(positions[row as usize], |other| {
+                let (row, own) =
+                    (groups.first.start + (chunk * LISTED_TOGETHER + index) as u32, others.len());
+                grid.visit_near(positions[row as usize], positions, |other| {
                     if !is_one || other > row {
-                        found.push(other);
+                        make_room(others, 1);
+                        others.push(other);
                     }
                 });
-                found[own..].sort_unstable();
-                *count = (found.len() - own) as u32;
+                others[own..].sort_unstable();
+                *count = (others.len() - own) as u32;
             }
         };
         // threads are woken for many balls only
-        if found.len() >= 16 && rayon::current_num_threads() > 1 {
+        if others.len() >= 16 && rayon::current_num_threads() > 1 {
             let counts = starts[1..].par_chunks_mut(LISTED_TOGETHER);
-            found.par_iter_mut().zip(counts).enumerate().for_each(list);
+            others.par_iter_mut().zip(counts).enumerate().for_each(list);
         } else {
-            found.iter_mut().zip(starts[1..].chunks_mut(LISTED_TOGETHER)).enumerate().for_each(list);
+            others.iter_mut().zip(starts[1..].chunks_mut(LISTED_TOGETHER)).enumerate().for_each(list);
         }
         for ball in 0..count {
             starts[ball + 1] += starts[ball];
         }
-        others.clear();
-        make_room(others, starts[count] as usize);
-        found.iter().for_each(|found| others.extend_from_slice(found));
+        highest.clear();
+        highest.extend(others.iter().map(|others| others.iter().max().copied().unwrap_or(0)));
     }
 
     /// Slots by second ball, for each in the order of the first.
@@ -126,15 +128,16 @@ impl Neighbours {
         let (count, first) = (groups.second.len(), groups.second.start);
         turned_starts.clear();
         turned_starts.resize(count + 1, 0);
-        others.iter().for_each(|row| turned_starts[(row - first) as usize + 1] += 1);
+        others.iter().flatten().for_each(|row| turned_starts[(row - first) as usize + 1] += 1);
         for ball in 0..count {
             turned_starts[ball + 1] += turned_starts[ball];
         }
         // each start moves on to the next while its ball is given slots, and back at the end
-        let more = others.len().saturating_sub(turned.len());
+        let slots = turned_starts[count] as usize;
+        let more = slots.saturating_sub(turned.len());
         make_room(turned, more);
-        turned.resize(others.len(), 0);
-        for (slot, row) in others.iter().enumerate() {
+        turned.resize(slots, 0);
+        for (slot, row) in others.iter().flatten().enumerate() {
             let start = &mut turned_starts[(row - first) as usize];
             turned[*start as usize] = slot as u32;
             *start += 1;
@@ -143,28 +146,36 @@ impl Neighbours {
         turned_starts[0] = 0;
     }
 
-    pub fn slot_count(&self) -> usize {
-        self.others.len()
-    }
-
     /// First slot of a ball of the first group, by its number there.
     pub fn start(&self, ball: usize) -> usize {
         self.starts[ball] as usize
     }
 
-    pub fn other(&self, slot: usize) -> usize {
-        self.others[slot] as usize
+    /// Rows of the slots of a ball of the first group, ascending.
+    pub fn others(&self, ball: usize) -> &[u32] {
+        let chunk = ball / LISTED_TOGETHER;
+        let first = self.start(chunk * LISTED_TOGETHER);
+        &self.others[chunk][self.start(ball) - first..self.start(ball + 1) - first]
     }
 
-    /// Slots that name a ball of the second group, by its number there.
-    pub fn slots_of(&self, ball: usize) -> &[u32] {
-        &self.turned[self.turned_starts[ball] as usize..self.turned_starts[ball + 1] as usize]
+    /// The highest row in the slots of some balls of the first group, whole chunks of [`LISTED_TOGETHER`].
+    pub fn highest(&self, balls: &Range<usize>) -> u32 {
+        let chunks = balls.start / LISTED_TOGETHER..balls.end.div_ceil(LISTED_TOGETHER);
+        self.highest[chunks].iter().max().copied().unwrap_or(0)
+    }
+
+    /// Slots that name a ball of the second group, by its number there; of some slots those.
+    pub fn slots_of(&self, ball: usize, among: &Range<usize>) -> &[u32] {
+        let slots = &self.turned[self.turned_starts[ball] as usize..self.turned_starts[ball + 1] as usize];
+        let [from, to] =
+            [among.start, among.end].map(|end| slots.partition_point(|slot| (*slot as usize) < end));
+        &slots[from..to]
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let lists = [&self.starts, &self.others, &self.turned, &self.turned_starts];
-        let numbers = lists.into_iter().chain(&self.found).map(|list| 4 * list.capacity());
+        let lists = [&self.starts, &self.highest, &self.turned, &self.turned_starts];
+        let numbers = lists.into_iter().chain(&self.others).map(|list| 4 * list.capacity());
         let places = self.listed_at.iter().map(|list| size_of::<Vec3>() * list.capacity());
         numbers.sum::<usize>() + places.sum::<usize>() + self.grid.bytes()
     }

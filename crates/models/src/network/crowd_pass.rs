@@ -1,7 +1,8 @@
 //! One evaluation of all pairs of a multitude: forces, heat, and what is remembered next.
 //!
 //! A step reads all three, so they are computed together; forces stand slot by slot until each ball gathers its own, in the
-//! order of rows.
+//! order of rows. Of many slots a window at a time stands there: since windows follow the order of rows too, what a ball gathers
+//! of one after the other it gathers in the same order, and no bit depends on how wide they are.
 
 use std::ops::Range;
 
@@ -9,24 +10,33 @@ use souple_engine::{Configuration, Kept, KeptRef, make_room};
 use souple_math::Vec3;
 use souple_solve::reduce;
 
-use super::crowd_list::{Groups, Neighbours};
+use super::crowd_list::{Groups, LISTED_TOGETHER, Neighbours};
 use super::friction::{Friction, Hook, Phase};
 use super::kernel::LinkKernel;
 use super::layout::LANES;
 
 /// Balls of the first group that a thread takes at once, at least.
-const TOGETHER: usize = 512;
+const TOGETHER: usize = LISTED_TOGETHER;
+/// Slots whose forces stand side by side, at least: 24 MiB, where those of a million balls would fill 130.
+const WINDOW: usize = 1 << 20;
 /// Tasks that are enough for any number of threads: each has buffers of its own.
 const TASKS: usize = 256;
 /// Balls whose pairs are looked at together: their numbers stay near the processor.
 const AT_HAND: usize = 32;
 
 /// What all pairs do.
-#[derive(Default)]
 pub struct Pass {
-    /// On the first ball of each slot [N].
+    /// Slots of a window, at least.
+    window: usize,
+    /// On the first ball of each slot of a window [N].
     forces: Vec<Vec3>,
     tasks: Vec<Task>,
+}
+
+impl Default for Pass {
+    fn default() -> Self {
+        Self { window: WINDOW, forces: Vec::new(), tasks: Vec::new() }
+    }
 }
 
 /// What the pairs of some balls do beside forces.
@@ -144,8 +154,8 @@ impl Batch {
         for ball in balls {
             let row = first_row as usize + ball;
             let (x, v) = (at.positions[row], at.velocities[row]);
-            for slot in list.start(ball)..list.start(ball + 1) {
-                let other = list.other(slot);
+            for (slot, other) in (list.start(ball)..).zip(list.others(ball)) {
+                let other = *other as usize;
                 let d = x - at.positions[other];
                 let length_sq = d.length_sq();
                 // written so that what is not finite acts, and is found
@@ -200,22 +210,22 @@ pub struct Evaluation<'a> {
 }
 
 impl Pass {
-    /// Evaluates all pairs; `act(pair, ways, known numbers, task)` does where the law has a memory.
+    /// Evaluates all pairs and adds their forces to `out`; `act(pair, ways, known numbers, task)` does where the law has a
+    /// memory.
     pub fn run(
         &mut self,
         with: &Evaluation,
         at: &Configuration,
+        mut out: Option<&mut [Vec3]>,
         act: &(impl Fn([u32; 2], [Vec3; 2], Option<&[f64]>, &mut Task) -> Vec3 + Sync),
     ) {
         let Evaluation { groups, list, law, friction, range, timestep, kept_len } = *with;
         let (count, first_row) = (groups.first.len(), groups.first.start);
         let together = count.div_ceil(TASKS).max(1).next_multiple_of(TOGETHER);
-        let more = list.slot_count().saturating_sub(self.forces.len());
-        make_room(&mut self.forces, more);
-        self.forces.resize(list.slot_count(), Vec3::ZERO);
         self.tasks.resize_with(count.div_ceil(together), Task::default);
-        let start_of = |task: usize| list.start((task * together).min(count));
-        each(0, &mut self.tasks, &mut self.forces, &start_of, &|number, task, forces| {
+        let first_ball = |task: usize| (task * together).min(count);
+        let start_of = |task: usize| list.start(first_ball(task));
+        let work = |number: usize, task: &mut Task, forces: &mut [Vec3]| {
             let balls = number * together..((number + 1) * together).min(count);
             let mut known = Known::from(at.kept, kept_len, first_row + balls.start as u32);
             task.keys.clear();
@@ -236,29 +246,59 @@ impl Pass {
                 }
                 task.batch = batch;
             }
-        });
+        };
+        let mut first = 0;
+        while first < self.tasks.len() {
+            let mut last = first + 1;
+            while last < self.tasks.len() && start_of(last) - start_of(first) < self.window {
+                last += 1;
+            }
+            let slots = start_of(first)..start_of(last);
+            let more = slots.len().saturating_sub(self.forces.len());
+            make_room(&mut self.forces, more);
+            self.forces.resize(slots.len(), Vec3::ZERO);
+            each(first, &mut self.tasks[first..last], &mut self.forces, &start_of, &work);
+            if let Some(out) = &mut out {
+                let balls = first_ball(first)..first_ball(last);
+                self.add_window(groups, list, (balls, slots), out);
+            }
+            first = last;
+        }
     }
 
-    /// Adds its forces to each ball: from lower rows, then from higher ones.
-    pub fn add_to(&self, groups: Groups, list: &Neighbours, out: &mut [Vec3]) {
+    /// Adds the forces of a window to each ball: from lower rows, then from higher ones.
+    fn add_window(
+        &self,
+        groups: Groups,
+        list: &Neighbours,
+        (balls, slots): (Range<usize>, Range<usize>),
+        out: &mut [Vec3],
+    ) {
         let own = |ball: usize, sum: &mut Vec3| {
-            self.forces[list.start(ball)..list.start(ball + 1)].iter().for_each(|force| *sum += *force);
+            let own = list.start(ball) - slots.start..list.start(ball + 1) - slots.start;
+            self.forces[own].iter().for_each(|force| *sum += *force);
         };
         let from_others = |ball: usize, sum: &mut Vec3| {
-            list.slots_of(ball).iter().for_each(|slot| *sum -= self.forces[*slot as usize]);
+            let of_ball = list.slots_of(ball, &slots);
+            of_ball.iter().for_each(|slot| *sum -= self.forces[*slot as usize - slots.start]);
         };
-        let rows = |rows: &Range<u32>| rows.start as usize..rows.end as usize;
-        let is_one = groups.is_one();
-        reduce::for_each_chunk(&mut out[rows(groups.first)], &|first, sums: &mut [Vec3]| {
-            for (ball, sum) in (first..).zip(sums) {
+        let (is_one, first_row) = (groups.is_one(), groups.first.start as usize);
+        // of one group balls beyond the window are named by its slots too
+        let named = if is_one { (list.highest(&balls) as usize + 1).saturating_sub(first_row) } else { 0 };
+        let rows = first_row + balls.start..first_row + balls.end.max(named);
+        reduce::for_each_chunk(&mut out[rows], &|first, sums: &mut [Vec3]| {
+            for (ball, sum) in (balls.start + first..).zip(sums) {
                 if is_one {
                     from_others(ball, sum);
                 }
-                own(ball, sum);
+                if ball < balls.end {
+                    own(ball, sum);
+                }
             }
         });
         if !is_one {
-            reduce::for_each_chunk(&mut out[rows(groups.second)], &|first, sums: &mut [Vec3]| {
+            let rows = groups.second.start as usize..groups.second.end as usize;
+            reduce::for_each_chunk(&mut out[rows], &|first, sums: &mut [Vec3]| {
                 (first..).zip(sums).for_each(|(ball, sum)| from_others(ball, sum));
             });
         }
@@ -308,6 +348,78 @@ fn each(
                 one();
                 two();
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use souple_engine::KeptRef;
+    use souple_math::Real;
+
+    use crate::network::kernel::InLanes;
+    use crate::network::law::{LinkLaw, MEMORY, Reach, Response};
+
+    /// Pushes as far as its ends are within the range.
+    #[derive(Debug)]
+    struct Apart;
+
+    impl LinkLaw for Apart {
+        fn respond<R: Real>(&self, reach: &Reach<R>, _: &mut [R; MEMORY]) -> Response<R> {
+            let push = reach.rest - reach.length;
+            Response { push, stored: push * push * 0.5, heat: push * 0.0 }
+        }
+
+        fn is_conservative(&self) -> bool {
+            true
+        }
+
+        fn stiffest(&self) -> f64 {
+            1.0
+        }
+    }
+
+    /// Balls gather the same bits from many windows as from one, of one group and of two.
+    #[test]
+    fn windows_change_no_bit() {
+        let number = |i: usize, salt: f64| ((i as f64 * 12.9898 + salt).sin() * 43_758.545_3).fract().abs();
+        let place = |i: usize| Vec3::new(number(i, 0.1), number(i, 1.7), number(i, 3.3)) * 5.0;
+        let positions: Vec<Vec3> = (0..4000).map(place).collect();
+        let velocities = vec![Vec3::ZERO; positions.len()];
+        for [first, second] in [[0..4000_u32, 0..4000], [0..2500, 2500..4000]] {
+            let groups = Groups { first: &first, second: &second };
+            let mut list = Neighbours::default();
+            list.bring_up_to_date(groups, &positions, 0.6);
+            let with = Evaluation {
+                groups,
+                list: &list,
+                law: &InLanes(Apart),
+                friction: None,
+                range: 0.6,
+                timestep: 1e-3,
+                kept_len: 0,
+            };
+            let at = Configuration {
+                positions: &positions,
+                velocities: &velocities,
+                time: 0.0,
+                load: 1.0,
+                memory: &[],
+                pairs: &[],
+                kept: KeptRef::default(),
+                driven: &[],
+                fields: &[],
+            };
+            let sums = |window: usize| {
+                let mut out = vec![Vec3::new(0.1, 0.2, 0.3); positions.len()];
+                let mut pass = Pass { window, ..Pass::default() };
+                pass.run(&with, &at, Some(&mut out), &|_, _, _, _| Vec3::ZERO);
+                (out, pass.forces.len())
+            };
+            let ((whole, all), (parts, few)) = (sums(usize::MAX), sums(1000));
+            assert!(few < all / 2, "{few} of {all} slots are side by side");
+            assert_eq!(whole, parts);
         }
     }
 }

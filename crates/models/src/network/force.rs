@@ -10,7 +10,7 @@ use souple_solve::BlockMatrix;
 
 use super::kernel::{LinkKernel, Moving};
 use super::law::Reach;
-use super::layout::{Ends, LANES, Layout, Part};
+use super::layout::{Arrangement, Ends, LANES, Layout, Part};
 use super::pair_tangent::{add_change, add_pair_blocks};
 use super::span::{Known, OnAxis, Place, Projected, Span, axis_of};
 use super::written::WRITTEN_MEMORY;
@@ -109,7 +109,11 @@ struct Sums {
 impl Links {
     pub fn new(description: LinkDescription) -> Self {
         let LinkDescription { name, law, ends, span, rest_lengths, lengths, timestep, account } = description;
-        let layout = Layout::new(ends, rest_lengths);
+        let arrangement = match span {
+            Span::Distance => Arrangement::Spread,
+            Span::Along(_) => Arrangement::Straight,
+        };
+        let layout = Layout::new(ends, rest_lengths, arrangement);
         let mut place_of = vec![(0, 0); ends.len()];
         for (number, part) in layout.parts.iter().enumerate() {
             for (slot, link) in part.links.iter().enumerate() {

@@ -184,6 +184,9 @@ impl<L: LinkLaw> LinkKernel for InLanes<L> {
     }
 }
 
+/// Straight blocks whose forces stand side by side before they are summed.
+const SUMMED_TOGETHER: usize = 16;
+
 /// A register's worth of links: lanes `lane .. lane + S::F64_LANES` of a block.
 pub(super) struct Group<'a, S: Simd> {
     pub simd: S,
@@ -206,6 +209,12 @@ impl<'a, S: Simd> Group<'a, S> {
     pub fn ends(&self, end: usize) -> &'a [u32] {
         let ends = self.part.ends(self.block);
         &ends[end * LANES + self.lane..end * LANES + self.lane + S::F64_LANES]
+    }
+
+    /// Places of the group's first links' ends, of a straight block: those of the others follow.
+    #[inline(always)]
+    pub fn first_ends(&self) -> [usize; 2] {
+        [0, 1].map(|end| self.ends(end)[0] as usize)
     }
 
     #[inline(always)]
@@ -265,7 +274,37 @@ impl<L: LinkLaw, B: Between, const ADDS: bool> WithSimd for Forces<'_, L, B, ADD
         if ADDS {
             assert!(out.len() == rows.row_count(), "a sum for each row of the part");
         }
-        for block in 0..part.block_count() {
+        let straight = if ADDS { part.straight_blocks() } else { 0 };
+        for first in (0..straight).step_by(SUMMED_TOGETHER) {
+            let blocks = first..(first + SUMMED_TOGETHER).min(straight);
+            let mut loads = [[B::Load::default(); LANES]; SUMMED_TOGETHER];
+            for (block, loads) in blocks.clone().zip(&mut loads) {
+                let numbers = &memory[block * len * LANES..(block + 1) * len * LANES];
+                let mut lane = 0;
+                while lane < LANES {
+                    let group = Group { simd, part, block, lane };
+                    let stance = rows.straight_stance(&group);
+                    let mut memory = group.memory(numbers, len);
+                    let push = law.respond(&stance.reach, &mut memory).push;
+                    B::unpack(&group, B::loads(&stance, push), &mut loads[lane..lane + S::F64_LANES]);
+                    lane += S::F64_LANES;
+                }
+            }
+            // first ends, then second ones: what is stored for one block is not read again for the next at once
+            for (block, loads) in blocks.clone().zip(&loads) {
+                let first = part.ends(block)[0] as usize;
+                for (sum, load) in out[first..first + LANES].iter_mut().zip(loads) {
+                    *sum += *load;
+                }
+            }
+            for (block, loads) in blocks.zip(&loads) {
+                let first = part.ends(block)[LANES] as usize;
+                for (sum, load) in out[first..first + LANES].iter_mut().zip(loads) {
+                    *sum -= *load;
+                }
+            }
+        }
+        for block in straight..part.block_count() {
             let numbers = &memory[block * len * LANES..(block + 1) * len * LANES];
             let mut lane = 0;
             while lane < LANES {

@@ -2,7 +2,9 @@
 //!
 //! Rows are cut into stretches. Links within a stretch add to its rows as they come; links across stretches put their
 //! forces into a buffer, from which each stretch then takes its own in order. Neither order depends on the number of
-//! threads. Within a part, links follow their lower ends, so that a regular network is read once from end to end.
+//! threads. Within a part, links follow their lower ends, so that a regular network is read once from end to end. Where a
+//! link is a few numbers only, more is gained by straight blocks: eight links that join eight rows in order to eight others
+//! in order, as those of a string or of a sheet do, are read and summed without looking up a row.
 
 use std::ops::{AddAssign, Range, SubAssign};
 
@@ -22,6 +24,15 @@ const CROSSING_PER_PART: usize = 512;
 /// A part of a stretch is worth a thread of its own.
 const GRAIN: usize = 2;
 
+/// In which order links of a stretch stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrangement {
+    /// All spread over the lanes of a tile.
+    Spread,
+    /// Those first that fill straight blocks.
+    Straight,
+}
+
 /// Two ends of a link, rows of the system.
 pub type Ends = [u32; 2];
 
@@ -40,6 +51,8 @@ pub struct Part {
     pub first_block: usize,
     /// Rows that it reads, counted from `first_row`.
     row_count: usize,
+    /// Blocks, from the first on, whose links join rows in order to rows in order.
+    straight_blocks: usize,
 }
 
 /// All links of a law.
@@ -64,7 +77,17 @@ struct Take {
 }
 
 impl Part {
-    fn new(links: Vec<u32>, all: &[Ends], rest: &[f64], rows: Range<usize>, first_block: usize) -> Self {
+    fn new(
+        (mut links, arrangement): (Vec<u32>, Arrangement),
+        all: &[Ends],
+        rest: &[f64],
+        rows: Range<usize>,
+        first_block: usize,
+    ) -> Self {
+        let straight_blocks = match arrangement {
+            Arrangement::Spread => 0,
+            Arrangement::Straight => straighten(&mut links, all),
+        };
         let blocks = links.len().div_ceil(LANES);
         let mut part = Self {
             ends: vec![0; 2 * LANES * blocks],
@@ -72,6 +95,7 @@ impl Part {
             first_row: rows.start,
             first_block,
             row_count: rows.len(),
+            straight_blocks,
             links,
         };
         for (slot, link) in part.links.iter().enumerate() {
@@ -92,11 +116,18 @@ impl Part {
     /// Blocks, from the first on, that have a link in every lane.
     #[inline(always)]
     pub fn full_blocks(&self) -> usize {
-        let blocks = self.block_count();
+        let blocks = self.block_count() - self.straight_blocks;
+        let links = self.links.len() - LANES * self.straight_blocks;
         let tile = BLOCKS_PER_TILE * (blocks.saturating_sub(1) / BLOCKS_PER_TILE);
         // in the last tile lanes are filled one after the other
-        let in_last_lane = (self.links.len() - LANES * tile).saturating_sub((LANES - 1) * (blocks - tile));
-        tile + in_last_lane
+        let in_last_lane = (links - LANES * tile).saturating_sub((LANES - 1) * (blocks - tile));
+        self.straight_blocks + tile + in_last_lane
+    }
+
+    /// Blocks, from the first on, in which link `lane` joins rows `a + lane` and `b + lane` for the `a` and `b` of the first.
+    #[inline(always)]
+    pub fn straight_blocks(&self) -> usize {
+        self.straight_blocks
     }
 
     /// Rows that the part reads.
@@ -106,9 +137,14 @@ impl Part {
 
     /// Block and lane of the part's `slot`-th link.
     pub fn place(&self, slot: usize) -> (usize, usize) {
+        if slot < LANES * self.straight_blocks {
+            return (slot / LANES, slot % LANES);
+        }
+        let slot = slot - LANES * self.straight_blocks;
         let (tile, inside) = (slot / (BLOCKS_PER_TILE * LANES), slot % (BLOCKS_PER_TILE * LANES));
-        let blocks = (self.block_count() - BLOCKS_PER_TILE * tile).min(BLOCKS_PER_TILE);
-        (BLOCKS_PER_TILE * tile + inside % blocks, inside / blocks)
+        let first = self.straight_blocks + BLOCKS_PER_TILE * tile;
+        let blocks = (self.block_count() - first).min(BLOCKS_PER_TILE);
+        (first + inside % blocks, inside / blocks)
     }
 
     /// Rows of the ends of the part's `slot`-th link.
@@ -140,8 +176,38 @@ impl Part {
     }
 }
 
+/// Puts those links first that fill straight blocks, and gives the number of these.
+fn straighten(links: &mut Vec<u32>, all: &[Ends]) -> usize {
+    // equal for links whose ends are equally far apart; of such the next one starts a row further on
+    let key = |link: u32| {
+        let [a, b] = all[link as usize];
+        (i64::from(b) - i64::from(a), a)
+    };
+    links.sort_by_key(|link| key(*link));
+    let (mut straight, mut others) = (Vec::with_capacity(links.len()), Vec::new());
+    let follows = |pair: &[u32]| {
+        let [(apart, a), (next_apart, next)] = [key(pair[0]), key(pair[1])];
+        apart == next_apart && next == a + 1
+    };
+    for run in links.chunk_by(|a, b| follows(&[*a, *b])) {
+        let (whole, rest) = run.split_at(run.len() - run.len() % LANES);
+        straight.extend_from_slice(whole);
+        others.extend_from_slice(rest);
+    }
+    let blocks = straight.len() / LANES;
+    // as in parts without straight blocks
+    let lower_end = |link: &u32| {
+        let [a, b] = all[*link as usize];
+        (a.min(b), a.max(b), *link)
+    };
+    others.sort_unstable_by_key(lower_end);
+    straight.append(&mut others);
+    *links = straight;
+    blocks
+}
+
 impl Layout {
-    pub fn new(ends: &[Ends], rest: &[f64]) -> Self {
+    pub fn new(ends: &[Ends], rest: &[f64], arrangement: Arrangement) -> Self {
         let all = || ends.iter().flatten().map(|row| *row as usize);
         let rows = all().min().unwrap_or(0)..all().max().map_or(0, |last| last + 1);
         let stretches: Vec<usize> = rows.clone().step_by(ROWS_PER_STRETCH).chain([rows.end]).collect();
@@ -159,16 +225,17 @@ impl Layout {
         }
         let mut layout = Self { parts: Vec::new(), stretches, takes: Vec::new(), take_starts: Vec::new() };
         for (index, links) in within.into_iter().enumerate() {
-            layout.push(links, ends, rest, layout.stretches[index]..layout.stretches[index + 1]);
+            let rows = layout.stretches[index]..layout.stretches[index + 1];
+            layout.push((links, arrangement), ends, rest, rows);
         }
         for links in across.chunks(CROSSING_PER_PART) {
-            layout.push(links.to_vec(), ends, rest, rows.clone());
+            layout.push((links.to_vec(), Arrangement::Spread), ends, rest, rows.clone());
         }
         layout.list_takes();
         layout
     }
 
-    fn push(&mut self, links: Vec<u32>, ends: &[Ends], rest: &[f64], rows: Range<usize>) {
+    fn push(&mut self, links: (Vec<u32>, Arrangement), ends: &[Ends], rest: &[f64], rows: Range<usize>) {
         let first_block = self.block_count();
         self.parts.push(Part::new(links, ends, rest, rows, first_block));
     }
@@ -276,5 +343,43 @@ impl Layout {
             size_of::<Part>() + 4 * (part.links.capacity() + part.ends.capacity()) + 8 * part.rest.capacity()
         };
         self.parts.iter().map(part).sum::<usize>() + size_of::<Take>() * self.takes.capacity()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every link has a place of its own with its own ends, links in order fill straight blocks, and lanes that are called full
+    /// are.
+    #[test]
+    fn links_have_places_however_they_are_arranged() {
+        // a string with second neighbours, some links turned round, and a few across
+        let mut ends: Vec<Ends> = (0..40).map(|i| [i, i + 1]).chain((0..21).map(|i| [i + 2, i])).collect();
+        ends.extend([[5, 30], [17, 3], [40, 0]]);
+        let rest: Vec<f64> = (0..ends.len()).map(|i| i as f64).collect();
+        for (arrangement, straight) in [(Arrangement::Spread, 0), (Arrangement::Straight, 5 + 2)] {
+            let layout = Layout::new(&ends, &rest, arrangement);
+            let part = &layout.parts[0];
+            assert_eq!(part.straight_blocks(), straight);
+            let mut is_taken = vec![false; LANES * part.block_count()];
+            for (slot, link) in part.links.iter().enumerate() {
+                let (block, lane) = part.place(slot);
+                assert!(!std::mem::replace(&mut is_taken[block * LANES + lane], true), "two links in a lane");
+                assert_eq!(part.ends_of(slot), ends[*link as usize]);
+                assert_eq!(part.rest(block)[lane], f64::from(*link));
+            }
+            assert_eq!(part.links.len(), ends.len());
+            for block in 0..part.straight_blocks() {
+                let joined = part.ends(block);
+                for lane in 1..LANES as u32 {
+                    assert_eq!(joined[lane as usize], joined[0] + lane);
+                    assert_eq!(joined[LANES + lane as usize], joined[LANES] + lane);
+                }
+            }
+            let full = (0..part.block_count())
+                .take_while(|block| is_taken[block * LANES..(block + 1) * LANES].iter().all(|taken| *taken));
+            assert_eq!(full.count(), part.full_blocks());
+        }
     }
 }

@@ -3,6 +3,8 @@
 //! Along an axis every law is one-dimensional, as the modules for sound are: places are single numbers, lengths have a sign,
 //! and nothing turns. The masses are points like all others, on which other links may act too.
 
+use std::ops::{AddAssign, SubAssign};
+
 use pulp::{Arch, Simd, WithSimd};
 use souple_math::{Lanes, Real, Vec3};
 
@@ -37,7 +39,7 @@ impl Span {
 /// Rows of a part as links between them read them.
 pub(super) trait Between: Copy {
     /// What links add to a row.
-    type Load: Copy + Default;
+    type Load: Copy + Default + AddAssign + SubAssign;
     /// The same of a group's first ends, side by side.
     type Loads<S: Simd>: Copy;
 
@@ -49,6 +51,11 @@ pub(super) trait Between: Copy {
     fn add_to(sums: &mut [Self::Load], ends: [usize; 2], load: Self::Load);
 
     fn stance<S: Simd>(self, group: &Group<S>) -> Stance<S, Self::Loads<S>>;
+    /// The same of links of a straight block.
+    #[inline(always)]
+    fn straight_stance<S: Simd>(self, group: &Group<S>) -> Stance<S, Self::Loads<S>> {
+        self.stance(group)
+    }
     /// Of a push along the links as they stand.
     fn loads<S: Simd>(stance: &Stance<S, Self::Loads<S>>, push: Lanes<S>) -> Self::Loads<S>;
     /// # Safety
@@ -144,6 +151,17 @@ pub trait Places: Copy {
     fn place(self, row: usize) -> Place;
     /// Differences between the ends of a group's links, which are below the number of rows.
     fn differences<S: Simd>(self, simd: S, to: &[u32], from: &[u32]) -> [Lanes<S>; 2];
+    /// The same between as many rows from one on and those from another on.
+    #[inline(always)]
+    fn straight_differences<S: Simd>(self, simd: S, [to, from]: [usize; 2]) -> [Lanes<S>; 2] {
+        let mut out = [Lanes::constant(simd, 0.0); 2];
+        for lane in 0..S::F64_LANES {
+            let ([a, b], [c, d]) = (self.place(to + lane), self.place(from + lane));
+            out[0].as_mut_slice()[lane] = a - c;
+            out[1].as_mut_slice()[lane] = b - d;
+        }
+        out
+    }
     /// Of all rows those of a part.
     fn of_part(self, part: &Part) -> Self;
     fn row_count(self) -> usize;
@@ -222,6 +240,12 @@ impl Places for Known<'_> {
         unsafe { Lanes::gather_differences(simd, self.places, to, from) }
     }
 
+    #[inline(always)]
+    fn straight_differences<S: Simd>(self, simd: S, [to, from]: [usize; 2]) -> [Lanes<S>; 2] {
+        let of = |first: usize| &self.places[first..first + S::F64_LANES];
+        Lanes::differences_in_order(simd, of(to), of(from))
+    }
+
     fn of_part(self, part: &Part) -> Self {
         let first = part.first_row - self.first_row;
         Self { places: &self.places[first..first + part.row_count()], first_row: part.first_row }
@@ -286,6 +310,13 @@ impl<P: Places> Between for OnAxis<P> {
     fn stance<S: Simd>(self, group: &Group<S>) -> Stance<S, Lanes<S>> {
         let [length, before] = self.places.differences(group.simd, group.ends(0), group.ends(1));
         let present = group.present();
+        Stance { reach: Reach { length, before, rest: group.rest() }, along: present, size: present }
+    }
+
+    #[inline(always)]
+    fn straight_stance<S: Simd>(self, group: &Group<S>) -> Stance<S, Lanes<S>> {
+        let [length, before] = self.places.straight_differences(group.simd, group.first_ends());
+        let present = Lanes::constant(group.simd, 1.0);
         Stance { reach: Reach { length, before, rest: group.rest() }, along: present, size: present }
     }
 

@@ -212,8 +212,10 @@ impl Figure {
             strokes.extend(dots);
         }
         // what is cut away whole needs no legend
-        let is_coloured =
-            |of: &Surface| !matches!(of.paint, Paint::Plain(_)) && (has_dots || !of.triangles.is_empty());
+        let is_coloured = |of: &Surface| {
+            !matches!(of.paint, Paint::Plain(_))
+                && (has_dots || !of.triangles.is_empty() || !of.balls.is_empty())
+        };
         let coloured = surfaces.iter().any(is_coloured);
         surfaces.extend(stage.surfaces(moment.time, common.bounds));
         let legend = self.quantity().filter(|_| coloured).zip(self.legend).map(|(quantity, place)| Legend {
@@ -302,7 +304,15 @@ impl Figure {
             None => vec![painted(self.surface(body, common), 0)],
         };
         if let Some(radii) = body.radii() {
-            surfaces.push(painted(MeshSurface::balls(&body.positions, radii, self.cut), 0));
+            let (mut of, from) = Surface::of_balls(&body.positions, radii, self.cut);
+            of.paint = match &values {
+                Some(values) => {
+                    Paint::PointScalar(from.iter().map(|point| values[*point as usize]).collect())
+                }
+                None if is_coloured => Paint::Plain(Colour::from_screen(NO_VALUE)),
+                None => Paint::Plain(colour_of(index, 0)),
+            };
+            surfaces.push(of);
         }
         surfaces
     }

@@ -169,7 +169,9 @@ pub fn add_velocities(body: &Placed, network: &Network, velocities: &mut [Vec3])
 /// Rows that a medium brakes, with their drag [N s/m].
 pub fn drags(body: &Placed, network: &Network) -> Vec<(u32, f64)> {
     let own = network.of_each(|group| group.drag);
-    (body.rows.start as u32..).zip(own).filter(|(_, drag)| *drag > 0.0).collect()
+    let mut drags: Vec<_> = (body.rows.start as u32..).zip(own).filter(|(_, drag)| *drag > 0.0).collect();
+    drags.shrink_to_fit();
+    drags
 }
 
 /// A force for each table of links and for each crowd.

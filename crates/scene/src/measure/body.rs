@@ -44,31 +44,53 @@ fn velocities_of(part: &Part, world: &World) -> Vec<Vec3> {
     only
 }
 
-/// Rows and their masses: of a consistent mass, the sums of its lines over what moves with a shift [kg].
-fn masses(system: usize, rows: impl Iterator<Item = usize>, world: &World) -> (Vec<usize>, Vec<f64>) {
-    let System { mass, kinematics, .. } = &world.model().systems[system];
-    let share = |row: usize| kinematics.translation_weight(row);
-    let mut sums: Vec<f64> = mass.diagonal.iter().enumerate().map(|(row, m)| m * share(row)).collect();
-    for &(a, b, coupling) in &mass.couplings {
-        sums[a as usize] += coupling * share(b as usize);
-        sums[b as usize] += coupling * share(a as usize);
+/// Masses of rows: of a consistent mass, the sums of its lines over what moves with a shift [kg].
+struct Masses<'a> {
+    system: &'a System,
+    /// Of a mass that couples rows.
+    sums: Vec<f64>,
+}
+
+impl<'a> Masses<'a> {
+    fn new(system: usize, world: &'a World) -> Self {
+        let system = &world.model().systems[system];
+        let mut masses = Self { system, sums: Vec::new() };
+        if !system.mass.is_lumped() {
+            masses.sums = (0..system.mass.diagonal.len()).map(|row| masses.alone(row)).collect();
+            for &(a, b, coupling) in &system.mass.couplings {
+                masses.sums[a as usize] += coupling * masses.share(b as usize);
+                masses.sums[b as usize] += coupling * masses.share(a as usize);
+            }
+        }
+        masses
     }
-    let rows: Vec<usize> = rows.collect();
-    let masses = rows.iter().map(|row| sums[*row]).collect();
-    (rows, masses)
+
+    /// How much of a shift a row moves with.
+    fn share(&self, row: usize) -> f64 {
+        self.system.kinematics.translation_weight(row)
+    }
+
+    fn alone(&self, row: usize) -> f64 {
+        self.system.mass.diagonal[row] * self.share(row)
+    }
+
+    fn of(&self, row: usize) -> f64 {
+        self.sums.get(row).copied().unwrap_or_else(|| self.alone(row))
+    }
+
+    fn total(&self, rows: impl Iterator<Item = usize>) -> f64 {
+        rows.map(|row| self.of(row) * self.share(row)).sum()
+    }
 }
 
 /// The mass of some rows [kg].
 fn total(system: usize, rows: impl Iterator<Item = usize>, world: &World) -> f64 {
-    let (rows, masses) = masses(system, rows, world);
-    let share = |row: &usize| world.model().systems[system].kinematics.translation_weight(*row);
-    rows.iter().zip(&masses).map(|(row, mass)| mass * share(row)).sum()
+    Masses::new(system, world).total(rows)
 }
 
 /// `Σ m x / Σ m` of some rows as they stand [m].
-pub fn centre_of_mass(system: usize, rows: impl Iterator<Item = usize>, world: &World) -> Vec3 {
-    let (rows, masses) = masses(system, rows, world);
-    let positions = &world.rows(system).positions;
-    let moment: Vec3 = rows.iter().zip(&masses).map(|(row, mass)| positions[*row] * *mass).sum();
-    moment / total(system, rows.iter().copied(), world)
+pub fn centre_of_mass(system: usize, rows: impl Iterator<Item = usize> + Clone, world: &World) -> Vec3 {
+    let (masses, positions) = (Masses::new(system, world), &world.rows(system).positions);
+    let moment: Vec3 = rows.clone().map(|row| positions[row] * masses.of(row)).sum();
+    moment / masses.total(rows)
 }

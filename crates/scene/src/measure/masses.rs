@@ -38,6 +38,15 @@ pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World
                 count => near.iter().map(apart).sum::<f64>() / count as f64,
             }
         }
+        MassesQuantity::Kept => {
+            let before = neighbours(&part.starts, within);
+            let is_still = |[a, b]: &&[u32; 2]| {
+                (places[*a as usize] - places[*b as usize]).length_sq() < within * within
+            };
+            let still = before.iter().filter(is_still).count();
+            // of none, none is lost
+            if before.is_empty() { 1.0 } else { still as f64 / before.len() as f64 }
+        }
         MassesQuantity::Pairs => unreachable!("counted above"),
     }
 }

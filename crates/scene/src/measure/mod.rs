@@ -310,14 +310,18 @@ fn part(probe: &Probe, draft: &Draft) -> Option<Part> {
         points.into_iter().map(|point| first + point).collect()
     };
     let own = |point: &u32| body.own_row(*point).unwrap_or(body.rows.start as u32 + point);
+    // what other quantities do not read is not kept, of a million balls
+    let reads_starts =
+        matches!(probe.quantity.build.subject, Subject::Points(_) | Subject::Masses(MassesQuantity::Kept));
+    let of_points: &[u32] = if reads_starts { &points } else { &[] };
     let hangs = |other: &Placed| other.system == body.system && other.hanging.is_some();
     Some(Part {
         system: body.system,
-        held: points.iter().map(own).collect(),
+        held: of_points.iter().map(own).collect(),
         hangs: draft.bodies.iter().any(hangs),
         coarser: body.levels_of().filter(|_| is_held).flat_map(rows_in).collect(),
         rows: points.iter().map(|point| body.rows.start as u32 + point).collect(),
-        starts: points.iter().map(|point| body.mesh.points[*point as usize]).collect(),
+        starts: of_points.iter().map(|point| body.mesh.points[*point as usize]).collect(),
         whole: body.mass_rows(),
         contact: probe.contact.clone(),
         about: probe.about,

@@ -75,6 +75,7 @@ pub enum MassesQuantity {
     Parts,
     Neighbours,
     Spacing,
+    Kept,
     Pairs,
 }
 
@@ -191,7 +192,12 @@ impl Quantity {
     pub fn is_of_neighbours(&self) -> bool {
         matches!(
             self.subject,
-            Subject::Masses(MassesQuantity::Parts | MassesQuantity::Neighbours | MassesQuantity::Spacing)
+            Subject::Masses(
+                MassesQuantity::Parts
+                    | MassesQuantity::Neighbours
+                    | MassesQuantity::Spacing
+                    | MassesQuantity::Kept
+            )
         )
     }
 
@@ -521,6 +527,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         masses("m", MassesQuantity::Spacing),
     ),
     &entry(
+        "masses.kept",
+        "share of the neighbours that masses had as the scene gives them, nearer than the key `within`, which are neighbours still",
+        MULTITUDE,
+        masses("", MassesQuantity::Kept),
+    ),
+    &entry(
         "masses.pairs",
         "pairs of masses that crowds have within their ranges: what a step costs",
         MULTITUDE,
@@ -547,7 +559,7 @@ const ENTRIES: &[&QuantityEntry] = &[
     ),
     &entry(
         "contour.roundness",
-        "4 pi A/L^2 of its area and length: 1 for a circle, less for all else",
+        "4 pi A/L^2 of its area and length: 1 for a circle, 1/n for n equal ones, less for all else",
         OUTLINE,
         contour("", ContourQuantity::Roundness),
     ),

@@ -1,6 +1,8 @@
 //! Multitudes: steps of a heap with cohesion and friction, and how they grow with the number of balls.
 
-use super::timing::{Held, Timed, Timing, as_it_is, median, scene};
+use souple_scene::Measurement;
+
+use super::timing::{Clock, Held, Timed, Timing, as_it_is, median, scene};
 use super::{Effort, Figure, value_of};
 
 /// Steps in a period of the world.
@@ -38,7 +40,7 @@ pub fn balls_100k(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
 
 /// A thousand balls to a million, with all threads.
 pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
-    let radii: &[(&str, f64)] = &[("1k", 1.2), ("10k", 2.45), ("100k", 5.2), ("1m", 11.1)];
+    let radii: &[(&str, f64)] = &[("1k", 1.2), ("10k", 2.45), ("100k", 5.2), ("1m", 11.3)];
     let held = held(None)?;
     let mut figures = Vec::new();
     let mut points = Vec::new();
@@ -58,6 +60,39 @@ pub fn scaling(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
         }
     }
     Ok(figures)
+}
+
+/// How long contours of five hundred balls may take to be shown 25 times in a second [ms].
+const SHOWN: f64 = 40.0;
+
+/// How far the two contours may be apart, of the diameter of the balls.
+const APART: f64 = 0.2;
+
+/// Both contours of about five hundred balls, and how far they are apart, beside a step.
+pub fn contours(name: &str, effort: Effort) -> Result<Vec<Figure>, String> {
+    let many = r#"networks.block.masses.balls.fill={ shape = { name = "capsule", from = [-9, 0, 0], to = [9, 0, 1], radius = 9 }, spacing = 1, box = [[-20, 0, -10], [20, 0, 11]] }"#;
+    let settings = [many.to_owned()];
+    let sample = || -> Result<(Timed, f64), String> {
+        let scene = scene("two_contours", &settings)?;
+        let probe =
+            scene.probes.into_iter().find(|probe| probe.name == "apart").ok_or("there is no probe")?;
+        let cells = scene.bodies[0].mesh.points.len();
+        let mut world = scene.model.start(scene.state);
+        let (mut seconds, mut processor, mut apart) = (Vec::new(), Vec::new(), 0.0);
+        for _ in 0..effort.choose(3, 10) {
+            let clock = Clock::start();
+            world.step().map_err(|error| error.to_string())?;
+            let Measurement::Number(measured) = probe.measure(&mut world) else {
+                return Err("no number".to_owned());
+            };
+            clock.stop(&mut seconds, &mut processor, 1);
+            apart = measured;
+        }
+        Ok((Timed { threads: 1, seconds, processor, cells, bytes: world.bytes() }, apart))
+    };
+    let (timed, apart) = super::timing::with_threads(1, sample)??;
+    let error_of = format!("how far the contours are apart [m], {APART} at most");
+    Ok(vec![timed.milliseconds_per_step(name, &Held { error: apart, error_of, baseline: Some(SHOWN) })])
 }
 
 /// Of the straight line through points, by least squares.

@@ -38,6 +38,9 @@ pub(super) static CONTOUR: Keys = Keys::new(
     ],
 );
 
+/// Steps in what a ball reaches, at most.
+const STEPS_MAX: f64 = 1000.0;
+
 /// Where an object ends.
 #[derive(Clone, Debug)]
 pub struct ContourSpec {
@@ -84,6 +87,17 @@ impl ContourSpec {
         let radius = radius.unwrap_or(1.0);
         let number = |key: &str, share: f64| reader.maybe_number(key).unwrap_or(share * radius);
         let step = number("step", 0.1);
+        // of the frontier's grid a ball touches the square of twice as many corners
+        let (reach, of) = match way {
+            "frontier" => (radius + number("probe", 0.1), "`radius` and `probe` together"),
+            _ => (radius, "`radius`"),
+        };
+        if is_of_balls && reach > STEPS_MAX * step {
+            let message = format!("a step of {step} m goes {:.0} times into {of}, {reach} m", reach / step);
+            let expected = format!("at least {} m, a thousandth", reach / STEPS_MAX);
+            reader.log().add(Code::OutOfRange, &reader.site_of("step"), message, expected);
+            return None;
+        }
         let way = match way {
             "through" => Way::Through(reader.maybe_indices("through")?),
             "skin" => Way::Skin(reader.maybe_text("skin")?),
