@@ -298,3 +298,31 @@ fn shapes_are_filled_and_polygons_close() {
     let body = &scene(&text).unwrap().bodies[0];
     assert_eq!((body.mesh.points.len(), body.mesh.cell_count()), (6, 6));
 }
+
+/// Contours are no finer than their balls bear: grids as fine as that would fill any memory.
+#[test]
+fn contours_far_too_fine_are_refused() {
+    let contour = |way: &str, more: &str| {
+        format!("{TWO}[networks.n.contours.edge]\n{way} = [\"a\"]\nradius = 0.5\n{more}\n")
+    };
+    refused(&contour("frontier", "step = 1e-6"), &["550000 times", "at least 0.00055 m"]);
+    refused(&contour("frontier", "probe = 1e6"), &["`radius` and `probe` together"]);
+    refused(&contour("scan", "step = 1e-9"), &["into `radius`, 0.5 m", "at least 0.0005 m"]);
+    assert!(scene(&contour("scan", "step = 0.001")).is_ok());
+}
+
+/// A whole item may be put behind the last one of a list, and no further; of an item that is not there no key is set.
+#[test]
+fn items_are_appended_to_lists() {
+    let text = format!("{HEAD}{TWO}[[networks.n.pins]]\nregion = {{ points = [0] }}\n");
+    let read = |set: &str| {
+        let settings = [format!("networks.n.{set}")];
+        read_text("net.toml", &text, Path::new("."), &settings).map_err(|faults| faults.to_string())
+    };
+    let both = read("pins[1]={ region = { points = [1] }, axes = \"x\" }").unwrap();
+    assert_eq!(both.model.systems[0].constraints.len(), 2);
+    let message = read("pins[2]={ region = \"a\" }").err().unwrap();
+    assert!(message.contains("an index below 1, or 1 for one more"), "{message}");
+    let message = read("pins[1].axes=x").err().unwrap();
+    assert!(message.contains("an index below 1") && !message.contains("one more"), "{message}");
+}

@@ -101,7 +101,7 @@ pub(super) const CASES: &[Case] = &[
         reference: -150.0,
         // the inertia of a column: 0.05 kg at 6 0.04 m/s², of 6 N
         tolerance: Tolerance::Relative(2e-3),
-        mutation: "parameters.law.hardening=253",
+        mutation: "parameters.law.hardening=270",
         ..LED
     },
     Case {
