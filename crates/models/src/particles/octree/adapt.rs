@@ -75,8 +75,10 @@ impl OctreeForce {
             if coarser.peek().is_none() {
                 memory[own] = DIVIDED;
             }
+            // but for those that divide with this one: asked again, they would never come to it
             coarser.for_each(|other| {
-                memory[*other as usize - first] = f64::max(memory[*other as usize - first], WANTED)
+                let other = &mut memory[*other as usize - first];
+                *other = if *other == DIVIDED { DIVIDED } else { WANTED };
             });
         }
         for mother in first..tree.count() {
