@@ -19,7 +19,10 @@ use super::frames::PlacedFrames;
 use super::hanging::Hanging;
 use super::levels::PlacedLevels;
 use super::network::PlacedLinks;
-use super::{Draft, axes, frames, hanging, inertial, levels, network, octree, section, shape, start, tissue};
+use super::{
+    Draft, axes, frames, hanging, inertial, levels, material_fields, network, octree, section, shape, start,
+    tissue,
+};
 use crate::diagnostic::{Code, Site};
 use crate::spec::body::{Body, Damping, MassKind, TangentKind};
 use crate::spec::world::SystemSpec;
@@ -502,7 +505,7 @@ fn materials_of(draft: &Draft, body: &Placed) -> Option<BodyMaterials> {
             material_of_cell[cell as usize] = number;
         }
     }
-    Some(BodyMaterials { all: materials, of_cell: material_of_cell })
+    material_fields::spread(draft, body, BodyMaterials { all: materials, of_cell: material_of_cell })
 }
 
 /// Rest positions and initial velocities. Pinned points stand where their pins want them, but for steppers that look for

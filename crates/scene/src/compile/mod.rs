@@ -14,6 +14,7 @@ mod hanging;
 mod inertial;
 mod levels;
 mod links;
+mod material_fields;
 mod memory;
 mod motion;
 mod network;

@@ -90,6 +90,19 @@ pub(crate) static BODY_REGION: Keys = Keys::new(
     ],
 );
 
+pub(crate) static MATERIAL_FIELD: Keys = Keys::new(
+    "material_field",
+    "a number of a body's own material that differs from cell to cell, under its name; regions keep theirs",
+    &[
+        Key::new(
+            "value",
+            Shape::Formula(&PLACE_VARIABLES),
+            "of the middle of each cell at rest, in the unit of the number",
+        ),
+        Key::new("file", Shape::Text, "a text file with a number for each cell, in the order of the mesh"),
+    ],
+);
+
 pub(crate) static MATERIAL_AXES: Keys = Keys::new(
     "material_axes",
     "the axes of the law at each place of a body, for laws that know directions: numbers, or formulas of `x`, `y`, `z`",
@@ -125,6 +138,11 @@ pub(crate) static BODY: Keys = Keys::new(
             "octree",
             Shape::Table(&OCTREE),
             "its points as particles, grouped by eight where little happens",
+        ),
+        Key::new(
+            "material_fields",
+            Shape::Named(&MATERIAL_FIELD),
+            "numbers of its material that differ from cell to cell, by their names",
         ),
         Key::new("material_axes", Shape::Table(&MATERIAL_AXES), "directions of its law, from place to place"),
         Key::new("regions", Shape::Named(&BODY_REGION), "parts of another material; later ones win"),
@@ -194,6 +212,7 @@ pub struct Body {
     pub octree: Option<OctreeSpec>,
     /// Directions of its law; those of the world, or of tissue its own, where left out.
     pub axes: Option<AxesSpec>,
+    pub material_fields: Vec<MaterialField>,
     pub regions: Vec<BodyRegion>,
     pub mass: MassKind,
     pub quadrature: Quadrature,
@@ -234,6 +253,35 @@ impl AxesSpec {
     fn read(reader: &Reader) -> Option<Self> {
         let y = reader.maybe_vector_formula("y");
         Some(Self { x: reader.maybe_vector_formula("x")?, y, site: reader.site() })
+    }
+}
+
+/// A number of the body's own material, cell by cell.
+pub struct MaterialField {
+    /// Of the material.
+    pub parameter: String,
+    pub values: FieldValues,
+    pub site: Site,
+}
+
+pub enum FieldValues {
+    /// Of the middle of a cell at rest.
+    Formula(Formula),
+    /// A number for each cell.
+    File { name: String, site: Site },
+}
+
+impl MaterialField {
+    fn read(parameter: String, reader: &Reader) -> Option<Self> {
+        if reader.has("value") == reader.has("file") {
+            let message = format!("`{parameter}` is told by a formula or by a file");
+            reader.log().add(Code::Conflict, &reader.site(), message, "`value` or `file`");
+            return None;
+        }
+        let file =
+            || Some(FieldValues::File { name: reader.maybe_text("file")?, site: reader.site_of("file") });
+        let values = reader.maybe_formula("value").map(FieldValues::Formula).or_else(file)?;
+        Some(Self { parameter, values, site: reader.site() })
     }
 }
 
@@ -346,6 +394,11 @@ impl Body {
             levels: reader.table("levels").map(|table| LevelsSpec::read(&table)),
             octree: reader.table("octree").map(|table| OctreeSpec::read(&table)),
             axes: reader.table("material_axes").and_then(|table| AxesSpec::read(&table)),
+            material_fields: reader
+                .named("material_fields")
+                .into_iter()
+                .filter_map(|(name, part)| MaterialField::read(name, &part))
+                .collect(),
             regions: reader.named("regions").into_iter().map(region).collect(),
             // lumped, the mass of frames would swing in motions that move no matter
             mass: match reader.choice("mass") {

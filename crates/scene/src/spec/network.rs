@@ -380,6 +380,7 @@ impl Network {
             material: None,
             section: None,
             axes: None,
+            material_fields: Vec::new(),
             regions: Vec::new(),
             mass: MassKind::Lumped,
             quadrature: Quadrature::Default,

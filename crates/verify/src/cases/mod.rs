@@ -19,6 +19,7 @@ mod implicit;
 mod levels;
 mod loads;
 mod long_beam;
+mod material_fields;
 mod material_tests;
 mod matter;
 mod mixed_models;
@@ -75,6 +76,7 @@ pub const TABLES: &[&[Case]] = &[
     rheometer::CASES,
     rheology::CASES,
     conditional::CASES,
+    material_fields::CASES,
     matter::CASES,
     material_tests::CASES,
     views::CASES,
