@@ -18,6 +18,16 @@ pub struct Division {
     pub timestep: f64,
     pub halvings: u32,
     pub filter: Filter,
+    pub pace: Pace,
+}
+
+/// How often points are pushed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// Each as its rate says.
+    Own,
+    /// All in every tick.
+    Together,
 }
 
 impl Division {
@@ -25,9 +35,17 @@ impl Division {
         1 << self.halvings
     }
 
+    /// How often points of a rate are pushed in a step.
+    pub fn dates(&self, rate: u32) -> u32 {
+        match self.pace {
+            Pace::Own => 1 << rate,
+            Pace::Together => self.ticks(),
+        }
+    }
+
     /// Seconds between two pushes of a rate.
     pub fn interval(&self, rate: u32) -> f64 {
-        self.timestep / f64::from(1_u32 << rate)
+        self.timestep / f64::from(self.dates(rate))
     }
 }
 
@@ -73,6 +91,8 @@ pub struct Census {
     pub active: Vec<usize>,
     /// Points of each level that follow because a force or another ghost reads them.
     pub ghosts: Vec<usize>,
+    /// Tetrahedra, or particles, of each level, whether at work or not.
+    pub cells: Vec<usize>,
     /// Of each point of the finest mesh: the level of the mesh that is at work there.
     pub level_of_point: Vec<u32>,
 }
@@ -130,6 +150,9 @@ pub trait Levels: Send + Sync {
 
     /// Elastic forces of samples that a step so divided evaluates, by the last lists made.
     fn evaluations(&self, division: &Division, scratch: &Scratch) -> usize;
+
+    /// Elastic forces evaluated at each date of a rate, by rate: what a step so divided has to do with this memory.
+    fn workload(&self, division: &Division, memory: &[f64]) -> Vec<usize>;
 
     /// Who does what, by the memory.
     fn census(&self, memory: &[f64]) -> Census;

@@ -53,6 +53,64 @@ pub fn coarser(mesh: &Mesh, size: f64) -> Result<Mesh, MeshError> {
     best.map(|(_, mesh)| mesh)
 }
 
+/// Why there is no mesh of as many tetrahedra as are wanted.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CoarsenError {
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    #[error("no mesh of about {wanted} tetrahedra was found; the nearest has {nearest}")]
+    Count { wanted: usize, nearest: usize },
+}
+
+/// How far from the number of tetrahedra wanted a mesh may be, relatively.
+const OFF_COUNT: f64 = 0.2;
+/// Sizes that are tried until the count is about right.
+const ROUNDS: usize = 12;
+
+/// The mesh of about `wanted` tetrahedra that fills the surface of a mesh, within a fifth of them; of those of nearly that
+/// size the one whose worst tetrahedron is best.
+///
+/// # Errors
+/// No size gives as many, or none can be filled.
+pub fn coarser_of_count(mesh: &Mesh, wanted: usize) -> Result<Mesh, CoarsenError> {
+    let off = |mesh: &Mesh| (mesh.cell_count() as f64 / wanted as f64).ln().abs();
+    let fits = |mesh: &Mesh| (mesh.cell_count() as f64 / wanted as f64 - 1.0).abs() <= OFF_COUNT;
+    // of regular tetrahedra, V = N a³/(6 √2)
+    let mut size = (72.0_f64.sqrt() * mesh.volume() / wanted.max(1) as f64).cbrt();
+    let mut nearest: Option<(f64, Mesh)> = None;
+    let mut failure = None;
+    for _ in 0..ROUNDS {
+        let tried = size;
+        match attempt(mesh, size) {
+            Ok((_, filled)) => {
+                size *= (filled.cell_count() as f64 / wanted as f64).cbrt();
+                if nearest.as_ref().is_none_or(|(_, nearest)| off(&filled) < off(nearest)) {
+                    nearest = Some((tried, filled));
+                }
+            }
+            // too coarse for the shape
+            Err(error) => {
+                failure = Some(error);
+                size *= 0.9;
+            }
+        }
+        if (size / tried - 1.0).abs() < 0.02 {
+            break;
+        }
+    }
+    let Some((size, found)) = nearest else {
+        return Err(failure.map_or(CoarsenError::Count { wanted, nearest: 0 }, CoarsenError::Mesh));
+    };
+    let mut best: Option<([f64; 2], Mesh)> = None;
+    for factor in std::iter::once(1.0).chain(OTHERS) {
+        let Ok(other) = attempt(mesh, factor * size) else { continue };
+        if fits(&other.1) && best.as_ref().is_none_or(|best| other.0 > best.0) {
+            best = Some(other);
+        }
+    }
+    best.map(|(_, mesh)| mesh).ok_or(CoarsenError::Count { wanted, nearest: found.cell_count() })
+}
+
 /// The least and the mean radius ratio of a filling, and the filling.
 fn attempt(mesh: &Mesh, size: f64) -> Result<([f64; 2], Mesh), MeshError> {
     let values = Values::new().with("size", Value::Number(size)).completed(PARAMETERS);
@@ -92,6 +150,40 @@ mod tests {
         let expected = 3.0 * (0.5 / (1.5 + 0.5 * 3.0_f64.sqrt())) / (0.5 * 3.0_f64.sqrt());
         assert!((corner - expected).abs() < 1e-14, "{corner} {expected}");
         assert_eq!(radius_ratio([Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y]), 0.0);
+    }
+
+    /// V-30: a liver of 1874, 172 and 28 tetrahedra, each number within a fifth, none flat, and the coarsest surface within 5 % of the
+    /// diagonal of the body.
+    #[test]
+    fn families_have_the_counts_asked_for() {
+        let entry = SHAPES.find("liver").unwrap();
+        let values = entry.values(Values::new()).unwrap();
+        let size = Values::new().with("size", Value::Number(0.012)).completed(PARAMETERS).unwrap();
+        let options = Options::from_values(&size).unwrap();
+        let fine = options.fill_body(&(entry.build)(&values).unwrap()).unwrap().mesh;
+        let outside = fine.boundary_surface();
+        for wanted in [1874, 172, 28] {
+            let mesh = coarser_of_count(&fine, wanted).unwrap();
+            let count = mesh.cell_count();
+            assert!((count as f64 / wanted as f64 - 1.0).abs() <= OFF_COUNT, "{wanted}: {count}");
+            let worst = radius_ratios(&mesh).into_iter().fold(f64::INFINITY, f64::min);
+            assert!(worst > 0.1, "{wanted}: {worst}");
+            let surface = mesh.boundary_surface();
+            let distances = outside.points.iter().map(|point| distance(&surface, *point));
+            let farthest = distances.fold(0.0, f64::max) / fine.bounds().diagonal();
+            assert!(farthest < 0.05, "{wanted}: {farthest}");
+        }
+    }
+
+    fn distance(surface: &crate::TriangleSurface, place: Vec3) -> f64 {
+        let of = |triangle: &[u32; 3]| {
+            let corners = triangle.map(|corner| surface.points[corner as usize]);
+            let (weights, _) = crate::surface::closest_point_on_triangle(place, corners);
+            let closest: Vec3 =
+                corners.into_iter().zip(weights).map(|(corner, weight)| corner * weight).sum();
+            (closest - place).length()
+        };
+        surface.triangles.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// The coarser mesh of a ball fills it, with good tetrahedra about as long as asked.

@@ -1,6 +1,6 @@
 //! Bodies of several meshes: what follows follows exactly, nothing is lost between levels, and steps keep their laws.
 
-use souple_engine::levels::{Division, Filter, Followers, Kinematic, Levels};
+use souple_engine::levels::{Division, Filter, Followers, Kinematic, Levels, Pace};
 use souple_engine::steppers::{Schedule, Staggered};
 use souple_engine::{
     Constraint, Force, Kinematics, Mass, Model, Rows, Scratch, State, System, UnknownKind, World,
@@ -13,7 +13,7 @@ use souple_mesh::implicit::SHAPES;
 use souple_mesh::{Mesh, generate};
 use souple_models::materials::{Material, TABLE};
 use souple_models::multiresolution::{
-    Choice, Coupling, Criterion, LevelsDescription, LevelsForce, Measure, PLACE_VARIABLES,
+    Choice, Coupling, Criterion, LevelsDescription, LevelsForce, Measure, PLACE_VARIABLES, Stiffness,
 };
 use souple_table::{Value, Values};
 
@@ -55,6 +55,10 @@ fn fixed(level: &str) -> Choice {
 }
 
 fn body(meshes: &[Mesh], coupling: Coupling, choice: Choice) -> LevelsForce {
+    body_of(meshes, coupling, choice, Stiffness::Own)
+}
+
+fn body_of(meshes: &[Mesh], coupling: Coupling, choice: Choice, stiffness: Stiffness) -> LevelsForce {
     let all: Vec<&Mesh> = meshes.iter().collect();
     let finest = meshes.last().unwrap();
     LevelsForce::new(LevelsDescription {
@@ -64,6 +68,7 @@ fn body(meshes: &[Mesh], coupling: Coupling, choice: Choice) -> LevelsForce {
         materials: &[material("st_venant_kirchhoff", [20000.0, 7000.0])],
         material_of_cell: &vec![0; finest.cell_count()],
         coupling,
+        stiffness,
         choice,
         viscosity: 0.0,
         mass_damping: 0.0,
@@ -80,7 +85,7 @@ struct Alone {
     rows: Rows,
 }
 
-const DIVISION: Division = Division { timestep: 1e-3, halvings: 2, filter: Filter::None };
+const DIVISION: Division = Division { timestep: 1e-3, halvings: 2, filter: Filter::None, pace: Pace::Own };
 
 impl Alone {
     fn new(force: LevelsForce) -> Self {
@@ -338,6 +343,7 @@ fn semi_implicit_points_bear_twice_the_step() {
                 materials: &[material("linear", [20000.0, 7000.0])],
                 material_of_cell: &vec![0; meshes[0].cell_count()],
                 coupling: Coupling::OneWay,
+                stiffness: Stiffness::Own,
                 choice: fixed("0"),
                 viscosity: 0.0,
                 mass_damping: 0.0,
@@ -370,6 +376,7 @@ fn budgets_are_kept() {
             materials: &[material("st_venant_kirchhoff", [20000.0, 7000.0])],
             material_of_cell: &vec![0; meshes[2].cell_count()],
             coupling: Coupling::Transpose,
+            stiffness: Stiffness::Own,
             choice: Choice::Adaptive(criterion),
             viscosity: 0.0,
             mass_damping: 0.0,
@@ -387,4 +394,19 @@ fn budgets_are_kept() {
         let spent = spent(Some(part * most));
         assert!(spent <= part * most && spent > 0.3 * part * most, "{spent} of {}", part * most);
     }
+}
+
+/// Linear tetrahedra are too stiff by about the square of their size: the share of moduli that makes them yield as the finest falls
+/// with it, and the finest keeps its own.
+#[test]
+fn coarse_meshes_yield_as_the_finest() {
+    let meshes = [cube(2.0), cube(4.0), cube(8.0)];
+    let force = body_of(&meshes, Coupling::Transpose, fixed("0"), Stiffness::AsFinest);
+    let [coarse, middle, fine] = force.share_of_moduli()[..] else { unreachable!() };
+    assert_eq!(fine, 1.0);
+    // 1/C = 1/C₀ (1 + a h²), h in cells of the finest: a quarter of the size, four times as near
+    assert!(0.3 < coarse && coarse < middle && middle < 1.0, "{coarse} {middle}");
+    let a = |share: f64, h_sq: f64| (1.0 - share) / (share * h_sq - 1.0);
+    // two cells across are far from the limit, which is approached from below
+    assert!((0.5..1.0).contains(&(a(coarse, 16.0) / a(middle, 4.0))), "{coarse} {middle}");
 }

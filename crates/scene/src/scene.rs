@@ -21,7 +21,7 @@ use crate::diagnostic::{Diagnostics, Log};
 use crate::document::Table;
 use crate::include::Includer;
 use crate::inputs::{Inputs, Library};
-use crate::measure::{ContourInfo, ProbeInfo};
+use crate::measure::{ContourInfo, ProbeInfo, Workload};
 use crate::source::{Source, Sources};
 use crate::spec::Spec;
 use crate::spec::body::Body;
@@ -252,6 +252,16 @@ pub fn census(world: &World, system: usize, force: &str) -> Option<Census> {
     let (index, levels) = levels(world, system, force)?;
     let memory = of.memory_ranges()[index].clone();
     Some(levels.census(&world.state().systems[system].memory[memory]))
+}
+
+/// What a step of the body of a force has to do with the points that are active; `None` where it has no levels.
+pub(crate) fn workload(world: &World, system: usize, force: &str) -> Option<Workload> {
+    let of = &world.model().systems[system];
+    let (index, levels) = levels(world, system, force)?;
+    let (division, schedule) = of.stepper.ticks(world.model().timestep(system))?;
+    let memory = of.memory_ranges()[index].clone();
+    let of_rate = levels.workload(&division, &world.state().systems[system].memory[memory]);
+    Some(Workload { of_rate, schedule })
 }
 
 /// The meshes of the body of a force, and its number in its system; `None` where it has one mesh.

@@ -15,6 +15,7 @@ mod t_simulation;
 
 use souple_table::{Entry, Table, Values};
 
+use crate::levels::Division;
 use crate::linear::SolverSettings;
 use crate::state::{Place, SystemState};
 use crate::system::{Surroundings, System, SystemWorkspace};
@@ -211,6 +212,11 @@ pub trait Stepper: Send + Sync {
     /// Whether it steps bodies of which only some points move by themselves, see [`crate::Levels`].
     fn steps_levels(&self) -> bool {
         false
+    }
+
+    /// How it divides such a step, and which rates it takes together; `None` where it does not.
+    fn ticks(&self, _timestep: f64) -> Option<(Division, Schedule)> {
+        None
     }
 
     /// Whether it asks which rows a force couples ([`crate::Force::visit_cliques`]), as those do that make a matrix.

@@ -6,7 +6,7 @@ use souple_math::Vec3;
 use souple_table::{Parameter, Range as Allowed, Value};
 
 use crate::kept::Summed;
-use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Push};
+use crate::levels::{Division, Filter, Followers, Kinematic, Levels, Pace, Push};
 use crate::state::{SystemState, pairs_of};
 use crate::system::{System, SystemWorkspace};
 
@@ -30,6 +30,8 @@ pub enum Schedule {
     Staggered,
     /// All whose interval begins.
     Plain,
+    /// All, in every tick.
+    Together,
 }
 
 pub(super) const ENTRY: StepperEntry = StepperEntry {
@@ -45,8 +47,8 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
         .or(Value::Integer(5)),
         Parameter::choice(
             "schedule",
-            &["staggered", "plain"],
-            "the fastest points and at most one other rate at a time, or all whose interval begins",
+            &["staggered", "plain", "together"],
+            "the fastest points and at most one other rate at a time, all whose interval begins, or every point in every tick",
         )
         .or(Value::Text("staggered")),
         Parameter::boolean(
@@ -58,11 +60,22 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
     build: |values| {
         Box::new(Staggered {
             halvings: values.integer("halvings") as u32,
-            schedule: if values.text("schedule") == "plain" { Schedule::Plain } else { Schedule::Staggered },
+            schedule: match values.text("schedule") {
+                "plain" => Schedule::Plain,
+                "together" => Schedule::Together,
+                _ => Schedule::Staggered,
+            },
             filter: if values.boolean("semi_implicit") { Filter::SemiImplicit } else { Filter::None },
         })
     },
 };
+
+impl Staggered {
+    fn division(&self, timestep: f64) -> Division {
+        let pace = if self.schedule == Schedule::Together { Pace::Together } else { Pace::Own };
+        Division { timestep, halvings: self.halvings, filter: self.filter, pace }
+    }
+}
 
 impl Schedule {
     /// The rates that are due at a tick, from high to low.
@@ -71,6 +84,7 @@ impl Schedule {
         let slowest = match self {
             Self::Plain => halvings.saturating_sub(tick.trailing_zeros()),
             Self::Staggered => halvings,
+            Self::Together => 0,
         };
         let other = match self {
             Self::Staggered if tick > 0 => Some(halvings - 1 - tick.trailing_zeros()),
@@ -283,6 +297,10 @@ impl Stepper for Staggered {
         true
     }
 
+    fn ticks(&self, timestep: f64) -> Option<(Division, Schedule)> {
+        Some((self.division(timestep), self.schedule))
+    }
+
     /// Of modified Euler, in its shortest intervals.
     fn stability(&self) -> Stability {
         Stability::Limited(2.0)
@@ -299,7 +317,7 @@ impl Stepper for Staggered {
         next: &mut SystemState,
         ws: &mut SystemWorkspace,
     ) -> Result<StepReport, StepError> {
-        let division = Division { timestep: step.timestep, halvings: self.halvings, filter: self.filter };
+        let division = self.division(step.timestep);
         let mut buffers = std::mem::take(&mut ws.staggered);
         buffers.prepare(step.system, next);
         // all rows are points: they move where they stand

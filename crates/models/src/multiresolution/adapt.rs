@@ -165,6 +165,6 @@ impl Work {
     /// Stresses that a step so divided evaluates.
     pub fn evaluations(&self, division: &Division) -> usize {
         let samples = |rate: usize| self.due[rate].iter().flat_map(|due| due.slots()).count();
-        (0..=division.halvings as usize).map(|rate| samples(rate) << rate).sum()
+        (0..=division.halvings).map(|rate| samples(rate as usize) * division.dates(rate) as usize).sum()
     }
 }

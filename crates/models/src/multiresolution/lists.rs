@@ -19,9 +19,9 @@ pub struct Work {
     pub active: Vec<u32>,
     /// Rows of these.
     pub active_rows: Vec<u32>,
-    /// Of each sample: the part of its volume that no finer level stands for [m³].
+    /// Of each sample: the part of its volume that no finer level stands for, times its level's share of the moduli [m³].
     pub shares: Vec<f64>,
-    /// Of each sample: the volume whose stress acts [m³].
+    /// Of each sample: the volume whose stress acts, times the same [m³].
     pub acting: Vec<f64>,
     /// Of each active point: the mass that elastic forces move [kg].
     pub masses: Vec<f64>,
@@ -121,14 +121,18 @@ impl Work {
                 sample.is_some_and(|sample| self.roles.is_live[sample.tet as usize])
             };
             let level = (0..hierarchy.level_count()).rev().find(is_live).unwrap_or(0);
-            self.shares[slot_at(level)] += volume;
+            self.shares[slot_at(level)] += volume * force.share_of_moduli[level];
         }
         self.acting.clear();
         match force.coupling {
             Coupling::Transpose => self.acting.extend_from_slice(&self.shares),
             // every level is whole around its active points
             Coupling::OneWay => self.acting.extend(matter.slots.iter().map(|slot| match slot {
-                Some(sample) if self.roles.is_live[sample.tet as usize] => sample.volume,
+                Some(sample) if self.roles.is_live[sample.tet as usize] => {
+                    let corner = hierarchy.tets[sample.tet as usize].corners[0];
+                    let level = usize::from(hierarchy.level_of[corner as usize]);
+                    sample.volume * force.share_of_moduli[level]
+                }
                 _ => 0.0,
             })),
         }

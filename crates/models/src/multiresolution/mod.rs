@@ -8,6 +8,7 @@
 //! - `links`: the meshes, which tetrahedra carry which points;
 //! - `roles`: who is active, and what the others follow;
 //! - `matter`: what each tetrahedron stands for;
+//! - `stiffness`: how much stiffer than the finest mesh a coarser one is;
 //! - `criterion`, `adapt`: when points come and go;
 //! - `lists`, `elastic`: what a step goes through;
 //! - `dress`: the surface that is shown.
@@ -21,6 +22,7 @@ mod lists;
 mod matter;
 mod roles;
 mod stepping;
+mod stiffness;
 
 use std::any::Any;
 use std::ops::Range;
@@ -57,6 +59,16 @@ pub enum Coupling {
     OneWay,
 }
 
+/// How stiff the coarser meshes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stiffness {
+    /// As linear tetrahedra of their size make them: too stiff, exact for homogeneous strain.
+    Own,
+    /// Their moduli brought down so that they yield to the softest loads of the body as the finest mesh does; homogeneous
+    /// strain is then as much too soft.
+    AsFinest,
+}
+
 /// Who decides which level is at work.
 #[derive(Clone, Debug)]
 pub enum Choice {
@@ -82,6 +94,7 @@ pub struct LevelsDescription<'a> {
     /// Index into `materials` for each cell of the finest mesh.
     pub material_of_cell: &'a [u16],
     pub coupling: Coupling,
+    pub stiffness: Stiffness,
     pub choice: Choice,
     /// Kelvin–Voigt: stress per rate of strain [Pa s].
     pub viscosity: f64,
@@ -98,6 +111,8 @@ pub struct LevelsForce {
     matter: Matter,
     first_row: usize,
     coupling: Coupling,
+    /// Of each level, what its moduli are multiplied by.
+    share_of_moduli: Vec<f64>,
     choice: Choice,
     viscosity: f64,
     mass_damping: f64,
@@ -123,6 +138,7 @@ impl LevelsForce {
             name: description.name,
             first_row: description.first_row,
             coupling: description.coupling,
+            share_of_moduli: vec![1.0; hierarchy.level_count()],
             choice: description.choice,
             viscosity: description.viscosity,
             mass_damping: description.mass_damping,
@@ -135,6 +151,10 @@ impl LevelsForce {
             matter,
         };
         force.weigh();
+        if description.stiffness == Stiffness::AsFinest {
+            force.share_of_moduli =
+                stiffness::shares_of_compliance(&force.hierarchy, &force.matter, &force.finest_masses);
+        }
         force.find_empty_points();
         for level in 0..force.hierarchy.level_count() {
             force.shortest_interval = force.shortest_interval.min(force.shortest_of(level));
@@ -144,6 +164,11 @@ impl LevelsForce {
 
     pub fn hierarchy(&self) -> &Hierarchy {
         &self.hierarchy
+    }
+
+    /// What the moduli of each level are multiplied by, from coarse to fine; 1 for the finest.
+    pub fn share_of_moduli(&self) -> &[f64] {
+        &self.share_of_moduli
     }
 
     /// The shortest interval that some point needs, whichever level is at work [s].
@@ -443,6 +468,7 @@ impl LevelsForce {
         Census {
             active: count(&|point| work.roles.is_active(point)),
             ghosts: count(&|point| ghosts[point]),
+            cells: hierarchy.tets_of_level.iter().map(Range::len).collect(),
             level_of_point,
         }
     }

@@ -185,6 +185,13 @@ impl Levels for LevelsForce {
         read(scratch).evaluations(division)
     }
 
+    fn workload(&self, division: &Division, memory: &[f64]) -> Vec<usize> {
+        let mut work = Work::new(self);
+        work.refresh(self, memory);
+        work.divide(self, division);
+        work.due.iter().map(|due| due.iter().flat_map(|due| due.slots()).count()).collect()
+    }
+
     fn census(&self, memory: &[f64]) -> Census {
         self.counted(memory)
     }

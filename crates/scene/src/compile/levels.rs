@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use souple_engine::Force;
-use souple_engine::levels::{Division, Filter};
+use souple_engine::levels::{Division, Filter, Pace};
 use souple_math::Vec3;
 use souple_mesh::Mesh;
-use souple_mesh::coarsen::{coarser, mean_edge};
+use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
 use souple_models::multiresolution::{Coupling, Dress, DressLevel, LevelsDescription, LevelsForce, Worn};
 use souple_models::solids::Section;
 use souple_table::Value;
@@ -71,19 +71,29 @@ pub fn place<'a>(
         placed.push(level(shape.mesh, shape.point_numbers));
     }
     if spec.coarser.is_empty() {
-        let edge = mean_edge(mesh);
-        for finer in (1..spec.count).rev() {
-            match coarser(mesh, edge * spec.ratio.powi(finer as i32)) {
+        for made in coarser_meshes(spec, mesh) {
+            match made {
                 Ok(mesh) => placed.push(level(mesh.clone(), (0..mesh.points.len() as u32).collect())),
-                Err(error) => {
-                    let expected = "fewer levels, or a smaller ratio";
-                    draft.log.add(Code::Mesh, &spec.site, error.to_string(), expected);
+                Err(message) => {
+                    let expected = "fewer levels, a smaller ratio, or other numbers of `cells`";
+                    draft.log.add(Code::Mesh, &spec.site, message, expected);
                     return None;
                 }
             }
         }
     }
     Some(PlacedLevels { coarser: placed })
+}
+
+/// The meshes that are made of a body's own, from coarse to fine; or why there is none.
+fn coarser_meshes(spec: &LevelsSpec, mesh: &Mesh) -> Vec<Result<Mesh, String>> {
+    if !spec.cells.is_empty() {
+        let made = spec.cells.iter().map(|count| coarser_of_count(mesh, *count));
+        return made.map(|made| made.map_err(|error| error.to_string())).collect();
+    }
+    let edge = mean_edge(mesh);
+    let sizes = (1..spec.count).rev().map(|finer| edge * spec.ratio.powi(finer as i32));
+    sizes.map(|size| coarser(mesh, size).map_err(|error| error.to_string())).collect()
 }
 
 fn suits(draft: &Draft, body: &Body, spec: &LevelsSpec) -> bool {
@@ -118,6 +128,7 @@ pub fn force(draft: &Draft, body: &Placed, levels: &PlacedLevels) -> Option<Box<
         materials: &body.materials.all,
         material_of_cell: &body.materials.of_cell,
         coupling: spec.coupling,
+        stiffness: spec.stiffness,
         choice: spec.choice(),
         viscosity: body.spec.damping.viscosity,
         mass_damping: body.spec.damping.rayleigh_mass,
@@ -169,6 +180,7 @@ pub fn warn_of_budgets(draft: &mut Draft) {
             timestep: draft.spec.world.period / f64::from(system.steps_per_period),
             halvings: halvings as u32,
             filter: Filter::None,
+            pace: Pace::Own,
         };
         let least = force.least_evaluations(&division);
         (budget < least as f64).then(|| {

@@ -1,20 +1,88 @@
-//! Who does what in a body with levels.
+//! Who does what in a body with levels, and what it costs.
 
 use souple_engine::World;
+use souple_engine::steppers::Schedule;
 
 use super::LevelsPart;
-use crate::scene::census;
+use crate::scene::{census, workload};
 use crate::spec::quantity::LevelsQuantity;
 
 pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f64 {
-    let Some(census) = census(world, part.system, &part.force) else { return 0.0 };
-    let counts = match quantity {
-        LevelsQuantity::Active => census.active,
-        LevelsQuantity::Ghosts => census.ghosts,
-        LevelsQuantity::Jump => return part.dress.as_ref().map_or(0.0, |dress| dress.greatest_jump(world)),
-    };
-    match part.level {
+    let census = || census(world, part.system, &part.force);
+    let count = |counts: Vec<usize>| match part.level {
         Some(level) => counts[level] as f64,
         None => counts.iter().sum::<usize>() as f64,
+    };
+    match quantity {
+        LevelsQuantity::Active => census().map_or(0.0, |census| count(census.active)),
+        LevelsQuantity::Ghosts => census().map_or(0.0, |census| count(census.ghosts)),
+        LevelsQuantity::Cells => census().map_or(0.0, |census| count(census.cells)),
+        LevelsQuantity::Jump => part.dress.as_ref().map_or(0.0, |dress| dress.greatest_jump(world)),
+        LevelsQuantity::Nearness => census().map_or(0.0, |census| {
+            let levels: Vec<f64> = census.level_of_point.iter().map(|level| f64::from(*level)).collect();
+            rank_correlation(&levels, &part.distances)
+        }),
+        LevelsQuantity::Evaluations => workload(world, part.system, &part.force)
+            .map_or(0.0, |load| load.by_tick().iter().sum::<usize>() as f64),
+        LevelsQuantity::Peak => workload(world, part.system, &part.force).map_or(0.0, |load| {
+            let ticks = load.by_tick();
+            let (most, sum) = (ticks.iter().copied().max().unwrap_or(0), ticks.iter().sum::<usize>());
+            if sum == 0 { 0.0 } else { most as f64 * ticks.len() as f64 / sum as f64 }
+        }),
+    }
+}
+
+/// What a step does with the points as they are.
+pub struct Workload {
+    /// Forces at each date, by rate.
+    pub of_rate: Vec<usize>,
+    pub schedule: Schedule,
+}
+
+impl Workload {
+    /// Forces of each tick of a step.
+    fn by_tick(&self) -> Vec<usize> {
+        let halvings = self.of_rate.len().saturating_sub(1) as u32;
+        let of = |tick| self.schedule.due(tick, halvings).map(|rate| self.of_rate[rate as usize]).sum();
+        (0..1_u32 << halvings).map(of).collect()
+    }
+}
+
+/// Spearman's: the correlation of ranks, of which equal values share the mean. Zero where one of them does not vary.
+fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (ranks(a), ranks(b));
+    let mean = (a.len() as f64 - 1.0) / 2.0;
+    let product =
+        |x: &[f64], y: &[f64]| -> f64 { x.iter().zip(y).map(|(x, y)| (x - mean) * (y - mean)).sum() };
+    let scale = (product(&a, &a) * product(&b, &b)).sqrt();
+    if scale > 0.0 { product(&a, &b) / scale } else { 0.0 }
+}
+
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut first = 0;
+    for equal in order.chunk_by(|a, b| values[*a] == values[*b]) {
+        let rank = first as f64 + 0.5 * (equal.len() as f64 - 1.0);
+        equal.iter().for_each(|place| ranks[*place] = rank);
+        first += equal.len();
+    }
+    ranks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rank_correlation;
+
+    /// One for whatever rises with the other, minus one for what falls; ties count as their mean: by hand.
+    #[test]
+    fn ranks_correlate() {
+        let rising = [1.0, 4.0, 9.0, 100.0];
+        assert!((rank_correlation(&rising, &[0.0, 1.0, 2.0, 3.0]) - 1.0).abs() < 1e-15);
+        assert!((rank_correlation(&rising, &[3.0, 2.0, 1.0, 0.0]) + 1.0).abs() < 1e-15);
+        // ranks 0.5 0.5 2 3 against 0 1 2 3: 4.5/√(4.5 · 5)
+        assert!((rank_correlation(&[1.0, 1.0, 2.0, 3.0], &rising) - (4.5_f64 / 5.0).sqrt()).abs() < 1e-15);
+        assert_eq!(rank_correlation(&[1.0; 4], &rising), 0.0);
     }
 }

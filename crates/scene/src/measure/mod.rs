@@ -15,6 +15,8 @@ mod reaction;
 mod skin;
 
 pub use contour::ContourInfo;
+pub use levels::Workload;
+
 use std::collections::BTreeMap;
 
 use souple_engine::{Force, World};
@@ -132,6 +134,8 @@ struct LevelsPart {
     level: Option<usize>,
     /// What it wears.
     dress: Option<DressInfo>,
+    /// Of a nearness: the distances at rest of the points of the finest mesh from its place [m].
+    distances: Vec<f64>,
 }
 
 /// What a probe reads.
@@ -415,7 +419,15 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
         draft.log.add(Code::Conflict, &probe.site, message, "a body whose `levels` have a `dress`");
         return None;
     }
-    Some(LevelsPart { system: body.system, force: solid_name(&body.spec.name), level: probe.level, dress })
+    let is_near = probe.quantity.build.subject == Subject::Levels(LevelsQuantity::Nearness);
+    let distance = |x: &Vec3| (*x - probe.about.unwrap_or(Vec3::ZERO)).length();
+    Some(LevelsPart {
+        system: body.system,
+        force: solid_name(&body.spec.name),
+        level: probe.level,
+        dress,
+        distances: if is_near { body.mesh.points.iter().map(distance).collect() } else { Vec::new() },
+    })
 }
 
 /// The cells that a probe is of.

@@ -1,7 +1,9 @@
 //! Bodies of several meshes: how many, how coarse, who decides which one is at work.
 
 use souple_formal::Formula;
-use souple_models::multiresolution::{Choice, Coupling, Criterion, MOST, Measure, PLACE_VARIABLES};
+use souple_models::multiresolution::{
+    Choice, Coupling, Criterion, MOST, Measure, PLACE_VARIABLES, Stiffness,
+};
 use souple_table::{Range, Value};
 
 use super::mesh::{MESH, MeshSpec};
@@ -42,6 +44,11 @@ pub(crate) static LEVELS: Keys = Keys::new(
             "length of the edges of a mesh over those of the next finer one",
         )
         .or(Value::Number(2.0)),
+        Key::new(
+            "cells",
+            Shape::Integers,
+            "tetrahedra wanted of each coarser mesh, from coarse to fine, within a fifth, in the place of `count` and `ratio`",
+        ),
         Key::new("coarser", Shape::Tables(&COARSER), "the coarser meshes, from coarse to fine, in the place of `count`"),
         Key::new(
             "coupling",
@@ -49,6 +56,12 @@ pub(crate) static LEVELS: Keys = Keys::new(
             "forces on points that follow return to those that they follow, or are lost",
         )
         .or(Value::Text("transpose")),
+        Key::new(
+            "stiffness",
+            Shape::Choice(&["own", "as_finest"]),
+            "of the coarser meshes: as their tetrahedra are, too stiff, or with moduli by which each yields to the body's softest loads as the finest does",
+        )
+        .or(Value::Text("own")),
         Key::new(
             "criterion",
             Shape::Choice(&["jump", "laplacian"]),
@@ -73,8 +86,11 @@ pub(crate) static LEVELS: Keys = Keys::new(
 pub struct LevelsSpec {
     pub count: usize,
     pub ratio: f64,
+    /// Tetrahedra of each coarser mesh, from coarse to fine; by `count` and `ratio` where empty.
+    pub cells: Vec<usize>,
     pub coarser: Vec<MeshSpec>,
     pub coupling: Coupling,
+    pub stiffness: Stiffness,
     pub criterion: Criterion,
     pub fixed: Option<Formula>,
     pub budget: Option<f64>,
@@ -94,9 +110,22 @@ impl LevelsSpec {
     pub(crate) fn read(reader: &Reader) -> Self {
         let coarser: Vec<MeshSpec> = reader.tables("coarser").iter().filter_map(MeshSpec::read).collect();
         if reader.has("coarser") {
-            for key in reader.written(&["count", "ratio"]) {
+            for key in reader.written(&["count", "ratio", "cells"]) {
                 let message = format!("`{key}` is of meshes that are made, and these are given");
                 reader.log().add(Code::Conflict, &reader.site_of(key), message, "`coarser` alone");
+            }
+        }
+        let cells = reader.maybe_indices("cells").unwrap_or_default();
+        if reader.has("cells") {
+            for key in reader.written(&["count", "ratio"]) {
+                let message = format!("`{key}` and `cells` both say how coarse the meshes are");
+                reader.log().add(Code::Conflict, &reader.site_of(key), message, "`cells` alone");
+            }
+            let rises = cells.windows(2).all(|pair| pair[0] < pair[1]);
+            if !(rises && (1..MOST).contains(&cells.len()) && cells.iter().all(|count| *count >= 1)) {
+                let message = format!("{cells:?} are no numbers of tetrahedra from coarse to fine");
+                let expected = format!("1 to {} rising numbers of at least 1, as [28, 172]", MOST - 1);
+                reader.log().add(Code::OutOfRange, &reader.site_of("cells"), message, expected);
             }
         }
         let measure =
@@ -117,11 +146,17 @@ impl LevelsSpec {
         Self {
             count: reader.maybe_integer("count").unwrap_or(3) as usize,
             ratio: reader.number("ratio"),
+            cells: cells.into_iter().map(|count| count as usize).collect(),
             coarser,
             coupling: if reader.choice("coupling") == "one_way" {
                 Coupling::OneWay
             } else {
                 Coupling::Transpose
+            },
+            stiffness: if reader.choice("stiffness") == "as_finest" {
+                Stiffness::AsFinest
+            } else {
+                Stiffness::Own
             },
             criterion,
             fixed: reader.maybe_formula("fixed"),

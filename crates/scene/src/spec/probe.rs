@@ -59,7 +59,7 @@ pub(crate) static PROBE: Keys = Keys::new(
         Key::vector(
             "about",
             "m",
-            "the place that moments are taken about; the centre of mass of the body where left out, of a bone the origin",
+            "the place that moments are taken about, and that levels are near to; the centre of mass of the body where left out, of a bone and of levels the origin",
         ),
         Key::new("contour", Shape::Text, "of the network, for quantities of contours"),
         Key::new("from", Shape::Text, "the contour that `contour.apart` is counted from"),
@@ -324,8 +324,9 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
         };
         refuse(reader, "within", message, "within = \"…\" with masses.parts, neighbours and spacing only");
     }
-    if reader.has("about") && !quantity.is_moment() {
-        refuse(reader, "about", format!("`{name}` is no moment"), "a moment, such as \"torque\"");
+    if reader.has("about") && !quantity.has_place() {
+        let expected = "a moment, such as \"torque\", or \"levels.nearness\"";
+        refuse(reader, "about", format!("`{name}` is of no place"), expected);
     }
 }
 

@@ -101,6 +101,10 @@ pub enum LevelsQuantity {
     Active,
     Ghosts,
     Jump,
+    Cells,
+    Evaluations,
+    Peak,
+    Nearness,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -186,6 +190,11 @@ impl Quantity {
                 | Subject::BodyOrWorld(Momentum::Angular)
                 | Subject::Bone(BoneQuantity::Torque)
         )
+    }
+
+    /// Whether it is told of a place that may be chosen.
+    pub fn has_place(&self) -> bool {
+        self.is_moment() || matches!(self.subject, Subject::Levels(LevelsQuantity::Nearness))
     }
 
     /// Whether it counts masses as neighbours that are within a distance.
@@ -580,6 +589,30 @@ const ENTRIES: &[&QuantityEntry] = &[
         "the most that a node of its `dress` has jumped from one period to the next so far, because levels changed",
         LEVELS,
         levels("m", LevelsQuantity::Jump),
+    ),
+    &entry(
+        "levels.cells",
+        "tetrahedra, or particles, of all levels or of the key `level`, whether at work or not",
+        LEVELS,
+        levels("", LevelsQuantity::Cells),
+    ),
+    &entry(
+        "levels.evaluations",
+        "forces of tetrahedra, or of particles with their neighbours, that a step evaluates",
+        LEVELS,
+        levels("", LevelsQuantity::Evaluations),
+    ),
+    &entry(
+        "levels.peak",
+        "forces evaluated in the busiest tick of a step over those of a tick in the mean",
+        LEVELS,
+        levels("", LevelsQuantity::Peak),
+    ),
+    &entry(
+        "levels.nearness",
+        "rank correlation (Spearman) of the level at work at each point with its distance at rest from `about`; below zero where it is finer the nearer",
+        LEVELS,
+        levels("", LevelsQuantity::Nearness),
     ),
     &entry(
         "hand.position",

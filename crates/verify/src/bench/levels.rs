@@ -50,13 +50,15 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// All fine over adaptive; errors of the force and of the surface, over the size of the body.
 pub fn adaptive_saving(effort: Effort) -> Result<Vec<Figure>, String> {
-    // a little before the tool draws back
-    let periods = effort.choose(60, 95);
-    let adaptive = poke(&[], periods)?;
+    // the tool stays where it is, until the organ hangs still
+    let periods = effort.choose(120, 250);
+    let hold = ["shapes.tool.motion.times=[0, 0.4, 0.7, 6, 6.3]", "run.duration=\"7 s\""].map(str::to_owned);
+    let adaptive = poke(&hold, periods)?;
     // without the criterion of the scene, which levels that are fixed refuse
     let all_fine =
         r#"bodies.liver.levels={ count = 3, ratio = 1.8, fixed = "2", dress = { blend = "200 ms" } }"#;
-    let fine = poke(&[all_fine.to_owned()], periods)?;
+    let [times, duration] = hold;
+    let fine = poke(&[times, duration, all_fine.to_owned()], periods)?;
     let force = distance(adaptive.force, fine.force) / distance(fine.force, [0.0; 3]);
     let surface = adaptive.surface.iter().zip(&fine.surface).map(|(a, b)| distance(*a, *b));
     let surface = surface.fold(0.0, f64::max) / fine.size;

@@ -18,6 +18,8 @@ const HAND: Case = Case {
 
 /// Pushing far beyond what the device can give.
 const HARD: &str = r#"hands.right.motion.formula=[0, 0, "-0.3 * smoothstep(0.1, 0.5, t)"]"#;
+/// The same at ten metres a second, through the cube if nothing stopped it.
+const FAST: &str = r#"hands.right.motion.formula=[0, 0, "-0.3 * smoothstep(0.1, 0.13, t)"]"#;
 /// And of a device that gives little.
 const WEAK: &str = r#"hands.right.coupling={ limit = "2 N" }"#;
 
@@ -49,6 +51,28 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["DEB-45", "DEB-46"],
         what: "the same: the ball hands on to the cube what the hand gives",
         settings: &[HARD, WEAK],
+        reading: Reading::component("on_cube", 2),
+        reference: -2.0,
+        tolerance: Tolerance::Relative(0.01),
+        source: "balance of the ball at rest",
+        mutation: r#"hands.right.coupling={ limit = "1.5 N" }"#,
+        ..HAND
+    },
+    Case {
+        id: "hand_fast",
+        what: "the same, meaning to go those 30 cm in 30 ms: the ball is stopped, and the hand gives what its device gives",
+        settings: &[FAST, WEAK],
+        reading: Reading::component("on_cube", 2),
+        reference: -2.0,
+        tolerance: Tolerance::Relative(0.01),
+        source: "balance of the ball at rest; behind the cube nothing would press it",
+        mutation: r#"hands.right.coupling={ limit = "1.5 N" }"#,
+        ..HAND
+    },
+    Case {
+        id: "hand_stiff",
+        what: "pushing as hard on a cube a thousand times as stiff: the ball comes to rest on it",
+        settings: &[HARD, WEAK, "bodies.cube.material.youngs_modulus=\"10 MPa\""],
         reading: Reading::component("on_cube", 2),
         reference: -2.0,
         tolerance: Tolerance::Relative(0.01),

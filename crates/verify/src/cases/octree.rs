@@ -29,6 +29,31 @@ const ROD: Case = Case {
     ..SWING
 };
 
+/// The rod before it has come to rest.
+const ROD_ON_ITS_WAY: Case = Case {
+    reading: Reading::component("tip", 2).after(20),
+    reference: -5.7898e-4,
+    tolerance: Tolerance::Relative(0.02),
+    source: "specification, V-12: both within 2 % of one trajectory, that of steps half as long",
+    mutation: "world.gravity=[0, 0, -1.05]",
+    ..ROD
+};
+
+/// The cube of mixed levels: the particles on their own swing 4.52 and 5.10 times a second, with the source's operators 4.93 and 5.66.
+const MIXED: Case = Case {
+    capabilities: &["DEB-14", "DEB-16"],
+    scene: "octree_cube",
+    reading: Reading::component("corner", 2).taking(Statistic::Frequency),
+    reference: 4.81,
+    tolerance: Tolerance::Absolute(0.29 + 0.05 * 4.81),
+    source: "specification, V-09: between those of the two levels, 5 % on either side",
+    mutation: "bodies.cube.material.density=1400",
+    ..SWING
+};
+
+const COARSE: &str = "bodies.cube.octree.fixed=\"0\"";
+const FINE: &str = "bodies.cube.octree.fixed=\"1\"";
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "particles_4",
@@ -48,6 +73,148 @@ pub(super) const CASES: &[Case] = &[
         ..SWING
     },
     Case {
+        id: "octree_cube_fine",
+        capabilities: &["DEB-14"],
+        what: "how often 8 x 8 x 8 particles of an octree swing",
+        settings: &[FINE],
+        reference: 4.701,
+        tolerance: Tolerance::Relative(0.05),
+        source: "specification, 3.4: linear finite elements on K_M(12); 5 % for V-05's corrected operators",
+        ..MIXED
+    },
+    Case { id: "octree_cube_mixed", what: "the same, half of them grouped by eight", ..MIXED },
+    Case {
+        id: "octree_cube_mixed_free_end",
+        what: "the same, those at the wall grouped",
+        settings: &["bodies.cube.octree.fixed=\"if(x < 0.05, 0, 1)\""],
+        ..MIXED
+    },
+    Case {
+        id: "octree_cube_legacy",
+        what: "the same with the source's operators: faster than either level alone by more than 5 %, which the energy cures",
+        settings: &["bodies.cube.octree.operators=\"legacy\""],
+        reference: 1.05 * 5.664,
+        tolerance: Tolerance::Above,
+        source: "specification, V-09: mixed levels behave worse; 5.664 Hz of the coarse level alone",
+        mutation: "bodies.cube.octree={ levels = 2, fixed = \"0\" }",
+        ..MIXED
+    },
+    Case {
+        id: "octree_cube_hierarchical",
+        capabilities: &["DEB-15"],
+        what: "the same with the source's operators, divided particles staying for what they feel of their own level",
+        settings: &["bodies.cube.octree.operators=\"legacy\"", "bodies.cube.octree.variant=\"hierarchical\""],
+        reference: 5.30,
+        tolerance: Tolerance::Absolute(0.37 + 0.05 * 5.30),
+        source: "specification, 2.7 and V-09: between 4.93 Hz of the fine level and 5.66 of the coarse one, 5 % on either side",
+        ..MIXED
+    },
+    Case {
+        id: "octree_cube_grows_not",
+        what: "how low the corner of the cube of mixed levels comes in half a minute: 5 % below its first swing at most",
+        settings: &["run.duration=\"30 s\""],
+        reading: Reading::component("corner", 2).taking(Statistic::Min),
+        reference: -1.05 * 30.088e-3,
+        tolerance: Tolerance::AtLeast,
+        source: "specification, V-09: no growth over 30 s",
+        mutation: "bodies.cube.octree.operators=\"least_squares\"",
+        ..MIXED
+    },
+    Case {
+        id: "octree_cube_work_coarse",
+        capabilities: &["DEB-16"],
+        what: "forces of a step with 4 x 4 x 4 particles at work, each pushed as often as it needs",
+        settings: &[COARSE],
+        reading: Reading::last("evaluations").after(1),
+        reference: 64.0 * 4.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification, V-12: half the rate of particles half as far apart",
+        mutation: "bodies.cube.material.youngs_modulus=9e4",
+        ..MIXED
+    },
+    Case {
+        id: "octree_cube_work_fine",
+        capabilities: &["DEB-16"],
+        what: "the same with 8 x 8 x 8: 16 times as many, 8 in number and 2 in rate",
+        settings: &[FINE],
+        reading: Reading::last("evaluations").after(1),
+        reference: 16.0 * 64.0 * 4.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification, V-12: 14 to 18",
+        mutation: "bodies.cube.material.youngs_modulus=9e4",
+        ..MIXED
+    },
+    Case {
+        id: "particles_16",
+        what: "how often 16 x 16 x 16 particles swing",
+        settings: &[
+            "bodies.cube.mesh.cells=[15, 15, 15]",
+            "systems.main.steps_per_period=24",
+            "run.duration=\"2 s\"",
+        ],
+        ..SWING
+    },
+    Case {
+        id: "particles_minute",
+        what: "how low the corner of 4 x 4 x 4 particles comes in a minute: 5 % below its first swings at most",
+        settings: &["run.duration=\"60 s\""],
+        reading: Reading::component("corner", 2).taking(Statistic::Min),
+        reference: -1.05 * 26.094e-3,
+        tolerance: Tolerance::AtLeast,
+        source: "specification, V-05: no drift over 60 s",
+        mutation: "bodies.cube.formulation.operators=\"least_squares\"",
+        ..SWING
+    },
+    Case {
+        id: "octree_ticks_are_even",
+        capabilities: &["DEB-33"],
+        what: "the busiest tick of a step of two rates over the mean, none of them idle",
+        settings: &["systems.main.stepper.halvings=3"],
+        reading: Reading::last("peak").after(1),
+        reference: 2.0,
+        tolerance: Tolerance::AtMost,
+        source: "specification, V-35",
+        mutation: "systems.main.stepper.halvings=6",
+        ..MIXED
+    },
+    Case {
+        id: "octree_liver_divides",
+        capabilities: &["DEB-14", "DEB-18"],
+        what: "finest particles at work in the liver while the tool presses it",
+        scene: "octree_liver",
+        reading: Reading::last("fine").after(70),
+        reference: 8.0,
+        tolerance: Tolerance::AtLeast,
+        source: "V-08: fine near the tool; one particle of the middle level makes eight",
+        mutation: "bodies.liver.octree.refine=1",
+        ..SWING
+    },
+    Case {
+        id: "octree_liver_near_the_tool",
+        capabilities: &["DEB-18"],
+        what: "rank correlation of the level at work with the distance from the tool, then",
+        scene: "octree_liver",
+        reading: Reading::last("nearness").after(70),
+        reference: -0.5,
+        tolerance: Tolerance::AtMost,
+        source: "V-06 and V-08: fine near the tool, coarse far",
+        mutation: "bodies.liver.octree.refine=1",
+        ..SWING
+    },
+    Case {
+        id: "octree_liver_work",
+        capabilities: &["DEB-16", "DEB-18"],
+        what: "forces that a step evaluates while the liver is poked, the most: a fifth of those with the finest particles everywhere",
+        scene: "octree_liver",
+        reading: Reading::last("evaluations").taking(Statistic::Max),
+        // 915 particles, pushed four times a step each
+        reference: 0.2 * 915.0 * 4.0,
+        tolerance: Tolerance::AtMost,
+        source: "V-08: at most a fifth",
+        mutation: "bodies.liver.octree.refine=0.1",
+        ..SWING
+    },
+    Case {
         id: "octree_liver_rest",
         capabilities: &["DEB-9", "DEB-13", "DEB-18"],
         what: "particles at work in the liver when the tool has drawn back: the coarsest alone, and none finer",
@@ -58,6 +225,27 @@ pub(super) const CASES: &[Case] = &[
         source: "the number of 52 mm cubes with a particle in them; V-08 has 34",
         mutation: "bodies.liver.octree.coarsen=0",
         ..SWING
+    },
+    Case {
+        id: "octree_rod_adaptive",
+        what: "sag of the rod that divides where it bends, against that of the finest particles everywhere",
+        tolerance: Tolerance::Relative(0.1),
+        source: "specification, V-07: within 10 %",
+        mutation: r#"bodies.rod.octree.fixed="0""#,
+        ..ROD
+    },
+    Case {
+        id: "octree_rod_own_rates",
+        capabilities: &["DEB-16"],
+        what: "how far the rod has sagged in 40 ms, particles pushed each at its own rate",
+        ..ROD_ON_ITS_WAY
+    },
+    Case {
+        id: "octree_rod_together",
+        capabilities: &["DEB-16"],
+        what: "the same, all pushed in every tick",
+        settings: &[r#"systems.main.stepper={ name = "staggered", halvings = 7, schedule = "together" }"#],
+        ..ROD_ON_ITS_WAY
     },
     Case {
         id: "octree_rod_finest",

@@ -197,7 +197,16 @@ impl Levels for OctreeForce {
 
     fn evaluations(&self, division: &Division, scratch: &Scratch) -> usize {
         let work = read(scratch);
-        (0..=division.halvings as usize).map(|rate| work.due[rate].len() << rate).sum()
+        (0..=division.halvings)
+            .map(|rate| work.due[rate as usize].len() * division.dates(rate) as usize)
+            .sum()
+    }
+
+    fn workload(&self, division: &Division, memory: &[f64]) -> Vec<usize> {
+        let mut work = Work::new(&self.tree);
+        work.refresh(self, memory);
+        work.divide(self, division);
+        work.due.iter().map(Vec::len).collect()
     }
 
     fn census(&self, memory: &[f64]) -> Census {
@@ -218,6 +227,7 @@ impl Levels for OctreeForce {
         Census {
             active: count(&|at| work.is_active(at)),
             ghosts: count(&|at| self.variant == Variant::Hierarchical && work.is_divided(at)),
+            cells: tree.levels.iter().map(Range::len).collect(),
             level_of_point: (0..tree.finest_count()).map(level_of).collect(),
         }
     }

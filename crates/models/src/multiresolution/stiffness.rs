@@ -1,0 +1,154 @@
+//! How much stiffer than the finest mesh of a body a coarser one is.
+//!
+//! Linear tetrahedra hold every affine deformation and are too stiff for all others, the more so the larger they are: a lobe
+//! with two of them across resists bending with a multiple of its stiffness. What a body as a whole does is mostly what is
+//! soft in it, so one number for each level brings its moduli down to those with which it yields as the finest mesh does.
+//! The loads are those of the body's inertia as it bends, twists and stretches unevenly: `M u` of the eighteen fields `u`
+//! that are quadratic in the place and orthogonal, in the masses, to each other and to all affine ones. They are in balance by
+//! themselves, so the body needs no support; their compliance `Σ f·K⁻¹f` does not depend on the axes chosen.
+
+use souple_math::Vec3;
+use souple_solve::LinearOperator;
+use souple_solve::krylov::{ConjugateGradientWorkspace, Settings, conjugate_gradient};
+use souple_solve::precondition::Identity;
+
+use super::links::{Hierarchy, Tet};
+use super::matter::Matter;
+use crate::materials::Lame;
+
+/// Monomials up to the second degree in the place.
+const MONOMIALS: usize = 10;
+/// Of these, up to the first.
+const AFFINE: usize = 4;
+/// Compliances are off by about the square of this, relatively.
+const SOLVE: Settings = Settings { tolerance: 0.02, max_iterations: 1000 };
+
+/// Small deformations of one level, on the body's points.
+struct Level<'a> {
+    hierarchy: &'a Hierarchy,
+    /// Tetrahedron, moduli and volume.
+    parts: Vec<(&'a Tet, Lame, f64)>,
+}
+
+impl<'a> Level<'a> {
+    fn new(hierarchy: &'a Hierarchy, matter: &'a Matter, level: usize) -> Self {
+        let range = hierarchy.tets_of_level[level].clone();
+        let of_level = matter.slots.iter().flatten().filter(|sample| range.contains(&(sample.tet as usize)));
+        let part = |sample: &super::matter::Sample| {
+            (&hierarchy.tets[sample.tet as usize], matter.material(sample).small_strain, sample.volume)
+        };
+        Self { hierarchy, parts: of_level.map(part).collect() }
+    }
+
+    /// Whether some part of the matter hangs on each point.
+    fn bears(&self) -> Vec<bool> {
+        let mut bears = vec![false; self.hierarchy.point_count()];
+        for (tet, _, _) in &self.parts {
+            tet.corners.iter().for_each(|corner| bears[*corner as usize] = true);
+        }
+        bears
+    }
+}
+
+impl LinearOperator for Level<'_> {
+    fn block_count(&self) -> usize {
+        self.hierarchy.point_count()
+    }
+
+    // K u = Σ V (λ tr(ε) + 2 μ ε) ∇N,  ε = sym(∇u)
+    fn apply(&self, u: &[Vec3], out: &mut [Vec3]) {
+        out.fill(Vec3::ZERO);
+        for (tet, moduli, volume) in &self.parts {
+            let strain = tet.gradient(u).symmetric_part();
+            let stress = (strain * (2.0 * moduli.mu)).plus_diagonal(moduli.lambda * strain.trace()) * *volume;
+            for (corner, gradient) in tet.corners.iter().zip(tet.gradients) {
+                out[*corner as usize] += stress * gradient;
+            }
+        }
+    }
+}
+
+/// Of each level: its compliance over that of the finest mesh, by which its moduli are to be multiplied for both to yield
+/// alike; 1 for the finest.
+pub fn shares_of_compliance(hierarchy: &Hierarchy, matter: &Matter, masses: &[f64]) -> Vec<f64> {
+    let mut shares = vec![1.0; hierarchy.level_count()];
+    if hierarchy.level_count() == 1 {
+        return shares;
+    }
+    let mut loads = loads(hierarchy, masses);
+    let finest = compliance(hierarchy, matter, hierarchy.finest(), &loads);
+    for level in (0..hierarchy.finest()).rev() {
+        for load in &mut loads {
+            for point in hierarchy.levels[level + 1].clone() {
+                let (carrier, force) = (hierarchy.parent(point), std::mem::take(&mut load[point]));
+                for (corner, weight) in carrier.corners.into_iter().zip(carrier.weights) {
+                    load[corner as usize] += force * weight;
+                }
+            }
+        }
+        let share = compliance(hierarchy, matter, level, &loads) / finest;
+        // a body too small to bend has none
+        if share.is_finite() && share > 0.0 {
+            shares[level] = share;
+        }
+    }
+    shares
+}
+
+/// `Σ f·u` with `K u = f` on a level.
+fn compliance(hierarchy: &Hierarchy, matter: &Matter, level: usize, loads: &[Vec<Vec3>]) -> f64 {
+    let stiffness = Level::new(hierarchy, matter, level);
+    let bears = stiffness.bears();
+    let mut workspace = ConjugateGradientWorkspace::default();
+    let of = |load: &Vec<Vec3>| -> f64 {
+        // what nothing resists would yield without end
+        let f: Vec<Vec3> =
+            load.iter().zip(&bears).map(|(f, bears)| if *bears { *f } else { Vec3::ZERO }).collect();
+        let mut u = vec![Vec3::ZERO; hierarchy.point_count()];
+        // where it stops short of its tolerance, the work of the best so far counts
+        conjugate_gradient(&stiffness, &Identity, &f, &mut u, &SOLVE, &mut workspace);
+        f.iter().zip(&u).map(|(f, u)| f.dot(*u)).sum()
+    };
+    loads.iter().map(of).sum()
+}
+
+/// `M u` of the quadratic fields, on the finest points.
+fn loads(hierarchy: &Hierarchy, masses: &[f64]) -> Vec<Vec<Vec3>> {
+    let points = hierarchy.levels[hierarchy.finest()].clone();
+    let monomials = orthonormal_monomials(&hierarchy.rest[points.clone()], masses);
+    let load = |(monomial, axis): (&Vec<f64>, Vec3)| {
+        let mut f = vec![Vec3::ZERO; hierarchy.point_count()];
+        for ((f, value), mass) in f[points.clone()].iter_mut().zip(monomial).zip(masses) {
+            *f = axis * (value * mass);
+        }
+        f
+    };
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    monomials[AFFINE..].iter().flat_map(|monomial| axes.map(|axis| (monomial, axis))).map(load).collect()
+}
+
+/// `1, x, y, z, x², …` at points, made orthonormal in the masses one after the other.
+fn orthonormal_monomials(places: &[Vec3], masses: &[f64]) -> Vec<Vec<f64>> {
+    let mass: f64 = masses.iter().sum();
+    let centre = places.iter().zip(masses).map(|(x, m)| *x * *m).sum::<Vec3>() / mass;
+    let size = places.iter().map(|x| (*x - centre).length()).fold(f64::MIN_POSITIVE, f64::max);
+    let all = |x: &Vec3| {
+        let [x, y, z] = ((*x - centre) / size).to_array();
+        [1.0, x, y, z, x * x, y * y, z * z, x * y, y * z, z * x]
+    };
+    let dot = |a: &[f64], b: &[f64]| -> f64 {
+        a.iter().zip(b).zip(masses).map(|((a, b), mass)| mass * a * b).sum()
+    };
+    let mut made: Vec<Vec<f64>> = Vec::new();
+    for monomial in 0..MONOMIALS {
+        let mut values: Vec<f64> = places.iter().map(|place| all(place)[monomial]).collect();
+        for other in &made {
+            let share = dot(&values, other);
+            values.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
+        }
+        let norm = dot(&values, &values).sqrt();
+        values.iter_mut().for_each(|value| *value /= norm);
+        made.push(values);
+    }
+    made
+}
