@@ -87,6 +87,7 @@ pub(super) const CASES: &[Case] = &[
         id: "octree_cube_mixed_free_end",
         what: "the same, those at the wall grouped",
         settings: &["bodies.cube.octree.fixed=\"if(x < 0.05, 0, 1)\""],
+        mutation: "bodies.cube.material.density=2000",
         ..MIXED
     },
     Case {
