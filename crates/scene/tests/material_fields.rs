@@ -6,6 +6,8 @@ use souple_scene::{Measurement, read_text};
 
 const BAR: &str = r#"
 format = 1
+[world]
+period = "1 ms"
 [bodies.bar]
 mesh = { generate = "box", size = [1, 1, 1], cells = [4, 1, 1], element = "hex8" }
 material = { name = "linear", youngs_modulus = "1 MPa", poissons_ratio = 0.3, density = 1000 }
