@@ -33,7 +33,11 @@ const LIVER: Poke = Poke {
     name: "adaptive_saving_liver",
     scene: "surgical",
     force: "tool",
-    settings: &["shapes.tool.motion.times=[0, 0.4, 0.7, 6, 6.3]", "run.duration=\"7 s\""],
+    settings: &[
+        "shapes.tool.motion.times=[0, 0.4, 0.7, 6, 6.3]",
+        "run.duration=\"7 s\"",
+        "bodies.liver.levels.stiffness=\"as_finest\"",
+    ],
     all_fine: r#"bodies.liver.levels={ count = 3, ratio = 1.8, fixed = "2", dress = { blend = "200 ms" } }"#,
     periods: [250, 80],
 };
