@@ -119,6 +119,14 @@ impl Setting<'_> {
                 let mut names: Vec<&str> = known().collect();
                 names.sort_unstable();
                 names.dedup();
+                if names.contains(name) {
+                    let message =
+                        format!("the scene has no `{name}` in `{}` of which a part could be set", self.path);
+                    return self.refuse(
+                        message,
+                        format!("`{name}` as a whole, its tables and lists with all that they need"),
+                    );
+                }
                 let hint = did_you_mean(name, names.iter().copied());
                 let message = format!("the scene has no `{name}` in `{}`{hint}", self.path);
                 return self.refuse(message, one_of(&names));

@@ -402,6 +402,30 @@ fn faults_of_frames_are_said_with_what_to_change() {
     told(&bound("[{ bone = \"hand\", frames = [12] }]"), &["no frame 12", "0 to 11"]);
     told(&bound("[{ bone = \"hand\", frames = [1, 1] }]"), &["frame 1 follows `hand` already"]);
     told(&refusal("frames_led", &["bones.hand.follows=\"hand\""]), &["`hand` follows itself"]);
+    told(&bound("[{ bone = \"hand\", frames = [] }]"), &["no frame is named"]);
+    // a pad has the cells of its faces, and a fibre no direction across itself
+    told(&refusal("tissues", &["bodies.pad.mesh.across=3"]), &["no `across`"]);
+    let axes = "bodies.tube.material_axes={ x = [1, 0, 0], y = [2, 0, 0] }";
+    told(&refusal("fibre_tube", &[axes]), &["a `y` that leans from it"]);
+}
+
+/// Frames that may move where no point sees it are told of, all the more of them the more; those that a bone leads do not move.
+#[test]
+fn frames_that_points_miss_are_told() {
+    let missed = |name: &str, settings: &[&str]| {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+        let text = std::fs::read_to_string(folder.join("scene.toml")).expect("the scene");
+        let settings: Vec<String> = settings.iter().map(|text| (*text).to_owned()).collect();
+        let scene = read_text(name, &text, &folder, &settings).unwrap_or_else(|faults| panic!("{faults}"));
+        scene.warnings.iter().any(|told| told.contains("integration points as at them"))
+    };
+    assert!(!missed("ligament", &[]), "as it is");
+    let few = "bodies.ligament.mesh.cells=[4, 1, 1]";
+    for count in [10, 12, 20] {
+        let frames = format!("bodies.ligament.frames.placement.count={count}");
+        assert!(missed("ligament", &[few, &frames]), "{count} frames at 32 points");
+    }
+    assert!(!missed("frames_led", &["bodies.bar.mesh.cells=[4, 1, 1]"]), "all on a bone");
 }
 
 /// Tissue that has no room is refused in words.

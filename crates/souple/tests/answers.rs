@@ -120,6 +120,25 @@ fn couplings_warn_once() {
     );
 }
 
+/// What is no number, and matter that is inside out, is told when a run is over: of frames, whose points see nothing of it, too.
+#[test]
+fn what_is_doubtful_of_a_run_is_told() {
+    let folder = Folder::new("doubts");
+    let warnings = |text: String| {
+        let scene = folder.write("doubt.toml", text);
+        souple(["run", &scene, "--json", "--quiet"]).json()["warnings"].to_string()
+    };
+    let clean = warnings(CUBE.to_owned());
+    assert!(!clean.contains("inside out") && !clean.contains("is no number"), "{clean}");
+    // one end is led through the other
+    let pins = "[[bodies.cube.pins]]\nregion = \"x_min\"\n[[bodies.cube.pins]]\nregion = \"x_max\"\n\
+                motion = { formula = \"[-30*t, 0, 0]\" }\n[systems.main]\nstepper = \"static\"\n";
+    let soft = CUBE.replace("neo_hookean", "linear");
+    assert!(soft.contains("\"linear\""), "{soft}");
+    let through = warnings(format!("{soft}{pins}"));
+    assert!(through.contains("of body `cube`") && through.contains("inside out at the end"), "{through}");
+}
+
 /// A solid that has blown up, its numbers still finite, is no result.
 #[test]
 fn blown_up_solids_are_failures() {

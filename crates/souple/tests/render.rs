@@ -185,6 +185,15 @@ fn frames_that_carry_a_body_are_drawn_from_files() {
     }
     render(&folder, "run", "without.png", &[]).ends(0);
     assert_ne!(with, read("without.png"));
+    // as a picture that leaves them out
+    folder.write("again.toml", CUBE.replace("[bodies.cube]", frames));
+    souple_in(folder.path(), ["run", "again.toml", "--out", "again", "--quiet", "--frames", "2"]).ends(0);
+    render(&folder, "again", "hidden.png", &["--frame-axes", "hidden"]).ends(0);
+    assert_eq!(read("hidden.png"), read("without.png"));
+    render(&folder, "again", "numbered.png", &["--frame-axes", "numbered"]).ends(0);
+    assert_ne!(read("numbered.png"), with);
+    let refused = render(&folder, "again", "other.png", &["--frame-axes", "dotted"]).ends(2);
+    assert!(refused.stdout.contains("drawn, numbered or hidden"), "{refused:#?}");
 }
 
 /// Frames that are not shown are not read: a run of which most are gone is drawn where it is whole.

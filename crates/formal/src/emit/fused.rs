@@ -241,8 +241,10 @@ struct Weighted {
     variation: Expr,
     weight: Expr,
     parameters: Vec<Expr>,
-    /// Symbols, and what they stand for.
+    /// Symbols, and what they stand for, earlier symbols among it.
     constants: Vec<(Expr, Expr)>,
+    /// What each stands for by the numbers of the law alone.
+    whole: Vec<Expr>,
     /// `ω Ψ`, `ω P`, `ω δP`.
     outputs: [Expr; 3],
 }
@@ -258,12 +260,28 @@ impl Weighted {
         let roots = [term.energy, term.stress, term.differential];
         let grouped = graph.group_constants(&roots, &[deformation, variation]);
         let grouped = graph.without_multiples(grouped);
+        let mut known = HashMap::new();
+        let mut whole = Vec::with_capacity(grouped.constants.len());
+        for (symbol, definition) in &grouped.constants {
+            let definition = graph.substitute(*definition, &known);
+            known.insert(*symbol, definition);
+            whole.push(definition);
+        }
         let diagonal = multiples_of_one(&mut graph, &grouped.varying);
         let varying: Vec<Expr> =
             grouped.varying.iter().map(|expr| graph.substitute(*expr, &diagonal)).collect();
         let shared = graph.shared(&varying);
         let outputs = [shared[0], shared[1], shared[2]];
-        Self { graph, deformation, variation, weight, parameters, constants: grouped.constants, outputs }
+        Self {
+            graph,
+            deformation,
+            variation,
+            weight,
+            parameters,
+            constants: grouped.constants,
+            whole,
+            outputs,
+        }
     }
 
     /// The body of a function whose inputs have these names.
@@ -321,8 +339,7 @@ impl Weighted {
         let plain = |text: String| text.replace(WEIGHT, "volume");
         let mut inputs = vec![(self.weight, "volume".to_owned())];
         inputs.extend(self.parameters.iter().zip(names).map(|(expr, name)| (*expr, format!("p.{name}"))));
-        let definitions: Vec<Expr> = self.constants.iter().map(|(_, definition)| *definition).collect();
-        self.body([&inputs, &[]], &definitions, &[], |results| {
+        self.body([&inputs, &[]], &self.whole, &[], |results| {
             let fields: Vec<String> =
                 results.iter().enumerate().map(|(index, text)| format!("d{index}: {text}")).collect();
             format!("        Self {{ {} }}\n", fields.join(", "))
@@ -366,6 +383,7 @@ pub fn element_kernel(
     if law.parameters.iter().any(|(_, parameter)| matches!(parameter, LawParameter::Direction(_))) {
         return Err(NoKernel::of("directions"));
     }
+    super::kernel::check_names(law)?;
     let names: Vec<&str> = law.parameters.iter().map(|(name, _)| name.as_str()).collect();
     let (fields, weighted) = (Fields::new(element), Weighted::new(law));
     let functions = [0, 1, 2].map(|output| weighted.function(output));
@@ -402,7 +420,7 @@ impl File<'_> {
             heading.summary, heading.element
         ));
         line("//!\n//! ```text");
-        heading.written.iter().for_each(|text| line(&format!("//! {text}")));
+        heading.written.iter().for_each(|text| line(&format!("//! {}", text.replace('\n', " "))));
         line("//! ```");
         let what = if is_box { "the diagonal of `X = X_ξ⁻¹`" } else { "`X = X_ξ⁻¹`" };
         let each = if of_samples > 1 { format!(" at each of {of_samples} samples") } else { String::new() };

@@ -37,11 +37,30 @@ impl NoKernel {
     }
 }
 
+/// Words that Rust keeps for itself.
+const WORDS: [&str; 51] = [
+    "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
+    "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",
+    "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "static",
+    "struct", "super", "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual",
+    "where", "while", "yield",
+];
+
+/// Whether the numbers of a law may be fields of a struct.
+///
+/// # Errors
+/// One is called as a word of Rust.
+pub(super) fn check_names(law: &EnergyLaw) -> Result<(), NoKernel> {
+    let taken = law.parameters.iter().find(|(name, _)| WORDS.contains(&name.as_str()));
+    taken.map_or(Ok(()), |(name, _)| Err(NoKernel(format!("a parameter called `{name}`, a word of Rust"))))
+}
+
 /// The file of a law: its numbers, and energy, stress and differential as functions of them.
 ///
 /// # Errors
 /// It is written in principal stretches, or with functions that lanes do not have.
 pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
+    check_names(law)?;
     let Heading { name, summary, written } = *heading;
     let parameters: Vec<(&str, Shape)> =
         law.parameters.iter().map(|(name, parameter)| (name.as_str(), parameter.shape())).collect();

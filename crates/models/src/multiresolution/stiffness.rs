@@ -124,11 +124,16 @@ fn loads(hierarchy: &Hierarchy, masses: &[f64]) -> Vec<Vec<Vec3>> {
         f
     };
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-    monomials[AFFINE..].iter().flat_map(|monomial| axes.map(|axis| (monomial, axis))).map(load).collect()
+    let quadratic = monomials.iter().filter(|(number, _)| *number >= AFFINE).map(|(_, values)| values);
+    quadratic.flat_map(|monomial| axes.map(|axis| (monomial, axis))).map(load).collect()
 }
 
-/// `1, x, y, z, x², …` at points, made orthonormal in the masses one after the other.
-fn orthonormal_monomials(places: &[Vec3], masses: &[f64]) -> Vec<Vec<f64>> {
+/// What is left of a monomial beside those before it, of itself, below which it is none of its own: of points in two planes `z²` is a sum of `1` and
+/// `z`, and what is left is rounding.
+const OWN: f64 = 1e-6;
+
+/// `1, x, y, z, x², …` at points, made orthonormal in the masses one after the other, by their numbers; without those that are sums of others there.
+fn orthonormal_monomials(places: &[Vec3], masses: &[f64]) -> Vec<(usize, Vec<f64>)> {
     let mass: f64 = masses.iter().sum();
     let centre = places.iter().zip(masses).map(|(x, m)| *x * *m).sum::<Vec3>() / mass;
     let size = places.iter().map(|x| (*x - centre).length()).fold(f64::MIN_POSITIVE, f64::max);
@@ -139,16 +144,20 @@ fn orthonormal_monomials(places: &[Vec3], masses: &[f64]) -> Vec<Vec<f64>> {
     let dot = |a: &[f64], b: &[f64]| -> f64 {
         a.iter().zip(b).zip(masses).map(|((a, b), mass)| mass * a * b).sum()
     };
-    let mut made: Vec<Vec<f64>> = Vec::new();
+    let mut made: Vec<(usize, Vec<f64>)> = Vec::new();
     for monomial in 0..MONOMIALS {
         let mut values: Vec<f64> = places.iter().map(|place| all(place)[monomial]).collect();
-        for other in &made {
+        let before = dot(&values, &values).sqrt();
+        // the second time takes what rounding has left of the first
+        for (_, other) in made.iter().chain(&made) {
             let share = dot(&values, other);
             values.iter_mut().zip(other).for_each(|(value, other)| *value -= share * other);
         }
         let norm = dot(&values, &values).sqrt();
-        values.iter_mut().for_each(|value| *value /= norm);
-        made.push(values);
+        if norm > OWN * before {
+            values.iter_mut().for_each(|value| *value /= norm);
+            made.push((monomial, values));
+        }
     }
     made
 }

@@ -88,8 +88,14 @@ pub fn place<'a>(
 /// The meshes that are made of a body's own, from coarse to fine; or why there is none.
 fn coarser_meshes(spec: &LevelsSpec, mesh: &Mesh) -> Vec<Result<Mesh, String>> {
     if !spec.cells.is_empty() {
-        let made = spec.cells.iter().map(|count| coarser_of_count(mesh, *count));
-        return made.map(|made| made.map_err(|error| error.to_string())).collect();
+        let own = mesh.cell_count();
+        let made = |count: &usize| match *count {
+            count if count >= own => {
+                Err(format!("{count} cells are no fewer than the {own} of the body's own mesh"))
+            }
+            count => coarser_of_count(mesh, count).map_err(|error| error.to_string()),
+        };
+        return spec.cells.iter().map(made).collect();
     }
     let edge = mean_edge(mesh);
     let sizes = (1..spec.count).rev().map(|finer| edge * spec.ratio.powi(finer as i32));

@@ -83,6 +83,9 @@ fn suits(draft: &Draft, body: &Body, spec: &OctreeSpec) -> bool {
     if !body.regions.is_empty() {
         return refuse("particles of an octree are of one material", "no `regions`");
     }
+    if !body.material_fields.is_empty() {
+        return refuse("particles of an octree are of one material", "no `material_fields`");
+    }
     if body.damping.rayleigh_stiffness > 0.0 || body.damping.viscosity > 0.0 {
         return refuse("particles know no rates of strain", "`rayleigh_mass`");
     }

@@ -44,8 +44,8 @@ pub fn measure(quantity: MassesQuantity, part: &Part, within: f64, world: &World
                 (places[*a as usize] - places[*b as usize]).length_sq() < within * within
             };
             let still = before.iter().filter(is_still).count();
-            // of none, none is lost
-            if before.is_empty() { 1.0 } else { still as f64 / before.len() as f64 }
+            // of none there is no share, which is told at the end of a run
+            still as f64 / before.len() as f64
         }
         MassesQuantity::Pairs => unreachable!("counted above"),
     }

@@ -322,7 +322,12 @@ fn check_keys(reader: &Reader, entry: &QuantityEntry) {
             true => format!("`{name}` knows no neighbours"),
             false => format!("`{name}` is of neighbours, and is not told how near they are"),
         };
-        refuse(reader, "within", message, "within = \"…\" with masses.parts, neighbours and spacing only");
+        refuse(
+            reader,
+            "within",
+            message,
+            "within = \"…\" with masses.parts, neighbours, spacing and kept only",
+        );
     }
     if reader.has("about") && !quantity.has_place() {
         let expected = "a moment, such as \"torque\", or \"levels.nearness\"";
