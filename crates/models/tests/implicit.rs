@@ -6,7 +6,8 @@ use souple_engine::implicit::NewtonSettings;
 use souple_engine::linear::{Method, SolverSettings};
 use souple_engine::steppers::{BackwardEuler, Bdf2, Newmark, NewtonMode, QuasiStatic, StaticEquilibrium};
 use souple_engine::{
-    Constraint, Force, Kinematics, Mass, Model, Motion, State, Stepper, System, UnknownKind, World,
+    Constraint, Force, Kinematics, Mass, Model, Motion, State, StepReport, Stepper, System, UnknownKind,
+    World,
 };
 use souple_math::Vec3;
 use souple_mesh::Mesh;
@@ -197,9 +198,9 @@ fn one_linearised_solve_follows_the_trace() {
     }
 }
 
-/// A free bar thrown upward with one end turned inside out, whose tangent is not definite there, goes on by one solve a step
-/// without gaining momentum or energy: inner forces and what is turned round of their tangents have none, and a step that is held
-/// back loses some.
+/// A free bar thrown upward with one end turned inside out, whose tangent is not definite there, goes on by one solve a step, and by Newton's method
+/// where that climbs, without gaining energy, and keeps its momentum: inner forces and what is turned round of their tangents have none, and a step
+/// that is held back all the same loses some.
 #[test]
 fn what_is_inside_out_flies_on() {
     let fall = -9.81;
@@ -223,9 +224,12 @@ fn what_is_inside_out_flies_on() {
         world.step().unwrap();
         made_definite += world.last_report().made_definite;
         let (before, now) = (velocity + Vec3::Y * (fall * period), world.momentum().0 / mass);
-        // all of it, or what is left where the step was halved; linear solves to 1e-10 of forces of some kilonewtons
-        let share = now.dot(before) / before.dot(before);
-        assert!((now - before * share).length() < 1e-8 && share < 1.0 + 1e-8, "{now:?} after {before:?}");
+        // of forces of 3 kN one solve leaves 1e-10, and Newton's method, where it goes on, a thousandth, for a step
+        let StepReport { gone_on, shortened, .. } = *world.last_report();
+        let left = if gone_on > 0 { 1e-3 } else { 1e-10 } * 3e3 * period / mass + 1e-8;
+        // all of it, or what is left where the step was halved
+        let share = if shortened > 0 { now.dot(before) / before.dot(before) } else { 1.0 };
+        assert!((now - before * share).length() < left && share < 1.0 + 1e-8, "{now:?} after {before:?}");
         velocity = now;
     }
     assert!(made_definite > 0);

@@ -420,10 +420,10 @@ fn frames_that_points_miss_are_told() {
         scene.warnings.iter().any(|told| told.contains("integration points as at them"))
     };
     assert!(!missed("ligament", &[]), "as it is");
-    let few = "bodies.ligament.mesh.cells=[4, 1, 1]";
-    for count in [10, 12, 20] {
+    let (few, rigid) = ("bodies.ligament.mesh.cells=[7, 1, 1]", "bodies.ligament.frames.kind=\"rigid\"");
+    for count in [16, 20, 24] {
         let frames = format!("bodies.ligament.frames.placement.count={count}");
-        assert!(missed("ligament", &[few, &frames]), "{count} frames at 32 points");
+        assert!(missed("ligament", &[few, rigid, &frames]), "{count} frames at 56 points");
     }
     assert!(!missed("frames_led", &["bodies.bar.mesh.cells=[4, 1, 1]"]), "all on a bone");
 }
@@ -501,7 +501,7 @@ fn faults_of_bones_are_said_where_they_are() {
             "bones.arm",
         ),
         (&["shapes={ hand = { shape = \"plane\" } }"], "there is a shape `hand` too", "bones.hand"),
-        (&["probes.force.bone=\"hands\""], "no frame of body `bar` follows a bone `hands`", "probes.force"),
+        (&["probes.force.bone=\"hands\""], "nothing of body `bar` follows a bone `hands`", "probes.force"),
     ] {
         let said = refusal("frames_led", settings);
         assert!(said.contains(wanted) && said.contains(place), "{settings:?}: {said}");

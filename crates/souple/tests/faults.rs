@@ -252,7 +252,7 @@ const SCENES: &[(&str, &str, &str, &str)] = &[
         "probe_about_nothing",
         "quantity = \"position\"",
         "quantity = \"position\"\nabout = [0, 0, 0]",
-        "no moment",
+        "is of no place",
     ),
     (
         "limits_crossed",

@@ -60,15 +60,15 @@ fn no_scale_of_frequencies_is_taken_for_granted() {
 /// Frames that cannot carry the body are told as such, and are not the reason why others do not do.
 #[test]
 fn what_is_refused_is_told_of_that_try_alone() {
-    let bones = "bodies.bar.frames.bones=[{ bone = \"hand\", frames = [0, 11] }]";
-    let needed = needed("frames_led", "bar", "0.1%", &[bones]);
+    let shown = "bodies.bar.frames.shown=11";
+    let needed = needed("frames_led", "bar", "0.1%", &[shown]);
     let tried = needed["tried"].as_array().unwrap_or_else(|| panic!("{needed}"));
     let refused = |of: &Value| of["refused"].as_str().map(str::to_owned);
     assert_eq!(tried[0]["times"], 0.5);
     assert!(refused(&tried[0]).is_some_and(|why| why.contains("no frame 11")), "{needed}");
     assert!(compared(&needed).len() >= 2, "{needed}");
     let scene = scenes().join("frames_led").display().to_string();
-    let told = souple(["check", &scene, "--accuracy", "0.1%", "--set", bones]).ends(0).stdout;
+    let told = souple(["check", &scene, "--accuracy", "0.1%", "--set", shown]).ends(0).stdout;
     let line = told.lines().find(|line| line.contains("softest motions")).expect("a line").to_owned();
     assert!(line.contains("0.5 times as many do not do"), "{line}");
     assert!(line.ends_with("0.1 % takes more, or other weights"), "{line}");

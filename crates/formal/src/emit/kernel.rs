@@ -78,7 +78,7 @@ pub fn kernel(law: &EnergyLaw, heading: &Heading) -> Result<String, NoKernel> {
     line(&format!("//! {summary}; derived from its text by `cargo xtask kernels`, and not changed by hand."));
     line("//!");
     line("//! ```text");
-    for text in written {
+    for text in written.iter().flat_map(|text| text.lines()) {
         line(&format!("//! {text}"));
     }
     line("//! ```");

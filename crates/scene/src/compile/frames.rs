@@ -226,10 +226,14 @@ fn unseen(
     };
     let Unseen { frame, times } = at_rest.unseen()?;
     let strain = if times < 1e4 { format!("{times:.0} times as much") } else { "by any amount".to_owned() };
+    let remedy = match spec.points {
+        Some(_) => "more `points`",
+        None => "a finer mesh (`points` only makes them fewer)",
+    };
     let most = frame.map_or_else(String::new, |frame| format!(", frame {frame} the most,"));
     Some(format!(
         "{}: the {} of body `{}` may move{most} so that its matter strains {strain} between the {} integration points as at them: hardly \
-         anything resists that; take a finer mesh (`points` only makes them fewer) or fewer frames",
+         anything resists that; take {remedy} or fewer frames",
         draft.place(&spec.site),
         counted(placed.frames.len() as u64, "frame"),
         body.name,
