@@ -154,21 +154,19 @@ impl Patch {
         })
     }
 
-    /// Where a line leaves it towards a side: the last of its faces that look there. Where it meets none of those, the nearest place to a
-    /// point of it.
-    fn met_along(&self, point: Vec3, towards: Vec3) -> Vec3 {
-        let looking = Self { points: Vec::new(), faces: self.faces_towards(towards) };
-        let last = looking.distances_on_line(point, towards).max_by(f64::total_cmp);
-        last.map_or_else(|| self.nearest(point), |distance| point + towards * distance)
+    /// Where a line leaves it towards a side, at the last of its faces.
+    fn left_along(&self, point: Vec3, towards: Vec3) -> Option<Vec3> {
+        let last = self.distances_on_line(point, towards).max_by(f64::total_cmp);
+        last.map(|distance| point + towards * distance)
     }
 
-    /// Its faces that look to a side.
-    fn faces_towards(&self, towards: Vec3) -> Vec<Vec<Vec3>> {
+    /// Those of its faces that look to a side, by themselves.
+    fn facing(&self, towards: Vec3) -> Self {
         let looks = |face: &&Vec<Vec3>| {
             let normal = normal(&[face[0], face[1], face[2]]);
             normal.dot(towards) > NOTHING * normal.length()
         };
-        self.faces.iter().filter(looks).cloned().collect()
+        Self { points: Vec::new(), faces: self.faces.iter().filter(looks).cloned().collect() }
     }
 
     /// Where all its faces lie along the way, within a tenth: a place on one.
@@ -383,10 +381,12 @@ fn loft(ends: [End; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh, Tissue
      -> Result<Vec<Vec3>, TissueError> {
         let normal = direction.cross(axis);
         let normal = normal / normal.length();
+        let facing = patch.facing(towards);
         let place = |j: usize, k: usize| {
             let u = low + (high - low) * j as f64 / across as f64;
             let v = thickness * (k as f64 / through as f64 - 0.5);
-            patch.met_along(patch.middle() + axis * u + normal * v, towards)
+            let at = patch.middle() + axis * u + normal * v;
+            facing.left_along(at, towards).unwrap_or_else(|| patch.nearest(at))
         };
         for j in 0..=across {
             let (below, above) = (place(j, 0), place(j, through));
@@ -399,13 +399,15 @@ fn loft(ends: [End; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh, Tissue
     };
     let [first, last] = ends;
     let (first, last) = (section(first, direction)?, section(last, -direction)?);
-    let sections = (0..=along).map(|layer| {
-        let part = layer as f64 / along as f64;
-        first.iter().zip(&last).map(|(a, b)| *a * (1.0 - part) + *b * part).collect()
-    });
+    let sections = (0..=along).map(|layer| part_way([&first, &last], layer as f64 / along as f64));
     let mut mesh = between(&sections.collect::<Vec<_>>(), [across, through]);
     name_ends(&mut mesh, first.len());
     Ok(mesh)
+}
+
+/// The section at a part of the way between two.
+fn part_way([from, to]: [&[Vec3]; 2], part: f64) -> Vec<Vec3> {
+    from.iter().zip(to).map(|(a, b)| *a * (1.0 - part) + *b * part).collect()
 }
 
 /// Hexahedra between sections, one after the other, each of points over its width, layer upon layer.
@@ -456,8 +458,7 @@ fn strap(patches: [&Patch; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh,
         let share = wanted.along as f64 * part / (end - begin);
         share.round().max(1.0) as usize
     });
-    let lying = [0, 1]
-        .map(|which: usize| Patch { points: Vec::new(), faces: patches[which].faces_towards(sides[which]) });
+    let lying = [0, 1].map(|which: usize| patches[which].facing(sides[which]));
     // a section at a place along the way, on a patch
     let section = |which: usize, u: f64| -> Result<Vec<Vec3>, TissueError> {
         let (patch, side) = (&lying[which], sides[which]);
@@ -466,8 +467,7 @@ fn strap(patches: [&Patch; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh,
         let foot = |j: usize| {
             let v = low + (high - low) * j as f64 / across as f64;
             let at = start + direction * u + beside * v;
-            let last = patch.distances_on_line(at, side).max_by(f64::total_cmp);
-            last.map(|distance| at + side * distance).ok_or(TissueError::Narrow { at: patch.nearest(at) })
+            patch.left_along(at, side).ok_or_else(|| TissueError::Narrow { at: patch.nearest(at) })
         };
         let feet = (0..=across).map(foot).collect::<Result<Vec<Vec3>, _>>()?;
         let layer = |k: usize| side * (thickness * k as f64 / through as f64);
@@ -478,10 +478,7 @@ fn strap(patches: [&Patch; 2], direction: Vec3, wanted: &Tissue) -> Result<Mesh,
     };
     let (first, last) = (at(0, [begin, leave], counts[0])?, at(1, [meet, end], counts[2])?);
     let (edge, other) = (&first[counts[0]], &last[0]);
-    let bridge = (1..counts[1]).map(|i| {
-        let part = i as f64 / counts[1] as f64;
-        edge.iter().zip(other).map(|(a, b)| *a * (1.0 - part) + *b * part).collect()
-    });
+    let bridge = (1..counts[1]).map(|i| part_way([edge, other], i as f64 / counts[1] as f64));
     let sections: Vec<Vec<Vec3>> = first.iter().cloned().chain(bridge).chain(last.iter().cloned()).collect();
     let mut mesh = between(&sections, [across, through]);
     let of_section = sections[0].len();

@@ -38,15 +38,9 @@ pub fn of_bodies(session: &Session) -> Vec<String> {
             if let Some(drawn) = &drawn {
                 return drawn[*cell] <= 0.0;
             }
-            let field = solid.cell_field_at(*cell, &at);
-            // cells where no strain is taken have no volume
-            field.is_some_and(|field| {
-                if field.volume > 0.0 {
-                    field.current_volume <= 0.0
-                } else {
-                    field.deformation.determinant() <= 0.0
-                }
-            })
+            solid
+                .cell_field_at(*cell, &at)
+                .is_some_and(|field| field.volume > 0.0 && field.current_volume <= 0.0)
         };
         let cells = body.mesh.cell_count();
         let out: Vec<usize> = (0..cells).filter(is_out).collect();
