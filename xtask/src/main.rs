@@ -49,6 +49,11 @@ const STEPS: &[Step] = &[
     Step { name: "format", summary: "rustfmt changes nothing", run: cargo::format },
     Step { name: "lint", summary: "clippy has nothing to say on any target", run: cargo::lint },
     Step { name: "build", summary: "the released program", run: program::build },
+    Step {
+        name: "claims",
+        summary: "the validation cases that docs/capabilities.md names show what it says",
+        run: program::claims,
+    },
     Step { name: "tests", summary: "every test", run: cargo::tests },
     Step {
         name: "doctests",
