@@ -10,8 +10,8 @@ use super::{LoadError, finite};
 pub enum Interpolation {
     /// Straight from key to key; the velocity jumps at keys.
     Linear,
-    /// A cubic through the keys with the slopes of their neighbours, at rest at both ends: the velocity is
-    /// continuous.
+    /// A cubic through the keys, at rest at both ends: the velocity is continuous, and between two keys no component
+    /// goes beyond them (Fritsch and Carlson 1980), so that what two keys hold is held.
     Smooth,
 }
 
@@ -57,7 +57,12 @@ impl KeyFrames {
             if key == 0 || key == last {
                 return Vec3::ZERO;
             }
-            (offsets[key + 1] - offsets[key - 1]) * (1.0 / (times[key + 1] - times[key - 1]))
+            let speed =
+                |from: usize| (offsets[from + 1] - offsets[from]) * (1.0 / (times[from + 1] - times[from]));
+            let (before, after) = (speed(key - 1).to_array(), speed(key).to_array());
+            let mean = (offsets[key + 1] - offsets[key - 1]) * (1.0 / (times[key + 1] - times[key - 1]));
+            let mean = mean.to_array();
+            Vec3::from_array([0, 1, 2].map(|axis| monotone(mean[axis], before[axis], after[axis])))
         };
         let slopes = (0..=last).map(slope).collect();
         Ok(Self { times, offsets, slopes, interpolation })
@@ -87,6 +92,16 @@ impl KeyFrames {
             + end * (s * (3.0 * s - 2.0));
         (offset, velocity)
     }
+}
+
+/// The slope at a key for a mean one, that of the stretch before and that of the one after: none where these turn back or
+/// stand still, else at most three times the smaller one, up to which a cubic stays between its ends.
+fn monotone(mean: f64, before: f64, after: f64) -> f64 {
+    if before * after <= 0.0 {
+        return 0.0;
+    }
+    let most = 3.0 * before.abs().min(after.abs());
+    mean.clamp(-most, most)
 }
 
 impl Motion for KeyFrames {

@@ -416,6 +416,26 @@ fn key_frames_pass_through_their_keys() {
     }
 }
 
+/// What two keys hold is held, and a smooth motion stays between the keys around it.
+#[test]
+fn smooth_motions_do_not_overshoot() {
+    let times = vec![0.0, 0.1, 0.5, 1.0, 1.3, 1.35];
+    let heights = [0.0, 0.0, -0.03, -0.03, 0.01, 0.04];
+    let offsets = heights.map(|z| Vec3::new(0.0, 1.0 - z, z)).to_vec();
+    let keys = KeyFrames::new(times.clone(), offsets, Interpolation::Smooth).unwrap();
+    for (stretch, ends) in times.windows(2).enumerate() {
+        let (low, high) =
+            (heights[stretch].min(heights[stretch + 1]), heights[stretch].max(heights[stretch + 1]));
+        for part in 0..=100 {
+            let time = ends[0] + (ends[1] - ends[0]) * f64::from(part) / 100.0;
+            let [_, y, z] = keys.offset(Vec3::ZERO, time).to_array();
+            // sums of a few terms below 1, each to half a unit of its last digit
+            assert!((low - 1e-15..=high + 1e-15).contains(&z), "{z} at {time}");
+            assert!((y - (1.0 - z)).abs() < 1e-15, "{y} and {z} at {time}");
+        }
+    }
+}
+
 #[test]
 fn bad_numbers_are_named() {
     let error = KeyFrames::new(vec![0.0, 0.0], vec![Vec3::ZERO; 2], Interpolation::Linear).unwrap_err();

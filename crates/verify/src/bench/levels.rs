@@ -24,7 +24,7 @@ const BLOCK: Poke = Poke {
     scene: "pressed_block",
     force: "ball",
     settings: &[],
-    all_fine: r#"bodies.block.levels={ coarser = [{ mesh = { generate = "bar", size = [0.12, 0.12, 0.06], cells = [5, 5, 3], element = "tet4" } }, { mesh = { generate = "bar", size = [0.12, 0.12, 0.06], cells = [10, 10, 5], element = "tet4" } }], fixed = "2" }"#,
+    all_fine: r#"bodies.block.levels={ coarser = [{ mesh = { generate = "bar", size = [0.12, 0.12, 0.06], cells = [6, 6, 3], element = "tet4" } }, { mesh = { generate = "bar", size = [0.12, 0.12, 0.06], cells = [12, 12, 6], element = "tet4" } }], fixed = "2" }"#,
     periods: [98, 60],
 };
 

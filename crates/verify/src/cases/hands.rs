@@ -85,7 +85,7 @@ pub(super) const CASES: &[Case] = &[
         capabilities: &["DEB-48"],
         what: "force of the ball on the cube when the hand has come back: nothing sticks",
         reading: Reading::component("on_cube", 2),
-        source: "a contact only pushes",
+        source: "specification, V-44: a contact only pushes",
         mutation: r#"hands.right.motion.formula=[0, 0, "-0.025 * smoothstep(0.1, 0.5, t)"]"#,
         ..HAND
     },

@@ -36,6 +36,7 @@ mod rubber;
 mod skins;
 mod soft_cube;
 mod stepper_orders;
+mod strain_measures;
 mod thick_sphere;
 mod tools;
 mod traction;
@@ -71,6 +72,8 @@ pub const TABLES: &[&[Case]] = &[
     formulations::CASES,
     derivations::CASES,
     wall_cube::CASES,
+    wall_cube::SHEARED,
+    strain_measures::CASES,
     contact::CASES,
     network::CASES,
     rheometer::CASES,

@@ -54,6 +54,15 @@ const MIXED: Case = Case {
 const COARSE: &str = "bodies.cube.octree.fixed=\"0\"";
 const FINE: &str = "bodies.cube.octree.fixed=\"1\"";
 
+/// 32 x 8 x 8 particles, of which half the length is divided, half of that again, and so on.
+const LONG: &str = "bodies.cube.mesh.size=[0.31, 0.07, 0.07]";
+const LONG_CELLS: &str = "bodies.cube.mesh.cells=[31, 7, 7]";
+const HALVED_ADAPTIVE: &str = r#"bodies.cube.octree={ levels = 4, operators = "legacy", variant = "adaptive", fixed = "if(x < 0.155, 1, 0) + if(x < 0.075, 1, 0) + if(x < 0.035, 1, 0)" }"#;
+const HALVED_HIERARCHICAL: &str = r#"bodies.cube.octree={ levels = 4, operators = "legacy", variant = "hierarchical", fixed = "if(x < 0.155, 1, 0) + if(x < 0.075, 1, 0) + if(x < 0.035, 1, 0)" }"#;
+/// One tick for all, which all bear.
+const EACH_ONCE: &str = "systems.main.stepper.halvings=0";
+const SHORT_STEP: &str = "world.period=\"10 us\"";
+
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "particles_4",
@@ -143,6 +152,30 @@ pub(super) const CASES: &[Case] = &[
         tolerance: Tolerance::Absolute(0.0),
         source: "specification, V-12: 14 to 18",
         mutation: "bodies.cube.material.youngs_modulus=9e4",
+        ..MIXED
+    },
+    Case {
+        id: "octree_overhead_adaptive",
+        capabilities: &["DEB-15"],
+        what: "forces of a step of 2048 particles whose octree of four levels is divided by half on each",
+        settings: &[LONG, LONG_CELLS, HALVED_ADAPTIVE, EACH_ONCE, SHORT_STEP],
+        reading: Reading::last("evaluations").after(1),
+        reference: 298.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification, V-10",
+        mutation: "bodies.cube.octree.levels=3",
+        ..MIXED
+    },
+    Case {
+        id: "octree_overhead_hierarchical",
+        capabilities: &["DEB-15"],
+        what: "the same of the hierarchical variant: a seventh more",
+        settings: &[LONG, LONG_CELLS, HALVED_HIERARCHICAL, EACH_ONCE, SHORT_STEP],
+        reading: Reading::last("evaluations").after(1),
+        reference: 340.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification, V-10",
+        mutation: "bodies.cube.octree.levels=3",
         ..MIXED
     },
     Case {

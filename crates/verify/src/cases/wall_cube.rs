@@ -72,3 +72,27 @@ pub(super) const CASES: &[Case] = rows! {
     "green_4" "4" "st_venant_kirchhoff": -0.01241 0.00271 -0.00456;
     "green_8" "8" "st_venant_kirchhoff": -0.01416 0.00338 -0.00556;
 };
+
+/// V-18: by the hybrid operator the cube only shears, half as far.
+pub(super) const SHEARED: &[Case] = &[
+    Case {
+        id: "wall_cube_hybrid_4_down",
+        capabilities: &["DEB-23"],
+        what: "the cube at the wall by the hybrid operator: upper far edge, K_S(4)",
+        settings: &["bodies.cube.material.name=\"linear\"", HYBRID],
+        reference: -0.00708,
+        source: "specification, V-01 and V-18",
+        ..DOWN
+    },
+    Case {
+        id: "wall_cube_hybrid_8_down",
+        capabilities: &["DEB-23"],
+        what: "the same, K_S(8), on the way to 7.007 mm of a column of shear",
+        settings: &["bodies.cube.material.name=\"linear\"", HYBRID, "bodies.cube.mesh.cells=[8, 8, 8]"],
+        reference: -0.00703,
+        source: "specification, V-01 and V-18",
+        ..DOWN
+    },
+];
+
+const HYBRID: &str = r#"bodies.cube.formulation={ name = "hybrid" }"#;
