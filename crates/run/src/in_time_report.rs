@@ -48,11 +48,12 @@ fn of_hand(ticks: &[Tick], jump: f64, refused: u64) -> Value {
 impl InTime {
     /// The report.
     pub fn to_json(&self, session: &Session) -> Value {
-        let (world, toll) = (&self.world, &self.served.toll);
+        let (world, toll, stages) = (&self.world, &self.served.toll, session.world.stages());
         let mut loads = world.loads.clone();
         loads.sort_by(f64::total_cmp);
         let mean = loads.iter().sum::<f64>() / loads.len().max(1) as f64;
         let period = session.world.model().period;
+        let computing = (loads.iter().sum::<f64>() * period).max(f64::MIN_POSITIVE);
         let served = &self.served;
         let felt = served.ticks.iter().zip(&served.ports).zip(&served.refused);
         let felt = felt.map(|((ticks, port), refused)| of_hand(ticks, port.jump, *refused));
@@ -90,6 +91,14 @@ impl InTime {
                 "late": world.late,
                 "lost_seconds": world.lost,
                 "drift_seconds": world.drift,
+                // of the time of computing: what is inside, what touches and what follows
+                "shares": {
+                    "pairs": stages.pairs / computing,
+                    "forces": stages.forces / computing,
+                    "solve": (stages.assembly + stages.solve) / computing,
+                    "advance": stages.advance / computing,
+                    "rest": 1.0 - stages.total() / computing,
+                },
                 "budgets_set": world.budgets,
                 "begun": of_periods(&world.begun),
             },

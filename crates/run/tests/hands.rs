@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use souple_haptics::{Between, Coupling, Moving, Port, Smoothing};
+use souple_math::Vec3;
 use souple_run::{Control, Options, Session, Snapshot, run, run_in_time};
 use souple_scene::{Scene, read_text};
 
@@ -71,4 +73,37 @@ fn wrong_hands() {
     refused("probes.force.body=\"cube\"", "is of a hand");
     refused("hands.right.motion.formula=[0, 0, \"1/t\"]", "not finite");
     refused("hands.right.region={ nearest = [0.05, 0.05, 0.05] }", "no point on the surface");
+}
+
+/// The greatest change of the force on a person from one millisecond to the next, over the force (V-43): the hand goes into an elastic body
+/// of 200 N/m at 20 mm/s, and a world of 10 ms tells where its tool is, in balance between the body and the coupling of 400 N/m.
+fn greatest_step_of_force(between: Between) -> f64 {
+    let (body, speed, period) = (200.0, 0.02, 10);
+    let coupling = Coupling { damping: 0.0, ..Coupling::DEFAULT };
+    let port = Port { coupling, passive: false };
+    let (mut state, mut smoothing) = (Port::start(), Smoothing::new(between, 0.01));
+    let mut greatest = 0.0_f64;
+    for tick in 0..500 {
+        let now = f64::from(tick) * 1e-3;
+        if tick % period == 0 {
+            let share = coupling.stiffness / (coupling.stiffness + body);
+            let tool = Moving { place: Vec3::X * (share * speed * now), velocity: Vec3::X * (share * speed) };
+            smoothing.tell(tool, now);
+        }
+        let before = state.force.length();
+        port.tick(&mut state, Some(Vec3::X * (speed * now)), smoothing.at(now));
+        if tick > 100 {
+            greatest = greatest.max((state.force.length() - before).abs() / before);
+        }
+    }
+    greatest
+}
+
+/// Shown evenly between what the world tells, the tool changes the force by at most 5 % from one update to the next; told and held, which
+/// is what `between = "hold"` of a hand does, it makes it jump by more.
+#[test]
+fn forces_do_not_jump_between_periods() {
+    let (even, held) = (greatest_step_of_force(Between::Interpolate), greatest_step_of_force(Between::Hold));
+    assert!(even < 0.05, "{even}");
+    assert!(held > 0.05, "{held}");
 }
