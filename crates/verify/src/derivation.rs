@@ -28,6 +28,9 @@ pub enum Count {
     DifferentialOperationsOver(&'static str),
     /// The same in tensors, as bodies run them.
     TensorOperationsOver(&'static str),
+    /// Operations of forces in tensors, as bodies run them, over those of another law or element; settings, apart by spaces, that make it
+    /// the other.
+    TensorForcesOver(&'static str),
     /// How many times the operations of forces in tensors those of the four loops are.
     FourLoopForces,
     /// The same of the differential.
@@ -164,6 +167,10 @@ pub fn count(count: Count, given: &[String]) -> Result<f64, String> {
         Count::TensorOperationsOver(other) => {
             let of =
                 |settings: &Settings| settings.steps().map(|steps| operations(&steps, &steps.differentials));
+            return Ok(of(&settings)? as f64 / of(&settings_on(given, other)?)? as f64);
+        }
+        Count::TensorForcesOver(other) => {
+            let of = |settings: &Settings| settings.steps().map(|steps| operations(&steps, &steps.forces));
             return Ok(of(&settings)? as f64 / of(&settings_on(given, other)?)? as f64);
         }
         Count::CodeBytes => settings.derived()?.emit(ElementCode::Rust).text.len(),

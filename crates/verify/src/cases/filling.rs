@@ -23,6 +23,31 @@ const WEIGHT: Case = Case {
     mutation: "bodies.liver.material.density=1200",
 };
 
+/// The organ of a thousand tetrahedra with nothing that touches it, of some stiffness.
+macro_rules! liver_of {
+    ($stiffness:literal) => {
+        &[
+            "bodies.liver.mesh.size=0",
+            "bodies.liver.mesh.count=1000",
+            "shapes.tool.motion.times=[0, 9]",
+            "shapes.tool.motion.offsets=[[0, 0, 0], [0, 0, 0]]",
+            concat!("bodies.liver.material.youngs_modulus=\"", $stiffness, "\""),
+        ]
+    };
+}
+
+/// A filling has a volume, which no stiffness changes.
+const OF_ANY_STIFFNESS: Case = Case {
+    reading: Reading::component("hanging", 1).after(150),
+    // 1.278460018 kg, the mass of its cells as the quantity `mass` has it, x 9.81 m/s²
+    reference: 12.541_69,
+    // of the softest e^-9 of a swing of 3.7 N is left
+    tolerance: Tolerance::Absolute(5e-4),
+    source: "the weight of the mesh, whatever its stiffness",
+    mutation: "bodies.liver.material.density=1061",
+    ..WEIGHT
+};
+
 pub(super) const CASES: &[Case] = &[
     WEIGHT,
     Case {
@@ -58,6 +83,24 @@ pub(super) const CASES: &[Case] = &[
         source: "free fall of what the ligaments do not hold yet",
         mutation: "world.gravity=[0, -20, 0]",
         ..WEIGHT
+    },
+    Case {
+        id: "liver_weight_soft",
+        what: "pull of the ligaments on an organ of 2 kPa, a thousand tetrahedra, after a second and a half: the weight of its lumps of mass",
+        settings: liver_of!("2 kPa"),
+        ..OF_ANY_STIFFNESS
+    },
+    Case {
+        id: "liver_weight_stiff",
+        what: "the same of 10 MPa",
+        settings: liver_of!("10 MPa"),
+        ..OF_ANY_STIFFNESS
+    },
+    Case {
+        id: "liver_weight_hard",
+        what: "the same of 100 MPa",
+        settings: liver_of!("100 MPa"),
+        ..OF_ANY_STIFFNESS
     },
     Case {
         id: "liver_weight_mixed",
