@@ -104,6 +104,8 @@ pub struct InHand {
     pub energy: f64,
     /// The greatest change of the force from one tick of the device to the next, so far [N].
     pub jump: f64,
+    /// How old what the force says of the body was when the person ceased to feel it, at most so far [s].
+    pub age: f64,
 }
 
 /// The name of the force of a hand.

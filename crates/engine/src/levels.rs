@@ -19,6 +19,8 @@ pub struct Division {
     pub halvings: u32,
     pub filter: Filter,
     pub pace: Pace,
+    /// By how much elastic forces may change the velocity of a point from one of its dates to the next [m/s].
+    pub velocity_jump: f64,
 }
 
 /// How often points are pushed.
@@ -95,6 +97,24 @@ pub struct Census {
     pub cells: Vec<usize>,
     /// Of each point of the finest mesh: the level of the mesh that is at work there.
     pub level_of_point: Vec<u32>,
+    /// One over the shortest time from when a point got finer to when it got coarser, or the other way about, so far [Hz].
+    pub toggling: f64,
+    /// Levels by which places next to each other differ at most.
+    pub grading: u32,
+    /// Of particles, which see those beside them whatever their level.
+    pub neighbours: Option<Neighbours>,
+}
+
+/// Active neighbours of active particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Neighbours {
+    /// Of inner particles, those with 26 others of their level around them; 0 where there is none.
+    pub fewest: usize,
+    pub most: usize,
+    /// Pairs that lie side by side in space and know each other, counted from both sides.
+    pub listed: usize,
+    /// Those that do not.
+    pub unlisted: usize,
 }
 
 /// A force whose body has several meshes.

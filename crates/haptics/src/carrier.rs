@@ -45,10 +45,12 @@ struct HandState {
     port: PortState,
     /// Since the last tick [s].
     since_tick: f64,
+    /// Of what a force says of the body when the next one takes its place, at most so far [s].
+    age: f64,
 }
 
 /// Numbers of a [`HandState`].
-const LEN: usize = 24;
+const LEN: usize = 25;
 /// A tick that lacks this part of it is over: times are sums.
 const ROUNDING: f64 = 1e-9;
 /// The name of the parameter that tells whether a device is there.
@@ -69,6 +71,7 @@ impl HandState {
                 jump: numbers[22],
             },
             since_tick: numbers[23],
+            age: numbers[24],
         }
     }
 
@@ -78,7 +81,7 @@ impl HandState {
             numbers[at..at + values.len()].copy_from_slice(values);
             at += values.len();
         };
-        let Self { arm, tool, port, since_tick } = self;
+        let Self { arm, tool, port, since_tick, age } = self;
         for moving in [arm.hand.place, arm.hand.velocity] {
             put(&moving.to_array());
         }
@@ -86,7 +89,7 @@ impl HandState {
         for vector in [tool.place, tool.velocity, port.place, port.force] {
             put(&vector.to_array());
         }
-        put(&[port.energy, port.engaged, port.jump, *since_tick]);
+        put(&[port.energy, port.engaged, port.jump, *since_tick, *age]);
     }
 }
 
@@ -162,7 +165,7 @@ impl Carrier for HandCarrier {
         }
     }
 
-    fn advance(&self, pressed: &dyn Fn(&Pose) -> Pressed, timestep: f64, memory: &mut [f64]) {
+    fn advance(&self, pressed: &dyn Fn(&Pose) -> Pressed, told: f64, timestep: f64, memory: &mut [f64]) {
         let mut left = timestep;
         while left > ROUNDING * TICK {
             let mut state = HandState::read(memory);
@@ -178,6 +181,8 @@ impl Carrier for HandCarrier {
                 state.since_tick = 0.0;
                 let device = self.has_device(&state).then_some(state.arm.hand.place);
                 self.rest.port.tick(&mut state.port, device, state.tool);
+                // what an implicit step tells is of its own end
+                state.age = state.age.max((state.arm.time - told).max(0.0) + TICK);
                 if let Some(arm) = &self.arm {
                     arm.tick(history, &mut state.arm);
                 }
@@ -195,7 +200,7 @@ impl Carrier for HandCarrier {
     }
 
     fn in_hand(&self, memory: &[f64]) -> InHand {
-        let HandState { arm, tool, port, .. } = HandState::read(memory);
+        let HandState { arm, tool, port, age, .. } = HandState::read(memory);
         InHand {
             device: arm.hand.place,
             tool: tool.place,
@@ -203,6 +208,7 @@ impl Carrier for HandCarrier {
             force: port.force,
             energy: port.energy,
             jump: port.jump,
+            age,
         }
     }
 

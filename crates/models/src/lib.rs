@@ -13,3 +13,4 @@ pub mod multiresolution;
 pub mod network;
 pub mod particles;
 pub mod solids;
+mod stays;

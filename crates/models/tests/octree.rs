@@ -40,7 +40,13 @@ fn fixed(formula: &str) -> OctreeChoice {
     OctreeChoice::Fixed(Formula::compile(formula, &PLACE_VARIABLES).unwrap())
 }
 
-const DIVISION: Division = Division { timestep: 1e-3, halvings: 6, filter: Filter::None, pace: Pace::Own };
+const DIVISION: Division = Division {
+    timestep: 1e-3,
+    halvings: 6,
+    filter: Filter::None,
+    pace: Pace::Own,
+    velocity_jump: f64::INFINITY,
+};
 
 /// A body with rows and memory.
 struct Body {
@@ -135,6 +141,8 @@ fn particles_come_and_go() {
         let census = body.adapt();
         assert!((body.momentum() - before).length() < 1e-12 * before.length(), "{step}");
         assert_eq!(body.unbalanced(), 0, "{:?}", census.active);
+        assert!(census.grading <= 1);
+        assert_eq!(census.neighbours.map(|neighbours| neighbours.unlisted), Some(0));
     }
     let bent = body.force.census(&body.memory);
     let levels = bent.active.iter().filter(|count| **count > 0).count();
@@ -203,7 +211,13 @@ fn hierarchies_cost_a_seventh_more() {
         let operators = OctreeOperators::Strong(Operators::Legacy);
         let mut body = Body::new(force(tree([32, 8, 8], 4), operators, variant, choice));
         let census = body.adapt();
-        let division = Division { timestep: 1e-6, halvings: 0, filter: Filter::None, pace: Pace::Own };
+        let division = Division {
+            timestep: 1e-6,
+            halvings: 0,
+            filter: Filter::None,
+            pace: Pace::Own,
+            velocity_jump: f64::INFINITY,
+        };
         body.force.adapt(&division, &mut body.rows, &mut body.memory, &mut body.scratch);
         (body.force.evaluations(&division, &body.scratch), census)
     };

@@ -21,6 +21,8 @@ pub struct Staggered {
     pub halvings: u32,
     pub schedule: Schedule,
     pub filter: Filter,
+    /// [m/s]; infinite where points look at their stiffness alone.
+    pub velocity_jump: f64,
 }
 
 /// Which rates are due together.
@@ -56,6 +58,13 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
             "divide each velocity by 1 + h²K/m of its point: twice the step, all motion braked; one-way coupling only",
         )
         .or(Value::Boolean(false)),
+        Parameter::number(
+            "velocity_jump",
+            "m/s",
+            Allowed::NOT_NEGATIVE,
+            "points whose velocity elastic forces would change by more in an interval take a shorter one, down to the shortest; 0: they look at their stiffness at rest alone",
+        )
+        .or(Value::Number(0.0)),
     ],
     build: |values| {
         Box::new(Staggered {
@@ -65,6 +74,10 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
                 "together" => Schedule::Together,
                 _ => Schedule::Staggered,
             },
+            velocity_jump: match values.number("velocity_jump") {
+                0.0 => f64::INFINITY,
+                jump => jump,
+            },
             filter: if values.boolean("semi_implicit") { Filter::SemiImplicit } else { Filter::None },
         })
     },
@@ -73,7 +86,8 @@ pub(super) const ENTRY: StepperEntry = StepperEntry {
 impl Staggered {
     fn division(&self, timestep: f64) -> Division {
         let pace = if self.schedule == Schedule::Together { Pace::Together } else { Pace::Own };
-        Division { timestep, halvings: self.halvings, filter: self.filter, pace }
+        let Self { halvings, filter, velocity_jump, .. } = *self;
+        Division { timestep, halvings, filter, pace, velocity_jump }
     }
 }
 
@@ -337,7 +351,8 @@ impl Stepper for Staggered {
 mod tests {
     use super::Schedule;
 
-    /// Rate `i` is due `2^i` times a step, evenly; staggered, no tick has more than two rates, plain ticks have up to all.
+    /// Rate `i` is due `2^i` times a step, evenly; staggered, no tick has more than two rates, plain ticks have up to all. Together, all are
+    /// due in every tick.
     #[test]
     fn every_rate_has_its_dates() {
         let halvings = 3;
@@ -353,6 +368,9 @@ mod tests {
                 let apart = (1 << halvings) >> rate;
                 assert!(dates.windows(2).all(|pair| pair[1] - pair[0] == apart));
             }
+        }
+        for tick in 0..1 << halvings {
+            assert!(Schedule::Together.due(tick, halvings).eq([3, 2, 1, 0]));
         }
         let staggered: Vec<Vec<u32>> =
             (0..8).map(|tick| Schedule::Staggered.due(tick, 3).collect()).collect();

@@ -26,8 +26,8 @@ pub trait Carrier: Send + Sync + Debug {
 
     fn pose(&self, memory: &[f64]) -> Pose;
 
-    /// Moves on by `timestep`, while what is touched stays as it is.
-    fn advance(&self, pressed: &dyn Fn(&Pose) -> Pressed, timestep: f64, memory: &mut [f64]);
+    /// Moves on by `timestep`, while what is touched stays as it is at the date `told` [s].
+    fn advance(&self, pressed: &dyn Fn(&Pose) -> Pressed, told: f64, timestep: f64, memory: &mut [f64]);
 
     /// Where the device is to be at the end of the period, from where it started [m].
     fn lead(&mut self, place: Vec3);

@@ -432,7 +432,7 @@ impl Force for ShapeContact {
         }
         if let Leading::Carrier(carrier) = &self.leading {
             let own = &mut memory[self.burdens().end..];
-            carrier.advance(&|pose| self.pressed(pose, at), timestep, own);
+            carrier.advance(&|pose| self.pressed(pose, at), at.time, timestep, own);
         }
     }
 

@@ -498,7 +498,7 @@ impl Force for ToolContact {
             pair.memory = Known { side: sight.side, along: sight.along, anchor: place - stretch }.write();
         }
         if let Leading::Carrier(carrier) = &self.leading {
-            carrier.advance(&|pose| self.pressed(pose, at), timestep, &mut memory[HEAT..]);
+            carrier.advance(&|pose| self.pressed(pose, at), at.time, timestep, &mut memory[HEAT..]);
         }
     }
 

@@ -4,9 +4,11 @@ use souple_engine::Rows;
 use souple_engine::levels::{Division, Followers, Kinematic, Levels};
 use souple_math::Vec3;
 
+use super::elastic::Values;
 use super::lists::Work;
 use super::roles::Role;
 use super::{Choice, Coupling, LEAST_MASS, LevelsForce};
+use crate::solids::sample_law::Answer;
 
 /// Part of the budget above which nothing is subdivided.
 const FULL: f64 = 0.95;
@@ -15,13 +17,9 @@ const PATIENCE: f64 = 2.0;
 
 impl LevelsForce {
     /// Moves the set of subdivided points on, in `memory`.
-    pub(super) fn choose(
-        &self,
-        division: &Division,
-        positions: &[Vec3],
-        memory: &mut [f64],
-        work: &mut Work,
-    ) {
+    pub(super) fn choose(&self, division: &Division, rows: &Rows, memory: &mut [f64], work: &mut Work) {
+        memory[self.cuts_made()] = self.cuts.by(rows.time) as f64;
+        let positions = &rows.positions[self.rows()];
         work.refresh(self, memory);
         match &self.choice {
             Choice::Fixed(level) => {
@@ -111,7 +109,7 @@ impl LevelsForce {
                 .for_each(|point| self.subdivide(memory, *point as usize, false));
             accepted /= 2;
         }
-        let overload = memory.len() - 1;
+        let overload = self.overload();
         memory[overload] = if before > budget { memory[overload] + 1.0 } else { 0.0 };
         if memory[overload] > PATIENCE {
             unwanted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -142,6 +140,27 @@ impl LevelsForce {
                 return;
             }
         }
+    }
+
+    /// The least rate of each active point at which its velocity changes by no more than a division allows, as it is accelerated now.
+    pub(super) fn urge(&self, division: &Division, rows: &Rows, memory: &mut [f64], work: &mut Work) {
+        if division.velocity_jump == f64::INFINITY {
+            return;
+        }
+        let mut forces = vec![Vec3::ZERO; self.rows().end];
+        let values = Values { positions: &rows.positions[self.rows()], variation: &[] };
+        self.add_all(Answer::Stress, values, 1.0, work, &mut forces);
+        let urges = self.urges();
+        memory[urges..].fill(0.0);
+        for point in &work.active {
+            let point = *point as usize;
+            let change = forces[self.first_row + point].length() / work.masses[point] * division.timestep;
+            let rate = (0..division.halvings)
+                .find(|rate| change <= division.velocity_jump * f64::from(division.dates(*rate)))
+                .unwrap_or(division.halvings);
+            memory[urges + point] = f64::from(rate);
+        }
+        work.refresh(self, memory);
     }
 
     /// What others being active does to rows: they follow anew, and keep the momentum of the matter.

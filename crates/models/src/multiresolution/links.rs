@@ -87,11 +87,22 @@ pub struct Hierarchy {
     child_tets: Vec<Option<Carrier>>,
     /// Finer points in the Voronoi cell of each point.
     pub children: Lists,
-    /// The same, with the corners of the tetrahedron that carries the point where these take its place: were one of them
-    /// left to follow, it could come to follow the point that follows it.
+    /// Points that are active when a point is subdivided: its children and, where loops are to be [`Loops::Activated`], the corners
+    /// of the tetrahedron that carries it then. Were one of these left to follow, it could come to follow the point that follows it.
     pub successors: Lists,
+    pub loops: Loops,
     /// Shortest edge at each point [m].
     pub spacing: Vec<f64>,
+}
+
+/// What becomes of a corner of the tetrahedron that carries a subdivided point, and is none of its children: it may follow a coarse
+/// tetrahedron of which that point is a corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loops {
+    /// It is active: there is no loop (Debunne 2000, 5 §4.2).
+    Activated,
+    /// It follows, and each of the two is where the other was a tick before: the source's method without its remedy.
+    Lagged,
 }
 
 /// Meshes that are no levels of a body.
@@ -117,7 +128,7 @@ impl Hierarchy {
     ///
     /// # Errors
     /// They are too few or too many, no tetrahedra, flat, or not in order.
-    pub fn new(meshes: &[&Mesh]) -> Result<Self, LevelsError> {
+    pub fn new(meshes: &[&Mesh], loops: Loops) -> Result<Self, LevelsError> {
         check(meshes)?;
         let counts: Vec<usize> = meshes.iter().map(|mesh| mesh.points.len()).collect();
         let finest = counts.last().copied().unwrap_or(0);
@@ -139,6 +150,7 @@ impl Hierarchy {
             child_tets: vec![None; next],
             children: Lists::default(),
             successors: Lists::default(),
+            loops,
             spacing: vec![f64::INFINITY; next],
         };
         hierarchy.add_meshes(meshes)?;
@@ -218,8 +230,10 @@ impl Hierarchy {
             }
             for point in coarse {
                 let carrier = self.carrier(&in_fine, level, self.rest[point]);
-                successors
-                    .extend(carrier.iter().flat_map(|c| c.corners).map(|corner| (point as u32, corner)));
+                if self.loops == Loops::Activated {
+                    successors
+                        .extend(carrier.iter().flat_map(|c| c.corners).map(|corner| (point as u32, corner)));
+                }
                 self.child_tets[point] = carrier;
             }
         }

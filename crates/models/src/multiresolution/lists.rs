@@ -4,6 +4,7 @@ use souple_engine::levels::{Division, Filter};
 use souple_math::Mat3;
 
 use super::elastic::{ALL_CORNERS, Due, LawMemory};
+use super::links::Loops;
 use super::roles::{Following, Roles};
 use super::{Coupling, LevelsForce};
 use crate::solids::layout::LANES;
@@ -11,8 +12,10 @@ use crate::solids::sample_law::Answer;
 
 /// What points and samples do, by the memory of the force.
 pub struct Work {
-    /// The memory that all this was made from.
+    /// The part of the memory that all this was made from.
     pub known: Vec<f64>,
+    /// Of each point: the least rate that its velocity asks for.
+    urges: Vec<f64>,
     pub roles: Roles,
     pub following: Following,
     /// Active points, ascending.
@@ -35,8 +38,10 @@ pub struct Work {
     /// By rate: active points that have it.
     pub of_rate: Vec<Vec<u32>>,
     pub rate_of_point: Vec<u8>,
-    /// Followers that samples read.
+    /// Followers that samples read; where loops lag, with those that feed them, in the order in which they are brought there.
     pub ghosts: Vec<u32>,
+    /// All followers in that order, where loops lag.
+    pub relay: Vec<u32>,
     /// `(1 + h²K/m)⁻¹` of each active point, of the semi-implicit filter.
     pub brakes: Vec<Mat3>,
     /// How much the deformation varies around each active point.
@@ -47,6 +52,8 @@ pub struct Work {
     pub unwanted: Vec<(f64, u32)>,
     /// The points that were active before.
     pub before: Vec<u32>,
+    /// How fine all points were before.
+    pub were: Vec<u8>,
     pub stress: LawMemory,
     stiffness: Vec<f64>,
     damping: Vec<f64>,
@@ -61,6 +68,7 @@ impl Work {
     pub fn new(force: &LevelsForce) -> Self {
         Self {
             known: Vec::new(),
+            urges: Vec::new(),
             roles: Roles::default(),
             following: Following::default(),
             active: Vec::new(),
@@ -75,11 +83,13 @@ impl Work {
             of_rate: Vec::new(),
             rate_of_point: Vec::new(),
             ghosts: Vec::new(),
+            relay: Vec::new(),
             brakes: Vec::new(),
             variation: Vec::new(),
             wanted: Vec::new(),
             unwanted: Vec::new(),
             before: Vec::new(),
+            were: Vec::new(),
             stress: LawMemory::new(&force.matter, Answer::Stress),
             stiffness: Vec::new(),
             damping: Vec::new(),
@@ -90,6 +100,14 @@ impl Work {
 
     /// Brings roles, weights, masses and volumes to a memory.
     pub fn refresh(&mut self, force: &LevelsForce, memory: &[f64]) {
+        let urges = &memory[force.urges()..];
+        if self.urges != urges {
+            self.urges.clear();
+            self.urges.extend_from_slice(urges);
+            self.division = None;
+        }
+        // how long points stay makes no difference
+        let memory = &memory[..force.stays()];
         if self.known == memory {
             return;
         }
@@ -99,6 +117,9 @@ impl Work {
         let hierarchy = &force.hierarchy;
         self.roles.derive(hierarchy, |point| force.is_subdivided(memory, point));
         self.following.compose(hierarchy, &self.roles);
+        if hierarchy.loops == Loops::Lagged {
+            self.roles.relay(hierarchy, &mut self.relay);
+        }
         self.active.clear();
         let roles = &self.roles;
         self.active
@@ -114,7 +135,9 @@ impl Work {
         let (hierarchy, matter) = (&force.hierarchy, &force.matter);
         self.shares.clear();
         self.shares.resize(matter.slots.len(), 0.0);
-        for (cell, volume) in matter.cell_volumes.iter().enumerate() {
+        let made = self.known[force.cuts_made()];
+        let is_whole = |(cell, _): &(usize, &f64)| !force.cuts.is_through(*cell, made);
+        for (cell, volume) in matter.cell_volumes.iter().enumerate().filter(is_whole) {
             let slot_at = |level: usize| matter.slot_of_cell[level][cell] as usize;
             let is_live = |level: &usize| {
                 let sample = matter.slots[slot_at(*level)];
@@ -135,6 +158,14 @@ impl Work {
                 }
                 _ => 0.0,
             })),
+        }
+        if force.coupling == Coupling::OneWay {
+            for (cell, volume) in matter.cell_volumes.iter().enumerate().filter(|cell| !is_whole(cell)) {
+                for (slots, share) in matter.slot_of_cell.iter().zip(&force.share_of_moduli) {
+                    let acting = &mut self.acting[slots[cell] as usize];
+                    *acting = (*acting - volume * share).max(0.0);
+                }
+            }
         }
     }
 
@@ -243,7 +274,8 @@ impl Work {
         for point in &self.active {
             let longest = self.longest_interval(*point as usize, division.filter);
             let rate = (0..division.halvings).find(|rate| division.interval(*rate) <= longest);
-            self.rate_of_point[*point as usize] = rate.unwrap_or(division.halvings) as u8;
+            let urged = self.urges[*point as usize] as u8;
+            self.rate_of_point[*point as usize] = urged.max(rate.unwrap_or(division.halvings) as u8);
         }
         // the fastest point that a sample comes to, itself or by followers
         self.rate_of_slot.clear();
@@ -318,7 +350,14 @@ impl Work {
                 }
             }
         }
-        self.ghosts.sort_unstable();
+        match hierarchy.loops {
+            Loops::Activated => self.ghosts.sort_unstable(),
+            Loops::Lagged => {
+                let is_ghost = self.roles.ghosts(hierarchy);
+                self.ghosts.clear();
+                self.ghosts.extend(self.relay.iter().filter(|point| is_ghost[**point as usize]));
+            }
+        }
         match force.coupling {
             Coupling::OneWay => self.pushed.clone_from(&self.of_rate),
             Coupling::Transpose => self.list_pushed(force, rates),
@@ -370,9 +409,9 @@ impl Work {
     }
 
     pub fn bytes(&self) -> usize {
-        let numbers = [&self.known, &self.shares, &self.acting, &self.masses, &self.carried];
+        let numbers = [&self.known, &self.urges, &self.shares, &self.acting, &self.masses, &self.carried];
         let numbers = numbers.into_iter().chain([&self.stiffness, &self.damping, &self.variation]);
-        let points = [&self.active, &self.active_rows, &self.ghosts, &self.wanted, &self.before];
+        let points = [&self.active, &self.active_rows, &self.ghosts, &self.relay, &self.wanted, &self.before];
         let points = points.into_iter().chain(&self.pushed).chain(&self.of_rate);
         8 * numbers.map(Vec::capacity).sum::<usize>()
             + 4 * points.map(Vec::capacity).sum::<usize>()
@@ -386,6 +425,7 @@ impl Work {
             + self.rate_of_point.capacity()
             + self.rate_of_slot.capacity()
             + self.is_marked.capacity()
+            + self.were.capacity()
     }
 }
 

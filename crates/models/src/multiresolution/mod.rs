@@ -10,11 +10,13 @@
 //! - `matter`: what each tetrahedron stands for;
 //! - `stiffness`: how much stiffer than the finest mesh a coarser one is;
 //! - `criterion`, `adapt`: when points come and go;
+//! - `cuts`: what is cut through;
 //! - `lists`, `elastic`: what a step goes through;
 //! - `dress`: the surface that is shown.
 
 mod adapt;
 mod criterion;
+mod cuts;
 mod dress;
 mod elastic;
 mod links;
@@ -40,6 +42,8 @@ use souple_solve::BlockMatrix;
 use crate::materials::Material;
 use crate::solids::layout::LANES;
 use crate::solids::sample_law::Answer;
+use crate::stays;
+use cuts::Cuts;
 use elastic::{ALL_CORNERS, Due, LawMemory, Values};
 use lists::Work;
 use matter::Matter;
@@ -47,7 +51,7 @@ use souple_engine::levels::Followers;
 
 pub use criterion::{Criterion, Measure};
 pub use dress::{Dress, DressLevel, Worn};
-pub use links::{Hierarchy, LevelsError, MOST};
+pub use links::{Hierarchy, LevelsError, Loops, MOST};
 pub use roles::Role;
 
 /// What becomes of the forces on ghosts.
@@ -94,6 +98,8 @@ pub struct LevelsDescription<'a> {
     /// Index into `materials` for each cell of the finest mesh.
     pub material_of_cell: &'a [u16],
     pub coupling: Coupling,
+    /// Of [`Coupling::OneWay`] alone.
+    pub loops: Loops,
     pub stiffness: Stiffness,
     pub choice: Choice,
     /// Kelvin–Voigt: stress per rate of strain [Pa s].
@@ -102,6 +108,17 @@ pub struct LevelsDescription<'a> {
     pub mass_damping: f64,
     /// Stresses that a step may evaluate.
     pub budget: Option<f64>,
+    /// In the order of their dates.
+    pub cuts: Vec<Cut>,
+}
+
+/// Matter that carries nothing from a date on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cut {
+    /// [s]
+    pub time: f64,
+    /// Cells of the finest mesh.
+    pub cells: Vec<u32>,
 }
 
 /// Elastic forces of a body of levels.
@@ -117,6 +134,7 @@ pub struct LevelsForce {
     viscosity: f64,
     mass_damping: f64,
     budget: Option<f64>,
+    cuts: Cuts,
     /// Of each point of the finest mesh [kg].
     finest_masses: Vec<f64>,
     /// Of each point of all meshes, were its level alone at work [kg].
@@ -132,7 +150,7 @@ impl LevelsForce {
     /// The meshes cannot be levels of one body.
     pub fn new(description: LevelsDescription) -> Result<Self, LevelsError> {
         let LevelsDescription { meshes, materials, material_of_cell, .. } = description;
-        let hierarchy = Hierarchy::new(meshes)?;
+        let hierarchy = Hierarchy::new(meshes, description.loops)?;
         let matter = Matter::new(&hierarchy, meshes, materials, material_of_cell);
         let mut force = Self {
             name: description.name,
@@ -143,6 +161,7 @@ impl LevelsForce {
             viscosity: description.viscosity,
             mass_damping: description.mass_damping,
             budget: description.budget,
+            cuts: Cuts::default(),
             finest_masses: Vec::new(),
             whole_masses: Vec::new(),
             is_empty: Vec::new(),
@@ -150,6 +169,7 @@ impl LevelsForce {
             hierarchy,
             matter,
         };
+        force.cuts = Cuts::new(&force.hierarchy, &force.matter, description.cuts);
         force.weigh();
         if description.stiffness == Stiffness::AsFinest {
             force.share_of_moduli =
@@ -241,7 +261,10 @@ impl LevelsForce {
 
     /// Whether finer points are to take the place of a point.
     fn is_subdivided(&self, memory: &[f64], point: usize) -> bool {
-        point >= self.finest_count() && (self.is_empty[point] || memory[point - self.finest_count()] != 0.0)
+        point >= self.finest_count()
+            && (self.is_empty[point]
+                || memory[point - self.finest_count()] != 0.0
+                || self.cuts.is_beside(point, memory[self.cuts_made()]))
     }
 
     fn subdivide(&self, memory: &mut [f64], point: usize, is_subdivided: bool) {
@@ -250,6 +273,26 @@ impl LevelsForce {
 
     fn finest_count(&self) -> usize {
         self.finest_masses.len()
+    }
+
+    /// Where memory counts the steps for which the budget has been overdrawn: behind what says who is subdivided.
+    fn overload(&self) -> usize {
+        self.hierarchy.point_count() - self.finest_count()
+    }
+
+    /// Where memory counts the cuts that are made; what follows says nothing of who is at work.
+    fn cuts_made(&self) -> usize {
+        self.overload() + 1
+    }
+
+    /// Where memory keeps how long points stay.
+    fn stays(&self) -> usize {
+        self.cuts_made() + 1
+    }
+
+    /// Where memory has, of each point, the least rate that its velocity asks for.
+    fn urges(&self) -> usize {
+        self.stays() + stays::len(self.hierarchy.point_count())
     }
 
     /// Values of this body's points among those on rows.
@@ -298,7 +341,10 @@ impl Force for LevelsForce {
         let is_objective = self.matter.materials.iter().all(|material| material.law.is_objective());
         let is_conservative = self.coupling == Coupling::Transpose;
         Declaration {
-            conservative: is_conservative && self.viscosity == 0.0 && self.mass_damping == 0.0,
+            conservative: is_conservative
+                && self.cuts.is_none()
+                && self.viscosity == 0.0
+                && self.mass_damping == 0.0,
             velocity_terms: self.viscosity > 0.0 || self.mass_damping > 0.0,
             symmetric_tangent: is_conservative,
             internal: is_conservative && is_objective,
@@ -306,9 +352,10 @@ impl Force for LevelsForce {
         }
     }
 
-    /// Which points are subdivided, and for how many steps the budget has been overdrawn.
+    /// Which points are subdivided, for how many steps the budget has been overdrawn, how many cuts are made; then how long points stay,
+    /// and the rates that their velocities ask for.
     fn memory_len(&self) -> usize {
-        self.hierarchy.point_count() - self.finest_count() + 1
+        self.urges() + self.hierarchy.point_count()
     }
 
     fn new_scratch(&self) -> Scratch {
@@ -452,7 +499,8 @@ impl LevelsForce {
             hierarchy.levels.iter().map(of_level).collect()
         };
         // a point is of the finest level at work in a cell at it
-        let mut level_of_point = vec![0; self.finest_count()];
+        let (mut level_of_point, mut coarsest_at_point) =
+            (vec![0; self.finest_count()], vec![u32::MAX; self.finest_count()]);
         let finest = hierarchy.tets_of_level[hierarchy.finest()].clone();
         for (cell, tet) in hierarchy.tets[finest].iter().enumerate() {
             let is_live = |level: &usize| {
@@ -463,12 +511,23 @@ impl LevelsForce {
             for corner in tet.corners {
                 let known = &mut level_of_point[corner as usize];
                 *known = level.max(*known);
+                let coarsest = &mut coarsest_at_point[corner as usize];
+                *coarsest = level.min(*coarsest);
             }
         }
         Census {
             active: count(&|point| work.roles.is_active(point)),
             ghosts: count(&|point| ghosts[point]),
             cells: hierarchy.tets_of_level.iter().map(Range::len).collect(),
+            toggling: stays::rate(&memory[self.stays()..self.urges()]),
+            // cells that share a corner lie side by side; a point of no cell is beside nothing
+            grading: level_of_point
+                .iter()
+                .zip(coarsest_at_point)
+                .map(|(finest, coarsest)| finest.saturating_sub(coarsest))
+                .max()
+                .unwrap_or(0),
+            neighbours: None,
             level_of_point,
         }
     }

@@ -47,6 +47,15 @@ impl Roles {
         self.is_live.extend(hierarchy.tets.iter().map(|tet| tet.corners.iter().any(is_active)));
     }
 
+    /// How fine each point is: 0 where coarser ones are in its place, 1 where it is at work, 2 where finer ones are.
+    pub fn fineness(&self) -> impl Iterator<Item = u8> + '_ {
+        self.of_point.iter().map(|role| match role {
+            Role::Absent => 0,
+            Role::Active => 1,
+            Role::Subdivided => 2,
+        })
+    }
+
     pub fn is_active(&self, point: usize) -> bool {
         self.of_point[point] == Role::Active
     }
@@ -58,6 +67,21 @@ impl Roles {
             Role::Subdivided => Some(hierarchy.child_tet(point)),
             Role::Absent => Some(hierarchy.parent(point)),
         }
+    }
+
+    /// All points that follow, each after those that feed it but where they feed each other: subdivided ones from fine to coarse, then
+    /// absent ones from coarse to fine.
+    pub fn relay(&self, hierarchy: &Hierarchy, order: &mut Vec<u32>) {
+        order.clear();
+        let of = |role: Role, points: &std::ops::Range<usize>| {
+            points
+                .clone()
+                .filter(move |point| self.of_point[*point] == role)
+                .map(|point| point as u32)
+                .collect::<Vec<_>>()
+        };
+        order.extend(hierarchy.levels.iter().rev().flat_map(|points| of(Role::Subdivided, points)));
+        order.extend(hierarchy.levels.iter().flat_map(|points| of(Role::Absent, points)));
     }
 
     /// The ghosts: followers that active points see in their own mesh, and those by which these are fed.
@@ -95,10 +119,12 @@ pub struct Following {
 
 /// A point whose entries are not made yet.
 const UNKNOWN: (u32, u32) = (u32::MAX, u32::MAX);
+/// A point whose entries are being made.
+const UNDER_WAY: (u32, u32) = (u32::MAX, 0);
 
 impl Following {
     /// Follows each point's feeding tetrahedra until all are active: from absent points to coarser ones until one is
-    /// present, from subdivided points to finer ones, which are present. So it ends.
+    /// present, from subdivided points to finer ones, which are present. So it ends; where loops are let be it is broken off.
     pub fn compose(&mut self, hierarchy: &Hierarchy, roles: &Roles) {
         let count = hierarchy.point_count();
         self.entries.clear();
@@ -116,12 +142,16 @@ impl Following {
         if self.ranges[point] != UNKNOWN {
             return;
         }
+        self.ranges[point] = UNDER_WAY;
         for corner in carrier.corners {
             self.compose_point(hierarchy, roles, corner as usize);
         }
+        let mut leads_back = false;
         for (corner, weight) in carrier.corners.into_iter().zip(carrier.weights) {
             if roles.is_active(corner as usize) {
                 self.add(corner, weight);
+            } else if self.ranges[corner as usize] == UNDER_WAY {
+                leads_back = true;
             } else {
                 let (start, end) = self.ranges[corner as usize];
                 for entry in start..end {
@@ -132,6 +162,9 @@ impl Following {
         }
         // in the order of numbers, so that sums do not depend on the way
         self.summed.sort_unstable();
+        if leads_back {
+            self.share_out();
+        }
         let start = self.entries.len() as u32;
         for leader in self.summed.drain(..) {
             let weight = std::mem::take(&mut self.sums[leader as usize]);
@@ -141,6 +174,15 @@ impl Following {
             }
         }
         self.ranges[point] = (start, self.entries.len() as u32);
+    }
+
+    /// What would lead back to where it came from is shared out among the rest: weights of sum one.
+    fn share_out(&mut self) {
+        self.summed.dedup();
+        let sum: f64 = self.summed.iter().map(|leader| self.sums[*leader as usize]).sum();
+        if sum.abs() > NOTHING {
+            self.summed.iter().for_each(|leader| self.sums[*leader as usize] /= sum);
+        }
     }
 
     fn add(&mut self, leader: u32, weight: f64) {
@@ -155,7 +197,7 @@ impl Following {
     /// What a follower follows; nothing for an active point.
     pub fn of(&self, point: usize) -> &[(u32, f64)] {
         match self.ranges[point] {
-            UNKNOWN => &[],
+            UNKNOWN | UNDER_WAY => &[],
             (start, end) => &self.entries[start as usize..end as usize],
         }
     }

@@ -7,9 +7,11 @@ use souple_engine::{Rows, Scratch};
 use souple_math::Vec3;
 
 use super::elastic::Values;
+use super::links::Loops;
 use super::lists::Work;
 use super::{Coupling, LevelsForce};
 use crate::solids::sample_law::Answer;
+use crate::stays;
 
 /// The work of a scratch that is only read.
 fn read(scratch: &Scratch) -> &Work {
@@ -27,7 +29,27 @@ fn for_each(force: &LevelsForce, work: &Work, who: Followers, mut visit: impl Fn
                 .filter(|row| own.contains(row))
                 .for_each(|row| visit(row - own.start));
         }
+        Followers::All if force.hierarchy.loops == Loops::Lagged => {
+            work.relay.iter().for_each(|point| visit(*point as usize));
+        }
         Followers::All => (0..force.hierarchy.point_count()).for_each(visit),
+    }
+}
+
+/// Where a point is, or how fast, that follows others with weights.
+fn follow(
+    kind: Kinematic,
+    rest: &[Vec3],
+    point: usize,
+    leaders: impl Iterator<Item = (u32, f64)>,
+    values: &[Vec3],
+) -> Vec3 {
+    match kind {
+        // x = X + Σ w (x - X)
+        Kinematic::Position => leaders.fold(rest[point], |sum, (leader, weight)| {
+            sum + (values[leader as usize] - rest[leader as usize]) * weight
+        }),
+        Kinematic::Velocity => leaders.map(|(leader, weight)| values[leader as usize] * weight).sum(),
     }
 }
 
@@ -39,14 +61,15 @@ impl LevelsForce {
             if work.roles.is_active(point) {
                 return;
             }
-            let leaders = work.following.of(point);
-            values[point] = match kind {
-                // x = X + Σ w (x - X)
-                Kinematic::Position => leaders.iter().fold(rest[point], |sum, (leader, weight)| {
-                    sum + (values[*leader as usize] - rest[*leader as usize]) * *weight
-                }),
-                Kinematic::Velocity => {
-                    leaders.iter().map(|(leader, weight)| values[*leader as usize] * *weight).sum()
+            values[point] = match self.hierarchy.loops {
+                Loops::Activated => {
+                    follow(kind, rest, point, work.following.of(point).iter().copied(), values)
+                }
+                // corner by corner as they stand
+                Loops::Lagged => {
+                    let feed = work.roles.feed(&self.hierarchy, point).into_iter();
+                    let corners = feed.flat_map(|feed| feed.corners.into_iter().zip(feed.weights));
+                    follow(kind, rest, point, corners, values)
                 }
             };
         });
@@ -75,10 +98,15 @@ impl Levels for LevelsForce {
         let work = self.work(scratch);
         work.refresh(self, memory);
         work.before.clone_from(&work.active);
-        self.choose(division, self.own(&rows.positions), memory, work);
+        work.were.clear();
+        work.were.extend(work.roles.fineness());
+        self.choose(division, rows, memory, work);
         if work.active != work.before {
             self.change_over(rows, work);
+            let log = &mut memory[self.stays()..self.urges()];
+            stays::note(&work.were, work.roles.fineness(), rows.time, log);
         }
+        self.urge(division, rows, memory, work);
         work.divide(self, division);
     }
 

@@ -7,10 +7,13 @@
 //! that are quadratic in the place and orthogonal, in the masses, to each other and to all affine ones. They are in balance by
 //! themselves, so the body needs no support; their compliance `Σ f·K⁻¹f` does not depend on the axes chosen.
 
-use souple_math::Vec3;
-use souple_solve::LinearOperator;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use souple_math::{Mat3, Vec3};
 use souple_solve::krylov::{ConjugateGradientWorkspace, Settings, conjugate_gradient};
-use souple_solve::precondition::Identity;
+use souple_solve::precondition::IncompleteCholesky;
+use souple_solve::{BlockMatrix, Pattern, SolveError};
 
 use super::links::{Hierarchy, Tet};
 use super::matter::Matter;
@@ -23,49 +26,39 @@ const AFFINE: usize = 4;
 /// Compliances are off by about the square of this, relatively.
 const SOLVE: Settings = Settings { tolerance: 0.02, max_iterations: 1000 };
 
-/// Small deformations of one level, on the body's points.
-struct Level<'a> {
-    hierarchy: &'a Hierarchy,
-    /// Tetrahedron, moduli and volume.
-    parts: Vec<(&'a Tet, Lame, f64)>,
-}
-
-impl<'a> Level<'a> {
-    fn new(hierarchy: &'a Hierarchy, matter: &'a Matter, level: usize) -> Self {
-        let range = hierarchy.tets_of_level[level].clone();
-        let of_level = matter.slots.iter().flatten().filter(|sample| range.contains(&(sample.tet as usize)));
-        let part = |sample: &super::matter::Sample| {
-            (&hierarchy.tets[sample.tet as usize], matter.material(sample).small_strain, sample.volume)
-        };
-        Self { hierarchy, parts: of_level.map(part).collect() }
-    }
-
-    /// Whether some part of the matter hangs on each point.
-    fn bears(&self) -> Vec<bool> {
-        let mut bears = vec![false; self.hierarchy.point_count()];
-        for (tet, _, _) in &self.parts {
-            tet.corners.iter().for_each(|corner| bears[*corner as usize] = true);
-        }
-        bears
-    }
-}
-
-impl LinearOperator for Level<'_> {
-    fn block_count(&self) -> usize {
-        self.hierarchy.point_count()
-    }
-
-    // K u = Σ V (λ tr(ε) + 2 μ ε) ∇N,  ε = sym(∇u)
-    fn apply(&self, u: &[Vec3], out: &mut [Vec3]) {
-        out.fill(Vec3::ZERO);
-        for (tet, moduli, volume) in &self.parts {
-            let strain = tet.gradient(u).symmetric_part();
-            let stress = (strain * (2.0 * moduli.mu)).plus_diagonal(moduli.lambda * strain.trace()) * *volume;
-            for (corner, gradient) in tet.corners.iter().zip(tet.gradients) {
-                out[*corner as usize] += stress * gradient;
+/// Stiffness at rest of one level, on its points: `K_ij = Σ V ((λ g_i g_jᵀ) + μ (g_j g_iᵀ + g_i·g_j 1))`.
+fn stiffness_of(hierarchy: &Hierarchy, matter: &Matter, level: usize) -> Result<BlockMatrix, SolveError> {
+    let (points, tets) = (&hierarchy.levels[level], &hierarchy.tets_of_level[level]);
+    let own = |corners: [u32; 4]| corners.map(|corner| corner - points.start as u32);
+    let parts: Vec<(&Tet, Lame, f64)> = matter
+        .slots
+        .iter()
+        .flatten()
+        .filter(|sample| tets.contains(&(sample.tet as usize)))
+        .map(|sample| {
+            let moduli = matter.material(sample).small_strain;
+            (&hierarchy.tets[sample.tet as usize], moduli, sample.volume)
+        })
+        .collect();
+    let cliques: Vec<[u32; 4]> = parts.iter().map(|(tet, ..)| own(tet.corners)).collect();
+    let pattern = Pattern::from_cliques(points.len(), cliques.iter().map(<[u32; 4]>::as_slice))?;
+    let mut matrix = BlockMatrix::zeros(Arc::new(pattern));
+    let mut bears = vec![false; points.len()];
+    for (tet, moduli, volume) in parts {
+        for (row, g) in own(tet.corners).into_iter().zip(tet.gradients) {
+            bears[row as usize] = true;
+            for (column, h) in own(tet.corners).into_iter().zip(tet.gradients) {
+                let block = g.outer(h) * moduli.lambda + h.outer(g) * moduli.mu;
+                let block = block.plus_diagonal(moduli.mu * g.dot(h)) * volume;
+                matrix.add(row as usize, column as usize, &block)?;
             }
         }
     }
+    // a point on which nothing hangs bears no load either
+    for (row, _) in bears.iter().enumerate().filter(|(_, bears)| !**bears) {
+        matrix.add(row, row, &Mat3::IDENTITY)?;
+    }
+    Ok(matrix)
 }
 
 /// Of each level: its compliance over that of the finest mesh, by which its moduli are to be multiplied for both to yield
@@ -95,21 +88,28 @@ pub fn shares_of_compliance(hierarchy: &Hierarchy, matter: &Matter, masses: &[f6
     shares
 }
 
-/// `Σ f·u` with `K u = f` on a level.
+/// `Σ f·u` with `K u = f` on a level; not finite where its matrix is none that can be solved.
 fn compliance(hierarchy: &Hierarchy, matter: &Matter, level: usize, loads: &[Vec<Vec3>]) -> f64 {
-    let stiffness = Level::new(hierarchy, matter, level);
-    let bears = stiffness.bears();
-    let mut workspace = ConjugateGradientWorkspace::default();
-    let of = |load: &Vec<Vec3>| -> f64 {
-        // what nothing resists would yield without end
-        let f: Vec<Vec3> =
-            load.iter().zip(&bears).map(|(f, bears)| if *bears { *f } else { Vec3::ZERO }).collect();
-        let mut u = vec![Vec3::ZERO; hierarchy.point_count()];
-        // where it stops short of its tolerance, the work of the best so far counts
-        conjugate_gradient(&stiffness, &Identity, &f, &mut u, &SOLVE, &mut workspace);
-        f.iter().zip(&u).map(|(f, u)| f.dot(*u)).sum()
+    let points = hierarchy.levels[level].clone();
+    let solved = || -> Result<f64, SolveError> {
+        let matrix = stiffness_of(hierarchy, matter, level)?;
+        // no support: it is definite but for rigid motions, of which balanced loads have no part
+        let preconditioner = IncompleteCholesky::new(&matrix)?;
+        let bears = |row: usize| matrix.pattern().row(row).len() > 1;
+        let of = |load: &Vec<Vec3>| -> f64 {
+            let mut workspace = ConjugateGradientWorkspace::default();
+            // what nothing resists would yield without end
+            let load = load[points.clone()].iter().enumerate();
+            let f: Vec<Vec3> = load.map(|(row, f)| if bears(row) { *f } else { Vec3::ZERO }).collect();
+            let mut u = vec![Vec3::ZERO; points.len()];
+            // where it stops short of its tolerance, the work of the best so far counts
+            conjugate_gradient(&matrix, &preconditioner, &f, &mut u, &SOLVE, &mut workspace);
+            f.iter().zip(&u).map(|(f, u)| f.dot(*u)).sum()
+        };
+        let works: Vec<f64> = loads.par_iter().map(of).collect();
+        Ok(works.iter().sum())
     };
-    loads.iter().map(of).sum()
+    solved().unwrap_or(f64::NAN)
 }
 
 /// `M u` of the quadratic fields, on the finest points.

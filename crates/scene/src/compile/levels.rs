@@ -4,19 +4,22 @@ use std::sync::Arc;
 
 use souple_engine::Force;
 use souple_engine::levels::{Division, Filter, Pace};
+use souple_formal::Formula;
 use souple_math::Vec3;
 use souple_mesh::Mesh;
 use souple_mesh::coarsen::{coarser, coarser_of_count, mean_edge};
-use souple_models::multiresolution::{Coupling, Dress, DressLevel, LevelsDescription, LevelsForce, Worn};
+use souple_models::multiresolution::{
+    Coupling, Cut, Dress, DressLevel, LevelsDescription, LevelsForce, Worn,
+};
 use souple_models::solids::Section;
 use souple_table::Value;
 
 use super::bodies::{BodyMaterials, Placed, solid_name};
 use super::{Draft, shape};
-use crate::diagnostic::Code;
+use crate::diagnostic::{Code, Site};
 use crate::scene::DressInfo;
 use crate::spec::body::{Body, MassKind};
-use crate::spec::levels::LevelsSpec;
+use crate::spec::levels::{CutSpec, LevelsSpec};
 use crate::spec::world::SystemSpec;
 
 /// The coarser meshes of a body, from coarse to fine.
@@ -134,14 +137,17 @@ pub fn force(draft: &Draft, body: &Placed, levels: &PlacedLevels) -> Option<Box<
         materials: &body.materials.all,
         material_of_cell: &body.materials.of_cell,
         coupling: spec.coupling,
+        loops: spec.loops,
         stiffness: spec.stiffness,
         choice: spec.choice(),
         viscosity: body.spec.damping.viscosity,
         mass_damping: body.spec.damping.rayleigh_mass,
         budget: spec.budget,
+        cuts: cuts(draft, body, spec),
     };
     match LevelsForce::new(description) {
         Ok(force) => {
+            check_fixed(draft, &spec.site, spec.fixed.as_ref(), &force.hierarchy().rest, meshes.len());
             check_steps(draft, system, spec, &force);
             Some(Box::new(force))
         }
@@ -150,6 +156,33 @@ pub fn force(draft: &Draft, body: &Placed, levels: &PlacedLevels) -> Option<Box<
             draft.log.add(Code::Mesh, &spec.site, error.to_string(), expected);
             None
         }
+    }
+}
+
+/// Cells of the body's own mesh, by the dates at which they are cut.
+fn cuts(draft: &Draft, body: &Placed, spec: &LevelsSpec) -> Vec<Cut> {
+    let cut = |cut: &CutSpec| {
+        let cells = draft.selector(body).cells(cut.region.as_ref()?);
+        Some(Cut { time: cut.time, cells })
+    };
+    spec.cuts.iter().filter_map(cut).collect()
+}
+
+/// Whether a formula of levels gives one that there is at every point at rest.
+pub(super) fn check_fixed(
+    draft: &Draft,
+    site: &Site,
+    fixed: Option<&Formula>,
+    places: &[Vec3],
+    count: usize,
+) {
+    let Some(fixed) = fixed else { return };
+    let finest = (count - 1) as f64;
+    let of = |place: &Vec3| (*place, fixed.evaluate(&place.to_array()));
+    if let Some((place, level)) = places.iter().map(of).find(|(_, level)| !(0.0..=finest).contains(level)) {
+        let [x, y, z] = place.to_array();
+        let message = format!("`fixed` is {level} at x = {x}, y = {y}, z = {z}");
+        draft.log.add(Code::OutOfRange, site, message, format!("levels from 0, the coarsest, to {finest}"));
     }
 }
 
@@ -186,7 +219,11 @@ pub fn warn_of_budgets(draft: &mut Draft) {
             timestep: draft.spec.world.period / f64::from(system.steps_per_period),
             halvings: halvings as u32,
             filter: Filter::None,
-            pace: Pace::Own,
+            pace: match stepper.values.text("schedule") {
+                "together" => Pace::Together,
+                _ => Pace::Own,
+            },
+            velocity_jump: f64::INFINITY,
         };
         let least = force.least_evaluations(&division);
         (budget < least as f64).then(|| {

@@ -11,7 +11,7 @@ use souple_table::Value;
 
 use super::Draft;
 use super::bodies::{BodyMaterials, Placed, solid_name};
-use super::levels::PlacedLevels;
+use super::levels::{PlacedLevels, check_fixed};
 use crate::diagnostic::Code;
 use crate::spec::body::{Body, MassKind};
 use crate::spec::octree::OctreeSpec;
@@ -138,6 +138,7 @@ pub fn force(draft: &Draft, body: &Placed) -> Option<Box<dyn Force>> {
         choice: spec.choice(),
         mass_damping: body.spec.damping.rayleigh_mass,
     });
+    check_fixed(draft, &spec.site, spec.fixed.as_ref(), &force.tree().rest, force.tree().levels.len());
     check_steps(draft, system, &force);
     Some(Box::new(force))
 }

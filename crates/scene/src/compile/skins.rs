@@ -199,7 +199,13 @@ impl Rows for Start {
 fn active_of(force: &dyn Force, positions: &[Vec3]) -> Option<Vec<u32>> {
     let levels = force.levels()?;
     // how the step is divided among points says nothing of which they are, but where a budget of evaluations is short
-    let division = Division { timestep: 1.0, halvings: 0, filter: Filter::None, pace: Pace::Own };
+    let division = Division {
+        timestep: 1.0,
+        halvings: 0,
+        filter: Filter::None,
+        pace: Pace::Own,
+        velocity_jump: f64::INFINITY,
+    };
     let velocities = vec![Vec3::ZERO; positions.len()];
     let mut rows = souple_engine::Rows { positions: positions.to_vec(), velocities, time: 0.0 };
     let mut memory = vec![0.0; force.memory_len()];

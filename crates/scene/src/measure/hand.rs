@@ -23,6 +23,7 @@ pub fn measure(quantity: HandQuantity, hand: &HandInfo, world: &World) -> Measur
         HandQuantity::Force => Measurement::Vector(held.force),
         HandQuantity::Energy => Measurement::Number(held.energy),
         HandQuantity::Jump => Measurement::Number(held.jump),
+        HandQuantity::Age => Measurement::Number(held.age),
         HandQuantity::ToolPosition => Measurement::Vector(held.tool),
         HandQuantity::ToolForce => Measurement::Vector(force),
         HandQuantity::ToolPenetration => Measurement::Number(penetration),

@@ -1,7 +1,8 @@
 //! Who does what in a body with levels, and what it costs.
 
-use souple_engine::World;
+use souple_engine::levels::Neighbours;
 use souple_engine::steppers::Schedule;
+use souple_engine::{Census, World};
 
 use super::LevelsPart;
 use crate::scene::{census, workload};
@@ -22,6 +23,11 @@ pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f6
             let levels: Vec<f64> = census.level_of_point.iter().map(|level| f64::from(*level)).collect();
             rank_correlation(&levels, &part.distances)
         }),
+        LevelsQuantity::Toggling => census().map_or(0.0, |census| census.toggling),
+        LevelsQuantity::Grading => census().map_or(0.0, |census| f64::from(census.grading)),
+        LevelsQuantity::FewestNeighbours => neighbours(census()).fewest as f64,
+        LevelsQuantity::MostNeighbours => neighbours(census()).most as f64,
+        LevelsQuantity::ListedNeighbours => neighbours(census()).listed as f64,
         LevelsQuantity::Evaluations => workload(world, part.system, &part.force)
             .map_or(0.0, |load| load.by_tick().iter().sum::<usize>() as f64),
         LevelsQuantity::Peak => workload(world, part.system, &part.force).map_or(0.0, |load| {
@@ -30,6 +36,10 @@ pub fn measure(quantity: LevelsQuantity, part: &LevelsPart, world: &World) -> f6
             if sum == 0 { 0.0 } else { most as f64 * ticks.len() as f64 / sum as f64 }
         }),
     }
+}
+
+fn neighbours(census: Option<Census>) -> Neighbours {
+    census.and_then(|census| census.neighbours).unwrap_or_default()
 }
 
 /// What a step does with the points as they are.

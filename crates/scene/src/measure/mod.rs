@@ -26,6 +26,7 @@ use self::against::Reference;
 use crate::compile::{Draft, Placed, hold_name, solid_name};
 use crate::diagnostic::Code;
 use crate::scene::{DressInfo, HandInfo, SkinInfo};
+use crate::spec::octree::OctreeSpec;
 use crate::spec::probe::{Component, Probe};
 use crate::spec::quantity::{
     BodyQuantity, BoneQuantity, CellQuantity, ContourQuantity, HandQuantity, LevelsQuantity, MassesQuantity,
@@ -417,6 +418,25 @@ fn levels_part(probe: &Probe, draft: &Draft) -> Option<LevelsPart> {
     if probe.quantity.build.subject == Subject::Levels(LevelsQuantity::Jump) && dress.is_none() {
         let message = format!("body `{}` wears no dress", body.spec.name);
         draft.log.add(Code::Conflict, &probe.site, message, "a body whose `levels` have a `dress`");
+        return None;
+    }
+    let is_of_particles = matches!(
+        probe.quantity.build.subject,
+        Subject::Levels(
+            LevelsQuantity::FewestNeighbours
+                | LevelsQuantity::MostNeighbours
+                | LevelsQuantity::ListedNeighbours
+        )
+    );
+    if is_of_particles && !body.spec.octree.as_ref().is_some_and(OctreeSpec::is_adaptive) {
+        let message =
+            format!("body `{}` is no octree whose particles see finer and coarser ones", body.spec.name);
+        draft.log.add(
+            Code::Conflict,
+            &probe.site,
+            message,
+            "a body with an `octree` of `variant = \"adaptive\"`",
+        );
         return None;
     }
     let is_near = probe.quantity.build.subject == Subject::Levels(LevelsQuantity::Nearness);

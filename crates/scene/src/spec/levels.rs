@@ -2,11 +2,12 @@
 
 use souple_formal::Formula;
 use souple_models::multiresolution::{
-    Choice, Coupling, Criterion, MOST, Measure, PLACE_VARIABLES, Stiffness,
+    Choice, Coupling, Criterion, Loops, MOST, Measure, PLACE_VARIABLES, Stiffness,
 };
 use souple_table::{Range, Value};
 
 use super::mesh::{MESH, MeshSpec};
+use super::region::Region;
 use crate::diagnostic::{Code, Site};
 use crate::keys::{Key, Keys, Shape};
 use crate::reader::Reader;
@@ -24,6 +25,21 @@ static DRESS: Keys = Keys::new(
         Key::new("mesh", Shape::Entry(MESH), "whose boundary it is; the body's own where left out"),
         Key::number("blend", "s", Range::NOT_NEGATIVE, "in which what would jump as levels change fades")
             .or(Value::Number(0.12)),
+    ],
+);
+
+static CUT: Keys = Keys::new(
+    "cut",
+    "matter that is cut through: from its date on it carries nothing, whichever mesh is at work",
+    &[
+        Key::new(
+            "region",
+            Shape::Region,
+            "cells of the body's own mesh of which all nodes, or the centre, are inside",
+        )
+        .required(),
+        Key::number("time", "s", Range::NOT_NEGATIVE, "its date; steps that begin then or later find it cut")
+            .or(Value::Number(0.0)),
     ],
 );
 
@@ -57,6 +73,12 @@ pub(crate) static LEVELS: Keys = Keys::new(
         )
         .or(Value::Text("transpose")),
         Key::new(
+            "loops",
+            Shape::Choice(&["activated", "lagged"]),
+            "with `coupling = \"one_way\"`: corners of the tetrahedron that carries a subdivided point are active, or they follow, and where two points follow each other both are a tick late",
+        )
+        .or(Value::Text("activated")),
+        Key::new(
             "stiffness",
             Shape::Choice(&["own", "as_finest"]),
             "of the coarser meshes: as their tetrahedra are, too stiff, or with moduli by which each yields to the body's softest loads as the finest does",
@@ -78,6 +100,7 @@ pub(crate) static LEVELS: Keys = Keys::new(
             "the level at a place, counted from 0, the coarsest, in the place of a criterion",
         ),
         Key::new("dress", Shape::Table(&DRESS), "the surface that is shown"),
+        Key::new("cuts", Shape::Tables(&CUT), "what is cut through, and when"),
         Key::number("budget", "", Range::POSITIVE, "stresses that a step may evaluate; without it, any number"),
     ],
 );
@@ -90,12 +113,22 @@ pub struct LevelsSpec {
     pub cells: Vec<usize>,
     pub coarser: Vec<MeshSpec>,
     pub coupling: Coupling,
+    pub loops: Loops,
     pub stiffness: Stiffness,
     pub criterion: Criterion,
     pub fixed: Option<Formula>,
     pub budget: Option<f64>,
     pub dress: Option<DressSpec>,
+    pub cuts: Vec<CutSpec>,
     pub site: Site,
+}
+
+/// Matter that is cut through, as specified.
+pub struct CutSpec {
+    /// `None` where it was refused.
+    pub region: Option<Region>,
+    /// [s]
+    pub time: f64,
 }
 
 /// A display surface as specified.
@@ -115,12 +148,14 @@ impl LevelsSpec {
                 reader.log().add(Code::Conflict, &reader.site_of(key), message, "`coarser` alone");
             }
         }
-        let cells = reader.maybe_indices("cells").unwrap_or_default();
+        let cells = reader.maybe_indices("cells");
         if reader.has("cells") {
             for key in reader.written(&["count", "ratio"]) {
                 let message = format!("`{key}` and `cells` both say how coarse the meshes are");
                 reader.log().add(Code::Conflict, &reader.site_of(key), message, "`cells` alone");
             }
+        }
+        if let Some(cells) = &cells {
             let rises = cells.windows(2).all(|pair| pair[0] < pair[1]);
             if !(rises && (1..MOST).contains(&cells.len()) && cells.iter().all(|count| *count >= 1)) {
                 let message = format!("{cells:?} are no numbers of tetrahedra from coarse to fine");
@@ -143,16 +178,22 @@ impl LevelsSpec {
                 reader.log().add(Code::Conflict, &reader.site_of(key), message, "`fixed` alone");
             }
         }
+        let loops = if reader.choice("loops") == "lagged" { Loops::Lagged } else { Loops::Activated };
+        if loops == Loops::Lagged && reader.choice("coupling") != "one_way" {
+            let message = "points that are late give nothing back to those that they follow";
+            reader.log().add(Code::Conflict, &reader.site_of("loops"), message, "`coupling = \"one_way\"`");
+        }
         Self {
             count: reader.maybe_integer("count").unwrap_or(3) as usize,
             ratio: reader.number("ratio"),
-            cells: cells.into_iter().map(|count| count as usize).collect(),
+            cells: cells.unwrap_or_default().into_iter().map(|count| count as usize).collect(),
             coarser,
             coupling: if reader.choice("coupling") == "one_way" {
                 Coupling::OneWay
             } else {
                 Coupling::Transpose
             },
+            loops,
             stiffness: if reader.choice("stiffness") == "as_finest" {
                 Stiffness::AsFinest
             } else {
@@ -165,6 +206,11 @@ impl LevelsSpec {
                 mesh: dress.has("mesh").then(|| MeshSpec::read(&dress)).flatten(),
                 blend: dress.number("blend"),
             }),
+            cuts: reader
+                .tables("cuts")
+                .iter()
+                .map(|cut| CutSpec { region: Region::read(cut, "region"), time: cut.number("time") })
+                .collect(),
             site: reader.site(),
         }
     }

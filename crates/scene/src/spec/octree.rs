@@ -105,6 +105,11 @@ impl OctreeSpec {
         }
     }
 
+    /// Whether particles see finer and coarser ones.
+    pub fn is_adaptive(&self) -> bool {
+        self.variant == Variant::Adaptive
+    }
+
     pub fn choice(&self) -> OctreeChoice {
         match &self.fixed {
             Some(level) => OctreeChoice::Fixed(level.clone()),

@@ -91,6 +91,7 @@ pub enum HandQuantity {
     Force,
     Energy,
     Jump,
+    Age,
     ToolPosition,
     ToolForce,
     ToolPenetration,
@@ -104,6 +105,11 @@ pub enum LevelsQuantity {
     Cells,
     Evaluations,
     Peak,
+    Toggling,
+    Grading,
+    FewestNeighbours,
+    MostNeighbours,
+    ListedNeighbours,
     Nearness,
 }
 
@@ -609,6 +615,36 @@ const ENTRIES: &[&QuantityEntry] = &[
         levels("", LevelsQuantity::Peak),
     ),
     &entry(
+        "levels.toggling",
+        "one over the shortest time from when a point was refined to when it was coarsened, or the other way about, so far; 0 where none was",
+        LEVELS,
+        levels("Hz", LevelsQuantity::Toggling),
+    ),
+    &entry(
+        "levels.grading",
+        "levels by which cells that share a corner, or particles side by side, differ at most",
+        LEVELS,
+        levels("", LevelsQuantity::Grading),
+    ),
+    &entry(
+        "levels.fewest_neighbours",
+        "active neighbours of an active particle of an octree, the fewest; of those with 26 others of their level around them",
+        LEVELS,
+        levels("", LevelsQuantity::FewestNeighbours),
+    ),
+    &entry(
+        "levels.most_neighbours",
+        "the same, the most",
+        LEVELS,
+        levels("", LevelsQuantity::MostNeighbours),
+    ),
+    &entry(
+        "levels.listed_neighbours",
+        "pairs of active particles of an octree that lie side by side and know each other, counted from both sides",
+        LEVELS,
+        levels("", LevelsQuantity::ListedNeighbours),
+    ),
+    &entry(
         "levels.nearness",
         "rank correlation (Spearman) of the level at work at each point with its distance at rest from `about`; below zero where it is finer the nearer",
         LEVELS,
@@ -632,6 +668,12 @@ const ENTRIES: &[&QuantityEntry] = &[
         "the greatest change of the force on the person from one millisecond to the next, so far",
         HAPTICS,
         hand("N", Number, HandQuantity::Jump),
+    ),
+    &entry(
+        "hand.age",
+        "how old what the force says of the body is when the next one takes its place, at most so far: time of the world, in an explicit step",
+        HAPTICS,
+        hand("s", Number, HandQuantity::Age),
     ),
     &entry(
         "tool.position",

@@ -51,6 +51,30 @@ const MIXED: Case = Case {
     ..SWING
 };
 
+/// The rod as a cube of 8 x 8 x 8 particles.
+const CUBIC: &str = "bodies.rod.mesh.size=[0.1, 0.1, 0.1]";
+const CUBIC_CELLS: &str = "bodies.rod.mesh.cells=[7, 7, 7]";
+
+/// Who is whose neighbour: numbers of the specification.
+const NEIGHBOURS: Case = Case {
+    capabilities: &["DEB-10"],
+    scene: "octree_rod",
+    mutation: r#"bodies.rod.octree.fixed="0""#,
+    reading: Reading::last("fewest").after(1),
+    tolerance: Tolerance::Absolute(0.0),
+    source: "specification, 2.6.2 and V-11",
+    ..SWING
+};
+
+/// The liver that is poked, at every date.
+const LIVER_LISTS: Case = Case {
+    capabilities: &["DEB-10", "DEB-13"],
+    scene: "octree_liver",
+    reading: Reading::last("grading").taking(Statistic::Max),
+    source: "specification, V-11",
+    ..SWING
+};
+
 const COARSE: &str = "bodies.cube.octree.fixed=\"0\"";
 const FINE: &str = "bodies.cube.octree.fixed=\"1\"";
 
@@ -280,6 +304,61 @@ pub(super) const CASES: &[Case] = &[
         what: "the same, all pushed in every tick",
         settings: &[r#"systems.main.stepper={ name = "staggered", halvings = 7, schedule = "together" }"#],
         ..ROD_ON_ITS_WAY
+    },
+    Case {
+        id: "octree_fewest_neighbours",
+        what: "active neighbours of particles that are alone in having been divided: 7 sisters and 7 coarser ones",
+        // the mother of index (1, 1, 1), 36 mm from three faces
+        settings: &[
+            CUBIC,
+            CUBIC_CELLS,
+            r#"bodies.rod.octree.fixed="if(abs(x - 0.0357) + abs(y - 0.0357) + abs(z - 0.0357) < 0.024, 1, 0)""#,
+        ],
+        reference: 14.0,
+        ..NEIGHBOURS
+    },
+    Case {
+        id: "octree_most_neighbours",
+        what: "active neighbours of a particle that is alone in not having been divided: 56 finer ones",
+        settings: &[
+            CUBIC,
+            CUBIC_CELLS,
+            r#"bodies.rod.octree.fixed="if(abs(x - 0.0357) + abs(y - 0.0357) + abs(z - 0.0357) < 0.024, 0, 1)""#,
+        ],
+        reading: Reading::last("most").after(1),
+        reference: 56.0,
+        ..NEIGHBOURS
+    },
+    Case {
+        id: "octree_liver_graded",
+        what: "levels by which particles of the liver side by side differ while it is poked, the most at any date: one, where three are at work",
+        reference: 1.0,
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: r#"bodies.liver.octree.fixed="0""#,
+        ..LIVER_LISTS
+    },
+    Case {
+        id: "octree_lists",
+        what: "particles side by side that know each other, half of the cube divided, counted from both sides: all",
+        settings: &[CUBIC, CUBIC_CELLS, r#"bodies.rod.octree.fixed="if(x < 0.05, 1, 0)""#],
+        reading: Reading::last("listed").after(1),
+        // 4 x 8 x 8 fine ones with 10 x 22 x 22 in their blocks of 27, themselves taken off, 2 x 4 x 4 coarse ones alike, and between
+        // them 14 x 14 pairs twice
+        reference: (10 * 22 * 22 - 256 + 4 * 10 * 10 - 32 + 2 * 14 * 14) as f64,
+        ..NEIGHBOURS
+    },
+    Case {
+        id: "octree_rod_settles",
+        capabilities: &["DEB-12", "DEB-14"],
+        what: "how often a particle comes or goes within a second while the rod settles in two, the most: once",
+        settings: &["run.duration=\"2 s\""],
+        reading: Reading::last("toggling"),
+        reference: 1.0,
+        tolerance: Tolerance::AtMost,
+        source: "specification, V-11: no particle toggles more than once a second in a settling run",
+        // no hysteresis
+        mutation: "bodies.rod.octree.coarsen=0.00299",
+        ..ROD
     },
     Case {
         id: "octree_rod_finest",

@@ -46,6 +46,28 @@ const THROUGH_CUBE: Case = Case {
     mutation: POINTS,
 };
 
+/// A hand that waits where it has come to: the ball hands on to the organ what the hand gives.
+const HELD_ON_LIVER: Case = Case {
+    capabilities: &["DEB-45", "DEB-46"],
+    reading: Reading::Ratio { of: "on_liver", to: "force", component: 2 },
+    reference: -1.0,
+    tolerance: Tolerance::Absolute(0.02),
+    source: "balance of the ball at rest; 1.4 s and more after it came",
+    // it draws back, and touches nothing
+    mutation: "hands.right.motion.times=[0, 0.6, 1, 1.4, 1.8]",
+    ..LIVER
+};
+
+/// A law that stiffens by an exponential, a tool at 2 m/s, and intervals down to 4 µs where velocities change by more than 5 cm/s.
+const BRUTAL: &[&str] = &[
+    "world.period=\"1 ms\"",
+    "run.duration=\"0.2 s\"",
+    r#"systems.main.stepper={ name = "staggered", halvings = 8, velocity_jump = 0.05 }"#,
+    r#"bodies.slab.material={ name = "hyperelastic", energy = "m/(2*b)*(exp(b*(I1_bar - 3)) - 1) + k/2*(J - 1)^2", parameters = { m = "1.5 kPa", b = 2, k = "6 kPa" }, density = 1000 }"#,
+    "bodies.slab.damping={ rayleigh_mass = 20 }",
+    "shapes.needle.motion.times=[0, 0.005, 0.015, 0.3, 0.4]",
+];
+
 const LIVER: Case = Case {
     id: "hand_jump_liver",
     capabilities: &["DEB-46", "DEB-47"],
@@ -110,6 +132,110 @@ pub(super) const CASES: &[Case] = &[
         source: "nothing is refined above 95 % of the budget",
         mutation: "bodies.liver.levels.budget=500000",
         ..LIVER
+    },
+    Case {
+        id: "liver_budget",
+        capabilities: &["DEB-39"],
+        what: "forces that a step evaluates under the hand with a budget of 5000, the most at any date",
+        settings: &["bodies.liver.levels.budget=5000"],
+        reading: Reading::last("evaluations").taking(Statistic::Max),
+        reference: 0.95 * 5000.0,
+        tolerance: Tolerance::AtMost,
+        source: "V-36: subdivision is refused above 95 %",
+        mutation: "bodies.liver.levels.budget=500000",
+        ..LIVER
+    },
+    Case {
+        id: "hand_liver_fast",
+        what: "what a ball does to the organ over what it does to the hand that thrust it there in 20 ms and waits, along the thrust",
+        settings: &["hands.right.motion.times=[0, 0.6, 0.62, 9, 9.1]"],
+        ..HELD_ON_LIVER
+    },
+    Case {
+        id: "hand_liver_stiff",
+        what: "the same on an organ a hundred times as stiff",
+        settings: &[
+            "hands.right.motion.times=[0, 0.6, 1, 9, 9.1]",
+            "bodies.liver.material.youngs_modulus=\"1.5 MPa\"",
+            "systems.main.stepper.halvings=11",
+        ],
+        ..HELD_ON_LIVER
+    },
+    Case {
+        id: "hand_liver_hard",
+        capabilities: &["DEB-46"],
+        what: "the most that a hand feels which pushes 30 cm into the organ, and slides off: what its device gives",
+        settings: &[
+            "hands.right.motion.offsets=[[0, 0, 0], [0, 0, 0], [0, 0, -0.3], [0, 0, -0.3], [0, 0, 0]]",
+            "hands.right.coupling={ limit = \"2 N\" }",
+        ],
+        reading: Reading::component("force", 2).taking(Statistic::Max),
+        reference: 2.0,
+        tolerance: Tolerance::AtMost,
+        source: "the limit of the device",
+        mutation: "hands.right.coupling={ limit = \"5 N\" }",
+        ..LIVER
+    },
+    Case {
+        id: "hand_liver_lost",
+        capabilities: &["DEB-46"],
+        what: "force on a hand that presses the organ a tenth of a second after its device was lost",
+        settings: &["hands.right.device.lost_at=1.2", "hands.right.device.lost_for=100"],
+        reading: Reading::component("force", 2).after(130),
+        source: "nobody is there to feel anything",
+        tolerance: Tolerance::Absolute(0.0),
+        mutation: "hands.right.device.lost_for=0",
+        ..LIVER
+    },
+    Case {
+        id: "hand_age_liver",
+        capabilities: &["DEB-46"],
+        what: "how old what the force says of the organ is when the next one takes its place, the most",
+        reading: Reading::last("age"),
+        // a tick of the device and one of the stepper
+        reference: 1e-3 + 10e-3 / 128.0,
+        tolerance: Tolerance::Absolute(1e-8),
+        source: "V-42: fresh force age below 2.5 ms",
+        mutation: "systems.main.stepper.halvings=8",
+        ..LIVER
+    },
+    Case {
+        id: "hand_age_block",
+        capabilities: &["DEB-46"],
+        what: "the same of a block that is stepped a thousand times a second: a step, and a tick of the device",
+        scene: "hand_on_block",
+        reading: Reading::last("age").after(50),
+        reference: 2e-3,
+        tolerance: Tolerance::Absolute(1e-9),
+        source: "V-42: below 2.5 ms",
+        mutation: "world.period=\"0.5 ms\"",
+        ..LIVER
+    },
+    Case {
+        id: "brutal_tool",
+        capabilities: &["DEB-17"],
+        what: "steps that a slab whose law stiffens by an exponential lives through while a thin tool goes a centimetre into it in 10 ms: all",
+        settings: BRUTAL,
+        reading: Reading::Steps,
+        reference: 200.0,
+        tolerance: Tolerance::Absolute(0.0),
+        source: "specification, DEB-17: no divergence under brutal tool motion",
+        // without it the slab is not finite after 16
+        mutation: "systems.main.stepper.velocity_jump=0",
+        ..NEEDLE
+    },
+    Case {
+        id: "brutal_tool_locally",
+        capabilities: &["DEB-17"],
+        what: "forces that a step evaluates meanwhile, the most: a half of those with the shortest interval everywhere",
+        settings: BRUTAL,
+        reading: Reading::last("evaluations").taking(Statistic::Max),
+        // 8 x 8 x 2 boxes of six tetrahedra, 2^8 times a step
+        reference: 0.5 * 768.0 * 256.0,
+        tolerance: Tolerance::AtMost,
+        source: "specification, DEB-17: steps shrink only locally",
+        mutation: "systems.main.stepper.velocity_jump=1e-6",
+        ..NEEDLE
     },
     Case {
         id: "levels_no_popping",

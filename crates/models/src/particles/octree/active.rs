@@ -14,7 +14,7 @@ pub const WANTED: f64 = 2.0;
 /// Scratch of a body of an octree.
 #[derive(Debug, Default)]
 pub struct Work {
-    /// The memory that all else follows from.
+    /// The part of the memory that all else follows from.
     memory: Vec<f64>,
     /// By particle, whether its mother is divided, or it is one of the coarsest.
     pub is_present: Vec<bool>,
@@ -35,6 +35,8 @@ pub struct Work {
     is_pushed: Vec<bool>,
     /// The memory before the last choice.
     pub before: Vec<f64>,
+    /// How fine all were then.
+    pub were: Vec<u8>,
 }
 
 impl Work {
@@ -52,6 +54,12 @@ impl Work {
     pub fn is_divided(&self, particle: usize) -> bool {
         let finest = self.is_present.len() - self.memory.len();
         self.is_present[particle] && particle >= finest && self.memory[particle - finest] == DIVIDED
+    }
+
+    /// How fine each particle is: 0 where a coarser one is in its place, 1 where it is at work, 2 where it is divided.
+    pub fn fineness(&self) -> impl Iterator<Item = u8> + '_ {
+        let of = |particle| u8::from(self.is_present[particle]) + u8::from(self.is_divided(particle));
+        (0..self.is_present.len()).map(of)
     }
 
     pub fn is_active(&self, particle: usize) -> bool {
@@ -72,6 +80,8 @@ impl Work {
 
     /// Follows the memory, if that has changed.
     pub fn refresh(&mut self, force: &OctreeForce, memory: &[f64]) {
+        // how long particles stay makes no difference
+        let memory = &memory[..force.coarser_count()];
         if self.memory == memory && !self.active.is_empty() {
             return;
         }
@@ -175,6 +185,7 @@ impl Work {
     pub fn bytes(&self) -> usize {
         let lists = self.of_rate.iter().chain(&self.due).chain(&self.pushed);
         8 * self.memory.capacity()
+            + self.were.capacity()
             + lists.map(|list| 4 * list.capacity()).sum::<usize>()
             + self.stencils.iter().map(Stencil::bytes).sum::<usize>()
     }

@@ -33,6 +33,7 @@ use souple_solve::BlockMatrix;
 
 use super::operators::Operators;
 use crate::materials::Lame;
+use crate::stays;
 use active::Work;
 
 pub use tree::{MOST_LEVELS, Octree, OctreeError};
@@ -118,6 +119,11 @@ impl OctreeForce {
     /// The shortest interval that some particle needs, whichever level is at work [s].
     pub fn shortest_interval(&self) -> f64 {
         self.intervals.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Particles that can be divided: memory has a number for each, and then how long particles stay.
+    fn coarser_count(&self) -> usize {
+        self.tree.count() - self.tree.finest_count()
     }
 
     /// Memory with one level at work everywhere.
@@ -229,9 +235,9 @@ impl Force for OctreeForce {
         }
     }
 
-    /// Which particles are divided, or are to be for their neighbours' sake.
+    /// Which particles are divided, or are to be for their neighbours' sake, and how long particles stay.
     fn memory_len(&self) -> usize {
-        self.tree.count() - self.tree.finest_count()
+        self.coarser_count() + stays::len(self.tree.count())
     }
 
     fn new_scratch(&self) -> Scratch {

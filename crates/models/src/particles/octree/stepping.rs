@@ -5,12 +5,13 @@
 
 use std::ops::Range;
 
-use souple_engine::levels::{Census, Division, Followers, Kinematic, Levels, Push};
+use souple_engine::levels::{Census, Division, Followers, Kinematic, Levels, Neighbours, Push};
 use souple_engine::{Rows, Scratch};
 use souple_math::Vec3;
 
 use super::active::Work;
 use super::{OctreeForce, Variant};
+use crate::stays;
 
 fn read(scratch: &Scratch) -> &Work {
     scratch.downcast_ref().unwrap_or_else(|| unreachable!("made by this force's own new_scratch"))
@@ -67,9 +68,14 @@ impl Levels for OctreeForce {
         work.refresh(self, memory);
         let mut before = std::mem::take(&mut work.before);
         before.clear();
-        before.extend_from_slice(memory);
+        before.extend_from_slice(&memory[..self.coarser_count()]);
+        let mut were = std::mem::take(&mut work.were);
+        were.clear();
+        were.extend(work.fineness());
+        work.were = were;
         self.choose(&rows.positions[self.row_range()], memory, work);
-        if before != memory {
+        if before != memory[..self.coarser_count()] {
+            stays::note(&work.were, work.fineness(), rows.time, &mut memory[self.coarser_count()..]);
             self.change_over(&before, memory, rows);
             let range = self.row_range();
             self.place(work, Followers::All, Kinematic::Position, &mut rows.positions[range.clone()]);
@@ -229,11 +235,53 @@ impl Levels for OctreeForce {
             ghosts: count(&|at| self.variant == Variant::Hierarchical && work.is_divided(at)),
             cells: tree.levels.iter().map(Range::len).collect(),
             level_of_point: (0..tree.finest_count()).map(level_of).collect(),
+            toggling: stays::rate(&memory[self.coarser_count()..]),
+            grading: self
+                .beside(&work)
+                .map(|[a, b]| tree.level_of[a].abs_diff(tree.level_of[b]))
+                .max()
+                .unwrap_or(0)
+                .into(),
+            neighbours: (self.variant == Variant::Adaptive).then(|| self.neighbours(&work)),
         }
     }
 }
 
 impl OctreeForce {
+    /// Pairs of active particles that lie side by side, by the places of the finest particles that they stand for: each pair is met
+    /// as often as these touch, from both sides.
+    fn beside<'a>(&'a self, work: &'a Work) -> impl Iterator<Item = [usize; 2]> + 'a {
+        let tree = &self.tree;
+        let active_above = move |particle: usize| {
+            let mothers = std::iter::successors(Some(particle), |at| tree.mother[*at].map(|at| at as usize));
+            mothers.into_iter().find(|at| work.is_active(*at)).unwrap_or(particle)
+        };
+        let of = move |particle: usize| {
+            let own = active_above(particle);
+            let others = tree.same.of(particle).iter().map(move |other| active_above(*other as usize));
+            others.filter(move |other| *other != own).map(move |other| [own, other])
+        };
+        (0..tree.finest_count()).flat_map(of)
+    }
+
+    fn neighbours(&self, work: &Work) -> Neighbours {
+        let tree = &self.tree;
+        let inner = work.active.iter().map(|at| *at as usize).filter(|at| tree.same.of(*at).len() == 26);
+        let counts: Vec<usize> = inner.map(|at| work.active_neighbours(tree, at).count()).collect();
+        let mut pairs: Vec<[usize; 2]> = self.beside(work).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let is_listed =
+            |[own, other]: &&[usize; 2]| work.active_neighbours(tree, *own).any(|at| at as usize == *other);
+        let listed = pairs.iter().filter(is_listed).count();
+        Neighbours {
+            fewest: counts.iter().copied().min().unwrap_or(0),
+            most: counts.iter().copied().max().unwrap_or(0),
+            listed,
+            unlisted: pairs.len() - listed,
+        }
+    }
+
     /// Gives a change of velocity to all active particles below a divided one.
     fn speed_up(&self, work: &Work, particle: usize, change: Vec3, velocities: &mut [Vec3]) {
         for daughter in self.tree.daughters.of(particle) {
